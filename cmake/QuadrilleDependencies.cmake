@@ -1,0 +1,23 @@
+# Every outside library, found once. The Debian packages that hold them are listed in scripts/packages.txt.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(glm REQUIRED)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(TinyGLTF REQUIRED)
+find_package(zstd REQUIRED)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
+pkg_check_modules(SYSTEMC_PC REQUIRED IMPORTED_TARGET systemc)
+find_package(SPIRV-Headers REQUIRED)
+find_package(SPIRV-Tools REQUIRED)
+find_package(SPIRV-Tools-opt REQUIRED)
+find_package(SPIRV-Tools-link REQUIRED)
+find_package(glslang REQUIRED)
+
+# Debian's SystemC 2.3.4 was built as C++17 and checks the macro at link time.
+add_library(quadrille_systemc INTERFACE)
+target_link_libraries(quadrille_systemc INTERFACE PkgConfig::SYSTEMC_PC)
+target_compile_definitions(quadrille_systemc INTERFACE SC_CPLUSPLUS=201703L SC_INCLUDE_DYNAMIC_PROCESSES)

@@ -1,0 +1,167 @@
+#include "hw/base/dispatcher.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <map>
+#include <queue>
+
+namespace quadrille::hw {
+
+namespace {
+
+/// Rounds in one activation of the SC_METHOD; between activations SystemC's time catches up and progress is reported.
+constexpr int kRoundsPerActivation = 1 << 14;
+
+Tick saturating_add(Tick a, Tick b) { return a > kNever - b ? kNever : a + b; }
+
+/// A unit that another can surprise, and how soon.
+struct Neighbour {
+  const Unit* unit = nullptr;
+  Tick latency = 0;
+};
+
+/// Everyone who can surprise `unit`: producers by tokens, consumers by credits.
+std::vector<Neighbour> surprisers(const Unit& unit) {
+  std::vector<Neighbour> all;
+  for (const PortBase* port : unit.ports()) {
+    const FifoBase& link = port->fifo();
+    if (port->direction() == PortBase::Direction::kIn) all.push_back({link.producer(), link.forward_lookahead()});
+    else all.push_back({link.consumer(), link.credit_lookahead()});
+  }
+  return all;
+}
+
+constexpr std::size_t kLanes = 4;  // of 64 bits in a vector register
+
+struct Earliest {
+  Tick first = kNever, second = kNever;  ///< equal when two choosers share the earliest time
+};
+
+/// The two smallest times, in lanes that the compiler makes one vector of. The number of times is a multiple of `kLanes`.
+Earliest earliest_of(const std::vector<Tick>& times) {
+  std::array<Tick, kLanes> first, second;
+  first.fill(kNever);
+  second.fill(kNever);
+  for (std::size_t i = 0; i < times.size(); i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Tick t = times[i + lane];
+      const Tick later = first[lane] > t ? first[lane] : t;
+      first[lane] = first[lane] < t ? first[lane] : t;
+      second[lane] = second[lane] < later ? second[lane] : later;
+    }
+  }
+  Earliest e;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    e.second = std::min({e.second, second[lane], std::max(e.first, first[lane])});
+    e.first = std::min(e.first, first[lane]);
+  }
+  return e;
+}
+
+}  // namespace
+
+void Dispatcher::prepare() {
+  chooser_of_.assign(units_.size(), -1);
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    Unit& unit = *units_[i];
+    if (unit.unit_kind() != Unit::Kind::kChooser) continue;
+    chooser_of_[i] = static_cast<int>(choosers_.size());
+    const Reach reach = reach_of(unit);
+    choosers_.push_back({&unit, unit.touched_word(), unit.touched_bit(), reach.self, Wake(kNever)});
+    reach_.push_back(reach.others);
+  }
+  times_.assign((choosers_.size() + kLanes - 1) / kLanes * kLanes, kNever);
+  sc_core::sc_spawn_options options;
+  options.spawn_method();
+  sc_core::sc_spawn([this] { step(); }, "step", &options);
+}
+
+/// Dijkstra's algorithm against the flow of surprises. A fixed-order unit adds no time of its own: it may act in the very tick that enables it.
+Dispatcher::Reach Dispatcher::reach_of(const Unit& chooser) const {
+  Reach reach;
+  std::map<const Unit*, Tick> settled;
+  using Entry = std::pair<Tick, const Unit*>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  for (const Neighbour& n : surprisers(chooser)) open.emplace(n.latency, n.unit);
+  while (!open.empty()) {
+    const auto [distance, unit] = open.top();
+    open.pop();
+    if (!settled.emplace(unit, distance).second) continue;
+    if (unit == &chooser) {
+      reach.self = distance;
+      continue;
+    }
+    if (unit->unit_kind() == Unit::Kind::kChooser) reach.others = std::min(reach.others, distance);
+    for (const Neighbour& n : surprisers(*unit)) open.emplace(saturating_add(distance, n.latency), n.unit);
+  }
+  return {saturating_add(reach.others, window_), saturating_add(reach.self, window_)};
+}
+
+void Dispatcher::step() {
+  bool alive = true;
+  for (int i = 0; i < kRoundsPerActivation && alive; ++i) {
+    settle();
+    alive = round();
+  }
+  if (!alive) return;  // SystemC runs out of events and sc_start returns
+  const Tick floor = earliest_of(times_).first;
+  if (limits_.progress) limits_.progress(floor);
+  const auto now = static_cast<Tick>(sc_core::sc_time_stamp().value());
+  const Tick ahead = floor == kNever || floor <= now ? 1 : floor - now;
+  sc_core::next_trigger(sc_core::sc_time::from_value(static_cast<sc_dt::uint64>(ahead)));
+}
+
+void Dispatcher::settle() {
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t w = 0; w < touched_.size(); ++w) {
+      while (touched_[w] != 0) {
+        any = true;
+        const auto bit = static_cast<std::size_t>(std::countr_zero(touched_[w]));
+        touched_[w] &= touched_[w] - 1;
+        const std::size_t i = w * 64 + bit;
+        const int c = chooser_of_[i];
+        if (c < 0) {
+          run_ahead(*units_[i]);
+        } else {
+          const auto k = static_cast<std::size_t>(c);
+          choosers_[k].wake = choosers_[k].unit->wake();
+          times_[k] = choosers_[k].wake.at();
+        }
+      }
+    }
+  }
+}
+
+void Dispatcher::run_ahead(Unit& unit) const {
+  for (Wake wake = unit.wake(); wake.at() <= limits_.max_time; wake = unit.wake()) unit.perform(wake);
+}
+
+bool Dispatcher::round() {
+  const Earliest earliest = earliest_of(times_);  // before anyone acts: what they do from here on is never earlier than these
+  if (earliest.first > limits_.max_time) return false;
+  for (std::size_t k = 0; k < choosers_.size(); ++k) {
+    const Tick time = times_[k];
+    if (time - earliest.first >= reach_[k] || time > limits_.max_time) continue;
+    const Tick others = time == earliest.first ? earliest.second : earliest.first;
+    run_chooser(k, std::min(saturating_add(others, reach_[k]), saturating_add(time, choosers_[k].round_trip)));
+  }
+  return true;
+}
+
+void Dispatcher::run_chooser(std::size_t k, Tick bound) {
+  Chooser& c = choosers_[k];
+  do {
+    if ((*c.mark_word & c.mark_bit) != 0) {  // someone's push or pop of this round may have changed what it can do
+      *c.mark_word &= ~c.mark_bit;
+      c.wake = c.unit->wake();
+      if (c.wake.at() >= bound) break;
+    }
+    c.unit->perform(c.wake);
+    c.wake = c.unit->wake();
+  } while (c.wake.at() < bound && c.wake.at() <= limits_.max_time);
+  times_[k] = c.wake.at();
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,49 @@
+/// The default driver: one SC_METHOD that advances all units, each as far ahead as conservative look-ahead allows, and SystemC's time with them.
+///
+/// Fixed-order units run until a FIFO stops them. Once all have run dry only choosers can start anything, so a chooser k may act at t only if, for every chooser
+/// j, t < time(j) + distance(j, k): the distance is the shortest sum of latencies from j to k through the machine, tokens forward and credits back, and for
+/// j = k the shortest round trip. Nothing simulated later can then become visible to it at or before t. `window` adds to that bound; with window > 0 the
+/// figures are approximate.
+#pragma once
+
+#include "hw/base/driver.h"
+
+namespace quadrille::hw {
+
+class Dispatcher final : public Driver {
+ public:
+  /// `window`: extra look-ahead of choosers in ticks; 0 is exact.
+  explicit Dispatcher(sc_core::sc_module_name name, Tick window = 0) : Driver(name), window_(window) {}
+
+ private:
+  /// What bounds a chooser; see above.
+  struct Reach {
+    Tick others = kNever;  ///< smallest distance from any other chooser
+    Tick self = kNever;    ///< shortest round trip
+  };
+  struct Chooser {
+    Unit* unit = nullptr;
+    std::uint64_t* mark_word = nullptr;
+    std::uint64_t mark_bit = 0;
+    Tick round_trip = kNever;
+    Wake wake;
+  };
+  void prepare() override;
+  [[nodiscard]] Reach reach_of(const Unit& chooser) const;
+  void step();
+  /// Runs marked fixed-order units until none can act, and asks marked choosers again.
+  void settle();
+  void run_ahead(Unit& unit) const;
+  /// One round over the choosers. False when none can act within the limit.
+  bool round();
+  /// Acts until `bound`; the chooser's time is before it.
+  void run_chooser(std::size_t k, Tick bound);
+
+  Tick window_;
+  std::vector<Chooser> choosers_;
+  std::vector<int> chooser_of_;  ///< unit index -> chooser index, -1 for fixed-order units
+  std::vector<Tick> times_;      ///< choosers_[i].wake.at(), contiguous for the scans; padded with kNever
+  std::vector<Tick> reach_;      ///< by chooser: smallest distance from any other chooser
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,229 @@
+/// The only way units meet: bounded FIFOs with a depth, a width and a latency each way, and the ports that bind to them.
+///
+/// A token pushed at tick t is visible to the consumer `latency` consumer cycles later; a slot freed at t is usable by the producer `credit_latency` producer
+/// cycles later. Entries carry their ready tick and slots their release tick, so either end may be simulated ahead of the other and still see what it would
+/// have seen at its own time. Full rate needs depth >= width * (latency + credit_latency); a shallower FIFO is legal and slower.
+#pragma once
+
+#include "hw/base/clock.h"
+
+#include <memory>
+#include <string>
+#include <systemc>
+#include <vector>
+
+namespace quadrille::hw {
+
+class Unit;
+
+/// What a link owns. Cycles are of the receiving side's clock: the consumer's for `latency`, the producer's for `credit_latency`.
+struct LinkSpec {
+  int depth = 4;           ///< tokens
+  int width = 1;           ///< tokens a producer cycle
+  int latency = 1;         ///< cycles, at least 1
+  int credit_latency = 1;  ///< cycles, at least 1
+};
+
+/// Does a token of this link carry work of a draw onward, or only answer the unit's own request? Decides what "idle" means (Unit).
+enum class LinkRole : std::uint8_t { kFlow, kReply };
+
+/// Timing half of a FIFO: who may push and pop when. Knows nothing of the payload.
+///
+/// Each slot has one time stamp: when its token becomes visible while it holds one, when it may be filled again while it holds none. `ready_` and `room_` keep
+/// what either end asks for, so that asking is one load; a peer is marked only when its answer changes (empty to not empty, full to not full).
+class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
+ public:
+  FifoBase(const char* name, const LinkSpec& spec);
+
+  // Producer's side.
+  /// Earliest tick at which the next push may happen; kNever while every slot holds a token that was not popped.
+  [[nodiscard]] Tick room() const { return room_; }
+  /// Slots that the producer may fill at `now` (ignores the width). Only for use inside `act`: no mark follows when it changes.
+  [[nodiscard]] int free_slots(Tick now) const;
+
+  // Consumer's side.
+  /// Tick at which the oldest token is visible; kNever while there is none.
+  [[nodiscard]] Tick ready() const { return ready_; }
+  [[nodiscard]] bool ready_at(Tick now) const { return ready_ <= now; }
+
+  /// As given, with the crossing's cost added to the latencies once elaborated.
+  [[nodiscard]] const LinkSpec& spec() const { return spec_; }
+  [[nodiscard]] int occupancy() const { return count_; }
+  [[nodiscard]] std::uint64_t pushes() const { return pushes_; }
+  [[nodiscard]] std::uint64_t pops() const { return pushes_ - static_cast<std::uint64_t>(count_); }
+  [[nodiscard]] Tick last_push() const { return last_push_; }
+  [[nodiscard]] Tick last_pop() const { return last_pop_; }
+  [[nodiscard]] Unit* producer() const { return producer_; }
+  [[nodiscard]] Unit* consumer() const { return consumer_; }
+  [[nodiscard]] std::string path() const { return sc_core::sc_object::name(); }
+  /// Smallest time between a push and its visibility, and between a pop and its credit: the look-ahead this link gives.
+  [[nodiscard]] Tick forward_lookahead() const { return forward_; }
+  [[nodiscard]] Tick credit_lookahead() const { return credit_; }
+  /// The link joins two clock domains and pays for synchronisers each way.
+  [[nodiscard]] bool crosses_clocks() const;
+  /// A steady flow of `width` tokens a cycle fits: depth >= width * (latency + credit latency), with both ends on one clock.
+  [[nodiscard]] bool full_rate() const { return spec_.depth >= spec_.width * (spec_.latency + spec_.credit_latency); }
+  void bind_producer(Unit& unit);
+  void bind_consumer(Unit& unit);
+  /// Precomputes latencies and marks once both ends are known.
+  void elaborate();
+
+ protected:
+  void note_push(Tick now) {
+    if (room_ > now) [[unlikely]] refuse_push(now);
+    const Tick visible = uniform_ ? now + forward_ : crossed_push(now);
+    stamp_[tail_] = visible;
+    if (count_ == 0) {
+      ready_ = visible;
+      consumer_mark_.set();
+    }
+    tail_ = wrap(tail_);
+    ++count_;
+    ++pushes_;
+    if (last_push_ != now) burst_ = 0;
+    last_push_ = now;
+    if (++burst_ == spec_.width) width_free_ = next_cycle(now);
+    room_ = count_ == spec_.depth ? kNever : later(stamp_[tail_], width_free_);
+  }
+  void note_pop(Tick now) {
+    if (ready_ > now) [[unlikely]] refuse_pop(now);
+    const Tick released = uniform_ ? now + credit_ : crossed_pop(now);
+    stamp_[head_] = released;
+    if (count_ == spec_.depth) {
+      room_ = later(released, width_free_);
+      producer_mark_.set();
+    }
+    head_ = wrap(head_);
+    --count_;
+    last_pop_ = now;
+    ready_ = count_ == 0 ? kNever : stamp_[head_];
+  }
+  [[nodiscard]] std::size_t head() const { return head_; }
+  [[nodiscard]] std::size_t tail() const { return tail_; }
+
+ private:
+  /// A unit's bit among the driver's marks.
+  struct Mark {
+    std::uint64_t* word = nullptr;
+    std::uint64_t bit = 0;
+    void set() const { *word |= bit; }
+  };
+  [[nodiscard]] std::size_t wrap(std::size_t i) const { return i + 1 == stamp_.size() ? 0 : i + 1; }
+  [[nodiscard]] static Tick later(Tick a, Tick b) { return a > b ? a : b; }
+  [[nodiscard]] Tick next_cycle(Tick now) const { return producer_period_ != 0 ? now + producer_period_ : crossed_cycle(now); }
+  [[nodiscard]] Tick crossed_push(Tick now) const;
+  [[nodiscard]] Tick crossed_pop(Tick now) const;
+  [[nodiscard]] Tick crossed_cycle(Tick now) const;
+  [[noreturn]] void refuse_push(Tick now) const;
+  [[noreturn]] void refuse_pop(Tick now) const;
+
+  Tick ready_ = kNever, room_ = 0;
+  Tick forward_ = 0, credit_ = 0;
+  std::size_t head_ = 0, tail_ = 0;
+  std::vector<Tick> stamp_;
+  LinkSpec spec_;
+  int count_ = 0;
+  int burst_ = 0;               ///< pushes at tick `last_push_`
+  bool uniform_ = false;        ///< one clock with equal cycles: latencies are plain additions
+  Tick producer_period_ = 0;    ///< 0 when the producer's cycles differ in length
+  Tick width_free_ = 0;         ///< the width allows no push before this tick
+  Mark consumer_mark_, producer_mark_;
+  std::uint64_t pushes_ = 0;
+  Tick last_push_ = -1, last_pop_ = 0;
+  Unit* producer_ = nullptr;
+  Unit* consumer_ = nullptr;
+};
+
+/// A FIFO of tokens. Tokens are trivially copyable and small; bulk travels as a handle into a store.
+template <class T>
+class Fifo final : public FifoBase {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64, "tokens are trivially copyable and at most 64 bytes");
+
+ public:
+  Fifo(const char* name, const LinkSpec& spec) : FifoBase(name, spec), slots_(static_cast<std::size_t>(spec.depth)) {}
+  void push(Tick now, const T& token) {
+    slots_[tail()] = token;
+    note_push(now);
+  }
+  [[nodiscard]] const T& front() const { return slots_[head()]; }
+  T pop(Tick now) {
+    const T token = front();
+    note_pop(now);
+    return token;
+  }
+
+ private:
+  std::vector<T> slots_;
+};
+
+/// A port seen without its payload: what attribution, idleness and the deadlock report need.
+class PortBase {
+ public:
+  enum class Direction : std::uint8_t { kIn, kOut };
+  /// `stream` groups ports of a unit whose flows do not mix: an output's tokens come only from inputs of the same stream (0: from any).
+  PortBase(Unit& owner, const char* name, Direction direction, LinkRole role, int stream);
+  virtual ~PortBase() = default;
+  PortBase(const PortBase&) = delete;
+  PortBase& operator=(const PortBase&) = delete;
+  [[nodiscard]] virtual FifoBase& fifo() const = 0;
+  virtual void attach() = 0;
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] Direction direction() const { return direction_; }
+  [[nodiscard]] LinkRole role() const { return role_; }
+  [[nodiscard]] int stream() const { return stream_; }
+  [[nodiscard]] Unit& owner() const { return owner_; }
+  /// Cycles the owner waited for this port: starved on an input, blocked on an output.
+  [[nodiscard]] std::int64_t waited() const;
+  /// `span` as the owner counts it: ticks on a uniform clock, else cycles.
+  void add_wait(std::int64_t span) const { waited_ += span; }
+
+ protected:
+  Unit& owner_;
+
+ private:
+  std::string name_;
+  Direction direction_;
+  LinkRole role_;
+  int stream_;
+  mutable std::int64_t waited_ = 0;
+};
+
+template <class T, PortBase::Direction kDirection>
+class FifoPort : public sc_core::sc_port<Fifo<T>>, public PortBase {
+ public:
+  FifoPort(Unit& owner, const char* name, LinkRole role = LinkRole::kFlow, int stream = 0)
+      : sc_core::sc_port<Fifo<T>>(name), PortBase(owner, name, kDirection, role, stream) {}
+  [[nodiscard]] FifoBase& fifo() const override { return *channel_; }
+  void attach() override {
+    channel_ = dynamic_cast<Fifo<T>*>(this->get_interface());
+    QUADRILLE_CHECK(channel_ != nullptr, "port {} is not bound", sc_core::sc_port<Fifo<T>>::name());
+    if constexpr (kDirection == Direction::kIn) channel_->bind_consumer(owner_);
+    else channel_->bind_producer(owner_);
+  }
+
+ protected:
+  Fifo<T>* channel_ = nullptr;
+};
+
+/// Consumer's end.
+template <class T>
+class FifoIn final : public FifoPort<T, PortBase::Direction::kIn> {
+ public:
+  using FifoPort<T, PortBase::Direction::kIn>::FifoPort;
+  [[nodiscard]] Tick ready() const { return this->channel_->ready(); }
+  [[nodiscard]] bool ready_at(Tick now) const { return this->channel_->ready_at(now); }
+  [[nodiscard]] const T& front() const { return this->channel_->front(); }
+  T pop(Tick now) { return this->channel_->pop(now); }
+};
+
+/// Producer's end.
+template <class T>
+class FifoOut final : public FifoPort<T, PortBase::Direction::kOut> {
+ public:
+  using FifoPort<T, PortBase::Direction::kOut>::FifoPort;
+  [[nodiscard]] Tick room() const { return this->channel_->room(); }
+  [[nodiscard]] bool room_at(Tick now) const { return this->channel_->room() <= now; }
+  void push(Tick now, const T& token) { this->channel_->push(now, token); }
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,88 @@
+/// Parameters of units. One line declares name, default, unit, range and reason; the loader, `--set` and `quadrille describe` walk the group.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "models/base/error.h"
+
+namespace quadrille::hw {
+
+template <class T>
+struct ParamRange {
+  T min = std::numeric_limits<T>::lowest();
+  T max = std::numeric_limits<T>::max();
+};
+
+/// A parameter seen without its type: what the loader and the documentation need.
+class ParamBase {
+ public:
+  ParamBase(std::string_view name, std::string_view unit, std::string_view reason) : name_(name), unit_(unit), reason_(reason) {}
+  virtual ~ParamBase() = default;
+  ParamBase(const ParamBase&) = delete;
+  ParamBase& operator=(const ParamBase&) = delete;
+
+  [[nodiscard]] std::string_view name() const { return name_; }
+  [[nodiscard]] std::string_view unit() const { return unit_; }
+  [[nodiscard]] std::string_view reason() const { return reason_; }
+  [[nodiscard]] virtual std::string value_text() const = 0;
+  [[nodiscard]] virtual std::string default_text() const = 0;
+  [[nodiscard]] virtual std::string legal_text() const = 0;
+  /// Reads a value. Throws `UserError` (without file or key, which the caller adds) when it is not a legal value.
+  virtual void parse(std::string_view text) = 0;
+
+ private:
+  std::string_view name_, unit_, reason_;
+};
+
+/// The parameters of one unit. Not copyable: a unit keeps a reference to the group that the configuration owns.
+class ParamGroup {
+ public:
+  ParamGroup() = default;
+  ParamGroup(const ParamGroup&) = delete;
+  ParamGroup& operator=(const ParamGroup&) = delete;
+  [[nodiscard]] const std::vector<ParamBase*>& params() const { return params_; }
+  [[nodiscard]] ParamBase* find(std::string_view name) const;
+  void add(ParamBase& p) { params_.push_back(&p); }
+
+ private:
+  std::vector<ParamBase*> params_;
+};
+
+template <class T>
+class Param final : public ParamBase {
+  static_assert(std::is_same_v<T, int> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, double> || std::is_same_v<T, bool>);
+
+ public:
+  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, ParamRange<T> range, std::string_view reason)
+      : ParamBase(name, unit, reason), value_(value), default_(value), range_(range) {
+    group.add(*this);
+  }
+  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, std::string_view reason)
+    requires std::is_same_v<T, bool>
+      : ParamBase(name, unit, reason), value_(value), default_(value) {
+    group.add(*this);
+  }
+  operator T() const { return value_; }  // NOLINT(google-explicit-constructor): a parameter reads as its value
+  [[nodiscard]] T value() const { return value_; }
+  void set(T value);
+  [[nodiscard]] std::string value_text() const override { return fmt::format("{}", value_); }
+  [[nodiscard]] std::string default_text() const override { return fmt::format("{}", default_); }
+  [[nodiscard]] std::string legal_text() const override;
+  void parse(std::string_view text) override;
+
+ private:
+  T value_, default_;
+  ParamRange<T> range_;
+};
+
+extern template class Param<int>;
+extern template class Param<std::int64_t>;
+extern template class Param<double>;
+extern template class Param<bool>;
+
+}  // namespace quadrille::hw

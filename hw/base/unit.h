@@ -1,0 +1,175 @@
+/// A hardware unit: an `sc_module` that answers when it could act next, and acts.
+///
+/// `next()` gives the earliest tick at which some action is possible, and which port was satisfied last; `act(now)` consumes, computes through `models/` and
+/// produces. Units never call each other: a push or a pop marks the peer, and the driver asks it again. The base class charges every cycle once:
+///   busy     an initiation slot is in use (`occupy`), or the unit's own resource makes it wait
+///   starved  waiting for an input          blocked  waiting for an output
+///   idle     no token of any draw in flight can still reach the unit
+#pragma once
+
+#include "hw/base/counter.h"
+#include "hw/base/fifo.h"
+
+#include <vector>
+
+namespace quadrille::hw {
+
+/// The answer of `next()`: the earliest tick of an action and what it had to wait for. Build it from the unit's own readiness, then inputs, then outputs.
+class Wake {
+ public:
+  /// An action that only needs the unit's own resource, free at `own`.
+  explicit Wake(Tick own = 0) : own_(own) {}
+  static Wake never(const PortBase& cause) {
+    Wake w;
+    w.wait_ = kNever;
+    w.cause_ = &cause;
+    return w;
+  }
+  template <class T>
+  Wake& input(const FifoIn<T>& port) {
+    return constrain(port.ready(), port, false);
+  }
+  template <class T>
+  Wake& output(const FifoOut<T>& port) {
+    return constrain(port.room(), port, true);
+  }
+  /// Waits until `t` for something that will arrive through, or be freed by, `port`.
+  Wake& until(Tick t, const PortBase& port) { return constrain(t, port, port.direction() == PortBase::Direction::kOut); }
+
+  /// The same action, but not before `t`: the unit's own state allows none earlier.
+  [[nodiscard]] Wake not_before(Tick t) const {
+    Wake w = *this;
+    if (w.own_ < t) w.own_ = t;
+    return w;
+  }
+
+  [[nodiscard]] Tick at() const { return own_ > wait_ ? own_ : wait_; }
+  /// End of the waiting on others: max over inputs and outputs.
+  [[nodiscard]] Tick waited_until() const { return wait_; }
+  /// The port satisfied last; null if there was none to wait for.
+  [[nodiscard]] const PortBase* cause() const { return cause_; }
+  /// The sooner of two possible actions; the first on a tie.
+  [[nodiscard]] static Wake sooner(const Wake& a, const Wake& b) { return b.at() < a.at() ? b : a; }
+
+ private:
+  Wake& constrain(Tick t, const PortBase& port, bool wins_ties) {
+    if (t > wait_ || (wins_ties && t == wait_)) {
+      wait_ = t;
+      cause_ = &port;
+    }
+    return *this;
+  }
+  Tick own_ = 0, wait_ = 0;
+  const PortBase* cause_ = nullptr;
+};
+
+/// Intervals in which no draw was in flight, recorded by the command processor and shared by all units of a machine.
+class QuietLog {
+ public:
+  struct Interval { Tick from = 0, to = 0; };
+  void add(Tick from, Tick to) {
+    if (to > from) intervals_.push_back({from, to});
+  }
+  [[nodiscard]] const std::vector<Interval>& intervals() const { return intervals_; }
+
+ private:
+  std::vector<Interval> intervals_;
+};
+
+class Unit : public sc_core::sc_module {
+ public:
+  /// Fixed-order: what it does next depends only on its own state and on token contents, so it may be simulated ahead until a FIFO stops it.
+  /// Chooser: it sees which input is ready first or whether there is room, so it waits until nothing earlier can still happen.
+  enum class Kind : std::uint8_t { kFixedOrder, kChooser };
+
+  Unit(sc_core::sc_module_name name, Kind kind, const Clock& clock);
+
+  /// Earliest possible action; kNever while it is unknown. Pure: called as often as the driver likes.
+  [[nodiscard]] virtual Wake next() const = 0;
+  /// Performs that action. `now` is an edge of the unit's clock: `next().at()`, or the latest action's tick if that is later.
+  virtual void act(Tick now) = 0;
+  /// One line on what the unit holds, for the deadlock report.
+  [[nodiscard]] virtual std::string state_text() const { return {}; }
+  [[nodiscard]] virtual const StatGroup* stats() const { return nullptr; }
+
+  /// What drivers ask: `next()`, but not before the latest action, since the unit's state was another one then.
+  [[nodiscard]] Wake wake() const { return next().not_before(last_action_); }
+  /// Charges the gap before the action, then acts. `wake` is what `wake()` answers now.
+  void perform(const Wake& wake) {
+    const Tick now = wake.at();
+    last_action_ = now;
+    if (now > accounted_) charge_gap(wake);
+    ++actions_;
+    act(now);
+  }
+  /// Charges what is left up to `end` (see idle) and closes the accounts.
+  void close(Tick end);
+
+  [[nodiscard]] Kind unit_kind() const { return kind_; }
+  [[nodiscard]] const Clock& clock() const { return clock_; }
+  [[nodiscard]] const std::vector<PortBase*>& ports() const { return ports_; }
+  void add_port(PortBase& port) { ports_.push_back(&port); }
+  /// Binds ports to channels; called once by the driver, after SystemC's elaboration.
+  void attach();
+  /// Tells the driver that something this unit may have waited for happened.
+  void touch() { *touched_word_ |= touched_bit_; }
+  void set_touch_flag(std::uint64_t* word, int bit) {
+    touched_word_ = word;
+    touched_bit_ = std::uint64_t{1} << bit;
+  }
+  [[nodiscard]] std::uint64_t* touched_word() const { return touched_word_; }
+  [[nodiscard]] std::uint64_t touched_bit() const { return touched_bit_; }
+  void set_quiet_log(const QuietLog& log) { quiet_ = &log; }
+
+  [[nodiscard]] std::int64_t busy_cycles() const { return to_cycles(busy_); }
+  [[nodiscard]] std::int64_t starved_cycles() const { return to_cycles(starved_); }
+  [[nodiscard]] std::int64_t blocked_cycles() const { return to_cycles(blocked_); }
+  [[nodiscard]] std::int64_t idle_cycles() const { return to_cycles(idle_); }
+  [[nodiscard]] std::int64_t total_cycles() const { return total_; }
+  [[nodiscard]] std::uint64_t actions() const { return actions_; }
+  /// Tick of the latest action; -1 before the first.
+  [[nodiscard]] Tick last_action() const { return last_action_; }
+  /// A span of this unit's accounts in cycles.
+  [[nodiscard]] std::int64_t to_cycles(std::int64_t span) const { return clock_.uniform() ? span / clock_.period() : span; }
+
+ protected:
+  /// The unit's initiation slot is used for `cycles` from `now` on. Overlapping uses count once.
+  void occupy(Tick now, std::int64_t cycles) {
+    const Tick until = clock_.after(now, cycles);
+    if (until <= accounted_) return;
+    busy_ += span(accounted_, until);
+    accounted_ = until;
+  }
+  [[nodiscard]] Tick after(Tick now, std::int64_t cycles) const { return clock_.after(now, cycles); }
+
+ private:
+  /// Accounts are kept in spans: ticks where all cycles are equal (no division on the way), cycles elsewhere. Both arguments are edges.
+  [[nodiscard]] std::int64_t span(Tick from, Tick to) const { return clock_.uniform() ? to - from : clock_.cycles(from, to); }
+  void charge_gap(const Wake& wake) {
+    if (wake.waited_until() > accounted_) charge_wait(wake.waited_until(), wake.cause());
+    if (wake.at() > accounted_) {
+      busy_ += span(accounted_, wake.at());
+      accounted_ = wake.at();
+    }
+  }
+  void charge_wait(Tick until, const PortBase* cause);
+  /// Span within [from, to) in which no draw was in flight.
+  [[nodiscard]] std::int64_t quiet_span(Tick from, Tick to) const;
+  /// Last tick at which a token of a draw could still have been on its way to this unit.
+  [[nodiscard]] Tick reachable_until() const;
+
+  Tick accounted_ = 0;     ///< every cycle before this tick is charged
+  Tick last_action_ = -1;
+  std::uint64_t actions_ = 0;
+  std::int64_t busy_ = 0, starved_ = 0, blocked_ = 0, idle_ = 0;  ///< spans
+  Clock clock_;
+  const QuietLog* quiet_ = nullptr;
+  std::uint64_t unbound_word_ = 0;
+  std::uint64_t* touched_word_ = &unbound_word_;
+  std::uint64_t touched_bit_ = 1;
+  std::int64_t total_ = 0;  ///< cycles
+  Kind kind_;
+  std::vector<PortBase*> ports_;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,109 @@
+#include "hw/command/command_processor.h"
+
+#include <algorithm>
+
+namespace quadrille::hw {
+
+CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, int partitions, QuietLog& quiet)
+    : Unit(name, Kind::kChooser, clock), params_(params), frame_(frame), quiet_log_(quiet), retired_by_(static_cast<std::size_t>(partitions)) {
+  for (int i = 0; i < partitions; ++i) {
+    retire_in.push_back(std::make_unique<FifoIn<RetireToken>>(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply));
+  }
+  if (frame.passes.empty()) step_ = Step::kDone;
+}
+
+std::string CommandProcessor::state_text() const {
+  return fmt::format("pass {} of {}, {} draws issued, {} retired", pass_, frame_.passes.size(), draw_, retired_);
+}
+
+Wake CommandProcessor::retire_wake() const {
+  Wake first = Wake().input(*retire_in[0]);
+  for (std::size_t i = 1; i < retire_in.size(); ++i) first = Wake::sooner(first, Wake().input(*retire_in[i]));
+  return first;
+}
+
+Wake CommandProcessor::issue_wake() const {
+  switch (step_) {
+    case Step::kDraw:
+      if (draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value())) return Wake::never(*retire_in[0]);
+      return Wake(free_).output(draw_out);
+    case Step::kPassBegin:
+    case Step::kDrawEnd:
+    case Step::kPassEnd: return Wake(free_).output(draw_out);
+    case Step::kWaitFlush: return Wake::never(*retire_in[0]);
+    case Step::kScan: return Wake(free_).output(scan_out);
+    case Step::kWaitScan: return Wake().input(scan_done_in);
+    case Step::kDone: return Wake::never(scan_done_in);
+  }
+  return Wake(kNever);
+}
+
+Wake CommandProcessor::next() const { return Wake::sooner(retire_wake(), issue_wake()); }
+
+void CommandProcessor::act(Tick now) {
+  if (retire_wake().at() <= now) take_retirements(now);
+  if (issue_wake().at() <= now) issue(now);
+}
+
+void CommandProcessor::take_retirements(Tick now) {
+  for (std::size_t p = 0; p < retire_in.size(); ++p) {
+    while (retire_in[p]->ready_at(now)) {
+      const RetireToken token = retire_in[p]->pop(now);
+      if (token.kind == TokenKind::kPassEnd) ++flushes_;
+      else ++retired_by_[p];
+    }
+  }
+  const std::uint32_t all = *std::min_element(retired_by_.begin(), retired_by_.end());
+  stats_.draws_retired += all - retired_;
+  retired_ = all;
+  if (step_ == Step::kWaitFlush && flushes_ == static_cast<int>(retire_in.size())) {
+    flushes_ = 0;
+    render_end_ = now;
+    quiet_since_ = now;
+    step_ = pass_ + 1 == frame_.passes.size() ? Step::kScan : Step::kPassBegin;
+    if (step_ == Step::kPassBegin) ++pass_;
+  }
+}
+
+void CommandProcessor::issue(Tick now) {
+  const PassState& pass = frame_.passes[std::min<std::size_t>(pass_, frame_.passes.size() - 1)];
+  switch (step_) {
+    case Step::kPassBegin:
+      quiet_log_.add(quiet_since_, now);
+      draw_out.push(now, {TokenKind::kPassBegin, pass_});
+      ++stats_.passes;
+      step_ = pass.draws > 0 ? Step::kDraw : Step::kPassEnd;
+      break;
+    case Step::kDraw:
+      draw_out.push(now, {TokenKind::kWork, draw_});
+      ++stats_.draws;
+      free_ = after(now, params_.draw_clk);
+      occupy(now, params_.draw_clk);
+      step_ = Step::kDrawEnd;
+      return;
+    case Step::kDrawEnd:
+      draw_out.push(now, {TokenKind::kDrawEnd, draw_});
+      ++draw_;
+      step_ = draw_ == pass.first_draw + pass.draws ? Step::kPassEnd : Step::kDraw;
+      break;
+    case Step::kPassEnd:
+      draw_out.push(now, {TokenKind::kPassEnd, pass_});
+      step_ = Step::kWaitFlush;
+      break;
+    case Step::kScan:
+      scan_out.push(now, {pass_});
+      step_ = Step::kWaitScan;
+      break;
+    case Step::kWaitScan:
+      (void)scan_done_in.pop(now);
+      end_ = now;
+      step_ = Step::kDone;
+      return;
+    case Step::kWaitFlush:
+    case Step::kDone: return;
+  }
+  free_ = after(now, 1);
+  occupy(now, 1);
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,67 @@
+/// Command processor: walks the frame's passes and draws, keeps a bounded number of draws in flight, and sets barriers between passes.
+///
+/// In    retire_in[p]  draw retired in partition p, or pass flushed there
+///       scan_done_in  the image was read
+/// Out   draw_out      draws and pass boundaries, in order
+///       scan_out      show a pass's target
+/// Time  `draw_clk` cycles a draw; waits while `draws_in_flight` draws are not retired everywhere; a pass ends when all partitions have flushed
+/// Not modelled: fetching and parsing the command buffer itself (docs/deviations.md#D1)
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/frame.h"
+#include "hw/frame/tokens.h"
+
+namespace quadrille::hw {
+
+class CommandProcessor final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> draw_clk{*this, "draw_clk", 16, "clk/draw", {1, 1 << 20}, "Cycles to issue a draw's state and launch it. [G: a few register writes a draw]"};
+    Param<int> draws_in_flight{*this, "draws_in_flight", 32, "draw", {1, 65536}, "Draws whose state is kept at a time. [G: context slots of the front end]"};
+  };
+  struct Stats : StatGroup {
+    Counter draws{*this, "draws", "draw", "Draws issued"};
+    Counter draws_retired{*this, "draws_retired", "draw", "Draws retired by every partition"};
+    Counter passes{*this, "passes", "pass", "Passes begun"};
+  };
+
+  CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, int partitions, QuietLog& quiet);
+
+  std::vector<std::unique_ptr<FifoIn<RetireToken>>> retire_in;
+  FifoIn<ReleaseToken> scan_done_in{*this, "scan_done_in", LinkRole::kReply};
+  FifoOut<DrawToken> draw_out{*this, "draw_out"};
+  FifoOut<ScanToken> scan_out{*this, "scan_out"};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+  /// All passes done and the last image read.
+  [[nodiscard]] bool finished() const { return step_ == Step::kDone; }
+  /// Tick at which the last pass was flushed, and at which the last image was read.
+  [[nodiscard]] Tick render_end() const { return render_end_; }
+  [[nodiscard]] Tick end() const { return end_; }
+
+ private:
+  enum class Step : std::uint8_t { kPassBegin, kDraw, kDrawEnd, kPassEnd, kWaitFlush, kScan, kWaitScan, kDone };
+  [[nodiscard]] Wake issue_wake() const;
+  [[nodiscard]] Wake retire_wake() const;
+  void take_retirements(Tick now);
+  void issue(Tick now);
+
+  const Params& params_;
+  const Frame& frame_;
+  QuietLog& quiet_log_;
+  Stats stats_;
+  Step step_ = Step::kPassBegin;
+  std::uint32_t pass_ = 0, draw_ = 0;
+  Tick free_ = 0;
+  Tick quiet_since_ = 0, render_end_ = 0, end_ = 0;
+  std::vector<std::uint32_t> retired_by_;   ///< draws retired, by partition
+  std::uint32_t retired_ = 0;               ///< draws retired everywhere
+  int flushes_ = 0;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,45 @@
+#include "hw/display/scan_out.h"
+
+namespace quadrille::hw {
+
+ScanOut::ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory, int slices)
+    : Unit(name, Kind::kChooser, clock), params_(params), frame_(frame), device_(memory), port_(*this, stats_, slices) {}
+
+std::string ScanOut::state_text() const { return fmt::format("{} lines left, {} under way", end_line_ - next_line_, in_flight_); }
+
+Wake ScanOut::ask_wake() const {
+  if (!scanning_) return Wake(free_).input(scan_in);
+  if (next_line_ < end_line_) return in_flight_ < params_.lines_in_flight ? Wake(free_) : Wake::never(*port_.response_in[0]);
+  return in_flight_ == 0 ? Wake(free_).output(done_out) : Wake::never(*port_.response_in[0]);
+}
+
+Wake ScanOut::next() const {
+  Wake wake = Wake::sooner(ask_wake(), port_.receive_wake());
+  if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
+  return wake;
+}
+
+void ScanOut::act(Tick now) {
+  while (port_.receive(now)) --in_flight_;
+  if (ask_wake().at() <= now) {
+    if (!scanning_) {
+      const models::SurfaceLayout& surface = frame_.passes[scan_in.pop(now).pass].color;
+      next_line_ = static_cast<std::uint32_t>(surface.base / models::kLineBytes);
+      end_line_ = next_line_ + static_cast<std::uint32_t>(surface.bytes() / models::kLineBytes);
+      scanning_ = true;
+    } else if (next_line_ < end_line_) {
+      device_.check_readable(std::uint64_t{next_line_} * models::kLineBytes, models::kLineBytes, models::DeviceMemory::kClean);
+      port_.read(next_line_++, 0xf, 0);
+      ++in_flight_;
+      ++stats_.lines;
+    } else {
+      done_out.push(now, {});
+      scanning_ = false;
+    }
+    free_ = after(now, 1);
+    occupy(now, 1);
+  }
+  port_.send(now);
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,88 @@
+/// What the machine executes: passes and draws with all their state resolved to addresses, programs and constants. Immutable while it runs.
+///
+/// The driver (pipeline/) makes it from a command stream before the machine is elaborated. Tokens name a draw by its index here, so state is versioned by
+/// draw and no unit has to be told of a state change.
+#pragma once
+
+#include "models/geometry/assembly.h"
+#include "models/geometry/attribute_format.h"
+#include "models/memory/surface.h"
+#include "models/precision.h"
+#include "models/raster/clip.h"
+#include "models/raster/triangle_setup.h"
+#include "models/raster/viewport.h"
+#include "models/rop/blend.h"
+#include "models/rop/depth.h"
+#include "models/shader/warp.h"
+#include "models/texture/sample.h"
+
+#include <string>
+#include <vector>
+
+namespace quadrille::hw {
+
+/// One vertex attribute the vertex program reads: where it comes from and which rows of the warp's inputs it feeds.
+struct AttributeFetch {
+  std::uint64_t address = 0;       ///< of vertex (or instance) 0
+  std::uint32_t stride = 0;        ///< bytes
+  models::AttributeFormat format = models::AttributeFormat::kR32G32B32Float;
+  bool per_instance = false;
+  std::array<int, 4> input_row{-1, -1, -1, -1};   ///< row of the warp's inputs for each component; -1: not read
+};
+
+struct TextureState {
+  models::TextureView view;
+  models::SamplerState sampler;
+};
+
+struct DrawState {
+  std::string label;
+  std::uint32_t pass = 0;
+  // Geometry.
+  models::Topology topology = models::Topology::kTriangleList;
+  bool indexed = false;
+  std::uint32_t index_bytes = 2;
+  std::uint64_t index_address = 0;   ///< of the draw's first index
+  std::uint32_t count = 0, first_vertex = 0;
+  std::int32_t vertex_offset = 0;
+  std::uint32_t instances = 1, first_instance = 0;
+  std::vector<AttributeFetch> attributes;
+  // Programs.
+  const models::Program* vertex_program = nullptr;
+  const models::Program* fragment_program = nullptr;
+  std::vector<std::uint32_t> vertex_constants, fragment_constants;
+  std::vector<TextureState> vertex_textures, fragment_textures;           ///< by the program's binding index
+  std::vector<models::TextureSize> vertex_texture_sizes, fragment_texture_sizes;
+  // Fixed function.
+  models::Viewport viewport;
+  models::ClipState clip;
+  models::SetupState setup;
+  bool depth_test = false, depth_write = false;
+  models::CompareOp depth_compare = models::CompareOp::kLess;
+  models::BlendState blend;
+  /// Depth is tested after shading: the program discards or writes depth, and does not force early tests.
+  bool late_depth = false;
+
+  [[nodiscard]] int varyings() const { return static_cast<int>(vertex_program->varyings.size()); }
+  [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
+  [[nodiscard]] bool uses_depth() const { return depth_test; }
+};
+
+struct PassState {
+  models::SurfaceLayout color, depth;
+  bool has_depth = false;
+  models::ColorFormat color_format = models::ColorFormat::kR8G8B8A8Srgb;
+  std::uint32_t clear_color = 0;     ///< encoded
+  float clear_depth = 1;
+  std::uint32_t first_draw = 0, draws = 0;
+};
+
+struct Frame {
+  std::vector<PassState> passes;
+  std::vector<DrawState> draws;
+  models::Precision precision;
+  [[nodiscard]] const DrawState& draw(std::uint32_t index) const { return draws[index]; }
+  [[nodiscard]] const PassState& pass_of(std::uint32_t draw) const { return passes[draws[draw].pass]; }
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,150 @@
+/// Tokens: what travels through the FIFOs. Small and trivially copyable; bulk stays in a store (stores.h) and travels as a slot number.
+///
+/// Geometry and raster tokens carry in-band markers, so that "everything before this point has passed" needs no other channel:
+///   kDrawEnd   the last token of a draw            kPassEnd  the last token of a pass: flush
+///   kBatchEnd  the last triangle of a vertex batch (its slot may be reused)
+///   kSync      all tiles of the triangles before `sequence` have passed (their slots may be reused once retired)
+#pragma once
+
+#include <cstdint>
+
+namespace quadrille::hw {
+
+enum class TokenKind : std::uint8_t { kWork, kBatchEnd, kDrawEnd, kPassBegin, kPassEnd, kSync };
+
+/// Command processor -> vertex fetch: draw it, or a pass boundary (then `index` is the pass).
+struct DrawToken {
+  TokenKind kind = TokenKind::kWork;
+  std::uint32_t index = 0;
+};
+
+/// Vertex fetch -> primitive assembly: a batch's triangles, in draw order.
+struct BatchToken {
+  TokenKind kind = TokenKind::kWork;
+  std::uint32_t index = 0;      ///< draw or pass
+  std::uint32_t slot = 0;       ///< in the batch store
+};
+
+/// Vertex fetch or warp packer -> core: run this warp.
+struct WarpToken {
+  std::uint32_t draw = 0;
+  std::uint32_t slot = 0;       ///< batch store or warp store
+  std::uint16_t partition = 0;  ///< fragment warps
+};
+
+/// Core -> primitive assembly: the batch in this slot is shaded.
+struct VertexDoneToken {
+  std::uint32_t slot = 0;
+};
+
+/// Primitive assembly -> clipper: one triangle as lanes of a batch.
+struct PrimitiveToken {
+  TokenKind kind = TokenKind::kWork;
+  std::uint8_t lane[3] = {};
+  std::uint32_t index = 0;      ///< draw or pass
+  std::uint32_t slot = 0;       ///< batch
+  std::uint32_t primitive = 0;  ///< 0-based in the draw's instance
+};
+
+/// Clipper -> set-up: a triangle or a piece of a clipped one; its window vertices are in the clipper's ring.
+struct ClippedToken {
+  TokenKind kind = TokenKind::kWork;
+  std::uint8_t lane[3] = {};
+  std::uint32_t index = 0;
+  std::uint32_t slot = 0;       ///< batch
+  std::uint32_t primitive = 0;
+  std::uint32_t piece = 0;      ///< slot in the ring of clipped pieces
+};
+
+/// Set-up -> coarse rasteriser. `triangle` is a sequence number; its slot in the triangle store is the remainder by the store's size.
+struct TriangleToken {
+  TokenKind kind = TokenKind::kWork;
+  std::uint32_t index = 0;      ///< draw or pass
+  std::uint64_t triangle = 0;
+};
+
+/// Coarse rasteriser -> fine rasteriser.
+struct TileToken {
+  TokenKind kind = TokenKind::kWork;
+  bool fully_covered = false;
+  std::uint16_t tile_x = 0, tile_y = 0;
+  std::uint32_t index = 0;
+  std::uint64_t triangle = 0;   ///< kSync: every triangle before this one
+};
+
+/// Fine rasteriser -> depth unit -> warp packer: the covered samples of one triangle in one tile.
+struct CoverageToken {
+  TokenKind kind = TokenKind::kWork;
+  bool late = false;            ///< set by the depth unit: test and write after shading
+  std::uint16_t tile_x = 0, tile_y = 0;
+  std::uint32_t index = 0;
+  std::uint64_t triangle = 0;
+  std::uint64_t coverage = 0;   ///< quad-major
+};
+
+/// Warp packer -> ROP: what retires next, in order. kWork: the warp in `slot`; `sync` (if not 0) may be reported when it has retired.
+struct OrderToken {
+  TokenKind kind = TokenKind::kWork;
+  std::uint32_t index = 0;
+  std::uint32_t slot = 0;
+  std::uint64_t sync = 0;
+};
+
+/// Core -> ROP: the fragment warp in this slot is shaded.
+struct FragmentDoneToken {
+  std::uint32_t slot = 0;
+};
+
+/// ROP <-> late port of the depth unit: test the warp in this slot (the survivors are written to it), or (kPassEnd) flush.
+struct LateToken {
+  TokenKind kind = TokenKind::kWork;
+  std::uint32_t slot = 0;
+};
+
+/// A slot is free again. With `sequence`: everything before it is.
+struct ReleaseToken {
+  std::uint32_t slot = 0;
+  std::uint64_t sequence = 0;
+};
+
+/// Depth unit -> coarse rasteriser: no depth in this tile is greater than `max_depth`.
+struct HiZToken {
+  std::uint16_t tile_x = 0, tile_y = 0;
+  std::uint32_t pass = 0;
+  float max_depth = 1;
+};
+
+/// ROP -> command processor: draw retired in this partition, or pass flushed.
+struct RetireToken {
+  TokenKind kind = TokenKind::kDrawEnd;
+  std::uint32_t index = 0;
+};
+
+/// Core <-> texture unit: the texture requests of the warp in this core slot.
+struct TextureToken {
+  std::uint32_t slot = 0;
+  std::uint32_t draw = 0;
+  bool vertex_stage = false;
+};
+
+/// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer. Writes are not answered; a fence is, once all
+/// requests of its client before it have been taken in.
+struct MemoryRequest {
+  enum class Kind : std::uint8_t { kRead, kWrite, kFence };
+  std::uint32_t line = 0;       ///< device address / 128
+  std::uint32_t tag = 0;
+  std::uint8_t sectors = 0;
+  Kind kind = Kind::kRead;
+};
+struct MemoryResponse {
+  std::uint32_t line = 0;
+  std::uint32_t tag = 0;
+  std::uint8_t sectors = 0;
+};
+
+/// Command processor -> scan-out: show the target of this pass.
+struct ScanToken {
+  std::uint32_t pass = 0;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,64 @@
+#include "hw/geometry/clipper.h"
+
+#include <bit>
+
+namespace quadrille::hw {
+
+Clipper::Clipper(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const Store<BatchSlot>& batches,
+                 Store<ClippedPiece>& pieces)
+    : Unit(name, Kind::kFixedOrder, clock), params_(params), frame_(frame), batches_(batches), pieces_(pieces) {}
+
+Wake Clipper::next() const { return Wake(free_).input(primitive_in).output(clipped_out); }
+
+void Clipper::act(Tick now) {
+  free_ = after(now, 1);
+  occupy(now, 1);
+  if (next_piece_ > 0) return emit_piece(now, next_piece_);
+  const PrimitiveToken& token = primitive_in.front();
+  if (token.kind == TokenKind::kWork) return take_triangle(now);
+  clipped_out.push(now, {token.kind, {}, token.index, token.slot, 0, 0});
+  (void)primitive_in.pop(now);
+}
+
+void Clipper::take_triangle(Tick now) {
+  const PrimitiveToken& token = primitive_in.front();
+  const BatchSlot& batch = batches_[token.slot];
+  std::array<glm::vec4, 3> position;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (int c = 0; c < 4; ++c) position[i][c] = std::bit_cast<float>(batch.outputs[static_cast<std::size_t>(c)][token.lane[i]]);
+  }
+  ++stats_.triangles;
+  switch (models::clip_triangle(position, frame_.draw(token.index).clip, polygon_)) {
+    case models::ClipOutcome::kInside: ++stats_.passed; return emit_piece(now, 1);
+    case models::ClipOutcome::kClipped:
+      ++stats_.clipped;
+      stats_.pieces += static_cast<std::uint64_t>(polygon_.count - 2);
+      next_piece_ = 1;
+      free_ = after(now, params_.clip_clk);
+      occupy(now, params_.clip_clk);
+      return;
+    case models::ClipOutcome::kRejected: ++stats_.rejected; break;
+    case models::ClipOutcome::kNotFinite: ++stats_.not_finite; break;
+  }
+  (void)primitive_in.pop(now);
+}
+
+void Clipper::emit_piece(Tick now, int i) {
+  const PrimitiveToken token = primitive_in.front();
+  const DrawState& draw = frame_.draw(token.index);
+  ClippedPiece& piece = pieces_[ring_];
+  const std::array<int, 3> corner{0, i, i + 1};
+  bool valid = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const models::ClipVertex& v = polygon_.vertices[static_cast<std::size_t>(corner[k])];
+    valid = models::to_window(v.position, draw.viewport, frame_.precision.subpixel_bits, piece.vertices[k]) && valid;
+    piece.weights[k] = {v.b1, v.b2};
+  }
+  QUADRILLE_CHECK(valid, "{}: a clipped vertex of draw {} has no window position", name(), token.index);
+  clipped_out.push(now, {TokenKind::kWork, {token.lane[0], token.lane[1], token.lane[2]}, token.index, token.slot, token.primitive, ring_});
+  ring_ = ring_ + 1 == pieces_.size() ? 0 : ring_ + 1;
+  next_piece_ = i + 2 < polygon_.count ? i + 1 : 0;
+  if (next_piece_ == 0) (void)primitive_in.pop(now);
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,53 @@
+/// Clipper: rejects triangles outside the view volume, cuts those that cross its near, far or guard-band planes, and applies the viewport transform.
+///
+/// In    primitive_in  triangles as lanes of a shaded batch; boundaries
+/// Out   clipped_out   triangles and pieces with window positions; boundaries
+/// Time  one triangle a cycle; a cut one `clip_clk` cycles and then one piece a cycle
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/stores.h"
+#include "hw/frame/tokens.h"
+
+namespace quadrille::hw {
+
+class Clipper final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> clip_clk{*this, "clip_clk", 12, "clk/triangle", {1, 4096}, "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]"};
+  };
+  struct Stats : StatGroup {
+    Counter triangles{*this, "triangles", "triangle", "Triangles taken in"};
+    Counter passed{*this, "passed", "triangle", "Triangles wholly inside, passed on"};
+    Counter clipped{*this, "clipped", "triangle", "Triangles cut"};
+    Counter rejected{*this, "rejected", "triangle", "Triangles of which nothing is left"};
+    Counter not_finite{*this, "not_finite", "triangle", "Triangles dropped because a position is NaN or infinite"};
+    Counter pieces{*this, "pieces", "triangle", "Triangles that cutting produced and passed on"};
+  };
+  Clipper(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const Store<BatchSlot>& batches,
+          Store<ClippedPiece>& pieces);
+
+  FifoIn<PrimitiveToken> primitive_in{*this, "primitive_in"};
+  FifoOut<ClippedToken> clipped_out{*this, "clipped_out"};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+
+ private:
+  void emit_piece(Tick now, int i);
+  void take_triangle(Tick now);
+
+  const Params& params_;
+  const Frame& frame_;
+  const Store<BatchSlot>& batches_;
+  Store<ClippedPiece>& pieces_;   ///< a ring: more slots than the output link can hold
+  Stats stats_;
+  models::ClippedPolygon polygon_;
+  int next_piece_ = 0;            ///< of the polygon being emitted; 0: none
+  std::uint32_t ring_ = 0;
+  Tick free_ = 0;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,57 @@
+#include "hw/geometry/primitive_assembly.h"
+
+namespace quadrille::hw {
+
+PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const Clock& clock, const Store<BatchSlot>& batches, int cores)
+    : Unit(name, Kind::kChooser, clock), batches_(batches), shaded_(static_cast<std::size_t>(batches.size()), false) {
+  for (int i = 0; i < cores; ++i) done_in.push_back(std::make_unique<FifoIn<VertexDoneToken>>(*this, fmt::format("done_in_{}", i).c_str()));
+}
+
+std::string PrimitiveAssembly::state_text() const { return fmt::format("triangle {} of the batch at its head", next_triangle_); }
+
+Wake PrimitiveAssembly::emit_wake() const {
+  Wake wake = Wake(free_).input(batch_in);
+  if (batch_in.ready() == kNever) return wake;
+  const BatchToken& head = batch_in.front();
+  if (head.kind == TokenKind::kWork && !shaded_[head.slot]) return Wake::never(*done_in[0]);
+  return wake.output(primitive_out);
+}
+
+Wake PrimitiveAssembly::next() const {
+  Wake wake = emit_wake();
+  for (const auto& in : done_in) wake = Wake::sooner(wake, Wake().input(*in));
+  return wake;
+}
+
+void PrimitiveAssembly::act(Tick now) {
+  for (auto& in : done_in) {
+    while (in->ready_at(now)) shaded_[in->pop(now).slot] = true;
+  }
+  if (emit_wake().at() <= now) emit(now);
+}
+
+void PrimitiveAssembly::emit(Tick now) {
+  const BatchToken head = batch_in.front();
+  free_ = after(now, 1);
+  occupy(now, 1);
+  if (head.kind != TokenKind::kWork) {
+    primitive_out.push(now, {head.kind, {}, head.index, 0, 0});
+    (void)batch_in.pop(now);
+    return;
+  }
+  const BatchSlot& batch = batches_[head.slot];
+  if (next_triangle_ < batch.triangles.size()) {
+    const BatchSlot::Triangle& t = batch.triangles[next_triangle_++];
+    primitive_out.push(now, {TokenKind::kWork, {t.lane[0], t.lane[1], t.lane[2]}, head.index, head.slot, t.primitive});
+    ++stats_.triangles;
+    return;
+  }
+  primitive_out.push(now, {TokenKind::kBatchEnd, {}, head.index, head.slot, 0});
+  ++stats_.batches;
+  stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
+  shaded_[head.slot] = false;
+  next_triangle_ = 0;
+  (void)batch_in.pop(now);
+}
+
+}  // namespace quadrille::hw

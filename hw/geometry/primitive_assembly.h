@@ -1,0 +1,44 @@
+/// Primitive assembly: waits for a batch to be shaded and hands its triangles on, one a cycle, in draw order.
+///
+/// In    batch_in       batches and boundaries, in order       done_in[core]  a batch was shaded
+/// Out   primitive_out  triangles as lanes of their batch, then a batch end; draw and pass boundaries
+/// Time  one token a cycle
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/stores.h"
+#include "hw/frame/tokens.h"
+
+namespace quadrille::hw {
+
+class PrimitiveAssembly final : public Unit {
+ public:
+  struct Stats : StatGroup {
+    Counter batches{*this, "batches", "batch", "Shaded batches taken apart"};
+    Counter vertices{*this, "vertices", "vertex", "Shaded vertices in those batches"};
+    Counter triangles{*this, "triangles", "triangle", "Triangles handed to the clipper"};
+  };
+  PrimitiveAssembly(sc_core::sc_module_name name, const Clock& clock, const Store<BatchSlot>& batches, int cores);
+
+  FifoIn<BatchToken> batch_in{*this, "batch_in"};
+  std::vector<std::unique_ptr<FifoIn<VertexDoneToken>>> done_in;
+  FifoOut<PrimitiveToken> primitive_out{*this, "primitive_out"};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+
+ private:
+  [[nodiscard]] Wake emit_wake() const;
+  void emit(Tick now);
+
+  const Store<BatchSlot>& batches_;
+  Stats stats_;
+  std::vector<bool> shaded_;        ///< by batch slot
+  std::size_t next_triangle_ = 0;   ///< of the batch at the head
+  Tick free_ = 0;
+};
+
+}  // namespace quadrille::hw

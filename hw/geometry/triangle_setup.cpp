@@ -1,0 +1,95 @@
+#include "hw/geometry/triangle_setup.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+                                     const Store<BatchSlot>& batches, const Store<ClippedPiece>& pieces, TriangleStore& triangles, int partitions)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      frame_(frame),
+      batches_(batches),
+      pieces_(pieces),
+      triangles_(triangles),
+      retired_by_(static_cast<std::size_t>(partitions)) {
+  for (int i = 0; i < partitions; ++i) {
+    sync_in.push_back(std::make_unique<FifoIn<ReleaseToken>>(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply));
+  }
+}
+
+std::string TriangleSetupUnit::state_text() const { return fmt::format("{} of {} triangle slots in use", sequence_ - retired_, triangles_.size()); }
+
+Wake TriangleSetupUnit::work_wake() const {
+  if (sequence_ - retired_ >= triangles_.size()) return Wake::never(*sync_in[0]);
+  Wake wake = Wake(free_).input(clipped_in);
+  if (clipped_in.ready() == kNever) return wake;
+  return clipped_in.front().kind == TokenKind::kBatchEnd ? wake.output(release_out) : wake.output(triangle_out);
+}
+
+Wake TriangleSetupUnit::next() const {
+  Wake wake = work_wake();
+  for (const auto& in : sync_in) wake = Wake::sooner(wake, Wake().input(*in));
+  return wake;
+}
+
+void TriangleSetupUnit::act(Tick now) {
+  take_syncs(now);
+  if (work_wake().at() <= now) work(now);
+}
+
+void TriangleSetupUnit::take_syncs(Tick now) {
+  for (std::size_t p = 0; p < sync_in.size(); ++p) {
+    while (sync_in[p]->ready_at(now)) retired_by_[p] = sync_in[p]->pop(now).sequence;
+  }
+  retired_ = *std::min_element(retired_by_.begin(), retired_by_.end());
+}
+
+void TriangleSetupUnit::work(Tick now) {
+  const ClippedToken token = clipped_in.pop(now);
+  int cycles = 1;
+  if (token.kind == TokenKind::kWork) {
+    set_up(now, token);
+    cycles = params_.setup_clk;
+  } else if (token.kind == TokenKind::kBatchEnd) {
+    release_out.push(now, {token.slot, 0});
+  } else {
+    triangle_out.push(now, {token.kind, token.index, sequence_});
+  }
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+}
+
+void TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
+  const DrawState& draw = frame_.draw(token.index);
+  const ClippedPiece& piece = pieces_[token.piece];
+  TriangleSlot& slot = triangles_[sequence_];
+  ++stats_.triangles;
+  switch (models::setup_triangle(piece.vertices, piece.weights, draw.setup, slot.setup)) {
+    case models::SetupOutcome::kKept: break;
+    case models::SetupOutcome::kCulledFace: ++stats_.culled; return;
+    case models::SetupOutcome::kZeroArea: ++stats_.zero_area; return;
+    case models::SetupOutcome::kOffscreen: ++stats_.offscreen; return;
+    case models::SetupOutcome::kNoSample: ++stats_.no_sample; return;
+  }
+  ++stats_.kept;
+  slot.draw = token.index;
+  slot.primitive = token.primitive;
+  gather_varyings(batches_[token.slot], {token.lane[0], token.lane[1], token.lane[2]}, draw.varyings(), slot.varyings);
+  triangle_out.push(now, {TokenKind::kWork, token.index, sequence_++});
+}
+
+void gather_varyings(const BatchSlot& batch, const std::array<std::uint8_t, 3>& lanes, int components, std::vector<float>& out) {
+  out.resize(static_cast<std::size_t>(3 * components));
+  for (int c = 0; c < components; ++c) {
+    const models::LaneWords& row = batch.outputs[static_cast<std::size_t>(models::kFirstVaryingOutput + c)];
+    const auto a0 = std::bit_cast<float>(row[lanes[0]]);
+    float* const at = out.data() + 3 * c;
+    at[0] = a0;
+    at[1] = std::bit_cast<float>(row[lanes[1]]) - a0;
+    at[2] = std::bit_cast<float>(row[lanes[2]]) - a0;
+  }
+}
+
+}  // namespace quadrille::hw

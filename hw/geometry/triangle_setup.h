@@ -1,0 +1,63 @@
+/// Triangle set-up: edge functions, bounds and planes of each triangle, culling, and the triangle store that bounds how far geometry runs ahead.
+///
+/// In    clipped_in     triangles with window positions; boundaries      sync_in[p]  triangles before a sequence number are retired in partition p
+/// Out   triangle_out   kept triangles and boundaries                    release_out  a vertex batch may be reused
+/// Time  `setup_clk` cycles a triangle, culled or kept; waits while the triangle store is full
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/stores.h"
+#include "hw/frame/tokens.h"
+
+namespace quadrille::hw {
+
+class TriangleSetupUnit final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> setup_clk{*this, "setup_clk", 1, "clk/triangle", {1, 1024}, "Cycles a triangle. [G: one triangle a cycle]"};
+    Param<int> triangle_slots{*this, "triangle_slots", 1024, "triangle", {1, 1 << 20}, "Triangles between set-up and their last retired fragment. [G]"};
+  };
+  struct Stats : StatGroup {
+    Counter triangles{*this, "triangles", "triangle", "Triangles taken in"};
+    Counter kept{*this, "kept", "triangle", "Triangles handed to the rasteriser"};
+    Counter culled{*this, "culled", "triangle", "Triangles that face the way that is culled"};
+    Counter zero_area{*this, "zero_area", "triangle", "Triangles without area on the sub-pixel grid"};
+    Counter offscreen{*this, "offscreen", "triangle", "Triangles whose pixels are outside the scissor"};
+    Counter no_sample{*this, "no_sample", "triangle", "Triangles whose bounds hold no pixel centre"};
+  };
+  TriangleSetupUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const Store<BatchSlot>& batches,
+                    const Store<ClippedPiece>& pieces, TriangleStore& triangles, int partitions);
+
+  FifoIn<ClippedToken> clipped_in{*this, "clipped_in"};
+  std::vector<std::unique_ptr<FifoIn<ReleaseToken>>> sync_in;
+  FifoOut<TriangleToken> triangle_out{*this, "triangle_out"};
+  FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+
+ private:
+  [[nodiscard]] Wake work_wake() const;
+  void work(Tick now);
+  void set_up(Tick now, const ClippedToken& token);
+  void take_syncs(Tick now);
+
+  const Params& params_;
+  const Frame& frame_;
+  const Store<BatchSlot>& batches_;
+  const Store<ClippedPiece>& pieces_;
+  TriangleStore& triangles_;
+  Stats stats_;
+  std::uint64_t sequence_ = 0;              ///< of the next kept triangle
+  std::uint64_t retired_ = 0;               ///< triangles before this are retired everywhere
+  std::vector<std::uint64_t> retired_by_;   ///< by partition
+  Tick free_ = 0;
+};
+
+/// Fills a triangle slot's varyings, 3 floats a component: a0, a1 - a0, a2 - a0 of the batch's lanes.
+void gather_varyings(const BatchSlot& batch, const std::array<std::uint8_t, 3>& lanes, int components, std::vector<float>& out);
+
+}  // namespace quadrille::hw

@@ -1,0 +1,192 @@
+#include "hw/geometry/vertex_fetch.h"
+
+#include <algorithm>
+
+namespace quadrille::hw {
+
+VertexFetch::VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
+                         Store<BatchSlot>& batches, int slices)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      frame_(frame),
+      device_(memory),
+      batches_(batches),
+      port_(*this, stats_, slices),
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {
+  for (std::uint64_t i = batches.size(); i-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(i));
+}
+
+std::string VertexFetch::state_text() const {
+  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_, triangle_, pending_.size(), free_slots_.size());
+}
+
+Wake VertexFetch::build_wake() const {
+  if (next_line_ < lines_.size()) {
+    if (stalled_) return Wake::never(*port_.response_in[0]);
+    return Wake(free_);
+  }
+  if (!drawing_) return Wake(free_).input(draw_in);
+  if (free_slots_.empty()) return Wake::never(release_in);
+  return Wake(free_);
+}
+
+Wake VertexFetch::leave_wake() const {
+  if (pending_.empty()) return Wake::never(draw_in);
+  const Pending& head = pending_.front();
+  const bool still_looking_up = pending_.size() == 1 && next_line_ < lines_.size();
+  if (head.missing > 0 || still_looking_up) return Wake::never(*port_.response_in[0]);
+  Wake wake(head.ready);
+  if (head.kind == TokenKind::kWork) wake.output(warp_out);
+  return wake.output(batch_out);
+}
+
+Wake VertexFetch::next() const {
+  Wake wake = Wake::sooner(build_wake(), leave_wake());
+  wake = Wake::sooner(wake, port_.receive_wake());
+  if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
+  return Wake::sooner(wake, Wake().input(release_in));
+}
+
+void VertexFetch::act(Tick now) {
+  while (release_in.ready_at(now)) free_slots_.push_back(release_in.pop(now).slot);
+  while (const auto answer = port_.receive(now)) {
+    stalled_ = false;
+    cache_.fill(*answer, [&](std::uint32_t number) {
+      Pending& p = pending_[number - first_pending_];
+      --p.missing;
+      p.ready = std::max(p.ready, now);
+    });
+  }
+  if (build_wake().at() <= now) build(now);
+  if (leave_wake().at() <= now) leave(now);
+  port_.send(now);
+}
+
+void VertexFetch::build(Tick now) {
+  if (next_line_ < lines_.size()) return look_up(now);
+  if (drawing_) return form_batch(now);
+  const DrawToken token = draw_in.pop(now);
+  if (token.kind == TokenKind::kWork) {
+    start_draw(token.index);
+  } else {
+    pending_.push_back({token.kind, token.index, 0, 0, now});
+  }
+  free_ = after(now, 1);
+  occupy(now, 1);
+}
+
+void VertexFetch::start_draw(std::uint32_t draw) {
+  draw_ = draw;
+  instance_ = 0;
+  triangle_ = 0;
+  drawing_ = frame_.draw(draw).triangles() > 0 && frame_.draw(draw).instances > 0;
+}
+
+std::uint32_t VertexFetch::vertex_number(std::uint32_t position) {
+  const DrawState& draw = frame_.draw(draw_);
+  ++indices_;
+  if (!draw.indexed) return draw.first_vertex + position;
+  const std::uint64_t address = draw.index_address + std::uint64_t{position} * draw.index_bytes;
+  touch_bytes(address, draw.index_bytes);
+  std::uint32_t index = 0;
+  std::memcpy(&index, device_.read(address, draw.index_bytes).data(), draw.index_bytes);
+  return index + static_cast<std::uint32_t>(draw.vertex_offset);
+}
+
+void VertexFetch::touch_bytes(std::uint64_t address, std::uint32_t bytes) {
+  for (std::uint64_t a = address / models::kSectorBytes; a <= (address + bytes - 1) / models::kSectorBytes; ++a) {
+    const auto line = static_cast<std::uint32_t>(a / models::kLineSectors);
+    const auto sector = static_cast<std::uint8_t>(1u << (a % models::kLineSectors));
+    auto held = std::find_if(lines_.rbegin(), lines_.rend(), [&](const Line& l) { return l.line == line; });
+    if (held == lines_.rend()) lines_.push_back({line, sector});
+    else held->sectors |= sector;
+  }
+}
+
+void VertexFetch::fetch_attributes(BatchSlot& batch) {
+  const DrawState& draw = frame_.draw(draw_);
+  for (const AttributeFetch& fetch : draw.attributes) {
+    const std::uint32_t bytes = models::attribute_bytes(fetch.format);
+    for (int lane = 0; lane < batch.lanes; ++lane) {
+      const std::uint32_t element = fetch.per_instance ? draw.first_instance + instance_ : reuse_.index(lane);
+      const std::uint64_t address = fetch.address + std::uint64_t{element} * fetch.stride;
+      touch_bytes(address, bytes);
+      ++fetches_;
+      float value[4];
+      models::decode_attribute(fetch.format, device_.read(address, bytes).data(), value);
+      for (std::size_t c = 0; c < 4; ++c) {
+        if (fetch.input_row[c] < 0) continue;
+        batch.attributes[static_cast<std::size_t>(fetch.input_row[c])][static_cast<std::size_t>(lane)] = std::bit_cast<std::uint32_t>(value[c]);
+      }
+    }
+  }
+}
+
+void VertexFetch::form_batch(Tick now) {
+  const DrawState& draw = frame_.draw(draw_);
+  const std::uint32_t slot = free_slots_.back();
+  free_slots_.pop_back();
+  BatchSlot& batch = batches_[slot];
+  batch.draw = draw_;
+  batch.triangles.clear();
+  batch.attributes.resize(draw.vertex_program->vertex_inputs.size());
+  batch.outputs.resize(static_cast<std::size_t>(models::kFirstVaryingOutput + draw.varyings()));
+  lines_.clear();
+  next_line_ = 0;
+  fetches_ = 0;
+  indices_ = 0;
+  reuse_.reset();
+  while (triangle_ < draw.triangles() && batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value())) {
+    const auto corner = models::triangle_vertices(draw.topology, triangle_);
+    const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]), vertex_number(corner[2])};
+    if (!reuse_.fits(vertex)) break;
+    BatchSlot::Triangle triangle{{}, triangle_};
+    for (std::size_t i = 0; i < 3; ++i) triangle.lane[i] = static_cast<std::uint8_t>(reuse_.find_or_add(vertex[i]));
+    batch.triangles.push_back(triangle);
+    ++triangle_;
+  }
+  batch.lanes = reuse_.size();
+  for (int lane = 0; lane < batch.lanes; ++lane) {
+    batch.inputs.vertex_index[static_cast<std::size_t>(lane)] = reuse_.index(lane);
+    batch.inputs.instance_index[static_cast<std::size_t>(lane)] = draw.first_instance + instance_;
+  }
+  fetch_attributes(batch);
+  batch.inputs.attributes = batch.attributes.data();
+  if (triangle_ == draw.triangles()) {
+    triangle_ = 0;
+    drawing_ = ++instance_ < draw.instances;
+  }
+  stats_.indices += indices_;
+  stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
+  stats_.attribute_fetches += fetches_;
+  ++stats_.batches;
+  stats_.triangles += batch.triangles.size();
+  const auto per = [](std::uint32_t work, int rate) { return (static_cast<int>(work) + rate - 1) / rate; };
+  const int cycles = std::max({1, per(indices_, params_.indices_per_clk), per(fetches_, params_.attributes_per_clk)});
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+  pending_.push_back({TokenKind::kWork, draw_, slot, 0, free_});
+  look_up(now);
+}
+
+void VertexFetch::look_up(Tick now) {
+  const auto number = first_pending_ + static_cast<std::uint32_t>(pending_.size()) - 1;
+  for (; next_line_ < lines_.size(); ++next_line_) {
+    switch (cache_.access(lines_[next_line_].line, lines_[next_line_].sectors, number, port_)) {
+      case L1Cache::Result::kHit: break;
+      case L1Cache::Result::kPending: ++pending_.back().missing; break;
+      case L1Cache::Result::kStall: stalled_ = true; return;
+    }
+  }
+  pending_.back().ready = std::max(pending_.back().ready, now);
+}
+
+void VertexFetch::leave(Tick now) {
+  const Pending head = pending_.front();
+  pending_.pop_front();
+  ++first_pending_;
+  if (head.kind == TokenKind::kWork) warp_out.push(now, {head.index, head.slot, 0});
+  batch_out.push(now, {head.kind, head.index, head.slot});
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,80 @@
+/// The first-level caches (vertex fetch, texture, depth, colour): tags, misses under way, and who waits for them.
+///
+/// One entry of the miss table serves all who want sectors of a line that is under way. Functional data live in `DeviceMemory`; only presence is kept. A
+/// cache that writes names itself as the owner of its dirty lines there, so that a read from below it is noticed.
+#pragma once
+
+#include "hw/memory/memory_port.h"
+#include "models/cache/tag_array.h"
+#include "models/memory/device_memory.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace quadrille::hw {
+
+struct L1CacheStats {
+  explicit L1CacheStats(StatGroup& group)
+      : requests{group, "cache_requests", "request", "Look-ups of a line in the first-level cache"},
+        hits{group, "cache_hits", "request", "Look-ups that found all their sectors"},
+        merged{group, "cache_merged", "request", "Look-ups that found all their sectors on their way already"},
+        misses{group, "cache_misses", "request", "Look-ups that had to ask the L2 cache for a sector"} {}
+  Counter requests, hits, merged, misses;
+};
+
+class L1Cache {
+ public:
+  enum class Result : std::uint8_t {
+    kHit,      ///< present
+    kPending,  ///< the waiter will be told
+    kStall     ///< no way or no miss entry is free: try again after the next fill
+  };
+  /// `lines` of 128 bytes, `ways` a set, up to `misses` lines under way.
+  L1Cache(StatGroup& stats, int lines, int ways, int misses);
+  /// From here on the cache may write: it marks its dirty lines as `owner`'s.
+  void own_dirty_lines(models::DeviceMemory& memory, models::DeviceMemory::Owner owner) {
+    memory_ = &memory;
+    owner_ = owner;
+  }
+
+  /// Looks up sectors of a line; asks for what is missing through `port`.
+  Result access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter, MemoryPort& port);
+  /// Takes an answer in; calls `ready(waiter)` once for each pending access that is now complete.
+  template <class F>
+  void fill(const MemoryResponse& response, F&& ready) {
+    Miss& miss = misses_[response.tag];
+    tags_.fill(miss.slot, response.sectors);
+    if (--miss.outstanding > 0) return;
+    for (const std::uint32_t waiter : miss.waiters) ready(waiter);
+    miss.waiters.clear();
+    miss_of_slot_[static_cast<std::size_t>(miss.slot)] = -1;
+    free_.push_back(response.tag);
+  }
+  /// Makes sectors present without fetching them, because they are about to be overwritten whole. False when no way is free: try again after a fill.
+  bool claim(std::uint32_t line, std::uint8_t sectors, MemoryPort& port);
+  [[nodiscard]] bool holds(std::uint32_t line, std::uint8_t sectors) const;
+  /// Sectors that are present were written.
+  void mark_dirty(std::uint32_t line, std::uint8_t sectors);
+  /// Queues all dirty sectors for writing and forgets all lines; nothing may be under way.
+  void flush(MemoryPort& port);
+  [[nodiscard]] bool idle() const { return free_.size() == misses_.size(); }
+
+ private:
+  struct Miss {
+    int slot = 0;
+    int outstanding = 0;
+    std::vector<std::uint32_t> waiters;
+  };
+  int place(std::uint32_t line, MemoryPort& port);
+  void write_back(std::uint32_t line, std::uint8_t sectors, MemoryPort& port);
+
+  models::TagArray tags_;
+  models::DeviceMemory* memory_ = nullptr;
+  models::DeviceMemory::Owner owner_ = models::DeviceMemory::kClean;
+  std::vector<Miss> misses_;
+  std::vector<std::uint32_t> free_;
+  std::vector<int> miss_of_slot_;
+  L1CacheStats stats_;
+};
+
+}  // namespace quadrille::hw

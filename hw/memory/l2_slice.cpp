@@ -1,0 +1,168 @@
+#include "hw/memory/l2_slice.h"
+
+#include "models/memory/device_memory.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+namespace {
+std::uint64_t bytes_of(std::uint8_t sectors) { return models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors)); }
+std::uint32_t whole_sets(int lines, int ways) { return static_cast<std::uint32_t>(std::max(1, lines / ways) * ways); }
+}  // namespace
+
+L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, int clients)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      tags_(whole_sets(params.cache_lines, params.cache_ways), static_cast<std::uint32_t>(params.cache_ways.value())),
+      misses_(static_cast<std::size_t>(params.cache_misses.value())),
+      miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
+      answers_(static_cast<std::size_t>(clients)) {
+  for (int i = 0; i < clients; ++i) {
+    request_in.push_back(std::make_unique<FifoIn<MemoryRequest>>(*this, fmt::format("request_in_{}", i).c_str()));
+    response_out.push_back(std::make_unique<FifoOut<MemoryResponse>>(*this, fmt::format("response_out_{}", i).c_str(), LinkRole::kReply));
+  }
+  for (std::size_t i = misses_.size(); i-- > 0;) free_misses_.push_back(static_cast<std::uint32_t>(i));
+}
+
+std::string L2Slice::state_text() const {
+  return fmt::format("{} lines under way, {} requests for the channel", misses_.size() - free_misses_.size(), to_memory_.size());
+}
+
+bool L2Slice::can_look_up() const { return !stalled_ && to_memory_.size() < misses_.size(); }
+
+Wake L2Slice::look_up_wake() const {
+  if (!can_look_up()) return Wake::never(fill_in);
+  Wake first(kNever);
+  for (const auto& in : request_in) {
+    if (in->ready() != kNever) first = Wake::sooner(first, Wake(free_).input(*in));
+  }
+  return first;
+}
+
+Wake L2Slice::next() const {
+  Wake wake = look_up_wake();
+  wake = Wake::sooner(wake, Wake().input(fill_in));
+  if (!to_memory_.empty()) wake = Wake::sooner(wake, Wake().output(memory_out));
+  for (std::size_t c = 0; c < answers_.size(); ++c) {
+    if (!answers_[c].empty()) wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c]));
+  }
+  return wake.at() == kNever && wake.cause() == nullptr ? Wake::never(*request_in[0]) : wake;
+}
+
+void L2Slice::act(Tick now) {
+  while (fill_in.ready_at(now)) take_fill(now);
+  for (std::size_t c = 0; c < answers_.size(); ++c) {
+    if (answers_[c].empty() || answers_[c].front().at > now || !response_out[c]->room_at(now)) continue;
+    response_out[c]->push(now, answers_[c].front().token);
+    answers_[c].pop_front();
+  }
+  if (can_look_up() && free_ <= now) {
+    for (std::size_t i = 0; i < request_in.size(); ++i) {
+      const std::size_t c = (turn_ + i) % request_in.size();
+      if (!request_in[c]->ready_at(now)) continue;
+      look_up(now, static_cast<std::uint32_t>(c));
+      break;
+    }
+  }
+  if (!to_memory_.empty() && memory_out.room_at(now)) {
+    memory_out.push(now, to_memory_.front());
+    to_memory_.pop_front();
+  }
+}
+
+void L2Slice::look_up(Tick now, std::uint32_t client) {
+  const MemoryRequest request = request_in[client]->front();
+  bool taken = true;
+  switch (request.kind) {
+    case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
+    case MemoryRequest::Kind::kWrite: taken = write(request); break;
+    case MemoryRequest::Kind::kFence: answer(after(now, params_.hit_clk), client, {request.line, request.tag, 0}); break;
+  }
+  if (!taken) {
+    stalled_ = true;
+    return;
+  }
+  if (request.kind != MemoryRequest::Kind::kFence) ++stats_.requests;
+  (void)request_in[client]->pop(now);
+  turn_ = client + 1;
+  free_ = after(now, 1);
+  occupy(now, 1);
+}
+
+int L2Slice::place(std::uint32_t line) {
+  const models::TagArray::Allocation got = tags_.allocate(line);
+  if (got.victim.valid && got.victim.dirty != 0) {
+    stats_.writeback_bytes += bytes_of(got.victim.dirty);
+    to_memory_.push_back({got.victim.line, 0, got.victim.dirty, MemoryRequest::Kind::kWrite});
+  }
+  return got.slot;
+}
+
+bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  int slot = tags_.lookup(request.line);
+  const MemoryResponse token{request.line, request.tag, request.sectors};
+  if (slot != models::TagArray::kNone && (tags_.at(slot).valid & request.sectors) == request.sectors) {
+    ++stats_.hits;
+    answer(after(now, params_.hit_clk), client, token);
+    return true;
+  }
+  const bool under_way = slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
+  if (!under_way && free_misses_.empty()) return false;
+  if (slot == models::TagArray::kNone) slot = place(request.line);
+  if (slot == models::TagArray::kNone) return false;
+  if (!under_way) {
+    miss_of_slot_[static_cast<std::size_t>(slot)] = static_cast<int>(free_misses_.back());
+    misses_[free_misses_.back()].slot = slot;
+    free_misses_.pop_back();
+  }
+  const auto tag = static_cast<std::uint32_t>(miss_of_slot_[static_cast<std::size_t>(slot)]);
+  Miss& miss = misses_[tag];
+  const auto missing = static_cast<std::uint8_t>(request.sectors & ~(tags_.at(slot).valid | tags_.at(slot).pending));
+  if (missing != 0) {
+    ++stats_.misses;
+    tags_.mark_pending(slot, missing);
+    miss.pending |= missing;
+    stats_.fill_bytes += bytes_of(missing);
+    to_memory_.push_back({request.line, tag, missing, MemoryRequest::Kind::kRead});
+  } else {
+    ++stats_.merged;
+  }
+  miss.waiters.push_back({client, token});
+  return true;
+}
+
+bool L2Slice::write(const MemoryRequest& request) {
+  int slot = tags_.lookup(request.line);
+  if (slot == models::TagArray::kNone) slot = place(request.line);
+  if (slot == models::TagArray::kNone) return false;
+  tags_.mark_dirty(slot, request.sectors);
+  ++stats_.hits;
+  stats_.write_bytes += bytes_of(request.sectors);
+  return true;
+}
+
+void L2Slice::take_fill(Tick now) {
+  const MemoryResponse fill = fill_in.pop(now);
+  stalled_ = false;
+  Miss& miss = misses_[fill.tag];
+  tags_.fill(miss.slot, fill.sectors);
+  miss.pending &= static_cast<std::uint8_t>(~fill.sectors);
+  if (miss.pending != 0) return;
+  for (const Waiter& w : miss.waiters) answer(now, w.client, w.answer);
+  miss.waiters.clear();
+  miss_of_slot_[static_cast<std::size_t>(miss.slot)] = -1;
+  free_misses_.push_back(fill.tag);
+}
+
+void L2Slice::answer(Tick at, std::uint32_t client, const MemoryResponse& token) {
+  stats_.read_bytes += bytes_of(token.sectors);
+  auto& queue = answers_[client];
+  // Misses overtake hits that were looked up later but answer after a fixed latency: keep the queue in order of time.
+  auto place = queue.end();
+  while (place != queue.begin() && std::prev(place)->at > at) --place;
+  queue.insert(place, {at, token});
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,85 @@
+/// L2 slice: one bank of the shared cache in front of one memory channel. Write-back, write-allocate, sectored.
+///
+/// In    request_in[c]   sectors of a line, from client c      fill_in   a line's sectors from the channel
+/// Out   response_out[c] answers to reads and fences           memory_out  misses and write-backs
+/// Time  one request a cycle, clients take turns; an answer leaves when its sectors are there; a line that is under way serves all who ask for it
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/tokens.h"
+#include "models/cache/tag_array.h"
+
+#include <deque>
+#include <memory>
+
+namespace quadrille::hw {
+
+class L2Slice final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> cache_lines{*this, "cache_lines", 4096, "line", {1, 1 << 24}, "Lines of 128 bytes in a slice. [G: 512 KiB]"};
+    Param<int> cache_ways{*this, "cache_ways", 16, "way", {1, 64}, "Associativity. [G]"};
+    Param<int> cache_misses{*this, "cache_misses", 128, "line", {1, 65536}, "Lines under way to and from the channel. [G: bandwidth times latency]"};
+    Param<int> hit_clk{*this, "hit_clk", 20, "clk", {1, 1 << 20}, "Latency from look-up to answer. [G]"};
+  };
+  struct Stats : StatGroup {
+    Counter requests{*this, "requests", "request", "Read and write requests looked up"};
+    Counter hits{*this, "hits", "request", "Requests whose sectors were there (writes always find a place)"};
+    Counter merged{*this, "merged", "request", "Reads whose sectors were on their way already"};
+    Counter misses{*this, "misses", "request", "Reads that went to the memory channel"};
+    Counter read_bytes{*this, "read_bytes", "byte", "Bytes answered to clients"};
+    Counter write_bytes{*this, "write_bytes", "byte", "Bytes written by clients"};
+    Counter fill_bytes{*this, "fill_bytes", "byte", "Bytes read from the memory channel"};
+    Counter writeback_bytes{*this, "writeback_bytes", "byte", "Bytes written back to the memory channel"};
+  };
+  L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, int clients);
+
+  std::vector<std::unique_ptr<FifoIn<MemoryRequest>>> request_in;
+  std::vector<std::unique_ptr<FifoOut<MemoryResponse>>> response_out;
+  FifoIn<MemoryResponse> fill_in{*this, "fill_in", LinkRole::kReply};
+  FifoOut<MemoryRequest> memory_out{*this, "memory_out"};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+
+ private:
+  struct Waiter {
+    std::uint32_t client = 0;
+    MemoryResponse answer;
+  };
+  struct Miss {
+    int slot = 0;
+    std::uint8_t pending = 0;       ///< sectors on their way
+    std::vector<Waiter> waiters;
+  };
+  struct Answer {
+    Tick at = 0;
+    MemoryResponse token;
+  };
+  [[nodiscard]] Wake look_up_wake() const;
+  [[nodiscard]] bool can_look_up() const;
+  void look_up(Tick now, std::uint32_t client);
+  /// False when the line has no place now; nothing was changed.
+  bool read(Tick now, std::uint32_t client, const MemoryRequest& request);
+  bool write(const MemoryRequest& request);
+  [[nodiscard]] int place(std::uint32_t line);
+  void take_fill(Tick now);
+  void answer(Tick now, std::uint32_t client, const MemoryResponse& token);
+
+  const Params& params_;
+  Stats stats_;
+  models::TagArray tags_;
+  std::vector<Miss> misses_;
+  std::vector<std::uint32_t> free_misses_;
+  std::vector<int> miss_of_slot_;
+  std::vector<std::deque<Answer>> answers_;     ///< by client, in order of time
+  std::deque<MemoryRequest> to_memory_;
+  std::size_t turn_ = 0;
+  bool stalled_ = false;                        ///< the line in turn had no place; a fill will make one
+  Tick free_ = 0;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,59 @@
+/// A client's side of the memory system: one request link and one answer link to each L2 slice, and a queue of requests that wait for room.
+///
+/// Lines are spread over the slices so that any stride uses them all: slice = (line + line / slices) mod slices.
+#pragma once
+
+#include "hw/base/unit.h"
+#include "hw/frame/tokens.h"
+
+#include <deque>
+#include <memory>
+#include <optional>
+
+namespace quadrille::hw {
+
+/// Slice that holds a line, and the line's number within that slice's memory channel.
+[[nodiscard]] inline std::uint32_t slice_of(std::uint32_t line, std::uint32_t slices) { return (line + line / slices) % slices; }
+[[nodiscard]] inline std::uint32_t line_within_slice(std::uint32_t line, std::uint32_t slices) { return line / slices; }
+
+/// Traffic of one client, counted where the client asks.
+struct MemoryPortStats {
+  explicit MemoryPortStats(StatGroup& group)
+      : reads{group, "memory_reads", "request", "Read requests sent to the L2 cache"},
+        writes{group, "memory_writes", "request", "Write requests sent to the L2 cache"},
+        read_bytes{group, "read_bytes", "byte", "Bytes asked of the L2 cache"},
+        write_bytes{group, "write_bytes", "byte", "Bytes written to the L2 cache"} {}
+  Counter reads, writes, read_bytes, write_bytes;
+};
+
+class MemoryPort {
+ public:
+  MemoryPort(Unit& owner, StatGroup& stats, int slices);
+
+  /// Queues a request; it leaves as soon as its slice's link has room.
+  void read(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag);
+  void write(std::uint32_t line, std::uint8_t sectors);
+  /// Asks every slice to answer once all earlier requests of this client have been taken in; `answers` counts them.
+  void fence(std::uint32_t tag);
+
+  [[nodiscard]] bool queue_empty() const { return queue_.empty(); }
+  [[nodiscard]] std::size_t queued() const { return queue_.size(); }
+  /// When the oldest queued request could leave.
+  [[nodiscard]] Wake send_wake() const;
+  /// Sends what has room at `now`, in order.
+  void send(Tick now);
+  /// When the next answer is there.
+  [[nodiscard]] Wake receive_wake() const;
+  /// One answer that is there at `now`, if any.
+  [[nodiscard]] std::optional<MemoryResponse> receive(Tick now);
+
+  [[nodiscard]] int slices() const { return static_cast<int>(request_out.size()); }
+  std::vector<std::unique_ptr<FifoOut<MemoryRequest>>> request_out;   ///< by slice
+  std::vector<std::unique_ptr<FifoIn<MemoryResponse>>> response_in;
+
+ private:
+  MemoryPortStats stats_;
+  std::deque<MemoryRequest> queue_;
+};
+
+}  // namespace quadrille::hw

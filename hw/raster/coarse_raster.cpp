@@ -1,0 +1,139 @@
+#include "hw/raster/coarse_raster.h"
+
+#include "models/raster/interpolate.h"
+
+#include <algorithm>
+
+namespace quadrille::hw {
+
+namespace {
+bool lowers_depth(models::CompareOp op) { return op == models::CompareOp::kLess || op == models::CompareOp::kLessOrEqual; }
+}  // namespace
+
+CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const TriangleStore& triangles,
+                           int partitions)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      frame_(frame),
+      triangles_(triangles),
+      sync_interval_(std::max<std::uint64_t>(1, triangles.size() / 8)) {
+  for (int i = 0; i < partitions; ++i) {
+    hiz_in.push_back(std::make_unique<FifoIn<HiZToken>>(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply));
+  }
+}
+
+std::string CoarseRaster::state_text() const { return fmt::format("triangle {} of draw {}", triangle_, draw_); }
+
+Wake CoarseRaster::work_wake() const {
+  if (walking_ || sync_due_) return Wake(free_).output(tile_out);
+  Wake wake = Wake(free_).input(triangle_in);
+  if (triangle_in.ready() != kNever && triangle_in.front().kind == TokenKind::kWork) return wake;
+  return wake.output(tile_out);
+}
+
+Wake CoarseRaster::next() const {
+  Wake wake = work_wake();
+  for (const auto& in : hiz_in) wake = Wake::sooner(wake, Wake().input(*in));
+  return wake;
+}
+
+void CoarseRaster::act(Tick now) {
+  take_updates(now);
+  if (work_wake().at() <= now) work(now);
+}
+
+void CoarseRaster::take_updates(Tick now) {
+  for (auto& in : hiz_in) {
+    while (in->ready_at(now)) {
+      const HiZToken update = in->pop(now);
+      ++stats_.hiz_updates;
+      if (update.pass != pass_ || hiz_.empty()) continue;
+      float& held = hiz_[std::size_t{update.tile_y} * frame_.passes[pass_].depth.tiles_x + update.tile_x];
+      held = std::min(held, update.max_depth);
+    }
+  }
+}
+
+void CoarseRaster::work(Tick now) {
+  if (walking_) return walk(now);
+  if (sync_due_) {
+    tile_out.push(now, {TokenKind::kSync, false, 0, 0, draw_, triangle_ + 1});
+    sync_due_ = false;
+    since_sync_ = 0;
+    free_ = after(now, 1);
+    occupy(now, 1);
+    return;
+  }
+  take_token(now);
+}
+
+void CoarseRaster::take_token(Tick now) {
+  const TriangleToken token = triangle_in.pop(now);
+  if (token.kind == TokenKind::kWork) {
+    if (stats_.triangles.value() == 0 || token.index != draw_) note_direction(frame_.draw(token.index));
+    draw_ = token.index;
+    triangle_ = token.triangle;
+    walk_ = models::TileWalk(triangles_[triangle_].setup);
+    charged_tests_ = 0;
+    walking_ = true;
+    ++stats_.triangles;
+    free_ = now;  // the first tile may leave in this very cycle
+    return;
+  }
+  if (token.kind == TokenKind::kPassBegin) begin_pass(token.index);
+  tile_out.push(now, {token.kind, false, 0, 0, token.index, token.triangle});
+  free_ = after(now, 1);
+  occupy(now, 1);
+}
+
+void CoarseRaster::begin_pass(std::uint32_t pass) {
+  pass_ = pass;
+  const PassState& state = frame_.passes[pass];
+  hiz_trusted_ = true;
+  hiz_.clear();
+  const auto first = frame_.draws.begin() + state.first_draw;
+  const bool tests = state.has_depth && std::any_of(first, first + state.draws, [](const DrawState& d) { return d.uses_depth(); });
+  if (tests && params_.hiz) hiz_.assign(std::size_t{state.depth.tiles_x} * state.depth.tiles_y, state.clear_depth);
+}
+
+void CoarseRaster::note_direction(const DrawState& draw) {
+  if (draw.depth_test && draw.depth_write && !lowers_depth(draw.depth_compare) && draw.depth_compare != models::CompareOp::kNever &&
+      draw.depth_compare != models::CompareOp::kEqual) {
+    hiz_trusted_ = false;
+  }
+  // A program that writes depth moves fragments away from the triangle's plane; its tiles cannot be judged by it.
+  hiz_usable_ = hiz_trusted_ && !hiz_.empty() && draw.depth_test && lowers_depth(draw.depth_compare) && !draw.fragment_program->writes_depth;
+}
+
+bool CoarseRaster::hidden(const models::TileHit& tile) const {
+  if (!hiz_usable_) return false;
+  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.tiles_x + static_cast<std::size_t>(tile.tile_x)];
+  const float nearest = models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y).min;
+  return frame_.draw(draw_).depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
+}
+
+void CoarseRaster::walk(Tick now) {
+  models::TileHit tile;
+  bool found = false;
+  while (!found && walk_.next(tile)) {
+    found = !hidden(tile);
+    if (!found) ++stats_.tiles_hidden;
+  }
+  const std::uint64_t tests = walk_.tests() - charged_tests_;
+  charged_tests_ = walk_.tests();
+  stats_.tiles_tested += tests;
+  const auto rate = static_cast<std::uint64_t>(params_.tests_per_clk.value());
+  const auto cycles = static_cast<std::int64_t>(std::max<std::uint64_t>(1, (tests + rate - 1) / rate));
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+  if (found) {
+    ++stats_.tiles_kept;
+    tile_out.push(now, {TokenKind::kWork, tile.fully_covered, static_cast<std::uint16_t>(tile.tile_x), static_cast<std::uint16_t>(tile.tile_y), draw_,
+                        triangle_});
+    return;
+  }
+  walking_ = false;
+  sync_due_ = ++since_sync_ >= sync_interval_;
+}
+
+}  // namespace quadrille::hw

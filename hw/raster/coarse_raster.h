@@ -1,0 +1,70 @@
+/// Coarse rasteriser with Hi-Z: finds the 8x8-pixel tiles a triangle touches and drops those that are wholly behind what is there.
+///
+/// In    triangle_in   set-up triangles; boundaries         hiz_in[p]  a tile's greatest depth became smaller, from the depth unit of partition p
+/// Out   tile_out      tiles of one triangle, row by row; boundaries; now and then a sync for the triangle store
+/// Time  `tests_per_clk` tile tests a cycle and at most one tile out a cycle; waits while tile_out is full
+/// Hi-Z holds, for each tile of the pass, a depth that no stored depth exceeds. It may be late (updates travel by FIFO), which only keeps more. It is
+/// trusted only while every depth write of the pass can but lower depths: a draw that writes with another comparison switches it off until the next clear.
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/stores.h"
+#include "hw/frame/tokens.h"
+#include "models/raster/coarse.h"
+
+namespace quadrille::hw {
+
+class CoarseRaster final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> tests_per_clk{*this, "tests_per_clk", 4, "tile/clk", {1, 64}, "Tile tests a cycle. [G: feeds 16 px/clk]"};
+    Param<bool> hiz{*this, "hiz", true, "", "Drop tiles that Hi-Z proves hidden."};
+  };
+  struct Stats : StatGroup {
+    Counter triangles{*this, "triangles", "triangle", "Triangles walked"};
+    Counter tiles_tested{*this, "tiles_tested", "tile", "Tiles tested against edges"};
+    Counter tiles_kept{*this, "tiles_kept", "tile", "Tiles handed to the fine rasteriser"};
+    Counter tiles_hidden{*this, "tiles_hidden", "tile", "Tiles dropped by Hi-Z"};
+    Counter hiz_updates{*this, "hiz_updates", "update", "Hi-Z updates taken in"};
+  };
+  CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const TriangleStore& triangles, int partitions);
+
+  FifoIn<TriangleToken> triangle_in{*this, "triangle_in"};
+  std::vector<std::unique_ptr<FifoIn<HiZToken>>> hiz_in;
+  FifoOut<TileToken> tile_out{*this, "tile_out"};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+
+ private:
+  [[nodiscard]] Wake work_wake() const;
+  void work(Tick now);
+  void take_token(Tick now);
+  void take_updates(Tick now);
+  void walk(Tick now);
+  void begin_pass(std::uint32_t pass);
+  [[nodiscard]] bool hidden(const models::TileHit& tile) const;
+  void note_direction(const DrawState& draw);
+
+  const Params& params_;
+  const Frame& frame_;
+  const TriangleStore& triangles_;
+  const std::uint64_t sync_interval_;   ///< triangles between syncs
+  Stats stats_;
+  bool walking_ = false;
+  models::TileWalk walk_;
+  std::uint64_t charged_tests_ = 0;     ///< of this walk
+  std::uint64_t triangle_ = 0;          ///< being walked
+  std::uint32_t draw_ = 0, pass_ = 0;
+  bool hiz_usable_ = false;             ///< this draw may be tested
+  bool hiz_trusted_ = true;             ///< no draw of the pass has raised depths
+  std::uint64_t since_sync_ = 0;
+  bool sync_due_ = false;
+  std::vector<float> hiz_;              ///< by tile of the pass; empty when no draw of it tests depth
+  Tick free_ = 0;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,52 @@
+#include "hw/raster/fine_raster.h"
+
+#include "models/raster/fine.h"
+
+#include <bit>
+
+namespace quadrille::hw {
+
+FineRaster::FineRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const TriangleStore& triangles, int partitions)
+    : Unit(name, Kind::kFixedOrder, clock), params_(params), triangles_(triangles) {
+  for (int i = 0; i < partitions; ++i) {
+    coverage_out.push_back(std::make_unique<FifoOut<CoverageToken>>(*this, fmt::format("coverage_out_{}", i).c_str()));
+  }
+}
+
+Wake FineRaster::next() const {
+  Wake wake = Wake(free_).input(tile_in);
+  if (tile_in.ready() == kNever) return wake;
+  const TileToken& tile = tile_in.front();
+  if (tile.kind == TokenKind::kWork) {
+    return wake.output(*coverage_out[partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()))]);
+  }
+  for (const auto& out : coverage_out) wake.output(*out);
+  return wake;
+}
+
+void FineRaster::act(Tick now) {
+  const TileToken tile = tile_in.pop(now);
+  if (tile.kind == TokenKind::kWork) return rasterize(now, tile);
+  for (auto& out : coverage_out) out->push(now, {tile.kind, false, 0, 0, tile.index, tile.triangle, 0});
+  free_ = after(now, 1);
+  occupy(now, 1);
+}
+
+void FineRaster::rasterize(Tick now, const TileToken& tile) {
+  const std::uint64_t coverage =
+      tile.fully_covered ? ~std::uint64_t{0} : models::tile_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y);
+  const int quads = std::popcount(models::quads_of(coverage));
+  ++stats_.tiles;
+  if (coverage == 0) ++stats_.tiles_empty;
+  if (~coverage == 0) ++stats_.tiles_full;
+  stats_.quads += static_cast<std::uint64_t>(quads);
+  stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));
+  const int cycles = std::max(1, (quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+  if (coverage == 0) return;
+  const std::uint32_t p = partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
+  coverage_out[p]->push(now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});
+}
+
+}  // namespace quadrille::hw

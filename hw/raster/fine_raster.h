@@ -1,0 +1,50 @@
+/// Fine rasteriser: finds the covered pixels of each tile, exactly, and hands the tile to the partition that owns it.
+///
+/// In    tile_in          tiles of one triangle; boundaries
+/// Out   coverage_out[p]  covered tiles of partition p; every boundary to every partition
+/// Time  `quads_per_clk` covered quads a cycle, at least one cycle a tile
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/stores.h"
+#include "hw/frame/tokens.h"
+
+namespace quadrille::hw {
+
+/// Partition that owns a tile: neighbours in x and y differ, so that any small area uses all of them.
+[[nodiscard]] inline std::uint32_t partition_of(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t partitions) {
+  return (tile_x + tile_y * (partitions / 2 + 1)) % partitions;
+}
+
+class FineRaster final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Covered quads a cycle. [G: 16 px/clk]"};
+  };
+  struct Stats : StatGroup {
+    Counter tiles{*this, "tiles", "tile", "Tiles taken in"};
+    Counter tiles_empty{*this, "tiles_empty", "tile", "Tiles without a covered pixel"};
+    Counter tiles_full{*this, "tiles_full", "tile", "Tiles with all 64 pixels covered"};
+    Counter quads{*this, "quads", "quad", "Quads with a covered pixel"};
+    Counter fragments{*this, "fragments", "fragment", "Covered pixels"};
+  };
+  FineRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const TriangleStore& triangles, int partitions);
+
+  FifoIn<TileToken> tile_in{*this, "tile_in"};
+  std::vector<std::unique_ptr<FifoOut<CoverageToken>>> coverage_out;
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+
+ private:
+  void rasterize(Tick now, const TileToken& tile);
+
+  const Params& params_;
+  const TriangleStore& triangles_;
+  Stats stats_;
+  Tick free_ = 0;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,127 @@
+#include "hw/raster/warp_packer.h"
+
+#include "models/raster/tile.h"
+
+#include <bit>
+
+namespace quadrille::hw {
+
+WarpPacker::WarpPacker(sc_core::sc_module_name name, const Params& params, const Clock& clock, Store<WarpSlot>& warps, int partition)
+    : Unit(name, Kind::kChooser, clock), params_(params), warps_(warps), partition_(static_cast<std::uint16_t>(partition)) {}
+
+std::string WarpPacker::state_text() const { return fmt::format("{} of {} warp slots in use", opened_ - retired_, warps_.size()); }
+
+Wake WarpPacker::launch_wake(Tick own) const { return Wake(own).output(warp_out).output(order_out); }
+
+bool WarpPacker::full() const { return open_ && warps_[(opened_ - 1) % warps_.size()].quads == models::kWarpQuads; }
+
+bool WarpPacker::must_launch_first() const {
+  if (!open_) return false;
+  const WarpSlot& warp = warps_[(opened_ - 1) % warps_.size()];
+  const CoverageToken& token = coverage_in.front();
+  if (token.kind == TokenKind::kWork) return token.index != warp.draw || token.late != warp.late;
+  return token.kind != TokenKind::kSync;
+}
+
+Wake WarpPacker::input_wake() const {
+  Wake wake = Wake(free_).input(coverage_in);
+  if (coverage_in.ready() == kNever) return wake;
+  const CoverageToken& token = coverage_in.front();
+  if (must_launch_first()) return wake.output(warp_out).output(order_out);
+  if (token.kind == TokenKind::kSync && open_) return wake;
+  if (token.kind != TokenKind::kWork) return wake.output(order_out);
+  return !open_ && opened_ - retired_ >= warps_.size() ? Wake::never(release_in) : wake;
+}
+
+Wake WarpPacker::work_wake() const {
+  if (full()) return launch_wake(free_);
+  if (!open_) return input_wake();
+  // The patience counts whatever is on its way: what is not visible yet must not change what is done now.
+  return Wake::sooner(input_wake(), launch_wake(std::max(free_, after(last_input_, params_.patience_clk))));
+}
+
+Wake WarpPacker::next() const { return Wake::sooner(work_wake(), Wake().input(release_in)); }
+
+void WarpPacker::act(Tick now) {
+  while (release_in.ready_at(now)) {
+    (void)release_in.pop(now);
+    ++retired_;
+  }
+  if (work_wake().at() <= now) work(now);
+}
+
+void WarpPacker::work(Tick now) {
+  if (full()) return launch(now);
+  if (!coverage_in.ready_at(now)) {
+    ++stats_.timeouts;
+    return launch(now);
+  }
+  if (must_launch_first()) return launch(now);
+  if (coverage_in.front().kind == TokenKind::kWork) take_quads(now);
+  else take_boundary(now);
+}
+
+void WarpPacker::take_boundary(Tick now) {
+  const CoverageToken token = coverage_in.pop(now);
+  if (token.kind == TokenKind::kSync && open_) {
+    sync_ = token.triangle;
+  } else {
+    order_out.push(now, {token.kind, token.index, 0, token.kind == TokenKind::kSync ? token.triangle : 0});
+  }
+  free_ = after(now, 1);
+  occupy(now, 1);
+}
+
+void WarpPacker::take_quads(Tick now) {
+  const CoverageToken& token = coverage_in.front();
+  const std::uint64_t slot = (open_ ? opened_ - 1 : opened_) % warps_.size();
+  WarpSlot& warp = warps_[slot];
+  if (!open_) {
+    ++opened_;
+    open_ = true;
+    sync_ = 0;
+    warp.draw = token.index;
+    warp.late = token.late;
+    warp.quads = 0;
+    warp.covered = 0;
+  }
+  if (taken_quads_ == 0) ++stats_.tiles;
+  std::uint32_t left = models::quads_of(token.coverage) & ~taken_quads_;
+  int packed = 0;
+  while (left != 0 && warp.quads < models::kWarpQuads) {
+    const int q = std::countr_zero(left);
+    left &= left - 1;
+    taken_quads_ |= 1u << q;
+    const auto lanes = static_cast<std::uint32_t>(token.coverage >> (4 * q)) & 0xfu;
+    warp.covered |= lanes << (4 * warp.quads);
+    warp.quad[static_cast<std::size_t>(warp.quads)] = {token.triangle, static_cast<std::uint16_t>(8 * token.tile_x + 2 * (q & 3)),
+                                                       static_cast<std::uint16_t>(8 * token.tile_y + 2 * (q >> 2))};
+    stats_.fragments += static_cast<std::uint64_t>(std::popcount(lanes));
+    ++warp.quads;
+    ++packed;
+  }
+  stats_.quads += static_cast<std::uint64_t>(packed);
+  if (left == 0) {
+    taken_quads_ = 0;
+    (void)coverage_in.pop(now);
+  }
+  last_input_ = now;
+  const int cycles = std::max(1, (packed + params_.quads_per_clk - 1) / params_.quads_per_clk);
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+}
+
+void WarpPacker::launch(Tick now) {
+  const std::uint64_t slot = (opened_ - 1) % warps_.size();
+  WarpSlot& warp = warps_[slot];
+  warp.alive = warp.covered;
+  ++stats_.warps;
+  if (warp.quads < models::kWarpQuads) ++stats_.partial_warps;
+  warp_out.push(now, {warp.draw, static_cast<std::uint32_t>(slot), partition_});
+  order_out.push(now, {TokenKind::kWork, warp.draw, static_cast<std::uint32_t>(slot), sync_});
+  open_ = false;
+  free_ = after(now, 1);
+  occupy(now, 1);
+}
+
+}  // namespace quadrille::hw

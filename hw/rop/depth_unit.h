@@ -1,0 +1,123 @@
+/// Depth unit of one screen partition: owns the partition's depth tiles and their cache, and tests fragments before (early) or after (late) shading.
+///
+/// In    coverage_in  covered samples of a triangle in a tile; boundaries      late_in  shaded warps to test, in order; flush
+/// Out   coverage_out what survives, marked early (tested and written) or late       late_out  tested warps; flushed      hiz_out  a tile's greatest depth fell
+/// Mem   depth tiles
+/// Time  `quads_per_clk` quads a cycle through either port, one port a cycle, the late one first; waits for the tile's lines
+///
+/// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of the tile in flight. Otherwise the tile goes
+/// late; it is still thinned early where a fragment that fails now would fail at its turn too: all depth writes of the pass so far can but lower depths, and
+/// the test is "less". Late tests arrive in API order, so every pixel sees its tests and writes in that order.
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/frame/stores.h"
+#include "hw/rop/surface_cache.h"
+
+#include <deque>
+
+namespace quadrille::hw {
+
+class DepthUnit final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads tested a cycle. [G: as the fine rasteriser]"};
+    Param<int> tiles_in_flight{*this, "tiles_in_flight", 16, "tile", {1, 4096}, "Tiles waiting for their depths. [G: latency to hide]"};
+    Param<int> cache_lines{*this, "cache_lines", 256, "line", {1, 1 << 20}, "Lines of 128 bytes in the depth cache; two hold a tile. [G: 32 KiB]"};
+    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the depth cache. [G]"};
+    Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
+  };
+  struct Stats : StatGroup {
+    Counter tiles{*this, "tiles", "tile", "Tiles taken in by the early port"};
+    Counter fragments_in{*this, "fragments_in", "fragment", "Fragments taken in by the early port"};
+    Counter early_tested{*this, "early_tested", "fragment", "Fragments tested (and written) before shading"};
+    Counter early_killed{*this, "early_killed", "fragment", "Fragments killed before shading"};
+    Counter fragments_out{*this, "fragments_out", "fragment", "Fragments handed to the warp packer"};
+    Counter untested{*this, "untested", "fragment", "Fragments of draws without depth test, passed on"};
+    Counter deferred{*this, "deferred", "fragment", "Fragments handed on to be tested late"};
+    Counter late_tested{*this, "late_tested", "fragment", "Fragments tested after shading"};
+    Counter late_killed{*this, "late_killed", "fragment", "Fragments killed after shading"};
+    Counter hiz_sent{*this, "hiz_sent", "update", "Hi-Z updates sent"};
+    Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
+  };
+  DepthUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
+            models::DeviceMemory::Owner owner, const TriangleStore& triangles, Store<WarpSlot>& warps, int partition, int partitions, int slices);
+
+  FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
+  FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
+  FifoOut<CoverageToken> coverage_out{*this, "coverage_out"};
+  FifoOut<LateToken> late_out{*this, "late_out", LinkRole::kReply};
+  FifoOut<HiZToken> hiz_out{*this, "hiz_out", LinkRole::kReply};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+  [[nodiscard]] MemoryPort& memory_port() { return port_; }
+
+ private:
+  struct EarlyEntry {
+    CoverageToken token;
+    int missing = 0;
+    Tick ready = 0;
+    bool acquired = false;
+  };
+  struct LateEntry {
+    LateToken token;
+    int missing = 0;
+    Tick ready = 0;
+    bool acquired = false;
+  };
+  enum class Flush : std::uint8_t { kNone, kDraining, kFenced };
+
+  // Early port.
+  [[nodiscard]] Wake early_take_wake() const;
+  [[nodiscard]] Wake early_test_wake() const;
+  void take_early(Tick now);
+  void test_early(Tick now);
+  [[nodiscard]] bool early_ready(Tick now) const;
+  [[nodiscard]] bool late_ready(Tick now) const;
+  /// Thins the token's coverage and decides whether it goes late. False, with nothing changed, when the cache has no place for what it would write.
+  [[nodiscard]] bool test_tile(const DrawState& draw, CoverageToken& token, Tick now);
+  // Late port.
+  [[nodiscard]] Wake late_take_wake() const;
+  [[nodiscard]] Wake late_test_wake() const;
+  void take_late(Tick now);
+  bool test_late(Tick now);
+  models::LaneMask test_quad(const DrawState& draw, const WarpSlot& warp, int quad, Tick now);
+  // Both.
+  void acquire_waiting(Tick now);
+  bool acquire_early(EarlyEntry& entry, std::uint32_t number);
+  bool acquire_late(LateEntry& entry, std::uint32_t number);
+  void take_answers(Tick now);
+  [[nodiscard]] Wake flush_wake() const;
+  void advance_flush(Tick now);
+  void begin_pass(std::uint32_t pass);
+  void note_direction(const DrawState& draw);
+  void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
+  [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y);
+  [[nodiscard]] std::size_t tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const;
+
+  const Params& params_;
+  const Frame& frame_;
+  models::DeviceMemory& device_;
+  const TriangleStore& triangles_;
+  Store<WarpSlot>& warps_;
+  const std::uint32_t partition_, partitions_;
+  Stats stats_;
+  MemoryPort port_;
+  SurfaceCache cache_;
+  std::uint32_t pass_ = 0;
+  std::deque<EarlyEntry> early_;
+  std::deque<LateEntry> late_;
+  std::uint32_t first_early_ = 0, first_late_ = 0;   ///< numbers of the fronts; waiters are named by number and port
+  bool stalled_ = false;                             ///< the cache had no place; a fill will make one
+  bool lowering_ = true;                             ///< no draw of the pass so far can raise a depth
+  std::vector<std::uint32_t> late_in_flight_;        ///< quads by tile
+  std::vector<float> known_max_;                     ///< by tile: what Hi-Z was told
+  Flush flush_ = Flush::kNone;
+  int fences_ = 0;
+  Tick free_ = 0, take_free_ = 0;
+};
+
+}  // namespace quadrille::hw

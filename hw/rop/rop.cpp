@@ -1,0 +1,302 @@
+#include "hw/rop/rop.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+namespace {
+
+constexpr std::uint32_t kFenceTag = 0xffffffffu;
+
+/// The part of a tile that one quad of a warp covers.
+struct QuadPlace {
+  std::uint32_t tile_x = 0, tile_y = 0;
+  int quad = 0;   ///< 0..15 within the tile
+};
+
+QuadPlace place_of(const WarpSlot::Quad& quad) {
+  constexpr std::uint32_t kSize = models::kTileSize;
+  return {quad.x / kSize, quad.y / kSize, static_cast<int>(4 * ((quad.y % kSize) / 2) + (quad.x % kSize) / 2)};
+}
+
+models::LaneMask lanes_of(const WarpSlot& warp, int q) { return (warp.alive >> (4 * q)) & 0xf; }
+
+/// Sectors of one tile that a warp touches, and those of them it overwrites whole.
+struct TileTouch {
+  std::uint32_t tile_x = 0, tile_y = 0;
+  std::array<std::uint8_t, 8> pixels{};   ///< live pixels by sector, of 8
+};
+
+/// Gathers a warp's live quads by tile; at most one entry a quad.
+int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads>& tiles) {
+  int count = 0;
+  for (int q = 0; q < warp.quads; ++q) {
+    const models::LaneMask lanes = lanes_of(warp, q);
+    if (lanes == 0) continue;
+    const QuadPlace place = place_of(warp.quad[static_cast<std::size_t>(q)]);
+    int i = 0;
+    while (i < count && (tiles[static_cast<std::size_t>(i)].tile_x != place.tile_x || tiles[static_cast<std::size_t>(i)].tile_y != place.tile_y)) ++i;
+    if (i == count) tiles[static_cast<std::size_t>(count++)] = {place.tile_x, place.tile_y, {}};
+    auto& pixels = tiles[static_cast<std::size_t>(i)].pixels[static_cast<std::size_t>(place.quad / 2)];
+    pixels = static_cast<std::uint8_t>(pixels + std::popcount(lanes));
+  }
+  return count;
+}
+
+}  // namespace
+
+Rop::Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
+         models::DeviceMemory::Owner owner, Store<WarpSlot>& warps, int partition, int partitions, int cores, int slices)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      frame_(frame),
+      device_(memory),
+      warps_(warps),
+      partition_(static_cast<std::uint32_t>(partition)),
+      partitions_(static_cast<std::uint32_t>(partitions)),
+      port_(*this, stats_, slices),
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner),
+      shaded_(static_cast<std::size_t>(warps.size()), false) {
+  for (int i = 0; i < cores; ++i) done_in.push_back(std::make_unique<FifoIn<FragmentDoneToken>>(*this, fmt::format("done_in_{}", i).c_str()));
+}
+
+std::string Rop::state_text() const { return fmt::format("{} entries in its reorder buffer, {} tested, {} with colours", entries_.size(), awaiting_, acquired_); }
+
+// --- When ---
+
+Wake Rop::test_wake() const {
+  if (tested_ >= entries_.size()) return Wake::never(order_in);
+  const Entry& entry = entries_[tested_];
+  if (entry.token.kind != TokenKind::kWork) return Wake(test_free_);
+  if (!shaded_[entry.token.slot]) return Wake::never(*done_in[0]);
+  return warps_[entry.token.slot].late ? Wake(test_free_).output(late_out) : Wake(test_free_);
+}
+
+Wake Rop::acquire_wake() const {
+  if (acquired_ >= awaiting_ || acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value())) return Wake(kNever);
+  // What follows a pass's begin must find its surface set up.
+  if (acquired_ > 0 && entries_[acquired_ - 1].token.kind == TokenKind::kPassBegin) return Wake(kNever);
+  return stalled_ ? Wake::never(*port_.response_in[0]) : Wake(acquire_free_);
+}
+
+Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
+  switch (entry.token.kind) {
+    case TokenKind::kWork:
+      wake.output(release_out);
+      return entry.token.sync != 0 ? wake.output(sync_out) : wake;
+    case TokenKind::kSync: return wake.output(sync_out);
+    case TokenKind::kDrawEnd: return wake.output(retire_out);
+    case TokenKind::kPassEnd: return wake.output(late_out);
+    case TokenKind::kPassBegin:
+    case TokenKind::kBatchEnd: return wake;
+  }
+  return wake;
+}
+
+Wake Rop::retire_wake() const {
+  if (flush_ == Flush::kFenced && fences_ == 0) return Wake(free_).output(retire_out);
+  if (flush_ != Flush::kNone) return Wake(kNever);
+  if (entries_.empty() || acquired_ == 0) return Wake(kNever);
+  const Entry& head = entries_.front();
+  if (head.missing > 0 || claim_stalled_) return Wake::never(*port_.response_in[0]);
+  return outputs_of(head, Wake(std::max(free_, head.ready)));
+}
+
+Wake Rop::next() const {
+  Wake wake = Wake::sooner(retire_wake(), acquire_wake());
+  wake = Wake::sooner(wake, test_wake());
+  wake = Wake::sooner(wake, Wake().input(late_in));
+  if (entries_.size() < warps_.size()) wake = Wake::sooner(wake, Wake().input(order_in));
+  for (const auto& in : done_in) wake = Wake::sooner(wake, Wake().input(*in));
+  wake = Wake::sooner(wake, port_.receive_wake());
+  if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
+  return wake;
+}
+
+// --- What ---
+
+void Rop::act(Tick now) {
+  take_inputs(now);
+  if (test_wake().at() <= now) test(now);
+  if (acquire_wake().at() <= now) acquire(now);
+  if (retire_wake().at() <= now) retire(now);
+  port_.send(now);
+  advance_flush(now);
+}
+
+void Rop::take_inputs(Tick now) {
+  while (const auto answer = port_.receive(now)) {
+    if (answer->tag == kFenceTag) {
+      --fences_;
+      continue;
+    }
+    stalled_ = false;
+    claim_stalled_ = false;
+    cache_.fill(*answer, [&](std::uint32_t number) {
+      Entry& entry = entries_[number - first_entry_];
+      --entry.missing;
+      entry.ready = std::max(entry.ready, now);
+    });
+  }
+  for (auto& in : done_in) {
+    while (in->ready_at(now)) shaded_[in->pop(now).slot] = true;
+  }
+  while (late_in.ready_at(now)) take_late(now);
+  while (entries_.size() < warps_.size() && order_in.ready_at(now)) entries_.push_back({order_in.pop(now)});
+}
+
+void Rop::take_late(Tick now) {
+  if (late_in.pop(now).kind == TokenKind::kPassEnd) {
+    cache_.flush(port_, true);
+    flush_ = Flush::kDraining;
+    return;
+  }
+  entries_[awaiting_].stage = Stage::kTested;
+  while (awaiting_ < tested_ && entries_[awaiting_].stage == Stage::kTested) ++awaiting_;
+}
+
+void Rop::test(Tick now) {
+  Entry& entry = entries_[tested_++];
+  entry.stage = Stage::kTested;
+  if (entry.token.kind == TokenKind::kWork) {
+    const WarpSlot& warp = warps_[entry.token.slot];
+    entry.shaded = std::popcount(warp.alive);
+    if (warp.late) {
+      entry.stage = Stage::kTesting;
+      late_out.push(now, {TokenKind::kWork, entry.token.slot});
+    }
+  }
+  while (awaiting_ < tested_ && entries_[awaiting_].stage == Stage::kTested) ++awaiting_;
+  test_free_ = after(now, 1);
+}
+
+void Rop::acquire(Tick now) {
+  Entry& entry = entries_[acquired_];
+  if (entry.token.kind == TokenKind::kWork && !acquire_colors(entry, first_entry_ + static_cast<std::uint32_t>(acquired_))) {
+    stalled_ = true;
+    return;
+  }
+  entry.stage = Stage::kAcquired;
+  entry.ready = std::max(entry.ready, now);
+  ++acquired_;
+  acquire_free_ = after(now, 1);
+}
+
+bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
+  const WarpSlot& warp = warps_[entry.token.slot];
+  const bool blends = models::reads_destination(frame_.draw(warp.draw).blend);
+  std::array<TileTouch, models::kWarpQuads> tiles;
+  const int count = touched_tiles(warp, tiles);
+  for (int i = 0; i < count; ++i) {
+    const TileTouch& tile = tiles[static_cast<std::size_t>(i)];
+    std::uint8_t read = 0, write = 0;
+    for (std::size_t s = 0; s < 8; ++s) {
+      if (tile.pixels[s] == 0) continue;
+      // A sector of 8 pixels that is not written whole is completed from memory.
+      auto& mask = blends || tile.pixels[s] < 8 ? read : write;
+      mask = static_cast<std::uint8_t>(mask | 1u << s);
+    }
+    if (!cache_.acquire(tile.tile_x, tile.tile_y, read, write, number, entry.missing, port_)) return false;
+  }
+  return true;
+}
+
+void Rop::retire(Tick now) {
+  if (flush_ == Flush::kFenced) {
+    retire_out.push(now, {TokenKind::kPassEnd, pass_});
+    flush_ = Flush::kNone;
+    return;
+  }
+  const Entry entry = entries_.front();
+  int cycles = 1;
+  if (entry.token.kind == TokenKind::kWork) {
+    const WarpSlot& warp = warps_[entry.token.slot];
+    if (!claim_colors(warp)) {  // a line was evicted since, and there is no place for it before the next fill
+      claim_stalled_ = true;
+      return;
+    }
+    const int live = std::popcount(warp.alive);
+    ++stats_.warps;
+    stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(warp.covered));
+    stats_.discarded += static_cast<std::uint64_t>(std::popcount(warp.covered) - entry.shaded);
+    stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
+    stats_.written += static_cast<std::uint64_t>(live);
+    cycles = write_colors(warp);
+    shaded_[entry.token.slot] = false;
+    release_out.push(now, {entry.token.slot, 0});
+    if (entry.token.sync != 0) sync_out.push(now, {0, entry.token.sync});
+  } else {
+    retire_boundary(now, entry);
+  }
+  entries_.pop_front();
+  ++first_entry_;
+  --tested_;
+  --awaiting_;
+  --acquired_;
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+}
+
+void Rop::retire_boundary(Tick now, const Entry& entry) {
+  switch (entry.token.kind) {
+    case TokenKind::kPassBegin: {
+      pass_ = entry.token.index;
+      const PassState& pass = frame_.passes[pass_];
+      cache_.clear(pass.color, pass.clear_color, partition_, partitions_);
+      return;
+    }
+    case TokenKind::kDrawEnd:
+      ++stats_.draws;
+      retire_out.push(now, {TokenKind::kDrawEnd, entry.token.index});
+      return;
+    case TokenKind::kPassEnd:
+      flush_ = Flush::kDepth;
+      late_out.push(now, {TokenKind::kPassEnd, 0});
+      return;
+    case TokenKind::kSync: sync_out.push(now, {0, entry.token.sync}); return;
+    case TokenKind::kWork:
+    case TokenKind::kBatchEnd: return;
+  }
+}
+
+bool Rop::claim_colors(const WarpSlot& warp) {
+  std::array<TileTouch, models::kWarpQuads> tiles;
+  const int count = touched_tiles(warp, tiles);
+  for (int i = 0; i < count; ++i) {
+    const TileTouch& tile = tiles[static_cast<std::size_t>(i)];
+    std::uint8_t sectors = 0;
+    for (std::size_t s = 0; s < 8; ++s) sectors = static_cast<std::uint8_t>(sectors | (tile.pixels[s] != 0 ? 1u << s : 0u));
+    if (!cache_.write(tile.tile_x, tile.tile_y, sectors, port_)) return false;
+  }
+  return true;
+}
+
+int Rop::write_colors(const WarpSlot& warp) {
+  const DrawState& draw = frame_.draw(warp.draw);
+  const PassState& pass = frame_.passes[pass_];
+  int quads = 0;
+  for (int q = 0; q < warp.quads; ++q) {
+    const models::LaneMask lanes = lanes_of(warp, q);
+    if (lanes == 0) continue;
+    ++quads;
+    const QuadPlace place = place_of(warp.quad[static_cast<std::size_t>(q)]);
+    float rgba[4][4];
+    for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[c].begin() + 4 * q, 4, rgba[c]);
+    auto* const tile = reinterpret_cast<std::uint32_t*>(device_.write(pass.color.tile_address(place.tile_x, place.tile_y), models::kTileBytes).data());
+    models::blend_quad(draw.blend, pass.color_format, rgba, tile + 4 * place.quad, lanes);
+  }
+  const bool blends = models::reads_destination(draw.blend);
+  if (blends) stats_.blended += static_cast<std::uint64_t>(std::popcount(warp.alive));
+  return std::max(1, (quads * (blends ? 2 : 1) + params_.quads_per_clk - 1) / params_.quads_per_clk);
+}
+
+void Rop::advance_flush(Tick now) {
+  if (flush_ != Flush::kDraining || !port_.queue_empty()) return;
+  port_.fence(kFenceTag);
+  fences_ = port_.slices();
+  flush_ = Flush::kFenced;
+  free_ = after(now, 1);
+}
+
+}  // namespace quadrille::hw

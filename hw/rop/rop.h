@@ -1,0 +1,101 @@
+/// ROP of one screen partition: retires fragment warps in order, has late ones tested, blends, and writes colours through its cache.
+///
+/// In    order_in   what retires next: warps and boundaries      done_in[core]  a warp was shaded     late_in  a warp was tested late; depth is flushed
+/// Out   late_out   test this warp; flush      release_out  a warp slot is free      sync_out  triangles before a sequence number are retired
+///       retire_out draw retired; pass flushed
+/// Mem   colour tiles
+/// Time  `quads_per_clk` quads a cycle (half of that when blending reads the old colour); up to `warps_in_flight` warps wait for their lines
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/frame/stores.h"
+#include "hw/rop/surface_cache.h"
+
+#include <deque>
+
+namespace quadrille::hw {
+
+class Rop final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads written a cycle. [G: as the fine rasteriser]"};
+    Param<int> warps_in_flight{*this, "warps_in_flight", 16, "warp", {1, 4096}, "Warps waiting for their colours. [G: latency to hide]"};
+    Param<int> cache_lines{*this, "cache_lines", 256, "line", {1, 1 << 20}, "Lines of 128 bytes in the colour cache; two hold a tile. [G: 32 KiB]"};
+    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the colour cache. [G]"};
+    Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
+  };
+  struct Stats : StatGroup {
+    Counter warps{*this, "warps", "warp", "Warps retired"};
+    Counter fragments_in{*this, "fragments_in", "fragment", "Live fragments of those warps when they were packed"};
+    Counter discarded{*this, "discarded", "fragment", "Fragments that their program discarded"};
+    Counter late_killed{*this, "late_killed", "fragment", "Fragments that failed the late depth test"};
+    Counter written{*this, "written", "fragment", "Fragments written to the target"};
+    Counter blended{*this, "blended", "fragment", "Fragments of those that were combined with the old colour"};
+    Counter draws{*this, "draws", "draw", "Draws retired"};
+  };
+  Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
+      models::DeviceMemory::Owner owner, Store<WarpSlot>& warps, int partition, int partitions, int cores, int slices);
+
+  FifoIn<OrderToken> order_in{*this, "order_in"};
+  std::vector<std::unique_ptr<FifoIn<FragmentDoneToken>>> done_in;
+  FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
+  FifoOut<LateToken> late_out{*this, "late_out", LinkRole::kReply};
+  FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
+  FifoOut<ReleaseToken> sync_out{*this, "sync_out", LinkRole::kReply};
+  FifoOut<RetireToken> retire_out{*this, "retire_out", LinkRole::kReply};
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+  [[nodiscard]] MemoryPort& memory_port() { return port_; }
+
+ private:
+  /// Stages of an entry of the reorder buffer, in order.
+  enum class Stage : std::uint8_t { kShading, kTesting, kTested, kAcquired };
+  struct Entry {
+    OrderToken token;
+    Stage stage = Stage::kShading;
+    int missing = 0;
+    Tick ready = 0;
+    int shaded = 0;      ///< live lanes after discard
+  };
+  enum class Flush : std::uint8_t { kNone, kDepth, kDraining, kFenced };
+
+  [[nodiscard]] Wake test_wake() const;
+  [[nodiscard]] Wake acquire_wake() const;
+  [[nodiscard]] Wake retire_wake() const;
+  [[nodiscard]] Wake outputs_of(const Entry& entry, Wake wake) const;
+  void take_inputs(Tick now);
+  void take_late(Tick now);
+  void test(Tick now);
+  void acquire(Tick now);
+  bool acquire_colors(Entry& entry, std::uint32_t number);
+  void retire(Tick now);
+  void retire_boundary(Tick now, const Entry& entry);
+  bool claim_colors(const WarpSlot& warp);
+  int write_colors(const WarpSlot& warp);
+  void advance_flush(Tick now);
+
+  const Params& params_;
+  const Frame& frame_;
+  models::DeviceMemory& device_;
+  Store<WarpSlot>& warps_;
+  const std::uint32_t partition_, partitions_;
+  Stats stats_;
+  MemoryPort port_;
+  SurfaceCache cache_;
+  std::uint32_t pass_ = 0;
+  std::deque<Entry> entries_;
+  std::uint32_t first_entry_ = 0;          ///< number of entries_.front()
+  std::size_t tested_ = 0, acquired_ = 0;  ///< entries from the front that are past these stages (tested: test sent or not needed)
+  std::size_t awaiting_ = 0;               ///< entries from the front whose late answer is in or not needed
+  std::vector<bool> shaded_;               ///< by warp slot
+  bool stalled_ = false;                   ///< no place for the colours of the next entry; a fill will make one
+  bool claim_stalled_ = false;             ///< the same for the head, whose lines were evicted
+  Flush flush_ = Flush::kNone;
+  int fences_ = 0;
+  Tick free_ = 0, test_free_ = 0, acquire_free_ = 0;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,82 @@
+#include "hw/rop/surface_cache.h"
+
+#include "hw/raster/fine_raster.h"
+
+#include <algorithm>
+
+namespace quadrille::hw {
+
+SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory, models::DeviceMemory::Owner owner)
+    : cache_(stats, lines, ways, misses), memory_(memory), stats_(stats) {
+  cache_.own_dirty_lines(memory, owner);
+}
+
+void SurfaceCache::clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition, std::uint32_t partitions) {
+  surface_ = surface;
+  cleared_.assign(std::size_t{surface.tiles_x} * surface.tiles_y, false);
+  for (std::uint32_t y = 0; y < surface.tiles_y; ++y) {
+    for (std::uint32_t x = 0; x < surface.tiles_x; ++x) {
+      if (partition_of(x, y, partitions) != partition) continue;
+      auto* const pixels = reinterpret_cast<std::uint32_t*>(memory_.write(surface.tile_address(x, y), models::kTileBytes).data());
+      std::fill_n(pixels, models::kTilePixels, value);
+      cleared_[std::size_t{y} * surface.tiles_x + x] = true;
+      ++stats_.cleared_tiles;
+    }
+  }
+}
+
+bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, MemoryPort& port) {
+  const std::uint32_t line = line_of(tile_x, tile_y);
+  if (!cache_.claim(line, 0xf, port)) return false;
+  cache_.mark_dirty(line, 0xf);
+  if (!cache_.claim(line + 1, 0xf, port)) return false;
+  cache_.mark_dirty(line + 1, 0xf);
+  cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] = false;
+  ++stats_.clear_hits;
+  return true;
+}
+
+bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing,
+                           MemoryPort& port) {
+  if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, port)) return false;
+  for (int half = 0; half < 2; ++half) {
+    const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
+    const auto wanted = static_cast<std::uint8_t>((read >> (4 * half)) & 0xf);
+    const auto written = static_cast<std::uint8_t>((write >> (4 * half)) & 0xf & ~wanted);
+    if (written != 0 && !cache_.claim(line, written, port)) return false;
+    if (wanted == 0) continue;
+    switch (cache_.access(line, wanted, waiter, port)) {
+      case L1Cache::Result::kHit: break;
+      case L1Cache::Result::kPending: ++missing; break;
+      case L1Cache::Result::kStall: return false;
+    }
+  }
+  return true;
+}
+
+bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t sectors, MemoryPort& port) {
+  for (int half = 0; half < 2; ++half) {
+    const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
+    const auto written = static_cast<std::uint8_t>((sectors >> (4 * half)) & 0xf);
+    if (written == 0) continue;
+    if (!cache_.holds(line, written) && !cache_.claim(line, written, port)) return false;
+    cache_.mark_dirty(line, written);
+  }
+  return true;
+}
+
+void SurfaceCache::flush(MemoryPort& port, bool write_cleared) {
+  cache_.flush(port);
+  for (std::size_t i = 0; i < cleared_.size(); ++i) {
+    if (!cleared_[i]) continue;
+    if (write_cleared) {
+      const auto line = static_cast<std::uint32_t>((surface_.base + i * models::kTileBytes) / models::kLineBytes);
+      port.write(line, 0xf);
+      port.write(line + 1, 0xf);
+      ++stats_.clear_writes;
+    }
+    cleared_[i] = false;
+  }
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,62 @@
+/// What the depth and the colour unit share: a first-level cache over a surface of 8x8 tiles, with fast clear.
+///
+/// A clear writes no memory: it marks tiles, and the first access to a marked tile finds all of it present. What is still marked at a flush is written then
+/// (colour) or stays a mark (depth, which nobody reads after the pass). A tile is two lines of 128 bytes, eight sectors of two quads each.
+#pragma once
+
+#include "hw/memory/l1_cache.h"
+#include "models/memory/surface.h"
+
+#include <vector>
+
+namespace quadrille::hw {
+
+/// Sectors (bits 0..7 of a tile) that a set of quads (bits 0..15) lies in.
+[[nodiscard]] constexpr std::uint8_t sectors_of_quads(std::uint32_t quads) {
+  std::uint32_t pairs = (quads | quads >> 1) & 0x5555u;
+  pairs = (pairs | pairs >> 1) & 0x3333u;
+  pairs = (pairs | pairs >> 2) & 0x0f0fu;
+  return static_cast<std::uint8_t>((pairs | pairs >> 4) & 0xffu);
+}
+
+struct SurfaceCacheStats {
+  explicit SurfaceCacheStats(StatGroup& group)
+      : cleared_tiles{group, "fast_cleared_tiles", "tile", "Tiles marked as cleared instead of being written"},
+        clear_hits{group, "clear_hits", "tile", "First accesses to a marked tile, which fetch nothing"},
+        clear_writes{group, "clear_writes", "tile", "Marked tiles written out by a flush"} {}
+  Counter cleared_tiles, clear_hits, clear_writes;
+};
+
+class SurfaceCache {
+ public:
+  SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory, models::DeviceMemory::Owner owner);
+
+  /// Begins a pass on `surface`: fills this partition's tiles with `value` and marks them.
+  void clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition, std::uint32_t partitions);
+  /// Asks for sectors of a tile: those in `read` with their contents, those in `write` because they are overwritten whole.
+  /// Adds what is not there yet to `missing` and tells `waiter` of each. False when there is no place now: try again after a fill; asking twice is harmless.
+  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing, MemoryPort& port);
+  /// Sectors of a tile were written. Takes back a line that was evicted since it was acquired; false when there is no place for it now.
+  bool write(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t sectors, MemoryPort& port);
+  template <class F>
+  void fill(const MemoryResponse& response, F&& ready) {
+    cache_.fill(response, std::forward<F>(ready));
+  }
+  /// Queues everything dirty for writing; with `write_cleared` the tiles still marked too.
+  void flush(MemoryPort& port, bool write_cleared);
+  [[nodiscard]] bool idle() const { return cache_.idle(); }
+
+ private:
+  [[nodiscard]] std::uint32_t line_of(std::uint32_t tile_x, std::uint32_t tile_y) const {
+    return static_cast<std::uint32_t>(surface_.tile_address(tile_x, tile_y) / models::kLineBytes);
+  }
+  bool materialize(std::uint32_t tile_x, std::uint32_t tile_y, MemoryPort& port);
+
+  L1Cache cache_;
+  models::DeviceMemory& memory_;
+  SurfaceCacheStats stats_;
+  models::SurfaceLayout surface_;
+  std::vector<bool> cleared_;   ///< by tile
+};
+
+}  // namespace quadrille::hw

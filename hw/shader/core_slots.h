@@ -1,0 +1,19 @@
+/// The warps that live on a core. Shared with the core's texture unit: a slot's requests and results belong to whoever holds its token.
+#pragma once
+
+#include "hw/frame/stores.h"
+
+namespace quadrille::hw {
+
+struct CoreSlot {
+  models::Warp warp;
+  models::FragmentInputs fragment;
+  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs;   ///< fragment stage: colour, depth
+  /// Filtered texels of `warp.textures`, by request.
+  std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseTextures> texels;
+  std::uint32_t draw = 0, store_slot = 0;
+  std::uint16_t partition = 0;
+  bool vertex_stage = false;
+};
+
+}  // namespace quadrille::hw

@@ -1,0 +1,222 @@
+#include "hw/shader/shader_core.h"
+
+#include "models/raster/interpolate.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+namespace {
+
+int hungriest_fragment_program(const Frame& frame) {
+  int rows = 0;
+  for (const DrawState& draw : frame.draws) rows = std::max(rows, draw.fragment_program->num_regs);
+  return rows;
+}
+
+}  // namespace
+
+ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots,
+                       Store<BatchSlot>& batches, std::vector<Store<WarpSlot>*> warps, const TriangleStore& triangles, bool textured)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      frame_(frame),
+      slots_(slots),
+      batches_(batches),
+      warps_(std::move(warps)),
+      triangles_(triangles),
+      fragment_rows_(hungriest_fragment_program(frame)),
+      free_rows_(params.register_rows),
+      simd_free_(static_cast<std::size_t>(params.simds.value()), 0) {
+  for (std::size_t p = 0; p < warps_.size(); ++p) {
+    fragment_out.push_back(
+        std::make_unique<FifoOut<FragmentDoneToken>>(*this, fmt::format("fragment_out_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
+  }
+  if (textured) {
+    texture_out = std::make_unique<FifoOut<TextureToken>>(*this, "texture_out");
+    texture_in = std::make_unique<FifoIn<TextureToken>>(*this, "texture_in", LinkRole::kReply);
+  }
+  for (std::uint64_t i = slots.size(); i-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(i));
+}
+
+std::string ShaderCore::state_text() const {
+  return fmt::format("{} of {} warp slots, {} of {} register rows in use, {} warps ready", slots_.size() - free_slots_.size(), slots_.size(),
+                     params_.register_rows - free_rows_, params_.register_rows.value(), ready_.size());
+}
+
+bool ShaderCore::fits(const models::Program& program, int kept_rows, int kept_slots) const {
+  return static_cast<int>(free_slots_.size()) > kept_slots && free_rows_ >= program.num_regs + kept_rows;
+}
+
+Wake ShaderCore::accept_wake(const FifoIn<WarpToken>& in, bool vertex) const {
+  Wake wake = Wake(accept_free_).input(in);
+  if (in.ready() == kNever) return wake;
+  const DrawState& draw = frame_.draw(in.front().draw);
+  // What a vertex warp leaves free is enough for one fragment warp, so fragments always drain.
+  const bool room = vertex ? fits(*draw.vertex_program, fragment_rows_, 1) : fits(*draw.fragment_program, 0, 0);
+  return room ? wake : Wake(kNever);
+}
+
+Wake ShaderCore::issue_wake() const {
+  if (ready_.empty()) return Wake(kNever);
+  return Wake(std::max(ready_.front().at, *std::min_element(simd_free_.begin(), simd_free_.end())));
+}
+
+Wake ShaderCore::completion_wake(const Completion& done) const {
+  Wake wake(done.at);
+  if (done.end == models::ClauseEnd::kTextures) return wake.output(*texture_out);
+  const CoreSlot& slot = slots_[done.slot];
+  return slot.vertex_stage ? wake.output(vertex_out) : wake.output(*fragment_out[slot.partition]);
+}
+
+const ShaderCore::Completion* ShaderCore::next_completion(Wake& wake) const {
+  const Completion* first = nullptr;
+  wake = Wake(kNever);
+  for (const Completion& c : completions_) {
+    const Wake w = completion_wake(c);
+    if (w.at() < wake.at()) {
+      wake = w;
+      first = &c;
+    }
+  }
+  return first;
+}
+
+Wake ShaderCore::next() const {
+  Wake wake;
+  (void)next_completion(wake);
+  wake = Wake::sooner(wake, issue_wake());
+  wake = Wake::sooner(wake, accept_wake(vertex_in, true));
+  wake = Wake::sooner(wake, accept_wake(fragment_in, false));
+  if (texture_in) wake = Wake::sooner(wake, Wake().input(*texture_in));
+  if (wake.at() == kNever && wake.cause() == nullptr) {
+    return ready_.empty() && texture_in && free_slots_.size() < slots_.size() ? Wake::never(*texture_in) : Wake::never(fragment_in);
+  }
+  return wake;
+}
+
+void ShaderCore::act(Tick now) {
+  if (texture_in && texture_in->ready_at(now)) take_texels(now);
+  Wake wake;
+  if (const Completion* done = next_completion(wake); done != nullptr && wake.at() <= now) {
+    const Completion taken = *done;
+    completions_.erase(completions_.begin() + (done - completions_.data()));
+    complete(now, taken);
+  }
+  if (accept_wake(fragment_in, false).at() <= now) accept(now, fragment_in, false);
+  else if (accept_wake(vertex_in, true).at() <= now) accept(now, vertex_in, true);
+  if (issue_wake().at() <= now) issue(now);
+}
+
+void ShaderCore::take_texels(Tick now) {
+  const std::uint32_t index = texture_in->pop(now).slot;
+  CoreSlot& slot = slots_[index];
+  for (int i = 0; i < slot.warp.texture_count; ++i) {
+    models::write_texture_result(slot.warp, slot.warp.textures[static_cast<std::size_t>(i)], slot.texels[static_cast<std::size_t>(i)]);
+  }
+  ready_.push_back({now, index});
+}
+
+void ShaderCore::accept(Tick now, FifoIn<WarpToken>& in, bool vertex) {
+  const WarpToken token = in.pop(now);
+  const std::uint32_t index = free_slots_.back();
+  free_slots_.pop_back();
+  CoreSlot& slot = slots_[index];
+  slot.draw = token.draw;
+  slot.store_slot = token.slot;
+  slot.partition = token.partition;
+  slot.vertex_stage = vertex;
+  if (vertex) launch_vertex(slot);
+  else launch_fragment(slot);
+  free_rows_ -= slot.warp.program->num_regs;
+  ready_.push_back({after(now, 1), index});
+  accept_free_ = after(now, 1);
+}
+
+void ShaderCore::launch_vertex(CoreSlot& slot) {
+  const DrawState& draw = frame_.draw(slot.draw);
+  BatchSlot& batch = batches_[slot.store_slot];
+  const models::LaneMask lanes = batch.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch.lanes) - 1;
+  slot.warp.vertex = &batch.inputs;
+  slot.warp.fragment = nullptr;
+  slot.warp.outputs = batch.outputs.data();
+  slot.warp.texture_sizes = draw.vertex_texture_sizes.data();
+  slot.warp.launch(*draw.vertex_program, draw.vertex_constants.data(), lanes);
+  ++stats_.vertex_warps;
+  stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
+}
+
+void ShaderCore::launch_fragment(CoreSlot& slot) {
+  const DrawState& draw = frame_.draw(slot.draw);
+  const WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
+  fill_fragment_inputs(work, triangles_, slot.fragment);
+  const models::LaneMask lanes = work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
+  slot.warp.vertex = nullptr;
+  slot.warp.fragment = &slot.fragment;
+  slot.warp.outputs = slot.outputs.data();
+  slot.warp.texture_sizes = draw.fragment_texture_sizes.data();
+  slot.warp.launch(*draw.fragment_program, draw.fragment_constants.data(), lanes);
+  const auto live = static_cast<std::uint64_t>(std::popcount(work.covered));
+  ++stats_.fragment_warps;
+  stats_.fragments += live;
+  stats_.helper_lanes += 4 * static_cast<std::uint64_t>(work.quads) - live;
+}
+
+void ShaderCore::issue(Tick now) {
+  const std::uint32_t index = ready_.front().slot;
+  ready_.pop_front();
+  CoreSlot& slot = slots_[index];
+  const models::ClauseResult result = models::run_clause(slot.warp);
+  const models::ClauseCost& cost = result.cost;
+  const std::uint32_t textures = static_cast<std::uint32_t>(result.end == models::ClauseEnd::kTextures ? slot.warp.texture_count : 0);
+  const std::uint32_t plain = cost.alu + cost.interp + cost.constant + cost.exported;
+  const std::int64_t per_alu = (models::kWarpLanes + params_.simd_lanes - 1) / params_.simd_lanes;
+  const std::int64_t per_sfu = (models::kWarpLanes + params_.sfu_lanes - 1) / params_.sfu_lanes;
+  const std::int64_t cycles = std::max<std::int64_t>(1, plain * per_alu + cost.sfu * per_sfu + cost.control + textures * per_alu);
+  auto simd = std::min_element(simd_free_.begin(), simd_free_.end());
+  *simd = after(now, cycles);
+  occupy(now, cycles);
+  completions_.push_back({after(now, cycles + params_.alu_clk), index, result.end});
+  ++stats_.clauses;
+  stats_.instructions += cost.instructions() + textures;
+  stats_.alu += plain;
+  stats_.sfu += cost.sfu;
+  stats_.texture += textures;
+  stats_.lane_operations += cost.lane_ops;
+  stats_.simd_busy += static_cast<std::uint64_t>(cycles);
+}
+
+void ShaderCore::complete(Tick now, const Completion& done) {
+  const CoreSlot& slot = slots_[done.slot];
+  if (done.end == models::ClauseEnd::kTextures) texture_out->push(now, {done.slot, slot.draw, slot.vertex_stage});
+  else retire(now, done.slot);
+}
+
+void ShaderCore::retire(Tick now, std::uint32_t index) {
+  CoreSlot& slot = slots_[index];
+  if (slot.vertex_stage) {
+    vertex_out.push(now, {slot.store_slot});
+  } else {
+    WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
+    work.alive = work.covered & ~slot.warp.killed;
+    for (std::size_t c = 0; c < 4; ++c) work.color[c] = std::bit_cast<models::LaneFloats>(slot.outputs[c]);
+    work.depth = slot.warp.program->writes_depth ? std::bit_cast<models::LaneFloats>(slot.outputs[models::kDepthOutput]) : slot.fragment.z;
+    fragment_out[slot.partition]->push(now, {slot.store_slot});
+  }
+  free_rows_ += slot.warp.program->num_regs;
+  free_slots_.push_back(index);
+}
+
+void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, models::FragmentInputs& inputs) {
+  for (int q = 0; q < models::kWarpQuads; ++q) {
+    const WarpSlot::Quad& quad = work.quad[static_cast<std::size_t>(std::min(q, work.quads - 1))];
+    const TriangleSlot& triangle = triangles[quad.triangle];
+    inputs.varyings[static_cast<std::size_t>(q)] = triangle.varyings.data();
+    if (q >= work.quads) continue;
+    models::interpolate_quad(triangle.setup, quad.x, quad.y, q, inputs);
+    for (std::size_t i = 0; i < 4; ++i) inputs.primitive_id[4 * static_cast<std::size_t>(q) + i] = triangle.primitive;
+  }
+}
+
+}  // namespace quadrille::hw

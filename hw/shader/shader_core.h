@@ -1,0 +1,103 @@
+/// Unified shader core: runs vertex and fragment warps of 32 lanes, a clause at a time, on several SIMD units.
+///
+/// In    vertex_in, fragment_in  warps to run          texture_in  the texels of a warp have been filtered
+/// Out   vertex_out              batch shaded          fragment_out[p]  fragment warp shaded    texture_out  a clause's texture requests
+/// Time  a clause holds its SIMD for 32 / simd_lanes cycles an instruction (32 / sfu_lanes for special functions) and its results are there `alu_clk`
+///       cycles later; ready warps take turns, the longest ready first. A warp needs a slot and its registers; a slot and registers for one fragment warp
+///       are never given to vertex warps.
+/// Not modelled: instruction and constant caches (docs/deviations.md#D4), register bank conflicts (#D5)
+#pragma once
+
+#include "hw/base/param.h"
+#include "hw/base/unit.h"
+#include "hw/frame/tokens.h"
+#include "hw/shader/core_slots.h"
+
+#include <deque>
+
+namespace quadrille::hw {
+
+class ShaderCore final : public Unit {
+ public:
+  struct Params : ParamGroup {
+    Param<int> simds{*this, "simds", 4, "simd", {1, 64}, "SIMD units, each running one clause at a time. [G: 4 schedulers a core]"};
+    Param<int> simd_lanes{*this, "simd_lanes", 8, "lane", {1, 32}, "Lanes a SIMD computes a cycle; a warp instruction takes 32 / lanes cycles. [G]"};
+    Param<int> sfu_lanes{*this, "sfu_lanes", 2, "lane", {1, 32}, "Special-function lanes of a SIMD. [G: a quarter of the ALU]"};
+    Param<int> alu_clk{*this, "alu_clk", 4, "clk", {0, 1 << 16}, "Latency from the last issue of a clause to its results. [G]"};
+    Param<int> warp_slots{*this, "warp_slots", 32, "warp", {2, 1024}, "Warps resident on the core. [G]"};
+    Param<int> register_rows{*this, "register_rows", 1024, "row", {16, 1 << 20}, "Register rows of 32 words: 1024 are 128 KiB. [G]"};
+  };
+  struct Stats : StatGroup {
+    Counter vertex_warps{*this, "vertex_warps", "warp", "Vertex warps run"};
+    Counter fragment_warps{*this, "fragment_warps", "warp", "Fragment warps run"};
+    Counter vertices{*this, "vertices", "vertex", "Vertices shaded (live lanes)"};
+    Counter fragments{*this, "fragments", "fragment", "Fragments shaded (live lanes)"};
+    Counter helper_lanes{*this, "helper_lanes", "lane", "Lanes that ran only for derivatives"};
+    Counter clauses{*this, "clauses", "clause", "Clauses issued"};
+    Counter instructions{*this, "instructions", "instruction", "Warp instructions issued"};
+    Counter alu{*this, "alu_instructions", "instruction", "Warp instructions of the ALU, interpolation, constant and export classes"};
+    Counter sfu{*this, "sfu_instructions", "instruction", "Warp instructions of the special-function class"};
+    Counter texture{*this, "texture_instructions", "instruction", "Texture requests sent"};
+    Counter lane_operations{*this, "lane_operations", "lane", "Lanes executed, summed over instructions"};
+    Counter simd_busy{*this, "simd_busy", "clk", "Cycles that SIMD units were held, summed over the units"};
+  };
+  ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots, Store<BatchSlot>& batches,
+             std::vector<Store<WarpSlot>*> warps, const TriangleStore& triangles, bool textured);
+
+  static constexpr int kVertexStream = 1, kFragmentStream = 2;
+  FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
+  FifoIn<WarpToken> fragment_in{*this, "fragment_in", LinkRole::kFlow, kFragmentStream};
+  FifoOut<VertexDoneToken> vertex_out{*this, "vertex_out", LinkRole::kFlow, kVertexStream};
+  std::vector<std::unique_ptr<FifoOut<FragmentDoneToken>>> fragment_out;
+  std::unique_ptr<FifoOut<TextureToken>> texture_out;   ///< absent when no program of the frame reads a texture
+  std::unique_ptr<FifoIn<TextureToken>> texture_in;
+
+  [[nodiscard]] Wake next() const override;
+  void act(Tick now) override;
+  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
+
+ private:
+  /// A clause whose results are there at `at`; then its warp asks for texels or is done.
+  struct Completion {
+    Tick at = 0;
+    std::uint32_t slot = 0;
+    models::ClauseEnd end = models::ClauseEnd::kProgramEnd;
+  };
+  struct Ready {
+    Tick at = 0;
+    std::uint32_t slot = 0;
+  };
+  [[nodiscard]] bool fits(const models::Program& program, int kept_rows, int kept_slots) const;
+  [[nodiscard]] Wake accept_wake(const FifoIn<WarpToken>& in, bool vertex) const;
+  [[nodiscard]] Wake issue_wake() const;
+  [[nodiscard]] Wake completion_wake(const Completion& done) const;
+  [[nodiscard]] const Completion* next_completion(Wake& wake) const;
+  void accept(Tick now, FifoIn<WarpToken>& in, bool vertex);
+  void launch_vertex(CoreSlot& slot);
+  void launch_fragment(CoreSlot& slot);
+  void issue(Tick now);
+  void complete(Tick now, const Completion& done);
+  void retire(Tick now, std::uint32_t slot);
+  void take_texels(Tick now);
+
+  const Params& params_;
+  const Frame& frame_;
+  Store<CoreSlot>& slots_;
+  Store<BatchSlot>& batches_;
+  std::vector<Store<WarpSlot>*> warps_;
+  const TriangleStore& triangles_;
+  const int fragment_rows_;               ///< registers of the hungriest fragment program
+  Stats stats_;
+  std::vector<std::uint32_t> free_slots_;
+  int free_rows_;
+  std::vector<Tick> simd_free_;
+  std::deque<Ready> ready_;
+  std::vector<Completion> completions_;
+  Tick accept_free_ = 0;
+};
+
+/// The inputs of a fragment warp: planes of its quads' triangles at their pixels. Quads that are not used repeat the last one's varyings.
+void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, models::FragmentInputs& inputs);
+
+}  // namespace quadrille::hw

@@ -1,0 +1,114 @@
+#include "hw/texture/texture_unit.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+TextureUnit::TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
+                         Store<CoreSlot>& slots, int slices)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      frame_(frame),
+      device_(memory),
+      slots_(slots),
+      port_(*this, stats_, slices),
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {}
+
+std::string TextureUnit::state_text() const { return fmt::format("{} request groups, {} look-ups left", groups_.size(), lines_.size() - next_line_); }
+
+Wake TextureUnit::address_wake() const {
+  if (next_line_ < lines_.size()) return stalled_ ? Wake::never(*port_.response_in[0]) : Wake(address_free_);
+  if (groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value())) return Wake::never(response_out);
+  return Wake(address_free_).input(request_in);
+}
+
+Wake TextureUnit::answer_wake() const {
+  if (groups_.empty()) return Wake::never(request_in);
+  const Group& head = groups_.front();
+  const bool still_looking_up = groups_.size() == 1 && next_line_ < lines_.size();
+  if (head.missing > 0 || still_looking_up) return Wake::never(*port_.response_in[0]);
+  return Wake(after(std::max(head.ready, filter_free_), head.filter_cycles)).output(response_out);
+}
+
+Wake TextureUnit::next() const {
+  Wake wake = Wake::sooner(address_wake(), answer_wake());
+  wake = Wake::sooner(wake, port_.receive_wake());
+  if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
+  return wake;
+}
+
+void TextureUnit::act(Tick now) {
+  while (const auto answer = port_.receive(now)) {
+    stalled_ = false;
+    cache_.fill(*answer, [&](std::uint32_t number) {
+      Group& group = groups_[number - first_group_];
+      --group.missing;
+      group.ready = std::max(group.ready, now);
+    });
+  }
+  if (answer_wake().at() <= now) {
+    response_out.push(now, groups_.front().token);
+    filter_free_ = now;
+    groups_.pop_front();
+    ++first_group_;
+    ++stats_.groups_answered;
+  }
+  if (address_wake().at() <= now) {
+    if (next_line_ < lines_.size()) look_up(now);
+    else take(now);
+  }
+  port_.send(now);
+}
+
+void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles) {
+  const DrawState& draw = frame_.draw(token.draw);
+  const std::vector<TextureState>& textures = token.vertex_stage ? draw.vertex_textures : draw.fragment_textures;
+  std::uint32_t quads = 0;
+  for (int i = 0; i < slot.warp.texture_count; ++i) {
+    const models::TextureRequest& request = slot.warp.textures[static_cast<std::size_t>(i)];
+    const TextureState& texture = textures[request.binding];
+    models::plan_texture(texture.view, texture.sampler, request, frame_.precision, plan_);
+    // Values are the same whenever they are computed: textures do not change within a pass. Only presence in the cache takes time.
+    models::filter_texture(plan_, device_, slot.texels[static_cast<std::size_t>(i)]);
+    lines_.insert(lines_.end(), plan_.lines.begin(), plan_.lines.begin() + plan_.line_count);
+    quads += plan_.bilinear_quads;
+    ++stats_.requests;
+    stats_.lanes += static_cast<std::uint64_t>(std::popcount(request.active));
+    stats_.bilinear_quads += plan_.bilinear_quads;
+    stats_.texels += plan_.texels;
+  }
+  const auto per = [](std::size_t work, int rate) { return static_cast<std::int64_t>((work + static_cast<std::size_t>(rate) - 1) / static_cast<std::size_t>(rate)); };
+  address_cycles = std::max({std::int64_t{1}, per(quads, params_.address_quads_per_clk), per(lines_.size(), params_.tags_per_clk)});
+  group.filter_cycles = std::max<std::int64_t>(1, per(quads, params_.filter_quads_per_clk));
+}
+
+void TextureUnit::take(Tick now) {
+  const TextureToken token = request_in.pop(now);
+  lines_.clear();
+  next_line_ = 0;
+  Group group{token};
+  std::int64_t address_cycles = 0;
+  plan(slots_[token.slot], token, group, address_cycles);
+  ++stats_.groups;
+  address_free_ = after(now, address_cycles);
+  group.ready = after(now, address_cycles + params_.filter_clk);
+  occupy(now, address_cycles);
+  groups_.push_back(group);
+  look_up(now);
+}
+
+void TextureUnit::look_up(Tick now) {
+  const auto number = first_group_ + static_cast<std::uint32_t>(groups_.size()) - 1;
+  for (; next_line_ < lines_.size(); ++next_line_) {
+    const models::TextureLine& line = lines_[next_line_];
+    switch (cache_.access(line.line, static_cast<std::uint8_t>(line.sectors), number, port_)) {
+      case L1Cache::Result::kHit: break;
+      case L1Cache::Result::kPending: ++groups_.back().missing; break;
+      case L1Cache::Result::kStall: stalled_ = true; return;
+    }
+  }
+  groups_.back().ready = std::max(groups_.back().ready, now);
+}
+
+}  // namespace quadrille::hw

@@ -1,0 +1,76 @@
+/// Tags of a set-associative cache with sectored lines and LRU replacement: which lines it holds, in what state. Data stay in
+/// `DeviceMemory`.
+///
+/// A line (128 bytes) has four sectors of 32 bytes, each absent, pending (asked for), valid, or valid and dirty. A line with a pending
+/// sector is never a victim. The set is a multiplicative hash of the line number, so any number of sets works and power-of-two strides
+/// spread: set = ((line * 2654435769 mod 2^32) * sets) >> 32. [P: Knuth, The Art of Computer Programming vol. 3, 6.4, Fibonacci hashing]
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace quadrille::models {
+
+using SectorMask = std::uint8_t;  ///< bits 0..3
+
+class TagArray {
+ public:
+  static constexpr int kNone = -1;
+
+  struct Victim {
+    bool valid = false;  ///< a line was evicted
+    std::uint32_t line = 0;
+    SectorMask dirty = 0;  ///< sectors that must be written back
+  };
+  struct Allocation {
+    int slot = kNone;  ///< kNone: every way of the set is pending; try again later
+    Victim victim;
+  };
+  struct Line {
+    std::uint32_t line = 0;
+    SectorMask valid = 0, dirty = 0, pending = 0;
+  };
+
+  /// `lines` in all, `ways` a set; `lines` is a multiple of `ways`.
+  TagArray(std::uint32_t lines, std::uint32_t ways);
+
+  /// Slot that holds the line, or kNone. Does not change the order of replacement.
+  [[nodiscard]] int find(std::uint32_t line) const;
+  /// The same, and makes it the most recently used.
+  int lookup(std::uint32_t line);
+  /// Takes a slot for a line that is not held: a free way or the least recently used one without a pending sector. All its sectors are
+  /// absent.
+  Allocation allocate(std::uint32_t line);
+
+  [[nodiscard]] const Line& at(int slot) const { return lines_[static_cast<std::size_t>(slot)]; }
+  void mark_pending(int slot, SectorMask sectors) { state(slot).pending |= sectors; }
+  /// Pending sectors arrive.
+  void fill(int slot, SectorMask sectors);
+  /// Sectors are written here: they become valid and dirty.
+  void mark_dirty(int slot, SectorMask sectors);
+  /// Dirty sectors were written back.
+  void clean(int slot) { state(slot).dirty = 0; }
+  /// Forgets all lines. None may be dirty or pending.
+  void invalidate_all();
+
+  [[nodiscard]] std::uint32_t sets() const { return sets_; }
+  [[nodiscard]] std::uint32_t ways() const { return ways_; }
+  /// Slots run from 0 to slots() - 1; a slot that holds no line has valid = dirty = pending = 0. For flushing.
+  [[nodiscard]] int slots() const { return static_cast<int>(lines_.size()); }
+  /// Lines with a dirty sector.
+  [[nodiscard]] std::uint32_t dirty_count() const;
+
+ private:
+  [[nodiscard]] Line& state(int slot) { return lines_[static_cast<std::size_t>(slot)]; }
+  [[nodiscard]] std::uint32_t set_of(std::uint32_t line) const {
+    return static_cast<std::uint32_t>((std::uint64_t{line * 2654435769u} * sets_) >> 32);
+  }
+
+  std::uint32_t sets_, ways_, stride_;  // stride: ways rounded up to a vector of tags
+  std::vector<std::uint32_t> tags_;     // sets x stride; kFree where no line is held
+  std::vector<std::uint64_t> used_;     // sets x ways: time of last use
+  std::vector<Line> lines_;             // sets x ways
+  std::uint64_t clock_ = 0;
+};
+
+}  // namespace quadrille::models

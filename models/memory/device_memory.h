@@ -1,0 +1,71 @@
+/// Simulated device memory: one flat array of bytes at real addresses, and who holds which line dirty.
+///
+/// Caches keep tags and state, never data. So that a missed flush is seen all the same, a cache that holds a line dirty is noted here as
+/// its owner, and whoever reads that line from below it breaks an invariant.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+namespace quadrille::models {
+
+inline constexpr std::uint32_t kLineBytes = 128;   ///< cache line
+inline constexpr std::uint32_t kSectorBytes = 32;  ///< smallest transfer; four a line
+inline constexpr std::uint32_t kLineSectors = 4;
+
+class DeviceMemory {
+ public:
+  using Owner = std::uint8_t;
+  static constexpr Owner kClean = 0;
+
+  /// `limit` in bytes: allocating beyond it is a user's error.
+  explicit DeviceMemory(std::uint64_t limit = std::uint64_t{4} << 30) : limit_(limit) {}
+
+  /// Address of `bytes` new zeroed bytes, aligned to `alignment` (a power of two; at least a line, so that no two objects share one).
+  /// Throws `UserError` when the device's memory does not hold them. Spans and pointers taken earlier become invalid.
+  std::uint64_t allocate(std::uint64_t bytes, std::uint64_t alignment = kLineBytes);
+  [[nodiscard]] std::uint64_t size() const { return bytes_.size(); }
+  /// Makes room on the host for `bytes` in all, so that later allocations move nothing. Optional.
+  void reserve(std::uint64_t bytes) {
+    bytes_.reserve(bytes < limit_ ? bytes : limit_);
+    owner_.reserve((bytes < limit_ ? bytes : limit_) / kLineBytes);
+  }
+
+  /// Views of [address, address + bytes); outside of what was allocated is an internal error.
+  [[nodiscard]] std::span<std::byte> write(std::uint64_t address, std::uint64_t bytes);
+  [[nodiscard]] std::span<const std::byte> read(std::uint64_t address, std::uint64_t bytes) const;
+  /// One value at an address that needs no alignment.
+  template <class T>
+  [[nodiscard]] T load(std::uint64_t address) const {
+    T value;
+    std::memcpy(&value, read(address, sizeof(T)).data(), sizeof(T));
+    return value;
+  }
+  template <class T>
+  void store(std::uint64_t address, const T& value) {
+    std::memcpy(write(address, sizeof(T)).data(), &value, sizeof(T));
+  }
+  /// First byte; for inner loops that checked their range.
+  [[nodiscard]] const std::byte* data() const { return bytes_.data(); }
+  [[nodiscard]] std::byte* data() { return bytes_.data(); }
+
+  /// `line` = address / kLineBytes. A line has at most one owner: a second one is an internal error.
+  void mark_dirty(std::uint64_t line, Owner owner);
+  void mark_clean(std::uint64_t line);
+  [[nodiscard]] Owner dirty_owner(std::uint64_t line) const;
+  /// Aborts when a line of the range is dirty in a cache other than the reader's own.
+  void check_readable(std::uint64_t address, std::uint64_t bytes, Owner reader) const;
+  /// Lines held dirty somewhere; 0 after all caches were flushed.
+  [[nodiscard]] std::uint64_t dirty_lines() const { return dirty_lines_; }
+
+ private:
+  std::uint64_t limit_;
+  std::vector<std::byte> bytes_;
+  std::vector<Owner> owner_;
+  std::uint64_t dirty_lines_ = 0;
+};
+
+}  // namespace quadrille::models

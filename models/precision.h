@@ -1,0 +1,13 @@
+/// Precisions of the fixed-function units that a machine may choose; all other widths are fixed by the numeric contract
+/// (docs/architecture.md).
+#pragma once
+
+namespace quadrille::models {
+
+struct Precision {
+  int subpixel_bits = 8;  ///< fractional bits of window positions, 4..12
+  int subtexel_bits = 8;  ///< fractional bits of a texel coordinate: weights of the bilinear filter, 1..8
+  int lod_bits = 8;       ///< fractional bits of the level of detail: weight between mip levels, 1..8
+};
+
+}  // namespace quadrille::models

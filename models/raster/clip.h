@@ -1,0 +1,54 @@
+/// Clipping of a triangle in homogeneous clip space. [VK1.3 #vertexpostproc-clipping]
+///
+/// Order of decisions: a vertex that is not finite discards the triangle; a triangle wholly outside one plane of the view volume is
+/// rejected; then it is cut by w >= kMinClipW and, unless depth is clamped, by 0 <= z <= w. The sides of the view volume do not cut (the
+/// scissor does that later); only a triangle with a vertex beyond the guard band is cut there, so that window positions fit their grid. A
+/// cut is computed from the inside vertex to the outside one, in double, from that edge's two end points alone: two triangles that share
+/// the edge get the same point.
+#pragma once
+
+#include "models/raster/viewport.h"
+
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace quadrille::models {
+
+/// Smallest w that is kept. [G: far below any near plane in use, far above the least normal float, so that 1 / w stays accurate]
+inline constexpr float kMinClipW = 1e-6f;
+/// Three vertices, and one more for each of seven planes.
+inline constexpr int kMaxClipVertices = 10;
+
+struct ClipVertex {
+  glm::vec4 position{0};
+  float b1 = 0, b2 = 0;  ///< weights of the original triangle's second and third vertex (the first has 1 - b1 - b2)
+};
+
+/// A convex polygon; its triangles are the fan (0, i, i + 1), i = 1 .. count - 2.
+struct ClippedPolygon {
+  std::array<ClipVertex, kMaxClipVertices> vertices;
+  int count = 0;
+};
+
+enum class ClipOutcome : std::uint8_t {
+  kInside,    ///< not cut: the polygon is the triangle
+  kClipped,   ///< cut; the polygon has 3 or more vertices
+  kRejected,  ///< nothing is left
+  kNotFinite  ///< discarded: a coordinate is NaN or infinite
+};
+
+/// What a draw's clipper needs: made once a draw.
+struct ClipState {
+  bool depth_clamp = false;
+  double guard = 0;                                             ///< pixels: |window x|, |window y| kept
+  double scale_x = 0, offset_x = 0, scale_y = 0, offset_y = 0;  ///< viewport: window = ndc * scale + offset
+};
+/// The guard band is 15/16 of the window grid: the rest absorbs fp32 rounding of the viewport transform.
+[[nodiscard]] ClipState make_clip_state(const Viewport& viewport, bool depth_clamp, int subpixel_bits);
+
+/// Clips one triangle. `out` is written when the outcome is kInside or kClipped.
+[[nodiscard]] ClipOutcome clip_triangle(const std::array<glm::vec4, 3>& position, const ClipState& state, ClippedPolygon& out);
+
+}  // namespace quadrille::models

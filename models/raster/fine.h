@@ -1,0 +1,14 @@
+/// Fine rasterisation: the pixels of one tile whose centre a triangle covers.
+#pragma once
+
+#include "models/raster/triangle_setup.h"
+
+#include <cstdint>
+
+namespace quadrille::models {
+
+/// Coverage of the tile (8 * tile_x, 8 * tile_y) by the triangle, within its bounds; quad-major bits (tile.h). Exact; top-left rule on
+/// shared edges. [VK1.3 #primsrast-polygons-basic]
+[[nodiscard]] std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_y);
+
+}  // namespace quadrille::models

@@ -1,0 +1,45 @@
+/// What is bound when a draw is executed, and shaders with their uniforms and textures in place. Internal to the reference.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "models/reference/shader_program.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::models::reference {
+
+struct VertexBuffer {
+  traces::Index buffer = traces::kNone;
+  std::uint64_t offset = 0;
+};
+
+struct DrawState {
+  const traces::CommandStream* stream = nullptr;
+  const traces::RenderTarget* target = nullptr;
+  const traces::Pipeline* pipeline = nullptr;
+  std::map<std::uint32_t, traces::Index> descriptor_sets;
+  std::map<std::uint32_t, VertexBuffer> vertex_buffers;
+  traces::BindIndexBuffer index_buffer;
+  std::vector<std::byte> push_constants = std::vector<std::byte>(traces::kMaxPushConstantBytes);
+  traces::SetViewport viewport;
+  traces::SetScissor scissor;
+  const traces::Draw* draw = nullptr;
+  std::uint32_t number = 0;  ///< of the draw in the stream, from 0
+};
+
+/// A shader ready to run: `cells` hold constants and uniforms. A thread runs on a copy (`lanes`).
+struct BoundShader {
+  const ShaderProgram* program = nullptr;
+  std::vector<Cell> cells;
+  std::vector<TextureView> textures;
+
+  [[nodiscard]] Lanes lanes() const;
+};
+
+/// Copies uniforms and push constants into a shader's cells and looks up its textures. Bytes beyond a range or buffer read as zero. `precision`: null in mode
+/// *ideal*. Throws `UserError` if a descriptor the shader uses is not bound.
+[[nodiscard]] BoundShader bind_shader(const ShaderProgram& program, const DrawState& state, const Precision* precision);
+
+}  // namespace quadrille::models::reference

@@ -1,0 +1,235 @@
+/// The loop over triangles and quads of a band of rows, one quad at a time.
+#include "models/reference/fragments.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "models/reference/output.h"
+#include "models/reference/parallel.h"
+
+namespace quadrille::models::reference {
+namespace {
+
+constexpr int kBandRows = 16;
+
+/// A fragment shader input and the vertex shader output that feeds it (number among the outputs; none: reads zero).
+struct Link {
+  Port input;
+  std::size_t output = 0;
+  bool fed = false;
+};
+
+std::vector<Link> link_varyings(const ShaderProgram& vertex, const ShaderProgram& fragment) {
+  std::vector<Link> links;
+  for (const Port& input : fragment.inputs) {
+    Link link{input, 0, false};
+    for (std::size_t i = 0; i < vertex.outputs.size(); ++i) {
+      if (vertex.outputs[i].location == input.location && vertex.outputs[i].component == input.component) link.output = i, link.fed = true;
+    }
+    links.push_back(link);
+  }
+  return links;
+}
+
+/// Four fragments: which are covered, and where they are in the original triangle.
+struct Quad {
+  int x = 0, y = 0;
+  unsigned covered = 0;
+  std::array<double, kLanes> z{}, inv_w{};
+  std::array<std::array<double, 2>, kLanes> perspective{}, linear{};  ///< (b1, b2)
+};
+
+/// Draws all triangles within one band after another, in order.
+class BandWorker {
+ public:
+  BandWorker(const FragmentWork& work, Result& result) : work_(work), state_(*work.state), result_(result) {
+    if (work.fragment_shader == nullptr) return;
+    program_ = work.fragment_shader->program;
+    lanes_ = work.fragment_shader->lanes();
+    links_ = link_varyings(*work.vertex_shader->program, *program_);
+    for (const Port& port : program_->outputs) {
+      if (port.location == 0 && port.component < 4) color_slots_.at(port.component) = port.slot;
+    }
+  }
+
+  void operator()(std::size_t band) {
+    const int first = static_cast<int>(band) * kBandRows, last = first + kBandRows - 1;
+    for (const WindowTriangle& t : work_.triangles) {
+      if (t.last_y < first || t.first_y > last) continue;
+      for (int y = std::max(first, t.first_y & ~1); y <= std::min(last, t.last_y); y += 2) {
+        for (int x = t.first_x & ~1; x <= t.last_x; x += 2) draw_quad(t, x, y);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool in_bounds(int x, int y) const {
+    const PixelBounds& b = work_.bounds;
+    return x >= b.first_x && x <= b.last_x && y >= b.first_y && y <= b.last_y;
+  }
+
+  void draw_quad(const WindowTriangle& t, int x, int y) {
+    Quad quad;
+    quad.x = x, quad.y = y;
+    std::array<SamplePlace, kLanes> places;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int px = x + (lane & 1), py = y + (lane >> 1);
+      places[static_cast<std::size_t>(lane)] = locate_sample(t, px, py);
+      if (places[static_cast<std::size_t>(lane)].covered && in_bounds(px, py)) quad.covered |= 1u << lane;
+    }
+    if (quad.covered == 0) return;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) place_fragment(t, places[lane].weights, quad, lane);
+    shade_and_write(t, quad);
+  }
+
+  /// [VK1.3 #primsrast-polygons-basic: interpolation of data across polygons]
+  static void place_fragment(const WindowTriangle& t, const std::array<double, 3>& weights, Quad& quad, std::size_t lane) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      quad.z[lane] += weights[i] * t.z[i];
+      quad.inv_w[lane] += weights[i] * t.inv_w[i];
+    }
+    for (std::size_t b = 0; b < 2; ++b) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        quad.perspective[lane][b] += weights[i] * t.inv_w[i] * t.barycentric[i][b];
+        quad.linear[lane][b] += weights[i] * t.screen_barycentric[i][b];
+      }
+      quad.perspective[lane][b] /= quad.inv_w[lane];
+    }
+  }
+
+  void shade_and_write(const WindowTriangle& t, const Quad& quad) {
+    unsigned alive = quad.covered;
+    std::array<double, kLanes> depth{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) depth[lane] = final_depth(quad.z[lane]);
+    const bool shader_depth = program_ != nullptr && program_->builtins.frag_depth != kNoSlot;
+    const bool late = shader_depth || (program_ != nullptr && program_->discards);
+    if (!late) alive = test_depth(quad, depth, alive);
+    if (alive == 0) return;
+    if (program_ != nullptr) {
+      shade(t, quad);
+      if (shader_depth) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane)
+          depth[lane] = final_depth(lanes_.at(program_->builtins.frag_depth)->f(static_cast<int>(lane)));
+      }
+      note_discards(quad);
+      alive &= ~lanes_.killed;
+    }
+    if (late) alive = test_depth(quad, depth, alive);
+    write(t, quad, depth, alive);
+  }
+
+  [[nodiscard]] double final_depth(double z) const {
+    const double low = state_.viewport.min_depth, high = state_.viewport.max_depth;
+    if (state_.pipeline->depth_clamp) z = std::clamp(z, std::min(low, high), std::max(low, high));
+    return work_.float_depth ? static_cast<double>(static_cast<float>(z)) : z;
+  }
+
+  [[nodiscard]] bool has_depth() const { return state_.pipeline->depth.test && state_.target->depth != traces::Format::kUndefined; }
+
+  [[nodiscard]] std::size_t pixel(const Quad& quad, std::size_t lane) const {
+    return (static_cast<std::size_t>(quad.y) + lane / 2) * result_.width + static_cast<std::size_t>(quad.x) + lane % 2;
+  }
+
+  /// Lanes that pass; notes how near the decisions were.
+  unsigned test_depth(const Quad& quad, const std::array<double, kLanes>& depth, unsigned alive) {
+    if (!has_depth()) return alive;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if ((alive >> lane & 1u) == 0) continue;
+      const std::size_t at = pixel(quad, lane);
+      result_.depth_margin[at] = std::min(result_.depth_margin[at], static_cast<float>(float_ulps(depth[lane], result_.depth[at])));
+      if (!depth_passes(state_.pipeline->depth.compare, depth[lane], result_.depth[at])) alive &= ~(1u << lane);
+    }
+    return alive;
+  }
+
+  void note_discards(const Quad& quad) {
+    if (!program_->discards) return;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if ((quad.covered >> lane & 1u) == 0) continue;
+      const std::size_t at = pixel(quad, lane);
+      result_.alpha_margin[at] = std::min(result_.alpha_margin[at], static_cast<float>(lanes_.discard_margin[lane]));
+    }
+  }
+
+  void shade(const WindowTriangle& t, const Quad& quad) {
+    for (const Link& link : links_) feed(link, t, quad);
+    feed_builtins(t, quad);
+    lanes_.killed = 0;
+    lanes_.discard_margin.fill(std::numeric_limits<double>::infinity());
+    execute(*program_, lanes_, kAllLanes);
+  }
+
+  void feed(const Link& link, const WindowTriangle& t, const Quad& quad) {
+    Cell& cell = *lanes_.at(link.input.slot);
+    const auto bits = [&](std::size_t corner) {
+      return link.fed ? work_.vertices->outputs[t.vertices[corner] * work_.vertices->ports + link.output] : std::uint64_t{0};
+    };
+    if (link.input.kind != ScalarKind::kFloat || link.input.interpolation == Interpolation::kFlat) {
+      cell.bits.fill(bits(0));  // the provoking vertex is the first
+      return;
+    }
+    const double a0 = std::bit_cast<double>(bits(0)), a1 = std::bit_cast<double>(bits(1)), a2 = std::bit_cast<double>(bits(2));
+    const auto& place = link.input.interpolation == Interpolation::kLinear ? quad.linear : quad.perspective;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      cell.set_f(static_cast<int>(lane), a0 + place[lane][0] * (a1 - a0) + place[lane][1] * (a2 - a0));
+  }
+
+  void feed_builtins(const WindowTriangle& t, const Quad& quad) {
+    const BuiltinSlots& b = program_->builtins;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      if (b.frag_coord != kNoSlot) {
+        Cell* coord = lanes_.at(b.frag_coord);
+        coord[0].set_f(lane, quad.x + (lane & 1) + 0.5);
+        coord[1].set_f(lane, quad.y + (lane >> 1) + 0.5);
+        coord[2].set_f(lane, quad.z[l]);
+        coord[3].set_f(lane, quad.inv_w[l]);
+      }
+      if (b.front_facing != kNoSlot) lanes_.at(b.front_facing)->set_u(lane, t.front ? 1u : 0u);
+      if (b.primitive_id != kNoSlot) lanes_.at(b.primitive_id)->set_u(lane, t.primitive);
+    }
+  }
+
+  void write(const WindowTriangle& t, const Quad& quad, const std::array<double, kLanes>& depth, unsigned alive) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if ((alive >> lane & 1u) == 0) continue;
+      const std::size_t at = pixel(quad, lane);
+      if (has_depth() && state_.pipeline->depth.write) result_.depth[at] = depth[lane];
+      if (program_ != nullptr && state_.pipeline->blend.write_mask != 0) write_color(t, at, static_cast<int>(lane));
+    }
+  }
+
+  void write_color(const WindowTriangle& t, std::size_t at, int lane) {
+    std::array<double, 4> source{};
+    for (std::size_t c = 0; c < 4; ++c) source[c] = color_slots_[c] == kNoSlot ? 0.0 : lanes_.at(color_slots_[c])->f(lane);
+    StoredColor before{result_.color[at], {}};
+    std::copy_n(result_.color_linear.begin() + static_cast<std::ptrdiff_t>(4 * at), 4, before.linear.begin());
+    const StoredColor after = blend(state_.pipeline->blend, state_.target->color, source, before);
+    result_.color[at] = after.rgba;
+    std::copy_n(after.linear.begin(), 4, result_.color_linear.begin() + static_cast<std::ptrdiff_t>(4 * at));
+    result_.triangle_id[at] = std::uint64_t{state_.number} << 32 | t.primitive;
+  }
+
+  const FragmentWork& work_;
+  const DrawState& state_;
+  Result& result_;
+  const ShaderProgram* program_ = nullptr;
+  Lanes lanes_;
+  std::vector<Link> links_;
+  std::array<Slot, 4> color_slots_{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
+};
+
+}  // namespace
+
+void draw_fragments(const FragmentWork& work, Result& result) {
+  if (work.triangles.empty()) return;
+  int first = std::numeric_limits<int>::max(), last = 0;
+  for (const WindowTriangle& t : work.triangles) first = std::min(first, t.first_y), last = std::max(last, t.last_y);
+  const int first_band = first / kBandRows, bands = last / kBandRows - first_band + 1;
+  run_tasks(static_cast<std::size_t>(bands), work.threads, [&] {
+    return
+        [worker = BandWorker(work, result), first_band](std::size_t band) mutable { worker(band + static_cast<std::size_t>(first_band)); };
+  });
+}
+
+}  // namespace quadrille::models::reference

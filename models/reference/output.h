@@ -1,0 +1,31 @@
+/// Depth test, blending and conversion to the target's format, for one sample. Internal to the reference.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "traces/command_stream.h"
+
+namespace quadrille::models::reference {
+
+/// incoming `op` stored; a NaN passes only kNotEqual and kAlways. [VK1.3 #fragops-depth]
+[[nodiscard]] bool depth_passes(traces::CompareOp op, double incoming, double stored);
+
+/// |a - b| in units of the last place of the float32 nearest to the larger of the two.
+[[nodiscard]] double float_ulps(double a, double b);
+
+/// A pixel as stored (red in bits 0..7) and the linear values it was rounded from.
+struct StoredColor {
+  std::uint32_t rgba = 0;
+  std::array<double, 4> linear{};
+};
+
+/// Blends a shader's output into a stored pixel: source and destination in linear values, clamped to 0..1 (NaN: 0), as is the result, which is then encoded and
+/// rounded to nearest, ties to even. Channels that the mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
+[[nodiscard]] StoredColor blend(const traces::BlendState& state, traces::Format format, const std::array<double, 4>& source,
+                                const StoredColor& before);
+
+/// The stored form of linear values.
+[[nodiscard]] StoredColor store_color(traces::Format format, const std::array<double, 4>& linear);
+
+}  // namespace quadrille::models::reference

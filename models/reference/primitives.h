@@ -1,0 +1,29 @@
+/// From shaded vertices to the triangles to draw: clipping, projection and culling, or the machine's own window triangles. Internal to the reference.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "models/reference/coverage.h"
+#include "models/reference/reference.h"
+#include "models/reference/vertices.h"
+
+namespace quadrille::models::reference {
+
+/// Smallest clip w kept in mode *ideal*. [G: far below any near plane in use]
+inline constexpr double kMinW = 1e-6;
+
+/// The pixels that a draw may touch: target, scissor, viewport's region of interest. Last is inclusive; empty if last < first.
+struct PixelBounds {
+  int first_x = 0, first_y = 0, last_x = -1, last_y = -1;
+};
+
+/// Mode *ideal*: clips to 0 <= z <= w (unless depth is clamped) and w >= `kMinW`, projects, culls. [VK1.3 #vertexpostproc-clipping]
+[[nodiscard]] std::vector<WindowTriangle> clip_and_project(const DrawState& state, const ShadedVertices& vertices, std::uint32_t instance,
+                                                           const PixelBounds& bounds);
+
+/// Mode *given*: the machine's triangles of one instance, with the original primitives they come from. Throws `UserError` for one that the draw does not have.
+[[nodiscard]] std::vector<WindowTriangle> take_given(const DrawState& state, const ShadedVertices& vertices,
+                                                     std::span<const GivenTriangle> given, int subpixel_bits, const PixelBounds& bounds);
+
+}  // namespace quadrille::models::reference

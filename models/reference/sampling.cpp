@@ -1,0 +1,117 @@
+/// Texture sampling in doubles.
+#include "models/reference/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quadrille::models::reference {
+namespace {
+
+constexpr double kMaxBias = 16.0;
+
+std::array<double, 256> srgb_table() {
+  std::array<double, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = srgb_to_linear(static_cast<double>(i) / 255.0);
+  return table;
+}
+
+/// Rounds to `bits` fractional bits where a precision is given.
+double quantised(double a, const Precision* precision, int Precision::*bits) {
+  if (precision == nullptr) return a;
+  const double scale = std::ldexp(1.0, precision->*bits);
+  return std::floor(a * scale + 0.5) / scale;
+}
+
+/// The texel that an index outside [0, size) stands for. [VK1.3 #textures-wrapping-operation]
+std::uint32_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
+  const auto modulo = [](std::int64_t a, std::int64_t b) { return ((a % b) + b) % b; };
+  std::int64_t result = 0;
+  switch (wrap) {
+    case traces::Wrap::kRepeat: result = modulo(i, size); break;
+    case traces::Wrap::kMirroredRepeat: {
+      const std::int64_t n = modulo(i, 2 * size) - size;
+      result = size - 1 - (n >= 0 ? n : -(1 + n));
+      break;
+    }
+    case traces::Wrap::kClampToEdge: result = std::clamp<std::int64_t>(i, 0, size - 1); break;
+  }
+  return static_cast<std::uint32_t>(result);
+}
+
+/// floor as an integer; coordinates beyond any texture are kept within what the arithmetic holds.
+std::int64_t floor_index(double a) { return static_cast<std::int64_t>(std::floor(std::clamp(a, -1e15, 1e15))); }
+
+Texel mix(const Texel& a, const Texel& b, double t) {
+  Texel r{};
+  for (std::size_t c = 0; c < 4; ++c) r[c] = a[c] * (1.0 - t) + b[c] * t;
+  return r;
+}
+
+Texel sample_level(const TextureView& texture, std::uint32_t level, double u, double v, traces::Filter filter) {
+  const auto extent = level_extent(*texture.image, level);
+  const auto texel = [&](std::int64_t i, std::int64_t j) {
+    return fetch_texel(*texture.image, level, wrapped(i, extent[0], texture.sampler->wrap_u),
+                       wrapped(j, extent[1], texture.sampler->wrap_v));
+  };
+  const double x = u * extent[0], y = v * extent[1];
+  if (filter == traces::Filter::kNearest) return texel(floor_index(x), floor_index(y));
+  const double left = quantised(x - 0.5, texture.precision, &Precision::subtexel_bits);
+  const double top = quantised(y - 0.5, texture.precision, &Precision::subtexel_bits);
+  const std::int64_t i = floor_index(left), j = floor_index(top);
+  const double a = left - std::floor(left), b = top - std::floor(top);
+  return mix(mix(texel(i, j), texel(i + 1, j), a), mix(texel(i, j + 1), texel(i + 1, j + 1), a), b);
+}
+
+}  // namespace
+
+double finite_or_zero(double a) { return std::isfinite(a) ? a : 0.0; }
+
+double srgb_to_linear(double encoded) { return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4); }
+
+double linear_to_srgb(double linear) { return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055; }
+
+std::array<std::uint32_t, 2> level_extent(const traces::Image& image, std::uint32_t level) {
+  const std::uint32_t l = level < image.levels ? level : 0;
+  return {std::max(1u, image.width >> l), std::max(1u, image.height >> l)};
+}
+
+Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y) {
+  static const std::array<double, 256> kSrgb = srgb_table();
+  std::size_t first = 0;
+  for (std::uint32_t l = 0; l < level; ++l) first += std::size_t{level_extent(image, l)[0]} * level_extent(image, l)[1];
+  const std::size_t at = 4 * (first + std::size_t{y} * level_extent(image, level)[0] + x);
+  Texel texel{};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto byte = std::to_integer<std::size_t>(image.texels[at + c]);
+    texel[c] = image.format == traces::Format::kR8G8B8A8Srgb && c < 3 ? kSrgb[byte] : static_cast<double>(byte) / 255.0;
+  }
+  return texel;
+}
+
+double base_lod(const TextureView& texture, std::array<double, 2> d_dx, std::array<double, 2> d_dy) {
+  const double w = texture.image->width, h = texture.image->height;
+  return std::log2(std::max(std::hypot(d_dx[0] * w, d_dx[1] * h), std::hypot(d_dy[0] * w, d_dy[1] * h)));
+}
+
+Texel sample_texture(const TextureView& texture, double u, double v, double base, double bias) {
+  const traces::Sampler& s = *texture.sampler;
+  u = finite_or_zero(u), v = finite_or_zero(v);
+  const double biased = base + std::clamp(static_cast<double>(s.lod_bias) + finite_or_zero(bias), -kMaxBias, kMaxBias);
+  const double clamped =
+      std::isnan(biased) ? 0.0 : std::max(static_cast<double>(s.min_lod), std::min(biased, static_cast<double>(s.max_lod)));
+  // Kept within what has an effect before rounding: infinities do not round.
+  const double lambda =
+      quantised(std::clamp(clamped, -1.0, static_cast<double>(texture.image->levels)), texture.precision, &Precision::lod_bits);
+  const traces::Filter filter = lambda <= 0 ? s.mag : s.min;
+  const double top = static_cast<double>(texture.image->levels - 1);
+  const double level = std::clamp(lambda, 0.0, top);
+  if (s.mip == traces::Filter::kNearest) {
+    return sample_level(texture, static_cast<std::uint32_t>(std::clamp(std::ceil(level + 0.5) - 1.0, 0.0, top)), u, v, filter);
+  }
+  const auto finer = static_cast<std::uint32_t>(level);
+  const double weight = level - std::floor(level);
+  const Texel a = sample_level(texture, finer, u, v, filter);
+  return weight == 0 ? a : mix(a, sample_level(texture, finer + 1, u, v, filter), weight);
+}
+
+}  // namespace quadrille::models::reference

@@ -1,0 +1,42 @@
+/// Texture sampling by Vulkan's equations, in doubles. [VK1.3 #textures-texel-coordinate-systems]
+#pragma once
+
+#include <array>
+
+#include "models/reference/reference.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::models::reference {
+
+using Texel = std::array<double, 4>;  ///< linear red, green, blue, alpha
+
+/// An image with the sampler it is read through. Borrowed from the stream. `precision` null: no quantisation.
+struct TextureView {
+  const traces::Image* image = nullptr;
+  const traces::Sampler* sampler = nullptr;
+  const Precision* precision = nullptr;
+};
+
+/// Decodes one texel of a level; x and y are inside it.
+[[nodiscard]] Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y);
+
+/// log2 of the larger of the two footprint lengths, in texels of level 0. The derivatives are of normalised coordinates. Minus infinity where both are zero.
+/// [VK1.3 #textures-scale-factor]
+[[nodiscard]] double base_lod(const TextureView& texture, std::array<double, 2> d_dx, std::array<double, 2> d_dy);
+
+/// Samples at normalised (u, v). `base` is the level of detail before the shader's `bias`, the sampler's bias and its clamps; together the biases are limited to
+/// +-16. A nearest mip level is the one of ceil(lambda + 0.5) - 1. A coordinate or bias that is not finite counts as 0, so does a NaN level. [VK1.3 #textures-level-of-detail-operation]
+[[nodiscard]] Texel sample_texture(const TextureView& texture, double u, double v, double base, double bias);
+
+/// The number, or 0 if it is not finite.
+[[nodiscard]] double finite_or_zero(double a);
+
+/// Extent (width, height) of a level; level 0 for one that the image lacks.
+[[nodiscard]] std::array<std::uint32_t, 2> level_extent(const traces::Image& image, std::uint32_t level);
+
+/// The inverse of the sRGB encoding, [0, 1] to [0, 1]. [VK1.3 references Khronos Data Format #TRANSFER_SRGB]
+[[nodiscard]] double srgb_to_linear(double encoded);
+/// The sRGB encoding, [0, 1] to [0, 1].
+[[nodiscard]] double linear_to_srgb(double linear);
+
+}  // namespace quadrille::models::reference

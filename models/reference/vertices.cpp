@@ -1,0 +1,199 @@
+/// Vertex fetch from the raw buffers and vertex shading, four vertices at a time.
+#include "models/reference/vertices.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <unordered_map>
+
+#include "models/base/error.h"
+#include "models/reference/parallel.h"
+
+namespace quadrille::models::reference {
+namespace {
+
+constexpr std::size_t kVerticesPerTask = 512;
+
+/// A little-endian unsigned number; zero beyond the buffer.
+std::uint32_t read_bytes(const traces::Buffer& buffer, std::uint64_t offset, std::uint32_t bytes) {
+  std::uint32_t word = 0;
+  if (offset <= buffer.data.size() && bytes <= buffer.data.size() - offset) std::memcpy(&word, buffer.data.data() + offset, bytes);
+  return word;
+}
+
+struct FormatLayout {
+  std::uint32_t components, bytes;  ///< bytes of one component
+  bool is_float, is_signed;
+};
+
+FormatLayout layout_of(traces::Format format) {
+  using traces::Format;
+  switch (format) {
+    case Format::kR32Float:
+    case Format::kD32Float: return {1, 4, true, true};
+    case Format::kR32G32Float: return {2, 4, true, true};
+    case Format::kR32G32B32Float: return {3, 4, true, true};
+    case Format::kR32G32B32A32Float: return {4, 4, true, true};
+    case Format::kR8G8Unorm: return {2, 1, false, false};
+    case Format::kR8G8B8A8Unorm:
+    case Format::kR8G8B8A8UnormVertex: return {4, 1, false, false};
+    case Format::kR16G16Unorm: return {2, 2, false, false};
+    case Format::kR16G16B16A16Unorm: return {4, 2, false, false};
+    case Format::kR8G8B8A8Snorm: return {4, 1, false, true};
+    case Format::kR16G16B16A16Snorm: return {4, 2, false, true};
+    case Format::kUndefined:
+    case Format::kR8G8B8A8Srgb: break;
+  }
+  throw user_error("vertex attribute: a format that is not one of a vertex attribute");
+}
+
+double component(std::uint32_t word, const FormatLayout& layout) {
+  if (layout.is_float) return static_cast<double>(std::bit_cast<float>(word));
+  const std::uint32_t bits = 8 * layout.bytes;
+  if (!layout.is_signed) return word / static_cast<double>((1u << bits) - 1);
+  const std::uint32_t sign = 1u << (bits - 1);
+  return std::max(static_cast<double>(static_cast<std::int32_t>((word ^ sign) - sign)) / static_cast<double>(sign - 1), -1.0);
+}
+
+/// VertexIndex of each vertex of the draw. [VK1.3 #interfaces-builtin-variables-vertexindex]
+std::vector<std::uint32_t> vertex_indices(const DrawState& state) {
+  const traces::Draw& draw = *state.draw;
+  std::vector<std::uint32_t> indices(draw.count);
+  for (std::uint32_t i = 0; i < draw.count; ++i) {
+    if (!draw.indexed) {
+      indices[i] = draw.first + i;
+      continue;
+    }
+    const std::uint32_t bytes = state.index_buffer.type == traces::IndexType::kUint8    ? 1
+                                : state.index_buffer.type == traces::IndexType::kUint16 ? 2
+                                                                                        : 4;
+    const std::uint64_t offset = state.index_buffer.offset + (std::uint64_t{draw.first} + i) * bytes;
+    indices[i] =
+        read_bytes(state.stream->buffers[state.index_buffer.buffer], offset, bytes) + static_cast<std::uint32_t>(draw.vertex_offset);
+  }
+  return indices;
+}
+
+/// Where an attribute comes from, and the cells its components go to.
+struct AttributeFeed {
+  const traces::Buffer* buffer = nullptr;
+  std::uint64_t offset = 0;
+  std::uint32_t stride = 0;
+  bool per_instance = false;
+  traces::Format format = traces::Format::kUndefined;
+  std::array<Slot, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
+};
+
+std::vector<AttributeFeed> attribute_feeds(const DrawState& state, const ShaderProgram& program) {
+  std::vector<AttributeFeed> feeds;
+  for (const traces::VertexAttribute& attribute : state.pipeline->attributes) {
+    AttributeFeed feed;
+    for (const Port& port : program.inputs) {
+      if (port.location == attribute.location && port.component < 4) feed.slots.at(port.component) = port.slot;
+    }
+    if (feed.slots == std::array<Slot, 4>{kNoSlot, kNoSlot, kNoSlot, kNoSlot}) continue;
+    const auto bound = state.vertex_buffers.find(attribute.binding);
+    if (bound == state.vertex_buffers.end()) throw user_error("draw {}: vertex binding {} has no buffer", state.number, attribute.binding);
+    feed.buffer = &state.stream->buffers[bound->second.buffer];
+    feed.offset = bound->second.offset + attribute.offset;
+    feed.format = attribute.format;
+    for (const traces::VertexBinding& binding : state.pipeline->bindings) {
+      if (binding.binding == attribute.binding) feed.stride = binding.stride, feed.per_instance = binding.per_instance;
+    }
+    feeds.push_back(feed);
+  }
+  return feeds;
+}
+
+/// Shades vertices in groups of four.
+class VertexWorker {
+ public:
+  VertexWorker(const BoundShader& shader, const std::vector<AttributeFeed>& feeds, std::uint32_t instance_index,
+               const std::vector<std::uint32_t>& distinct, ShadedVertices& out)
+      : program_(*shader.program), lanes_(shader.lanes()), feeds_(feeds), instance_index_(instance_index), distinct_(distinct), out_(out) {}
+
+  void operator()(std::size_t task) {
+    const std::size_t end = std::min(distinct_.size(), (task + 1) * kVerticesPerTask);
+    for (std::size_t first = task * kVerticesPerTask; first < end; first += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) load(std::min(first + lane, end - 1), static_cast<int>(lane));
+      execute(program_, lanes_, kAllLanes);
+      for (std::size_t lane = 0; lane < kLanes && first + lane < end; ++lane) store(first + lane, lane);
+    }
+  }
+
+ private:
+  void load(std::size_t vertex, int lane) {
+    const std::uint32_t index = distinct_[vertex];
+    for (const AttributeFeed& feed : feeds_) {
+      const std::uint64_t element = feed.per_instance ? instance_index_ : index;
+      const std::array<double, 4> values = read_attribute(*feed.buffer, feed.offset + element * feed.stride, feed.format);
+      for (std::size_t c = 0; c < 4; ++c) {
+        if (feed.slots[c] != kNoSlot) lanes_.cells[feed.slots[c]].set_f(lane, values[c]);
+      }
+    }
+    if (program_.builtins.vertex_index != kNoSlot) lanes_.cells[program_.builtins.vertex_index].set_u(lane, index);
+    if (program_.builtins.instance_index != kNoSlot) lanes_.cells[program_.builtins.instance_index].set_u(lane, instance_index_);
+  }
+
+  void store(std::size_t vertex, std::size_t lane) {
+    for (std::uint32_t c = 0; c < 4; ++c) out_.clip[vertex][c] = lanes_.cells[program_.builtins.position + c].f(static_cast<int>(lane));
+    for (std::size_t i = 0; i < out_.ports; ++i) out_.outputs[vertex * out_.ports + i] = lanes_.cells[program_.outputs[i].slot].bits[lane];
+  }
+
+  const ShaderProgram& program_;
+  Lanes lanes_;
+  const std::vector<AttributeFeed>& feeds_;
+  std::uint32_t instance_index_;
+  const std::vector<std::uint32_t>& distinct_;
+  ShadedVertices& out_;
+};
+
+}  // namespace
+
+std::array<double, 4> read_attribute(const traces::Buffer& buffer, std::uint64_t offset, traces::Format format) {
+  const FormatLayout layout = layout_of(format);
+  std::array<double, 4> values{0, 0, 0, 1};
+  for (std::uint32_t c = 0; c < layout.components; ++c) {
+    values[c] = component(read_bytes(buffer, offset + std::uint64_t{c} * layout.bytes, layout.bytes), layout);
+  }
+  return values;
+}
+
+ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader, std::uint32_t instance, int threads) {
+  if (shader.program->builtins.position == kNoSlot) throw user_error("shader '{}': does not write gl_Position", shader.program->name);
+  ShadedVertices out;
+  std::vector<std::uint32_t> distinct;
+  std::unordered_map<std::uint32_t, std::uint32_t> number;
+  for (const std::uint32_t index : vertex_indices(state)) {
+    const auto [at, fresh] = number.try_emplace(index, static_cast<std::uint32_t>(distinct.size()));
+    if (fresh) distinct.push_back(index);
+    out.sequence.push_back(at->second);
+  }
+  out.ports = shader.program->outputs.size();
+  out.clip.resize(distinct.size());
+  out.outputs.resize(distinct.size() * out.ports);
+  const std::vector<AttributeFeed> feeds = attribute_feeds(state, *shader.program);
+  const std::uint32_t instance_index = state.draw->first_instance + instance;
+  run_tasks((distinct.size() + kVerticesPerTask - 1) / kVerticesPerTask, threads,
+            [&] { return VertexWorker(shader, feeds, instance_index, distinct, out); });
+  return out;
+}
+
+std::vector<std::array<std::uint32_t, 3>> assemble(traces::Topology topology, std::uint32_t vertices) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  switch (topology) {
+    case traces::Topology::kTriangleList:
+      for (std::uint32_t i = 0; vertices - i >= 3; i += 3) triangles.push_back({i, i + 1, i + 2});
+      break;
+    case traces::Topology::kTriangleStrip:
+      for (std::uint32_t i = 0; i + 2 < vertices; ++i) triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
+      break;
+    case traces::Topology::kTriangleFan:
+      for (std::uint32_t i = 0; i + 2 < vertices; ++i) triangles.push_back({i + 1, i + 2, 0});
+      break;
+  }
+  return triangles;
+}
+
+}  // namespace quadrille::models::reference

@@ -1,0 +1,179 @@
+/// The register ISA of the shader cores: scalar 32-bit operations over a warp of 32 lanes.
+///
+/// A program is a flat list of instructions. Each lane owns `num_regs` 32-bit registers (a float or an integer: the operation decides). An operand is a
+/// register or a word of the *constant file*: one array of 32-bit words a draw, the same for all lanes, that holds literals, push constants and uniform
+/// blocks (`ConstantLayout` says where each word comes from). Control flow is structured, so divergence is a stack of lane masks.
+/// docs/isa.md is the reference; `disassemble` prints a listing and `assemble` reads it back.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace quadrille::models {
+
+inline constexpr int kWarpLanes = 32;
+inline constexpr int kWarpQuads = 8;
+inline constexpr int kMaxRegisters = 256;
+inline constexpr int kMaxVaryings = 64;       ///< scalar components between vertex and fragment shader
+inline constexpr int kMaxVertexInputs = 64;   ///< scalar components (16 attributes of 4)
+inline constexpr int kMaxColorOutputs = 4;    ///< scalar components of one colour attachment
+
+/// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones (true) or zero.
+enum class Op : std::uint8_t {
+  kNop,
+  kMov,
+  // Float, full rate. FMAD rounds twice (product, then sum), so fusing a multiply and an add never changes a value; FMA rounds once.
+  kFAdd, kFMul, kFMad, kFma, kFMin, kFMax, kFFloor, kFCeil, kFTrunc, kFRoundEven, kFFract, kFSign,
+  // Float, special-function rate.
+  kFDiv, kFRcp, kFRsq, kFSqrt, kFExp2, kFLog2, kFSin, kFCos,
+  // Float comparisons: ordered ones are false on NaN; kFNe is unordered (true on NaN).
+  kFLt, kFLe, kFEq, kFNe,
+  // Integer.
+  kIAdd, kISub, kIMul, kIDiv, kIMod, kIRem, kUDiv, kUMod, kIMin, kIMax, kUMin, kUMax, kIAbs, kISign,
+  kAnd, kOr, kXor, kNot, kShl, kShrU, kShrS,
+  kILt, kILe, kIEq, kINe, kULt, kULe,
+  // Conversions (float to integer truncates and saturates; NaN gives 0).
+  kF2I, kF2U, kI2F, kU2F,
+  // dst = a ? b : c, bitwise test of a != 0.
+  kSelect,
+  // Screen-space derivatives within the quad; lanes of a quad are (0,0) (1,0) (0,1) (1,1). "Fine" uses the lane's own row/column, "coarse" the first.
+  kDdxFine, kDdyFine, kDdxCoarse, kDdyCoarse,
+  // Inputs and outputs; `imm` is the slot (see Program).
+  kInput,      ///< vertex stage: dst = vertex input component or system value `imm`; fragment stage: dst = system value `imm`
+  kInterp,     ///< fragment stage: dst = varying component `imm`, by its interpolation mode
+  kOutput,     ///< output slot `imm` = a
+  kLoadConst,  ///< dst = constant word [imm + (lane's a)], a clamped to [0, b]; b is a literal constant
+  // Texturing: a = u, b = v, c = bias or explicit level of detail (if any), `imm` = texture binding; writes dst .. dst+3 (rgba).
+  kTexImplicit, kTexBias, kTexLod,
+  kTexSize,    ///< dst, dst+1 = width, height (integers) of texture `imm` at level a
+  // Control. IF pushes the mask and keeps lanes with a != 0.
+  // LOOP repeats until no lane is left; lanes that break rejoin after ENDLOOP, lanes that continue rejoin at CONTINUING (a loop may have one, directly in
+  // its body: the continue block of SPIR-V follows it) or else at ENDLOOP.
+  kIf, kElse, kEndIf, kLoop, kBreakIf, kContinueIf, kContinuing, kEndLoop,
+  kKillIf,     ///< discards lanes with a != 0; they go on as helpers
+  kEnd,
+  kCount
+};
+
+/// What an instruction occupies while it issues; decides its cycles.
+enum class IssueClass : std::uint8_t { kAlu, kSfu, kInterp, kConst, kTex, kControl, kExport };
+
+struct Operand {
+  enum Kind : std::uint8_t { kNone, kRegister, kConstant };
+  enum Modifier : std::uint8_t { kNegate = 1, kAbsolute = 2 };  ///< float operands only; |a| applies before -
+  Kind kind = kNone;
+  std::uint8_t modifiers = 0;
+  std::uint16_t index = 0;
+  friend bool operator==(const Operand&, const Operand&) = default;
+};
+
+struct Instruction {
+  enum Flag : std::uint8_t { kSaturate = 1 };  ///< clamps a float result to [0, 1], NaN to 0
+  Op op = Op::kNop;
+  std::uint8_t flags = 0;
+  std::uint16_t dst = 0;
+  std::uint16_t imm = 0;
+  Operand a{}, b{}, c{};
+  friend bool operator==(const Instruction&, const Instruction&) = default;
+};
+
+/// System values that `kInput` can name: slots from `kFirstSystemValue` on.
+inline constexpr std::uint16_t kFirstSystemValue = 128;
+enum class SystemValue : std::uint16_t {
+  kVertexIndex = kFirstSystemValue, kInstanceIndex,
+  kFragCoordX, kFragCoordY, kFragCoordZ, kFragCoordW,
+  kFrontFacing, kPrimitiveId
+};
+
+/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 0..3 colour, 4 depth.
+inline constexpr std::uint16_t kFirstVaryingOutput = 4;
+inline constexpr std::uint16_t kDepthOutput = 4;
+
+enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
+
+/// Where words of the constant file come from. Literals carry their value; blocks are copied from a buffer when a draw is bound.
+struct ConstantLayout {
+  enum class Source : std::uint8_t { kLiteral, kPushConstant, kUniformBlock };
+  struct Range {
+    Source source = Source::kLiteral;
+    std::uint32_t set = 0, binding = 0;   ///< uniform block
+    std::uint32_t byte_offset = 0;        ///< within the block or the push constants
+    std::uint32_t first_word = 0;         ///< in the constant file
+    std::uint32_t words = 0;
+    std::vector<std::uint32_t> literals;  ///< kLiteral: the values
+    friend bool operator==(const Range&, const Range&) = default;
+  };
+  std::vector<Range> ranges;
+  std::uint32_t words = 0;                ///< size of the constant file
+  friend bool operator==(const ConstantLayout&, const ConstantLayout&) = default;
+};
+
+struct TextureBinding {
+  std::uint32_t set = 0, binding = 0;
+  friend bool operator==(const TextureBinding&, const TextureBinding&) = default;
+};
+
+struct VertexInputUse {
+  std::uint16_t location = 0, component = 0;  ///< slot i of `Program::vertex_inputs` feeds kInput imm == i
+  friend bool operator==(const VertexInputUse&, const VertexInputUse&) = default;
+};
+
+enum class Stage : std::uint8_t { kVertex, kFragment };
+
+/// The form in which a program executes (models/shader/decode.h). A program holds it once it has been prepared; a copy of a program starts without.
+struct DecodedProgram;
+class DecodedCache {
+ public:
+  DecodedCache() = default;
+  DecodedCache(const DecodedCache&) {}
+  DecodedCache(DecodedCache&&) = default;
+  DecodedCache& operator=(const DecodedCache&) { form_.reset(); return *this; }
+  DecodedCache& operator=(DecodedCache&&) = default;
+  ~DecodedCache() = default;
+  [[nodiscard]] const DecodedProgram* get() const { return form_.get(); }
+  void set(std::shared_ptr<const DecodedProgram> form) { form_ = std::move(form); }
+  friend bool operator==(const DecodedCache&, const DecodedCache&) { return true; }  ///< never part of a program's value
+
+ private:
+  std::shared_ptr<const DecodedProgram> form_;
+};
+
+struct Program {
+  Stage stage = Stage::kVertex;
+  std::string name;                              ///< for listings and errors
+  std::vector<Instruction> code;                 ///< ends with kEnd
+  int num_regs = 0;
+  ConstantLayout constants;
+  std::vector<TextureBinding> textures;          ///< kTex* imm indexes this
+  std::vector<VertexInputUse> vertex_inputs;     ///< vertex stage
+  std::vector<Interpolation> varyings;           ///< both stages of a pipeline hold the same list: scalar components, packed
+  bool uses_discard = false;
+  bool writes_depth = false;
+  bool early_fragment_tests = false;
+  bool uses_derivatives = false;                 ///< explicit or through implicit-lod texturing: helper lanes are needed
+  mutable DecodedCache decoded;                  ///< filled by `prepare`
+  friend bool operator==(const Program&, const Program&) = default;
+};
+
+/// Checks a program (registers, slots, constants, structure of its control flow) and decodes it for execution; `Warp::launch` does so by itself the first
+/// time. Call it again after changing `code` of a program that has run. Throws `UserError` naming the program and the instruction.
+void prepare(const Program& program);
+
+[[nodiscard]] std::string_view op_name(Op op);
+[[nodiscard]] IssueClass issue_class(Op op);
+/// Number of source operands the operation reads (0..3).
+[[nodiscard]] int source_count(Op op);
+/// Number of consecutive registers written from `dst` (0, 1, 2 or 4).
+[[nodiscard]] int destination_count(Op op);
+
+/// One line an instruction; constants that are literals are printed with their value. `assemble` gives the same program back, provided that fields an
+/// instruction does not use are zero.
+[[nodiscard]] std::string disassemble(const Program& program);
+/// Reads a listing. Throws `UserError` with the line on a mistake.
+[[nodiscard]] Program assemble(std::string_view text, std::string_view name);
+
+}  // namespace quadrille::models

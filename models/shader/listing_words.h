@@ -1,0 +1,39 @@
+/// The words of a listing that are the same for printing and reading: names of stages, flags, interpolation modes, system values and slots.
+#pragma once
+
+#include "models/shader/op_table.h"
+
+#include <array>
+#include <string_view>
+
+namespace quadrille::models {
+
+struct NamedFlag {
+  std::string_view name;
+  bool Program::* member;
+};
+inline constexpr std::array<NamedFlag, 4> kProgramFlags{{{"discard", &Program::uses_discard},
+                                                         {"depth", &Program::writes_depth},
+                                                         {"early-tests", &Program::early_fragment_tests},
+                                                         {"derivatives", &Program::uses_derivatives}}};
+
+/// By value of the enumeration.
+inline constexpr std::array<std::string_view, 2> kStageNames{"vertex", "fragment"};
+inline constexpr std::array<std::string_view, 3> kInterpolationNames{"perspective", "linear", "flat"};
+inline constexpr std::array<std::string_view, 8> kSystemValueNames{"vertex_index", "instance_index", "frag_coord_x", "frag_coord_y",
+                                                                   "frag_coord_z", "frag_coord_w",   "front_facing", "primitive_id"};
+
+/// Prefix of the slot number of an immediate.
+constexpr std::string_view slot_prefix(Immediate immediate) {
+  switch (immediate) {
+    case Immediate::kUnused: return "";
+    case Immediate::kInputSlot: return "in";
+    case Immediate::kVaryingSlot: return "vary";
+    case Immediate::kOutputSlot: return "out";
+    case Immediate::kConstantWord: return "c";
+    case Immediate::kTextureBinding: return "t";
+  }
+  return "";
+}
+
+}  // namespace quadrille::models

@@ -1,0 +1,83 @@
+/// Texel addresses of eight lanes in one mip level: wrapping, rounding to the sub-texel grid, tiling. [VK1.3
+/// #textures-texel-coordinate-systems, #textures-wrapping-operation]
+#pragma once
+
+#include "models/texture/lanes.h"
+#include "models/texture/sampler.h"
+
+namespace quadrille::models {
+
+/// The two texels along an axis and the weight of the second, in 256ths.
+struct AxisTexels {
+  __m256i first, second, weight;
+};
+
+/// Brings a finite coordinate (in texture sizes) to where one multiplication by the size cannot overflow, without changing the texels it
+/// selects: repeat to [0, 1], mirror to [0, 2], clamp to [-1, 2].
+inline __m256 fold_coordinate(__m256 c, Wrap wrap) {
+  switch (wrap) {
+    case Wrap::kRepeat: return _mm256_sub_ps(c, _mm256_floor_ps(c));
+    case Wrap::kMirroredRepeat: {
+      const __m256 periods = _mm256_floor_ps(_mm256_mul_ps(c, _mm256_set1_ps(0.5f)));
+      return _mm256_sub_ps(c, _mm256_add_ps(periods, periods));
+    }
+    case Wrap::kClampToEdge: break;
+  }
+  return _mm256_min_ps(_mm256_max_ps(c, _mm256_set1_ps(-1.0f)), _mm256_set1_ps(2.0f));
+}
+
+/// Wraps a texel index that is at most one texel outside the range of folded coordinates.
+inline __m256i wrap_texel(__m256i i, __m256i size, Wrap wrap) {
+  const __m256i zero = _mm256_setzero_si256(), one = _mm256_set1_epi32(1);
+  switch (wrap) {
+    case Wrap::kRepeat: {
+      const __m256i from_below = _mm256_add_epi32(i, _mm256_and_si256(_mm256_cmpgt_epi32(zero, i), size));
+      return _mm256_andnot_si256(_mm256_cmpeq_epi32(from_below, size), from_below);
+    }
+    case Wrap::kMirroredRepeat: {
+      const __m256i mirrored = _mm256_sub_epi32(_mm256_add_epi32(size, size), _mm256_add_epi32(i, one));
+      return _mm256_max_epi32(_mm256_min_epi32(i, mirrored), zero);
+    }
+    case Wrap::kClampToEdge: break;
+  }
+  return _mm256_max_epi32(_mm256_min_epi32(i, _mm256_sub_epi32(size, one)), zero);
+}
+
+/// Texels for linear filtering of a folded coordinate.
+inline AxisTexels linear_texels(__m256 folded, __m256i size, Wrap wrap, int subtexel_bits) {
+  const __m128i bits = _mm_cvtsi32_si128(subtexel_bits);
+  const __m256 scale = _mm256_cvtepi32_ps(_mm256_sll_epi32(size, bits));
+  const __m256i half = _mm256_set1_epi32((1 << subtexel_bits) >> 1);
+  const __m256i fixed = _mm256_sub_epi32(_mm256_cvtps_epi32(_mm256_mul_ps(folded, scale)), half);
+  const __m256i first = _mm256_sra_epi32(fixed, bits);
+  const __m256i fraction = _mm256_and_si256(fixed, _mm256_set1_epi32((1 << subtexel_bits) - 1));
+  return {wrap_texel(first, size, wrap), wrap_texel(_mm256_add_epi32(first, _mm256_set1_epi32(1)), size, wrap),
+          _mm256_sll_epi32(fraction, _mm_cvtsi32_si128(8 - subtexel_bits))};
+}
+
+/// The one texel for nearest filtering, twice, without weight for the second.
+inline AxisTexels nearest_texels(__m256 folded, __m256i size, Wrap wrap) {
+  const __m256i texel = _mm256_cvttps_epi32(_mm256_floor_ps(_mm256_mul_ps(folded, _mm256_cvtepi32_ps(size))));
+  const __m256i wrapped = wrap_texel(texel, size, wrap);
+  return {wrapped, wrapped, _mm256_setzero_si256()};
+}
+
+/// `b` in the lanes of `mask`, else `a`.
+inline AxisTexels select(const AxisTexels& a, const AxisTexels& b, __m256i mask) {
+  return {_mm256_blendv_epi8(a.first, b.first, mask), _mm256_blendv_epi8(a.second, b.second, mask),
+          _mm256_blendv_epi8(a.weight, b.weight, mask)};
+}
+
+/// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
+inline __m256i x_index(__m256i x) {
+  const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
+  const __m256i low = _mm256_or_si256(field(3), _mm256_slli_epi32(field(4), 1));
+  return _mm256_or_si256(_mm256_or_si256(low, _mm256_slli_epi32(field(24), 2)), _mm256_slli_epi32(_mm256_srli_epi32(x, 5), 10));
+}
+inline __m256i y_index(__m256i y, __m256i pitch) {
+  const auto field = [y](int mask) { return _mm256_and_si256(y, _mm256_set1_epi32(mask)); };
+  const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 2), _mm256_slli_epi32(field(2), 3));
+  return _mm256_add_epi32(_mm256_or_si256(low, _mm256_slli_epi32(field(28), 5)), _mm256_mullo_epi32(_mm256_srli_epi32(y, 5), pitch));
+}
+
+}  // namespace quadrille::models

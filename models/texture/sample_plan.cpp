@@ -1,0 +1,180 @@
+/// The address half of the texture unit: levels, texel addresses and the cache lines they fall in (sample.h).
+#include "models/base/error.h"
+#include "models/texture/address.h"
+#include "models/texture/level_of_detail.h"
+#include "models/texture/sample.h"
+
+#include <bit>
+
+namespace quadrille::models {
+namespace {
+
+/// Size and place of the level that each of eight lanes reads.
+struct LevelVectors {
+  __m256i width, height, pitch, first;
+};
+
+/// Lanes of a group nearly always agree on the level; only those of `used` matter.
+LevelVectors level_vectors(const TextureLayout& layout, __m256i level, std::uint32_t used) {
+  alignas(32) std::array<std::int32_t, 8> lanes;
+  store_lanes(lanes.data(), level);
+  const auto common = static_cast<std::size_t>(lanes[static_cast<std::size_t>(std::countr_zero(used) & 7)]);
+  const std::uint32_t agree = bits_of(_mm256_cmpeq_epi32(level, _mm256_set1_epi32(static_cast<int>(common))));
+  if ((agree & used) == used) {
+    return {_mm256_set1_epi32(layout.width[common]), _mm256_set1_epi32(layout.height[common]), _mm256_set1_epi32(layout.pitch[common]),
+            _mm256_set1_epi32(layout.first[common])};
+  }
+  const auto gather = [level](const std::array<std::int32_t, 16>& by_level) { return _mm256_i32gather_epi32(by_level.data(), level, 4); };
+  return {gather(layout.width), gather(layout.height), gather(layout.pitch), gather(layout.first)};
+}
+
+/// Collects the distinct lines of a request.
+class LineCollector {
+ public:
+  explicit LineCollector(TexturePlan& plan) : plan_(plan) { plan_.line_count = 0; }
+
+  /// Adds the lines of one footprint, in order of corner and lane; lanes outside `used` touch nothing.
+  void add(const __m256i (&texel)[4], std::uint32_t used) {
+    const __m256i base_line = _mm256_set1_epi32(static_cast<int>(plan_.base / kLineBytes));
+    const __m256i mask = lanes_of(used);
+    __m256i line[4], sector[4];
+    alignas(32) std::array<std::uint32_t, 32> numbers;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      line[corner] = _mm256_add_epi32(base_line, _mm256_srli_epi32(texel[corner], 5));
+      const __m256i which = _mm256_and_si256(_mm256_srli_epi32(texel[corner], 3), _mm256_set1_epi32(3));
+      sector[corner] = _mm256_and_si256(_mm256_sllv_epi32(_mm256_set1_epi32(1), which), mask);
+      _mm256_store_si256(reinterpret_cast<__m256i*>(numbers.data() + 8 * corner), line[corner]);
+    }
+    std::uint32_t left = used * 0x01010101u;
+    while (left != 0) {
+      const std::uint32_t number = numbers[static_cast<std::size_t>(std::countr_zero(left))];
+      const __m256i wanted = _mm256_set1_epi32(static_cast<int>(number));
+      __m256i sectors = _mm256_setzero_si256();
+      for (int corner = 0; corner < 4; ++corner) {
+        const __m256i equal = _mm256_cmpeq_epi32(line[corner], wanted);
+        sectors = _mm256_or_si256(sectors, _mm256_and_si256(equal, sector[corner]));
+        left &= ~(bits_of(equal) << (8 * corner));
+      }
+      note(number, any_lane(sectors));
+    }
+  }
+
+ private:
+  /// Bitwise or over eight lanes.
+  static std::uint32_t any_lane(__m256i v) {
+    __m128i half = _mm_or_si128(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));
+    half = _mm_or_si128(half, _mm_shuffle_epi32(half, 0x4e));
+    half = _mm_or_si128(half, _mm_shuffle_epi32(half, 0xb1));
+    return static_cast<std::uint32_t>(_mm_cvtsi128_si32(half));
+  }
+
+  /// Adds sectors of one line. A small table leads to the line that last had this hash; only when that is another line is the list searched.
+  void note(std::uint32_t number, std::uint32_t sectors) {
+    const std::size_t bucket = (number ^ number >> 6) & 63;
+    const std::uint64_t bit = std::uint64_t{1} << bucket;
+    std::size_t index = (seen_ & bit) != 0 ? latest_[bucket] : static_cast<std::size_t>(plan_.line_count);
+    if ((seen_ & bit) != 0 && plan_.lines[index].line != number) index = search(number);
+    if (index == static_cast<std::size_t>(plan_.line_count)) {
+      plan_.lines[index] = {number, 0};
+      ++plan_.line_count;
+    }
+    plan_.lines[index].sectors |= sectors;
+    seen_ |= bit;
+    latest_[bucket] = static_cast<std::uint8_t>(index);
+  }
+
+  /// Place of a line in the list, or the list's length.
+  [[nodiscard]] std::size_t search(std::uint32_t number) const {
+    const auto count = static_cast<std::size_t>(plan_.line_count);
+    std::size_t i = 0;
+    while (i < count && plan_.lines[i].line != number) ++i;
+    return i;
+  }
+
+  TexturePlan& plan_;
+  std::uint64_t seen_ = 0;               // buckets of which `latest_` is set
+  std::array<std::uint8_t, 64> latest_;  // index of the line that a hash met last
+};
+
+/// What stays the same for all groups of a request.
+struct PlanContext {
+  const TextureView& view;
+  const SamplerState& sampler;
+  int subtexel_bits;
+};
+
+/// Texels along one axis; `nearest` names lanes whose filter is nearest.
+AxisTexels axis_texels(__m256 folded, __m256i size, Wrap wrap, int subtexel_bits, std::uint32_t nearest) {
+  if (nearest == 0) return linear_texels(folded, size, wrap, subtexel_bits);
+  const AxisTexels point = nearest_texels(folded, size, wrap);
+  return nearest == 0xff ? point : select(linear_texels(folded, size, wrap, subtexel_bits), point, lanes_of(nearest));
+}
+
+/// Addresses of a group in one level. `folded_u`, `folded_v` are folded coordinates.
+void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v, __m256i level, std::uint32_t used, std::uint32_t nearest,
+                    TexturePlan::Footprint& out, LineCollector& lines) {
+  const LevelVectors at = level_vectors(context.view.layout, level, used);
+  const AxisTexels x = axis_texels(folded_u, at.width, context.sampler.wrap_u, context.subtexel_bits, nearest);
+  const AxisTexels y = axis_texels(folded_v, at.height, context.sampler.wrap_v, context.subtexel_bits, nearest);
+  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first)), right = _mm256_add_epi32(at.first, x_index(x.second));
+  const __m256i top = y_index(y.first, at.pitch), bottom = y_index(y.second, at.pitch);
+  const __m256i texel[4] = {_mm256_add_epi32(left, top), _mm256_add_epi32(right, top), _mm256_add_epi32(left, bottom),
+                            _mm256_add_epi32(right, bottom)};
+  for (std::size_t corner = 0; corner < 4; ++corner) store_lanes(out.texel[corner].data(), texel[corner]);
+  store_lanes(out.frac_x.data(), x.weight);
+  store_lanes(out.frac_y.data(), y.weight);
+  lines.add(texel, used);
+}
+
+void count_work(TexturePlan& plan, std::uint32_t used, std::uint32_t nearest) {
+  plan.bilinear_quads += ((used & 0x0f) != 0 ? 1u : 0u) + ((used & 0xf0) != 0 ? 1u : 0u);
+  plan.texels += static_cast<std::uint32_t>(4 * std::popcount(used & ~nearest) + std::popcount(used & nearest));
+}
+
+}  // namespace
+
+void plan_texture(const TextureView& view, const SamplerState& sampler, const TextureRequest& request, const Precision& precision,
+                  TexturePlan& plan) {
+  QUADRILLE_CHECK(request.op == Op::kTexImplicit || request.op == Op::kTexBias || request.op == Op::kTexLod, "operation {}",
+                  static_cast<int>(request.op));
+  plan.active = request.active;
+  plan.base = view.base;
+  plan.format = view.format;
+  plan.bilinear_quads = plan.texels = 0;
+  alignas(32) LaneFloats u, v;
+  for (std::size_t lane = 0; lane < kWarpLanes; lane += 8) {
+    _mm256_store_ps(u.data() + lane, finite_or_zero(_mm256_load_ps(request.u.data() + lane)));
+    _mm256_store_ps(v.data() + lane, finite_or_zero(_mm256_load_ps(request.v.data() + lane)));
+  }
+  const LaneLevels levels = lane_levels(view.layout, sampler, request, u, v, precision);
+  plan.finer_level = levels.finer;
+  plan.level_weight = levels.weight;
+  plan.magnified_lanes = static_cast<std::uint32_t>(std::popcount(request.active & levels.magnified));
+  plan.minified_lanes = static_cast<std::uint32_t>(std::popcount(request.active & ~levels.magnified));
+  const LaneMask nearest_lanes =
+      (sampler.mag == Filter::kNearest ? levels.magnified : 0) | (sampler.min == Filter::kNearest ? ~levels.magnified : 0);
+
+  const PlanContext context{view, sampler, precision.subtexel_bits};
+  LineCollector lines(plan);
+  for (std::size_t group = 0; group < TexturePlan::kGroups; ++group) {
+    const std::size_t lane = 8 * group;
+    const std::uint32_t active = request.active >> lane & 0xff, nearest = nearest_lanes >> lane & 0xff;
+    plan.levels[group] = 0;
+    if (active == 0) continue;
+    const __m256 folded_u = fold_coordinate(_mm256_load_ps(u.data() + lane), sampler.wrap_u);
+    const __m256 folded_v = fold_coordinate(_mm256_load_ps(v.data() + lane), sampler.wrap_v);
+    const __m256i finer = load_lanes(levels.finer.data() + lane);
+    plan_footprint(context, folded_u, folded_v, finer, active, nearest, plan.footprint[group][0], lines);
+    count_work(plan, active, nearest);
+    const __m256 weight = _mm256_load_ps(levels.weight.data() + lane);
+    const __m256i mixed = _mm256_castps_si256(_mm256_cmp_ps(weight, _mm256_setzero_ps(), _CMP_GT_OQ));
+    const std::uint32_t mixing = active & bits_of(mixed);
+    plan.levels[group] = mixing != 0 ? 2 : 1;
+    if (mixing == 0) continue;
+    const __m256i coarser = _mm256_sub_epi32(finer, mixed);  // + 1 where two levels are mixed: never beyond the last
+    plan_footprint(context, folded_u, folded_v, coarser, mixing, nearest, plan.footprint[group][1], lines);
+    count_work(plan, mixing, nearest);
+  }
+}
+
+}  // namespace quadrille::models

@@ -1,0 +1,20 @@
+/// Sampler state. [VK1.3 #samplers]
+#pragma once
+
+#include <cstdint>
+
+namespace quadrille::models {
+
+enum class Filter : std::uint8_t { kNearest, kLinear };
+enum class Wrap : std::uint8_t { kRepeat, kMirroredRepeat, kClampToEdge };
+
+struct SamplerState {
+  Filter mag = Filter::kLinear, min = Filter::kLinear, mip = Filter::kLinear;
+  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  float lod_bias = 0, min_lod = 0, max_lod = 1000;
+};
+
+/// Sampler and shader bias together are limited to this. [VK1.3 limit maxSamplerLodBias]
+inline constexpr float kMaxLodBias = 16.0f;
+
+}  // namespace quadrille::models

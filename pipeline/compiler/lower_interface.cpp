@@ -1,0 +1,118 @@
+/// Inputs and outputs: which slot each scalar of an interface variable is. [VK1.3 #interfaces-iointerfaces, #interfaces-builtin-variables]
+#include "pipeline/compiler/lowering.h"
+
+#include <algorithm>
+
+namespace quadrille::pipeline {
+namespace {
+
+using models::Op;
+using models::Stage;
+using models::SystemValue;
+using Kind = spirv::Type::Kind;
+
+constexpr std::uint32_t kMaxInterfaceScalars = 1024;
+
+}  // namespace
+
+void Lowering::declare_interface(const spirv::Variable& variable) {
+  const bool output = variable.storage == spv::StorageClassOutput;
+  const spirv::Decorations& d = module_.decorations(variable.id);
+  if (module_.type(variable.type).scalars > kMaxInterfaceScalars)
+    throw user_error("{}: interface variable {} has more than {} scalars", module_.shader, module_.name(variable.id), kMaxInterfaceScalars);
+  auto location = static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.location));
+  add_slots(slots_[variable.id], variable.type, d, location, output);
+  if (!output || (!read_outputs_.contains(variable.id) && variable.initializer == 0 && module_.type(variable.type).kind != Kind::kArray)) return;
+  Values& shadow = memory_[variable.id];
+  for (std::uint32_t k = 0; k < module_.type(variable.type).scalars; ++k) shadow.push_back(build_.new_variable());
+  if (variable.initializer == 0) return;
+  const Values initial = value(variable.initializer);
+  for (std::uint32_t k = 0; k < initial.size(); ++k) {
+    build_.assign(shadow[k], initial[k]);
+    if (slots_[variable.id][k].kind == Slot::Kind::kUsed) build_.effect(Op::kOutput, initial[k], slots_[variable.id][k].imm);
+  }
+}
+
+void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Decorations& inherited, std::uint32_t& location, bool output) {
+  const spirv::Type& type = module_.type(type_id);
+  if (type.kind == Kind::kStruct) {
+    for (std::uint32_t k = 0; k < type.members.size(); ++k) {
+      spirv::Decorations d = module_.member_decorations(type_id, k);
+      d.flat = d.flat || inherited.flat;
+      d.no_perspective = d.no_perspective || inherited.no_perspective;
+      if (d.location >= 0) location = static_cast<std::uint32_t>(d.location);
+      add_slots(slots, type.members[k], d, location, output);
+    }
+    return;
+  }
+  if (inherited.built_in < 0 && (type.kind == Kind::kArray || type.kind == Kind::kMatrix)) {
+    for (std::uint32_t k = 0; k < type.count; ++k) add_slots(slots, type.element, inherited, location, output);
+    return;
+  }
+  const auto first = static_cast<std::uint32_t>(std::max<std::int64_t>(0, inherited.component));
+  for (std::uint32_t k = 0; k < type.scalars; ++k)
+    slots.push_back(inherited.built_in >= 0 ? built_in_slot(inherited.built_in, k, output) : location_slot(location, first + k, inherited, output));
+  const Id scalar_type = type.kind == Kind::kVector ? type.element : type_id;
+  if (shader_.stage == Stage::kVertex && !output && inherited.built_in < 0 && module_.type(scalar_type).kind != Kind::kFloat)
+    for (std::size_t k = slots.size() - type.scalars; k < slots.size(); ++k) slots[k].kind = Slot::Kind::kRefused;
+  ++location;
+}
+
+Lowering::Slot Lowering::built_in_slot(std::int64_t built_in, std::uint32_t component, bool output) const {
+  Slot slot;
+  const auto use = [&](std::uint32_t imm) {
+    slot.kind = Slot::Kind::kUsed;
+    slot.imm = static_cast<std::uint16_t>(imm);
+    return slot;
+  };
+  const auto system = [&](SystemValue v) {
+    slot.system = true;
+    return use(static_cast<std::uint32_t>(v) + component);
+  };
+  const bool vertex = shader_.stage == Stage::kVertex;
+  switch (built_in) {
+    case spv::BuiltInPosition: return vertex && output ? use(component) : slot;
+    case spv::BuiltInPointSize: slot.kind = output ? Slot::Kind::kIgnored : Slot::Kind::kRefused; return slot;
+    case spv::BuiltInVertexIndex: return vertex ? system(SystemValue::kVertexIndex) : slot;
+    case spv::BuiltInInstanceIndex: return vertex ? system(SystemValue::kInstanceIndex) : slot;
+    case spv::BuiltInFragCoord: return vertex ? slot : system(SystemValue::kFragCoordX);
+    case spv::BuiltInFrontFacing: return vertex ? slot : system(SystemValue::kFrontFacing);
+    case spv::BuiltInPrimitiveId: return vertex ? slot : system(SystemValue::kPrimitiveId);
+    case spv::BuiltInFragDepth: return !vertex && output ? use(models::kDepthOutput) : slot;
+    default: return slot;
+  }
+}
+
+Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t component, const spirv::Decorations& d, bool output) const {
+  Slot slot;
+  if (component > 3) return slot;
+  const bool vertex = shader_.stage == Stage::kVertex;
+  const bool color = !vertex && output;
+  const std::uint32_t limit = color ? 1 : vertex && !output ? kMaxAttributeLocations : kMaxLocations;
+  if (location >= limit || (color && d.index > 0)) return slot;
+  slot.kind = Slot::Kind::kUsed;
+  slot.imm = static_cast<std::uint16_t>(4 * location + component + (vertex && output ? models::kFirstVaryingOutput : 0u));
+  slot.interpolation = d.flat             ? models::Interpolation::kFlat
+                       : d.no_perspective ? models::Interpolation::kLinear
+                                          : models::Interpolation::kPerspective;
+  return slot;
+}
+
+Value Lowering::load_input(Id variable, std::uint32_t place, const spirv::Instruction& i) {
+  const Slot& slot = slots_[variable].at(place);
+  if (slot.kind != Slot::Kind::kUsed)
+    throw unsupported(i, fmt::format("input {} (a built-in, a location beyond the limit, or an integer vertex attribute)", module_.name(variable)));
+  if (shader_.stage == Stage::kVertex || slot.system) return build_.emit(Op::kInput, {}, {}, {}, slot.imm);
+  shader_.varyings[slot.imm] = slot.interpolation;
+  return build_.emit(Op::kInterp, {}, {}, {}, slot.imm);
+}
+
+void Lowering::store_output(const Pointer& p, std::uint32_t place, Value v, const spirv::Instruction& i) {
+  const Slot& slot = slots_[p.variable].at(place);
+  if (slot.kind == Slot::Kind::kIgnored) return;
+  if (slot.kind == Slot::Kind::kRefused)
+    throw unsupported(i, fmt::format("output {} (only colour location 0, gl_FragDepth, gl_Position and varyings are written)", module_.name(p.variable)));
+  build_.effect(Op::kOutput, v, slot.imm);
+}
+
+}  // namespace quadrille::pipeline

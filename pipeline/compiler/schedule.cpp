@@ -1,0 +1,129 @@
+/// Texture grouping: within a straight-line stretch, texture instructions that do not depend on each other are issued together.
+#include "models/shader/warp.h"
+#include "pipeline/compiler/passes.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace quadrille::pipeline {
+namespace {
+
+using models::Op;
+
+class Stretch {
+ public:
+  Stretch(const ScalarShader& shader, std::size_t first, std::size_t last) : shader_(shader), first_(first), size_(last - first) {
+    needs_.resize(size_);
+    level_.assign(size_, 0);
+    done_.assign(size_, false);
+    for (std::size_t at = 0; at < size_; ++at) connect(at);
+  }
+
+  void append(std::vector<ScalarInstruction>& out, Order order) {
+    out_ = &out;
+    emit_textures();
+    if (order == Order::kTexturesDemand)
+      for (std::size_t at = 0; at < size_; ++at)
+        if (has_effect(code(at).op) || writes_variable(at)) emit(at);
+    for (std::size_t at = 0; at < size_; ++at) emit(at);
+  }
+
+ private:
+  [[nodiscard]] const ScalarInstruction& code(std::size_t at) const { return shader_.code[first_ + at]; }
+  [[nodiscard]] bool writes_variable(std::size_t at) const {
+    return models::destination_count(code(at).op) > 0 && shader_.variable[code(at).dst];
+  }
+
+  void need(std::size_t at, std::size_t before) {
+    needs_[at].push_back(before);
+    level_[at] = std::max(level_[at], level_[before] + (is_texture(code(before).op) ? 1 : 0));
+  }
+
+  /// Notes what must come before the instruction: makers of its operands, earlier readers and writers of its variable, earlier outputs.
+  void connect(std::size_t at) {
+    const ScalarInstruction& i = code(at);
+    for (const Value& v : {i.a, i.b, i.c}) {
+      if (!v.is_register()) continue;
+      if (const auto made = writer_.find(v.bits); made != writer_.end()) need(at, made->second);
+      if (shader_.variable[v.bits]) readers_[v.bits].push_back(at);
+    }
+    if (i.op == Op::kOutput) {
+      if (last_output_ < size_) need(at, last_output_);
+      last_output_ = at;
+    }
+    for (int k = 0; k < models::destination_count(i.op); ++k) {
+      const std::uint32_t target = i.dst + static_cast<std::uint32_t>(k);
+      if (shader_.variable[target]) {
+        if (const auto made = writer_.find(target); made != writer_.end()) need(at, made->second);
+        for (const std::size_t reader : readers_[target])
+          if (reader != at) need(at, reader);
+        readers_[target].clear();
+      }
+      writer_[target] = at;
+    }
+  }
+
+  /// Emits an instruction after what it needs; depth first, without recursion.
+  void emit(std::size_t root) {
+    stack_.push_back(root);
+    while (!stack_.empty()) {
+      const std::size_t at = stack_.back();
+      if (done_[at]) {
+        stack_.pop_back();
+        continue;
+      }
+      const std::size_t waiting = stack_.size();
+      for (auto before = needs_[at].rbegin(); before != needs_[at].rend(); ++before)
+        if (!done_[*before]) stack_.push_back(*before);
+      if (stack_.size() != waiting) continue;
+      done_[at] = true;
+      out_->push_back(code(at));
+      stack_.pop_back();
+    }
+  }
+
+  void emit_textures() {
+    std::vector<std::size_t> textures;
+    for (std::size_t at = 0; at < size_; ++at)
+      if (is_texture(code(at).op)) textures.push_back(at);
+    std::stable_sort(textures.begin(), textures.end(), [&](std::size_t a, std::size_t b) { return level_[a] < level_[b]; });
+    for (std::size_t from = 0; from < textures.size();) {
+      std::size_t to = from;
+      while (to < textures.size() && level_[textures[to]] == level_[textures[from]] && to - from < models::kMaxClauseTextures) ++to;
+      for (std::size_t k = from; k < to; ++k)
+        for (const std::size_t before : needs_[textures[k]]) emit(before);
+      for (std::size_t k = from; k < to; ++k) emit(textures[k]);
+      from = to;
+    }
+  }
+
+  const ScalarShader& shader_;
+  std::size_t first_, size_;
+  std::vector<std::vector<std::size_t>> needs_;
+  std::vector<int> level_;
+  std::vector<bool> done_;
+  std::unordered_map<std::uint32_t, std::size_t> writer_;
+  std::unordered_map<std::uint32_t, std::vector<std::size_t>> readers_;
+  std::size_t last_output_ = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> stack_;
+  std::vector<ScalarInstruction>* out_ = nullptr;
+};
+
+}  // namespace
+
+std::vector<ScalarInstruction> schedule(const ScalarShader& shader, Order order) {
+  if (order == Order::kSource) return shader.code;
+  std::vector<ScalarInstruction> out;
+  out.reserve(shader.code.size());
+  std::size_t first = 0;
+  for (std::size_t at = 0; at <= shader.code.size(); ++at) {
+    const bool boundary = at == shader.code.size() || is_control(shader.code[at].op) || shader.code[at].op == Op::kKillIf || shader.code[at].op == Op::kEnd;
+    if (!boundary) continue;
+    Stretch(shader, first, at).append(out, order);
+    if (at < shader.code.size()) out.push_back(shader.code[at]);
+    first = at + 1;
+  }
+  return out;
+}
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,316 @@
+#include "pipeline/compiler/spirv_module.h"
+
+#include "models/base/error.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace quadrille::pipeline::spirv {
+namespace {
+
+std::string literal_string(std::span<const std::uint32_t> words) {
+  const char* text = reinterpret_cast<const char*>(words.data());
+  return std::string(text, strnlen(text, words.size() * 4));
+}
+
+std::uint32_t saturating_product(std::uint64_t a, std::uint64_t b) { return static_cast<std::uint32_t>(std::min<std::uint64_t>(a * b, 1u << 24)); }
+
+bool harmless_capability(std::uint32_t capability) {
+  return capability == spv::CapabilityMatrix || capability == spv::CapabilityShader || capability == spv::CapabilityImageQuery ||
+         capability == spv::CapabilityDerivativeControl || capability == spv::CapabilitySampleRateShading ||
+         capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry || capability == spv::CapabilityClipDistance ||
+         capability == spv::CapabilityCullDistance || capability == spv::CapabilityDemoteToHelperInvocation ||
+         capability == spv::CapabilityDrawParameters || capability == spv::CapabilityVariablePointersStorageBuffer;
+}
+
+}  // namespace
+
+std::string opcode_name(spv::Op op) {
+  // The assembler's own table is not public; a disassembled one-instruction module would be needed for the text. Number and common names suffice.
+  switch (static_cast<std::uint32_t>(op)) {
+    case spv::OpFunctionCall: return "OpFunctionCall";
+    case spv::OpImageFetch: return "OpImageFetch (texelFetch)";
+    case spv::OpImageGather: return "OpImageGather (textureGather)";
+    case spv::OpImageDrefGather: return "OpImageDrefGather";
+    case spv::OpImageSampleDrefImplicitLod: return "OpImageSampleDrefImplicitLod (shadow sampler)";
+    case spv::OpImageSampleDrefExplicitLod: return "OpImageSampleDrefExplicitLod (shadow sampler)";
+    case spv::OpImageRead: return "OpImageRead (imageLoad)";
+    case spv::OpImageWrite: return "OpImageWrite (imageStore)";
+    case spv::OpImageQueryLevels: return "OpImageQueryLevels";
+    case spv::OpImageQueryLod: return "OpImageQueryLod";
+    case spv::OpImageQuerySize: return "OpImageQuerySize";
+    case spv::OpSampledImage: return "OpSampledImage (separate texture and sampler)";
+    case spv::OpBitCount: return "OpBitCount";
+    case spv::OpBitReverse: return "OpBitReverse";
+    case spv::OpBitFieldInsert: return "OpBitFieldInsert";
+    case spv::OpBitFieldSExtract: return "OpBitFieldSExtract";
+    case spv::OpBitFieldUExtract: return "OpBitFieldUExtract";
+    case spv::OpCopyMemory: return "OpCopyMemory";
+    case spv::OpIAddCarry: return "OpIAddCarry";
+    case spv::OpISubBorrow: return "OpISubBorrow";
+    case spv::OpUMulExtended: return "OpUMulExtended";
+    case spv::OpSMulExtended: return "OpSMulExtended";
+    default: return fmt::format("opcode {}", static_cast<std::uint32_t>(op));
+  }
+}
+
+Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std::string_view shader_name)
+    : shader(shader_name), words_(std::move(words)), stage_(stage) {
+  bound = words_.size() > 3 ? words_[3] : 0;
+  for (std::size_t at = 5; at < words_.size();) {
+    const std::size_t count = words_[at] >> 16;
+    if (count == 0 || at + count > words_.size()) throw user_error("{}: the module ends inside an instruction", shader);
+    Instruction instruction;
+    instruction.op = static_cast<spv::Op>(words_[at] & 0xffffu);
+    bool has_result = false, has_type = false;
+    spv::HasResultAndType(instruction.op, &has_result, &has_type);
+    const std::size_t fixed = 1u + (has_result ? 1u : 0u) + (has_type ? 1u : 0u);
+    if (count < fixed) throw user_error("{}: instruction at word {} is too short", shader, at);
+    if (has_type) instruction.type = words_[at + 1];
+    if (has_result) instruction.result = words_[at + fixed - 1];
+    instruction.operands = {words_.data() + at + fixed, count - fixed};
+    add(instruction);
+    at += count;
+  }
+  if (entry == 0) throw user_error("{}: no entry point \"main\" of the {} stage", shader, stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment");
+}
+
+const Type& Module::type(Id id) const {
+  const auto found = types_.find(id);
+  if (found == types_.end()) throw user_error("{}: type %{} is not known", shader, id);
+  return found->second;
+}
+
+const Decorations& Module::decorations(Id id) const {
+  static const Decorations kNothing;
+  const auto found = decorations_.find(id);
+  return found == decorations_.end() ? kNothing : found->second;
+}
+
+const Decorations& Module::member_decorations(Id type, std::uint32_t member) const {
+  static const Decorations kNothing;
+  const auto found = member_decorations_.find({type, member});
+  return found == member_decorations_.end() ? kNothing : found->second;
+}
+
+const Block& Module::block(Id label) const {
+  const auto found = blocks.find(label);
+  if (found == blocks.end()) throw user_error("{}: block %{} is not in the entry point", shader, label);
+  return found->second;
+}
+
+const std::vector<std::uint32_t>* Module::constant(Id id) const {
+  const auto found = constants_.find(id);
+  return found == constants_.end() ? nullptr : &found->second;
+}
+
+Id Module::constant_type(Id id) const {
+  const auto found = constant_types_.find(id);
+  if (found == constant_types_.end()) throw user_error("{}: {} has no type that the compiler knows", shader, name(id));
+  return found->second;
+}
+
+std::string Module::name(Id id) const {
+  const auto found = names_.find(id);
+  return found == names_.end() || found->second.empty() ? fmt::format("%{}", id) : fmt::format("'{}'", found->second);
+}
+
+std::string Module::at(const Instruction& instruction, std::string_view text) const {
+  return instruction.line == 0 ? fmt::format("{}: {}", shader, text) : fmt::format("{}:{}: {}", shader, instruction.line, text);
+}
+
+void Module::add(const Instruction& given) {
+  Instruction instruction = given;
+  instruction.line = line_;
+  switch (static_cast<std::uint32_t>(instruction.op)) {
+    case spv::OpLine: line_ = instruction.operands[1]; break;
+    case spv::OpNoLine: line_ = 0; break;
+    case spv::OpName: names_[instruction.operands[0]] = literal_string(instruction.operands.subspan(1)); break;
+    case spv::OpCapability: add_capability(instruction.operands[0]); break;
+    case spv::OpExtInstImport:
+      if (literal_string(instruction.operands) == "GLSL.std.450") glsl_imports[instruction.result] = instruction.result;
+      break;
+    case spv::OpEntryPoint: add_entry_point(instruction); break;
+    case spv::OpExecutionMode:
+      if (instruction.operands[0] == entry_function_ && instruction.operands[1] == spv::ExecutionModeEarlyFragmentTests) early_fragment_tests = true;
+      break;
+    case spv::OpDecorate:
+      add_decoration(decorations_[instruction.operands[0]], static_cast<spv::Decoration>(instruction.operands[1]), instruction.operands.subspan(2));
+      break;
+    case spv::OpMemberDecorate:
+      add_decoration(member_decorations_[{instruction.operands[0], instruction.operands[1]}], static_cast<spv::Decoration>(instruction.operands[2]),
+                     instruction.operands.subspan(3));
+      break;
+    case spv::OpGroupDecorate:
+      for (const Id target : instruction.operands.subspan(1)) decorations_[target] = decorations(instruction.operands[0]);
+      break;
+    case spv::OpVariable: add_variable(instruction); break;
+    default:
+      if (instruction.op >= spv::OpTypeVoid && instruction.op <= spv::OpTypeForwardPointer) add_type(instruction);
+      else if ((instruction.op >= spv::OpConstantTrue && instruction.op <= spv::OpSpecConstantOp) ||
+               (instruction.op == spv::OpUndef && open_block_ == 0))
+        add_constant(instruction);
+      else
+        add_to_function(instruction);
+      break;
+  }
+}
+
+void Module::add_capability(std::uint32_t capability) const {
+  if (!harmless_capability(capability))
+    throw user_error("{}: capability {} is not supported (vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are)",
+                     shader, capability);
+}
+
+void Module::add_entry_point(const Instruction& instruction) {
+  const spv::ExecutionModel wanted = stage_ == traces::ShaderStage::kVertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
+  if (instruction.operands[0] == static_cast<std::uint32_t>(wanted) && literal_string(instruction.operands.subspan(2)) == "main")
+    entry_function_ = instruction.operands[1];
+}
+
+void Module::add_decoration(Decorations& target, spv::Decoration decoration, std::span<const std::uint32_t> arguments) {
+  const std::int64_t value = arguments.empty() ? 0 : arguments[0];
+  switch (static_cast<std::uint32_t>(decoration)) {
+    case spv::DecorationBuiltIn: target.built_in = value; break;
+    case spv::DecorationLocation: target.location = value; break;
+    case spv::DecorationComponent: target.component = value; break;
+    case spv::DecorationBinding: target.binding = value; break;
+    case spv::DecorationDescriptorSet: target.set = value; break;
+    case spv::DecorationOffset: target.offset = value; break;
+    case spv::DecorationArrayStride: target.array_stride = value; break;
+    case spv::DecorationMatrixStride: target.matrix_stride = value; break;
+    case spv::DecorationIndex: target.index = value; break;
+    case spv::DecorationRowMajor: target.row_major = true; break;
+    case spv::DecorationFlat: target.flat = true; break;
+    case spv::DecorationNoPerspective: target.no_perspective = true; break;
+    default: break;  // precision, contraction, centroid, sample and the like do not change what is computed here
+  }
+}
+
+void Module::add_type(const Instruction& instruction) {
+  const auto operands = instruction.operands;
+  // The result of a type is its own id; the words after it are the operands.
+  Type type;
+  switch (static_cast<std::uint32_t>(instruction.op)) {
+    case spv::OpTypeVoid: type.kind = Type::Kind::kVoid; break;
+    case spv::OpTypeBool: type.kind = Type::Kind::kBool; type.scalars = 1; break;
+    case spv::OpTypeInt:
+    case spv::OpTypeFloat:
+      if (operands[0] != 32) throw user_error("{}: {}-bit types are not supported (32-bit ones are)", shader, operands[0]);
+      type.kind = instruction.op == spv::OpTypeInt ? Type::Kind::kInt : Type::Kind::kFloat;
+      type.is_signed = instruction.op == spv::OpTypeInt && operands[1] != 0;
+      type.scalars = 1;
+      break;
+    case spv::OpTypeVector:
+    case spv::OpTypeMatrix:
+      type.kind = instruction.op == spv::OpTypeVector ? Type::Kind::kVector : Type::Kind::kMatrix;
+      type.element = operands[0];
+      type.count = operands[1];
+      type.scalars = saturating_product(this->type(type.element).scalars, type.count);
+      break;
+    case spv::OpTypeArray: {
+      const std::vector<std::uint32_t>* length = constant(operands[1]);
+      if (length == nullptr || length->size() != 1) throw user_error("{}: the length of array type %{} is not a constant", shader, instruction.result);
+      type.kind = Type::Kind::kArray;
+      type.element = operands[0];
+      type.count = (*length)[0];
+      type.scalars = saturating_product(this->type(type.element).scalars, type.count);
+      break;
+    }
+    case spv::OpTypeStruct: {
+      type.kind = Type::Kind::kStruct;
+      type.members.assign(operands.begin(), operands.end());
+      std::uint64_t sum = 0;
+      for (const Id member : type.members) sum += this->type(member).scalars;
+      type.scalars = saturating_product(sum, 1);
+      break;
+    }
+    case spv::OpTypePointer: type.kind = Type::Kind::kPointer; type.element = operands[1]; break;
+    case spv::OpTypeImage:
+      // Word order: sampled type, dimension, depth, arrayed, multisampled, sampled.
+      type.count = operands[1] == spv::Dim2D && operands[3] == 0 && operands[4] == 0 && operands[5] == 1 ? 2 : 0;
+      type.element = operands[0];
+      break;
+    case spv::OpTypeSampledImage: type.kind = Type::Kind::kSampledImage; type.element = operands[0]; break;
+    default: break;
+  }
+  types_[instruction.result] = std::move(type);
+}
+
+void Module::add_constant(const Instruction& instruction) {
+  std::vector<std::uint32_t> value;
+  switch (static_cast<std::uint32_t>(instruction.op)) {
+    case spv::OpConstantTrue:
+    case spv::OpSpecConstantTrue: value = {0xffffffffu}; break;
+    case spv::OpConstantFalse:
+    case spv::OpSpecConstantFalse: value = {0}; break;
+    case spv::OpConstant:
+    case spv::OpSpecConstant: value = {instruction.operands[0]}; break;
+    case spv::OpConstantComposite:
+    case spv::OpSpecConstantComposite:
+      for (const Id part : instruction.operands) {
+        const std::vector<std::uint32_t>* words = constant(part);
+        if (words == nullptr) throw user_error("{}: constant %{} has a part that is none", shader, instruction.result);
+        value.insert(value.end(), words->begin(), words->end());
+        if (value.size() > kMaxValueScalars) throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
+      }
+      break;
+    case spv::OpConstantNull:
+    case spv::OpUndef: {
+      const std::uint32_t scalars = type(instruction.type).scalars;
+      if (scalars > kMaxValueScalars) throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
+      value.assign(scalars, 0);
+      break;
+    }
+    default: throw user_error("{}: specialisation constant {} has no default that can be evaluated", shader, name(instruction.result));
+  }
+  constant_types_[instruction.result] = instruction.type;
+  constants_[instruction.result] = std::move(value);
+}
+
+void Module::add_variable(const Instruction& instruction) {
+  if (open_function_ != 0 && open_function_ != entry_function_) throw user_error("{}: a function call is left that cannot be expanded in place", shader);
+  Variable variable;
+  variable.id = instruction.result;
+  variable.type = type(instruction.type).element;
+  variable.storage = static_cast<spv::StorageClass>(instruction.operands[0]);
+  if (instruction.operands.size() > 1) variable.initializer = instruction.operands[1];
+  variables.push_back(variable);
+}
+
+void Module::add_to_function(const Instruction& instruction) {
+  if (instruction.op == spv::OpFunction) open_function_ = instruction.result;
+  if (open_function_ != entry_function_) return;
+  switch (static_cast<std::uint32_t>(instruction.op)) {
+    case spv::OpFunction:
+    case spv::OpFunctionEnd: open_block_ = 0; break;
+    case spv::OpLabel:
+      open_block_ = instruction.result;
+      if (entry == 0) entry = instruction.result;
+      blocks[open_block_].label = open_block_;
+      break;
+    case spv::OpSelectionMerge:
+    case spv::OpLoopMerge: {
+      Block& open = blocks[open_block_];
+      open.merge_kind = instruction.op;
+      open.merge = instruction.operands[0];
+      if (instruction.op == spv::OpSelectionMerge) break;
+      open.continue_target = instruction.operands[1];
+      open.loop_control = instruction.operands[2];
+      break;
+    }
+    case spv::OpBranch:
+    case spv::OpBranchConditional:
+    case spv::OpSwitch:
+    case spv::OpReturn:
+    case spv::OpReturnValue:
+    case spv::OpKill:
+    case spv::OpTerminateInvocation:
+    case spv::OpUnreachable: blocks[open_block_].terminator = instruction; break;
+    default:
+      if (open_block_ != 0) blocks[open_block_].body.push_back(instruction);
+      break;
+  }
+}
+
+}  // namespace quadrille::pipeline::spirv

@@ -1,0 +1,115 @@
+/// A SPIR-V module as the lowering reads it: types, constants, decorations and the blocks of the one function that is left after optimisation.
+#pragma once
+
+#include "traces/command_stream.h"
+
+#ifndef SPV_ENABLE_UTILITY_CODE
+#define SPV_ENABLE_UTILITY_CODE
+#endif
+#include <spirv/unified1/spirv.hpp>
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace quadrille::pipeline::spirv {
+
+using Id = std::uint32_t;
+
+struct Type {
+  enum class Kind : std::uint8_t { kVoid, kBool, kInt, kFloat, kVector, kMatrix, kArray, kStruct, kPointer, kSampledImage, kOther };
+  Kind kind = Kind::kOther;
+  bool is_signed = false;
+  Id element = 0;             ///< component, column, array element, pointee or image
+  std::uint32_t count = 0;    ///< components, columns or array elements
+  std::vector<Id> members;    ///< struct
+  std::uint32_t scalars = 0;  ///< 32-bit scalars in a value of this type, flattened; 0 for what has none
+};
+
+/// Decorations of an id or of a struct member that the compiler reads. -1: not decorated.
+struct Decorations {
+  std::int64_t built_in = -1, location = -1, component = -1, binding = -1, set = -1, offset = -1, array_stride = -1, matrix_stride = -1, index = -1;
+  bool row_major = false, flat = false, no_perspective = false;
+};
+
+struct Instruction {
+  spv::Op op = spv::OpNop;
+  Id type = 0, result = 0;
+  std::span<const std::uint32_t> operands;  ///< after result type and result
+  std::uint32_t line = 0;                   ///< of the nearest OpLine, 0: unknown
+};
+
+struct Block {
+  Id label = 0;
+  std::vector<Instruction> body;          ///< without label, merge and terminator
+  Instruction terminator;
+  spv::Op merge_kind = spv::OpNop;        ///< OpSelectionMerge, OpLoopMerge or none
+  Id merge = 0, continue_target = 0;
+  std::uint32_t loop_control = 0;         ///< spv::LoopControlMask
+};
+
+struct Variable {
+  Id id = 0, type = 0;                    ///< `type` is the pointee
+  spv::StorageClass storage = spv::StorageClassFunction;
+  Id initializer = 0;
+};
+
+/// Most scalars in one value; larger ones are refused.
+inline constexpr std::uint32_t kMaxValueScalars = 4096;
+
+class Module {
+ public:
+  /// Reads an optimised, valid module. Throws `UserError` naming `shader` for what the compiler cannot take: other capabilities than Shader and its kin,
+  /// several functions, no entry point "main" of the stage.
+  Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std::string_view shader);
+
+  [[nodiscard]] const Type& type(Id id) const;
+  [[nodiscard]] const Decorations& decorations(Id id) const;
+  [[nodiscard]] const Decorations& member_decorations(Id type, std::uint32_t member) const;
+  [[nodiscard]] const Block& block(Id label) const;
+  /// The value of a constant, flattened to words; null if `id` is none.
+  [[nodiscard]] const std::vector<std::uint32_t>* constant(Id id) const;
+  [[nodiscard]] Id constant_type(Id id) const;
+  /// Quoted OpName of an id, or its number.
+  [[nodiscard]] std::string name(Id id) const;
+  /// Builds "shader:line: text"; the line is left out where the module has none.
+  [[nodiscard]] std::string at(const Instruction& instruction, std::string_view text) const;
+
+  std::string shader;
+  Id entry = 0;                              ///< label of the first block
+  std::vector<Variable> variables;           ///< module scope and function scope
+  std::unordered_map<Id, Block> blocks;
+  std::unordered_map<Id, Id> glsl_imports;   ///< ids of OpExtInstImport "GLSL.std.450"
+  bool early_fragment_tests = false;
+  Id bound = 0;
+
+ private:
+  void add(const Instruction& instruction);
+  void add_type(const Instruction& instruction);
+  void add_constant(const Instruction& instruction);
+  void add_decoration(Decorations& target, spv::Decoration decoration, std::span<const std::uint32_t> arguments);
+  void add_variable(const Instruction& instruction);
+  void add_entry_point(const Instruction& instruction);
+  void add_capability(std::uint32_t capability) const;
+  void add_to_function(const Instruction& instruction);
+
+  std::vector<std::uint32_t> words_;
+  traces::ShaderStage stage_;
+  std::unordered_map<Id, Type> types_;
+  std::unordered_map<Id, std::vector<std::uint32_t>> constants_;
+  std::unordered_map<Id, Id> constant_types_;
+  std::unordered_map<Id, Decorations> decorations_;
+  std::map<std::pair<Id, std::uint32_t>, Decorations> member_decorations_;
+  std::unordered_map<Id, std::string> names_;
+  Id entry_function_ = 0, open_function_ = 0, open_block_ = 0;
+  std::uint32_t line_ = 0;
+};
+
+/// "OpName" of an opcode, for messages.
+[[nodiscard]] std::string opcode_name(spv::Op op);
+
+}  // namespace quadrille::pipeline::spirv

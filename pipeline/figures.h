@@ -1,0 +1,74 @@
+/// The figures of one frame: what each unit did and where its time went, who moved how many bytes, and the laws they must obey.
+#pragma once
+
+#include "pipeline/machine.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace quadrille::pipeline {
+
+struct CounterFigure {
+  std::string name, unit, definition;
+  std::uint64_t value = 0;
+};
+
+/// Cycles that a unit waited for one of its ports.
+struct WaitFigure {
+  std::string port;
+  bool input = true;
+  std::int64_t cycles = 0;
+};
+
+struct UnitFigures {
+  std::string path;
+  std::int64_t cycles = 0, busy = 0, starved = 0, blocked = 0, idle = 0;   ///< of the unit's clock; the last four add up to the first
+  std::vector<WaitFigure> waits;                                           ///< longest first, ports that cost nothing left out
+  std::vector<CounterFigure> counters;
+};
+
+struct ClientFigures {
+  std::string name;
+  std::uint64_t read_bytes = 0, write_bytes = 0;
+};
+
+/// A law: two counts of the same thing, taken from different events in different units.
+struct Check {
+  std::string law;
+  std::string left_name, right_name;
+  std::uint64_t left = 0, right = 0;
+  [[nodiscard]] bool holds() const { return left == right; }
+};
+
+struct FrameFigures {
+  std::int64_t cycles = 0;             ///< of the GPU clock, from the first command to the last pixel read by scan-out
+  std::int64_t render_cycles = 0;      ///< until the last pass was flushed
+  double clock_mhz = 0;
+  std::uint64_t draws = 0, triangles = 0, vertices = 0;
+  std::uint64_t fragments_covered = 0;   ///< before any depth test; what Hi-Z dropped is not among them
+  std::uint64_t fragments_shaded = 0;    ///< live lanes
+  std::uint64_t helper_lanes = 0, fragment_warps = 0, fragments_written = 0;
+};
+
+struct HostFigures {
+  double load_s = 0, build_s = 0, simulate_s = 0, wall_s = 0;
+  double fragments_per_s = 0, cycles_per_s = 0, peak_rss_mib = 0;
+  std::uint64_t actions = 0;
+};
+
+struct Figures {
+  std::string scene, machine, fidelity = "exact";
+  FrameFigures frame;
+  std::vector<UnitFigures> units;
+  std::vector<ClientFigures> bandwidth;
+  std::vector<Check> checks;
+  std::vector<LeftOut> left_out;
+  HostFigures host;
+  [[nodiscard]] bool checks_hold() const;
+};
+
+/// Reads the figures of a machine that has run. `host` is left to the caller.
+[[nodiscard]] Figures collect_figures(const Machine& machine, const DeviceFrame& frame);
+
+}  // namespace quadrille::pipeline

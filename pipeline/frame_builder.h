@@ -1,0 +1,40 @@
+/// The driver: turns a command stream into what the machine executes. Allocates device memory, uploads and tiles, compiles shaders, resolves state by draw.
+///
+/// Only what some draw reads is uploaded and compiled in; what was left out is listed with the reason.
+#pragma once
+
+#include "hw/frame/frame.h"
+#include "pipeline/compiler/compile.h"
+#include "traces/command_stream.h"
+
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace quadrille::pipeline {
+
+/// Something this frame does not need and that was therefore not built or computed.
+struct LeftOut {
+  std::string what, why, saved;
+};
+
+/// A frame with the memory and programs it refers to. Not movable: the frame points into it.
+struct DeviceFrame {
+  explicit DeviceFrame(std::uint64_t memory_limit) : memory(memory_limit) {}
+  DeviceFrame(const DeviceFrame&) = delete;
+  DeviceFrame& operator=(const DeviceFrame&) = delete;
+  models::DeviceMemory memory;
+  std::deque<CompiledPipeline> programs;
+  hw::Frame frame;
+  std::vector<LeftOut> left_out;
+  std::uint64_t buffer_bytes = 0, texture_bytes = 0, surface_bytes = 0;
+  [[nodiscard]] bool reads_textures() const;
+  [[nodiscard]] bool tests_depth() const;
+  [[nodiscard]] bool blends() const;
+};
+
+/// Fills `out` from a validated stream. Throws `UserError` for a shader that does not compile, a stage interface that does not match, or memory that does
+/// not fit.
+void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out);
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,129 @@
+/// A machine: every parameter of every unit and link, by path. Loaded from TOML, changed by `--set`, printed by `quadrille describe`.
+///
+/// Paths are `group.parameter`: `gpu.cores`, `coarse_raster.tests_per_clk`, `link.coarse_to_fine.depth`. An unknown key or an illegal value is an error that
+/// names the file, the line, the key and the legal values.
+#pragma once
+
+#include "hw/command/command_processor.h"
+#include "hw/display/scan_out.h"
+#include "hw/geometry/clipper.h"
+#include "hw/geometry/primitive_assembly.h"
+#include "hw/geometry/triangle_setup.h"
+#include "hw/geometry/vertex_fetch.h"
+#include "hw/memory/l2_slice.h"
+#include "hw/memory/memory_channel.h"
+#include "hw/raster/coarse_raster.h"
+#include "hw/raster/fine_raster.h"
+#include "hw/raster/warp_packer.h"
+#include "hw/rop/depth_unit.h"
+#include "hw/rop/rop.h"
+#include "hw/shader/shader_core.h"
+#include "hw/shader/work_distributor.h"
+#include "hw/texture/texture_unit.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace quadrille::pipeline {
+
+/// The whole: how many of each unit, clocks, widths.
+struct GpuParams : hw::ParamGroup {
+  hw::Param<int> cores{*this, "cores", 4, "core", {1, 64}, "Shader cores, each with a texture unit. [G: a small integrated GPU]"};
+  hw::Param<int> partitions{*this, "partitions", 2, "partition", {1, 64}, "Screen partitions, each with a depth unit, a warp packer and a ROP. [G]"};
+  hw::Param<int> channels{*this, "channels", 2, "channel", {1, 64}, "Memory channels, each with an L2 slice. [G]"};
+  hw::Param<double> clock_mhz{*this, "clock_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of everything but the memory channels. [G]"};
+  hw::Param<double> memory_mhz{*this, "memory_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of the memory channels. [G]"};
+  hw::Param<int> memory_mib{*this, "memory_mib", 4096, "MiB", {1, 16384}, "Device memory. [G]"};
+  hw::Param<int> subpixel_bits{*this, "subpixel_bits", 8, "bit", {4, 12}, "Fractional bits of window positions. [VK1.3 limit subPixelPrecisionBits]"};
+  hw::Param<int> subtexel_bits{*this, "subtexel_bits", 8, "bit", {1, 8}, "Fractional bits of texture coordinates. [VK1.3 limit subTexelPrecisionBits]"};
+  hw::Param<int> lod_bits{*this, "lod_bits", 8, "bit", {1, 8}, "Fractional bits of the level of detail. [VK1.3 limit mipmapPrecisionBits]"};
+};
+
+/// One class of links. Full rate needs depth >= width * (latency + credit_latency).
+struct LinkParams : hw::ParamGroup {
+  LinkParams(int depth_default, int width_default, int latency_default)
+      : depth{*this, "depth", depth_default, "token", {1, 1 << 20}, "Tokens the link holds."},
+        width{*this, "width", width_default, "token/clk", {1, 64}, "Tokens a cycle."},
+        latency{*this, "latency", latency_default, "clk", {1, 1 << 24}, "Cycles from push to visibility."},
+        credit_latency{*this, "credit_latency", 1, "clk", {1, 1 << 24}, "Cycles from pop to a usable slot."} {}
+  hw::Param<int> depth, width, latency, credit_latency;
+  [[nodiscard]] hw::LinkSpec spec() const { return {depth, width, latency, credit_latency}; }
+};
+
+struct Links {
+  LinkParams command_to_fetch{4, 1, 1};
+  LinkParams fetch_to_distributor{8, 1, 1};
+  LinkParams fetch_to_assembly{64, 1, 1};
+  LinkParams setup_to_fetch{4, 1, 1};
+  LinkParams core_to_assembly{8, 1, 1};
+  LinkParams assembly_to_clipper{8, 1, 1};
+  LinkParams clipper_to_setup{8, 1, 4};
+  LinkParams setup_to_coarse{16, 1, 4};
+  LinkParams coarse_to_fine{32, 1, 2};
+  LinkParams fine_to_depth{32, 1, 2};
+  LinkParams depth_to_coarse{16, 1, 4};
+  LinkParams depth_to_packer{16, 1, 2};
+  LinkParams packer_to_distributor{8, 1, 1};
+  LinkParams packer_to_rop{64, 1, 1};
+  LinkParams rop_to_packer{8, 1, 1};
+  LinkParams distributor_to_core{4, 1, 2};
+  LinkParams core_to_rop{8, 1, 2};
+  LinkParams rop_to_depth{8, 1, 2};
+  LinkParams depth_to_rop{8, 1, 2};
+  LinkParams rop_to_setup{8, 1, 2};
+  LinkParams rop_to_command{8, 1, 2};
+  LinkParams core_to_texture{8, 1, 2};
+  LinkParams texture_to_core{8, 1, 2};
+  LinkParams client_to_l2{16, 1, 8};
+  LinkParams l2_to_client{16, 1, 8};
+  LinkParams l2_to_memory{16, 1, 2};
+  LinkParams memory_to_l2{16, 1, 2};
+  LinkParams command_to_scan{2, 1, 1};
+  LinkParams scan_to_command{2, 1, 1};
+};
+
+class MachineConfig {
+ public:
+  MachineConfig();
+  MachineConfig(const MachineConfig&) = delete;
+  MachineConfig& operator=(const MachineConfig&) = delete;
+
+  GpuParams gpu;
+  hw::CommandProcessor::Params command_processor;
+  hw::VertexFetch::Params vertex_fetch;
+  hw::Clipper::Params clipper;
+  hw::TriangleSetupUnit::Params triangle_setup;
+  hw::CoarseRaster::Params coarse_raster;
+  hw::FineRaster::Params fine_raster;
+  hw::WarpPacker::Params warp_packer;
+  hw::ShaderCore::Params core;
+  hw::TextureUnit::Params texture;
+  hw::DepthUnit::Params depth;
+  hw::Rop::Params rop;
+  hw::L2Slice::Params l2;
+  hw::MemoryChannel::Params memory;
+  hw::ScanOut::Params scan_out;
+  Links link;
+
+  std::string name = "default";
+
+  /// Every group with its path, in the order of the pipeline.
+  [[nodiscard]] const std::vector<std::pair<std::string, hw::ParamGroup*>>& groups() const { return groups_; }
+  /// Sets `group.parameter` from text. Throws `UserError` naming the key and what is legal; `where` (a file and line, or a flag) leads the message.
+  void set(std::string_view key, std::string_view value, std::string_view where);
+  /// Checks that hold between parameters.
+  void check() const;
+  [[nodiscard]] models::Precision precision() const { return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits}; }
+
+ private:
+  std::vector<std::pair<std::string, hw::ParamGroup*>> groups_;
+};
+
+/// Applies a machine file: a path ending in .toml, or the name of a machine in configs/. Throws `UserError`.
+void load_machine(MachineConfig& config, const std::string& name_or_path);
+/// Names of the machines that come with the program.
+[[nodiscard]] std::vector<std::string> machine_names();
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,93 @@
+#include "pipeline/render.h"
+
+#include <sys/resource.h>
+
+#include <bit>
+#include <chrono>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+double peak_rss_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+FrameImage read_image(const DeviceFrame& frame) {
+  FrameImage image;
+  if (frame.frame.passes.empty()) return image;
+  const hw::PassState& pass = frame.frame.passes.back();
+  frame.memory.check_readable(pass.color.base, pass.color.bytes(), models::DeviceMemory::kClean);
+  image.width = pass.color.width;
+  image.height = pass.color.height;
+  image.color = models::detile(frame.memory, pass.color);
+  if (pass.has_depth) {
+    const std::vector<std::uint32_t> bits = models::detile(frame.memory, pass.depth);
+    image.depth.reserve(bits.size());
+    for (const std::uint32_t b : bits) image.depth.push_back(std::bit_cast<float>(b));
+  }
+  return image;
+}
+
+void finish_host(HostFigures& host, const FrameFigures& frame) {
+  host.peak_rss_mib = peak_rss_mib();
+  if (host.simulate_s <= 0) return;
+  host.fragments_per_s = static_cast<double>(frame.fragments_shaded) / host.simulate_s;
+  host.cycles_per_s = static_cast<double>(frame.cycles) / host.simulate_s;
+}
+
+}  // namespace
+
+RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision, const TriangleObserver& observer) {
+  RenderedFrame out;
+  const auto start = Clock::now();
+  DeviceFrame frame(std::uint64_t{4} << 30);
+  build_frame(stream, precision, frame);
+  out.figures.host.build_s = seconds_since(start);
+  const auto simulate = Clock::now();
+  const FunctionalCounts counts = render_functional(frame.frame, frame.memory, observer);
+  out.figures.host.simulate_s = seconds_since(simulate);
+  out.figures.fidelity = "functional";
+  out.figures.scene = stream.name;
+  out.figures.left_out = frame.left_out;
+  FrameFigures& f = out.figures.frame;
+  f.draws = frame.frame.draws.size();
+  f.triangles = counts.triangles;
+  f.vertices = counts.vertices;
+  f.fragments_covered = counts.fragments_covered;
+  f.fragments_shaded = counts.fragments_shaded;
+  f.helper_lanes = counts.helper_lanes;
+  f.fragments_written = counts.fragments_written;
+  finish_host(out.figures.host, f);
+  out.image = read_image(frame);
+  return out;
+}
+
+RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config, const MachineOptions& options, const hw::RunLimits& limits) {
+  RenderedFrame out;
+  const auto start = Clock::now();
+  DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
+  build_frame(stream, config.precision(), frame);
+  Machine machine(config, frame, options);
+  const double build_s = seconds_since(start);
+  const auto simulate = Clock::now();
+  machine.run(limits);
+  const double simulate_s = seconds_since(simulate);
+  out.figures = collect_figures(machine, frame);
+  out.figures.scene = stream.name;
+  out.figures.machine = config.name;
+  if (options.window > 0) out.figures.fidelity = "approximate";
+  out.figures.host.build_s = build_s;
+  out.figures.host.simulate_s = simulate_s;
+  finish_host(out.figures.host, out.figures.frame);
+  out.image = read_image(frame);
+  return out;
+}
+
+}  // namespace quadrille::pipeline

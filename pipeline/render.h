@@ -1,0 +1,33 @@
+/// One frame from a command stream to an image and, when timed, its figures. What the program, the tests and the comparisons call.
+#pragma once
+
+#include "pipeline/figures.h"
+#include "pipeline/functional.h"
+#include "pipeline/machine_config.h"
+#include "traces/command_stream.h"
+
+#include <functional>
+#include <vector>
+
+namespace quadrille::pipeline {
+
+struct FrameImage {
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::uint32_t> color;   ///< RGBA8 as stored, red in the low byte; rows top to bottom
+  std::vector<float> depth;           ///< rows top to bottom; empty when the pass tests no depth
+};
+
+struct RenderedFrame {
+  FrameImage image;
+  Figures figures;
+};
+
+/// Values only, no time: the same image as `render_exact`, bit for bit. `figures` holds the frame's counts, the host times and what was left out.
+[[nodiscard]] RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision,
+                                                    const TriangleObserver& observer = {});
+
+/// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream or the machine cannot do.
+[[nodiscard]] RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config, const MachineOptions& options = {},
+                                         const hw::RunLimits& limits = {});
+
+}  // namespace quadrille::pipeline

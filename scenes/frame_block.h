@@ -1,0 +1,21 @@
+/// The uniform block that all draws of a frame share: camera, sky and lights (`Frame` in scenes/shaders/interface.glsl).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "scenes/camera.h"
+#include "scenes/scene_data.h"
+
+namespace quadrille::scenes {
+
+/// The lights of the scene in the shader's order (directional, point, spot), or the default key light when there are none. At most 256.
+/// Throws `UserError` beyond that.
+[[nodiscard]] std::vector<Light> frame_lights(const SceneData& scene, const View& view);
+/// The block's bytes, std140.
+[[nodiscard]] std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights);
+/// What the fragment shader is compiled for: numbers of lights by kind, loop unrolling, projection.
+[[nodiscard]] std::vector<std::string> frame_defines(const View& view, const std::vector<Light>& lights);
+
+}  // namespace quadrille::scenes

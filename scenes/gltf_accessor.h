@@ -1,0 +1,38 @@
+/// Accessors: typed views into a file's buffers, with stride, normalization and sparse replacements. [glTF2.0 #accessors]
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scenes/gltf_file.h"
+#include "scenes/scene_data.h"
+
+namespace quadrille::scenes {
+
+enum class Component : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kUint32, kFloat };
+/// Bytes of one component.
+[[nodiscard]] std::size_t component_bytes(Component component);
+
+/// The elements of an accessor, packed tightly in their own component type.
+struct Elements {
+  Component component = Component::kFloat;
+  std::size_t components = 1;   ///< an element
+  bool normalized = false;
+  std::uint32_t count = 0;
+  std::vector<std::byte> data;
+};
+
+/// Fetches accessor `index`: strides resolved, sparse values put in, zeros where it has no buffer view. Throws `UserError` with `place` and `index`
+/// when anything about it is out of range, is a matrix, or takes more than 1 GiB.
+[[nodiscard]] Elements read_accessor(const GltfFile& file, int index, const std::string& place);
+
+/// One component as a float; normalized integers by glTF's table. [glTF2.0 #animations: decoding of normalized integers]
+[[nodiscard]] float component_value(const Elements& elements, std::size_t element, std::size_t component);
+
+/// Elements as a vertex stream for `semantic`, keeping 8- and 16-bit normalized components where a vertex format has them. Throws `UserError` with `place`
+/// for a type that glTF does not allow there, or values that are not finite.
+[[nodiscard]] Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic semantic, const std::string& place);
+
+}  // namespace quadrille::scenes

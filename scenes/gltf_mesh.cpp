@@ -1,0 +1,143 @@
+#include "scenes/gltf_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "models/base/error.h"
+#include "scenes/gltf_accessor.h"
+#include "scenes/gltf_material.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::uint64_t kMaxGeometryBytes = std::uint64_t{3} << 29;   // 1.5 GiB of decoded streams
+constexpr std::array<const char*, kSemantics> kAttributeNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
+
+/// [glTF2.0 #meshes: mode]
+traces::Topology topology(const GltfFile& file, int mode, const std::string& place) {
+  constexpr std::array<const char*, 4> kUnsupported{"POINTS", "LINES", "LINE_LOOP", "LINE_STRIP"};
+  switch (mode) {
+    case -1:
+    case TINYGLTF_MODE_TRIANGLES: return traces::Topology::kTriangleList;
+    case TINYGLTF_MODE_TRIANGLE_STRIP: return traces::Topology::kTriangleStrip;
+    case TINYGLTF_MODE_TRIANGLE_FAN: return traces::Topology::kTriangleFan;
+    case TINYGLTF_MODE_POINTS:
+    case TINYGLTF_MODE_LINE:
+    case TINYGLTF_MODE_LINE_LOOP:
+    case TINYGLTF_MODE_LINE_STRIP:
+      throw user_error("{}: {}: primitive mode {} is not supported (TRIANGLES, TRIANGLE_STRIP and TRIANGLE_FAN are)", file.path, place,
+                       kUnsupported[static_cast<std::size_t>(mode)]);
+    default: throw user_error("{}: {}: primitive mode {} is not one of glTF's", file.path, place, mode);
+  }
+}
+
+}  // namespace
+
+const std::vector<std::uint32_t>& MeshReader::primitives(int index) {
+  const auto [entry, added] = meshes_.try_emplace(index);
+  if (!added) return entry->second;
+  const tinygltf::Mesh& mesh = file_.model.meshes[static_cast<std::size_t>(index)];
+  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+    Primitive primitive;
+    const std::string place = fmt::format("meshes[{}].primitives[{}]", index, i);
+    primitive.name = mesh.name.empty() ? place : fmt::format("{}[{}]", mesh.name, i);
+    if (!read_primitive(mesh.primitives[i], place, primitive)) continue;
+    entry->second.push_back(static_cast<std::uint32_t>(scene_.primitives.size()));
+    scene_.primitives.push_back(std::move(primitive));
+  }
+  return entry->second;
+}
+
+bool MeshReader::read_primitive(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+  primitive.topology = topology(file_, source.mode, place);
+  if (!source.attributes.contains("POSITION")) return false;   // nothing to draw [glTF2.0 #meshes-overview]
+  read_attributes(source, place, primitive);
+  const int positions = primitive.attributes[0];
+  primitive.count = scene_.arrays[static_cast<std::size_t>(positions)].count;
+  if (source.indices >= 0) read_indices(source, place, primitive);
+  primitive.material = material(source.material, place);
+  const auto [box, added] = bounds_.try_emplace(positions);
+  if (added) box->second = position_bounds(scene_.arrays[static_cast<std::size_t>(positions)]);
+  primitive.bounds = box->second;
+  return true;
+}
+
+void MeshReader::read_attributes(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+  for (std::size_t i = 0; i < kSemantics; ++i) {
+    const auto found = source.attributes.find(kAttributeNames[i]);
+    if (found == source.attributes.end()) continue;
+    const std::string at = fmt::format("{}.attributes.{}", place, kAttributeNames[i]);
+    primitive.attributes[i] = vertex_array(found->second, static_cast<Semantic>(i), at);
+    const std::uint32_t count = scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])].count;
+    const std::uint32_t positions = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
+    if (count != positions) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, at, count, positions);
+  }
+}
+
+void MeshReader::read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+  const std::string at = place + ".indices";
+  primitive.indices = index_array(source.indices, at);
+  primitive.index_type = index_arrays_.at(source.indices).second;
+  const std::uint32_t largest = largest_index_.at(primitive.indices);
+  if (largest >= primitive.count) throw user_error("{}: {}: accessor {}: index {} is beyond {} vertices", file_.path, at, source.indices, largest, primitive.count);
+  primitive.count = scene_.arrays[static_cast<std::size_t>(primitive.indices)].count;
+}
+
+int MeshReader::add_array(Array array, const std::string& place) {
+  array.name = place;
+  total_bytes_ += array.data.size();
+  if (total_bytes_ > kMaxGeometryBytes) throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, kMaxGeometryBytes);
+  scene_.arrays.push_back(std::move(array));
+  return static_cast<int>(scene_.arrays.size() - 1);
+}
+
+int MeshReader::vertex_array(int accessor, Semantic semantic, const std::string& place) {
+  const auto found = vertex_arrays_.find({accessor, semantic});
+  if (found != vertex_arrays_.end()) return found->second;
+  const int array = add_array(to_vertex_array(file_, read_accessor(file_, accessor, place), semantic, fmt::format("{}: accessor {}", place, accessor)), place);
+  return vertex_arrays_[{accessor, semantic}] = array;
+}
+
+int MeshReader::index_array(int accessor, const std::string& place) {
+  const auto found = index_arrays_.find(accessor);
+  if (found != index_arrays_.end()) return found->second.first;
+  Elements elements = read_accessor(file_, accessor, place);
+  const bool is_unsigned = elements.component == Component::kUint8 || elements.component == Component::kUint16 || elements.component == Component::kUint32;
+  if (elements.components != 1 || !is_unsigned) throw user_error("{}: {}: accessor {}: indices are unsigned scalars", file_.path, place, accessor);
+  const std::size_t size = component_bytes(elements.component);
+  std::uint32_t largest = 0;
+  for (std::size_t i = 0; i < elements.count; ++i) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, &elements.data[i * size], size);
+    largest = std::max(largest, value);
+  }
+  const traces::IndexType type = size == 1 ? traces::IndexType::kUint8 : size == 2 ? traces::IndexType::kUint16 : traces::IndexType::kUint32;
+  const int array = add_array({{}, traces::Format::kUndefined, elements.count, std::move(elements.data)}, place);
+  largest_index_[array] = largest;
+  index_arrays_[accessor] = {array, type};
+  return array;
+}
+
+int MeshReader::material(int index, const std::string& place) {
+  if (index < -1 || index >= static_cast<int>(file_.model.materials.size())) {
+    throw user_error("{}: {}.material: material {} does not exist (the file has {})", file_.path, place, index, file_.model.materials.size());
+  }
+  const auto [entry, added] = materials_.try_emplace(index, static_cast<int>(scene_.materials.size()));
+  if (added) scene_.materials.push_back(index < 0 ? Material{} : read_material(file_, static_cast<std::size_t>(index)));
+  return entry->second;
+}
+
+Bounds MeshReader::position_bounds(const Array& positions) const {
+  Bounds box;
+  for (std::size_t i = 0; i < positions.count; ++i) {
+    glm::vec3 point;
+    std::memcpy(&point, &positions.data[i * sizeof(point)], sizeof(point));
+    box.add(point);
+  }
+  return box;
+}
+
+}  // namespace quadrille::scenes

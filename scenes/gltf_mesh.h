@@ -1,0 +1,43 @@
+/// glTF meshes as primitives over shared arrays.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/gltf_file.h"
+#include "scenes/scene_data.h"
+
+namespace quadrille::scenes {
+
+/// Converts meshes on demand into the tables of a scene; what two primitives share is converted once.
+class MeshReader {
+ public:
+  MeshReader(const GltfFile& file, SceneData& scene) : file_(file), scene_(scene) {}
+  /// The primitives (into `SceneData::primitives`) of mesh `index`. Throws `UserError` with the place of what is wrong.
+  [[nodiscard]] const std::vector<std::uint32_t>& primitives(int index);
+
+ private:
+  [[nodiscard]] bool read_primitive(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  void read_attributes(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  void read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  [[nodiscard]] int vertex_array(int accessor, Semantic semantic, const std::string& place);
+  [[nodiscard]] int index_array(int accessor, const std::string& place);
+  [[nodiscard]] int material(int index, const std::string& place);
+  [[nodiscard]] int add_array(Array array, const std::string& place);
+  [[nodiscard]] Bounds position_bounds(const Array& positions) const;
+
+  const GltfFile& file_;
+  SceneData& scene_;
+  std::map<int, std::vector<std::uint32_t>> meshes_;
+  std::map<std::pair<int, Semantic>, int> vertex_arrays_;
+  std::map<int, std::pair<int, traces::IndexType>> index_arrays_;
+  std::map<int, std::uint32_t> largest_index_;   ///< by index array
+  std::map<int, int> materials_;                 ///< the file's number (-1: the default material) to the scene's
+  std::map<int, Bounds> bounds_;                 ///< by position array
+  std::uint64_t total_bytes_ = 0;
+};
+
+}  // namespace quadrille::scenes

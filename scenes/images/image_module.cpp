@@ -1,0 +1,139 @@
+/// OpenImageIO behind the three functions of image_module.h. Nothing is thrown across that border.
+#include "scenes/images/image_module.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <vector>
+
+namespace {
+
+// One thread a call: the caller decodes several images at once.
+void configure() {
+  static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+  (void)done;
+}
+
+bool fail(QuadrilleImage& result, const std::string& text) {
+  const std::string line = text.substr(0, text.find('\n'));
+  std::memset(result.error, 0, sizeof(result.error));
+  line.copy(result.error, sizeof(result.error) - 1);
+  return false;
+}
+
+bool allocate(QuadrilleImage& result, std::size_t size) {
+  result.size = size;
+  result.data = std::malloc(size);
+  return result.data != nullptr || fail(result, "out of memory");
+}
+
+/// Grey to r=g=b, missing alpha to 255; pixels arrive with `channels` bytes each.
+void widen_to_rgba(const std::vector<std::uint8_t>& in, std::size_t channels, std::uint8_t* out) {
+  const bool color = channels >= 3;
+  for (std::size_t i = 0, o = 0; i + channels <= in.size(); i += channels, o += 4) {
+    out[o] = in[i];
+    out[o + 1] = color ? in[i + 1] : in[i];
+    out[o + 2] = color ? in[i + 2] : in[i];
+    out[o + 3] = channels == 4 ? in[i + 3] : channels == 2 ? in[i + 1] : std::uint8_t{255};
+  }
+}
+
+bool read_bytes(OIIO::ImageInput& input, QuadrilleImage& result) {
+  const std::size_t channels = std::min(result.channels, 4U);
+  std::vector<std::uint8_t> pixels(std::size_t{result.width} * result.height * channels);
+  if (!input.read_image(0, 0, 0, static_cast<int>(channels), OIIO::TypeDesc::UINT8, pixels.data())) return fail(result, input.geterror());
+  if (!allocate(result, std::size_t{4} * result.width * result.height)) return false;
+  widen_to_rgba(pixels, channels, static_cast<std::uint8_t*>(result.data));
+  result.channels = 4;
+  return true;
+}
+
+bool read_floats(OIIO::ImageInput& input, QuadrilleImage& result) {
+  if (!allocate(result, sizeof(float) * result.width * result.height * result.channels)) return false;
+  return input.read_image(0, 0, 0, static_cast<int>(result.channels), OIIO::TypeDesc::FLOAT, result.data) || fail(result, input.geterror());
+}
+
+bool decode(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint32_t max_side, QuadrilleImage& result) {
+  configure();
+  OIIO::Filesystem::IOMemReader memory(const_cast<void*>(bytes), size);
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
+  const auto input = OIIO::ImageInput::open(std::string("image.") + format, &config, proxy);
+  if (!input) return fail(result, OIIO::geterror());
+  const OIIO::ImageSpec& spec = input->spec();
+  const auto side = static_cast<int>(max_side);
+  if (spec.width < 1 || spec.height < 1 || spec.width > side || spec.height > side || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 64) {
+    return fail(result, "its size is not 1x1 to " + std::to_string(max_side) + "x" + std::to_string(max_side));
+  }
+  result.width = static_cast<std::uint32_t>(spec.width);
+  result.height = static_cast<std::uint32_t>(spec.height);
+  result.channels = static_cast<std::uint32_t>(spec.nchannels);
+  return as_float ? read_floats(*input, result) : read_bytes(*input, result);
+}
+
+OIIO::ImageSpec output_spec(std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float) {
+  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), as_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+  if (as_float && channels == 1) spec.channelnames = {"Z"};
+  if (as_float) {
+    spec.attribute("compression", "zip");
+  } else {
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("png:compressionLevel", 4);
+  }
+  return spec;
+}
+
+bool encode(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float, QuadrilleImage& result) {
+  configure();
+  std::vector<unsigned char> file;
+  OIIO::Filesystem::IOVecOutput memory(file);
+  const char* name = as_float ? "image.exr" : "image.png";
+  const auto output = OIIO::ImageOutput::create(name, &memory);
+  if (!output) return fail(result, OIIO::geterror());
+  const OIIO::ImageSpec spec = output_spec(width, height, channels, as_float);
+  if (!output->open(name, spec) || !output->write_image(spec.format, pixels) || !output->close()) return fail(result, output->geterror());
+  if (!allocate(result, file.size())) return false;
+  std::memcpy(result.data, file.data(), file.size());
+  return true;
+}
+
+template <class Call>
+bool guarded(QuadrilleImage* result, const Call& call) {
+  *result = {};
+  bool done = false;
+  try {
+    done = call();
+  } catch (const std::exception& error) {
+    done = fail(*result, error.what());
+  }
+  if (!done) {
+    std::free(result->data);
+    result->data = nullptr;
+  }
+  return done;
+}
+
+}  // namespace
+
+extern "C" {
+
+__attribute__((visibility("default"))) bool quadrille_images_decode(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint32_t max_side,
+                                                                    QuadrilleImage* result) {
+  return guarded(result, [&] { return decode(bytes, size, format, as_float, max_side, *result); });
+}
+
+__attribute__((visibility("default"))) bool quadrille_images_encode(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+                                                                    bool as_float, QuadrilleImage* result) {
+  return guarded(result, [&] { return encode(pixels, width, height, channels, as_float, *result); });
+}
+
+__attribute__((visibility("default"))) void quadrille_images_free(void* data) { std::free(data); }
+
+}  // extern "C"

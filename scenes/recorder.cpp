@@ -1,0 +1,228 @@
+#include "scenes/recorder.h"
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+
+#include <glm/ext/vector_double3.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "models/base/error.h"
+#include "scenes/mip_chain.h"
+#include "scenes/parallel.h"
+#include "traces/trace_file.h"
+
+namespace quadrille::scenes {
+namespace {
+
+// Slots of the bound state: pipeline, material set, index buffer, then a vertex stream for each semantic.
+constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kVertexSlot = 3;
+constexpr std::uint32_t kFrameSet = 0, kMaterialSet = 1;
+static_assert(offsetof(DrawConstants, draw_id) == 112 && offsetof(DrawConstants, handedness) + 4 == kDrawConstantBytes);
+
+/// `Material` of scenes/shaders/material.glsl, std140.
+struct MaterialBlock {
+  glm::vec4 base_color, emissive, factors;
+  std::array<glm::vec4, 2 * kTextureSlots> uv_rows;
+};
+
+MaterialBlock material_values(const Material& m) {
+  MaterialBlock block{m.base_color, glm::vec4(m.emissive, m.alpha_cutoff), {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength}, {}};
+  for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+    block.uv_rows[2 * slot] = glm::vec4(m.textures[slot].u_row, 0);
+    block.uv_rows[2 * slot + 1] = glm::vec4(m.textures[slot].v_row, 0);
+  }
+  return block;
+}
+
+template <class T>
+std::vector<std::byte> bytes_of(const T& value, std::size_t size = sizeof(T)) {
+  std::vector<std::byte> bytes(size);
+  std::memcpy(bytes.data(), &value, size);
+  return bytes;
+}
+
+bool is_srgb(std::size_t slot) { return slot == static_cast<std::size_t>(TextureSlot::kBaseColor) || slot == static_cast<std::size_t>(TextureSlot::kEmissive); }
+
+bool mirrors(const glm::mat4& world) { return glm::determinant(glm::mat3(world)) < 0; }
+
+/// Inverse transpose by cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its normals). The longest column is
+/// made one long, so that squares in the shader neither vanish nor overflow.
+std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world) {
+  const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
+  std::array<glm::dvec3, 3> columns{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
+  const double longest = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
+  const double scale = (mirrors(world) ? -1.0 : 1.0) / (longest > 0 ? longest : 1.0);
+  return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0), glm::vec4(columns[2] * scale, 0)};
+}
+
+const traces::BlendState kOver{true, traces::BlendFactor::kSrcAlpha, traces::BlendFactor::kOneMinusSrcAlpha, traces::BlendFactor::kOne,
+                               traces::BlendFactor::kOneMinusSrcAlpha, traces::BlendOp::kAdd, traces::BlendOp::kAdd, 0xf};
+
+}  // namespace
+
+Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
+    : scene_(scene), options_(options), view_(make_view(scene, options)), lights_(frame_lights(scene, view_)),
+      shaders_(options, frame_defines(view_, lights_), stream_.shaders), bound_(kVertexSlot + kSemantics, traces::EndPass{}) {}
+
+traces::CommandStream Recorder::record() {
+  stream_.name = scene_.name;
+  stream_.targets.push_back({options_.width, options_.height, options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
+                             scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
+  record_arrays();
+  record_textures();
+  const glm::vec3& back = scene_.background;
+  const std::array<float, 4> clear = options_.visibility ? std::array<float, 4>{0, 0, 0, 0} : std::array<float, 4>{back.r, back.g, back.b, 1};
+  stream_.commands.emplace_back(traces::BeginPass{0, clear, 1});
+  stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width), static_cast<float>(options_.height), 0, 1});
+  stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
+  record_frame_set();
+  for (const std::size_t i : draw_order()) record_instance(scene_.instances[i]);
+  stream_.commands.emplace_back(traces::EndPass{});
+  return std::move(stream_);
+}
+
+std::vector<std::size_t> Recorder::draw_order() const {
+  std::vector<std::size_t> order;
+  std::vector<std::pair<float, std::size_t>> blended;   // distance along the view direction, instance
+  for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+    const Primitive& primitive = scene_.primitives[scene_.instances[i].primitive];
+    if (scene_.materials[static_cast<std::size_t>(primitive.material)].alpha != AlphaMode::kBlend) {
+      order.push_back(i);
+      continue;
+    }
+    const Bounds box = primitive.bounds.transformed(scene_.instances[i].world);
+    blended.emplace_back(box.empty() ? 0.0F : glm::dot(view_.eye - box.center(), view_.toward_viewer), i);
+  }
+  std::ranges::stable_sort(blended, std::ranges::greater{}, &std::pair<float, std::size_t>::first);
+  for (const auto& [distance, i] : blended) order.push_back(i);
+  return order;
+}
+
+void Recorder::record_arrays() {
+  for (const Array& array : scene_.arrays) stream_.buffers.push_back({array.name, array.data});
+}
+
+const Variant& Recorder::variant(const Primitive& primitive) {
+  std::array<bool, kSemantics> available{};
+  for (std::size_t i = 0; i < kSemantics; ++i) available[i] = primitive.attributes[i] >= 0;
+  const auto [entry, added] = variants_.try_emplace({primitive.material, available});
+  if (added) entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive, shaders_.set());
+  return entry->second;
+}
+
+void Recorder::record_textures() {
+  std::set<TextureKey> used;
+  for (const Instance& instance : scene_.instances) {
+    const Primitive& primitive = scene_.primitives[instance.primitive];
+    const Variant& v = variant(primitive);
+    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+      if (v.textures[slot]) used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image, is_srgb(slot)});
+    }
+  }
+  const std::vector<TextureKey> keys(used.begin(), used.end());
+  stream_.images.resize(keys.size());
+  parallel_for(keys.size(), [&](std::size_t i) {
+    const auto source = static_cast<std::size_t>(keys[i].image);
+    const Rgba8Image& image = scene_.images[source];
+    stream_.images[i] = {scene_.image_names[source], keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm, image.width, image.height,
+                         full_chain_levels(image.width, image.height), build_mip_chain(image, keys[i].srgb)};
+  });
+  for (std::size_t i = 0; i < keys.size(); ++i) textures_[keys[i]] = static_cast<traces::Index>(i);
+}
+
+void Recorder::record_frame_set() {
+  const auto block = static_cast<traces::Index>(stream_.buffers.size());
+  stream_.buffers.push_back({"frame", frame_block(scene_, view_, lights_)});
+  const auto set = static_cast<traces::Index>(stream_.descriptor_sets.size());
+  stream_.descriptor_sets.push_back({{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
+  stream_.commands.emplace_back(traces::BindDescriptorSet{kFrameSet, set});
+}
+
+traces::Index Recorder::sampler(const traces::Sampler& wanted) {
+  const auto found = std::ranges::find(stream_.samplers, wanted);
+  if (found == stream_.samplers.end()) {
+    stream_.samplers.push_back(wanted);
+    return static_cast<traces::Index>(stream_.samplers.size() - 1);
+  }
+  return static_cast<traces::Index>(found - stream_.samplers.begin());
+}
+
+traces::Index Recorder::material_block(int material) {
+  const auto [entry, added] = material_blocks_.try_emplace(material, static_cast<traces::Index>(stream_.buffers.size()));
+  if (added) {
+    const Material& m = scene_.materials[static_cast<std::size_t>(material)];
+    stream_.buffers.push_back({"material " + m.name, bytes_of(material_values(m))});
+  }
+  return entry->second;
+}
+
+traces::Index Recorder::material_set(int material, const Variant& v) {
+  const auto [entry, added] = material_sets_.try_emplace({material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  if (!added) return entry->second;
+  traces::DescriptorSet set{{{0, material_block(material), 0, sizeof(MaterialBlock)}}, {}};
+  for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+    if (!v.textures[slot]) continue;
+    const TextureUse& use = scene_.materials[static_cast<std::size_t>(material)].textures[slot];
+    set.textures.push_back({static_cast<std::uint32_t>(1 + slot), textures_.at({use.image, is_srgb(slot)}), sampler(use.sampler)});
+  }
+  stream_.descriptor_sets.push_back(std::move(set));
+  return entry->second;
+}
+
+traces::Index Recorder::pipeline(const Primitive& primitive, const Material& material, const Variant& v, bool mirrored) {
+  traces::Pipeline p;
+  p.vertex_shader = shaders_.vertex(v);
+  p.fragment_shader = shaders_.fragment(v);
+  for (std::uint32_t i = 0; i < kSemantics; ++i) {
+    if (!v.attributes[i]) continue;
+    const traces::Format format = scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])].format;
+    p.bindings.push_back({i, traces::format_bytes(format), false});
+    p.attributes.push_back({i, i, format, 0});
+  }
+  const bool blended = material.alpha == AlphaMode::kBlend && !options_.visibility;
+  p.topology = primitive.topology;
+  p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
+  p.front = mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
+  p.depth = {scene_.depth, scene_.depth && !blended, traces::CompareOp::kLess};
+  if (blended) p.blend = kOver;
+  const auto found = std::ranges::find_if(stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
+  if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());
+  p.name = "pipeline " + std::to_string(stream_.pipelines.size());
+  stream_.pipelines.push_back(std::move(p));
+  return static_cast<traces::Index>(stream_.pipelines.size() - 1);
+}
+
+void Recorder::bind_once(const traces::Command& command, std::size_t slot) {
+  if (bound_[slot] == command) return;
+  bound_[slot] = command;
+  stream_.commands.push_back(command);
+}
+
+void Recorder::bind_geometry(const Primitive& primitive, const Variant& v) {
+  for (std::uint32_t i = 0; i < kSemantics; ++i) {
+    if (v.attributes[i]) bind_once(traces::BindVertexBuffer{i, static_cast<traces::Index>(primitive.attributes[i]), 0}, kVertexSlot + i);
+  }
+  if (primitive.indices >= 0) bind_once(traces::BindIndexBuffer{static_cast<traces::Index>(primitive.indices), 0, primitive.index_type}, kIndexSlot);
+}
+
+void Recorder::push_constants(const Instance& instance) {
+  const DrawConstants constants{instance.world, normal_matrix(instance.world), draws_, triangles_, mirrors(instance.world) ? -1.0F : 1.0F};
+  stream_.commands.emplace_back(traces::PushConstants{0, bytes_of(constants, kDrawConstantBytes)});
+}
+
+void Recorder::record_instance(const Instance& instance) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  const Variant& v = variant(primitive);
+  bind_once(traces::BindPipeline{pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], v, mirrors(instance.world))}, kPipelineSlot);
+  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, v)}, kSetSlot);
+  bind_geometry(primitive, v);
+  push_constants(instance);
+  stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, 1, 0, instance.label});
+  ++draws_;
+  triangles_ += traces::triangle_count(primitive.topology, primitive.count);
+}
+
+}  // namespace quadrille::scenes

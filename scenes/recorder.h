@@ -1,0 +1,68 @@
+/// Turns a scene and a view into commands: the part of a renderer that a driver sees.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenes/camera.h"
+#include "scenes/material_variant.h"
+#include "scenes/scene.h"
+#include "scenes/scene_data.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::scenes {
+
+/// Push constants of every draw (`PerDraw` of scenes/shaders/interface.glsl).
+struct DrawConstants {
+  glm::mat4 model{1};
+  std::array<glm::vec4, 3> normal_matrix{};   ///< columns of a mat3, 16 bytes apart
+  std::uint32_t draw_id = 0, first_triangle = 0;
+  float handedness = 1;
+};
+inline constexpr std::size_t kDrawConstantBytes = 124;
+
+/// Records one frame.
+class Recorder {
+ public:
+  Recorder(const SceneData& scene, const SceneOptions& options);
+  [[nodiscard]] traces::CommandStream record();
+
+ private:
+  struct TextureKey {
+    int image = 0;
+    bool srgb = false;
+    auto operator<=>(const TextureKey&) const = default;
+  };
+
+  /// Indices into `scene.instances`: opaque and masked ones in scene order, then blended ones back to front.
+  [[nodiscard]] std::vector<std::size_t> draw_order() const;
+  void record_arrays();
+  void record_textures();
+  void record_frame_set();
+  void record_instance(const Instance& instance);
+  void bind_geometry(const Primitive& primitive, const Variant& variant);
+  void push_constants(const Instance& instance);
+  void bind_once(const traces::Command& command, std::size_t slot);
+  [[nodiscard]] traces::Index pipeline(const Primitive& primitive, const Material& material, const Variant& variant, bool mirrored);
+  [[nodiscard]] traces::Index material_set(int material, const Variant& variant);
+  [[nodiscard]] traces::Index material_block(int material);
+  [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
+  [[nodiscard]] const Variant& variant(const Primitive& primitive);
+
+  const SceneData& scene_;
+  SceneOptions options_;
+  View view_;
+  std::vector<Light> lights_;
+  traces::CommandStream stream_;
+  ShaderLibrary shaders_;
+  std::map<TextureKey, traces::Index> textures_;
+  std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;               ///< by material and available attributes
+  std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
+  std::map<int, traces::Index> material_blocks_;
+  std::vector<traces::Command> bound_;   ///< what each slot holds, to leave out repeated binds
+  std::uint32_t draws_ = 0, triangles_ = 0;
+};
+
+}  // namespace quadrille::scenes

@@ -1,0 +1,43 @@
+/// Scenes as command streams: the one door through which glTF files and built-in scenes reach the machine.
+///
+/// A scene is read into a `SceneData` (scenes/scene_data.h), a camera is chosen and `record_scene` turns both into Vulkan-level commands: one pass, opaque
+/// and masked draws in scene order, then blended ones back to front. docs/scenes.md says what of glTF is covered and which defaults apply,
+/// docs/shaders.md what a shader of the user's own gets to see.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "traces/command_stream.h"
+
+namespace quadrille::scenes {
+
+struct SceneOptions {
+  std::uint32_t width = 1920, height = 1080;   ///< pixels, 1..16384
+  int camera = -1;                             ///< index into the file's cameras; -1: the first one a node carries, else one that frames the scene
+  std::optional<glm::vec3> eye, at;            ///< world space; either one makes an own camera (60 degrees high); the other defaults to the centre / the framing eye
+  bool visibility = false;                     ///< draw triangle ids instead of colours (see `triangle_id_color`)
+  std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
+};
+
+/// Loads a glTF file (.gltf, .glb) or `builtin:NAME` and records one frame. The stream is validated. Throws `UserError` with file, place and reason.
+[[nodiscard]] traces::CommandStream load_scene(const std::string& file_or_builtin, const SceneOptions& options);
+
+struct BuiltinScene {
+  std::string_view name;         ///< without the `builtin:`
+  std::string_view description;  ///< one line
+};
+[[nodiscard]] const std::vector<BuiltinScene>& builtin_scenes();
+
+/// The 32-bit colour (red in the low byte) that a visibility frame shows for triangle `number` (0-based over all draws in recording order):
+/// (number + 1) * 2654435761 mod 2^32, a bijection; the background is 0.
+[[nodiscard]] std::uint32_t triangle_id_color(std::uint32_t number);
+/// The inverse: the triangle number + 1, or 0 for the background.
+[[nodiscard]] std::uint32_t triangle_from_color(std::uint32_t color);
+
+}  // namespace quadrille::scenes

@@ -1,0 +1,135 @@
+/// A scene in memory, between the file it came from and the commands it becomes.
+///
+/// glTF's conventions: right-handed world, y up, metres; texture coordinates start at the upper left; a front face is counter-clockwise; matrices are
+/// column-major and act on column vectors. Colours are linear.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "scenes/image_io.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::scenes {
+
+/// An axis-aligned box; empty until a point is added.
+struct Bounds {
+  glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+  [[nodiscard]] bool empty() const { return !(low.x <= high.x); }
+  [[nodiscard]] glm::vec3 center() const { return 0.5F * (low + high); }
+  /// Half the diagonal: the radius of a sphere around the box.
+  [[nodiscard]] float radius() const;
+  void add(const glm::vec3& point);
+  void add(const Bounds& box);
+  /// The box around this one's eight corners after `matrix`.
+  [[nodiscard]] Bounds transformed(const glm::mat4& matrix) const;
+};
+
+/// Vertex attributes, in the order of their shader locations.
+enum class Semantic : std::uint8_t { kPosition, kNormal, kTangent, kUv0, kUv1, kColor };
+inline constexpr std::size_t kSemantics = 6;
+
+/// One tightly packed stream of vertex attributes or indices; primitives share them.
+struct Array {
+  std::string name;
+  traces::Format format = traces::Format::kUndefined;   ///< attributes; indices have none
+  std::uint32_t count = 0;
+  std::vector<std::byte> data;
+};
+
+struct Primitive {
+  std::string name;
+  traces::Topology topology = traces::Topology::kTriangleList;
+  std::array<int, kSemantics> attributes{-1, -1, -1, -1, -1, -1};   ///< into `SceneData::arrays`; -1: absent
+  int indices = -1;                                                 ///< into `SceneData::arrays`; -1: none
+  traces::IndexType index_type = traces::IndexType::kUint16;
+  std::uint32_t count = 0;                                          ///< indices, or vertices without them
+  int material = 0;
+  Bounds bounds;                                                    ///< model space
+};
+
+/// Texture roles; the shader binds slot i at binding 1 + i.
+enum class TextureSlot : std::uint8_t { kBaseColor, kMetallicRoughness, kNormal, kOcclusion, kEmissive };
+inline constexpr std::size_t kTextureSlots = 5;
+
+struct TextureUse {
+  int image = -1;   ///< into `SceneData::images`; -1: none
+  traces::Sampler sampler;
+  int uv_set = 0;
+  bool transformed = false;
+  glm::vec3 u_row{1, 0, 0}, v_row{0, 1, 0};   ///< u' = dot(u_row, (u, v, 1)), likewise v'
+};
+
+enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
+
+struct Material {
+  std::string name = "default";
+  glm::vec4 base_color{1};
+  float metallic = 1, roughness = 1, normal_scale = 1, occlusion_strength = 1;
+  glm::vec3 emissive{0};
+  AlphaMode alpha = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5F;
+  bool double_sided = false, unlit = false;
+  std::array<TextureUse, kTextureSlots> textures;
+  [[nodiscard]] const TextureUse& texture(TextureSlot slot) const { return textures[static_cast<std::size_t>(slot)]; }
+  [[nodiscard]] TextureUse& texture(TextureSlot slot) { return textures[static_cast<std::size_t>(slot)]; }
+};
+
+struct Instance {
+  std::uint32_t primitive = 0;
+  glm::mat4 world{1};
+  std::string label;
+};
+
+struct Light {
+  enum class Kind : std::uint8_t { kDirectional, kPoint, kSpot };
+  Kind kind = Kind::kDirectional;
+  glm::vec3 color{1};          ///< times intensity: lux (directional) or candela
+  glm::vec3 position{0};
+  glm::vec3 direction{0, 0, -1};   ///< the way light travels, unit length
+  float range = 0;             ///< metres; 0: unlimited
+  float inner_cone = 0, outer_cone = 0.7853982F;   ///< radians, spot
+};
+
+struct Camera {
+  std::string name;
+  bool perspective = true;
+  double yfov = 1.0471975511965976;   ///< radians
+  double half_height = 1;             ///< orthographic
+  double near = 0.1;
+  std::optional<double> far = 100;    ///< none: infinite (perspective)
+  std::optional<glm::mat4> pose;      ///< the node's world matrix; none: no node carries it
+};
+
+/// Light from everywhere, as the material shader knows it: radiance from straight above and from straight below.
+struct Environment {
+  glm::vec3 sky{0.50F, 0.57F, 0.68F}, ground{0.20F, 0.18F, 0.16F};
+};
+
+struct SceneData {
+  std::string name;
+  std::vector<Rgba8Image> images;
+  std::vector<std::string> image_names;
+  std::vector<Array> arrays;
+  std::vector<Material> materials;
+  std::vector<Primitive> primitives;
+  std::vector<Instance> instances;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+  Environment environment;
+  glm::vec3 background{0.30F, 0.42F, 0.58F};
+  bool depth = true;              ///< false: draw without depth test and depth attachment
+  /// The box around all instances, world space.
+  [[nodiscard]] Bounds bounds() const;
+};
+
+}  // namespace quadrille::scenes

@@ -1,0 +1,10 @@
+/// The texts of scenes/shaders/, put into the program when it is built.
+#pragma once
+
+#include <string_view>
+
+namespace quadrille::scenes {
+
+extern const std::string_view kInterfaceGlsl, kMaterialGlsl, kMaterialVert, kMaterialFrag, kVisibilityFrag;
+
+}  // namespace quadrille::scenes

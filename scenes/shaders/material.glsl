@@ -1,0 +1,66 @@
+// The material's parameters, textures and inputs, and what of them decides the alpha test; shared by the colour and the visibility shader.
+layout(set = 1, binding = 0, std140) uniform Material {
+  vec4 base_color;     // rgba, linear
+  vec4 emissive;       // rgb; w: alpha cut-off
+  vec4 factors;        // metallic, roughness, normal scale, occlusion strength
+  vec4 uv_rows[10];    // slot i: u' = dot(uv_rows[2 i].xyz, (u, v, 1)), v' by uv_rows[2 i + 1]
+} material;
+
+#ifdef NEEDS_POSITION
+layout(location = 0) in vec3 v_position;
+#endif
+#ifdef HAS_NORMAL
+layout(location = 1) in vec3 v_normal;
+#endif
+#ifdef HAS_TANGENT
+layout(location = 2) in vec4 v_tangent;
+#endif
+#ifdef HAS_UV0
+layout(location = 3) in vec2 v_uv0;
+#endif
+#ifdef HAS_UV1
+layout(location = 4) in vec2 v_uv1;
+#endif
+#ifdef HAS_COLOR
+layout(location = 5) in vec4 v_color;
+#endif
+layout(location = 0) out vec4 out_color;
+
+#ifdef BASE_COLOR_UV
+layout(set = 1, binding = 1) uniform sampler2D base_color_texture;
+#endif
+#ifdef METALLIC_ROUGHNESS_UV
+layout(set = 1, binding = 2) uniform sampler2D metallic_roughness_texture;
+#endif
+#ifdef NORMAL_UV
+layout(set = 1, binding = 3) uniform sampler2D normal_texture;
+#endif
+#ifdef OCCLUSION_UV
+layout(set = 1, binding = 4) uniform sampler2D occlusion_texture;
+#endif
+#ifdef EMISSIVE_UV
+layout(set = 1, binding = 5) uniform sampler2D emissive_texture;
+#endif
+
+// KHR_texture_transform of one slot.
+vec2 transform_uv(int slot, vec2 uv) {
+  vec3 p = vec3(uv, 1.0);
+  return vec2(dot(material.uv_rows[2 * slot].xyz, p), dot(material.uv_rows[2 * slot + 1].xyz, p));
+}
+
+vec4 read_base_color() {
+  vec4 color = material.base_color;
+#ifdef BASE_COLOR_UV
+  color *= texture(base_color_texture, BASE_COLOR_UV);
+#endif
+#ifdef HAS_COLOR
+  color *= v_color;
+#endif
+  return color;
+}
+
+void alpha_test(float alpha) {
+#ifdef ALPHA_MASK
+  if (alpha < material.emissive.w) discard;
+#endif
+}

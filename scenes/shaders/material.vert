@@ -1,0 +1,49 @@
+// Vertex shader of all materials. A define for each stream that the primitive has and the fragment shader reads.
+layout(location = 0) in vec3 position;
+#ifdef HAS_NORMAL
+layout(location = 1) in vec3 normal;
+layout(location = 1) out vec3 v_normal;
+#endif
+#ifdef HAS_TANGENT
+layout(location = 2) in vec4 tangent;
+layout(location = 2) out vec4 v_tangent;
+#endif
+#ifdef HAS_UV0
+layout(location = 3) in vec2 uv0;
+layout(location = 3) out vec2 v_uv0;
+#endif
+#ifdef HAS_UV1
+layout(location = 4) in vec2 uv1;
+layout(location = 4) out vec2 v_uv1;
+#endif
+#ifdef HAS_COLOR
+layout(location = 5) in vec4 color;
+layout(location = 5) out vec4 v_color;
+#endif
+#ifdef NEEDS_POSITION
+layout(location = 0) out vec3 v_position;  // world axes, relative to the eye: differences stay exact far from the origin
+#endif
+
+void main() {
+  vec4 world = draw.model * vec4(position, 1.0);
+  gl_Position = frame.view_projection * world;
+#ifdef NEEDS_POSITION
+  v_position = world.xyz - frame.eye.xyz;
+#endif
+#ifdef HAS_NORMAL
+  v_normal = draw.normal_matrix * normal;
+#endif
+#ifdef HAS_TANGENT
+  vec3 along = mat3(draw.model) * tangent.xyz;
+  v_tangent = vec4(along * inversesqrt(max(dot(along, along), 1e-30)), tangent.w * draw.handedness);
+#endif
+#ifdef HAS_UV0
+  v_uv0 = uv0;
+#endif
+#ifdef HAS_UV1
+  v_uv1 = uv1;
+#endif
+#ifdef HAS_COLOR
+  v_color = color;
+#endif
+}

@@ -1,0 +1,73 @@
+/// The kernel against the clocked simulator: every action of every unit, femtosecond by femtosecond.
+#include "tests/clocked/clocked_simulator.h"
+
+#include "hw/base/dispatcher.h"
+#include "hw/base/native_driver.h"
+#include "tests/hw/base/worlds.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille;
+using namespace quadrille::hw;
+using namespace quadrille::hw::world;
+
+namespace {
+
+/// Fast edges after the last action during which the clocked simulator must stay silent, too: more than any latency or service time of a random world.
+constexpr std::int64_t kSilence = 500'000'000;
+
+std::string first_difference(const WorldSpec& spec, const Trace& kernel, const Trace& clocked) {
+  for (std::size_t u = 0; u < kernel.size(); ++u) {
+    for (std::size_t i = 0; i < std::max(kernel[u].size(), clocked[u].size()); ++i) {
+      const auto text = [i](const std::vector<Event>& events) {
+        return i < events.size() ? fmt::format("{} {}{} {:x}", events[i].at, events[i].what, events[i].port, events[i].id) : std::string("nothing");
+      };
+      if (text(kernel[u]) != text(clocked[u])) {
+        return fmt::format("{}, action {}: kernel {}, clocked {}", spec.units[u].name, i, text(kernel[u]), text(clocked[u]));
+      }
+    }
+  }
+  return {};
+}
+
+/// Runs the world with a driver in this process and compares every action with the clocked simulator's.
+template <class DriverType>
+std::string compare(const WorldSpec& spec, std::uint64_t order_seed) {
+  DriverType driver("driver");
+  const World world(spec, driver);
+  if (order_seed != 0) driver.shuffle(order_seed);
+  driver.run({});
+  const clocked::Result truth = clocked::simulate(spec, std::max<Tick>(0, driver.last_action()) + kSilence);
+  if (driver.actions() < 10) return fmt::format("only {} actions", driver.actions());
+  std::string text = first_difference(spec, world.trace(), truth.trace);
+  std::int64_t left = 0;
+  for (const int n : truth.tokens_in_links) left += n;
+  if (tokens_in_links(driver.units()) != left) text += fmt::format(" {} tokens left, clocked {}", tokens_in_links(driver.units()), left);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("kernel: the dispatcher equals the clocked simulator on random worlds, in any host order") {
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const WorldSpec spec = random_world(seed);
+    INFO("seed " << seed << ", " << spec.units.size() << " units");
+    CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, 0); }, 20) == "");
+    CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, seed); }, 20) == "");
+  }
+}
+
+TEST_CASE("kernel: the native driver equals the clocked simulator on random worlds") {
+  for (std::uint64_t seed = 201; seed <= 260; ++seed) {
+    const WorldSpec spec = random_world(seed);
+    INFO("seed " << seed << ", " << spec.units.size() << " units");
+    CHECK(contract::in_child([&] { return compare<NativeDriver>(spec, seed % 3); }, 20) == "");
+  }
+}
+
+TEST_CASE("kernel: both drivers equal the clocked simulator on the benchmark's machine of 50 units") {
+  const WorldSpec spec = benchmark_world(40);
+  REQUIRE(spec.units.size() == 50);
+  CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, 7); }) == "");
+  CHECK(contract::in_child([&] { return compare<NativeDriver>(spec, 7); }) == "");
+}

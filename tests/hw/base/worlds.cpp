@@ -1,0 +1,433 @@
+#include "tests/hw/base/worlds.h"
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace quadrille::hw::world {
+
+SyntheticUnit::SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles)
+    : Unit(name, is_chooser(spec.role) && !spec.declared_fixed ? Kind::kChooser : Kind::kFixedOrder, clock), spec_(spec) {
+  for (int i = 0; i < spec.inputs; ++i) {
+    inputs_.push_back(std::make_unique<FifoIn<Token>>(*this, fmt::format("in{}", i).c_str(), input_roles[static_cast<std::size_t>(i)]));
+  }
+  for (int i = 0; i < spec.outputs; ++i) outputs_.push_back(std::make_unique<FifoOut<Token>>(*this, fmt::format("out{}", i).c_str()));
+}
+
+void SyntheticUnit::use(Tick now, int cycles) {
+  if (edge_ != now) {
+    edge_ = now;
+    used_ = 0;
+  }
+  if (++used_ < spec_.rate) {
+    free_ = now;
+    occupy(now, 1);
+  } else {
+    free_ = after(now, cycles);
+    occupy(now, cycles);
+  }
+}
+
+namespace {
+
+class Source final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override { return sent_ == spec_.count ? Wake(kNever) : own().output(*outputs_[0]); }
+  void act(Tick now) override {
+    const auto number = static_cast<std::uint32_t>(sent_++);
+    const std::uint32_t id = mix(spec_.seed, number);
+    outputs_[0]->push(now, {id, 0});
+    note(now, '>', 0, id);
+    use(now, cost(spec_, number));
+  }
+
+ private:
+  int sent_ = 0;
+};
+
+class Sink final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override { return own().input(*inputs_[0]); }
+  void act(Tick now) override {
+    const std::uint32_t id = inputs_[0]->pop(now).id;
+    note(now, '<', 0, id);
+    use(now, cost(spec_, taken_++));
+  }
+
+ private:
+  std::uint32_t taken_ = 0;
+};
+
+class Stage final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override { return own().input(*inputs_[0]).output(*outputs_[0]); }
+  void act(Tick now) override {
+    const Token token = inputs_[0]->pop(now);
+    outputs_[0]->push(now, {token.id, token.hops + 1});
+    note(now, 'x', 0, token.id);
+    use(now, cost(spec_, token.id));
+  }
+};
+
+class Serial final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override { return holds_ ? own().output(*outputs_[0]) : own().input(*inputs_[0]); }
+  void act(Tick now) override {
+    if (holds_) {
+      outputs_[0]->push(now, token_);
+      note(now, '>', 0, token_.id);
+      use(now, cost(spec_, token_.id));
+    } else {
+      token_ = inputs_[0]->pop(now);
+      note(now, '<', 0, token_.id);
+      use(now, service(spec_, token_.id));
+    }
+    holds_ = !holds_;
+  }
+
+ private:
+  Token token_;
+  bool holds_ = false;
+};
+
+class Fork final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override {
+    Wake wake = own().input(*inputs_[0]);
+    for (const auto& out : outputs_) wake.output(*out);
+    return wake;
+  }
+  void act(Tick now) override {
+    const Token token = inputs_[0]->pop(now);
+    for (const auto& out : outputs_) out->push(now, token);
+    note(now, 'x', 0, token.id);
+    use(now, cost(spec_, token.id));
+  }
+};
+
+/// Route and recycle: the front token names the output.
+class Router final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override {
+    Wake wake = own().input(*inputs_[0]);
+    return inputs_[0]->ready() == kNever ? wake : wake.output(*outputs_[target(inputs_[0]->front())]);
+  }
+  void act(Tick now) override {
+    const Token token = inputs_[0]->pop(now);
+    const std::size_t port = target(token);
+    outputs_[port]->push(now, {token.id, token.hops + 1});
+    note(now, 'x', static_cast<int>(port), token.id);
+    use(now, cost(spec_, token.id));
+  }
+
+ private:
+  [[nodiscard]] std::size_t target(const Token& token) const {
+    if (spec_.role == Role::kRoute) return mix(token.id, 5) % outputs_.size();
+    return token.hops < 12 && mix(token.id, token.hops) % 3 == 0 ? 1 : 0;
+  }
+};
+
+class Join final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override {
+    Wake wake = own();
+    for (const auto& in : inputs_) wake.input(*in);
+    return wake.output(*outputs_[0]);
+  }
+  void act(Tick now) override {
+    std::uint32_t id = 0;
+    for (const auto& in : inputs_) id = mix(id, in->pop(now).id);
+    outputs_[0]->push(now, {id, 0});
+    note(now, 'x', 0, id);
+    use(now, cost(spec_, id));
+  }
+};
+
+class Expand final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override { return left_ == 0 ? own().input(*inputs_[0]) : own().output(*outputs_[0]); }
+  void act(Tick now) override {
+    if (left_ == 0) {
+      token_ = inputs_[0]->pop(now);
+      left_ = 1 + mix(token_.id, 9) % static_cast<std::uint32_t>(spec_.count);
+      note(now, '<', 0, token_.id);
+    } else {
+      --left_;
+      outputs_[0]->push(now, {mix(token_.id, left_), 0});
+      note(now, '>', 0, mix(token_.id, left_));
+    }
+    use(now, cost(spec_, token_.id));
+  }
+
+ private:
+  Token token_;
+  std::uint32_t left_ = 0;
+};
+
+class Pack final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override { return held_ < spec_.count ? own().input(*inputs_[0]) : own().output(*outputs_[0]); }
+  void act(Tick now) override {
+    if (held_ < spec_.count) {
+      const std::uint32_t id = inputs_[0]->pop(now).id;
+      id_ = mix(id_, id);
+      ++held_;
+      note(now, '<', 0, id);
+    } else {
+      held_ = 0;
+      outputs_[0]->push(now, {id_, 0});
+      note(now, '>', 0, id_);
+    }
+    use(now, cost(spec_, id_));
+  }
+
+ private:
+  std::uint32_t id_ = 0;
+  int held_ = 0;
+};
+
+/// Arbiter and priority: an input that is ready; round robin or the lowest first.
+class Merge final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override {
+    Wake wake = own().input(*inputs_[0]).output(*outputs_[0]);
+    for (std::size_t i = 1; i < inputs_.size(); ++i) wake = Wake::sooner(wake, own().input(*inputs_[i]).output(*outputs_[0]));
+    return wake;
+  }
+  void act(Tick now) override {
+    std::size_t i = spec_.role == Role::kArbiter ? turn_ : 0;
+    while (!inputs_[i]->ready_at(now)) i = i + 1 == inputs_.size() ? 0 : i + 1;
+    turn_ = i + 1 == inputs_.size() ? 0 : i + 1;
+    const Token token = inputs_[i]->pop(now);
+    outputs_[0]->push(now, {token.id, token.hops + 1});
+    note(now, 'x', static_cast<int>(i), token.id);
+    use(now, cost(spec_, token.id));
+  }
+
+ private:
+  std::size_t turn_ = 0;
+};
+
+class Spread final : public SyntheticUnit {
+ public:
+  using SyntheticUnit::SyntheticUnit;
+  Wake next() const override {
+    Wake wake = own().input(*inputs_[0]).output(*outputs_[0]);
+    for (std::size_t i = 1; i < outputs_.size(); ++i) wake = Wake::sooner(wake, own().input(*inputs_[0]).output(*outputs_[i]));
+    return wake;
+  }
+  void act(Tick now) override {
+    std::size_t i = turn_;
+    while (!outputs_[i]->room_at(now)) i = i + 1 == outputs_.size() ? 0 : i + 1;
+    turn_ = i + 1 == outputs_.size() ? 0 : i + 1;
+    const Token token = inputs_[0]->pop(now);
+    outputs_[i]->push(now, token);
+    note(now, 'x', static_cast<int>(i), token.id);
+    use(now, cost(spec_, token.id));
+  }
+
+ private:
+  std::size_t turn_ = 0;
+};
+
+class Core final : public SyntheticUnit {
+ public:
+  Core(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& roles)
+      : SyntheticUnit(name, spec, clock, roles), contexts_(static_cast<std::size_t>(spec.slots)), free_contexts_(spec.slots) {}
+
+  Wake next() const override {
+    Wake wake = own().input(*inputs_[1]);
+    if (emitting_ > 0) wake = Wake::sooner(wake, own().output(*outputs_[0]));
+    if (asking_ > 0) wake = Wake::sooner(wake, own().output(*outputs_[1]));
+    if (free_contexts_ > 0) wake = Wake::sooner(wake, own().input(*inputs_[0]));
+    return wake;
+  }
+  void act(Tick now) override {
+    if (inputs_[1]->ready_at(now)) take_reply(now);
+    else if (emitting_ > 0 && outputs_[0]->room_at(now)) emit(now);
+    else if (asking_ > 0 && outputs_[1]->room_at(now)) ask(now);
+    else accept(now);
+  }
+  std::string state_text() const override { return fmt::format("{} of {} contexts", spec_.slots - free_contexts_, spec_.slots); }
+
+ private:
+  enum class State : std::uint8_t { kFree, kAsk, kWait, kEmit };
+  struct Context {
+    State state = State::kFree;
+    int left = 0;
+    std::uint32_t id = 0, hops = 0;
+  };
+  [[nodiscard]] Context& first(State state) {
+    return *std::find_if(contexts_.begin(), contexts_.end(), [state](const Context& c) { return c.state == state; });
+  }
+  void take_reply(Tick now) {
+    const Token reply = inputs_[1]->pop(now);
+    Context& c = contexts_[reply.hops];
+    c.state = --c.left > 0 ? State::kAsk : State::kEmit;
+    ++(c.left > 0 ? asking_ : emitting_);
+    note(now, 'y', 1, reply.id);
+    use(now, cost(spec_, reply.id));
+  }
+  void emit(Tick now) {
+    Context& c = first(State::kEmit);
+    c.state = State::kFree;
+    --emitting_;
+    ++free_contexts_;
+    outputs_[0]->push(now, {c.id, c.hops});
+    note(now, 'e', 0, c.id);
+    use(now, cost(spec_, c.id));
+  }
+  void ask(Tick now) {
+    Context& c = first(State::kAsk);
+    c.state = State::kWait;
+    --asking_;
+    const std::uint32_t id = mix(c.id, static_cast<std::uint32_t>(c.left));
+    outputs_[1]->push(now, {id, static_cast<std::uint32_t>(&c - contexts_.data())});
+    note(now, 'r', 1, id);
+    use(now, cost(spec_, id));
+  }
+  void accept(Tick now) {
+    Context& c = first(State::kFree);
+    --free_contexts_;
+    ++asking_;
+    const Token token = inputs_[0]->pop(now);
+    c = {State::kAsk, spec_.count, token.id, token.hops};
+    note(now, 'a', 0, c.id);
+    use(now, cost(spec_, c.id));
+  }
+
+  std::vector<Context> contexts_;
+  int free_contexts_, asking_ = 0, emitting_ = 0;
+};
+
+class Memory final : public SyntheticUnit {
+ public:
+  Memory(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& roles)
+      : SyntheticUnit(name, spec, clock, roles), slots_(static_cast<std::size_t>(spec.slots)), free_slots_(spec.slots) {}
+
+  Wake next() const override {
+    Wake wake(kNever);
+    for (const Slot& s : slots_) {
+      if (s.done != kNever) wake = Wake::sooner(wake, Wake(std::max(own().at(), s.done)).output(*outputs_[s.port]));
+    }
+    if (free_slots_ > 0) {
+      for (const auto& in : inputs_) wake = Wake::sooner(wake, own().input(*in));
+    }
+    if (wake.cause() == nullptr && wake.at() == kNever) return Wake::never(*inputs_[0]);
+    return wake;
+  }
+  void act(Tick now) override {
+    for (Slot& s : slots_) {
+      if (s.done <= now && outputs_[s.port]->room_at(now)) return reply(now, s);
+    }
+    accept(now);
+  }
+  std::string state_text() const override { return fmt::format("{} of {} slots", spec_.slots - free_slots_, spec_.slots); }
+
+ private:
+  struct Slot {
+    Tick done = kNever;
+    std::size_t port = 0;
+    Token token;
+  };
+  void reply(Tick now, Slot& s) {
+    outputs_[s.port]->push(now, s.token);
+    s.done = kNever;
+    ++free_slots_;
+    note(now, 'y', static_cast<int>(s.port), s.token.id);
+    use(now, cost(spec_, s.token.id));
+  }
+  void accept(Tick now) {
+    std::size_t i = turn_;
+    while (!inputs_[i]->ready_at(now)) i = i + 1 == inputs_.size() ? 0 : i + 1;
+    turn_ = i + 1 == inputs_.size() ? 0 : i + 1;
+    const Token token = inputs_[i]->pop(now);
+    Slot& s = *std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.done == kNever; });
+    s = {after(now, service(spec_, token.id)), i, token};
+    --free_slots_;
+    note(now, 'a', static_cast<int>(i), token.id);
+    use(now, cost(spec_, token.id));
+  }
+
+  std::vector<Slot> slots_;
+  int free_slots_;
+  std::size_t turn_ = 0;
+};
+
+std::vector<std::size_t> shuffled(std::size_t n, std::uint64_t seed) {
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  std::mt19937_64 random(seed);
+  for (std::size_t i = n; seed != 0 && i > 1; --i) std::swap(order[i - 1], order[random() % i]);
+  return order;
+}
+
+}  // namespace
+
+std::unique_ptr<SyntheticUnit> make_unit(const UnitSpec& s, const Clock& clock, const std::vector<LinkRole>& roles) {
+  const char* name = s.name.c_str();
+  switch (s.role) {
+    case Role::kSource: return std::make_unique<Source>(name, s, clock, roles);
+    case Role::kStage: return std::make_unique<Stage>(name, s, clock, roles);
+    case Role::kSerial: return std::make_unique<Serial>(name, s, clock, roles);
+    case Role::kFork: return std::make_unique<Fork>(name, s, clock, roles);
+    case Role::kRoute: case Role::kRecycle: return std::make_unique<Router>(name, s, clock, roles);
+    case Role::kJoin: return std::make_unique<Join>(name, s, clock, roles);
+    case Role::kExpand: return std::make_unique<Expand>(name, s, clock, roles);
+    case Role::kPack: return std::make_unique<Pack>(name, s, clock, roles);
+    case Role::kArbiter: case Role::kPriority: return std::make_unique<Merge>(name, s, clock, roles);
+    case Role::kSpread: return std::make_unique<Spread>(name, s, clock, roles);
+    case Role::kCore: return std::make_unique<Core>(name, s, clock, roles);
+    case Role::kMemory: return std::make_unique<Memory>(name, s, clock, roles);
+    case Role::kSink: return std::make_unique<Sink>(name, s, clock, roles);
+  }
+  return nullptr;
+}
+
+World::World(const WorldSpec& spec, Driver& driver, const contract::Variation& variation, bool record)
+    : trace_(spec.units.size()), units_(spec.units.size()), links_(spec.wires.size()) {
+  for (const std::size_t i : shuffled(spec.units.size(), variation.creation_seed)) {
+    const UnitSpec& u = spec.units[i];
+    std::vector<LinkRole> roles(static_cast<std::size_t>(u.inputs), LinkRole::kFlow);
+    for (const WireSpec& w : spec.wires) {
+      if (w.reply && w.to.unit == static_cast<int>(i)) roles[static_cast<std::size_t>(w.to.port)] = LinkRole::kReply;
+    }
+    units_[i] = make_unit(u, Clock(spec.clocks_hz[static_cast<std::size_t>(u.clock)]), roles);
+    if (record) units_[i]->record_into(trace_[i]);
+  }
+  for (const std::size_t i : shuffled(spec.wires.size(), variation.creation_seed)) {
+    const WireSpec& w = spec.wires[i];
+    SyntheticUnit& from = unit(w.from.unit);
+    SyntheticUnit& to = unit(w.to.unit);
+    const LinkSpec link = variation.link({.depth = w.depth, .width = w.width, .latency = w.latency, .credit_latency = w.credit});
+    links_[i] = std::make_unique<Fifo<Token>>(fmt::format("link_{}_{}", from.basename(), w.from.port).c_str(), link);
+    from.out(w.from.port).bind(*links_[i]);
+    to.in(w.to.port).bind(*links_[i]);
+  }
+  for (const auto& u : units_) driver.add(*u);
+}
+
+std::uint64_t World::digest() const {
+  std::uint64_t hash = 14695981039346656037u;
+  const auto add = [&hash](std::uint64_t v) { hash = (hash ^ v) * 1099511628211u; };
+  for (const auto& events : trace_) {
+    add(events.size());
+    for (const Event& e : events) {
+      add(static_cast<std::uint64_t>(e.at));
+      add(static_cast<std::uint64_t>(e.what) << 40 | static_cast<std::uint64_t>(e.port) << 32 | e.id);
+    }
+  }
+  return hash;
+}
+
+}  // namespace quadrille::hw::world

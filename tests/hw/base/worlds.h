@@ -1,0 +1,58 @@
+/// The synthetic machines of world_spec.h, built from the kernel's units.
+#pragma once
+
+#include "hw/base/driver.h"
+#include "tests/hw/base/world_spec.h"
+#include "tests/hw/contract.h"
+
+#include <memory>
+
+namespace quadrille::hw::world {
+
+/// One unit of a world. Ports are `in0`.., `out0`..; what the roles do is written at `Role`.
+class SyntheticUnit : public Unit {
+ public:
+  SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles);
+  [[nodiscard]] FifoIn<Token>& in(int i) { return *inputs_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] FifoOut<Token>& out(int i) { return *outputs_[static_cast<std::size_t>(i)]; }
+  /// Where actions are recorded; none by default.
+  void record_into(std::vector<Event>& events) { events_ = &events; }
+
+ protected:
+  [[nodiscard]] Wake own() const { return Wake(free_); }
+  /// Fills a place of this edge and charges it; the last one keeps the unit for `cycles`.
+  void use(Tick now, int cycles);
+  void note(Tick now, char what, int port, std::uint32_t id) {
+    if (events_ != nullptr) events_->push_back({now, what, static_cast<std::uint8_t>(port), id});
+  }
+  UnitSpec spec_;
+  std::vector<std::unique_ptr<FifoIn<Token>>> inputs_;
+  std::vector<std::unique_ptr<FifoOut<Token>>> outputs_;
+
+ private:
+  std::vector<Event>* events_ = nullptr;
+  Tick free_ = 0, edge_ = -1;
+  int used_ = 0;
+};
+
+[[nodiscard]] std::unique_ptr<SyntheticUnit> make_unit(const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles);
+
+/// A built world. Every link is named `link_<from>_<port>`.
+class World final : public contract::Specimen {
+ public:
+  /// `variation.creation_seed` permutes the order of creating modules and links.
+  World(const WorldSpec& spec, Driver& driver, const contract::Variation& variation = {}, bool record = true);
+  [[nodiscard]] const Trace& trace() const { return trace_; }
+  [[nodiscard]] SyntheticUnit& unit(int i) { return *units_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] Fifo<Token>& link(int i) { return *links_[static_cast<std::size_t>(i)]; }
+  /// Order-sensitive checksum of the trace.
+  [[nodiscard]] std::uint64_t digest() const override;
+  [[nodiscard]] bool finished() const override { return true; }
+
+ private:
+  Trace trace_;
+  std::vector<std::unique_ptr<SyntheticUnit>> units_;
+  std::vector<std::unique_ptr<Fifo<Token>>> links_;
+};
+
+}  // namespace quadrille::hw::world

@@ -1,0 +1,275 @@
+/// Opening a headless Vulkan device: instance, the physical device to use, its features, and memory.
+#include "tests/lavapipe/vulkan_device.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <string_view>
+
+#include "models/base/error.h"
+
+namespace quadrille::lavapipe {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+/// Names lavapipe's driver manifest to the loader, so that drivers of absent GPUs are not even opened. Does nothing if the user chose drivers.
+void prefer_lavapipe() {
+  if (std::getenv("VK_ICD_FILENAMES") != nullptr || std::getenv("VK_DRIVER_FILES") != nullptr) return;
+  for (const char* folder : {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+      if (!entry.path().filename().string().starts_with("lvp_icd")) continue;
+      ::setenv("VK_ICD_FILENAMES", entry.path().c_str(), 0);
+      return;
+    }
+  }
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL collect_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                               const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+  static_cast<std::vector<std::string>*>(user)->emplace_back(data->pMessage);
+  return VK_FALSE;
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(std::vector<std::string>* messages) {
+  VkDebugUtilsMessengerCreateInfoEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+  info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
+  info.pfnUserCallback = collect_message;
+  info.pUserData = messages;
+  return info;
+}
+
+std::set<std::string> device_extensions(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
+  std::vector<VkExtensionProperties> found(count);
+  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()), "vkEnumerateDeviceExtensionProperties");
+  std::set<std::string> names;
+  for (const auto& extension : found) names.emplace(extension.extensionName);
+  return names;
+}
+
+DeviceInfo describe(VkPhysicalDevice device) {
+  VkPhysicalDeviceDriverProperties driver{};
+  driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  properties.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+  return {.name = properties.properties.deviceName,
+          .driver = fmt::format("{}: {}", driver.driverName, driver.driverInfo),
+          .subpixel_bits = limits.subPixelPrecisionBits,
+          .subtexel_bits = limits.subTexelPrecisionBits,
+          .mipmap_bits = limits.mipmapPrecisionBits,
+          .max_push_constants = limits.maxPushConstantsSize};
+}
+
+}  // namespace
+
+void require(VkResult result, const char* what) {
+  if (result != VK_SUCCESS) throw user_error("Vulkan: {} failed with VkResult {}", what, static_cast<int>(result));
+}
+
+Cleanup::~Cleanup() {
+  while (!actions_.empty()) {
+    actions_.back()();
+    actions_.pop_back();
+  }
+}
+
+VulkanDevice::VulkanDevice(bool validate) {
+  prefer_lavapipe();
+  create_instance(validate);
+  choose_physical_device();
+  create_device();
+}
+
+void VulkanDevice::create_instance(bool validate) {
+  VkApplicationInfo application{};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+  application.pApplicationName = "quadrille_lavapipe";
+  application.apiVersion = VK_API_VERSION_1_3;
+  const VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&messages_);
+  const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  VkInstanceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+  info.pApplicationInfo = &application;
+  if (validate) {
+    info.pNext = &messenger;
+    info.enabledLayerCount = 1;
+    info.ppEnabledLayerNames = &kValidationLayer;
+    info.enabledExtensionCount = 1;
+    info.ppEnabledExtensionNames = &extension;
+  }
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throw user_error("Vulkan: no driver found; lavapipe is in the package mesa-vulkan-drivers");
+  if (result == VK_ERROR_LAYER_NOT_PRESENT) throw user_error("Vulkan: no validation layer; it is in the package vulkan-validationlayers");
+  require(result, "vkCreateInstance");
+  cleanup_.add([this] { vkDestroyInstance(instance_, nullptr); });
+  if (!validate) return;
+  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+  VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
+  require(create(instance_, &messenger, nullptr, &handle), "vkCreateDebugUtilsMessengerEXT");
+  cleanup_.add([this, destroy, handle] { destroy(instance_, handle, nullptr); });
+}
+
+void VulkanDevice::choose_physical_device() {
+  std::uint32_t count = 0;
+  require(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "vkEnumeratePhysicalDevices");
+  std::vector<VkPhysicalDevice> devices(count);
+  require(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "vkEnumeratePhysicalDevices");
+  for (const VkPhysicalDevice device : devices) {
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(device, &properties);
+    if (properties.apiVersion < VK_API_VERSION_1_3) continue;
+    if (physical_ == VK_NULL_HANDLE || properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) physical_ = device;
+  }
+  if (physical_ == VK_NULL_HANDLE) throw user_error("Vulkan: none of {} device(s) offers Vulkan 1.3", count);
+  info_ = describe(physical_);
+  family_ = 0;
+  std::uint32_t families = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &families, nullptr);
+  std::vector<VkQueueFamilyProperties> queues(families);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical_, &families, queues.data());
+  while (family_ < families && (queues[family_].queueFlags & VK_QUEUE_GRAPHICS_BIT) == 0) ++family_;
+  if (family_ == families) throw user_error("Vulkan: {} has no graphics queue", info_.name);
+}
+
+void VulkanDevice::create_device() {
+  const bool has_u8_indices = device_extensions(physical_).contains(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
+  VkPhysicalDeviceFeatures present{};
+  vkGetPhysicalDeviceFeatures(physical_, &present);
+  VkPhysicalDeviceIndexTypeUint8FeaturesEXT u8_indices{};
+  u8_indices.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_INDEX_TYPE_UINT8_FEATURES_EXT;
+  u8_indices.indexTypeUint8 = VK_TRUE;
+  VkPhysicalDeviceVulkan13Features features13{};
+  features13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+  features13.pNext = has_u8_indices ? &u8_indices : nullptr;
+  features13.dynamicRendering = VK_TRUE;
+  VkPhysicalDeviceFeatures2 features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  features.pNext = &features13;
+  features.features.depthClamp = present.depthClamp;
+  features.features.geometryShader = present.geometryShader;  // gl_PrimitiveID in a fragment shader
+  features.features.robustBufferAccess = present.robustBufferAccess;
+
+  const float priority = 1;
+  VkDeviceQueueCreateInfo queue{};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = family_;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  const char* u8_extension = VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME;
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.pNext = &features;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.enabledExtensionCount = has_u8_indices ? 1 : 0;
+  info.ppEnabledExtensionNames = &u8_extension;
+  require(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
+  cleanup_.add([this] { vkDestroyDevice(device_, nullptr); });
+  vkGetDeviceQueue(device_, family_, 0, &queue_);
+
+  VkCommandPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool.queueFamilyIndex = family_;
+  require(vkCreateCommandPool(device_, &pool, nullptr, &pool_), "vkCreateCommandPool");
+  cleanup_.add([this] { vkDestroyCommandPool(device_, pool_, nullptr); });
+}
+
+VkDeviceMemory VulkanDevice::allocate(Cleanup& owner, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties) const {
+  VkPhysicalDeviceMemoryProperties memory{};
+  vkGetPhysicalDeviceMemoryProperties(physical_, &memory);
+  std::uint32_t type = 0;
+  while (type < memory.memoryTypeCount &&
+         ((needs.memoryTypeBits >> type & 1u) == 0 || (memory.memoryTypes[type].propertyFlags & properties) != properties))
+    ++type;
+  if (type == memory.memoryTypeCount) throw user_error("Vulkan: {} has no memory type with properties {:#x}", info_.name, properties);
+  VkMemoryAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+  info.allocationSize = needs.size;
+  info.memoryTypeIndex = type;
+  VkDeviceMemory handle = VK_NULL_HANDLE;
+  require(vkAllocateMemory(device_, &info, nullptr, &handle), "vkAllocateMemory");
+  owner.add([this, handle] { vkFreeMemory(device_, handle, nullptr); });
+  return handle;
+}
+
+HostBuffer VulkanDevice::buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const {
+  VkBufferCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+  info.size = bytes == 0 ? 4 : bytes;
+  info.usage = usage;
+  HostBuffer result;
+  require(vkCreateBuffer(device_, &info, nullptr, &result.buffer), "vkCreateBuffer");
+  VkMemoryRequirements needs{};
+  vkGetBufferMemoryRequirements(device_, result.buffer, &needs);
+  const VkDeviceMemory memory = allocate(owner, needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  owner.add([this, handle = result.buffer] { vkDestroyBuffer(device_, handle, nullptr); });
+  require(vkBindBufferMemory(device_, result.buffer, memory, 0), "vkBindBufferMemory");
+  require(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &result.mapped), "vkMapMemory");
+  return result;
+}
+
+DeviceImage VulkanDevice::image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels, VkImageUsageFlags usage,
+                                VkImageAspectFlags aspect) const {
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = format;
+  info.extent = {size.width, size.height, 1};
+  info.mipLevels = levels;
+  info.arrayLayers = 1;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = usage;
+  DeviceImage result;
+  require(vkCreateImage(device_, &info, nullptr, &result.image), "vkCreateImage");
+  VkMemoryRequirements needs{};
+  vkGetImageMemoryRequirements(device_, result.image, &needs);
+  const VkDeviceMemory memory = allocate(owner, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  owner.add([this, handle = result.image] { vkDestroyImage(device_, handle, nullptr); });
+  require(vkBindImageMemory(device_, result.image, memory, 0), "vkBindImageMemory");
+  VkImageViewCreateInfo view{};
+  view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  view.image = result.image;
+  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  view.format = format;
+  view.subresourceRange = {aspect, 0, levels, 0, 1};
+  require(vkCreateImageView(device_, &view, nullptr, &result.view), "vkCreateImageView");
+  owner.add([this, handle = result.view] { vkDestroyImageView(device_, handle, nullptr); });
+  return result;
+}
+
+VkCommandBuffer VulkanDevice::begin_commands(Cleanup& owner) const {
+  VkCommandBufferAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  info.commandPool = pool_;
+  info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  info.commandBufferCount = 1;
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  require(vkAllocateCommandBuffers(device_, &info, &commands), "vkAllocateCommandBuffers");
+  owner.add([this, commands] { vkFreeCommandBuffers(device_, pool_, 1, &commands); });
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  require(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+  return commands;
+}
+
+void VulkanDevice::submit(VkCommandBuffer commands) const {
+  VkSubmitInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &commands;
+  require(vkQueueSubmit(queue_, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
+  require(vkQueueWaitIdle(queue_), "vkQueueWaitIdle");
+}
+
+}  // namespace quadrille::lavapipe

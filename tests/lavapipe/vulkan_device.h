@@ -1,0 +1,75 @@
+/// The Vulkan instance, device and queue, and the few allocations everything else is made of.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/lavapipe/vulkan_renderer.h"
+
+namespace quadrille::lavapipe {
+
+/// Throws `UserError` naming `what` unless `result` is VK_SUCCESS.
+void require(VkResult result, const char* what);
+
+/// Runs its actions last to first when destroyed: Vulkan objects die before what they were made from.
+class Cleanup {
+ public:
+  Cleanup() = default;
+  ~Cleanup();
+  Cleanup(const Cleanup&) = delete;
+  Cleanup& operator=(const Cleanup&) = delete;
+  void add(std::function<void()> action) { actions_.push_back(std::move(action)); }
+
+ private:
+  std::vector<std::function<void()>> actions_;
+};
+
+struct HostBuffer {
+  VkBuffer buffer = VK_NULL_HANDLE;
+  void* mapped = nullptr;  ///< host-visible and coherent for as long as the buffer lives
+};
+
+struct DeviceImage {
+  VkImage image = VK_NULL_HANDLE;
+  VkImageView view = VK_NULL_HANDLE;
+};
+
+class VulkanDevice {
+ public:
+  explicit VulkanDevice(bool validate);
+
+  [[nodiscard]] VkDevice handle() const { return device_; }
+  [[nodiscard]] const DeviceInfo& info() const { return info_; }
+  [[nodiscard]] const std::vector<std::string>& messages() const { return messages_; }
+
+  /// A buffer of at least `bytes` (and never none) that lives until `owner` ends.
+  [[nodiscard]] HostBuffer buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const;
+  /// A 2D image with a view of all its levels that lives until `owner` ends.
+  [[nodiscard]] DeviceImage image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels, VkImageUsageFlags usage,
+                                  VkImageAspectFlags aspect) const;
+  /// A command buffer in the recording state that lives until `owner` ends.
+  [[nodiscard]] VkCommandBuffer begin_commands(Cleanup& owner) const;
+  /// Submits and waits. `commands` must have been ended.
+  void submit(VkCommandBuffer commands) const;
+
+ private:
+  void create_instance(bool validate);
+  void choose_physical_device();
+  void create_device();
+  [[nodiscard]] VkDeviceMemory allocate(Cleanup& owner, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties) const;
+
+  Cleanup cleanup_;
+  VkInstance instance_ = VK_NULL_HANDLE;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  std::uint32_t family_ = 0;
+  DeviceInfo info_;
+  std::vector<std::string> messages_;
+};
+
+}  // namespace quadrille::lavapipe

@@ -1,0 +1,118 @@
+/// The stream's enumerations as Vulkan's, one to one.
+#include "tests/lavapipe/vulkan_enums.h"
+
+#include "models/base/error.h"
+
+namespace quadrille::lavapipe {
+
+VkFormat vk_format(traces::Format format) {
+  using F = traces::Format;
+  switch (format) {
+    case F::kUndefined: return VK_FORMAT_UNDEFINED;
+    case F::kR8G8B8A8Unorm: return VK_FORMAT_R8G8B8A8_UNORM;
+    case F::kR8G8B8A8Srgb: return VK_FORMAT_R8G8B8A8_SRGB;
+    case F::kD32Float: return VK_FORMAT_D32_SFLOAT;
+    case F::kR32Float: return VK_FORMAT_R32_SFLOAT;
+    case F::kR32G32Float: return VK_FORMAT_R32G32_SFLOAT;
+    case F::kR32G32B32Float: return VK_FORMAT_R32G32B32_SFLOAT;
+    case F::kR32G32B32A32Float: return VK_FORMAT_R32G32B32A32_SFLOAT;
+    case F::kR8G8Unorm: return VK_FORMAT_R8G8_UNORM;
+    case F::kR8G8B8A8UnormVertex: return VK_FORMAT_R8G8B8A8_UNORM;
+    case F::kR16G16Unorm: return VK_FORMAT_R16G16_UNORM;
+    case F::kR16G16B16A16Unorm: return VK_FORMAT_R16G16B16A16_UNORM;
+    case F::kR8G8B8A8Snorm: return VK_FORMAT_R8G8B8A8_SNORM;
+    case F::kR16G16B16A16Snorm: return VK_FORMAT_R16G16B16A16_SNORM;
+  }
+  QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
+}
+
+VkFilter vk_filter(traces::Filter filter) { return filter == traces::Filter::kLinear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST; }
+
+VkSamplerMipmapMode vk_mip_mode(traces::Filter filter) {
+  return filter == traces::Filter::kLinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+}
+
+VkSamplerAddressMode vk_wrap(traces::Wrap wrap) {
+  switch (wrap) {
+    case traces::Wrap::kRepeat: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    case traces::Wrap::kMirroredRepeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+    case traces::Wrap::kClampToEdge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  }
+  QUADRILLE_CHECK(false, "wrap {}", static_cast<int>(wrap));
+}
+
+VkPrimitiveTopology vk_topology(traces::Topology topology) {
+  switch (topology) {
+    case traces::Topology::kTriangleList: return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    case traces::Topology::kTriangleStrip: return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+    case traces::Topology::kTriangleFan: return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
+  }
+  QUADRILLE_CHECK(false, "topology {}", static_cast<int>(topology));
+}
+
+VkCullModeFlags vk_cull(traces::CullMode cull) {
+  switch (cull) {
+    case traces::CullMode::kNone: return VK_CULL_MODE_NONE;
+    case traces::CullMode::kFront: return VK_CULL_MODE_FRONT_BIT;
+    case traces::CullMode::kBack: return VK_CULL_MODE_BACK_BIT;
+  }
+  QUADRILLE_CHECK(false, "cull mode {}", static_cast<int>(cull));
+}
+
+VkFrontFace vk_front(traces::FrontFace front) {
+  return front == traces::FrontFace::kClockwise ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
+}
+
+VkCompareOp vk_compare(traces::CompareOp compare) {
+  using C = traces::CompareOp;
+  switch (compare) {
+    case C::kNever: return VK_COMPARE_OP_NEVER;
+    case C::kLess: return VK_COMPARE_OP_LESS;
+    case C::kEqual: return VK_COMPARE_OP_EQUAL;
+    case C::kLessOrEqual: return VK_COMPARE_OP_LESS_OR_EQUAL;
+    case C::kGreater: return VK_COMPARE_OP_GREATER;
+    case C::kNotEqual: return VK_COMPARE_OP_NOT_EQUAL;
+    case C::kGreaterOrEqual: return VK_COMPARE_OP_GREATER_OR_EQUAL;
+    case C::kAlways: return VK_COMPARE_OP_ALWAYS;
+  }
+  QUADRILLE_CHECK(false, "compare operation {}", static_cast<int>(compare));
+}
+
+VkBlendFactor vk_blend_factor(traces::BlendFactor factor) {
+  using B = traces::BlendFactor;
+  switch (factor) {
+    case B::kZero: return VK_BLEND_FACTOR_ZERO;
+    case B::kOne: return VK_BLEND_FACTOR_ONE;
+    case B::kSrcColor: return VK_BLEND_FACTOR_SRC_COLOR;
+    case B::kOneMinusSrcColor: return VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR;
+    case B::kDstColor: return VK_BLEND_FACTOR_DST_COLOR;
+    case B::kOneMinusDstColor: return VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR;
+    case B::kSrcAlpha: return VK_BLEND_FACTOR_SRC_ALPHA;
+    case B::kOneMinusSrcAlpha: return VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    case B::kDstAlpha: return VK_BLEND_FACTOR_DST_ALPHA;
+    case B::kOneMinusDstAlpha: return VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA;
+  }
+  QUADRILLE_CHECK(false, "blend factor {}", static_cast<int>(factor));
+}
+
+VkBlendOp vk_blend_op(traces::BlendOp op) {
+  switch (op) {
+    case traces::BlendOp::kAdd: return VK_BLEND_OP_ADD;
+    case traces::BlendOp::kSubtract: return VK_BLEND_OP_SUBTRACT;
+    case traces::BlendOp::kReverseSubtract: return VK_BLEND_OP_REVERSE_SUBTRACT;
+    case traces::BlendOp::kMin: return VK_BLEND_OP_MIN;
+    case traces::BlendOp::kMax: return VK_BLEND_OP_MAX;
+  }
+  QUADRILLE_CHECK(false, "blend operation {}", static_cast<int>(op));
+}
+
+VkIndexType vk_index_type(traces::IndexType type) {
+  switch (type) {
+    case traces::IndexType::kUint8: return VK_INDEX_TYPE_UINT8_EXT;
+    case traces::IndexType::kUint16: return VK_INDEX_TYPE_UINT16;
+    case traces::IndexType::kUint32: return VK_INDEX_TYPE_UINT32;
+  }
+  QUADRILLE_CHECK(false, "index type {}", static_cast<int>(type));
+}
+
+}  // namespace quadrille::lavapipe

@@ -1,0 +1,23 @@
+/// The stream's enumerations as Vulkan's, one to one.
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include "traces/command_stream.h"
+
+namespace quadrille::lavapipe {
+
+/// `kUndefined` maps to VK_FORMAT_UNDEFINED.
+[[nodiscard]] VkFormat vk_format(traces::Format format);
+[[nodiscard]] VkFilter vk_filter(traces::Filter filter);
+[[nodiscard]] VkSamplerMipmapMode vk_mip_mode(traces::Filter filter);
+[[nodiscard]] VkSamplerAddressMode vk_wrap(traces::Wrap wrap);
+[[nodiscard]] VkPrimitiveTopology vk_topology(traces::Topology topology);
+[[nodiscard]] VkCullModeFlags vk_cull(traces::CullMode cull);
+[[nodiscard]] VkFrontFace vk_front(traces::FrontFace front);
+[[nodiscard]] VkCompareOp vk_compare(traces::CompareOp compare);
+[[nodiscard]] VkBlendFactor vk_blend_factor(traces::BlendFactor factor);
+[[nodiscard]] VkBlendOp vk_blend_op(traces::BlendOp op);
+[[nodiscard]] VkIndexType vk_index_type(traces::IndexType type);
+
+}  // namespace quadrille::lavapipe

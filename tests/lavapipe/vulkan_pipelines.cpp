@@ -1,0 +1,247 @@
+/// Descriptor sets, pipeline layouts and pipelines of a frame.
+///
+/// The stream has no layouts: a set's layout follows from what it holds, and a pipeline is made for each combination of set shapes it is drawn with.
+#include <algorithm>
+
+#include "models/base/error.h"
+#include "tests/lavapipe/vulkan_enums.h"
+#include "tests/lavapipe/vulkan_frame.h"
+
+namespace quadrille::lavapipe {
+namespace {
+
+constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+
+VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage, VkShaderModule module) {
+  VkPipelineShaderStageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage = stage;
+  info.module = module;
+  info.pName = "main";
+  return info;
+}
+
+/// The vertex input state and the arrays it points to.
+struct VertexInput {
+  std::vector<VkVertexInputBindingDescription> bindings;
+  std::vector<VkVertexInputAttributeDescription> attributes;
+  VkPipelineVertexInputStateCreateInfo info{};
+
+  explicit VertexInput(const traces::Pipeline& pipeline) {
+    for (const auto& b : pipeline.bindings)
+      bindings.push_back({b.binding, b.stride, b.per_instance ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX});
+    for (const auto& a : pipeline.attributes) attributes.push_back({a.location, a.binding, vk_format(a.format), a.offset});
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    info.vertexBindingDescriptionCount = static_cast<std::uint32_t>(bindings.size());
+    info.pVertexBindingDescriptions = bindings.data();
+    info.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(attributes.size());
+    info.pVertexAttributeDescriptions = attributes.data();
+  }
+};
+
+VkPipelineColorBlendAttachmentState blend_attachment(const traces::BlendState& blend) {
+  VkPipelineColorBlendAttachmentState state{};
+  state.blendEnable = blend.enable ? VK_TRUE : VK_FALSE;
+  state.srcColorBlendFactor = vk_blend_factor(blend.src_color);
+  state.dstColorBlendFactor = vk_blend_factor(blend.dst_color);
+  state.colorBlendOp = vk_blend_op(blend.color);
+  state.srcAlphaBlendFactor = vk_blend_factor(blend.src_alpha);
+  state.dstAlphaBlendFactor = vk_blend_factor(blend.dst_alpha);
+  state.alphaBlendOp = vk_blend_op(blend.alpha);
+  state.colorWriteMask = blend.write_mask;
+  return state;
+}
+
+VkPipelineRasterizationStateCreateInfo raster_state(const traces::Pipeline& pipeline) {
+  VkPipelineRasterizationStateCreateInfo state{};
+  state.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+  state.depthClampEnable = pipeline.depth_clamp ? VK_TRUE : VK_FALSE;
+  state.polygonMode = VK_POLYGON_MODE_FILL;
+  state.cullMode = vk_cull(pipeline.cull);
+  state.frontFace = vk_front(pipeline.front);
+  state.lineWidth = 1;
+  return state;
+}
+
+VkPipelineDepthStencilStateCreateInfo depth_state(const traces::DepthState& depth) {
+  VkPipelineDepthStencilStateCreateInfo state{};
+  state.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+  state.depthTestEnable = depth.test ? VK_TRUE : VK_FALSE;
+  state.depthWriteEnable = depth.write ? VK_TRUE : VK_FALSE;
+  state.depthCompareOp = vk_compare(depth.compare);
+  return state;
+}
+
+}  // namespace
+
+VulkanFrame::SetShape VulkanFrame::shape_of(traces::Index set) const {
+  SetShape shape;
+  if (set == traces::kNone) return shape;
+  for (const auto& uniform : stream_.descriptor_sets[set].uniforms) shape[uniform.binding] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  for (const auto& texture : stream_.descriptor_sets[set].textures) shape[texture.binding] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  return shape;
+}
+
+VkDescriptorSetLayout VulkanFrame::set_layout(const SetShape& shape) {
+  const auto known = set_layouts_.find(shape);
+  if (known != set_layouts_.end()) return known->second;
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (const auto& [binding, type] : shape) bindings.push_back({binding, type, 1, kStages, nullptr});
+  VkDescriptorSetLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  info.bindingCount = static_cast<std::uint32_t>(bindings.size());
+  info.pBindings = bindings.data();
+  VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+  require(vkCreateDescriptorSetLayout(device_.handle(), &info, nullptr, &layout), "vkCreateDescriptorSetLayout");
+  cleanup_.add([this, layout] { vkDestroyDescriptorSetLayout(device_.handle(), layout, nullptr); });
+  return set_layouts_[shape] = layout;
+}
+
+void VulkanFrame::create_descriptor_sets() {
+  std::uint32_t uniforms = 1, textures = 1;
+  for (const auto& set : stream_.descriptor_sets) {
+    uniforms += static_cast<std::uint32_t>(set.uniforms.size());
+    textures += static_cast<std::uint32_t>(set.textures.size());
+  }
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms}, {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures}};
+  VkDescriptorPoolCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  info.maxSets = static_cast<std::uint32_t>(stream_.descriptor_sets.size()) + 1;
+  info.poolSizeCount = 2;
+  info.pPoolSizes = sizes;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  require(vkCreateDescriptorPool(device_.handle(), &info, nullptr, &pool), "vkCreateDescriptorPool");
+  cleanup_.add([this, pool] { vkDestroyDescriptorPool(device_.handle(), pool, nullptr); });
+
+  for (traces::Index index = 0; index < stream_.descriptor_sets.size(); ++index) {
+    const traces::DescriptorSet& source = stream_.descriptor_sets[index];
+    const VkDescriptorSetLayout layout = set_layout(shape_of(index));
+    VkDescriptorSetAllocateInfo allocate{};
+    allocate.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    allocate.descriptorPool = pool;
+    allocate.descriptorSetCount = 1;
+    allocate.pSetLayouts = &layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    require(vkAllocateDescriptorSets(device_.handle(), &allocate, &set), "vkAllocateDescriptorSets");
+    descriptor_sets_.push_back(set);
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set;
+    write.descriptorCount = 1;
+    for (const auto& uniform : source.uniforms) {
+      const VkDescriptorBufferInfo buffer{buffers_[uniform.buffer].buffer, uniform.offset, uniform.range};
+      write.dstBinding = uniform.binding;
+      write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+      write.pBufferInfo = &buffer;
+      vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+    }
+    for (const auto& texture : source.textures) {
+      const VkDescriptorImageInfo image{samplers_[texture.sampler], images_[texture.image].view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      write.dstBinding = texture.binding;
+      write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+      write.pImageInfo = &image;
+      vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+    }
+  }
+}
+
+VkPipelineLayout VulkanFrame::pipeline_layout(const SetShapes& shapes) {
+  const auto known = pipeline_layouts_.find(shapes);
+  if (known != pipeline_layouts_.end()) return known->second;
+  std::vector<VkDescriptorSetLayout> sets;
+  for (const SetShape& shape : shapes) sets.push_back(set_layout(shape));
+  const VkPushConstantRange range{kStages, 0, std::min(traces::kMaxPushConstantBytes, device_.info().max_push_constants)};
+  VkPipelineLayoutCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
+  info.pSetLayouts = sets.data();
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  require(vkCreatePipelineLayout(device_.handle(), &info, nullptr, &layout), "vkCreatePipelineLayout");
+  cleanup_.add([this, layout] { vkDestroyPipelineLayout(device_.handle(), layout, nullptr); });
+  return pipeline_layouts_[shapes] = layout;
+}
+
+VkShaderModule VulkanFrame::shader_module(traces::Index shader) {
+  const auto known = modules_.find(shader);
+  if (known != modules_.end()) return known->second;
+  const traces::Shader& source = stream_.shaders[shader];
+  VkShaderModuleCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  info.codeSize = source.spirv.size() * sizeof(std::uint32_t);
+  info.pCode = source.spirv.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  require(vkCreateShaderModule(device_.handle(), &info, nullptr, &module), "vkCreateShaderModule");
+  cleanup_.add([this, module] { vkDestroyShaderModule(device_.handle(), module, nullptr); });
+  return modules_[shader] = module;
+}
+
+const VulkanFrame::PipelineObjects& VulkanFrame::pipeline_for(const Bound& bound) {
+  const std::uint32_t limit = device_.info().max_push_constants;
+  if (bound.push_constants.size() > limit)
+    throw user_error("{}: pushes {} bytes of constants; {} takes at most {}", stream_.name, bound.push_constants.size(), device_.info().name, limit);
+  SetShapes shapes;
+  for (const traces::Index set : bound.sets) shapes.push_back(shape_of(set));
+  const auto key = std::pair{std::pair{bound.pipeline, bound.target}, shapes};
+  const auto known = pipelines_.find(key);
+  if (known != pipelines_.end()) return known->second;
+  PipelineObjects objects;
+  objects.layout = pipeline_layout(shapes);
+  objects.pipeline = create_pipeline(stream_.pipelines[bound.pipeline], stream_.targets[bound.target], objects.layout);
+  cleanup_.add([this, handle = objects.pipeline] { vkDestroyPipeline(device_.handle(), handle, nullptr); });
+  return pipelines_[key] = objects;
+}
+
+VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const traces::RenderTarget& target, VkPipelineLayout layout) {
+  const VkPipelineShaderStageCreateInfo stages[] = {stage_info(VK_SHADER_STAGE_VERTEX_BIT, shader_module(pipeline.vertex_shader)),
+                                                    stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, shader_module(pipeline.fragment_shader))};
+  const VertexInput input(pipeline);
+  VkPipelineInputAssemblyStateCreateInfo assembly{};
+  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+  assembly.topology = vk_topology(pipeline.topology);
+  VkPipelineViewportStateCreateInfo viewport{};
+  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+  viewport.viewportCount = viewport.scissorCount = 1;
+  const VkPipelineRasterizationStateCreateInfo raster = raster_state(pipeline);
+  VkPipelineMultisampleStateCreateInfo samples{};
+  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  const VkPipelineDepthStencilStateCreateInfo depth = depth_state(pipeline.depth);
+  const VkPipelineColorBlendAttachmentState attachment = blend_attachment(pipeline.blend);
+  VkPipelineColorBlendStateCreateInfo blend{};
+  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+  blend.attachmentCount = 1;
+  blend.pAttachments = &attachment;
+  const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  VkPipelineDynamicStateCreateInfo dynamic{};
+  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+  dynamic.dynamicStateCount = 2;
+  dynamic.pDynamicStates = dynamic_states;
+  const VkFormat color_format = vk_format(target.color);
+  VkPipelineRenderingCreateInfo rendering{};
+  rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
+  rendering.colorAttachmentCount = 1;
+  rendering.pColorAttachmentFormats = &color_format;
+  rendering.depthAttachmentFormat = vk_format(target.depth);
+
+  VkGraphicsPipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  info.pNext = &rendering;
+  info.stageCount = 2;
+  info.pStages = stages;
+  info.pVertexInputState = &input.info;
+  info.pInputAssemblyState = &assembly;
+  info.pViewportState = &viewport;
+  info.pRasterizationState = &raster;
+  info.pMultisampleState = &samples;
+  info.pDepthStencilState = &depth;
+  info.pColorBlendState = &blend;
+  info.pDynamicState = &dynamic;
+  info.layout = layout;
+  VkPipeline handle = VK_NULL_HANDLE;
+  require(vkCreateGraphicsPipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
+  return handle;
+}
+
+}  // namespace quadrille::lavapipe

@@ -1,0 +1,127 @@
+/// What a user can get wrong, and modules that no compiler made: always one clear line, never a crash.
+#include "models/base/error.h"
+#include "scenes/glsl.h"
+#include "tests/pipeline/compiler/shader_runner.h"
+
+#include <catch2/catch.hpp>
+
+
+namespace quadrille::pipeline {
+namespace {
+
+/// The error of a fragment shader.
+std::string error_of(const std::string& body, const std::string& declarations = {}) {
+  try {
+    (void)compile_fragment(fragment_source(body, declarations));
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return "compiles";
+}
+
+const char* const kRichFragment = R"(#version 450
+layout(location=0) in vec4 a; layout(location=1) in vec4 b; layout(location=2) flat in ivec4 i; layout(location=0) out vec4 color;
+layout(set=1, binding=0) uniform sampler2D t; layout(set=0, binding=1, std140) uniform U { mat4 m; vec4 l[4]; int n; } u;
+float sum(vec4 x) { for (int k = 0; k < 4; ++k) { if (x[k] < 0.0) continue; if (x[k] > 3.0) return x[k]; } return dot(x, b); }
+void main() {
+  vec4 c = u.m * texture(t, a.xy);
+  for (int k = 0; k < u.n; ++k) { if (i.x == k) discard; c += u.l[k] * sum(c); }
+  switch (i.y) { case 0: c *= 2.0; break; case 1: c -= a; default: c = normalize(c); }
+  color = c + pow(b, a);
+})";
+
+}  // namespace
+
+TEST_CASE("glsl: an error names file and line") {
+  CHECK_THROWS_WITH(scenes::compile_glsl("#version 450\nvoid main() {\n  int x = nothing;\n}\n", traces::ShaderStage::kFragment, "my.frag"),
+                    Catch::Contains("my.frag:3:") && Catch::Contains("nothing") && !Catch::Contains("\n"));
+  CHECK_THROWS_WITH(scenes::compile_glsl("", traces::ShaderStage::kVertex, "empty.vert"), Catch::Contains("empty.vert") && !Catch::Contains("\n"));
+}
+
+TEST_CASE("glsl: defines come before the first line") {
+  const std::string defines[] = {"SCALE 3.0", "ON"};
+  CHECK_NOTHROW(scenes::compile_glsl("#version 450\nlayout(location=0) out vec4 c;\n#ifdef ON\nvoid main() { c = vec4(SCALE); }\n#endif\n",
+                                     traces::ShaderStage::kFragment, "d.frag", defines));
+  const std::string bad[] = {"A\nB"};
+  CHECK_THROWS_AS(scenes::compile_glsl("", traces::ShaderStage::kFragment, "d.frag", bad), UserError);
+}
+
+TEST_CASE("unsupported features are refused by name and line") {
+  CHECK_THAT(error_of("color = textureGrad(t, a.xy, a.zw, b.xy);", "layout(set=0,binding=0) uniform sampler2D t;"),
+             Catch::Contains("test.frag:") && Catch::Contains("gradients"));
+  CHECK_THAT(error_of("color = texelFetch(t, i.xy, 0);", "layout(set=0,binding=0) uniform sampler2D t;"), Catch::Contains("texelFetch"));
+  CHECK_THAT(error_of("color = texture(t, a.xyz);", "layout(set=0,binding=0) uniform samplerCube t;"), Catch::Contains("'t'") && Catch::Contains("sampler2D"));
+  CHECK_THAT(error_of("color = texture(t[0], a.xy);", "layout(set=0,binding=0) uniform sampler2D t[2];"), Catch::Contains("'t'"));
+  CHECK_THAT(error_of("s.x[0] = 1; color = a;", "layout(set=0,binding=0) buffer S { int x[]; } s;"), Catch::Contains("test.frag"));
+  CHECK_THAT(error_of("double d = double(a.x); color = vec4(d);"), Catch::Contains("test.frag"));
+  CHECK_THAT(error_of("other = a; color = a;", "layout(location=1) out vec4 other;"), Catch::Contains("other"));
+  CHECK_THAT(error_of("color = vec4(gl_PointCoord, 0, 0);"), Catch::Contains("gl_PointCoord"));
+  const auto vertex = vertex_spirv("#version 450\nlayout(location=0) in ivec2 p; void main() { gl_Position = vec4(p, 0, 1); }");
+  const auto fragment = fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
+  CHECK_THROWS_WITH(compile_pipeline(vertex, "i.vert", fragment, "f.frag"), Catch::Contains("i.vert") && Catch::Contains("'p'"));
+  CHECK_THROWS_WITH(compile_pipeline(fragment, "i.vert", fragment, "f.frag"), Catch::Contains("i.vert") && Catch::Contains("entry point"));
+}
+
+TEST_CASE("limits are refused with the number that was needed") {
+  std::string body = "float s = 0.0;";
+  for (int k = 0; k < 300; ++k) body += " float v" + std::to_string(k) + " = exp2(a.x * " + std::to_string(k) + ".5);";
+  body += " if (i.x > 0) discard;";
+  for (int k = 0; k < 300; ++k) body += " s += v" + std::to_string(k) + " * s;";
+  for (int k = 0; k < 300; ++k) body += " s *= v" + std::to_string(k) + ";";
+  CHECK_THAT(error_of(body + " color = vec4(s);"), Catch::Contains("registers"));
+  std::string nest = "int r = 0;", end;
+  for (int k = 0; k < 40; ++k) {
+    nest += " for (int j" + std::to_string(k) + " = 0; j" + std::to_string(k) + " < i.x; ++j" + std::to_string(k) + ") {";
+    end += " }";
+  }
+  CHECK_THAT(error_of(nest + " ++r;" + end + " color = vec4(r);"), Catch::Contains("nested"));
+  std::string calls = "float f0(float x) { return x * a.x + x; }\n";
+  for (int k = 1; k < 24; ++k) {
+    const std::string below = "f" + std::to_string(k - 1);
+    calls += "float f" + std::to_string(k) + "(float x) { return " + below + "(x) + " + below + "(x + 1.0); }\n";
+  }
+  CHECK_THAT(error_of("color = vec4(f23(a.y));", calls), Catch::Contains("expanded in place"));
+}
+
+TEST_CASE("spir-v: nothing, text and other byte orders are refused") {
+  const auto vertex = vertex_spirv(plain_vertex_source());
+  const std::vector<std::uint32_t> nothing, text(64, 0x64616548u), swapped(64, 0x03022307u);
+  for (const auto* words : {&nothing, &text, &swapped}) {
+    CHECK_THROWS_WITH(compile_pipeline(vertex, "v", *words, "bad.spv"), Catch::Contains("bad.spv"));
+    CHECK_THROWS_WITH(compile_pipeline(*words, "bad.spv", vertex, "v"), Catch::Contains("bad.spv") || Catch::Contains("entry point"));
+  }
+}
+
+TEST_CASE("spir-v: truncated and damaged modules never crash") {
+  const auto vertex = vertex_spirv(plain_vertex_source());
+  const auto fragment = fragment_spirv(kRichFragment);
+  int refused = 0, accepted = 0;
+  const auto attempt = [&](const std::vector<std::uint32_t>& words) {
+    try {
+      (void)compile_pipeline(vertex, "v", words, "f");
+      ++accepted;
+    } catch (const UserError& e) {
+      ++refused;
+      CHECK(std::string_view(e.what()).find('\n') == std::string_view::npos);
+    }
+  };
+  for (std::size_t size = 0; size < fragment.size(); size += 7) attempt({fragment.begin(), fragment.begin() + static_cast<std::ptrdiff_t>(size)});
+  Random random(1234);
+  for (int k = 0; k < 2500; ++k) {
+    std::vector<std::uint32_t> damaged = fragment;
+    for (std::uint32_t n = random() % 3 + 1; n > 0; --n) {
+      std::uint32_t& word = damaged[5 + random() % (damaged.size() - 5)];
+      switch (random() % 4) {
+        case 0: word ^= 1u << (random() % 32); break;
+        case 1: word = random() % 300; break;
+        case 2: word = damaged[5 + random() % (damaged.size() - 5)]; break;
+        default: word += random() % 3 - 1; break;
+      }
+    }
+    attempt(damaged);
+  }
+  CHECK(refused > 1000);
+  CHECK(accepted > 0);
+}
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,160 @@
+/// Each case damages one thing in a valid stream and asks for the refusal that names it.
+#include <catch2/catch.hpp>
+#include <functional>
+#include <limits>
+
+#include "models/base/error.h"
+#include "tests/traces/sample_stream.h"
+
+using namespace quadrille;
+using namespace quadrille::traces;
+
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+struct Defect {
+  const char* message;   ///< a part of it
+  std::function<void(CommandStream&)> make;
+};
+
+template <class T>
+T& command(CommandStream& s, std::size_t at) {
+  return std::get<T>(s.commands[at]);
+}
+
+std::string refusal(const CommandStream& stream) {
+  try {
+    validate(stream);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+void expect(const std::vector<Defect>& defects) {
+  for (const Defect& defect : defects) {
+    CommandStream stream = small_stream();
+    defect.make(stream);
+    CAPTURE(defect.message);
+    REQUIRE_THAT(refusal(stream), Catch::Contains(defect.message));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("validate: the samples are valid") {
+  REQUIRE(refusal(small_stream()) == "accepted");
+  for (std::uint32_t seed = 0; seed < 300; ++seed) REQUIRE(refusal(random_stream(seed)) == "accepted");
+}
+
+TEST_CASE("validate: objects") {
+  expect({
+      {"image 0 'white': 12 bytes of texels where 2x2", [](auto& s) { s.images[0].height = 2; }},
+      {"image 0: size 0x1", [](auto& s) { s.images[0].width = 0; }},
+      {"image 0: size 16385x1", [](auto& s) { s.images[0].width = 16385; }},
+      {"3 mip levels", [](auto& s) { s.images[0].levels = 3; }},
+      {"0 mip levels", [](auto& s) { s.images[0].levels = 0; }},
+      {"image 0 'white': its format", [](auto& s) { s.images[0].format = Format::kD32Float; }},
+      {"sampler 0: lod bias", [](auto& s) { s.samplers[0].lod_bias = kNan; }},
+      {"sampler 0: lod range", [](auto& s) { s.samplers[0].min_lod = 1001; }},
+      {"shader 1 'f': its words", [](auto& s) { s.shaders[1].spirv[0] = 1; }},
+      {"shader 0 'v': its words", [](auto& s) { s.shaders[0].spirv.clear(); }},
+      {"vertex shader 2 does not exist", [](auto& s) { s.pipelines[0].vertex_shader = 2; }},
+      {"fragment shader 4294967295 does not exist", [](auto& s) { s.pipelines[0].fragment_shader = kNone; }},
+      {"shader 1 is not a vertex shader", [](auto& s) { s.pipelines[0].vertex_shader = 1; }},
+      {"binding 0 is given twice", [](auto& s) { s.pipelines[0].bindings.push_back({0, 4, false}); }},
+      {"binding 16 is outside", [](auto& s) { s.pipelines[0].bindings.push_back({16, 4, false}); }},
+      {"has stride 2052", [](auto& s) { s.pipelines[0].bindings[0].stride = 2052; }},
+      {"location 0 is given twice", [](auto& s) { s.pipelines[0].attributes.push_back({0, 0, Format::kR32Float, 0}); }},
+      {"location 16 is outside", [](auto& s) { s.pipelines[0].attributes[0].location = 16; }},
+      {"reads binding 4, which is not declared", [](auto& s) { s.pipelines[0].attributes[0].binding = 4; }},
+      {"not one of an attribute", [](auto& s) { s.pipelines[0].attributes[0].format = Format::kR8G8B8A8Srgb; }},
+      {"has offset 2048", [](auto& s) { s.pipelines[0].attributes[0].offset = 2048; }},
+      {"write mask 0x1f", [](auto& s) { s.pipelines[0].blend.write_mask = 0x1f; }},
+      {"buffer 3 does not exist", [](auto& s) { s.descriptor_sets[0].uniforms[0].buffer = 3; }},
+      {"bytes 32+48", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 32; }},
+      {"bytes 4294967280+48", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 0xfffffff0u; }},
+      {"bytes 16+0", [](auto& s) { s.descriptor_sets[0].uniforms[0].range = 0; }},
+      {"offset 8 is not a multiple", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 8; }},
+      {"descriptor set 0: binding 0 is given twice", [](auto& s) { s.descriptor_sets[0].textures[0].binding = 0; }},
+      {"image 1 does not exist", [](auto& s) { s.descriptor_sets[0].textures[0].image = 1; }},
+      {"sampler 1 does not exist", [](auto& s) { s.descriptor_sets[0].textures[0].sampler = 1; }},
+      {"render target 0: size 64x0", [](auto& s) { s.targets[0].height = 0; }},
+      {"its colour format", [](auto& s) { s.targets[0].color = Format::kD32Float; }},
+      {"its depth format", [](auto& s) { s.targets[0].depth = Format::kR32Float; }},
+  });
+}
+
+TEST_CASE("validate: passes and bound state") {
+  expect({
+      {"command 1: a render pass begins inside another", [](auto& s) { s.commands[1] = BeginPass{}; }},
+      {"the last render pass is not ended", [](auto& s) { s.commands.pop_back(); }},
+      {"command 11: a render pass ends that has not begun", [](auto& s) { s.commands.emplace_back(EndPass{}); }},
+      {"there is no render pass", [](auto& s) { s.commands.clear(); }},
+      {"command 0: draw outside a render pass", [](auto& s) { s.commands[0] = Draw{}; }},
+      {"render target 1 does not exist", [](auto& s) { command<BeginPass>(s, 0).target = 1; }},
+      {"clear colour is not finite", [](auto& s) { command<BeginPass>(s, 0).clear_color[2] = kNan; }},
+      {"clear depth", [](auto& s) { command<BeginPass>(s, 0).clear_depth = kNan; }},
+      {"command 8: draw without a viewport", [](auto& s) { s.commands[1] = s.commands[4]; }},
+      {"command 8: draw without a scissor", [](auto& s) { s.commands[2] = s.commands[4]; }},
+      {"command 8: draw without a pipeline", [](auto& s) { s.commands[3] = s.commands[4]; }},
+      {"command 8: draw without a vertex buffer at binding 0", [](auto& s) { s.commands[5] = s.commands[4]; }},
+      {"command 8: indexed draw without an index buffer", [](auto& s) { s.commands[6] = s.commands[4]; }},
+      {"pipeline 1 does not exist", [](auto& s) { command<BindPipeline>(s, 3).pipeline = 1; }},
+      {"descriptor set number 4", [](auto& s) { command<BindDescriptorSet>(s, 4).set = 4; }},
+      {"descriptor set 1 does not exist", [](auto& s) { command<BindDescriptorSet>(s, 4).descriptors = 1; }},
+      {"vertex binding 16", [](auto& s) { command<BindVertexBuffer>(s, 5).binding = 16; }},
+      {"buffer 9 does not exist", [](auto& s) { command<BindVertexBuffer>(s, 5).buffer = 9; }},
+      {"offset 37 is beyond buffer 0", [](auto& s) { command<BindVertexBuffer>(s, 5).offset = 37; }},
+      {"index buffer 9 does not exist", [](auto& s) { command<BindIndexBuffer>(s, 6).buffer = 9; }},
+      {"index offset 1 is not a multiple", [](auto& s) { s.commands[6] = BindIndexBuffer{1, 1, IndexType::kUint16}; }},
+      {"viewport", [](auto& s) { command<SetViewport>(s, 1).x = kNan; }},
+      {"viewport", [](auto& s) { command<SetViewport>(s, 1).width = kNan; }},
+      {"viewport", [](auto& s) { command<SetViewport>(s, 1).height = 0; }},
+      {"viewport", [](auto& s) { command<SetViewport>(s, 1).width = 16385; }},
+      {"viewport depth", [](auto& s) { command<SetViewport>(s, 1).max_depth = 1.5F; }},
+      {"scissor corner", [](auto& s) { command<SetScissor>(s, 2).x = -1; }},
+      {"outside the target of 64x32", [](auto& s) { command<SetScissor>(s, 2).x = 1; }},
+      {"outside the target of 64x32", [](auto& s) { command<SetScissor>(s, 2) = {0x7fffffff, 0, 0xffffffffu, 1}; }},
+      {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 244; }},
+      {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 0xfffffff0u; }},
+      {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 2; }},
+      {"push constants", [](auto& s) { command<PushConstants>(s, 7).data.clear(); }},
+      {"without depth", [](auto& s) { s.targets[0].depth = Format::kUndefined; }},
+  });
+}
+
+TEST_CASE("validate: bytes that a draw would fetch") {
+  expect({
+      {"vertex 3 at location 0 ends at byte 48 of buffer 0, which has 36", [](auto& s) { command<Draw>(s, 9).count = 4; }},
+      {"vertex 3 at location 0", [](auto& s) { s.buffers[1].data[1] = std::byte{3}; }},
+      {"vertex 3 at location 0", [](auto& s) { command<Draw>(s, 8).vertex_offset = 1; }},
+      {"vertices -1..1", [](auto& s) { command<Draw>(s, 8).vertex_offset = -1; }},
+      {"indices 1+3 reach beyond", [](auto& s) { command<Draw>(s, 8).first = 1; }},
+      {"indices 4294967295+3 reach beyond", [](auto& s) { command<Draw>(s, 8).first = 0xffffffffu; }},
+      {"indices 0+4 reach beyond", [](auto& s) { command<Draw>(s, 8).count = 4; }},
+      {"ends at byte 37", [](auto& s) { s.pipelines[0].attributes[0].offset = 1; }},
+      {"ends at byte 40", [](auto& s) { command<BindVertexBuffer>(s, 5).offset = 4; }},
+      {"vertex number 4294967297", [](auto& s) { command<Draw>(s, 9).first = 0xffffffffu; }},
+      {"instance number 4294967296", [](auto& s) { command<Draw>(s, 9).instances = 2, command<Draw>(s, 9).first_instance = 0xffffffffu; }},
+      {"more than 4294967296 vertices", [](auto& s) { command<Draw>(s, 9).instances = 0xffffffffu; }},
+      {"instance 3 at location 0", [](auto& s) { s.pipelines[0].bindings[0].per_instance = true, command<Draw>(s, 9).instances = 4; }},
+  });
+}
+
+TEST_CASE("validate: only the indices that a draw uses count") {
+  CommandStream stream = small_stream();
+  stream.buffers[1].data = {std::byte{255}, std::byte{0}, std::byte{1}, std::byte{2}, std::byte{255}};
+  command<Draw>(stream, 8).first = 1;
+  REQUIRE(refusal(stream) == "accepted");
+  command<Draw>(stream, 8).first = 2;
+  REQUIRE_THAT(refusal(stream), Catch::Contains("vertex 255"));
+}
+
+TEST_CASE("validate: an empty draw fetches nothing") {
+  CommandStream stream = small_stream();
+  command<Draw>(stream, 8) = Draw{true, 0, 1000, -5, 1, 0, ""};
+  command<Draw>(stream, 9) = Draw{false, 1000, 1000, 0, 0, 0, ""};
+  REQUIRE(refusal(stream) == "accepted");
+}

@@ -1,0 +1,213 @@
+/// The command stream: everything a frame needs, at the level of Vulkan's objects, and nothing of where it came from.
+///
+/// Objects (buffers, images, samplers, shaders, pipelines, descriptor sets, render targets) live in tables and are named by their index; commands refer to
+/// them. A scene is turned into a `CommandStream`, a trace file holds one, the machine, the reference renderer and the Vulkan comparison execute one.
+/// Conventions are Vulkan's: clip space 0 <= z <= w, y down, column-major matrices, std140 uniform blocks, counter-clockwise as stated by the pipeline.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace quadrille::traces {
+
+using Index = std::uint32_t;   ///< into one of the tables of `CommandStream`
+
+enum class Format : std::uint8_t {
+  kUndefined,
+  // Images. Each texel is 4 bytes; depth is one 32-bit float.
+  kR8G8B8A8Unorm, kR8G8B8A8Srgb, kD32Float,
+  // Vertex attributes.
+  kR32Float, kR32G32Float, kR32G32B32Float, kR32G32B32A32Float,
+  kR8G8Unorm, kR8G8B8A8UnormVertex, kR16G16Unorm, kR16G16B16A16Unorm,
+  kR8G8B8A8Snorm, kR16G16B16A16Snorm
+};
+/// Bytes of a texel or of a vertex attribute.
+[[nodiscard]] std::uint32_t format_bytes(Format format);
+/// Components that an attribute of this format supplies (1..4); missing ones read as (0, 0, 0, 1).
+[[nodiscard]] int format_components(Format format);
+
+struct Buffer {
+  std::string name;
+  std::vector<std::byte> data;
+  friend bool operator==(const Buffer&, const Buffer&) = default;
+};
+
+/// A 2D texture: all mip levels, finest first, rows top to bottom, tightly packed. Level i is max(1, width >> i) by max(1, height >> i).
+struct Image {
+  std::string name;
+  Format format = Format::kR8G8B8A8Unorm;
+  std::uint32_t width = 1, height = 1, levels = 1;
+  std::vector<std::byte> texels;
+  friend bool operator==(const Image&, const Image&) = default;
+};
+
+enum class Filter : std::uint8_t { kNearest, kLinear };
+enum class Wrap : std::uint8_t { kRepeat, kMirroredRepeat, kClampToEdge };
+struct Sampler {
+  Filter mag = Filter::kLinear, min = Filter::kLinear, mip = Filter::kLinear;
+  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
+  float lod_bias = 0, min_lod = 0, max_lod = 1000;
+  friend bool operator==(const Sampler&, const Sampler&) = default;
+};
+
+enum class ShaderStage : std::uint8_t { kVertex, kFragment };
+struct Shader {
+  std::string name;
+  ShaderStage stage = ShaderStage::kVertex;
+  std::vector<std::uint32_t> spirv;   ///< entry point "main"
+  friend bool operator==(const Shader&, const Shader&) = default;
+};
+
+enum class Topology : std::uint8_t { kTriangleList, kTriangleStrip, kTriangleFan };
+enum class CullMode : std::uint8_t { kNone, kFront, kBack };
+enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };   ///< as Vulkan: by signed area in framebuffer coordinates (y down)
+enum class CompareOp : std::uint8_t { kNever, kLess, kEqual, kLessOrEqual, kGreater, kNotEqual, kGreaterOrEqual, kAlways };
+enum class BlendFactor : std::uint8_t {
+  kZero, kOne, kSrcColor, kOneMinusSrcColor, kDstColor, kOneMinusDstColor, kSrcAlpha, kOneMinusSrcAlpha, kDstAlpha, kOneMinusDstAlpha
+};
+enum class BlendOp : std::uint8_t { kAdd, kSubtract, kReverseSubtract, kMin, kMax };
+
+inline constexpr Index kNone = 0xffffffffu;   ///< an index that names nothing (declared after the enumerations, whose kNone it would shadow)
+
+struct VertexBinding {
+  std::uint32_t binding = 0, stride = 0;
+  bool per_instance = false;
+  friend bool operator==(const VertexBinding&, const VertexBinding&) = default;
+};
+struct VertexAttribute {
+  std::uint32_t location = 0, binding = 0;
+  Format format = Format::kR32G32B32Float;
+  std::uint32_t offset = 0;
+  friend bool operator==(const VertexAttribute&, const VertexAttribute&) = default;
+};
+struct DepthState {
+  bool test = false, write = false;
+  CompareOp compare = CompareOp::kLess;
+  friend bool operator==(const DepthState&, const DepthState&) = default;
+};
+struct BlendState {
+  bool enable = false;
+  BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne, dst_alpha = BlendFactor::kZero;
+  BlendOp color = BlendOp::kAdd, alpha = BlendOp::kAdd;
+  std::uint8_t write_mask = 0xf;   ///< bit 0 red .. bit 3 alpha
+  friend bool operator==(const BlendState&, const BlendState&) = default;
+};
+struct Pipeline {
+  std::string name;
+  Index vertex_shader = kNone, fragment_shader = kNone;
+  std::vector<VertexBinding> bindings;
+  std::vector<VertexAttribute> attributes;
+  Topology topology = Topology::kTriangleList;
+  CullMode cull = CullMode::kNone;
+  FrontFace front = FrontFace::kCounterClockwise;
+  bool depth_clamp = false;
+  DepthState depth;
+  BlendState blend;
+  friend bool operator==(const Pipeline&, const Pipeline&) = default;
+};
+
+struct UniformBinding {
+  std::uint32_t binding = 0;
+  Index buffer = kNone;
+  std::uint32_t offset = 0, range = 0;   ///< bytes
+  friend bool operator==(const UniformBinding&, const UniformBinding&) = default;
+};
+struct TextureDescriptor {
+  std::uint32_t binding = 0;
+  Index image = kNone, sampler = kNone;
+  friend bool operator==(const TextureDescriptor&, const TextureDescriptor&) = default;
+};
+struct DescriptorSet {
+  std::vector<UniformBinding> uniforms;
+  std::vector<TextureDescriptor> textures;
+  friend bool operator==(const DescriptorSet&, const DescriptorSet&) = default;
+};
+
+struct RenderTarget {
+  std::uint32_t width = 0, height = 0;
+  Format color = Format::kR8G8B8A8Srgb;
+  Format depth = Format::kD32Float;      ///< kUndefined: no depth attachment
+  friend bool operator==(const RenderTarget&, const RenderTarget&) = default;
+};
+
+// Commands.
+/// Both attachments are cleared when the pass begins and stored when it ends.
+struct BeginPass {
+  Index target = 0;
+  std::array<float, 4> clear_color{0, 0, 0, 1};   ///< linear values
+  float clear_depth = 1;
+  friend bool operator==(const BeginPass&, const BeginPass&) = default;
+};
+struct EndPass {
+  friend bool operator==(const EndPass&, const EndPass&) = default;
+};
+struct BindPipeline {
+  Index pipeline = kNone;
+  friend bool operator==(const BindPipeline&, const BindPipeline&) = default;
+};
+struct BindDescriptorSet {
+  std::uint32_t set = 0;
+  Index descriptors = kNone;
+  friend bool operator==(const BindDescriptorSet&, const BindDescriptorSet&) = default;
+};
+struct BindVertexBuffer {
+  std::uint32_t binding = 0;
+  Index buffer = kNone;
+  std::uint64_t offset = 0;
+  friend bool operator==(const BindVertexBuffer&, const BindVertexBuffer&) = default;
+};
+enum class IndexType : std::uint8_t { kUint8, kUint16, kUint32 };
+struct BindIndexBuffer {
+  Index buffer = kNone;
+  std::uint64_t offset = 0;
+  IndexType type = IndexType::kUint16;
+  friend bool operator==(const BindIndexBuffer&, const BindIndexBuffer&) = default;
+};
+struct PushConstants {
+  std::uint32_t offset = 0;
+  std::vector<std::byte> data;
+  friend bool operator==(const PushConstants&, const PushConstants&) = default;
+};
+struct SetViewport {
+  float x = 0, y = 0, width = 0, height = 0, min_depth = 0, max_depth = 1;
+  friend bool operator==(const SetViewport&, const SetViewport&) = default;
+};
+struct SetScissor {
+  std::int32_t x = 0, y = 0;
+  std::uint32_t width = 0, height = 0;
+  friend bool operator==(const SetScissor&, const SetScissor&) = default;
+};
+/// Indexed when `indexed`: `first` is the first index, `vertex_offset` is added to each; otherwise `first` is the first vertex. No primitive restart.
+struct Draw {
+  bool indexed = false;
+  std::uint32_t count = 0, first = 0;
+  std::int32_t vertex_offset = 0;
+  std::uint32_t instances = 1, first_instance = 0;
+  std::string label;
+  friend bool operator==(const Draw&, const Draw&) = default;
+};
+using Command = std::variant<BeginPass, EndPass, BindPipeline, BindDescriptorSet, BindVertexBuffer, BindIndexBuffer, PushConstants, SetViewport, SetScissor, Draw>;
+
+struct CommandStream {
+  std::string name;
+  std::vector<Buffer> buffers;
+  std::vector<Image> images;
+  std::vector<Sampler> samplers;
+  std::vector<Shader> shaders;
+  std::vector<Pipeline> pipelines;
+  std::vector<DescriptorSet> descriptor_sets;
+  std::vector<RenderTarget> targets;
+  std::vector<Command> commands;
+  friend bool operator==(const CommandStream&, const CommandStream&) = default;
+};
+
+inline constexpr std::uint32_t kMaxPushConstantBytes = 256;
+
+/// Checks every reference, range and size, so that nothing that executes the stream has to. Throws `UserError` naming the object or command.
+void validate(const CommandStream& stream);
+
+}  // namespace quadrille::traces

@@ -1,0 +1,63 @@
+/// Walks the commands as an executor would, keeping the bound state, and refuses the first command that an executor could not carry out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "traces/command_stream.h"
+
+namespace quadrille::traces {
+
+inline constexpr std::uint32_t kMaxVertexBindings = 16;
+inline constexpr std::uint32_t kMaxDescriptorSets = 4;
+
+class CommandWalk {
+ public:
+  explicit CommandWalk(const CommandStream& stream) : stream_(stream) {}
+  /// Throws `UserError` naming the command.
+  void run();
+
+ private:
+  struct VertexStream {
+    Index buffer = kNone;
+    std::uint64_t offset = 0;
+  };
+  struct VertexRange {
+    std::uint64_t first = 0, last = 0;
+  };
+
+  void visit(const BeginPass& c);
+  void visit(const EndPass& c);
+  void visit(const BindPipeline& c);
+  void visit(const BindDescriptorSet& c);
+  void visit(const BindVertexBuffer& c);
+  void visit(const BindIndexBuffer& c);
+  void visit(const PushConstants& c);
+  void visit(const SetViewport& c);
+  void visit(const SetScissor& c);
+  void visit(const Draw& c);
+
+  void check_draw_state() const;
+  void check_scissor() const;
+  void count_vertices(const Draw& draw);
+  [[nodiscard]] VertexRange vertex_range(const Draw& draw);
+  [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> index_range(const Draw& draw);
+  void check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices, VertexRange instances) const;
+
+  const CommandStream& stream_;
+  std::size_t at_ = 0;   ///< command index, for messages
+  std::uint64_t vertices_ = 0;
+  std::size_t passes_ = 0;
+  Index target_ = kNone, pipeline_ = kNone;
+  std::array<VertexStream, kMaxVertexBindings> vertex_streams_;
+  BindIndexBuffer indices_;
+  std::optional<SetViewport> viewport_;
+  std::optional<SetScissor> scissor_;
+  std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t>, std::pair<std::uint32_t, std::uint32_t>> index_ranges_;   ///< scanned once
+};
+
+}  // namespace quadrille::traces

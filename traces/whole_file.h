@@ -1,0 +1,17 @@
+/// Files that are read at once and appear at once: a reader never sees half of what we write, and an interrupted run leaves the old file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace quadrille::traces {
+
+/// All bytes of a regular file of at most `limit` bytes. Throws `UserError` that starts with the path.
+[[nodiscard]] std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t limit);
+/// Writes a file by way of a temporary one beside it and a rename. Throws `UserError` that starts with the path.
+void write_whole_file(const std::string& path, std::span<const std::byte> bytes);
+
+}  // namespace quadrille::traces
