@@ -4,12 +4,19 @@
 
 #include <bit>
 #include <chrono>
+#include <ctime>
 
 namespace quadrille::pipeline {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -51,8 +58,10 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   build_frame(stream, precision, frame);
   out.figures.host.build_s = seconds_since(start);
   const auto simulate = Clock::now();
+  const double cpu = cpu_seconds();
   const FunctionalCounts counts = render_functional(frame.frame, frame.memory, observer);
   out.figures.host.simulate_s = seconds_since(simulate);
+  out.figures.host.simulate_cpu_s = cpu_seconds() - cpu;
   out.figures.fidelity = "functional";
   out.figures.scene = stream.name;
   out.figures.left_out = frame.left_out;
@@ -77,14 +86,17 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   Machine machine(config, frame, options);
   const double build_s = seconds_since(start);
   const auto simulate = Clock::now();
+  const double cpu = cpu_seconds();
   machine.run(limits);
   const double simulate_s = seconds_since(simulate);
+  const double simulate_cpu_s = cpu_seconds() - cpu;
   out.figures = collect_figures(machine, frame);
   out.figures.scene = stream.name;
   out.figures.machine = config.name;
   if (options.window > 0) out.figures.fidelity = "approximate";
   out.figures.host.build_s = build_s;
   out.figures.host.simulate_s = simulate_s;
+  out.figures.host.simulate_cpu_s = simulate_cpu_s;
   finish_host(out.figures.host, out.figures.frame);
   out.image = read_image(frame);
   return out;

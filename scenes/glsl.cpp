@@ -45,9 +45,11 @@ std::string preamble_of(std::span<const std::string> defines) {
 
 }  // namespace
 
-std::vector<std::uint32_t> compile_glsl(std::string_view source, traces::ShaderStage stage, std::string_view name, std::span<const std::string> defines) {
+std::vector<std::uint32_t> compile_glsl(std::string_view source, traces::ShaderStage stage, std::string_view name,
+                                        std::span<const std::string> defines) {
   for (const std::string& define : defines)
-    if (define.empty() || define.find('\n') != std::string::npos) throw user_error("{}: a define is one line \"NAME\" or \"NAME VALUE\"", name);
+    if (define.empty() || define.find('\n') != std::string::npos)
+      throw user_error("{}: a define is one line \"NAME\" or \"NAME VALUE\"", name);
   const std::scoped_lock lock(compiler_lock());
   initialise_once();
   const EShLanguage language = stage == traces::ShaderStage::kVertex ? EShLangVertex : EShLangFragment;

@@ -52,13 +52,14 @@ class Clock {
   /// The first edge at or after `t`; kNever stays kNever.
   [[nodiscard]] Tick align(Tick t) const { return t == kNever ? kNever : edge(edges_before(t)); }
   /// The edge `cycles` after the edge `t`. `t` must be an edge.
-  [[nodiscard]] Tick after(Tick t, std::int64_t cycles) const { return uniform() ? t + cycles * whole_ : edge(edges_before(t) + cycles); }
+  [[nodiscard]] Tick after(Tick t, std::int64_t cycles) const { return uniform() ? t + cycles * whole_ : after_uneven(t, cycles); }
   /// Edges in [from, to).
-  [[nodiscard]] std::int64_t cycles(Tick from, Tick to) const { return edges_before(to) - edges_before(from); }
+  [[nodiscard]] std::int64_t cycles(Tick from, Tick to) const;
   friend bool operator==(const Clock& a, const Clock& b) { return a.hz_ == b.hz_; }
 
  private:
   __extension__ using Wide = unsigned __int128;
+  [[nodiscard]] Tick after_uneven(Tick t, std::int64_t cycles) const;  // out of line, to keep the common case short
   static constexpr std::int64_t kFemto = 1'000'000'000'000'000;
   std::int64_t hz_;
   Tick whole_ = 0;              ///< whole femtoseconds of the period

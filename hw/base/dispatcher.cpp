@@ -5,6 +5,7 @@
 #include <bit>
 #include <map>
 #include <queue>
+#include <utility>
 
 namespace quadrille::hw {
 
@@ -62,11 +63,13 @@ Earliest earliest_of(const std::vector<Tick>& times) {
 }  // namespace
 
 void Dispatcher::prepare() {
-  chooser_of_.assign(units_.size(), -1);
+  chooser_of_.assign(units_.size(), 0);
+  chooser_marks_.assign(touched_.size(), 0);
   for (std::size_t i = 0; i < units_.size(); ++i) {
     Unit& unit = *units_[i];
     if (unit.unit_kind() != Unit::Kind::kChooser) continue;
-    chooser_of_[i] = static_cast<int>(choosers_.size());
+    chooser_of_[i] = choosers_.size();
+    chooser_marks_[i / 64] |= std::uint64_t{1} << (i % 64);
     const Reach reach = reach_of(unit);
     choosers_.push_back({&unit, unit.touched_word(), unit.touched_bit(), reach.self, Wake(kNever)});
     reach_.push_back(reach.others);
@@ -113,25 +116,26 @@ void Dispatcher::step() {
 }
 
 void Dispatcher::settle() {
-  for (bool any = true; any;) {
-    any = false;
-    for (std::size_t w = 0; w < touched_.size(); ++w) {
-      while (touched_[w] != 0) {
-        any = true;
-        const auto bit = static_cast<std::size_t>(std::countr_zero(touched_[w]));
-        touched_[w] &= touched_[w] - 1;
-        const std::size_t i = w * 64 + bit;
-        const int c = chooser_of_[i];
-        if (c < 0) {
-          run_ahead(*units_[i]);
-        } else {
-          const auto k = static_cast<std::size_t>(c);
-          choosers_[k].wake = choosers_[k].unit->wake();
-          times_[k] = choosers_[k].wake.at();
-        }
-      }
+  while (run_marked()) {}
+  for (std::size_t w = 0; w < touched_.size(); ++w) {
+    for (std::uint64_t marks = std::exchange(touched_[w], 0); marks != 0; marks &= marks - 1) {
+      const std::size_t k = chooser_of_[w * 64 + static_cast<std::size_t>(std::countr_zero(marks))];
+      choosers_[k].wake = choosers_[k].unit->wake();
+      times_[k] = choosers_[k].wake.at();
     }
   }
+}
+
+bool Dispatcher::run_marked() {
+  bool any = false;
+  for (std::size_t w = 0; w < touched_.size(); ++w) {
+    while (const std::uint64_t marks = touched_[w] & ~chooser_marks_[w]) {
+      any = true;
+      touched_[w] ^= marks & (~marks + 1);
+      run_ahead(*units_[w * 64 + static_cast<std::size_t>(std::countr_zero(marks))]);
+    }
+  }
+  return any;
 }
 
 void Dispatcher::run_ahead(Unit& unit) const {
@@ -141,11 +145,20 @@ void Dispatcher::run_ahead(Unit& unit) const {
 bool Dispatcher::round() {
   const Earliest earliest = earliest_of(times_);  // before anyone acts: what they do from here on is never earlier than these
   if (earliest.first > limits_.max_time) return false;
-  for (std::size_t k = 0; k < choosers_.size(); ++k) {
-    const Tick time = times_[k];
-    if (time - earliest.first >= reach_[k] || time > limits_.max_time) continue;
-    const Tick others = time == earliest.first ? earliest.second : earliest.first;
-    run_chooser(k, std::min(saturating_add(others, reach_[k]), saturating_add(time, choosers_[k].round_trip)));
+  const Tick limit = limits_.max_time;
+  for (std::size_t base = 0; base < reach_.size(); base += 64) {
+    const std::size_t n = std::min<std::size_t>(64, reach_.size() - base);
+    std::uint64_t able = 0;  // gathered without branches: who is among them is as good as random
+    for (std::size_t i = 0; i < n; ++i) {
+      const Tick time = times_[base + i];
+      able |= static_cast<std::uint64_t>((time - earliest.first < reach_[base + i]) & (time <= limit)) << i;
+    }
+    for (; able != 0; able &= able - 1) {
+      const std::size_t k = base + static_cast<std::size_t>(std::countr_zero(able));
+      const Tick time = times_[k];
+      const Tick others = time == earliest.first ? earliest.second : earliest.first;
+      run_chooser(k, std::min(saturating_add(others, reach_[k]), saturating_add(time, choosers_[k].round_trip)));
+    }
   }
   return true;
 }

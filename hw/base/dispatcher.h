@@ -31,8 +31,10 @@ class Dispatcher final : public Driver {
   void prepare() override;
   [[nodiscard]] Reach reach_of(const Unit& chooser) const;
   void step();
-  /// Runs marked fixed-order units until none can act, and asks marked choosers again.
+  /// Runs marked fixed-order units until none can act, then asks marked choosers again.
   void settle();
+  /// One pass over the marked fixed-order units. False when none was marked.
+  bool run_marked();
   void run_ahead(Unit& unit) const;
   /// One round over the choosers. False when none can act within the limit.
   bool round();
@@ -41,7 +43,8 @@ class Dispatcher final : public Driver {
 
   Tick window_;
   std::vector<Chooser> choosers_;
-  std::vector<int> chooser_of_;  ///< unit index -> chooser index, -1 for fixed-order units
+  std::vector<std::size_t> chooser_of_;       ///< unit index -> chooser index; only for choosers
+  std::vector<std::uint64_t> chooser_marks_;  ///< which bits of `touched_` are choosers'
   std::vector<Tick> times_;      ///< choosers_[i].wake.at(), contiguous for the scans; padded with kNever
   std::vector<Tick> reach_;      ///< by chooser: smallest distance from any other chooser
 };

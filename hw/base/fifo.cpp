@@ -58,7 +58,7 @@ Tick FifoBase::crossed_cycle(Tick now) const { return producer_->clock().after(n
 
 int FifoBase::free_slots(Tick now) const {
   int n = 0;
-  for (std::size_t i = tail_; n < spec_.depth - count_ && stamp_[i] <= now; i = wrap(i)) ++n;
+  for (std::uint32_t i = tail_; n < spec_.depth - count_ && stamp_[i] <= now; i = wrap(i)) ++n;
   return n;
 }
 

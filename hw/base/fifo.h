@@ -108,7 +108,7 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
     std::uint64_t bit = 0;
     void set() const { *word |= bit; }
   };
-  [[nodiscard]] std::size_t wrap(std::size_t i) const { return i + 1 == stamp_.size() ? 0 : i + 1; }
+  [[nodiscard]] std::uint32_t wrap(std::uint32_t i) const { return i + 1 == static_cast<std::uint32_t>(spec_.depth) ? 0 : i + 1; }
   [[nodiscard]] static Tick later(Tick a, Tick b) { return a > b ? a : b; }
   [[nodiscard]] Tick next_cycle(Tick now) const { return producer_period_ != 0 ? now + producer_period_ : crossed_cycle(now); }
   [[nodiscard]] Tick crossed_push(Tick now) const;
@@ -117,11 +117,12 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   [[noreturn]] void refuse_push(Tick now) const;
   [[noreturn]] void refuse_pop(Tick now) const;
 
-  Tick ready_ = kNever, room_ = 0;
+  alignas(64) Tick ready_ = kNever;  // what every push, pop and question touches lies together
+  Tick room_ = 0;
   Tick forward_ = 0, credit_ = 0;
-  std::size_t head_ = 0, tail_ = 0;
   std::vector<Tick> stamp_;
   LinkSpec spec_;
+  std::uint32_t head_ = 0, tail_ = 0;
   int count_ = 0;
   int burst_ = 0;               ///< pushes at tick `last_push_`
   bool uniform_ = false;        ///< one clock with equal cycles: latencies are plain additions

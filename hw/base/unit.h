@@ -49,14 +49,21 @@ class Wake {
   /// The port satisfied last; null if there was none to wait for.
   [[nodiscard]] const PortBase* cause() const { return cause_; }
   /// The sooner of two possible actions; the first on a tie.
-  [[nodiscard]] static Wake sooner(const Wake& a, const Wake& b) { return b.at() < a.at() ? b : a; }
+  [[nodiscard]] static Wake sooner(const Wake& a, const Wake& b) {
+    const bool second = b.at() < a.at();
+    Wake w;
+    w.own_ = second ? b.own_ : a.own_;
+    w.wait_ = second ? b.wait_ : a.wait_;
+    w.cause_ = second ? b.cause_ : a.cause_;
+    return w;
+  }
 
  private:
+  // Plain selections, here and above: which constraint comes last is the least predictable branch of a simulation.
   Wake& constrain(Tick t, const PortBase& port, bool wins_ties) {
-    if (t > wait_ || (wins_ties && t == wait_)) {
-      wait_ = t;
-      cause_ = &port;
-    }
+    const bool last = t > wait_ - static_cast<Tick>(wins_ties);
+    wait_ = last ? t : wait_;
+    cause_ = last ? &port : cause_;
     return *this;
   }
   Tick own_ = 0, wait_ = 0;

@@ -184,7 +184,7 @@ void DepthUnit::acquire_waiting(Tick now) {
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.index).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
-    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, sectors, 0, number & ~kLateBit, entry.missing, port_)) return false;
+    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, sectors, 0, number & ~kLateBit, entry.missing, entry.done, port_)) return false;
   }
   entry.acquired = true;
   return true;
@@ -197,7 +197,10 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
       if (((warp.alive >> (4 * q)) & 0xf) == 0) continue;
       const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
       const std::uint8_t sector = sectors_of_quads(1u << quad_in_tile(quad));
-      if (!cache_.acquire(tile_of(quad.x), tile_of(quad.y), sector, 0, (number & ~kLateBit) | kLateBit, entry.missing, port_)) return false;
+      if (!cache_.acquire(tile_of(quad.x), tile_of(quad.y), sector, 0, (number & ~kLateBit) | kLateBit, entry.missing,
+                          entry.done[static_cast<std::size_t>(q)], port_)) {
+        return false;
+      }
     }
   }
   entry.acquired = true;

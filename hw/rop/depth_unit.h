@@ -61,12 +61,14 @@ class DepthUnit final : public Unit {
     int missing = 0;
     Tick ready = 0;
     bool acquired = false;
+    std::uint8_t done = 0;                                ///< of `SurfaceCache::acquire`
   };
   struct LateEntry {
     LateToken token;
     int missing = 0;
     Tick ready = 0;
     bool acquired = false;
+    std::array<std::uint8_t, models::kWarpQuads> done{};  ///< of `SurfaceCache::acquire`, by quad
   };
   enum class Flush : std::uint8_t { kNone, kDraining, kFenced };
 

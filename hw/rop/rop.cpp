@@ -197,7 +197,7 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
       auto& mask = blends || tile.pixels[s] < 8 ? read : write;
       mask = static_cast<std::uint8_t>(mask | 1u << s);
     }
-    if (!cache_.acquire(tile.tile_x, tile.tile_y, read, write, number, entry.missing, port_)) return false;
+    if (!cache_.acquire(tile.tile_x, tile.tile_y, read, write, number, entry.missing, entry.done[static_cast<std::size_t>(i)], port_)) return false;
   }
   return true;
 }

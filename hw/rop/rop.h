@@ -59,6 +59,7 @@ class Rop final : public Unit {
     int missing = 0;
     Tick ready = 0;
     int shaded = 0;      ///< live lanes after discard
+    std::array<std::uint8_t, models::kWarpQuads> done{};   ///< of `SurfaceCache::acquire`, by touched tile
   };
   enum class Flush : std::uint8_t { kNone, kDepth, kDraining, kFenced };
 

@@ -6,6 +6,11 @@
 
 namespace quadrille::hw {
 
+namespace {
+// Bits of `done`, for the upper half of the tile; the lower half's are one to the left.
+constexpr unsigned kMaterialized = 1, kAcquired = 4;
+}  // namespace
+
 SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory, models::DeviceMemory::Owner owner)
     : cache_(stats, lines, ways, misses), memory_(memory), stats_(stats) {
   cache_.own_dirty_lines(memory, owner);
@@ -25,31 +30,34 @@ void SurfaceCache::clear(const models::SurfaceLayout& surface, std::uint32_t val
   }
 }
 
-bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, MemoryPort& port) {
-  const std::uint32_t line = line_of(tile_x, tile_y);
-  if (!cache_.claim(line, 0xf, port)) return false;
-  cache_.mark_dirty(line, 0xf);
-  if (!cache_.claim(line + 1, 0xf, port)) return false;
-  cache_.mark_dirty(line + 1, 0xf);
+bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t& done, MemoryPort& port) {
+  for (int half = 0; half < 2; ++half) {
+    const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
+    if ((done & (kMaterialized << half)) != 0) continue;
+    if (!cache_.claim(line, 0xf, port)) return false;
+    cache_.mark_dirty(line, 0xf);
+    done = static_cast<std::uint8_t>(done | kMaterialized << half);
+  }
   cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] = false;
   ++stats_.clear_hits;
   return true;
 }
 
 bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing,
-                           MemoryPort& port) {
-  if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, port)) return false;
+                           std::uint8_t& done, MemoryPort& port) {
+  if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, done, port)) return false;
   for (int half = 0; half < 2; ++half) {
+    if ((done & (kAcquired << half)) != 0) continue;
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
     const auto wanted = static_cast<std::uint8_t>((read >> (4 * half)) & 0xf);
     const auto written = static_cast<std::uint8_t>((write >> (4 * half)) & 0xf & ~wanted);
     if (written != 0 && !cache_.claim(line, written, port)) return false;
-    if (wanted == 0) continue;
-    switch (cache_.access(line, wanted, waiter, port)) {
-      case L1Cache::Result::kHit: break;
-      case L1Cache::Result::kPending: ++missing; break;
-      case L1Cache::Result::kStall: return false;
+    if (wanted != 0) {
+      const L1Cache::Result result = cache_.access(line, wanted, waiter, port);
+      if (result == L1Cache::Result::kStall) return false;
+      if (result == L1Cache::Result::kPending) ++missing;
     }
+    done = static_cast<std::uint8_t>(done | kAcquired << half);
   }
   return true;
 }

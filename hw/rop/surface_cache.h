@@ -34,8 +34,10 @@ class SurfaceCache {
   /// Begins a pass on `surface`: fills this partition's tiles with `value` and marks them.
   void clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition, std::uint32_t partitions);
   /// Asks for sectors of a tile: those in `read` with their contents, those in `write` because they are overwritten whole.
-  /// Adds what is not there yet to `missing` and tells `waiter` of each. False when there is no place now: try again after a fill; asking twice is harmless.
-  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing, MemoryPort& port);
+  /// Adds what is not there yet to `missing` and tells `waiter` of each. False when there is no place now: try again after a fill, with the same `done`,
+  /// which starts at 0 and remembers what was asked for already, so that even a cache of one line gets through.
+  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing, std::uint8_t& done,
+               MemoryPort& port);
   /// Sectors of a tile were written. Takes back a line that was evicted since it was acquired; false when there is no place for it now.
   bool write(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t sectors, MemoryPort& port);
   template <class F>
@@ -50,7 +52,7 @@ class SurfaceCache {
   [[nodiscard]] std::uint32_t line_of(std::uint32_t tile_x, std::uint32_t tile_y) const {
     return static_cast<std::uint32_t>(surface_.tile_address(tile_x, tile_y) / models::kLineBytes);
   }
-  bool materialize(std::uint32_t tile_x, std::uint32_t tile_y, MemoryPort& port);
+  bool materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t& done, MemoryPort& port);
 
   L1Cache cache_;
   models::DeviceMemory& memory_;

@@ -78,7 +78,7 @@ class Decoder {
   void dynamic_step(Value& pointer, Slot index, std::uint32_t count, std::uint32_t stride);
   void reject_clip_distance(Id struct_type, std::uint32_t member) const;
   [[nodiscard]] Value load(const Value& pointer);
-  void store(const Value& pointer, const Value& value);
+  void store(const Value& pointer, const Value& stored);
   [[nodiscard]] bool composite_instruction(Frame& frame, const SpirvInstruction& in);
   void construct(Frame& frame, const SpirvInstruction& in);
   void shuffle(Frame& frame, const SpirvInstruction& in);
@@ -96,7 +96,7 @@ class Decoder {
   void two_results(Frame& frame, const SpirvInstruction& in, Handler handler);
 
   // Shared.
-  [[nodiscard]] Slot allocate(std::uint32_t cells);
+  [[nodiscard]] Slot allocate(std::uint32_t n);
   [[nodiscard]] Value new_value(Id type);
   [[nodiscard]] Value& define(Frame& frame, const SpirvInstruction& in);  ///< a new value for the instruction's result
   [[nodiscard]] const Value& value(const Frame& frame, Id id) const;

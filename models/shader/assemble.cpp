@@ -58,10 +58,8 @@ class Assembler {
     if (line.empty()) return;
     const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
     const std::string_view word = line.substr(0, end), rest = trimmed(line.substr(end));
-    if (word.front() == '.')
-      read_directive(word.substr(1), split(rest, " \t"));
-    else
-      read_instruction(word, split(rest, ","));
+    if (word.front() == '.') read_directive(word.substr(1), split(rest, " \t"));
+    else read_instruction(word, split(rest, ","));
   }
 
   // Directives.

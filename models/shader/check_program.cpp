@@ -40,8 +40,8 @@ class Checker {
     require(!program_.code.empty(), "there are no instructions; at least 'end' is needed");
     require(program_.num_regs >= 0 && program_.num_regs <= kMaxRegisters, "{} registers; legal: 0 to {}", program_.num_regs, kMaxRegisters);
     require(program_.varyings.size() <= kMaxVaryings, "{} varying components; legal: at most {}", program_.varyings.size(), kMaxVaryings);
-    require(program_.vertex_inputs.size() <= kMaxVertexInputs, "{} vertex input components; legal: at most {}", program_.vertex_inputs.size(),
-            kMaxVertexInputs);
+    require(program_.vertex_inputs.size() <= kMaxVertexInputs, "{} vertex input components; legal: at most {}",
+            program_.vertex_inputs.size(), kMaxVertexInputs);
   }
 
   void check_operands(const Instruction& in) const {
@@ -52,14 +52,16 @@ class Checker {
       const char name = static_cast<char>('a' + i);
       require(operand.kind == Operand::kRegister || operand.kind == Operand::kConstant, "'{}' lacks its operand {}", info.name, name);
       if (operand.kind == Operand::kRegister)
-        require(operand.index < program_.num_regs, "operand {} is r{}; the program has {} registers", name, operand.index, program_.num_regs);
+        require(operand.index < program_.num_regs, "operand {} is r{}; the program has {} registers", name, operand.index,
+                program_.num_regs);
       else
-        require(operand.index < program_.constants.words, "operand {} is c{}; the constant file has {} words", name, operand.index, program_.constants.words);
+        require(operand.index < program_.constants.words, "operand {} is c{}; the constant file has {} words", name, operand.index,
+                program_.constants.words);
       require(operand.modifiers == 0 || ((info.modifiable >> i) & 1u) != 0, "operand {} of '{}' takes no modifier", name, info.name);
     }
     require((in.flags & Instruction::kSaturate) == 0 || info.saturable, "'{}' cannot saturate", info.name);
-    require(info.destinations == 0 || in.dst + info.destinations <= program_.num_regs, "'{}' writes r{} to r{}; the program has {} registers", info.name,
-            in.dst, in.dst + info.destinations - 1, program_.num_regs);
+    require(info.destinations == 0 || in.dst + info.destinations <= program_.num_regs,
+            "'{}' writes r{} to r{}; the program has {} registers", info.name, in.dst, in.dst + info.destinations - 1, program_.num_regs);
   }
 
   void check_immediate(const Instruction& in) const {
@@ -88,15 +90,14 @@ class Checker {
     if (slot < kFirstSystemValue)
       require(vertex && slot < program_.vertex_inputs.size(), "vertex input {} does not exist; the program has {}", slot,
               vertex ? program_.vertex_inputs.size() : 0u);
-    else
-      require(slot <= kLast && (slot < kFirstFragment) == vertex, "system value {} does not exist in this stage", slot);
+    else require(slot <= kLast && (slot < kFirstFragment) == vertex, "system value {} does not exist in this stage", slot);
   }
 
   void check_indexed_constant(const Instruction& in) const {
     const std::uint32_t* last = in.b.kind == Operand::kConstant ? literal_value(program_.constants, in.b.index) : nullptr;
     require(last != nullptr, "operand b of 'loadconst' must be a literal, the largest index");
-    require(*last < program_.constants.words && in.imm + *last < program_.constants.words, "'loadconst' reaches c[{} + {}]; the constant file has {} words",
-            in.imm, *last, program_.constants.words);
+    require(*last < program_.constants.words && in.imm + *last < program_.constants.words,
+            "'loadconst' reaches c[{} + {}]; the constant file has {} words", in.imm, *last, program_.constants.words);
   }
 
   void check_stage(const Instruction& in) const {
@@ -153,9 +154,7 @@ std::optional<ProgramFault> program_fault(const Program& program) {
   try {
     Checker(program).check();
     return std::nullopt;
-  } catch (const ProgramFault& fault) {
-    return fault;
-  }
+  } catch (const ProgramFault& fault) { return fault; }
 }
 
 }  // namespace quadrille::models

@@ -16,11 +16,11 @@ namespace quadrille::models {
 
 /// What an executing instruction sees of its warp.
 struct ExecutionContext {
-  std::byte* regs = nullptr;                ///< RegisterRow by index
+  std::byte* regs = nullptr;  ///< RegisterRow by index
   const std::uint32_t* constants = nullptr;
   Warp* warp = nullptr;
-  bool one_triangle = false;                ///< all quads have the same varyings
-  alignas(64) LaneWords exec_lanes;         ///< all ones in lanes of `warp->exec`
+  bool one_triangle = false;         ///< all quads have the same varyings
+  alignas(64) LaneWords exec_lanes;  ///< all ones in lanes of `warp->exec`
 };
 
 /// A register row (byte offset into the register file) or a word of the constant file; the value read is (bits & keep) ^ flip.
@@ -31,19 +31,19 @@ struct DecodedOperand {
 
 struct alignas(64) DecodedInstruction {
   using Execute = void (*)(const DecodedInstruction&, ExecutionContext&);
-  Execute all_lanes = nullptr;    ///< writes every lane: right when all launched lanes execute
-  Execute some_lanes = nullptr;   ///< keeps lanes that do not execute
+  Execute all_lanes = nullptr;   ///< writes every lane: right when all launched lanes execute
+  Execute some_lanes = nullptr;  ///< keeps lanes that do not execute
   DecodedOperand a, b, c;
-  std::uint32_t dst = 0;          ///< byte offset of the first destination row
+  std::uint32_t dst = 0;  ///< byte offset of the first destination row
   std::uint16_t imm = 0;
   Op op = Op::kNop;
 };
 
 /// Where execution goes on. Instructions that `stop` are control flow or wait for textures; runs lie between them.
 struct Flow {
-  std::uint32_t run_end = 0;      ///< a run that starts here ends before this instruction
-  std::uint32_t target = 0;       ///< control: where to go when no lane is left
-  std::uint8_t loop_frame = 0;    ///< kContinueIf: control depth of its loop
+  std::uint32_t run_end = 0;    ///< a run that starts here ends before this instruction
+  std::uint32_t target = 0;     ///< control: where to go when no lane is left
+  std::uint8_t loop_frame = 0;  ///< kContinueIf: control depth of its loop
   bool stops = false, waits = false, control = false;
 };
 
@@ -65,8 +65,8 @@ struct Kernel {
 
 /// What the choice of a kernel depends on.
 struct KernelShape {
-  unsigned constants = 0;   ///< bit i: operand i is a word of the constant file
-  bool modified = false;    ///< some operand has a modifier
+  unsigned constants = 0;  ///< bit i: operand i is a word of the constant file
+  bool modified = false;   ///< some operand has a modifier
   bool saturate = false;
   unsigned sources = 0;
 };

@@ -22,14 +22,16 @@ std::string range_text(const ConstantLayout::Range& range) {
     case ConstantLayout::Source::kPushConstant:
       return fmt::format(".push c{} offset={} words={}", range.first_word, range.byte_offset, range.words);
     case ConstantLayout::Source::kUniformBlock:
-      return fmt::format(".uniform c{} set={} binding={} offset={} words={}", range.first_word, range.set, range.binding, range.byte_offset, range.words);
+      return fmt::format(".uniform c{} set={} binding={} offset={} words={}", range.first_word, range.set, range.binding, range.byte_offset,
+                         range.words);
   }
   return {};
 }
 
 std::string header_text(const Program& p) {
   std::string title = p.name;
-  std::replace_if(title.begin(), title.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  std::replace_if(
+      title.begin(), title.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
   std::string text = fmt::format("; {}\n.stage {}\n.regs {}\n", title, kStageNames[static_cast<std::size_t>(p.stage)], p.num_regs);
   std::string flags;
   for (const NamedFlag& flag : kProgramFlags)
@@ -69,7 +71,7 @@ std::string instruction_text(const Program& p, const Instruction& in) {
     if (const std::uint32_t* value = literal_value(p.constants, operands[i]->index))
       values += fmt::format("{}c{} = {}", values.empty() ? "  ; " : ", ", operands[i]->index, literal_text(*value));
   }
-  const std::string mnemonic = fmt::format("{}{}", info.name, (in.flags & Instruction::kSaturate) != 0 ? ".sat" : "");
+  std::string mnemonic = fmt::format("{}{}", info.name, (in.flags & Instruction::kSaturate) != 0 ? ".sat" : "");
   if (fields.empty()) return mnemonic;
   return fmt::format("{:<11} {}{}", mnemonic, fields, values);
 }

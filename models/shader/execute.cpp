@@ -18,7 +18,8 @@ class Execution {
     context_.constants = warp.constants;
     context_.warp = &warp;
     const FragmentInputs* in = warp.fragment;
-    context_.one_triangle = in != nullptr && std::all_of(in->varyings.begin(), in->varyings.end(), [&](const float* v) { return v == in->varyings[0]; });
+    context_.one_triangle =
+        in != nullptr && std::all_of(in->varyings.begin(), in->varyings.end(), [&](const float* v) { return v == in->varyings[0]; });
     mask_changed();
   }
 

@@ -23,7 +23,10 @@ constexpr OpInfo control(Op op, std::string_view name, int sources) {
   return {op, name, kControlOp, static_cast<std::uint8_t>(sources), 0, 0, false};
 }
 constexpr OpInfo texture(Op op, std::string_view name, int sources) {
-  return {op, name, kTexOp, static_cast<std::uint8_t>(sources), 4, static_cast<std::uint8_t>((1 << sources) - 1), false, Immediate::kTextureBinding};
+  return {op,     name,
+          kTexOp, static_cast<std::uint8_t>(sources),
+          4,      static_cast<std::uint8_t>((1 << sources) - 1),
+          false,  Immediate::kTextureBinding};
 }
 
 constexpr auto kOps = std::to_array<OpInfo>({

@@ -18,43 +18,103 @@ namespace quadrille::models {
 inline constexpr int kWarpLanes = 32;
 inline constexpr int kWarpQuads = 8;
 inline constexpr int kMaxRegisters = 256;
-inline constexpr int kMaxVaryings = 64;       ///< scalar components between vertex and fragment shader
-inline constexpr int kMaxVertexInputs = 64;   ///< scalar components (16 attributes of 4)
-inline constexpr int kMaxColorOutputs = 4;    ///< scalar components of one colour attachment
+inline constexpr int kMaxVaryings = 64;      ///< scalar components between vertex and fragment shader
+inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attributes of 4)
+inline constexpr int kMaxColorOutputs = 4;   ///< scalar components of one colour attachment
 
 /// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones (true) or zero.
 enum class Op : std::uint8_t {
   kNop,
   kMov,
   // Float, full rate. FMAD rounds twice (product, then sum), so fusing a multiply and an add never changes a value; FMA rounds once.
-  kFAdd, kFMul, kFMad, kFma, kFMin, kFMax, kFFloor, kFCeil, kFTrunc, kFRoundEven, kFFract, kFSign,
+  kFAdd,
+  kFMul,
+  kFMad,
+  kFma,
+  kFMin,
+  kFMax,
+  kFFloor,
+  kFCeil,
+  kFTrunc,
+  kFRoundEven,
+  kFFract,
+  kFSign,
   // Float, special-function rate.
-  kFDiv, kFRcp, kFRsq, kFSqrt, kFExp2, kFLog2, kFSin, kFCos,
+  kFDiv,
+  kFRcp,
+  kFRsq,
+  kFSqrt,
+  kFExp2,
+  kFLog2,
+  kFSin,
+  kFCos,
   // Float comparisons: ordered ones are false on NaN; kFNe is unordered (true on NaN).
-  kFLt, kFLe, kFEq, kFNe,
+  kFLt,
+  kFLe,
+  kFEq,
+  kFNe,
   // Integer.
-  kIAdd, kISub, kIMul, kIDiv, kIMod, kIRem, kUDiv, kUMod, kIMin, kIMax, kUMin, kUMax, kIAbs, kISign,
-  kAnd, kOr, kXor, kNot, kShl, kShrU, kShrS,
-  kILt, kILe, kIEq, kINe, kULt, kULe,
+  kIAdd,
+  kISub,
+  kIMul,
+  kIDiv,
+  kIMod,
+  kIRem,
+  kUDiv,
+  kUMod,
+  kIMin,
+  kIMax,
+  kUMin,
+  kUMax,
+  kIAbs,
+  kISign,
+  kAnd,
+  kOr,
+  kXor,
+  kNot,
+  kShl,
+  kShrU,
+  kShrS,
+  kILt,
+  kILe,
+  kIEq,
+  kINe,
+  kULt,
+  kULe,
   // Conversions (float to integer truncates and saturates; NaN gives 0).
-  kF2I, kF2U, kI2F, kU2F,
+  kF2I,
+  kF2U,
+  kI2F,
+  kU2F,
   // dst = a ? b : c, bitwise test of a != 0.
   kSelect,
   // Screen-space derivatives within the quad; lanes of a quad are (0,0) (1,0) (0,1) (1,1). "Fine" uses the lane's own row/column, "coarse" the first.
-  kDdxFine, kDdyFine, kDdxCoarse, kDdyCoarse,
+  kDdxFine,
+  kDdyFine,
+  kDdxCoarse,
+  kDdyCoarse,
   // Inputs and outputs; `imm` is the slot (see Program).
   kInput,      ///< vertex stage: dst = vertex input component or system value `imm`; fragment stage: dst = system value `imm`
   kInterp,     ///< fragment stage: dst = varying component `imm`, by its interpolation mode
   kOutput,     ///< output slot `imm` = a
   kLoadConst,  ///< dst = constant word [imm + (lane's a)], a clamped to [0, b]; b is a literal constant
   // Texturing: a = u, b = v, c = bias or explicit level of detail (if any), `imm` = texture binding; writes dst .. dst+3 (rgba).
-  kTexImplicit, kTexBias, kTexLod,
-  kTexSize,    ///< dst, dst+1 = width, height (integers) of texture `imm` at level a
+  kTexImplicit,
+  kTexBias,
+  kTexLod,
+  kTexSize,  ///< dst, dst+1 = width, height (integers) of texture `imm` at level a
   // Control. IF pushes the mask and keeps lanes with a != 0.
   // LOOP repeats until no lane is left; lanes that break rejoin after ENDLOOP, lanes that continue rejoin at CONTINUING (a loop may have one, directly in
   // its body: the continue block of SPIR-V follows it) or else at ENDLOOP.
-  kIf, kElse, kEndIf, kLoop, kBreakIf, kContinueIf, kContinuing, kEndLoop,
-  kKillIf,     ///< discards lanes with a != 0; they go on as helpers
+  kIf,
+  kElse,
+  kEndIf,
+  kLoop,
+  kBreakIf,
+  kContinueIf,
+  kContinuing,
+  kEndLoop,
+  kKillIf,  ///< discards lanes with a != 0; they go on as helpers
   kEnd,
   kCount
 };
@@ -84,9 +144,14 @@ struct Instruction {
 /// System values that `kInput` can name: slots from `kFirstSystemValue` on.
 inline constexpr std::uint16_t kFirstSystemValue = 128;
 enum class SystemValue : std::uint16_t {
-  kVertexIndex = kFirstSystemValue, kInstanceIndex,
-  kFragCoordX, kFragCoordY, kFragCoordZ, kFragCoordW,
-  kFrontFacing, kPrimitiveId
+  kVertexIndex = kFirstSystemValue,
+  kInstanceIndex,
+  kFragCoordX,
+  kFragCoordY,
+  kFragCoordZ,
+  kFragCoordW,
+  kFrontFacing,
+  kPrimitiveId
 };
 
 /// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 0..3 colour, 4 depth.
@@ -100,15 +165,15 @@ struct ConstantLayout {
   enum class Source : std::uint8_t { kLiteral, kPushConstant, kUniformBlock };
   struct Range {
     Source source = Source::kLiteral;
-    std::uint32_t set = 0, binding = 0;   ///< uniform block
-    std::uint32_t byte_offset = 0;        ///< within the block or the push constants
-    std::uint32_t first_word = 0;         ///< in the constant file
+    std::uint32_t set = 0, binding = 0;  ///< uniform block
+    std::uint32_t byte_offset = 0;       ///< within the block or the push constants
+    std::uint32_t first_word = 0;        ///< in the constant file
     std::uint32_t words = 0;
     std::vector<std::uint32_t> literals;  ///< kLiteral: the values
     friend bool operator==(const Range&, const Range&) = default;
   };
   std::vector<Range> ranges;
-  std::uint32_t words = 0;                ///< size of the constant file
+  std::uint32_t words = 0;  ///< size of the constant file
   friend bool operator==(const ConstantLayout&, const ConstantLayout&) = default;
 };
 
@@ -131,7 +196,10 @@ class DecodedCache {
   DecodedCache() = default;
   DecodedCache(const DecodedCache&) {}
   DecodedCache(DecodedCache&&) = default;
-  DecodedCache& operator=(const DecodedCache&) { form_.reset(); return *this; }
+  DecodedCache& operator=(const DecodedCache&) {
+    form_.reset();
+    return *this;
+  }
   DecodedCache& operator=(DecodedCache&&) = default;
   ~DecodedCache() = default;
   [[nodiscard]] const DecodedProgram* get() const { return form_.get(); }
@@ -144,18 +212,18 @@ class DecodedCache {
 
 struct Program {
   Stage stage = Stage::kVertex;
-  std::string name;                              ///< for listings and errors
-  std::vector<Instruction> code;                 ///< ends with kEnd
+  std::string name;               ///< for listings and errors
+  std::vector<Instruction> code;  ///< ends with kEnd
   int num_regs = 0;
   ConstantLayout constants;
-  std::vector<TextureBinding> textures;          ///< kTex* imm indexes this
-  std::vector<VertexInputUse> vertex_inputs;     ///< vertex stage
-  std::vector<Interpolation> varyings;           ///< both stages of a pipeline hold the same list: scalar components, packed
+  std::vector<TextureBinding> textures;       ///< kTex* imm indexes this
+  std::vector<VertexInputUse> vertex_inputs;  ///< vertex stage
+  std::vector<Interpolation> varyings;        ///< both stages of a pipeline hold the same list: scalar components, packed
   bool uses_discard = false;
   bool writes_depth = false;
   bool early_fragment_tests = false;
-  bool uses_derivatives = false;                 ///< explicit or through implicit-lod texturing: helper lanes are needed
-  mutable DecodedCache decoded;                  ///< filled by `prepare`
+  bool uses_derivatives = false;  ///< explicit or through implicit-lod texturing: helper lanes are needed
+  mutable DecodedCache decoded;   ///< filled by `prepare`
   friend bool operator==(const Program&, const Program&) = default;
 };
 

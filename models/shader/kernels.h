@@ -100,7 +100,8 @@ template <class Operation>
   constexpr unsigned kShapes = 1u << (Operation::kSources + (Operation::kSaturable ? 2 : Operation::kModifiable ? 1 : 0));
   static constexpr auto kTable = []<unsigned... kShape>(std::integer_sequence<unsigned, kShape...>) {
     return std::array<Kernel, kShapes>{Kernel{&execute<Operation, kShape, false>, &execute<Operation, kShape, true>}...};
-  }(std::make_integer_sequence<unsigned, kShapes>{});
+  }
+  (std::make_integer_sequence<unsigned, kShapes>{});
   const unsigned modified = shape.modified ? 1u : 0u, saturate = shape.saturate ? 2u : 0u;
   return kTable[shape.constants | ((modified | saturate) << Operation::kSources)];
 }

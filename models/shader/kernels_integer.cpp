@@ -86,8 +86,12 @@ Words lane_by_lane(Words a, Words b, Scalar scalar) {
 
 /// Quotient and remainder in 64 bits, where INT_MIN / -1 fits; a zero divisor gives all ones and the dividend.
 inline std::int64_t widen(std::uint32_t x) { return static_cast<std::int32_t>(x); }
-inline std::uint32_t signed_quotient(std::uint32_t a, std::uint32_t b) { return b == 0 ? ~0u : static_cast<std::uint32_t>(widen(a) / widen(b)); }
-inline std::uint32_t signed_remainder(std::uint32_t a, std::uint32_t b) { return b == 0 ? a : static_cast<std::uint32_t>(widen(a) % widen(b)); }
+inline std::uint32_t signed_quotient(std::uint32_t a, std::uint32_t b) {
+  return b == 0 ? ~0u : static_cast<std::uint32_t>(widen(a) / widen(b));
+}
+inline std::uint32_t signed_remainder(std::uint32_t a, std::uint32_t b) {
+  return b == 0 ? a : static_cast<std::uint32_t>(widen(a) % widen(b));
+}
 /// The remainder with the sign of the divisor.
 inline std::uint32_t signed_modulo(std::uint32_t a, std::uint32_t b) {
   const std::uint32_t r = signed_remainder(a, b);

@@ -133,7 +133,8 @@ void execute_texture(const DecodedInstruction& d, ExecutionContext& x) {
   for (int g = 0; g < kWarpGroups; ++g) {
     store(request.u.data() + g * kGroupLanes, read_operand(d.a, (kConstants & 1u) != 0, x, g));
     store(request.v.data() + g * kGroupLanes, read_operand(d.b, (kConstants & 2u) != 0, x, g));
-    store(request.lod.data() + g * kGroupLanes, d.op == Op::kTexImplicit ? Lanes(splat(0.0f)) : read_operand(d.c, (kConstants & 4u) != 0, x, g));
+    store(request.lod.data() + g * kGroupLanes,
+          d.op == Op::kTexImplicit ? Lanes(splat(0.0f)) : read_operand(d.c, (kConstants & 4u) != 0, x, g));
   }
 }
 
@@ -146,7 +147,9 @@ void execute_texture_size(const DecodedInstruction& d, ExecutionContext& x) {
   for (int g = 0; g < kWarpGroups; ++g) {
     const Words wanted = read_operand(d.a, kConstant, x, g);
     const __m256i level = _mm256_min_epi32(_mm256_max_epi32(wanted.v, _mm256_setzero_si256()), last.v);
-    const auto shrunk = [&](std::uint32_t texels) { return Words{_mm256_max_epu32(_mm256_srlv_epi32(splat_word(texels).v, level), one.v)}; };
+    const auto shrunk = [&](std::uint32_t texels) {
+      return Words{_mm256_max_epu32(_mm256_srlv_epi32(splat_word(texels).v, level), one.v)};
+    };
     write_group<kMasked>(x.regs + d.dst, g, shrunk(size.width), x);
     write_group<kMasked>(x.regs + d.dst + sizeof(RegisterRow), g, shrunk(size.height), x);
   }

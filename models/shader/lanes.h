@@ -24,8 +24,8 @@ struct Words {
 /// Bits that have not been given a type yet.
 struct Lanes {
   __m256i bits;
-  Lanes(Floats f) : bits(_mm256_castps_si256(f.v)) {}  // NOLINT(google-explicit-constructor)
-  Lanes(Words w) : bits(w.v) {}                        // NOLINT(google-explicit-constructor)
+  Lanes(Floats f) : bits(_mm256_castps_si256(f.v)) {}              // NOLINT(google-explicit-constructor)
+  Lanes(Words w) : bits(w.v) {}                                    // NOLINT(google-explicit-constructor)
   operator Floats() const { return {_mm256_castsi256_ps(bits)}; }  // NOLINT(google-explicit-constructor)
   operator Words() const { return {bits}; }                        // NOLINT(google-explicit-constructor)
 };

@@ -19,7 +19,8 @@ std::optional<std::uint32_t> parse_literal(std::string_view text) {
     return std::bit_cast<std::uint32_t>(value);
   }
   const std::optional<std::int64_t> value = parse_integer<std::int64_t>(text);
-  if (!value || *value < std::numeric_limits<std::int32_t>::min() || *value > std::numeric_limits<std::uint32_t>::max()) return std::nullopt;
+  if (!value || *value < std::numeric_limits<std::int32_t>::min() || *value > std::numeric_limits<std::uint32_t>::max())
+    return std::nullopt;
   return static_cast<std::uint32_t>(*value);
 }
 

@@ -10,7 +10,7 @@ namespace quadrille::models {
 
 struct NamedFlag {
   std::string_view name;
-  bool Program::* member;
+  bool Program::*member;
 };
 inline constexpr std::array<NamedFlag, 4> kProgramFlags{{{"discard", &Program::uses_discard},
                                                          {"depth", &Program::writes_depth},

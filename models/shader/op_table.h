@@ -13,10 +13,10 @@ struct OpInfo {
   Op op;
   std::string_view name;
   IssueClass issue;
-  std::uint8_t sources;        ///< operands read (0..3)
-  std::uint8_t destinations;   ///< registers written
-  std::uint8_t modifiable;     ///< bit i: operand i takes - and | |
-  bool saturable;              ///< the result may be clamped to [0, 1]
+  std::uint8_t sources;       ///< operands read (0..3)
+  std::uint8_t destinations;  ///< registers written
+  std::uint8_t modifiable;    ///< bit i: operand i takes - and | |
+  bool saturable;             ///< the result may be clamped to [0, 1]
   Immediate immediate = Immediate::kUnused;
 };
 

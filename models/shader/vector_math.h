@@ -17,7 +17,7 @@ inline Floats exp2(Floats x) {
   // The range is clamped (NaN passes: min and max return their second operand); 2^-160 is zero and 2^129 infinite.
   const Floats clamped{_mm256_min_ps(splat(129.0f).v, _mm256_max_ps(splat(-160.0f).v, x.v))};
   const Floats whole = round_to<_MM_FROUND_TO_NEAREST_INT>(clamped);
-  const Floats f = clamped - whole;  // exact, in [-1/2, 1/2]
+  const Floats f = clamped - whole;   // exact, in [-1/2, 1/2]
   Floats p = splat(0x1.44138ap-13f);  // 2^f = 1 + f p(f), 8e-9
   p = fused(p, f, splat(0x1.5f0890p-10f));
   p = fused(p, f, splat(0x1.3b2a54p-7f));
@@ -53,7 +53,7 @@ inline Floats log2(Floats x) {
   const Floats log2_m = fused(f, splat(0x1.715476p+0f), fused(tail, splat(0x1.715476p+0f), f * splat(0x1.4ae0c0p-26f)));
   const Floats finite = log2_m + e;
   const Floats infinity = splat(std::numeric_limits<float>::infinity());
-  const Words passes = compare<_CMP_NLT_UQ>(x, infinity);                 // infinity and NaN
+  const Words passes = compare<_CMP_NLT_UQ>(x, infinity);  // infinity and NaN
   const Words negative = compare<_CMP_LT_OQ>(x, splat(0.0f));
   const Words zero = compare<_CMP_EQ_OQ>(x, splat(0.0f));
   Lanes result = choose(passes, x, finite);
@@ -71,7 +71,8 @@ struct ReducedAngle {
 inline ReducedAngle reduce_angle(Floats magnitude) {
   const auto half = [](__m128 four, __m128i& quarter, __m128& rest) {
     const __m256d x = _mm256_cvtps_pd(four);
-    const __m256d n = _mm256_round_pd(_mm256_mul_pd(x, _mm256_set1_pd(0x1.45f306dc9c883p-1)), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+    const __m256d n =
+        _mm256_round_pd(_mm256_mul_pd(x, _mm256_set1_pd(0x1.45f306dc9c883p-1)), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
     const __m256d r = _mm256_fnmadd_pd(n, _mm256_set1_pd(0x1.921fb54442d18p+0), x);
     rest = _mm256_cvtpd_ps(_mm256_fnmadd_pd(n, _mm256_set1_pd(0x1.1a62633145c07p-54), r));
     // n < 2^41: adding 2^52 leaves its integer value in the low bits of the significand.

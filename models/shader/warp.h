@@ -18,10 +18,10 @@ using LaneMask = std::uint32_t;  ///< bit i = lane i; quad q owns bits 4q..4q+3
 
 /// Inputs of a fragment warp, lane = 4 * quad + pixel, pixels of a quad in the order (0,0) (1,0) (0,1) (1,1).
 struct FragmentInputs {
-  alignas(64) LaneFloats x, y, z, inv_w;          ///< FragCoord: pixel centre (pixels), window depth, 1/w_clip
-  alignas(64) LaneFloats persp_1, persp_2;        ///< perspective-correct weights of the triangle's second and third vertex
-  alignas(64) LaneFloats linear_1, linear_2;      ///< the same, linear in screen space
-  LaneWords front_facing, primitive_id;           ///< all ones / zero; 0-based primitive of the draw
+  alignas(64) LaneFloats x, y, z, inv_w;      ///< FragCoord: pixel centre (pixels), window depth, 1/w_clip
+  alignas(64) LaneFloats persp_1, persp_2;    ///< perspective-correct weights of the triangle's second and third vertex
+  alignas(64) LaneFloats linear_1, linear_2;  ///< the same, linear in screen space
+  LaneWords front_facing, primitive_id;       ///< all ones / zero; 0-based primitive of the draw
   /// Per quad: `3 * varyings.size()` floats, (a0, a1 - a0, a2 - a0) for each scalar component. A quad that is not used points at a valid one.
   std::array<const float*, kWarpQuads> varyings{};
 };
@@ -34,10 +34,10 @@ struct VertexInputs {
 
 /// One texture instruction of a warp, from its issue to its result.
 struct TextureRequest {
-  alignas(64) LaneFloats u, v, lod;               ///< `lod`: bias or explicit level, by `op`
-  LaneMask active = 0;                            ///< lanes that executed it (helpers included); u, v, lod hold all 32 lanes, so a quad's differences exist
+  alignas(64) LaneFloats u, v, lod;  ///< `lod`: bias or explicit level, by `op`
+  LaneMask active = 0;  ///< lanes that executed it (helpers included); u, v, lod hold all 32 lanes, so a quad's differences exist
   Op op = Op::kTexImplicit;
-  std::uint16_t binding = 0;                      ///< index into Program::textures
+  std::uint16_t binding = 0;  ///< index into Program::textures
   std::uint16_t dst = 0;
 };
 
@@ -48,7 +48,7 @@ inline constexpr int kMaxControlDepth = 32;
 /// Texture instructions are not among them: `Warp::texture_count` says how many the clause issued (their lanes are in `lane_ops`).
 struct ClauseCost {
   std::uint32_t alu = 0, sfu = 0, interp = 0, constant = 0, control = 0, exported = 0;
-  std::uint64_t lane_ops = 0;                     ///< sum over instructions of active lanes
+  std::uint64_t lane_ops = 0;  ///< sum over instructions of active lanes
   [[nodiscard]] std::uint32_t instructions() const { return alu + sfu + interp + constant + control + exported; }
 };
 
@@ -65,26 +65,26 @@ inline constexpr std::uint32_t kMaxBackEdges = 1u << 20;
 
 struct Warp {
   const Program* program = nullptr;
-  const std::uint32_t* constants = nullptr;       ///< the draw's constant file
-  const VertexInputs* vertex = nullptr;           ///< vertex stage
-  const FragmentInputs* fragment = nullptr;       ///< fragment stage
-  const TextureSize* texture_sizes = nullptr;     ///< by texture binding of the program; needed only by programs with kTexSize
-  LaneWords* outputs = nullptr;                   ///< rows by output slot; owned by the caller; only executing lanes are written
-  LaneMask launched = 0;                          ///< lanes that exist (helpers included)
-  LaneMask exec = 0;                              ///< lanes executing now
-  LaneMask killed = 0;                            ///< lanes that met kKillIf
+  const std::uint32_t* constants = nullptr;    ///< the draw's constant file
+  const VertexInputs* vertex = nullptr;        ///< vertex stage
+  const FragmentInputs* fragment = nullptr;    ///< fragment stage
+  const TextureSize* texture_sizes = nullptr;  ///< by texture binding of the program; needed only by programs with kTexSize
+  LaneWords* outputs = nullptr;                ///< rows by output slot; owned by the caller; only executing lanes are written
+  LaneMask launched = 0;                       ///< lanes that exist (helpers included)
+  LaneMask exec = 0;                           ///< lanes executing now
+  LaneMask killed = 0;                         ///< lanes that met kKillIf
   std::uint32_t pc = 0;
   int control_depth = 0;
   struct Frame {
-    LaneMask outer = 0, other = 0;                ///< IF: mask outside, lanes of the other side. LOOP: mask outside, lanes that continued
-    std::uint32_t start = 0;                      ///< LOOP: index of its first instruction
+    LaneMask outer = 0, other = 0;  ///< IF: mask outside, lanes of the other side. LOOP: mask outside, lanes that continued
+    std::uint32_t start = 0;        ///< LOOP: index of its first instruction
   };
   std::array<Frame, kMaxControlDepth> frames{};
-  int texture_count = 0;                          ///< requests of the clause that just ended
+  int texture_count = 0;  ///< requests of the clause that just ended
   std::array<TextureRequest, kMaxClauseTextures> textures;
-  std::vector<RegisterRow> regs;                  ///< num_regs rows; kept between launches so that no launch allocates
-  const DecodedProgram* code = nullptr;           ///< the form of `program` that executes
-  std::uint32_t back_edges = 0;                   ///< taken so far
+  std::vector<RegisterRow> regs;         ///< num_regs rows; kept between launches so that no launch allocates
+  const DecodedProgram* code = nullptr;  ///< the form of `program` that executes
+  std::uint32_t back_edges = 0;          ///< taken so far
 
   /// Prepares a launch: lanes in `lanes` run `p` from its start. Registers are zeroed. The program must outlive the run and stay unchanged.
   /// A lane that is not launched has no defined register values. Throws what `prepare` throws.

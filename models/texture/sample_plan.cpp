@@ -68,7 +68,7 @@ class LineCollector {
     return static_cast<std::uint32_t>(_mm_cvtsi128_si32(half));
   }
 
-  /// Adds sectors of one line. A small table leads to the line that last had this hash; only when that is another line is the list searched.
+  /// Adds sectors of one line. A table leads to the line that last had this hash; only if that is another one is the list searched.
   void note(std::uint32_t number, std::uint32_t sectors) {
     const std::size_t bucket = (number ^ number >> 6) & 63;
     const std::uint64_t bit = std::uint64_t{1} << bucket;

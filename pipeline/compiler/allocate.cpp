@@ -14,7 +14,7 @@ namespace {
 
 using models::Op;
 
-constexpr std::size_t kColours = 4 * models::kMaxRegisters;   // beyond the limit, so that an error can say by how much
+constexpr std::size_t kColours = 4 * models::kMaxRegisters;  // beyond the limit, so that an error can say by how much
 
 /// A set of registers that is walked, grown and shrunk in constant time a step.
 class SparseSet {
@@ -47,7 +47,7 @@ class SparseSet {
 using Bits = std::vector<std::uint64_t>;
 
 struct BasicBlock {
-  std::size_t first = 0, last = 0;   ///< instructions [first, last)
+  std::size_t first = 0, last = 0;  ///< instructions [first, last)
   std::vector<std::size_t> next;
   Bits live_in, live_out;
 };
@@ -251,7 +251,7 @@ class Allocator {
         if (const int c = colours[find(r)]; c >= 0) used.set(static_cast<std::size_t>(c));
       return used;
     };
-    std::map<std::uint32_t, std::vector<std::uint32_t>> wide;   // class -> the classes of its texture's results
+    std::map<std::uint32_t, std::vector<std::uint32_t>> wide;  // class -> the classes of its texture's results
     for (const ScalarInstruction& i : code_) {
       if (results(i) < 2) continue;
       std::vector<std::uint32_t> members;
@@ -301,6 +301,8 @@ class Allocator {
 
 }  // namespace
 
-Allocation allocate_registers(const std::vector<ScalarInstruction>& code, std::size_t registers) { return Allocator(code, registers).run(); }
+Allocation allocate_registers(const std::vector<ScalarInstruction>& code, std::size_t registers) {
+  return Allocator(code, registers).run();
+}
 
 }  // namespace quadrille::pipeline

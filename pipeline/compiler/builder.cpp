@@ -17,16 +17,20 @@ constexpr std::uint32_t kOne = 0x3f800000u;
 
 bool commutes(Op op) {
   return op == Op::kFAdd || op == Op::kFMul || op == Op::kFEq || op == Op::kFNe || op == Op::kIAdd || op == Op::kIMul || op == Op::kIMin ||
-         op == Op::kIMax || op == Op::kUMin || op == Op::kUMax || op == Op::kAnd || op == Op::kOr || op == Op::kXor || op == Op::kIEq || op == Op::kINe;
+         op == Op::kIMax || op == Op::kUMin || op == Op::kUMax || op == Op::kAnd || op == Op::kOr || op == Op::kXor || op == Op::kIEq ||
+         op == Op::kINe;
 }
 
 std::uint64_t pack(Value value) {
-  return static_cast<std::uint64_t>(value.bits) | static_cast<std::uint64_t>(value.kind) << 32 | static_cast<std::uint64_t>(value.modifiers) << 40;
+  return static_cast<std::uint64_t>(value.bits) | static_cast<std::uint64_t>(value.kind) << 32 |
+         static_cast<std::uint64_t>(value.modifiers) << 40;
 }
 
 Value integer_identity(Op op, Value a, Value b) {
   const bool zero = b.is_literal(0), ones = b.is_literal(kTrue), one = b.is_literal(1);
-  if (zero && (op == Op::kIAdd || op == Op::kISub || op == Op::kOr || op == Op::kXor || op == Op::kShl || op == Op::kShrU || op == Op::kShrS)) return a;
+  if (zero &&
+      (op == Op::kIAdd || op == Op::kISub || op == Op::kOr || op == Op::kXor || op == Op::kShl || op == Op::kShrU || op == Op::kShrS))
+    return a;
   if (zero && (op == Op::kAnd || op == Op::kIMul)) return b;
   if (ones && op == Op::kAnd) return a;
   if (ones && op == Op::kOr) return b;

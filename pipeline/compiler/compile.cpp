@@ -32,7 +32,8 @@ Linkage link(const ScalarShader& fragment) {
     linkage.interpolation.push_back(fragment.varyings.at(raw));
   }
   if (read.size() > static_cast<std::size_t>(models::kMaxVaryings))
-    throw user_error("{}: the fragment shader reads {} varying components; at most {} are possible", fragment.name, read.size(), models::kMaxVaryings);
+    throw user_error("{}: the fragment shader reads {} varying components; at most {} are possible", fragment.name, read.size(),
+                     models::kMaxVaryings);
   return linkage;
 }
 
@@ -41,17 +42,19 @@ void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, con
   const auto varying = [](const ScalarInstruction& i) { return static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput); };
   const auto is_varying = [](const ScalarInstruction& i) { return i.op == Op::kOutput && i.imm >= models::kFirstVaryingOutput; };
   for (const auto& [raw, packed] : linkage.varyings) {
-    const bool written = std::any_of(vertex.code.begin(), vertex.code.end(), [&](const ScalarInstruction& i) { return is_varying(i) && varying(i) == raw; });
+    const bool written = std::any_of(vertex.code.begin(), vertex.code.end(),
+                                     [&, raw = raw](const ScalarInstruction& i) { return is_varying(i) && varying(i) == raw; });
     if (!written)
-      throw user_error("{}: reads location {} component {}, which the vertex shader {} does not write", fragment.name, raw / 4, raw % 4, vertex.name);
+      throw user_error("{}: reads location {} component {}, which the vertex shader {} does not write", fragment.name, raw / 4, raw % 4,
+                       vertex.name);
   }
   std::erase_if(vertex.code, [&](const ScalarInstruction& i) { return is_varying(i) && !linkage.varyings.contains(varying(i)); });
 }
 
 }  // namespace
 
-CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, std::string_view vertex_name, std::span<const std::uint32_t> fragment_spirv,
-                                  std::string_view fragment_name) {
+CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, std::string_view vertex_name,
+                                  std::span<const std::uint32_t> fragment_spirv, std::string_view fragment_name) {
   ScalarShader fragment = compile_stage(fragment_spirv, fragment_name, traces::ShaderStage::kFragment);
   clean_up(fragment);
   const Linkage linkage = link(fragment);

@@ -18,8 +18,8 @@ using models::Op;
 using models::Operand;
 
 constexpr std::uint32_t kMaxConstantWords = 65535;
-constexpr std::uint32_t kSmallGap = 4;         ///< unused words that are kept so that two ranges become one
-constexpr int kFewRegisters = 64;              ///< up to here the texture order is kept whatever it costs
+constexpr std::uint32_t kSmallGap = 4;  ///< unused words that are kept so that two ranges become one
+constexpr int kFewRegisters = 64;       ///< up to here the texture order is kept whatever it costs
 
 /// The words of the constant file that the code reads, and where they are put.
 class ConstantFile {
@@ -73,8 +73,7 @@ class ConstantFile {
       range.words = last - first + 1;
       if (from.source == ConstantLayout::Source::kLiteral)
         range.literals.assign(from.literals.begin() + first, from.literals.begin() + last + 1);
-      else
-        range.byte_offset = 4 * first;
+      else range.byte_offset = 4 * first;
       const std::uint32_t at = add(std::move(range));
       for (std::uint32_t k = first; k <= last; ++k) uniform_at_[block << 16 | k] = at + k - first;
     }
@@ -83,7 +82,8 @@ class ConstantFile {
   std::uint32_t add(ConstantLayout::Range range) {
     range.first_word = layout.words;
     layout.words += range.words;
-    if (layout.words > kMaxConstantWords) throw user_error("{}: the shader reads more than {} constant words", shader_.name, kMaxConstantWords);
+    if (layout.words > kMaxConstantWords)
+      throw user_error("{}: the shader reads more than {} constant words", shader_.name, kMaxConstantWords);
     layout.ranges.push_back(std::move(range));
     return layout.ranges.back().first_word;
   }
@@ -111,7 +111,8 @@ Candidate best_order(const ScalarShader& shader) {
   Candidate best = build(Order::kTextures);
   if (Candidate other = build(Order::kTexturesDemand); other.allocation.num_regs < best.allocation.num_regs) best = std::move(other);
   if (best.allocation.num_regs <= kFewRegisters) return best;
-  if (Candidate other = build(Order::kSource); 2 * other.allocation.num_regs < best.allocation.num_regs || best.allocation.num_regs > models::kMaxRegisters)
+  if (Candidate other = build(Order::kSource);
+      2 * other.allocation.num_regs < best.allocation.num_regs || best.allocation.num_regs > models::kMaxRegisters)
     if (other.allocation.num_regs < best.allocation.num_regs) best = std::move(other);
   return best;
 }
@@ -135,7 +136,8 @@ std::map<std::uint16_t, std::uint16_t> pack(const Slots& used) {
 
 class Encoder {
  public:
-  Encoder(const ScalarShader& shader, const Linkage& linkage) : shader_(shader), linkage_(linkage), chosen_(best_order(shader)), constants_(shader, chosen_.code) {
+  Encoder(const ScalarShader& shader, const Linkage& linkage)
+      : shader_(shader), linkage_(linkage), chosen_(best_order(shader)), constants_(shader, chosen_.code) {
     std::set<std::uint16_t> inputs, textures;
     for (const ScalarInstruction& i : chosen_.code) {
       if (i.op == Op::kInput && i.imm < models::kFirstSystemValue) inputs.insert(i.imm);
@@ -154,15 +156,18 @@ class Encoder {
     program.constants = constants_.layout;
     program.varyings = linkage_.interpolation;
     program.early_fragment_tests = shader_.early_fragment_tests;
-    for (const auto& [raw, slot] : inputs_) program.vertex_inputs.push_back({static_cast<std::uint16_t>(raw / 4), static_cast<std::uint16_t>(raw % 4)});
+    for (const auto& [raw, slot] : inputs_)
+      program.vertex_inputs.push_back({static_cast<std::uint16_t>(raw / 4), static_cast<std::uint16_t>(raw % 4)});
     for (const auto& [raw, slot] : textures_) program.textures.push_back(shader_.textures[raw]);
     for (const ScalarInstruction& i : chosen_.code) {
       const Instruction out = encode(i);
-      const bool useless = out.op == Op::kMov && out.flags == 0 && out.a.kind == Operand::kRegister && out.a.modifiers == 0 && out.a.index == out.dst;
+      const bool useless =
+          out.op == Op::kMov && out.flags == 0 && out.a.kind == Operand::kRegister && out.a.modifiers == 0 && out.a.index == out.dst;
       if (useless) continue;
       program.uses_discard |= out.op == Op::kKillIf;
       program.writes_depth |= shader_.stage == models::Stage::kFragment && out.op == Op::kOutput && out.imm == models::kDepthOutput;
-      program.uses_derivatives |= (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) || out.op == Op::kTexImplicit || out.op == Op::kTexBias;
+      program.uses_derivatives |=
+          (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) || out.op == Op::kTexImplicit || out.op == Op::kTexBias;
       program.code.push_back(out);
     }
     if (const int depth = control_depth(program.code); depth > models::kMaxControlDepth)
@@ -173,9 +178,11 @@ class Encoder {
  private:
   void check_limits() const {
     if (chosen_.allocation.num_regs > models::kMaxRegisters)
-      throw user_error("{}: the shader needs {} registers; a lane has {}", shader_.name, chosen_.allocation.num_regs, models::kMaxRegisters);
+      throw user_error("{}: the shader needs {} registers; a lane has {}", shader_.name, chosen_.allocation.num_regs,
+                       models::kMaxRegisters);
     if (inputs_.size() > static_cast<std::size_t>(models::kMaxVertexInputs))
-      throw user_error("{}: the shader reads {} vertex input components; at most {} are possible", shader_.name, inputs_.size(), models::kMaxVertexInputs);
+      throw user_error("{}: the shader reads {} vertex input components; at most {} are possible", shader_.name, inputs_.size(),
+                       models::kMaxVertexInputs);
   }
 
   [[nodiscard]] Operand operand(const Value& v) const {
@@ -193,7 +200,8 @@ class Encoder {
     if (i.op == Op::kInterp) return linkage_.varyings.at(i.imm);
     if (is_texture(i.op) || i.op == Op::kTexSize) return textures_.at(i.imm);
     if (i.op == Op::kOutput && shader_.stage == models::Stage::kVertex && i.imm >= models::kFirstVaryingOutput)
-      return static_cast<std::uint16_t>(models::kFirstVaryingOutput + linkage_.varyings.at(static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput)));
+      return static_cast<std::uint16_t>(models::kFirstVaryingOutput +
+                                        linkage_.varyings.at(static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput)));
     if (i.op == Op::kLoadConst) return constants_.word_of(i.c);
     return i.imm;
   }

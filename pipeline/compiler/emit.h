@@ -7,8 +7,8 @@ namespace quadrille::pipeline {
 
 /// How the raw slots of a shader map to packed ones (see `ScalarShader`).
 struct Linkage {
-  std::map<std::uint16_t, std::uint16_t> varyings;      ///< 4 * location + component -> packed component
-  std::vector<models::Interpolation> interpolation;     ///< by packed component
+  std::map<std::uint16_t, std::uint16_t> varyings;   ///< 4 * location + component -> packed component
+  std::vector<models::Interpolation> interpolation;  ///< by packed component
 };
 
 /// Schedules, allocates and encodes. Throws `UserError` naming the shader where a limit of the ISA is passed.

@@ -25,11 +25,17 @@ struct Direct {
 };
 /// Functions that are one operation a component.
 constexpr auto kDirect = std::to_array<Direct>({
-    {GLSLstd450Round, Op::kFRoundEven}, {GLSLstd450RoundEven, Op::kFRoundEven}, {GLSLstd450Trunc, Op::kFTrunc}, {GLSLstd450SAbs, Op::kIAbs},
-    {GLSLstd450FSign, Op::kFSign}, {GLSLstd450SSign, Op::kISign}, {GLSLstd450Floor, Op::kFFloor}, {GLSLstd450Ceil, Op::kFCeil},
-    {GLSLstd450Fract, Op::kFFract}, {GLSLstd450Sin, Op::kFSin}, {GLSLstd450Cos, Op::kFCos}, {GLSLstd450Exp2, Op::kFExp2}, {GLSLstd450Log2, Op::kFLog2},
-    {GLSLstd450Sqrt, Op::kFSqrt}, {GLSLstd450InverseSqrt, Op::kFRsq}, {GLSLstd450FMin, Op::kFMin}, {GLSLstd450NMin, Op::kFMin},
-    {GLSLstd450UMin, Op::kUMin}, {GLSLstd450SMin, Op::kIMin}, {GLSLstd450FMax, Op::kFMax}, {GLSLstd450NMax, Op::kFMax}, {GLSLstd450UMax, Op::kUMax},
+    {GLSLstd450Round, Op::kFRoundEven}, {GLSLstd450RoundEven, Op::kFRoundEven},
+    {GLSLstd450Trunc, Op::kFTrunc},     {GLSLstd450SAbs, Op::kIAbs},
+    {GLSLstd450FSign, Op::kFSign},      {GLSLstd450SSign, Op::kISign},
+    {GLSLstd450Floor, Op::kFFloor},     {GLSLstd450Ceil, Op::kFCeil},
+    {GLSLstd450Fract, Op::kFFract},     {GLSLstd450Sin, Op::kFSin},
+    {GLSLstd450Cos, Op::kFCos},         {GLSLstd450Exp2, Op::kFExp2},
+    {GLSLstd450Log2, Op::kFLog2},       {GLSLstd450Sqrt, Op::kFSqrt},
+    {GLSLstd450InverseSqrt, Op::kFRsq}, {GLSLstd450FMin, Op::kFMin},
+    {GLSLstd450NMin, Op::kFMin},        {GLSLstd450UMin, Op::kUMin},
+    {GLSLstd450SMin, Op::kIMin},        {GLSLstd450FMax, Op::kFMax},
+    {GLSLstd450NMax, Op::kFMax},        {GLSLstd450UMax, Op::kUMax},
     {GLSLstd450SMax, Op::kIMax},
 });
 
@@ -63,8 +69,8 @@ class Functions {
     return b_.fmul(sign(x), b_.fsub(lit(kHalfPi), b_.fmul(sqrt(b_.fsub(lit(kOne), a)), tail)));
   }
   Value atan(Value y_over_x) {
-    constexpr std::array<float, 6> kTerms{0.9999793128310355f, -0.3326756418091246f, 0.1938924977115610f,
-                                          -0.1173503194786851f, 0.0536813784310406f, -0.0121323213173444f};
+    constexpr std::array<float, 6> kTerms{0.9999793128310355f,  -0.3326756418091246f, 0.1938924977115610f,
+                                          -0.1173503194786851f, 0.0536813784310406f,  -0.0121323213173444f};
     const Value a = b_.fabs(y_over_x), one = lit(kOne);
     const Value x = b_.fdiv(b_.fmin(a, one), b_.fmax(a, one));
     const Value square = b_.fmul(x, x);
@@ -115,8 +121,10 @@ class Functions {
   /// Significand in [0.5, 1) and exponent.
   std::pair<Value, Value> frexp(Value x) {
     const Value magnitude = b_.emit(Op::kAnd, x, literal(0x7fffffffu)), is_zero = b_.emit(Op::kFEq, b_.fabs(x), lit(0.0f));
-    const Value exponent = b_.iadd(b_.emit(Op::kShrU, magnitude, literal(23u)), b_.select(is_zero, literal(0u), literal(static_cast<std::uint32_t>(-126))));
-    const Value significand = b_.emit(Op::kOr, b_.emit(Op::kAnd, x, literal(0x807fffffu)), b_.select(is_zero, literal(0u), literal(0x3f000000u)));
+    const Value exponent =
+        b_.iadd(b_.emit(Op::kShrU, magnitude, literal(23u)), b_.select(is_zero, literal(0u), literal(static_cast<std::uint32_t>(-126))));
+    const Value significand =
+        b_.emit(Op::kOr, b_.emit(Op::kAnd, x, literal(0x807fffffu)), b_.select(is_zero, literal(0u), literal(0x3f000000u)));
     return {significand, exponent};
   }
   /// Nearest half float, to even; its 16 bits.
@@ -204,7 +212,8 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     return result;
   };
   const auto length = [&](const Values& v) { return v.size() == 1 ? b.fabs(v[0]) : f.sqrt(dot(v, v)); };
-  if (const auto* found = std::find_if(kDirect.begin(), kDirect.end(), [&](const Direct& row) { return row.function == function; }); found != kDirect.end())
+  if (const auto* found = std::find_if(kDirect.begin(), kDirect.end(), [&](const Direct& row) { return row.function == function; });
+      found != kDirect.end())
     return each([&](Value x, Value y, Value) { return b.emit(found->op, x, y); });
   switch (function) {
     case GLSLstd450FAbs: return each([&](Value x, Value, Value) { return b.fabs(x); });
@@ -221,9 +230,8 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     case GLSLstd450Asinh: return each([&](Value x, Value, Value) { return f.asinh(x); });
     case GLSLstd450Acosh: return each([&](Value x, Value, Value) { return f.log(b.fadd(x, f.sqrt(b.fsub(b.fmul(x, x), f.lit(kOne))))); });
     case GLSLstd450Atanh:
-      return each([&](Value x, Value, Value) {
-        return b.fmul(f.lit(0.5f), f.log(b.fdiv(b.fadd(f.lit(kOne), x), b.fsub(f.lit(kOne), x))));
-      });
+      return each(
+          [&](Value x, Value, Value) { return b.fmul(f.lit(0.5f), f.log(b.fdiv(b.fadd(f.lit(kOne), x), b.fsub(f.lit(kOne), x)))); });
     case GLSLstd450Pow: return each([&](Value x, Value y, Value) { return f.pow(x, y); });
     case GLSLstd450Exp: return each([&](Value x, Value, Value) { return f.exp(x); });
     case GLSLstd450Log: return each([&](Value x, Value, Value) { return f.log(x); });
@@ -232,7 +240,9 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     case GLSLstd450UClamp: return each([&](Value x, Value low, Value high) { return b.emit(Op::kUMin, b.emit(Op::kUMax, x, low), high); });
     case GLSLstd450SClamp: return each([&](Value x, Value low, Value high) { return b.emit(Op::kIMin, b.emit(Op::kIMax, x, low), high); });
     case GLSLstd450FMix: {
-      const auto all = [&](float v) { return std::all_of(in[0].begin(), in[0].end(), [&](Value x) { return x.is_literal(f.lit(v).bits); }); };
+      const auto all = [&](float v) {
+        return std::all_of(in[0].begin(), in[0].end(), [&](Value x) { return x.is_literal(f.lit(v).bits); });
+      };
       const bool one = all(1.0f), minus_one = all(-1.0f);
       return each([&](Value x, Value y, Value t) { return f.mix(x, y, t, one, minus_one); });
     }
@@ -293,7 +303,8 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     case GLSLstd450UnpackSnorm4x8: return define(i, f.unpack_norm(in[0][0], 8, true));
     case GLSLstd450UnpackUnorm2x16: return define(i, f.unpack_norm(in[0][0], 16, false));
     case GLSLstd450UnpackSnorm2x16: return define(i, f.unpack_norm(in[0][0], 16, true));
-    case GLSLstd450PackHalf2x16: return define(i, {b.emit(Op::kOr, b.emit(Op::kShl, f.to_half(in[0][1]), literal(16u)), f.to_half(in[0][0]))});
+    case GLSLstd450PackHalf2x16:
+      return define(i, {b.emit(Op::kOr, b.emit(Op::kShl, f.to_half(in[0][1]), literal(16u)), f.to_half(in[0][0]))});
     case GLSLstd450UnpackHalf2x16: return define(i, {f.from_half(in[0][0]), f.from_half(b.emit(Op::kShrU, in[0][0], literal(16u)))});
     default: throw unsupported(i, fmt::format("GLSL.std.450 function {}", function));
   }

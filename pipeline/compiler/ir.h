@@ -42,8 +42,8 @@ struct ConstantBlock {
 };
 
 inline constexpr std::uint32_t kNoRegister = 0xffffffffu;
-inline constexpr std::uint32_t kMaxLocations = 64;          ///< varyings
-inline constexpr std::uint32_t kMaxAttributeLocations = 32; ///< vertex inputs: raw slots stay below the system values
+inline constexpr std::uint32_t kMaxLocations = 64;           ///< varyings
+inline constexpr std::uint32_t kMaxAttributeLocations = 32;  ///< vertex inputs: raw slots stay below the system values
 
 /// One shader between lowering and emission. Slots are raw: kInput and kInterp name 4 * location + component (or a system value), kOutput names
 /// the ISA's output slot, with varyings at kFirstVaryingOutput + 4 * location + component. Linking packs them.
@@ -51,10 +51,10 @@ struct ScalarShader {
   models::Stage stage = models::Stage::kVertex;
   std::string name;
   std::vector<ScalarInstruction> code;
-  std::vector<bool> variable;                              ///< by virtual register
+  std::vector<bool> variable;  ///< by virtual register
   std::vector<ConstantBlock> blocks;
   std::vector<models::TextureBinding> textures;
-  std::map<std::uint16_t, models::Interpolation> varyings; ///< fragment: interpolation by raw slot
+  std::map<std::uint16_t, models::Interpolation> varyings;  ///< fragment: interpolation by raw slot
   bool early_fragment_tests = false;
 };
 

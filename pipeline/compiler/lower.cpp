@@ -38,7 +38,8 @@ ScalarShader Lowering::run() {
 const Values& Lowering::value(Id id) {
   if (const auto found = values_.find(id); found != values_.end()) return found->second;
   const std::vector<std::uint32_t>* constant = module_.constant(id);
-  if (constant == nullptr || constant->empty()) throw user_error("{}: {} has no value that the compiler can use", module_.shader, module_.name(id));
+  if (constant == nullptr || constant->empty())
+    throw user_error("{}: {} has no value that the compiler can use", module_.shader, module_.name(id));
   Values& words = values_[id];
   for (const std::uint32_t word : *constant) words.push_back(literal(word));
   return words;
@@ -58,7 +59,8 @@ Id Lowering::value_type(Id id) const {
 void Lowering::check_size(const spirv::Instruction& i) {
   if (i.type != 0 && module_.type(i.type).scalars > spirv::kMaxValueScalars)
     throw unsupported(i, fmt::format("a value of more than {} scalars", spirv::kMaxValueScalars));
-  if (shader_.code.size() > kMaxScalarCode) throw unsupported(i, fmt::format("a program of more than {} scalar instructions", kMaxScalarCode));
+  if (shader_.code.size() > kMaxScalarCode)
+    throw unsupported(i, fmt::format("a program of more than {} scalar instructions", kMaxScalarCode));
 }
 
 void Lowering::instruction(const spirv::Instruction& i) {

@@ -16,23 +16,52 @@ struct Mapped {
 };
 
 constexpr auto kMapped = std::to_array<Mapped>({
-    {spv::OpFAdd, Op::kFAdd}, {spv::OpFMul, Op::kFMul}, {spv::OpFDiv, Op::kFDiv},
-    {spv::OpIAdd, Op::kIAdd}, {spv::OpISub, Op::kISub}, {spv::OpIMul, Op::kIMul},
-    {spv::OpUDiv, Op::kUDiv}, {spv::OpSDiv, Op::kIDiv}, {spv::OpUMod, Op::kUMod}, {spv::OpSRem, Op::kIRem}, {spv::OpSMod, Op::kIMod},
-    {spv::OpShiftRightLogical, Op::kShrU}, {spv::OpShiftRightArithmetic, Op::kShrS}, {spv::OpShiftLeftLogical, Op::kShl},
-    {spv::OpBitwiseOr, Op::kOr}, {spv::OpBitwiseXor, Op::kXor}, {spv::OpBitwiseAnd, Op::kAnd}, {spv::OpNot, Op::kNot},
-    {spv::OpLogicalOr, Op::kOr}, {spv::OpLogicalAnd, Op::kAnd}, {spv::OpLogicalNotEqual, Op::kXor},
+    {spv::OpFAdd, Op::kFAdd},
+    {spv::OpFMul, Op::kFMul},
+    {spv::OpFDiv, Op::kFDiv},
+    {spv::OpIAdd, Op::kIAdd},
+    {spv::OpISub, Op::kISub},
+    {spv::OpIMul, Op::kIMul},
+    {spv::OpUDiv, Op::kUDiv},
+    {spv::OpSDiv, Op::kIDiv},
+    {spv::OpUMod, Op::kUMod},
+    {spv::OpSRem, Op::kIRem},
+    {spv::OpSMod, Op::kIMod},
+    {spv::OpShiftRightLogical, Op::kShrU},
+    {spv::OpShiftRightArithmetic, Op::kShrS},
+    {spv::OpShiftLeftLogical, Op::kShl},
+    {spv::OpBitwiseOr, Op::kOr},
+    {spv::OpBitwiseXor, Op::kXor},
+    {spv::OpBitwiseAnd, Op::kAnd},
+    {spv::OpNot, Op::kNot},
+    {spv::OpLogicalOr, Op::kOr},
+    {spv::OpLogicalAnd, Op::kAnd},
+    {spv::OpLogicalNotEqual, Op::kXor},
     {spv::OpLogicalEqual, Op::kXor, false, true},
-    {spv::OpConvertFToU, Op::kF2U}, {spv::OpConvertFToS, Op::kF2I}, {spv::OpConvertSToF, Op::kI2F}, {spv::OpConvertUToF, Op::kU2F},
-    {spv::OpIEqual, Op::kIEq}, {spv::OpINotEqual, Op::kINe},
-    {spv::OpUGreaterThan, Op::kULt, true}, {spv::OpSGreaterThan, Op::kILt, true},
-    {spv::OpUGreaterThanEqual, Op::kULe, true}, {spv::OpSGreaterThanEqual, Op::kILe, true},
-    {spv::OpULessThan, Op::kULt}, {spv::OpSLessThan, Op::kILt}, {spv::OpULessThanEqual, Op::kULe}, {spv::OpSLessThanEqual, Op::kILe},
-    {spv::OpFOrdEqual, Op::kFEq}, {spv::OpFUnordNotEqual, Op::kFNe},
-    {spv::OpFOrdLessThan, Op::kFLt}, {spv::OpFOrdGreaterThan, Op::kFLt, true},
-    {spv::OpFOrdLessThanEqual, Op::kFLe}, {spv::OpFOrdGreaterThanEqual, Op::kFLe, true},
-    {spv::OpFUnordLessThan, Op::kFLe, true, true}, {spv::OpFUnordGreaterThan, Op::kFLe, false, true},
-    {spv::OpFUnordLessThanEqual, Op::kFLt, true, true}, {spv::OpFUnordGreaterThanEqual, Op::kFLt, false, true},
+    {spv::OpConvertFToU, Op::kF2U},
+    {spv::OpConvertFToS, Op::kF2I},
+    {spv::OpConvertSToF, Op::kI2F},
+    {spv::OpConvertUToF, Op::kU2F},
+    {spv::OpIEqual, Op::kIEq},
+    {spv::OpINotEqual, Op::kINe},
+    {spv::OpUGreaterThan, Op::kULt, true},
+    {spv::OpSGreaterThan, Op::kILt, true},
+    {spv::OpUGreaterThanEqual, Op::kULe, true},
+    {spv::OpSGreaterThanEqual, Op::kILe, true},
+    {spv::OpULessThan, Op::kULt},
+    {spv::OpSLessThan, Op::kILt},
+    {spv::OpULessThanEqual, Op::kULe},
+    {spv::OpSLessThanEqual, Op::kILe},
+    {spv::OpFOrdEqual, Op::kFEq},
+    {spv::OpFUnordNotEqual, Op::kFNe},
+    {spv::OpFOrdLessThan, Op::kFLt},
+    {spv::OpFOrdGreaterThan, Op::kFLt, true},
+    {spv::OpFOrdLessThanEqual, Op::kFLe},
+    {spv::OpFOrdGreaterThanEqual, Op::kFLe, true},
+    {spv::OpFUnordLessThan, Op::kFLe, true, true},
+    {spv::OpFUnordGreaterThan, Op::kFLe, false, true},
+    {spv::OpFUnordLessThanEqual, Op::kFLt, true, true},
+    {spv::OpFUnordGreaterThanEqual, Op::kFLt, false, true},
 });
 
 }  // namespace
@@ -72,8 +101,10 @@ bool Lowering::arithmetic(const spirv::Instruction& i) {
     case spv::OpFNegate: return each([&](Value a, Value) { return build_.fneg(a); });
     case spv::OpFSub: return each([&](Value a, Value b) { return build_.fsub(a, b); });
     case spv::OpSNegate: return each([&](Value a, Value) { return build_.emit(Op::kISub, literal(0u), a); });
-    case spv::OpFRem: return each([&](Value a, Value b) { return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFTrunc, build_.fdiv(a, b)))); });
-    case spv::OpFMod: return each([&](Value a, Value b) { return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFFloor, build_.fdiv(a, b)))); });
+    case spv::OpFRem:
+      return each([&](Value a, Value b) { return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFTrunc, build_.fdiv(a, b)))); });
+    case spv::OpFMod:
+      return each([&](Value a, Value b) { return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFFloor, build_.fdiv(a, b)))); });
     case spv::OpVectorTimesScalar: return each([&](Value a, Value b) { return build_.fmul(a, b); });
     case spv::OpDot: return define(i, {dot(value(i.operands[0]), value(i.operands[1]))}), true;
     default: return false;
@@ -91,7 +122,8 @@ bool Lowering::comparison(const spirv::Instruction& i) {
   };
   switch (static_cast<std::uint32_t>(i.op)) {
     case spv::OpLogicalNot: return each([&](Value a, Value) { return build_.invert(a); });
-    case spv::OpFOrdNotEqual: return each([&](Value a, Value b) { return build_.emit(Op::kOr, build_.emit(Op::kFLt, a, b), build_.emit(Op::kFLt, b, a)); });
+    case spv::OpFOrdNotEqual:
+      return each([&](Value a, Value b) { return build_.emit(Op::kOr, build_.emit(Op::kFLt, a, b), build_.emit(Op::kFLt, b, a)); });
     case spv::OpFUnordEqual:
       return each([&](Value a, Value b) {
         return build_.emit(Op::kNot, build_.emit(Op::kOr, build_.emit(Op::kFLt, a, b), build_.emit(Op::kFLt, b, a)));
@@ -124,8 +156,7 @@ std::uint32_t Lowering::composite_offset(Id type, std::span<const std::uint32_t>
     if (index >= (is_struct ? t.members.size() : t.count)) throw unsupported(i, "an index beyond the composite");
     if (is_struct)
       for (std::uint32_t k = 0; k < index; ++k) offset += module_.type(t.members[k]).scalars;
-    else
-      offset += index * module_.type(t.element).scalars;
+    else offset += index * module_.type(t.element).scalars;
     type = is_struct ? t.members[index] : t.element;
   }
   found = type;
@@ -178,7 +209,8 @@ bool Lowering::composite(const spirv::Instruction& i) {
     case spv::OpVectorInsertDynamic: {
       const Values vector = value(i.operands[0]);
       const Value part = scalar(i.operands[1]), index = scalar(i.operands[2]);
-      for (std::uint32_t k = 0; k < vector.size(); ++k) result.push_back(build_.select(build_.emit(Op::kIEq, index, literal(k)), part, vector[k]));
+      for (std::uint32_t k = 0; k < vector.size(); ++k)
+        result.push_back(build_.select(build_.emit(Op::kIEq, index, literal(k)), part, vector[k]));
       break;
     }
     default: return false;

@@ -14,7 +14,6 @@ using models::Op;
 
 constexpr std::size_t kMaxBlocks = 20000;
 constexpr int kMaxNesting = 200;
-constexpr int kMaxFlatCost = 10;   ///< scalar operations of both sides that cost less than branching around them
 
 bool is_phi(const spirv::Instruction& i) { return i.op == spv::OpPhi; }
 
@@ -108,7 +107,8 @@ Id Lowering::follow(Id to, const Stop& stop) {
     build_.effect(Op::kBreakIf, literal(kTrue));
     return 0;
   }
-  if (const auto found = open_switches_.find(to); found != open_switches_.end()) throw StartAgain{&Attempts::looped_switches, found->second};
+  if (const auto found = open_switches_.find(to); found != open_switches_.end())
+    throw StartAgain{&Attempts::looped_switches, found->second};
   if (const LoopFrame* loop = real_loop(); loop != nullptr && (to == loop->merge || to == loop->continue_target || to == loop->header)) {
     if (loop->unrolled) {
       if (to != loop->merge || nesting_ != loop->nesting + 1) throw StartAgain{&Attempts::rolled_loops, loop->header};
@@ -167,7 +167,8 @@ bool Lowering::may_unroll(Id header) const {
   const spirv::Block& block = module_.block(header);
   if (block.merge_kind != spv::OpLoopMerge || (block.loop_control & spv::LoopControlDontUnrollMask) != 0) return false;
   if (attempts_.rolled_loops.contains(header)) return false;
-  return std::all_of(block.body.begin(), block.body.end(), [](const spirv::Instruction& i) { return !is_phi(i) || i.operands.size() == 4; });
+  return std::all_of(block.body.begin(), block.body.end(),
+                     [](const spirv::Instruction& i) { return !is_phi(i) || i.operands.size() == 4; });
 }
 
 /// Iterations one after the other, as long as the way out is decided by literals. Starts again without unrolling where that fails or gets long.
@@ -302,134 +303,6 @@ Id Lowering::conditional(const spirv::Block& block, const Stop& stop) {
   build_.close_scope();
   build_.effect(Op::kEndIf);
   return 0;
-}
-
-Id Lowering::selection(const spirv::Block& block, Value condition, Id yes, Id no, Id merge, const Stop& stop) {
-  if (!flatten(block, condition, yes, no)) {
-    const Stop inner{merge, nullptr};
-    build_.effect(Op::kIf, condition);
-    build_.open_scope();
-    side(block.label, yes, inner);
-    build_.close_scope();
-    build_.effect(Op::kElse);
-    build_.open_scope();
-    side(block.label, no, inner);
-    build_.close_scope();
-    build_.effect(Op::kEndIf);
-  }
-  return follow(merge, stop);
-}
-
-/// Scalar operations of an instruction that may run for lanes that did not ask for it; a large number for one that may not.
-int Lowering::flat_cost(const spirv::Instruction& i) const {
-  constexpr int kNever = 1000;
-  const int width = static_cast<int>(std::min<std::uint32_t>(i.type == 0 ? 1 : module_.type(i.type).scalars, kNever));
-  const auto op = static_cast<std::uint32_t>(i.op);
-  if (op == spv::OpExtInst) {
-    const std::uint32_t name = i.operands[1];
-    return name >= 1 && name <= 12 ? width : name >= 37 && name <= 45 ? 2 * width : kNever;  // rounding, sign; min, max, clamp
-  }
-  if (op == spv::OpCompositeExtract || op == spv::OpCompositeConstruct || op == spv::OpVectorShuffle || op == spv::OpBitcast || op == spv::OpCopyObject ||
-      op == spv::OpAccessChain || op == spv::OpFNegate)
-    return 0;
-  if (op == spv::OpLoad) {
-    const auto found = pointers_.find(i.operands[0]);
-    return found != pointers_.end() && found->second.dynamic.empty() && found->second.storage == spv::StorageClassUniform ? 0 : kNever;
-  }
-  if (op == spv::OpDot || (op >= spv::OpVectorTimesMatrix && op <= spv::OpOuterProduct)) return kNever;
-  if ((op >= spv::OpSNegate && op <= spv::OpVectorTimesScalar) || (op >= spv::OpLogicalEqual && op <= spv::OpNot)) return width;
-  return kNever;
-}
-
-int Lowering::flat_cost(Id label, Id merge) const {
-  constexpr int kNever = 1000;
-  if (label == merge) return 0;
-  const spirv::Block& block = module_.block(label);
-  if (block.merge_kind != spv::OpNop || block.terminator.op != spv::OpBranch || block.terminator.operands[0] != merge) return kNever;
-  int cost = 0;
-  for (const spirv::Instruction& i : block.body) {
-    cost = std::min(kNever, cost + (is_phi(i) ? kNever : flat_cost(i)));
-    if (cost >= kNever) break;
-  }
-  return cost;
-}
-
-/// Runs both sides of a small selection for all lanes and selects the results.
-bool Lowering::flatten(const spirv::Block& block, Value condition, Id yes, Id no) {
-  const spirv::Block& merge = module_.block(block.merge);
-  if (flat_cost(yes, block.merge) + flat_cost(no, block.merge) > kMaxFlatCost) return false;
-  for (const spirv::Instruction& i : merge.body)
-    if (is_phi(i) && i.operands.size() != 4) return false;
-  for (const Id arm : {yes, no})
-    if (arm != block.merge) body(module_.block(arm));
-  const Id yes_edge = yes == block.merge ? block.label : yes;
-  for (const spirv::Instruction& i : merge.body) {
-    if (!is_phi(i)) break;
-    const bool first = i.operands[1] == yes_edge;
-    const Values a = value(i.operands[first ? 0 : 2]), b = value(i.operands[first ? 2 : 0]);
-    Values& result = resolved_phis_[i.result];
-    result.clear();
-    for (std::size_t c = 0; c < a.size(); ++c) result.push_back(build_.select(condition, a[c], b[c]));
-  }
-  return true;
-}
-
-/// Cases are exclusive, so they follow each other as IFs, each with the mask of its lanes; a case that falls into a later one sets that one's flag.
-Id Lowering::lower_switch(const spirv::Block& block, const Stop& stop) {
-  const auto operands = block.terminator.operands;
-  const Value selector = scalar(operands[0]);
-  const Id otherwise = operands[1], merge = block.merge;
-  if (block.merge_kind != spv::OpSelectionMerge) throw unsupported(block.terminator, "a switch without a merge block");
-  std::vector<std::pair<Id, Value>> cases;
-  Value matched = literal(0u);
-  for (std::size_t k = 2; k + 1 < operands.size(); k += 2) {
-    const Id label = operands[k + 1];
-    if (label == otherwise) continue;
-    const Value equal = build_.emit(Op::kIEq, selector, literal(operands[k]));
-    matched = build_.emit(Op::kOr, matched, equal);
-    const auto known = std::find_if(cases.begin(), cases.end(), [&](const auto& entry) { return entry.first == label; });
-    if (known == cases.end()) cases.emplace_back(label, equal);
-    else known->second = build_.emit(Op::kOr, known->second, equal);
-  }
-  cases.emplace_back(otherwise, build_.invert(matched));
-  std::erase_if(cases, [&](const auto& entry) { return entry.first == merge; });
-  const bool looped = attempts_.looped_switches.contains(block.label);
-  copy_phis(block.label, merge);
-  std::map<Id, Value> to_come;
-  for (const auto& [label, mask] : cases) {
-    copy_phis(block.label, label);
-    const Value flag = build_.new_variable();
-    build_.assign(flag, literal(0u));
-    to_come[label] = flag;
-  }
-  if (looped) {
-    LoopFrame frame;
-    frame.is_switch = true;
-    frame.merge = merge;
-    push_loop(frame);
-  } else {
-    open_switches_[merge] = block.label;
-  }
-  for (const auto& [label, mask] : cases) {
-    const Value flag = to_come[label];
-    to_come.erase(label);
-    if (cases.size() == 1 && mask.is_literal() && mask.bits != 0) {
-      region(label, {merge, &to_come});
-      continue;
-    }
-    build_.effect(Op::kIf, build_.emit(Op::kOr, mask, build_.read(flag)));
-    build_.open_scope();
-    region(label, {merge, &to_come});
-    build_.close_scope();
-    build_.effect(Op::kEndIf);
-  }
-  if (looped) {
-    build_.effect(Op::kBreakIf, literal(kTrue));
-    pop_loop();
-  } else {
-    open_switches_.erase(merge);
-  }
-  return follow(merge, stop);
 }
 
 }  // namespace quadrille::pipeline

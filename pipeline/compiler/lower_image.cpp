@@ -13,7 +13,8 @@ using Kind = spirv::Type::Kind;
 
 void Lowering::declare_texture(const spirv::Variable& variable) {
   const spirv::Type& type = module_.type(variable.type);
-  if (type.kind != Kind::kSampledImage || module_.type(type.element).count != 2 || module_.type(module_.type(type.element).element).kind != Kind::kFloat)
+  if (type.kind != Kind::kSampledImage || module_.type(type.element).count != 2 ||
+      module_.type(module_.type(type.element).element).kind != Kind::kFloat)
     throw user_error("{}: resource {} is not a combined 2D float image sampler (sampler2D), the only kind supported", module_.shader,
                      module_.name(variable.id));
   const spirv::Decorations& d = module_.decorations(variable.id);
@@ -58,7 +59,8 @@ void Lowering::sample(const spirv::Instruction& i, bool projective) {
     throw unsupported(i, "sampling with gradients, offsets or a minimum level (textureGrad, textureOffset)");
   const bool bias = (mask & spv::ImageOperandsBiasMask) != 0, lod = (mask & spv::ImageOperandsLodMask) != 0;
   const bool is_implicit = i.op == spv::OpImageSampleImplicitLod || i.op == spv::OpImageSampleProjImplicitLod;
-  if (is_implicit && shader_.stage == models::Stage::kVertex) throw unsupported(i, "implicit level of detail in a vertex shader (use textureLod)");
+  if (is_implicit && shader_.stage == models::Stage::kVertex)
+    throw unsupported(i, "implicit level of detail in a vertex shader (use textureLod)");
   const Op op = lod ? Op::kTexLod : bias ? Op::kTexBias : Op::kTexImplicit;
   const Value first = build_.emit_wide(op, at[0], at[1], bias || lod ? scalar(i.operands[3]) : Value{}, texture->second);
   Values result;

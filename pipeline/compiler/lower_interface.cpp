@@ -22,7 +22,8 @@ void Lowering::declare_interface(const spirv::Variable& variable) {
     throw user_error("{}: interface variable {} has more than {} scalars", module_.shader, module_.name(variable.id), kMaxInterfaceScalars);
   auto location = static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.location));
   add_slots(slots_[variable.id], variable.type, d, location, output);
-  if (!output || (!read_outputs_.contains(variable.id) && variable.initializer == 0 && module_.type(variable.type).kind != Kind::kArray)) return;
+  if (!output || (!read_outputs_.contains(variable.id) && variable.initializer == 0 && module_.type(variable.type).kind != Kind::kArray))
+    return;
   Values& shadow = memory_[variable.id];
   for (std::uint32_t k = 0; k < module_.type(variable.type).scalars; ++k) shadow.push_back(build_.new_variable());
   if (variable.initializer == 0) return;
@@ -51,7 +52,8 @@ void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Deco
   }
   const auto first = static_cast<std::uint32_t>(std::max<std::int64_t>(0, inherited.component));
   for (std::uint32_t k = 0; k < type.scalars; ++k)
-    slots.push_back(inherited.built_in >= 0 ? built_in_slot(inherited.built_in, k, output) : location_slot(location, first + k, inherited, output));
+    slots.push_back(inherited.built_in >= 0 ? built_in_slot(inherited.built_in, k, output)
+                                            : location_slot(location, first + k, inherited, output));
   const Id scalar_type = type.kind == Kind::kVector ? type.element : type_id;
   if (shader_.stage == Stage::kVertex && !output && inherited.built_in < 0 && module_.type(scalar_type).kind != Kind::kFloat)
     for (std::size_t k = slots.size() - type.scalars; k < slots.size(); ++k) slots[k].kind = Slot::Kind::kRefused;
@@ -101,7 +103,8 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
 Value Lowering::load_input(Id variable, std::uint32_t place, const spirv::Instruction& i) {
   const Slot& slot = slots_[variable].at(place);
   if (slot.kind != Slot::Kind::kUsed)
-    throw unsupported(i, fmt::format("input {} (a built-in, a location beyond the limit, or an integer vertex attribute)", module_.name(variable)));
+    throw unsupported(
+        i, fmt::format("input {} (a built-in, a location beyond the limit, or an integer vertex attribute)", module_.name(variable)));
   if (shader_.stage == Stage::kVertex || slot.system) return build_.emit(Op::kInput, {}, {}, {}, slot.imm);
   shader_.varyings[slot.imm] = slot.interpolation;
   return build_.emit(Op::kInterp, {}, {}, {}, slot.imm);
@@ -111,7 +114,8 @@ void Lowering::store_output(const Pointer& p, std::uint32_t place, Value v, cons
   const Slot& slot = slots_[p.variable].at(place);
   if (slot.kind == Slot::Kind::kIgnored) return;
   if (slot.kind == Slot::Kind::kRefused)
-    throw unsupported(i, fmt::format("output {} (only colour location 0, gl_FragDepth, gl_Position and varyings are written)", module_.name(p.variable)));
+    throw unsupported(
+        i, fmt::format("output {} (only colour location 0, gl_FragDepth, gl_Position and varyings are written)", module_.name(p.variable)));
   build_.effect(Op::kOutput, v, slot.imm);
 }
 

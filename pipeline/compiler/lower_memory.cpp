@@ -11,7 +11,7 @@ using models::Op;
 using Kind = spirv::Type::Kind;
 
 constexpr std::uint32_t kMaxBlockWords = 65536;
-constexpr std::size_t kMaxSelectedPlaces = 64;   ///< elements that an index into registers may reach
+constexpr std::size_t kMaxSelectedPlaces = 64;  ///< elements that an index into registers may reach
 constexpr std::uint32_t kMaxLocalScalars = 1024;
 
 bool is_block(spv::StorageClass storage) { return storage == spv::StorageClassUniform || storage == spv::StorageClassPushConstant; }
@@ -51,7 +51,9 @@ void Lowering::find_tables() {
   for (const spirv::Variable& variable : module_.variables) {
     if (variable.storage != spv::StorageClassFunction && variable.storage != spv::StorageClassPrivate) continue;
     if (module_.type(variable.type).kind != Kind::kArray) continue;
-    const Id only = stores[variable.id] == 0 ? variable.initializer : stores[variable.id] == 1 && variable.initializer == 0 ? stored[variable.id] : 0;
+    const Id only = stores[variable.id] == 0                                ? variable.initializer
+                    : stores[variable.id] == 1 && variable.initializer == 0 ? stored[variable.id]
+                                                                            : 0;
     const std::vector<std::uint32_t>* words = only == 0 ? nullptr : module_.constant(only);
     if (words == nullptr) continue;
     ConstantBlock table;
@@ -79,7 +81,8 @@ void Lowering::declare(const spirv::Variable& variable) {
       if (tables_.contains(variable.id)) break;
       const std::uint32_t scalars = module_.type(variable.type).scalars;
       if (scalars == 0 || scalars > kMaxLocalScalars)
-        throw user_error("{}: local variable {} has {} scalars; 1 to {} are supported", module_.shader, module_.name(variable.id), scalars, kMaxLocalScalars);
+        throw user_error("{}: local variable {} has {} scalars; 1 to {} are supported", module_.shader, module_.name(variable.id), scalars,
+                         kMaxLocalScalars);
       Values& registers = memory_[variable.id];
       for (std::uint32_t k = 0; k < scalars; ++k) registers.push_back(build_.new_variable());
       if (const auto* words = variable.initializer == 0 ? nullptr : module_.constant(variable.initializer); words != nullptr)
@@ -87,8 +90,9 @@ void Lowering::declare(const spirv::Variable& variable) {
       break;
     }
     default:
-      throw user_error("{}: variable {} has storage class {}, which is not supported (uniform blocks, push constants, inputs, outputs and locals are)",
-                       module_.shader, module_.name(variable.id), static_cast<std::uint32_t>(variable.storage));
+      throw user_error(
+          "{}: variable {} has storage class {}, which is not supported (uniform blocks, push constants, inputs, outputs and locals are)",
+          module_.shader, module_.name(variable.id), static_cast<std::uint32_t>(variable.storage));
   }
   pointers_[variable.id] = p;
 }
@@ -125,7 +129,8 @@ void Lowering::step(Pointer& p, Id index, const spirv::Instruction& i) {
   }
   std::uint32_t stride = 0;
   if (type.kind == Kind::kArray) {
-    stride = block ? static_cast<std::uint32_t>(std::max<std::int64_t>(0, module_.decorations(p.type).array_stride)) : module_.type(type.element).scalars;
+    stride = block ? static_cast<std::uint32_t>(std::max<std::int64_t>(0, module_.decorations(p.type).array_stride))
+                   : module_.type(type.element).scalars;
   } else if (type.kind == Kind::kMatrix) {
     stride = !block ? module_.type(type.element).scalars : p.row_major ? 4 : p.matrix_stride;
     p.element_stride = block && p.row_major ? p.matrix_stride : 4;
@@ -192,7 +197,8 @@ void Lowering::load_block(Values& out, const Pointer& p, const spirv::Instructio
     return;
   }
   const bool is_struct = type.kind == Kind::kStruct;
-  if (!is_struct && type.kind != Kind::kArray && type.kind != Kind::kMatrix && type.kind != Kind::kVector) throw unsupported(i, "a load of this type");
+  if (!is_struct && type.kind != Kind::kArray && type.kind != Kind::kMatrix && type.kind != Kind::kVector)
+    throw unsupported(i, "a load of this type");
   const std::uint32_t parts = is_struct ? static_cast<std::uint32_t>(type.members.size()) : type.count;
   for (std::uint32_t k = 0; k < parts; ++k) {
     Pointer part = p;
@@ -203,7 +209,8 @@ void Lowering::load_block(Values& out, const Pointer& p, const spirv::Instructio
       part.matrix_stride = static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.matrix_stride));
       part.type = type.members[k];
     } else {
-      const std::uint32_t stride = type.kind == Kind::kArray    ? static_cast<std::uint32_t>(std::max<std::int64_t>(0, module_.decorations(p.type).array_stride))
+      const std::uint32_t stride = type.kind == Kind::kArray
+                                       ? static_cast<std::uint32_t>(std::max<std::int64_t>(0, module_.decorations(p.type).array_stride))
                                    : type.kind == Kind::kVector ? p.element_stride
                                    : p.row_major                ? 4
                                                                 : p.matrix_stride;

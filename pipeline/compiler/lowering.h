@@ -66,10 +66,10 @@ class Lowering {
   struct LoopFrame {
     enum Leave : std::uint8_t { kBreak, kContinue, kKill, kLeaveCount };
     bool is_switch = false;
-    bool unrolled = false, finished = false;   ///< lowered iteration by iteration; the last one has been met
+    bool unrolled = false, finished = false;  ///< lowered iteration by iteration; the last one has been met
     int nesting = 0;
     Id header = 0, merge = 0, continue_target = 0;
-    std::size_t reserved = 0;          ///< first of kLeaveCount places in the code
+    std::size_t reserved = 0;  ///< first of kLeaveCount places in the code
     Value flags[kLeaveCount]{};
   };
 
@@ -91,8 +91,6 @@ class Lowering {
   [[nodiscard]] bool may_unroll(Id header) const;
   Id terminator(const spirv::Block& block, const Stop& stop);
   Id conditional(const spirv::Block& block, const Stop& stop);
-  Id selection(const spirv::Block& block, Value condition, Id yes, Id no, Id merge, const Stop& stop);
-  Id lower_switch(const spirv::Block& block, const Stop& stop);
   Id edge(Id from, Id to, const Stop& stop);
   Id follow(Id to, const Stop& stop);
   void side(Id from, Id to, const Stop& stop);
@@ -108,6 +106,10 @@ class Lowering {
   [[nodiscard]] bool breaks_directly(Id to, Id& from) const;
   [[nodiscard]] LoopFrame* real_loop();
   [[nodiscard]] const LoopFrame* real_loop() const;
+
+  // lower_selection.cpp
+  Id selection(const spirv::Block& block, Value condition, Id yes, Id no, Id merge, const Stop& stop);
+  Id lower_switch(const spirv::Block& block, const Stop& stop);
   bool flatten(const spirv::Block& block, Value condition, Id yes, Id no);
   [[nodiscard]] int flat_cost(Id label, Id merge) const;
   [[nodiscard]] int flat_cost(const spirv::Instruction& i) const;
@@ -169,15 +171,15 @@ class Lowering {
   std::unordered_map<Id, Id> value_types_;
   std::unordered_map<Id, Pointer> pointers_;
   std::unordered_map<Id, const spirv::Variable*> variables_;
-  std::unordered_map<Id, Values> memory_;                   ///< function variables and shadowed outputs: one register a scalar
-  std::unordered_map<Id, std::uint32_t> tables_;            ///< function variables that hold one constant: its block
+  std::unordered_map<Id, Values> memory_;         ///< function variables and shadowed outputs: one register a scalar
+  std::unordered_map<Id, std::uint32_t> tables_;  ///< function variables that hold one constant: its block
   std::unordered_map<Id, std::vector<Slot>> slots_;
   std::unordered_set<Id> read_outputs_;
-  std::unordered_map<Id, std::uint16_t> textures_;          ///< variable or loaded value -> binding
-  std::unordered_set<Id> transposed_;                       ///< matrices that came as rows: loaded row-major, or a result of OpTranspose
+  std::unordered_map<Id, std::uint16_t> textures_;  ///< variable or loaded value -> binding
+  std::unordered_set<Id> transposed_;               ///< matrices that came as rows: loaded row-major, or a result of OpTranspose
   std::unordered_map<Id, Values> phis_, resolved_phis_;
   std::vector<LoopFrame> loops_;
-  std::map<Id, Id> open_switches_;                          ///< merge -> header of switches that are not loops
+  std::map<Id, Id> open_switches_;  ///< merge -> header of switches that are not loops
   int nesting_ = 0;
   std::size_t work_ = 0;
 };

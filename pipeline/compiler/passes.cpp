@@ -182,9 +182,7 @@ bool has_effect(Op op) { return is_control(op) || op == Op::kKillIf || op == Op:
 bool is_texture(Op op) { return op == Op::kTexImplicit || op == Op::kTexBias || op == Op::kTexLod; }
 
 void clean_up(ScalarShader& shader) {
-  do {
-    remove_dead(shader);
-  } while (simplify_control(shader));
+  do { remove_dead(shader); } while (simplify_control(shader));
   drop_unused_continuing(shader);
   fuse_multiply_add(shader);
   fold_saturate(shader);

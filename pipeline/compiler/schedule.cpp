@@ -117,7 +117,8 @@ std::vector<ScalarInstruction> schedule(const ScalarShader& shader, Order order)
   out.reserve(shader.code.size());
   std::size_t first = 0;
   for (std::size_t at = 0; at <= shader.code.size(); ++at) {
-    const bool boundary = at == shader.code.size() || is_control(shader.code[at].op) || shader.code[at].op == Op::kKillIf || shader.code[at].op == Op::kEnd;
+    const bool boundary =
+        at == shader.code.size() || is_control(shader.code[at].op) || shader.code[at].op == Op::kKillIf || shader.code[at].op == Op::kEnd;
     if (!boundary) continue;
     Stretch(shader, first, at).append(out, order);
     if (at < shader.code.size()) out.push_back(shader.code[at]);

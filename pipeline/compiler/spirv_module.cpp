@@ -13,14 +13,17 @@ std::string literal_string(std::span<const std::uint32_t> words) {
   return std::string(text, strnlen(text, words.size() * 4));
 }
 
-std::uint32_t saturating_product(std::uint64_t a, std::uint64_t b) { return static_cast<std::uint32_t>(std::min<std::uint64_t>(a * b, 1u << 24)); }
+std::uint32_t saturating_product(std::uint64_t a, std::uint64_t b) {
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(a * b, 1u << 24));
+}
 
 bool harmless_capability(std::uint32_t capability) {
   return capability == spv::CapabilityMatrix || capability == spv::CapabilityShader || capability == spv::CapabilityImageQuery ||
          capability == spv::CapabilityDerivativeControl || capability == spv::CapabilitySampleRateShading ||
-         capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry || capability == spv::CapabilityClipDistance ||
-         capability == spv::CapabilityCullDistance || capability == spv::CapabilityDemoteToHelperInvocation ||
-         capability == spv::CapabilityDrawParameters || capability == spv::CapabilityVariablePointersStorageBuffer;
+         capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry ||
+         capability == spv::CapabilityClipDistance || capability == spv::CapabilityCullDistance ||
+         capability == spv::CapabilityDemoteToHelperInvocation || capability == spv::CapabilityDrawParameters ||
+         capability == spv::CapabilityVariablePointersStorageBuffer;
 }
 
 }  // namespace
@@ -72,7 +75,8 @@ Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std:
     add(instruction);
     at += count;
   }
-  if (entry == 0) throw user_error("{}: no entry point \"main\" of the {} stage", shader, stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment");
+  if (entry == 0)
+    throw user_error("{}: no entry point \"main\" of the {} stage", shader, stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment");
 }
 
 const Type& Module::type(Id id) const {
@@ -132,14 +136,16 @@ void Module::add(const Instruction& given) {
       break;
     case spv::OpEntryPoint: add_entry_point(instruction); break;
     case spv::OpExecutionMode:
-      if (instruction.operands[0] == entry_function_ && instruction.operands[1] == spv::ExecutionModeEarlyFragmentTests) early_fragment_tests = true;
+      if (instruction.operands[0] == entry_function_ && instruction.operands[1] == spv::ExecutionModeEarlyFragmentTests)
+        early_fragment_tests = true;
       break;
     case spv::OpDecorate:
-      add_decoration(decorations_[instruction.operands[0]], static_cast<spv::Decoration>(instruction.operands[1]), instruction.operands.subspan(2));
+      add_decoration(decorations_[instruction.operands[0]], static_cast<spv::Decoration>(instruction.operands[1]),
+                     instruction.operands.subspan(2));
       break;
     case spv::OpMemberDecorate:
-      add_decoration(member_decorations_[{instruction.operands[0], instruction.operands[1]}], static_cast<spv::Decoration>(instruction.operands[2]),
-                     instruction.operands.subspan(3));
+      add_decoration(member_decorations_[{instruction.operands[0], instruction.operands[1]}],
+                     static_cast<spv::Decoration>(instruction.operands[2]), instruction.operands.subspan(3));
       break;
     case spv::OpGroupDecorate:
       for (const Id target : instruction.operands.subspan(1)) decorations_[target] = decorations(instruction.operands[0]);
@@ -150,16 +156,16 @@ void Module::add(const Instruction& given) {
       else if ((instruction.op >= spv::OpConstantTrue && instruction.op <= spv::OpSpecConstantOp) ||
                (instruction.op == spv::OpUndef && open_block_ == 0))
         add_constant(instruction);
-      else
-        add_to_function(instruction);
+      else add_to_function(instruction);
       break;
   }
 }
 
 void Module::add_capability(std::uint32_t capability) const {
   if (!harmless_capability(capability))
-    throw user_error("{}: capability {} is not supported (vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are)",
-                     shader, capability);
+    throw user_error(
+        "{}: capability {} is not supported (vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are)",
+        shader, capability);
 }
 
 void Module::add_entry_point(const Instruction& instruction) {
@@ -193,7 +199,10 @@ void Module::add_type(const Instruction& instruction) {
   Type type;
   switch (static_cast<std::uint32_t>(instruction.op)) {
     case spv::OpTypeVoid: type.kind = Type::Kind::kVoid; break;
-    case spv::OpTypeBool: type.kind = Type::Kind::kBool; type.scalars = 1; break;
+    case spv::OpTypeBool:
+      type.kind = Type::Kind::kBool;
+      type.scalars = 1;
+      break;
     case spv::OpTypeInt:
     case spv::OpTypeFloat:
       if (operands[0] != 32) throw user_error("{}: {}-bit types are not supported (32-bit ones are)", shader, operands[0]);
@@ -210,7 +219,8 @@ void Module::add_type(const Instruction& instruction) {
       break;
     case spv::OpTypeArray: {
       const std::vector<std::uint32_t>* length = constant(operands[1]);
-      if (length == nullptr || length->size() != 1) throw user_error("{}: the length of array type %{} is not a constant", shader, instruction.result);
+      if (length == nullptr || length->size() != 1)
+        throw user_error("{}: the length of array type %{} is not a constant", shader, instruction.result);
       type.kind = Type::Kind::kArray;
       type.element = operands[0];
       type.count = (*length)[0];
@@ -225,13 +235,19 @@ void Module::add_type(const Instruction& instruction) {
       type.scalars = saturating_product(sum, 1);
       break;
     }
-    case spv::OpTypePointer: type.kind = Type::Kind::kPointer; type.element = operands[1]; break;
+    case spv::OpTypePointer:
+      type.kind = Type::Kind::kPointer;
+      type.element = operands[1];
+      break;
     case spv::OpTypeImage:
       // Word order: sampled type, dimension, depth, arrayed, multisampled, sampled.
       type.count = operands[1] == spv::Dim2D && operands[3] == 0 && operands[4] == 0 && operands[5] == 1 ? 2 : 0;
       type.element = operands[0];
       break;
-    case spv::OpTypeSampledImage: type.kind = Type::Kind::kSampledImage; type.element = operands[0]; break;
+    case spv::OpTypeSampledImage:
+      type.kind = Type::Kind::kSampledImage;
+      type.element = operands[0];
+      break;
     default: break;
   }
   types_[instruction.result] = std::move(type);
@@ -252,13 +268,15 @@ void Module::add_constant(const Instruction& instruction) {
         const std::vector<std::uint32_t>* words = constant(part);
         if (words == nullptr) throw user_error("{}: constant %{} has a part that is none", shader, instruction.result);
         value.insert(value.end(), words->begin(), words->end());
-        if (value.size() > kMaxValueScalars) throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
+        if (value.size() > kMaxValueScalars)
+          throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
       }
       break;
     case spv::OpConstantNull:
     case spv::OpUndef: {
       const std::uint32_t scalars = type(instruction.type).scalars;
-      if (scalars > kMaxValueScalars) throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
+      if (scalars > kMaxValueScalars)
+        throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
       value.assign(scalars, 0);
       break;
     }
@@ -269,7 +287,8 @@ void Module::add_constant(const Instruction& instruction) {
 }
 
 void Module::add_variable(const Instruction& instruction) {
-  if (open_function_ != 0 && open_function_ != entry_function_) throw user_error("{}: a function call is left that cannot be expanded in place", shader);
+  if (open_function_ != 0 && open_function_ != entry_function_)
+    throw user_error("{}: a function call is left that cannot be expanded in place", shader);
   Variable variable;
   variable.id = instruction.result;
   variable.type = type(instruction.type).element;

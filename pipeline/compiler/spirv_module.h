@@ -32,7 +32,8 @@ struct Type {
 
 /// Decorations of an id or of a struct member that the compiler reads. -1: not decorated.
 struct Decorations {
-  std::int64_t built_in = -1, location = -1, component = -1, binding = -1, set = -1, offset = -1, array_stride = -1, matrix_stride = -1, index = -1;
+  std::int64_t built_in = -1, location = -1, component = -1, binding = -1, set = -1, offset = -1, array_stride = -1, matrix_stride = -1,
+               index = -1;
   bool row_major = false, flat = false, no_perspective = false;
 };
 
@@ -45,15 +46,15 @@ struct Instruction {
 
 struct Block {
   Id label = 0;
-  std::vector<Instruction> body;          ///< without label, merge and terminator
+  std::vector<Instruction> body;  ///< without label, merge and terminator
   Instruction terminator;
-  spv::Op merge_kind = spv::OpNop;        ///< OpSelectionMerge, OpLoopMerge or none
+  spv::Op merge_kind = spv::OpNop;  ///< OpSelectionMerge, OpLoopMerge or none
   Id merge = 0, continue_target = 0;
-  std::uint32_t loop_control = 0;         ///< spv::LoopControlMask
+  std::uint32_t loop_control = 0;  ///< spv::LoopControlMask
 };
 
 struct Variable {
-  Id id = 0, type = 0;                    ///< `type` is the pointee
+  Id id = 0, type = 0;  ///< `type` is the pointee
   spv::StorageClass storage = spv::StorageClassFunction;
   Id initializer = 0;
 };
@@ -80,10 +81,10 @@ class Module {
   [[nodiscard]] std::string at(const Instruction& instruction, std::string_view text) const;
 
   std::string shader;
-  Id entry = 0;                              ///< label of the first block
-  std::vector<Variable> variables;           ///< module scope and function scope
+  Id entry = 0;                     ///< label of the first block
+  std::vector<Variable> variables;  ///< module scope and function scope
   std::unordered_map<Id, Block> blocks;
-  std::unordered_map<Id, Id> glsl_imports;   ///< ids of OpExtInstImport "GLSL.std.450"
+  std::unordered_map<Id, Id> glsl_imports;  ///< ids of OpExtInstImport "GLSL.std.450"
   bool early_fragment_tests = false;
   Id bound = 0;
 

@@ -24,7 +24,8 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 void validate(std::span<const std::uint32_t> words, std::string_view shader) {
   if (words.size() < 5 || words.size() > kMaxModuleWords)
     throw user_error("{}: a SPIR-V module has 5 to {} words, this one has {}", shader, kMaxModuleWords, words.size());
-  if (words[0] != spv::MagicNumber) throw user_error("{}: not SPIR-V (first word {:#010x} instead of {:#010x})", shader, words[0], spv::MagicNumber + 0u);
+  if (words[0] != spv::MagicNumber)
+    throw user_error("{}: not SPIR-V (first word {:#010x} instead of {:#010x})", shader, words[0], spv::MagicNumber + 0u);
   std::string message;
   spvtools::SpirvTools tools(kEnvironment);
   tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t& position, const char* text) {
@@ -168,7 +169,8 @@ std::vector<std::uint32_t> optimise_spirv(std::span<const std::uint32_t> words, 
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);
   std::vector<std::uint32_t> output;
-  if (!optimizer.Run(input.data(), input.size(), &output, options)) throw user_error("{}: SPIRV-Tools cannot optimise it: {}", shader, message);
+  if (!optimizer.Run(input.data(), input.size(), &output, options))
+    throw user_error("{}: SPIRV-Tools cannot optimise it: {}", shader, message);
   validate(output, shader);
   return output;
 }

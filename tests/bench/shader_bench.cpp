@@ -81,11 +81,15 @@ Program material() {
   std::string text = ".stage fragment\n.regs 64\n" + repeated(".varying perspective\n", 17) + repeated(".texture set=0 binding=0\n", 5);
   for (int i = 0; i < 17; ++i) text += "interp r" + std::to_string(i) + ", vary" + std::to_string(i) + "\n";
   for (int t = 0; t < 5; ++t) text += "tex r" + std::to_string(20 + 4 * t) + ", t" + std::to_string(t) + ", r0, r1\n";
-  const std::string normalise = "fmul r40, r2, r2\nfmad r40, r3, r3, r40\nfmad r40, r4, r4, r40\nfrsq r40, r40\nfmul r41, r2, r40\nfmul r42, r3, r40\nfmul r43, r4, r40\n";
+  const std::string normalise =
+      "fmul r40, r2, r2\nfmad r40, r3, r3, r40\nfmad r40, r4, r4, r40\nfrsq r40, r40\nfmul r41, r2, r40\nfmul r42, r3, r40\nfmul r43, r4, "
+      "r40\n";
   const std::string dot = "fmul r44, r41, r5\nfmad r44, r42, r6, r44\nfmad.sat r44, r43, r7, r44\n";
   const std::string lobe =
-      "fmul r45, r44, r44\nfmad r45, r45, r20, 1.0\nfmul r45, r45, r45\nfmul r45, r45, 3.14159\nfdiv r46, r21, r45\nfadd r47, 1.0, -r44\nfmul r48, r47, r47\n"
-      "fmul r48, r48, r48\nfmul r48, r48, r47\nfmad r49, r48, r22, r23\nfmul r46, r46, r49\nfmax r46, r46, 0.0\nfmad r50, r46, c0, r50\nfmad r51, r46, c1, r51\n"
+      "fmul r45, r44, r44\nfmad r45, r45, r20, 1.0\nfmul r45, r45, r45\nfmul r45, r45, 3.14159\nfdiv r46, r21, r45\nfadd r47, 1.0, "
+      "-r44\nfmul r48, r47, r47\n"
+      "fmul r48, r48, r48\nfmul r48, r48, r47\nfmad r49, r48, r22, r23\nfmul r46, r46, r49\nfmax r46, r46, 0.0\nfmad r50, r46, c0, "
+      "r50\nfmad r51, r46, c1, r51\n"
       "fmad r52, r46, c2, r52\n";
   text = ".push c0 offset=0 words=4\n" + text;
   text += repeated(normalise + dot, 2);
@@ -102,7 +106,8 @@ BENCHMARK(material_eight_triangles);
 /// The same work with half of the lanes switched off by an IF.
 void divided(benchmark::State& state) {
   const std::string body = repeated("fmad r4, r5, r6, r7\nfadd r8, r9, 1.0\nfmul r10, r11, r12\n", 80);
-  measure(state, assemble(".stage fragment\n.regs 16\ninput r0, frag_coord_x\nflt r1, r0, 50.0\nif r1\n" + body + "else\nendif\nend\n", "divided"));
+  measure(state, assemble(".stage fragment\n.regs 16\ninput r0, frag_coord_x\nflt r1, r0, 50.0\nif r1\n" + body + "else\nendif\nend\n",
+                          "divided"));
 }
 BENCHMARK(divided);
 

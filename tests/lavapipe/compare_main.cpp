@@ -1,8 +1,8 @@
 /// quadrille_lavapipe_compare: renders a scene on Quadrille and on lavapipe and says whether the pictures agree, with figures.
 ///
 /// Exit code: 0 they agree, 1 they do not, 2 a mistake in what was given, 77 no Vulkan driver (a skipped test for CTest).
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -75,7 +75,7 @@ scenes::SceneOptions scene_options(const Arguments& a) {
   return options;
 }
 
-MachinePrecision machine_precision(const Arguments& a, const DeviceInfo& device) {
+models::Precision machine_precision(const Arguments& a, const DeviceInfo& device) {
   const auto choose = [](int given, std::uint32_t reported) { return given > 0 ? given : static_cast<int>(reported); };
   return {.subpixel_bits = choose(a.subpixel_bits, device.subpixel_bits),
           .subtexel_bits = choose(a.subtexel_bits, device.subtexel_bits),
@@ -96,7 +96,8 @@ models::reference::PixelRect bounds(const std::vector<std::uint8_t>& marks, std:
   return {x0, y0, x1 - x0, y1 - y0};
 }
 
-/// Distance of alphas to their cut-off, by the double-precision reference, for the pixels whose difference nothing else explains. Empty if there are none.
+/// Distance of alphas to their cut-off, by the double-precision reference, for the pixels whose difference nothing else explains. Empty if
+/// there are none.
 std::vector<float> alpha_margins(const traces::CommandStream& triangles, const FramePair& ours, const FramePair& theirs) {
   const std::vector<std::uint8_t> marks = unexplained_pixels(ours, theirs);
   if (std::find(marks.begin(), marks.end(), 1) == marks.end()) return {};
@@ -153,8 +154,9 @@ int run(const Arguments& arguments, VulkanRenderer& renderer) {
   const FramePair theirs{renderer.render(color), renderer.render(triangles)};
   if (arguments.time_frames > 0) report.lavapipe_times = renderer.time_frames(color, arguments.time_frames);
   if (arguments.lavapipe_only) {
-    fmt::print("{} {}x{}: lavapipe median {:.2f} ms, least {:.2f} ms, processor {:.2f} ms, of {} frames\n", report.scene, report.width, report.height,
-               report.lavapipe_times.median_ms, report.lavapipe_times.min_ms, report.lavapipe_times.median_cpu_ms, report.lavapipe_times.frames);
+    fmt::print("{} {}x{}: lavapipe median {:.2f} ms, least {:.2f} ms, processor {:.2f} ms, of {} frames\n", report.scene, report.width,
+               report.height, report.lavapipe_times.median_ms, report.lavapipe_times.min_ms, report.lavapipe_times.median_cpu_ms,
+               report.lavapipe_times.frames);
     if (!arguments.images.empty()) save_pictures(arguments.images, theirs, theirs);
     return report_validation(renderer);
   }

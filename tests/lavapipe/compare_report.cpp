@@ -32,14 +32,16 @@ std::string to_text(const Report& report) {
   text += criterion(r.triangles_ok, "another triangle seen", share(r.shape.other_triangle, r.shape.triangle_fraction()),
                     fmt::format("at most {:.5f} %", 100 * limits.triangle_fraction));
   text += criterion(r.color_ok, fmt::format("colour within {}/255", limits.within_lsb),
-                    fmt::format("{:.5f} %", 100 * r.color.fraction_within(limits.within_lsb)), fmt::format("at least {:.3f} %", 100 * limits.within_fraction));
+                    fmt::format("{:.5f} %", 100 * r.color.fraction_within(limits.within_lsb)),
+                    fmt::format("at least {:.3f} %", 100 * limits.within_fraction));
   text += criterion(r.blocks_ok, "8x8 blocks with a quarter off by > 8", fmt::format("{} of {}", r.color.bad_blocks, r.color.blocks),
                     fmt::format("at most {}", limits.bad_blocks));
-  text += fmt::format("        excused: {} depth ties (2 ULP), {} alphas at the cut-off; largest difference {} LSB; PSNR {:.1f} dB\n", r.depth_ties,
-                      r.alpha_ties, r.color.max_lsb, r.color.psnr_db);
+  text += fmt::format("        excused: {} depth ties (2 ULP), {} alphas at the cut-off; largest difference {} LSB; PSNR {:.1f} dB\n",
+                      r.depth_ties, r.alpha_ties, r.color.max_lsb, r.color.psnr_db);
   if (report.lavapipe_times.frames > 0)
-    text += fmt::format("        host time: lavapipe {:.1f} ms wall, {:.1f} ms processor (medians of {}), Quadrille {:.1f} ms\n",
-                        report.lavapipe_times.median_ms, report.lavapipe_times.median_cpu_ms, report.lavapipe_times.frames, report.machine_ms);
+    text +=
+        fmt::format("        host time: lavapipe {:.1f} ms wall, {:.1f} ms processor (medians of {}), Quadrille {:.1f} ms\n",
+                    report.lavapipe_times.median_ms, report.lavapipe_times.median_cpu_ms, report.lavapipe_times.frames, report.machine_ms);
   return text;
 }
 
@@ -55,12 +57,9 @@ std::string to_json(const Report& report) {
                        {"subtexel_bits", report.precision.subtexel_bits},
                        {"lod_bits", report.precision.lod_bits}};
   json["passed"] = r.passed();
-  json["criteria"]["coverage"] = {{"pixels", r.shape.only_a + r.shape.only_b},
-                                  {"only_quadrille", r.shape.only_a},
-                                  {"only_lavapipe", r.shape.only_b},
-                                  {"fraction", r.shape.coverage_fraction()},
-                                  {"limit", report.limits.coverage_fraction},
-                                  {"passed", r.coverage_ok}};
+  json["criteria"]["coverage"] = {{"pixels", r.shape.only_a + r.shape.only_b}, {"only_quadrille", r.shape.only_a},
+                                  {"only_lavapipe", r.shape.only_b},           {"fraction", r.shape.coverage_fraction()},
+                                  {"limit", report.limits.coverage_fraction},  {"passed", r.coverage_ok}};
   json["criteria"]["triangle"] = {{"pixels", r.shape.other_triangle},
                                   {"fraction", r.shape.triangle_fraction()},
                                   {"limit", report.limits.triangle_fraction},
@@ -69,7 +68,10 @@ std::string to_json(const Report& report) {
                                {"fraction", r.color.fraction_within(report.limits.within_lsb)},
                                {"limit", report.limits.within_fraction},
                                {"passed", r.color_ok}};
-  json["criteria"]["blocks"] = {{"bad", r.color.bad_blocks}, {"of", r.color.blocks}, {"limit", report.limits.bad_blocks}, {"passed", r.blocks_ok},
+  json["criteria"]["blocks"] = {{"bad", r.color.bad_blocks},
+                                {"of", r.color.blocks},
+                                {"limit", report.limits.bad_blocks},
+                                {"passed", r.blocks_ok},
                                 {"worst_block", r.color.worst_block}};
   json["excused"] = {{"depth_ties", r.depth_ties}, {"alpha_ties", r.alpha_ties}};
   json["max_lsb"] = r.color.max_lsb;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "models/precision.h"
 #include "tests/lavapipe/frame_compare.h"
-#include "tests/lavapipe/machine_side.h"
 
 namespace quadrille::lavapipe {
 
@@ -13,7 +13,7 @@ struct Report {
   std::string scene;
   std::uint32_t width = 0, height = 0;
   DeviceInfo device;
-  MachinePrecision precision;
+  models::Precision precision;
   Limits limits;
   Comparison result;
   FrameTimes lavapipe_times;  ///< frames == 0: not timed

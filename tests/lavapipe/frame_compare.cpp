@@ -43,8 +43,7 @@ std::uint32_t ulps_apart(float a, float b) {
 std::vector<std::uint8_t> unexplained_pixels(const FramePair& a, const FramePair& b) {
   require_same_size(a.triangles, b.triangles);
   std::vector<std::uint8_t> marks(a.triangles.color.size());
-  for (std::size_t i = 0; i < marks.size(); ++i)
-    marks[i] = a.triangles.color[i] != b.triangles.color[i] && !is_depth_tie(a, b, i) ? 1 : 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = a.triangles.color[i] != b.triangles.color[i] && !is_depth_tie(a, b, i) ? 1 : 0;
   return marks;
 }
 

@@ -1,8 +1,8 @@
 /// Do two renderers show the same picture? The criteria by which Quadrille is held against lavapipe.
 ///
-/// Each renderer gives two images of a frame: which triangle every pixel shows, and its colour. Shape is judged on the first, colour on the second. A pixel is
-/// excused only for a stated reason: the two winners' depths are within 2 units in the last place, or an alpha was within 1/255 of the cut-off that
-/// discards; how many were is part of the result. An excused pixel is left out of every criterion.
+/// Each renderer gives two images of a frame: which triangle every pixel shows, and its colour. Shape is judged on the first, colour on the
+/// second. A pixel is excused only for a stated reason: the two winners' depths are within 2 units in the last place, or an alpha was
+/// within 1/255 of the cut-off that discards; how many were is part of the result. An excused pixel is left out of every criterion.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct Limits {
   double triangle_fraction = 1e-4;  ///< of all pixels: covered in both, by different triangles
   double within_fraction = 0.999;   ///< of all pixels: every channel within `within_lsb`
   int within_lsb = 2;
-  std::uint64_t bad_blocks = 0;     ///< 8x8 blocks with more than a quarter of their pixels off by more than 8
+  std::uint64_t bad_blocks = 0;  ///< 8x8 blocks with more than a quarter of their pixels off by more than 8
 };
 
 inline constexpr std::uint32_t kTieUlps = 2;
@@ -44,11 +44,12 @@ struct Comparison {
 /// Distance in representable floats; the largest value if either is NaN. Both zeros are the same.
 [[nodiscard]] std::uint32_t ulps_apart(float a, float b);
 
-/// Pixels where the triangles differ and the ids alone cannot say why: candidates for an excuse by `alpha_margin`. One entry a pixel, 1 or 0.
+/// Pixels where the triangles differ and depth does not say why: candidates for an excuse by `alpha_margin`. One entry a pixel, 1 or 0.
 [[nodiscard]] std::vector<std::uint8_t> unexplained_pixels(const FramePair& a, const FramePair& b);
 
-/// Judges `ours` against `theirs`, which have one size (`UserError` otherwise). `alpha_margin` (empty: unknown, none is excused) holds for each pixel the
-/// smallest distance of any alpha to its cut-off.
-[[nodiscard]] Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const float> alpha_margin, const Limits& limits);
+/// Judges `ours` against `theirs`, which have one size (`UserError` otherwise). `alpha_margin` (empty: unknown, none is excused) holds for
+/// each pixel the smallest distance of any alpha to its cut-off.
+[[nodiscard]] Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const float> alpha_margin,
+                                        const Limits& limits);
 
 }  // namespace quadrille::lavapipe

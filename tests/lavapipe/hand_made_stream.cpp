@@ -43,15 +43,16 @@ HandMadeStream::HandMadeStream(std::uint32_t width, std::uint32_t height, traces
   pipeline.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0}, {1, 0, traces::Format::kR32G32Float, sizeof(Corner::position)}};
   stream_.pipelines.push_back(pipeline);
   pass_.clear_color = {0, 0, 0, 0};
-  state_ = {traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1}, traces::SetScissor{0, 0, width, height}};
+  state_ = {traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1},
+            traces::SetScissor{0, 0, width, height}};
 }
 
 HandMadeStream& HandMadeStream::shaders(std::string_view vertex, std::string_view fragment) {
   using traces::ShaderStage;
   pipeline().vertex_shader =
       append(stream_.shaders, {"vertex", ShaderStage::kVertex, scenes::compile_glsl(vertex, ShaderStage::kVertex, "hand-made.vert")});
-  pipeline().fragment_shader =
-      append(stream_.shaders, {"fragment", ShaderStage::kFragment, scenes::compile_glsl(fragment, ShaderStage::kFragment, "hand-made.frag")});
+  pipeline().fragment_shader = append(
+      stream_.shaders, {"fragment", ShaderStage::kFragment, scenes::compile_glsl(fragment, ShaderStage::kFragment, "hand-made.frag")});
   return *this;
 }
 

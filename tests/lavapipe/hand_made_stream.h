@@ -16,12 +16,13 @@ struct Corner {
   std::array<float, 2> value;
 };
 
-/// Builds a stream of one pass over one target around one pipeline and one vertex buffer (binding 0: location 0 the position, location 1 the value).
+/// Builds a stream of one pass over one target around one pipeline and one vertex buffer (binding 0: location 0 the position, location 1
+/// the value).
 class HandMadeStream {
  public:
   HandMadeStream(std::uint32_t width, std::uint32_t height, traces::Format color, traces::Format depth);
 
-  /// GLSL of both stages. The vertex stage has `layout(location = 0) in vec4 position; layout(location = 1) in vec2 value;`.
+  /// GLSL of both stages. The vertex stage may read `layout(location = 0) in vec4` (position) and `layout(location = 1) in vec2` (value).
   HandMadeStream& shaders(std::string_view vertex, std::string_view fragment);
   HandMadeStream& corners(std::span<const Corner> corners);
   /// A texture at set 0, binding `binding`.

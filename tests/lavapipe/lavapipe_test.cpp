@@ -19,7 +19,8 @@ layout(location = 0) in vec2 v_value;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(v_value, 0.0, 1.0); })";
 
-/// Renders, or returns nothing after saying that the test is skipped because there is no driver. Any message of the validation layer fails the test.
+/// Renders, or returns nothing after saying that the test is skipped for want of a driver. Any message of the validation layer fails the
+/// test.
 std::optional<Rendered> render(const traces::CommandStream& stream) {
   std::optional<VulkanRenderer> renderer;
   try {
@@ -47,8 +48,11 @@ std::array<Corner, 6> full_target(float depth) {
 
 TEST_CASE("lavapipe: covers exactly the pixels whose centres are inside, by the top-left rule") {
   // The hypotenuse from (16, 0) to (0, 16) passes through pixel centres; it is neither a top nor a left edge, so they are outside.
-  const auto image = render(
-      HandMadeStream(16, 16, Format::kR8G8B8A8Unorm, Format::kUndefined).shaders(pass_through_vertex_shader(), kWriteValue).corners(full_target(0)).draw(3).finish());
+  const auto image = render(HandMadeStream(16, 16, Format::kR8G8B8A8Unorm, Format::kUndefined)
+                                .shaders(pass_through_vertex_shader(), kWriteValue)
+                                .corners(full_target(0))
+                                .draw(3)
+                                .finish());
   if (!image) return;
   for (std::uint32_t y = 0; y < 16; ++y)
     for (std::uint32_t x = 0; x < 16; ++x) CHECK((image->color[16 * y + x] != 0) == (x + y + 1 < 16));
@@ -59,16 +63,25 @@ TEST_CASE("lavapipe: two triangles that share an edge cover each pixel once") {
   made.shaders(pass_through_vertex_shader(), R"(#version 450
 layout(location = 0) out vec4 color;
 void main() { color = vec4(100.0 / 255.0); })");
-  made.pipeline().blend = {true, traces::BlendFactor::kOne, traces::BlendFactor::kOne, traces::BlendFactor::kOne, traces::BlendFactor::kOne,
-                           traces::BlendOp::kAdd, traces::BlendOp::kAdd, 0xf};
+  made.pipeline().blend = {true,
+                           traces::BlendFactor::kOne,
+                           traces::BlendFactor::kOne,
+                           traces::BlendFactor::kOne,
+                           traces::BlendFactor::kOne,
+                           traces::BlendOp::kAdd,
+                           traces::BlendOp::kAdd,
+                           0xf};
   const auto image = render(made.corners(full_target(0)).draw(6).finish());
   if (!image) return;
   for (const std::uint32_t pixel : image->color) CHECK(pixel == 0x64646464u);
 }
 
 TEST_CASE("lavapipe: interpolates linearly across the target, at pixel centres") {
-  const auto image = render(
-      HandMadeStream(32, 8, Format::kR8G8B8A8Unorm, Format::kUndefined).shaders(pass_through_vertex_shader(), kWriteValue).corners(full_target(0)).draw(6).finish());
+  const auto image = render(HandMadeStream(32, 8, Format::kR8G8B8A8Unorm, Format::kUndefined)
+                                .shaders(pass_through_vertex_shader(), kWriteValue)
+                                .corners(full_target(0))
+                                .draw(6)
+                                .finish());
   if (!image) return;
   for (std::uint32_t x = 0; x < 32; ++x) {
     const double expected = 255 * (x + 0.5) / 32;
@@ -110,7 +123,8 @@ void main() { color = texture(image, v_value); })")
 
 TEST_CASE("lavapipe: a minified texture is read from the mip level of its footprint") {
   traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 32, 32, 6, {}};
-  for (unsigned level = 0; level < 6; ++level) texture.texels.insert(texture.texels.end(), std::size_t{4} << (2 * (5 - level)), static_cast<std::byte>(40 * level));
+  for (unsigned level = 0; level < 6; ++level)
+    texture.texels.insert(texture.texels.end(), std::size_t{4} << (2 * (5 - level)), static_cast<std::byte>(40 * level));
   const auto image = render(HandMadeStream(8, 8, Format::kR8G8B8A8Unorm, Format::kUndefined)
                                 .shaders(pass_through_vertex_shader(), R"(#version 450
 layout(location = 0) in vec2 v_value;

@@ -3,16 +3,13 @@
 
 #include <utility>
 
-#include "models/precision.h"
 #include "pipeline/render.h"
 
 namespace quadrille::lavapipe {
 
-Rendered render_on_machine(const traces::CommandStream& stream, const MachinePrecision& precision) {
-  const models::Precision bits{
-      .subpixel_bits = precision.subpixel_bits, .subtexel_bits = precision.subtexel_bits, .lod_bits = precision.lod_bits};
-  pipeline::FrameResult frame = pipeline::render_functional(stream, bits);
-  return {frame.width, frame.height, std::move(frame.color), std::move(frame.depth)};
+Rendered render_on_machine(const traces::CommandStream& stream, const models::Precision& precision) {
+  pipeline::FrameImage image = pipeline::render_functional_frame(stream, precision).image;
+  return {image.width, image.height, std::move(image.color), std::move(image.depth)};
 }
 
 }  // namespace quadrille::lavapipe

@@ -1,17 +1,14 @@
 /// Quadrille's side of the comparison, behind one function, so that the rest knows nothing of the machine.
 #pragma once
 
+#include "models/precision.h"
 #include "tests/lavapipe/vulkan_renderer.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::lavapipe {
 
-/// Fractional bits of the units whose precision Vulkan lets an implementation choose. A driver reports its own (`DeviceInfo`).
-struct MachinePrecision {
-  int subpixel_bits = 8, subtexel_bits = 8, lod_bits = 8;
-};
-
-/// Executes the stream on Quadrille, functions only: timing never changes pixels, and other tests hold it to that. Throws what Quadrille throws.
-[[nodiscard]] Rendered render_on_machine(const traces::CommandStream& stream, const MachinePrecision& precision);
+/// Executes the stream on Quadrille, functions only: timing never changes pixels, and other tests hold it to that.
+/// `precision`: what the driver reports of itself, where Vulkan leaves a choice. Throws what Quadrille throws.
+[[nodiscard]] Rendered render_on_machine(const traces::CommandStream& stream, const models::Precision& precision);
 
 }  // namespace quadrille::lavapipe

@@ -1,7 +1,7 @@
 /// How lavapipe computes what the specification leaves open, measured bit by bit: docs/sources.md and docs/deviations.md cite these cases.
 ///
-/// A shader writes the bits of a float into the four bytes of its pixel, and the test recomputes them in fp32. The cases hold for Mesa 22.3's llvmpipe; on
-/// another driver they say so and judge nothing.
+/// A shader writes the bits of a float into the four bytes of its pixel, and the test recomputes them in fp32. The cases hold for Mesa
+/// 22.3's llvmpipe; on another driver they say so and judge nothing.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -29,9 +29,7 @@ std::optional<Rendered> render(const traces::CommandStream& stream) {
     VulkanRenderer renderer;
     if (renderer.info().name.starts_with("llvmpipe")) return renderer.render(stream);
     WARN("skipped: " << renderer.info().name << " is not llvmpipe");
-  } catch (const UserError& error) {
-    WARN("skipped: " << error.what());
-  }
+  } catch (const UserError& error) { WARN("skipped: " << error.what()); }
   return std::nullopt;
 }
 
@@ -61,7 +59,8 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec4 a = all_a[pixel.y * 32 + pixel.x];
   vec4 b = all_b[pixel.y * 32 + pixel.x];
-  uint bits = floatBitsToUint()" + result + R"();
+  uint bits = floatBitsToUint()" +
+                               result + R"();
   color = vec4(uvec4(bits, bits >> 8, bits >> 16, bits >> 24) & 255u) / 255.0;
 })";
   HandMadeStream made(kSide, kSide, Format::kR8G8B8A8Unorm, Format::kUndefined);
@@ -73,7 +72,8 @@ void main() {
 template <class Expected>
 std::optional<std::size_t> equal_bits(const std::string& expression, Expected expected) {
   const Inputs inputs(7);
-  const auto image = render(bits_of(expression, inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4)}, {}).finish());
+  const auto image =
+      render(bits_of(expression, inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4)}, {}).finish());
   if (!image) return std::nullopt;
   std::size_t equal = 0;
   for (std::size_t i = 0; i < kInputs; ++i)
@@ -86,9 +86,8 @@ float dot3(const float* a, const float* b) { return (a[0] * b[0] + a[1] * b[1]) 
 }  // namespace
 
 TEST_CASE("lavapipe numerics: matrix times vector adds the last column first and rounds every step") {
-  const auto equal = equal_bits("(mat4(a, b, a.yzwx, b.wxyz) * b).x", [](const float* a, const float* b) {
-    return ((b[3] * b[3] + a[1] * b[2]) + b[0] * b[1]) + a[0] * b[0];
-  });
+  const auto equal = equal_bits("(mat4(a, b, a.yzwx, b.wxyz) * b).x",
+                                [](const float* a, const float* b) { return ((b[3] * b[3] + a[1] * b[2]) + b[0] * b[1]) + a[0] * b[0]; });
   if (equal) CHECK(*equal == kInputs);
 }
 
@@ -108,7 +107,8 @@ TEST_CASE("lavapipe numerics: mix is a (1 - t) + b t, and fma rounds twice") {
 
 TEST_CASE("lavapipe numerics: every derivative is the fine one") {
   const Inputs inputs(7);
-  const auto image = render(bits_of("dFdxCoarse(a.x)", inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4)}, {}).finish());
+  const auto image =
+      render(bits_of("dFdxCoarse(a.x)", inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4)}, {}).finish());
   if (!image) return;
   for (std::size_t i = 0; i < kInputs; ++i) {
     const std::size_t left = i & ~std::size_t{1};
@@ -122,8 +122,9 @@ TEST_CASE("lavapipe numerics: level of detail is half the piecewise linear logar
   traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 256, 128, 9, {}};
   for (unsigned level = 0; level < 9; ++level)
     texture.texels.resize(texture.texels.size() + std::size_t{4} * std::max(1u, 256u >> level) * std::max(1u, 128u >> level));
-  const std::string coordinates = "textureQueryLod(image, vec2(0.3, 0.4) + a.xy * 0.0 + all_a[(pixel.y & ~1) * 32 + (pixel.x & ~1)].xy * float(pixel.x & 1)"
-                                  " + all_a[(pixel.y & ~1) * 32 + (pixel.x & ~1)].zw * float(pixel.y & 1)).y";
+  const std::string coordinates =
+      "textureQueryLod(image, vec2(0.3, 0.4) + a.xy * 0.0 + all_a[(pixel.y & ~1) * 32 + (pixel.x & ~1)].xy * float(pixel.x & 1)"
+      " + all_a[(pixel.y & ~1) * 32 + (pixel.x & ~1)].zw * float(pixel.y & 1)).y";
   const auto image = render(bits_of(coordinates, inputs).texture(2, texture, {}).finish());
   if (!image) return;
   for (std::uint32_t y = 0; y < kSide; ++y)

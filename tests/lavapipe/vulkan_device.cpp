@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
-/// Names lavapipe's driver manifest to the loader, so that drivers of absent GPUs are not even opened. Does nothing if the user chose drivers.
+/// Names lavapipe's driver manifest to the loader, so that drivers of absent GPUs are not opened. Does nothing if the user chose drivers.
 void prefer_lavapipe() {
   if (std::getenv("VK_ICD_FILENAMES") != nullptr || std::getenv("VK_DRIVER_FILES") != nullptr) return;
   for (const char* folder : {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
@@ -112,8 +112,10 @@ void VulkanDevice::create_instance(bool validate) {
   require(result, "vkCreateInstance");
   cleanup_.add([this] { vkDestroyInstance(instance_, nullptr); });
   if (!validate) return;
-  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
-  const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+  const auto create =
+      reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  const auto destroy =
+      reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
   VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
   require(create(instance_, &messenger, nullptr, &handle), "vkCreateDebugUtilsMessengerEXT");
   cleanup_.add([this, destroy, handle] { destroy(instance_, handle, nullptr); });

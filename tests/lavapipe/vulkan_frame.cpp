@@ -28,7 +28,8 @@ void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspe
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image;
   barrier.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                       &barrier);
 }
 
 VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, const VkClearValue& clear) {
@@ -55,8 +56,9 @@ VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream
 
 void VulkanFrame::upload_buffers() {
   for (const traces::Buffer& source : stream_.buffers) {
-    const HostBuffer buffer = device_.buffer(cleanup_, source.data.size(),
-                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+    const HostBuffer buffer =
+        device_.buffer(cleanup_, source.data.size(),
+                       VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
     if (!source.data.empty()) std::memcpy(buffer.mapped, source.data.data(), source.data.size());
     buffers_.push_back(buffer);
   }
@@ -82,9 +84,10 @@ void VulkanFrame::upload_images() {
     }
     const VkCommandBuffer commands = device_.begin_commands(upload);
     transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, static_cast<std::uint32_t>(levels.size()),
-                           levels.data());
-    transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                           static_cast<std::uint32_t>(levels.size()), levels.data());
+    transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
     device_.submit(commands);
   }
@@ -114,11 +117,12 @@ void VulkanFrame::create_targets() {
   for (const traces::RenderTarget& source : stream_.targets) {
     const VkExtent2D size{source.width, source.height};
     Target target;
-    target.color = device_.image(cleanup_, vk_format(source.color), size, 1, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                                 VK_IMAGE_ASPECT_COLOR_BIT);
+    target.color = device_.image(cleanup_, vk_format(source.color), size, 1,
+                                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
     if (source.depth != traces::Format::kUndefined)
-      target.depth = device_.image(cleanup_, vk_format(source.depth), size, 1,
-                                   VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+      target.depth =
+          device_.image(cleanup_, vk_format(source.depth), size, 1,
+                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
     targets_.push_back(target);
   }
 }
@@ -171,7 +175,8 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
   info.colorAttachmentCount = 1;
   info.pColorAttachments = &color;
   if (target.depth.image != VK_NULL_HANDLE) {
-    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     info.pDepthAttachment = &depth;
   }
   vkCmdBeginRendering(commands_, &info);
@@ -180,9 +185,11 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
 void VulkanFrame::end_pass() {
   vkCmdEndRendering(commands_);
   const Target& target = targets_[bound_.target];
-  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   if (target.depth.image != VK_NULL_HANDLE)
-    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 }
 
 void VulkanFrame::draw(const traces::Draw& draw) {
@@ -190,15 +197,14 @@ void VulkanFrame::draw(const traces::Draw& draw) {
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, objects.pipeline);
   for (std::uint32_t set = 0; set < bound_.sets.size(); ++set) {
     if (bound_.sets[set] == traces::kNone) continue;
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, objects.layout, set, 1, &descriptor_sets_[bound_.sets[set]], 0, nullptr);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, objects.layout, set, 1, &descriptor_sets_[bound_.sets[set]], 0,
+                            nullptr);
   }
   if (!bound_.push_constants.empty())
     vkCmdPushConstants(commands_, objects.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                        static_cast<std::uint32_t>(bound_.push_constants.size()), bound_.push_constants.data());
-  if (draw.indexed)
-    vkCmdDrawIndexed(commands_, draw.count, draw.instances, draw.first, draw.vertex_offset, draw.first_instance);
-  else
-    vkCmdDraw(commands_, draw.count, draw.instances, draw.first, draw.first_instance);
+  if (draw.indexed) vkCmdDrawIndexed(commands_, draw.count, draw.instances, draw.first, draw.vertex_offset, draw.first_instance);
+  else vkCmdDraw(commands_, draw.count, draw.instances, draw.first, draw.first_instance);
 }
 
 Rendered VulkanFrame::read_back() const {

@@ -66,7 +66,8 @@ class VulkanFrame {
   std::map<SetShape, VkDescriptorSetLayout> set_layouts_;
   std::map<SetShapes, VkPipelineLayout> pipeline_layouts_;
   std::map<traces::Index, VkShaderModule> modules_;
-  std::map<std::pair<std::pair<traces::Index, traces::Index>, SetShapes>, PipelineObjects> pipelines_;  ///< by (pipeline, target), set shapes
+  std::map<std::pair<std::pair<traces::Index, traces::Index>, SetShapes>, PipelineObjects>
+      pipelines_;  ///< by (pipeline, target), set shapes
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   Bound bound_;
 };

@@ -1,6 +1,7 @@
 /// Descriptor sets, pipeline layouts and pipelines of a frame.
 ///
-/// The stream has no layouts: a set's layout follows from what it holds, and a pipeline is made for each combination of set shapes it is drawn with.
+/// The stream has no layouts: a set's layout follows from what it holds, and a pipeline is made for each combination of sets it is drawn
+/// with.
 #include <algorithm>
 
 #include "models/base/error.h"
@@ -103,7 +104,8 @@ void VulkanFrame::create_descriptor_sets() {
     uniforms += static_cast<std::uint32_t>(set.uniforms.size());
     textures += static_cast<std::uint32_t>(set.textures.size());
   }
-  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms}, {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures}};
+  const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms},
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures}};
   VkDescriptorPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   info.maxSets = static_cast<std::uint32_t>(stream_.descriptor_sets.size()) + 1;
@@ -180,7 +182,8 @@ VkShaderModule VulkanFrame::shader_module(traces::Index shader) {
 const VulkanFrame::PipelineObjects& VulkanFrame::pipeline_for(const Bound& bound) {
   const std::uint32_t limit = device_.info().max_push_constants;
   if (bound.push_constants.size() > limit)
-    throw user_error("{}: pushes {} bytes of constants; {} takes at most {}", stream_.name, bound.push_constants.size(), device_.info().name, limit);
+    throw user_error("{}: pushes {} bytes of constants; {} takes at most {}", stream_.name, bound.push_constants.size(),
+                     device_.info().name, limit);
   SetShapes shapes;
   for (const traces::Index set : bound.sets) shapes.push_back(shape_of(set));
   const auto key = std::pair{std::pair{bound.pipeline, bound.target}, shapes};

@@ -1,8 +1,8 @@
 /// The outside ruler: executes a command stream with a headless Vulkan driver that this project had no hand in.
 ///
-/// The driver wanted is Mesa's software rasterizer *lavapipe* (its ICD is chosen when VK_ICD_FILENAMES is not set), because it runs on any machine, is
-/// deterministic and publishes how it rounds. Every object of the stream becomes the Vulkan object of the same name, every command the command of the same
-/// name, so a difference between the two images is a difference between the two renderers.
+/// The driver wanted is Mesa's software rasterizer *lavapipe* (its ICD is chosen when VK_ICD_FILENAMES is not set), because it runs on any
+/// machine, is deterministic and publishes how it rounds. Every object of the stream becomes the Vulkan object of the same name, every
+/// command the command of the same name, so a difference between the two images is a difference between the two renderers.
 #pragma once
 
 #include <cstdint>
@@ -34,13 +34,14 @@ struct Rendered {
 /// Time of one submission of the whole stream, uploads and read-back excluded.
 struct FrameTimes {
   double median_ms = 0, min_ms = 0;  ///< wall time
-  double median_cpu_ms = 0;          ///< processor time of the whole process: what the frame costs on one thread of a machine that is busy otherwise
+  double median_cpu_ms =
+      0;  ///< processor time of the whole process: what the frame costs on one thread of a machine that is busy otherwise
   int frames = 0;
 };
 
 class VulkanRenderer {
  public:
-  /// Opens the driver, preferring a CPU device. With `validate` the Khronos validation layer is loaded and its messages go to `validation_messages()`.
+  /// Opens the driver, preferring a CPU device. With `validate` the Khronos validation layer is loaded and its messages are kept.
   /// Throws `UserError` when there is no loader, no device or no Vulkan 1.3 with what the stream needs.
   explicit VulkanRenderer(bool validate = false);
   ~VulkanRenderer();

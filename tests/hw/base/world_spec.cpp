@@ -167,7 +167,7 @@ WorldSpec random_world(std::uint64_t seed) { return Grower(seed).grow(); }
 WorldSpec benchmark_world(int tokens) {
   WorldSpec w;
   const WireSpec deep{.depth = 8, .latency = 2, .credit = 1};
-  const int memory = w.add({.role = Role::kMemory, .service = 4, .spread = 8, .slots = 8});
+  const int memory = w.add({.role = Role::kMemory, .rate = 4, .service = 4, .spread = 8, .slots = 8});
   const int merge = w.add({.role = Role::kArbiter});
   for (int lane = 0; lane < 8; ++lane) {
     const int source = w.add({.role = Role::kSource, .jitter = 4, .count = tokens});

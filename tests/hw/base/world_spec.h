@@ -75,10 +75,10 @@ struct WorldSpec {
 }
 /// Cycles that the action with this key (token number or id) keeps the unit.
 [[nodiscard]] constexpr int cost(const UnitSpec& u, std::uint32_t key) {
-  return u.period + static_cast<int>(mix(u.seed, key) % static_cast<std::uint32_t>(u.jitter));
+  return u.jitter == 1 ? u.period : u.period + static_cast<int>(mix(u.seed, key) % static_cast<std::uint32_t>(u.jitter));
 }
 [[nodiscard]] constexpr int service(const UnitSpec& u, std::uint32_t id) {
-  return u.service + static_cast<int>(mix(u.seed + 1, id) % static_cast<std::uint32_t>(u.spread));
+  return u.spread == 1 ? u.service : u.service + static_cast<int>(mix(u.seed + 1, id) % static_cast<std::uint32_t>(u.spread));
 }
 [[nodiscard]] bool is_chooser(Role role);
 [[nodiscard]] const char* role_name(Role role);

@@ -9,9 +9,9 @@ namespace quadrille::hw::world {
 SyntheticUnit::SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles)
     : Unit(name, is_chooser(spec.role) && !spec.declared_fixed ? Kind::kChooser : Kind::kFixedOrder, clock), spec_(spec) {
   for (int i = 0; i < spec.inputs; ++i) {
-    inputs_.push_back(std::make_unique<FifoIn<Token>>(*this, fmt::format("in{}", i).c_str(), input_roles[static_cast<std::size_t>(i)]));
+    inputs_.add(*this, fmt::format("in{}", i), input_roles[static_cast<std::size_t>(i)]);
   }
-  for (int i = 0; i < spec.outputs; ++i) outputs_.push_back(std::make_unique<FifoOut<Token>>(*this, fmt::format("out{}", i).c_str()));
+  for (int i = 0; i < spec.outputs; ++i) outputs_.add(*this, fmt::format("out{}", i), LinkRole::kFlow);
 }
 
 void SyntheticUnit::use(Tick now, int cycles) {
@@ -104,7 +104,7 @@ class Fork final : public SyntheticUnit {
   }
   void act(Tick now) override {
     const Token token = inputs_[0]->pop(now);
-    for (const auto& out : outputs_) out->push(now, token);
+    for (auto& out : outputs_) out->push(now, token);
     note(now, 'x', 0, token.id);
     use(now, cost(spec_, token.id));
   }
@@ -143,7 +143,7 @@ class Join final : public SyntheticUnit {
   }
   void act(Tick now) override {
     std::uint32_t id = 0;
-    for (const auto& in : inputs_) id = mix(id, in->pop(now).id);
+    for (auto& in : inputs_) id = mix(id, in->pop(now).id);
     outputs_[0]->push(now, {id, 0});
     note(now, 'x', 0, id);
     use(now, cost(spec_, id));
@@ -317,9 +317,7 @@ class Memory final : public SyntheticUnit {
 
   Wake next() const override {
     Wake wake(kNever);
-    for (const Slot& s : slots_) {
-      if (s.done != kNever) wake = Wake::sooner(wake, Wake(std::max(own().at(), s.done)).output(*outputs_[s.port]));
-    }
+    for (const Slot& s : slots_) wake = Wake::sooner(wake, Wake(std::max(own().at(), s.done)).output(*outputs_[s.port]));
     if (free_slots_ > 0) {
       for (const auto& in : inputs_) wake = Wake::sooner(wake, own().input(*in));
     }

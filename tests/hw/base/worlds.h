@@ -5,9 +5,29 @@
 #include "tests/hw/base/world_spec.h"
 #include "tests/hw/contract.h"
 
+#include <array>
 #include <memory>
+#include <optional>
 
 namespace quadrille::hw::world {
+
+/// Up to eight ports that lie inside their unit, as the ports of real units do.
+template <class Port>
+class Ports {
+ public:
+  void add(Unit& owner, const std::string& name, LinkRole role) { ports_.at(count_++).emplace(owner, name.c_str(), role); }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  auto& operator[](std::size_t i) { return ports_[i]; }
+  const auto& operator[](std::size_t i) const { return ports_[i]; }
+  auto begin() { return ports_.begin(); }
+  auto end() { return ports_.begin() + static_cast<std::ptrdiff_t>(count_); }
+  [[nodiscard]] auto begin() const { return ports_.begin(); }
+  [[nodiscard]] auto end() const { return ports_.begin() + static_cast<std::ptrdiff_t>(count_); }
+
+ private:
+  std::array<std::optional<Port>, 8> ports_;
+  std::size_t count_ = 0;
+};
 
 /// One unit of a world. Ports are `in0`.., `out0`..; what the roles do is written at `Role`.
 class SyntheticUnit : public Unit {
@@ -26,13 +46,15 @@ class SyntheticUnit : public Unit {
     if (events_ != nullptr) events_->push_back({now, what, static_cast<std::uint8_t>(port), id});
   }
   UnitSpec spec_;
-  std::vector<std::unique_ptr<FifoIn<Token>>> inputs_;
-  std::vector<std::unique_ptr<FifoOut<Token>>> outputs_;
 
  private:
   std::vector<Event>* events_ = nullptr;
   Tick free_ = 0, edge_ = -1;
   int used_ = 0;
+
+ protected:
+  Ports<FifoIn<Token>> inputs_;
+  Ports<FifoOut<Token>> outputs_;
 };
 
 [[nodiscard]] std::unique_ptr<SyntheticUnit> make_unit(const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles);

@@ -132,6 +132,7 @@ TEST_CASE("fine: a fan around a sample point covers it once") {
   for (int round = 0; round < 300; ++round) {
     const int spokes = random.integer(3, 24);
     std::vector<std::pair<int, int>> ring;  // corners of a square walk, clockwise, so that the fan is exactly the square
+    ring.reserve(static_cast<std::size_t>(spokes) + 4);
     for (int i = 0; i < spokes; ++i) ring.emplace_back(random.integer(0, 4 * 40 * 256 - 1), 0);
     ring.insert(ring.end(), {{0, 0}, {40 * 256, 0}, {80 * 256, 0}, {120 * 256, 0}});
     std::sort(ring.begin(), ring.end());

@@ -27,8 +27,9 @@ void check_lanes(const WarpFixture& f, std::size_t r, Expected expected) {
 
 TEST_CASE("shader control: nested if and else take each lane through its own side") {
   WarpFixture f;
-  f.run(fragment(kLaneNumber + "ult r1, r0, 16\nif r1\n  and r2, r0, 1\n  if r2\n    mov r3, 1\n  else\n    mov r3, 2\n  endif\n  iadd r4, r3, 10\n"
-                               "else\n  ult r2, r0, 20\n  if r2\n    mov r3, 3\n  endif\n  mov r4, 30\nendif\niadd r4, r4, 100\n"));
+  f.run(fragment(kLaneNumber +
+                 "ult r1, r0, 16\nif r1\n  and r2, r0, 1\n  if r2\n    mov r3, 1\n  else\n    mov r3, 2\n  endif\n  iadd r4, r3, 10\n"
+                 "else\n  ult r2, r0, 20\n  if r2\n    mov r3, 3\n  endif\n  mov r4, 30\nendif\niadd r4, r4, 100\n"));
   check_lanes(f, 3, [](std::uint32_t i) { return i < 16 ? (i % 2 != 0 ? 1 : 2) : i < 20 ? 3 : 0; });
   check_lanes(f, 4, [](std::uint32_t i) { return i < 16 ? (i % 2 != 0 ? 111 : 112) : 130; });
   CHECK(f.warp.exec == ~0u);
@@ -37,7 +38,8 @@ TEST_CASE("shader control: nested if and else take each lane through its own sid
 
 TEST_CASE("shader control: a loop runs each lane its own number of times") {
   WarpFixture f;
-  f.run(fragment(kLaneNumber + "mov r1, 0\nmov r2, 0\nloop\n  ule r3, r0, r1\n  breakif r3\n  iadd r2, r2, r1\n  iadd r1, r1, 1\nendloop\nmov r4, 5\n"));
+  f.run(fragment(kLaneNumber +
+                 "mov r1, 0\nmov r2, 0\nloop\n  ule r3, r0, r1\n  breakif r3\n  iadd r2, r2, r1\n  iadd r1, r1, 1\nendloop\nmov r4, 5\n"));
   check_lanes(f, 2, [](std::uint32_t i) { return i * (i - 1) / 2; });
   check_lanes(f, 4, [](std::uint32_t) { return 5; });
 }
@@ -45,20 +47,23 @@ TEST_CASE("shader control: a loop runs each lane its own number of times") {
 TEST_CASE("shader control: continue skips the rest of the body, not the continue block") {
   WarpFixture f;
   // Sum of the odd numbers below the lane number; the step is behind CONTINUING, inside an IF nest the continue leaves.
-  f.run(fragment(kLaneNumber + "mov r1, 0\nmov r2, 0\nloop\n  ule r3, r0, r1\n  breakif r3\n  and r4, r1, 1\n  ieq r4, r4, 0\n  if r4\n    continueif r4\n    mov r2, 9999\n"
+  f.run(fragment(kLaneNumber + "mov r1, 0\nmov r2, 0\nloop\n  ule r3, r0, r1\n  breakif r3\n  and r4, r1, 1\n  ieq r4, r4, 0\n  if r4\n    "
+                               "continueif r4\n    mov r2, 9999\n"
                                "  endif\n  iadd r2, r2, r1\n  continuing\n  iadd r1, r1, 1\nendloop\n"));
   check_lanes(f, 2, [](std::uint32_t i) { return (i / 2) * (i / 2); });
 }
 
 TEST_CASE("shader control: without a continue block, continued lanes rejoin at the end of the loop") {
   WarpFixture f;
-  f.run(fragment(kLaneNumber + "mov r1, 0\nmov r2, 0\nloop\n  iadd r1, r1, 1\n  ult r3, r0, r1\n  breakif r3\n  and r4, r1, 1\n  continueif r4\n  iadd r2, r2, 1\nendloop\n"));
+  f.run(fragment(kLaneNumber + "mov r1, 0\nmov r2, 0\nloop\n  iadd r1, r1, 1\n  ult r3, r0, r1\n  breakif r3\n  and r4, r1, 1\n  "
+                               "continueif r4\n  iadd r2, r2, 1\nendloop\n"));
   check_lanes(f, 2, [](std::uint32_t i) { return i / 2; });  // even numbers in 1..i
 }
 
 TEST_CASE("shader control: nested loops break only the inner one") {
   WarpFixture f;
-  f.run(fragment(kLaneNumber + "mov r1, 0\nmov r5, 0\nloop\n  ule r3, 3, r1\n  breakif r3\n  mov r2, 0\n  loop\n    ule r3, r0, r2\n    if r3\n      breakif r3\n    else\n"
+  f.run(fragment(kLaneNumber + "mov r1, 0\nmov r5, 0\nloop\n  ule r3, 3, r1\n  breakif r3\n  mov r2, 0\n  loop\n    ule r3, r0, r2\n    if "
+                               "r3\n      breakif r3\n    else\n"
                                "      iadd r5, r5, 1\n    endif\n    iadd r2, r2, 1\n  endloop\n  iadd r1, r1, 1\nendloop\n"));
   check_lanes(f, 5, [](std::uint32_t i) { return 3 * i; });
 }
@@ -74,14 +79,14 @@ TEST_CASE("shader control: a side that no lane takes is jumped over and not char
   const ClauseCost cost = f.run(fragment("if 0\n  fadd r0, r0, r0\n  fadd r0, r0, r0\n  fadd r0, r0, r0\nelse\n  frcp r1, r1\nendif\n"));
   CHECK(cost.alu == 0);
   CHECK(cost.sfu == 1);
-  CHECK(cost.control == 4);  // if, else, endif, end
+  CHECK(cost.control == 4);        // if, else, endif, end
   CHECK(cost.lane_ops == 32 * 4);  // the else is met with no lane
 }
 
 TEST_CASE("shader control: both sides of a divided warp are charged with their lanes") {
   WarpFixture f;
-  const ClauseCost cost =
-      f.run(fragment(kLaneNumber + "ult r1, r0, 5\nif r1\n  fadd r2, r2, r2\n  fadd r2, r2, r2\nelse\n  fsin r2, r2\nendif\noutput out0, r2\n"));
+  const ClauseCost cost = f.run(
+      fragment(kLaneNumber + "ult r1, r0, 5\nif r1\n  fadd r2, r2, r2\n  fadd r2, r2, r2\nelse\n  fsin r2, r2\nendif\noutput out0, r2\n"));
   CHECK(cost.alu == 5);
   CHECK(cost.sfu == 1);
   CHECK(cost.exported == 1);
@@ -110,15 +115,19 @@ TEST_CASE("shader control: a warp without lanes ends at once and costs nothing")
 
 TEST_CASE("shader interface: inputs, system values and outputs reach their rows") {
   WarpFixture f;
-  f.run(assemble(".stage vertex\n.input location=0 component=0\n.input location=0 component=1\n.varying flat\ninput r0, in1\ninput r1, vertex_index\n"
-                 "input r2, instance_index\noutput out0, r0\noutput out4, r1\noutput out3, -|r2|\nend\n", "vertex"), 0x0000ff0fu);
+  f.run(assemble(".stage vertex\n.input location=0 component=0\n.input location=0 component=1\n.varying flat\ninput r0, in1\ninput r1, "
+                 "vertex_index\n"
+                 "input r2, instance_index\noutput out0, r0\noutput out4, r1\noutput out3, -|r2|\nend\n",
+                 "vertex"),
+        0x0000ff0fu);
   for (std::uint32_t i = 0; i < kWarpLanes; ++i) {
     const bool written = ((0x0000ff0fu >> i) & 1u) != 0;
     CHECK(f.outputs[0][i] == (written ? 1000 + i : 0u));
     CHECK(f.outputs[4][i] == (written ? 100 + i : 0u));
     CHECK(f.outputs[3][i] == (written ? 0x80000000u | (7 * i) : 0u));
   }
-  f.run(fragment("input r0, frag_coord_y\ninput r1, frag_coord_z\ninput r2, frag_coord_w\ninput r3, front_facing\ninput r4, primitive_id\n"));
+  f.run(
+      fragment("input r0, frag_coord_y\ninput r1, frag_coord_z\ninput r2, frag_coord_w\ninput r3, front_facing\ninput r4, primitive_id\n"));
   check_lanes(f, 0, [&](std::uint32_t i) { return bits_of(f.fragment.y[i]); });
   check_lanes(f, 1, [&](std::uint32_t i) { return bits_of(f.fragment.z[i]); });
   check_lanes(f, 2, [&](std::uint32_t i) { return bits_of(f.fragment.inv_w[i]); });
@@ -132,7 +141,8 @@ TEST_CASE("shader interface: interpolation by mode, for one triangle and for eig
       WarpFixture f;
       if (one_triangle) f.fragment.varyings.fill(f.planes[3].data());
       const std::string body = "interp r1, vary0\ninterp r2, vary1\ninterp r3, vary2\n";
-      f.run(fragment(".varying perspective\n.varying linear\n.varying flat\n" + kLaneNumber + (masked ? "ult r4, r0, 13\nif r4\n" + body + "endif\n" : body)));
+      f.run(fragment(".varying perspective\n.varying linear\n.varying flat\n" + kLaneNumber +
+                     (masked ? "ult r4, r0, 13\nif r4\n" + body + "endif\n" : body)));
       const auto plane = [&](std::uint32_t lane, std::size_t slot, const LaneFloats& w1, const LaneFloats& w2) {
         const float* v = f.fragment.varyings[lane / 4] + 3 * slot;
         const volatile float p1 = w1[lane] * v[1], p2 = w2[lane] * v[2], sum = v[0] + p1;
@@ -165,15 +175,20 @@ TEST_CASE("shader interface: derivatives in a quad, whatever the mask") {
     WarpFixture f;
     const std::string body = "ddxfine r2, r1\nddyfine r3, r1\nddxcoarse r4, r1\nddycoarse r5, r1\n";
     // r1 = lane^2; only lane 3 of each quad executes when masked.
-    f.run(fragment(kLaneNumber + "i2f r1, r0\nfmul r1, r1, r1\nand r6, r0, 3\nieq r6, r6, 3\n" + (masked ? "if r6\n" + body + "endif\n" : body)));
+    f.run(fragment(kLaneNumber + "i2f r1, r0\nfmul r1, r1, r1\nand r6, r0, 3\nieq r6, r6, 3\n" +
+                   (masked ? "if r6\n" + body + "endif\n" : body)));
     const auto square = [](std::uint32_t i) { return static_cast<float>(i * i); };
     const auto check = [&](std::size_t r, auto from, auto to) {
       check_lanes(f, r, [&](std::uint32_t i) { return masked && i % 4 != 3 ? 0u : bits_of(square(to(i)) - square(from(i))); });
     };
-    check(2, [](std::uint32_t i) { return i & ~1u; }, [](std::uint32_t i) { return i | 1u; });
-    check(3, [](std::uint32_t i) { return i & ~2u; }, [](std::uint32_t i) { return i | 2u; });
-    check(4, [](std::uint32_t i) { return i & ~3u; }, [](std::uint32_t i) { return (i & ~3u) + 1; });
-    check(5, [](std::uint32_t i) { return i & ~3u; }, [](std::uint32_t i) { return (i & ~3u) + 2; });
+    check(
+        2, [](std::uint32_t i) { return i & ~1u; }, [](std::uint32_t i) { return i | 1u; });
+    check(
+        3, [](std::uint32_t i) { return i & ~2u; }, [](std::uint32_t i) { return i | 2u; });
+    check(
+        4, [](std::uint32_t i) { return i & ~3u; }, [](std::uint32_t i) { return (i & ~3u) + 1; });
+    check(
+        5, [](std::uint32_t i) { return i & ~3u; }, [](std::uint32_t i) { return (i & ~3u) + 2; });
   }
 }
 

@@ -5,15 +5,16 @@
 
 #include <catch2/catch.hpp>
 
+#include <fstream>
+#include <iterator>
+
 namespace quadrille::models::test {
 namespace {
 
 std::string error_of(const std::string& text) {
   try {
     (void)assemble(text, "shader");
-  } catch (const UserError& error) {
-    return error.what();
-  }
+  } catch (const UserError& error) { return error.what(); }
   return "no error";
 }
 
@@ -33,7 +34,8 @@ TEST_CASE("listing: assembling a disassembled random program gives the same prog
 
 TEST_CASE("listing: a vertex program with every directive reads back") {
   const Program p = assemble(
-      ".stage vertex\n.regs 9\n.push c0 offset=64 words=16\n.uniform c16 set=2 binding=5 offset=32 words=4\n.literal c20 0.5 -1 0xffc00001 1e-30\n.constants 40\n"
+      ".stage vertex\n.regs 9\n.push c0 offset=64 words=16\n.uniform c16 set=2 binding=5 offset=32 words=4\n.literal c20 0.5 -1 0xffc00001 "
+      "1e-30\n.constants 40\n"
       ".texture set=1 binding=3\n.input location=4 component=2\n.varying flat\n.varying linear\n"
       "input r0, in0\ninput r1, vertex_index\noutput out0, r0\noutput out5, -|c20|\ntexlod r2, t0, r0, r1, 0.0\nend",
       "vertex");
@@ -105,6 +107,19 @@ TEST_CASE("listing: a mistake is reported with its line") {
   std::string deep;
   for (int i = 0; i <= kMaxControlDepth; ++i) deep += "if r0\n";
   starts(deep, "shader:33: control flow nests deeper than 32");
+}
+
+TEST_CASE("listing: docs/isa.md has a row for every operation, and its example assembles") {
+  std::ifstream file(QUADRILLE_SOURCE_DIR "/docs/isa.md");
+  std::string page((std::istreambuf_iterator<char>(file)), {});
+  const std::string rows = page.substr(0, page.find("## Control flow"));
+  for (int op = 0; op < static_cast<int>(Op::kCount); ++op) {
+    INFO(op_name(static_cast<Op>(op)));
+    CHECK(rows.find("`" + std::string(op_name(static_cast<Op>(op))) + "`") != std::string::npos);
+  }
+  const std::size_t begin = page.find("```\n") + 4;
+  const Program example = assemble(std::string_view(page).substr(begin, page.find("```", begin) - begin), "example");
+  CHECK(example.code.size() == 13);
 }
 
 TEST_CASE("listing: text of random characters is an error and nothing worse") {

@@ -75,7 +75,8 @@ int wrong_lanes(Op op, const Form& form, std::mt19937& random, WarpFixture& f, s
     const std::uint32_t got = f.warp.regs[form.dst][lane];
     if (acceptable(op, got, wanted)) continue;
     if (wrong++ == 0)
-      first = fmt::format("{} lane {}: {:#x} {:#x} {:#x} gives {:#x}, wanted {:#x}", disassemble(program), lane, x[0], x[1], x[2], got, wanted);
+      first =
+          fmt::format("{} lane {}: {:#x} {:#x} {:#x} gives {:#x}, wanted {:#x}", disassemble(program), lane, x[0], x[1], x[2], got, wanted);
   }
   return wrong;
 }
@@ -131,7 +132,8 @@ TEST_CASE("shader operations: every pair of special words agrees with the scalar
         for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
           const std::uint32_t a = words[(base + lane) % words.size()];
           if (acceptable(op, f.warp.regs[kResult][lane], scalar_result(op, a, b, 0))) continue;
-          FAIL_CHECK(fmt::format("{} {:#x} {:#x} gives {:#x}, wanted {:#x}", op_name(op), a, b, f.warp.regs[kResult][lane], scalar_result(op, a, b, 0)));
+          FAIL_CHECK(fmt::format("{} {:#x} {:#x} gives {:#x}, wanted {:#x}", op_name(op), a, b, f.warp.regs[kResult][lane],
+                                 scalar_result(op, a, b, 0)));
         }
       }
   }
@@ -170,7 +172,10 @@ TEST_CASE("shader operations: documented edge results") {
 TEST_CASE("shader operations: fmad rounds twice and ffma once") {
   WarpFixture f;
   // (1 + 2^-12)^2 = 1 + 2^-11 + 2^-24: the last term is lost when the product is rounded.
-  f.run(assemble(".stage fragment\nfmad r0, 1.000244140625, 1.000244140625, -1.00048828125\nffma r1, 1.000244140625, 1.000244140625, -1.00048828125\nend\n", "mad"));
+  f.run(
+      assemble(".stage fragment\nfmad r0, 1.000244140625, 1.000244140625, -1.00048828125\nffma r1, 1.000244140625, 1.000244140625, "
+               "-1.00048828125\nend\n",
+               "mad"));
   CHECK(f.warp.regs[0][0] == 0u);
   CHECK(as_float(f.warp.regs[1][0]) == 0x1p-24f);
 }

@@ -7,8 +7,8 @@
 namespace quadrille::models::test {
 namespace {
 
-constexpr std::uint16_t kRegisters = 24;    ///< random destinations and sources; above them: loop counters, conditions, and room for textures
-constexpr std::uint16_t kFirstCounter = 28; ///< one a nesting level
+constexpr std::uint16_t kRegisters = 24;  ///< random destinations and sources; above them: loop counters, conditions, and room for textures
+constexpr std::uint16_t kFirstCounter = 28;  ///< one a nesting level
 constexpr std::uint16_t kCondition = 27;
 constexpr int kMaxNesting = 5;
 constexpr std::uint16_t kLastIndex = 0, kOne = 1, kTrips = 2, kFirstRandom = 3;  ///< literal words
@@ -44,16 +44,18 @@ class Generator {
     for (std::uint32_t i = 0; i < 3; ++i) program_.textures.push_back({i, below(9)});
     ConstantLayout::Range literals{.words = 12, .literals = {7, 1, 1u + below(4)}};
     while (literals.literals.size() < literals.words) literals.literals.push_back(random_word(random_));
-    program_.constants.ranges = {literals,
-                                 {.source = ConstantLayout::Source::kPushConstant, .byte_offset = 16, .first_word = 12, .words = 4, .literals = {}},
-                                 {.source = ConstantLayout::Source::kUniformBlock, .set = 1, .binding = 2, .first_word = 16, .words = 8, .literals = {}}};
+    program_.constants.ranges = {
+        literals,
+        {.source = ConstantLayout::Source::kPushConstant, .byte_offset = 16, .first_word = 12, .words = 4, .literals = {}},
+        {.source = ConstantLayout::Source::kUniformBlock, .set = 1, .binding = 2, .first_word = 16, .words = 8, .literals = {}}};
     program_.constants.words = 24;
   }
 
   Operand source(bool may_modify) {
     Operand operand;
     operand.kind = below(4) == 0 ? Operand::kConstant : Operand::kRegister;
-    operand.index = operand.kind == Operand::kConstant ? static_cast<std::uint16_t>(kFirstRandom + below(24 - kFirstRandom)) : below(kRegisters);
+    operand.index =
+        operand.kind == Operand::kConstant ? static_cast<std::uint16_t>(kFirstRandom + below(24 - kFirstRandom)) : below(kRegisters);
     if (may_modify && below(3) == 0) operand.modifiers = static_cast<std::uint8_t>(below(4));
     return operand;
   }
@@ -68,7 +70,8 @@ class Generator {
     for (unsigned i = 0; i < info.sources; ++i) *operands[i] = source(((info.modifiable >> i) & 1u) != 0);
     if (info.immediate == Immediate::kVaryingSlot) in.imm = below(program_.varyings.size());
     if (info.immediate == Immediate::kTextureBinding) in.imm = below(program_.textures.size());
-    if (info.immediate == Immediate::kInputSlot) in.imm = static_cast<std::uint16_t>(static_cast<std::uint16_t>(SystemValue::kFragCoordX) + below(6));
+    if (info.immediate == Immediate::kInputSlot)
+      in.imm = static_cast<std::uint16_t>(static_cast<std::uint16_t>(SystemValue::kFragCoordX) + below(6));
     if (info.immediate == Immediate::kConstantWord) {
       in.imm = below(16);
       in.b = {Operand::kConstant, 0, kLastIndex};

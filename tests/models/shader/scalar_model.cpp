@@ -132,7 +132,9 @@ std::uint32_t scalar_saturated(std::uint32_t bits) {
 
 std::int64_t ulps_between(std::uint32_t a, std::uint32_t b) {
   if (is_nan(a) || is_nan(b)) return is_nan(a) && is_nan(b) ? 0 : std::numeric_limits<std::int64_t>::max();
-  const auto ordinal = [](std::uint32_t x) { return (x & 0x80000000u) != 0 ? -static_cast<std::int64_t>(x & 0x7fffffffu) : static_cast<std::int64_t>(x); };
+  const auto ordinal = [](std::uint32_t x) {
+    return (x & 0x80000000u) != 0 ? -static_cast<std::int64_t>(x & 0x7fffffffu) : static_cast<std::int64_t>(x);
+  };
   return std::abs(ordinal(a) - ordinal(b));
 }
 

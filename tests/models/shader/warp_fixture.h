@@ -19,10 +19,11 @@ inline bool is_nan(std::uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f80000
 
 /// Words that break things: zeros, ones, infinities, NaNs, denormals, borders of conversions.
 inline const std::vector<std::uint32_t>& special_words() {
-  static const std::vector<std::uint32_t> kWords{
-      0u, 0x80000000u, 1u, 2u, 31u, 32u, 33u, ~0u, 0x7fffffffu, 0x80000001u, 0x007fffffu, 0x00800000u, 0x3f800000u, 0xbf800000u, 0x7f800000u,
-      0xff800000u, 0x7fc00000u, 0xffc00001u, 0x7f7fffffu, 0xff7fffffu, 0x4f000000u, 0x4effffffu, 0xcf000000u, 0xcf000001u, 0x4f800000u, 0x4f7fffffu,
-      0x3f000000u, 0x3effffffu, 0x40200000u, 0xc0200000u, 0x3fc00000u, 0x4b000001u, 0xb3000000u, 0x477fff80u};
+  static const std::vector<std::uint32_t> kWords{0u,          0x80000000u, 1u,          2u,          31u,         32u,         33u,
+                                                 ~0u,         0x7fffffffu, 0x80000001u, 0x007fffffu, 0x00800000u, 0x3f800000u, 0xbf800000u,
+                                                 0x7f800000u, 0xff800000u, 0x7fc00000u, 0xffc00001u, 0x7f7fffffu, 0xff7fffffu, 0x4f000000u,
+                                                 0x4effffffu, 0xcf000000u, 0xcf000001u, 0x4f800000u, 0x4f7fffffu, 0x3f000000u, 0x3effffffu,
+                                                 0x40200000u, 0xc0200000u, 0x3fc00000u, 0x4b000001u, 0xb3000000u, 0x477fff80u};
   return kWords;
 }
 
@@ -49,7 +50,8 @@ struct WarpFixture {
       for (std::size_t a = 0; a < attributes.size(); ++a) attributes[a][i] = static_cast<std::uint32_t>(1000 * a + i);
     }
     for (std::size_t q = 0; q < kWarpQuads; ++q) {
-      for (std::size_t k = 0; k < 3 * kMaxVaryings; ++k) planes[q].push_back(static_cast<float>(static_cast<int>(17 * k + 5 * q) % 23 - 11) / 7);
+      for (std::size_t k = 0; k < 3 * kMaxVaryings; ++k)
+        planes[q].push_back(static_cast<float>(static_cast<int>(17 * k + 5 * q) % 23 - 11) / 7);
       fragment.varyings[q] = planes[q].data();
     }
     vertex.attributes = attributes.data();
@@ -76,7 +78,8 @@ struct WarpFixture {
   }
 
   ClauseCost add(const ClauseCost& a, const ClauseCost& b) const {
-    return {a.alu + b.alu, a.sfu + b.sfu, a.interp + b.interp, a.constant + b.constant, a.control + b.control, a.exported + b.exported, a.lane_ops + b.lane_ops};
+    return {a.alu + b.alu,         a.sfu + b.sfu,           a.interp + b.interp,    a.constant + b.constant,
+            a.control + b.control, a.exported + b.exported, a.lane_ops + b.lane_ops};
   }
 
   /// Runs to the end; returns the summed cost. `clauses` counts calls.

@@ -1,8 +1,8 @@
 /// Operators and built-in functions against C++: float arithmetic bit by bit, transcendental functions to a tolerance.
 #include "tests/pipeline/compiler/shader_runner.h"
 
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include <bit>
 #include <cmath>
@@ -56,7 +56,10 @@ TEST_CASE("compiler: float arithmetic has the bits of C++ in the source's order"
       {"min(a.x, a.y) + max(a.z, a.w)", [](const Point& p) { return std::min(p.a[0], p.a[1]) + std::max(p.a[2], p.a[3]); }},
       {"clamp(a.x, -1.5, 2.5)", [](const Point& p) { return std::min(std::max(p.a[0], -1.5f), 2.5f); }},
       {"clamp(a.x * a.y, 0.0, 1.0)", [](const Point& p) { return std::min(std::max(p.a[0] * p.a[1], 0.0f), 1.0f); }},
-      {"sign(a.x) * step(a.y, a.z)", [](const Point& p) { return (p.a[0] > 0 ? 1.0f : p.a[0] < 0 ? -1.0f : 0.0f) * (p.a[2] >= p.a[1] ? 1.0f : 0.0f); }},
+      {"sign(a.x) * step(a.y, a.z)",
+       [](const Point& p) {
+         return (p.a[0] > 0 ? 1.0f : p.a[0] < 0 ? -1.0f : 0.0f) * (p.a[2] >= p.a[1] ? 1.0f : 0.0f);
+       }},
       {"mix(a.x, a.y, b.x)", [](const Point& p) { return p.a[0] * (1.0f - p.b[0]) + p.a[1] * p.b[0]; }},
       {"mix(1.0, a.y, b.x)", [](const Point& p) { return (p.a[1] * p.b[0] - p.b[0]) + 1.0f; }},
       {"mix(a.x, a.y, a.z > 0.0)", [](const Point& p) { return p.a[2] > 0 ? p.a[1] : p.a[0]; }},
@@ -138,17 +141,23 @@ TEST_CASE("compiler: integer operations are those of C++") {
       {"float(uint(i.x + 20) % 7u)", [](const Point& p) { return static_cast<float>(static_cast<std::uint32_t>(p.i[0] + 20) % 7u); }},
       {"float(abs(i.x) % 5)", [](const Point& p) { return static_cast<float>(std::abs(p.i[0]) % 5); }},
       {"float((i.x & i.y) ^ (i.z | ~i.w))", [](const Point& p) { return static_cast<float>((p.i[0] & p.i[1]) ^ (p.i[2] | ~p.i[3])); }},
-      {"float(i.x << 3) + float(i.y >> 2)", [](const Point& p) { return static_cast<float>(p.i[0] * 8) + static_cast<float>(p.i[1] >> 2); }},
+      {"float(i.x << 3) + float(i.y >> 2)",
+       [](const Point& p) { return static_cast<float>(p.i[0] * 8) + static_cast<float>(p.i[1] >> 2); }},
       {"float(uint(i.x) >> 20)", [](const Point& p) { return static_cast<float>(static_cast<std::uint32_t>(p.i[0]) >> 20); }},
       {"float(min(i.x, i.y) + max(i.z, i.w) + clamp(i.x, -3, 4))",
-       [](const Point& p) { return static_cast<float>(std::min(p.i[0], p.i[1]) + std::max(p.i[2], p.i[3]) + std::min(std::max(p.i[0], -3), 4)); }},
+       [](const Point& p) {
+         return static_cast<float>(std::min(p.i[0], p.i[1]) + std::max(p.i[2], p.i[3]) + std::min(std::max(p.i[0], -3), 4));
+       }},
       {"float(sign(i.x) + int(i.y < i.z) + 2 * int(uint(i.x) < uint(i.y)))",
        [](const Point& p) {
          const int sign = p.i[0] > 0 ? 1 : p.i[0] < 0 ? -1 : 0;
-         return static_cast<float>(sign + (p.i[1] < p.i[2] ? 1 : 0) + 2 * (static_cast<std::uint32_t>(p.i[0]) < static_cast<std::uint32_t>(p.i[1]) ? 1 : 0));
+         return static_cast<float>(sign + (p.i[1] < p.i[2] ? 1 : 0) +
+                                   2 * (static_cast<std::uint32_t>(p.i[0]) < static_cast<std::uint32_t>(p.i[1]) ? 1 : 0));
        }},
       {"float(int(a.x)) + float(uint(b.x * 100.0))",
-       [](const Point& p) { return static_cast<float>(static_cast<int>(p.a[0])) + static_cast<float>(static_cast<unsigned>(p.b[0] * 100.0f)); }},
+       [](const Point& p) {
+         return static_cast<float>(static_cast<int>(p.a[0])) + static_cast<float>(static_cast<unsigned>(p.b[0] * 100.0f));
+       }},
       {"float(floatBitsToInt(a.x) >> 16)", [](const Point& p) { return static_cast<float>(std::bit_cast<std::int32_t>(p.a[0]) >> 16); }},
       {"intBitsToFloat(floatBitsToInt(-a.x) & 0x7fffffff)", [](const Point& p) { return std::abs(p.a[0]); }},
       {"float(i.x == i.y || i.x != i.z)", [](const Point& p) { return p.i[0] == p.i[1] || p.i[0] != p.i[2] ? 1.0f : 0.0f; }},
@@ -168,8 +177,10 @@ TEST_CASE("compiler: packing rounds to nearest and unpacking inverts it") {
        [](const Point& p) { return std::nearbyint(std::min(std::max(p.a[0], 0.0f), 1.0f) * 255.0f) + 256.0f * 128.0f; }},
       {"unpackUnorm4x8(packUnorm4x8(vec4(b.x * 0.25))).y", [](const Point& p) { return std::nearbyint(p.b[0] * 0.25f * 255.0f) / 255.0f; }},
       {"unpackSnorm4x8(packSnorm4x8(vec4(a.x * 0.25))).w", [](const Point& p) { return std::nearbyint(p.a[0] * 0.25f * 127.0f) / 127.0f; }},
-      {"unpackUnorm2x16(packUnorm2x16(vec2(b.x * 0.25))).x", [](const Point& p) { return std::nearbyint(p.b[0] * 0.25f * 65535.0f) / 65535.0f; }},
-      {"unpackSnorm2x16(packSnorm2x16(vec2(a.x * 0.25))).y", [](const Point& p) { return std::nearbyint(p.a[0] * 0.25f * 32767.0f) / 32767.0f; }},
+      {"unpackUnorm2x16(packUnorm2x16(vec2(b.x * 0.25))).x",
+       [](const Point& p) { return std::nearbyint(p.b[0] * 0.25f * 65535.0f) / 65535.0f; }},
+      {"unpackSnorm2x16(packSnorm2x16(vec2(a.x * 0.25))).y",
+       [](const Point& p) { return std::nearbyint(p.a[0] * 0.25f * 32767.0f) / 32767.0f; }},
       {"unpackHalf2x16(packHalf2x16(vec2(a.x, 1.0))).x",
        [](const Point& p) {
          int exponent = 0;
@@ -177,7 +188,8 @@ TEST_CASE("compiler: packing rounds to nearest and unpacking inverts it") {
          return std::ldexp(std::nearbyint(std::ldexp(p.a[0], 11 - exponent)), exponent - 11);
        }},
       {"unpackHalf2x16(packHalf2x16(vec2(70000.0 * b.x + 60000.0, 1e-7 * b.x))).x", [](const Point&) { return INFINITY; }},
-      {"unpackHalf2x16(packHalf2x16(vec2(0.0, 1e-6 * b.x))).y", [](const Point& p) { return std::nearbyint(1e-6f * p.b[0] * 0x1p24f) * 0x1p-24f; }},
+      {"unpackHalf2x16(packHalf2x16(vec2(0.0, 1e-6 * b.x))).y",
+       [](const Point& p) { return std::nearbyint(1e-6f * p.b[0] * 0x1p24f) * 0x1p-24f; }},
   };
   for (const Case& test : cases) check(test, 0);
 }
@@ -202,11 +214,11 @@ TEST_CASE("compiler: matrices multiply last column first, vectors times matrices
     for (std::size_t c = 0; c < 3; ++c) {
       float column_wise = element(p, c, 2) * v[2], row_wise = element(p, 0, c) * v[0];
       float last_first = element(p, c, 2) * (v[2] * v[1]);
-      for (std::size_t n : {1, 0}) {
+      for (const std::size_t n : {std::size_t{1}, std::size_t{0}}) {
         column_wise = element(p, c, n) * v[n] + column_wise;
         last_first = element(p, c, n) * (v[n] * v[1]) + last_first;
       }
-      for (std::size_t n : {1, 2}) row_wise = element(p, n, c) * v[n] + row_wise;
+      for (const std::size_t n : {std::size_t{1}, std::size_t{2}}) row_wise = element(p, n, c) * v[n] + row_wise;
       CHECK(times.point(k)[c] == column_wise);
       CHECK(rows.point(k)[c] == row_wise);
       CHECK(transposed.point(k)[c] == row_wise);
@@ -218,7 +230,8 @@ TEST_CASE("compiler: matrices multiply last column first, vectors times matrices
 
 TEST_CASE("compiler: an expression that is computed twice is computed once") {
   const models::Program once = compile_fragment(fragment_source("color = vec4(exp2(a.x * a.y));"));
-  const models::Program twice = compile_fragment(fragment_source("color = vec4(exp2(a.x * a.y)); color.y = exp2(a.x * a.y) + 0.0 * exp2(a.y * a.x);"));
+  const models::Program twice =
+      compile_fragment(fragment_source("color = vec4(exp2(a.x * a.y)); color.y = exp2(a.x * a.y) + 0.0 * exp2(a.y * a.x);"));
   const auto exps = [](const models::Program& p) {
     return std::count_if(p.code.begin(), p.code.end(), [](const models::Instruction& i) { return i.op == models::Op::kFExp2; });
   };

@@ -27,20 +27,22 @@ void check(const std::string& body, Expected expected, const std::string& declar
 }  // namespace
 
 TEST_CASE("control flow: nested selections") {
-  check("int r = 0; if (i.x > 0) { if (i.y > 0) r = i.x * 3; else { r = i.y - 5; if (i.z > 3) r += 100; } } else if (i.z < 0) { r = -7; } color = vec4(r);",
-        [](int x, int y, int z, int) {
-          int r = 0;
-          if (x > 0) {
-            if (y > 0) r = x * 3;
-            else {
-              r = y - 5;
-              if (z > 3) r += 100;
-            }
-          } else if (z < 0) {
-            r = -7;
+  check(
+      "int r = 0; if (i.x > 0) { if (i.y > 0) r = i.x * 3; else { r = i.y - 5; if (i.z > 3) r += 100; } } else if (i.z < 0) { r = -7; } "
+      "color = vec4(r);",
+      [](int x, int y, int z, int) {
+        int r = 0;
+        if (x > 0) {
+          if (y > 0) r = x * 3;
+          else {
+            r = y - 5;
+            if (z > 3) r += 100;
           }
-          return r;
-        });
+        } else if (z < 0) {
+          r = -7;
+        }
+        return r;
+      });
 }
 
 TEST_CASE("control flow: a loop whose count differs from lane to lane") {
@@ -188,37 +190,40 @@ color = vec4(s);)",
 }
 
 TEST_CASE("control flow: early returns of functions, also from inside loops") {
-  check("color = vec4(find(i.x, i.y) * 10 + find(i.z, i.w));",
-        [](int x, int y, int z, int w) {
-          const auto find = [](int p, int q) {
-            if (p > 10) return 1;
-            for (int k = 0; k < 15; ++k) {
-              if (k * k > p + 20) return k;
-              for (int j = 0; j < 3; ++j)
-                if (j + k == q) return 100 + j;
-            }
-            return -1;
-          };
-          return find(x, y) * 10 + find(z, w);
-        },
-        "int find(int p, int q) { if (p > 10) return 1; for (int k = 0; k < 15; ++k) { if (k * k > p + 20) return k; "
-        "for (int j = 0; j < 3; ++j) if (j + k == q) return 100 + j; } return -1; }");
+  check(
+      "color = vec4(find(i.x, i.y) * 10 + find(i.z, i.w));",
+      [](int x, int y, int z, int w) {
+        const auto find = [](int p, int q) {
+          if (p > 10) return 1;
+          for (int k = 0; k < 15; ++k) {
+            if (k * k > p + 20) return k;
+            for (int j = 0; j < 3; ++j)
+              if (j + k == q) return 100 + j;
+          }
+          return -1;
+        };
+        return find(x, y) * 10 + find(z, w);
+      },
+      "int find(int p, int q) { if (p > 10) return 1; for (int k = 0; k < 15; ++k) { if (k * k > p + 20) return k; "
+      "for (int j = 0; j < 3; ++j) if (j + k == q) return 100 + j; } return -1; }");
 }
 
 TEST_CASE("control flow: unrolled and rolled loops agree, and unrolling leaves no loop") {
   for (const char* hint : {"[[unroll]]", "[[dont_unroll]]"}) {
-    const std::string body = std::string("int s = i.x; ") + hint + " for (int k = 0; k < 9; ++k) { if (k == 4) s *= 2; s += k * i.y; } color = vec4(s);";
+    const std::string body =
+        std::string("int s = i.x; ") + hint + " for (int k = 0; k < 9; ++k) { if (k == 4) s *= 2; s += k * i.y; } color = vec4(s);";
     const std::string extension = "#extension GL_EXT_control_flow_attributes : require\n";
-    check(body,
-          [](int x, int y, int, int) {
-            int s = x;
-            for (int k = 0; k < 9; ++k) {
-              if (k == 4) s *= 2;
-              s += k * y;
-            }
-            return s;
-          },
-          extension);
+    check(
+        body,
+        [](int x, int y, int, int) {
+          int s = x;
+          for (int k = 0; k < 9; ++k) {
+            if (k == 4) s *= 2;
+            s += k * y;
+          }
+          return s;
+        },
+        extension);
     const models::Program p = compile_fragment(fragment_source(body, extension));
     const bool has_loop = std::any_of(p.code.begin(), p.code.end(), [](const models::Instruction& i) { return i.op == models::Op::kLoop; });
     CHECK(has_loop == (std::string(hint) == "[[dont_unroll]]"));
@@ -226,16 +231,18 @@ TEST_CASE("control flow: unrolled and rolled loops agree, and unrolling leaves n
 }
 
 TEST_CASE("control flow: local arrays indexed at run time, written and read") {
-  check("int t[6]; for (int k = 0; k < 6; ++k) t[k] = k * i.x; t[abs(i.y) % 6] = 77; int s = 0; for (int k = 0; k < 6; ++k) s = s * 3 + t[(k + abs(i.z)) % 6]; "
-        "color = vec4(s & 4095);",
-        [](int x, int y, int z, int) {
-          int t[6];
-          for (int k = 0; k < 6; ++k) t[k] = k * x;
-          t[std::abs(y) % 6] = 77;
-          int s = 0;
-          for (int k = 0; k < 6; ++k) s = s * 3 + t[(k + std::abs(z)) % 6];
-          return s & 4095;
-        });
+  check(
+      "int t[6]; for (int k = 0; k < 6; ++k) t[k] = k * i.x; t[abs(i.y) % 6] = 77; int s = 0; for (int k = 0; k < 6; ++k) s = s * 3 + t[(k "
+      "+ abs(i.z)) % 6]; "
+      "color = vec4(s & 4095);",
+      [](int x, int y, int z, int) {
+        int t[6];
+        for (int k = 0; k < 6; ++k) t[k] = k * x;
+        t[std::abs(y) % 6] = 77;
+        int s = 0;
+        for (int k = 0; k < 6; ++k) s = s * 3 + t[(k + std::abs(z)) % 6];
+        return s & 4095;
+      });
   check("const int t[5] = int[](3, 1, 4, 1, 5); color = vec4(t[abs(i.x) % 5] * 10 + t[abs(i.y) % 5]);", [](int x, int y, int, int) {
     const int t[5] = {3, 1, 4, 1, 5};
     return t[std::abs(x) % 5] * 10 + t[std::abs(y) % 5];
@@ -290,7 +297,8 @@ color = vec4(s);)";
 
 TEST_CASE("control flow: derivatives are differences within the quad") {
   RunInput input;
-  const RunOutput out = run_snippet("float f = gl_FragCoord.x * gl_FragCoord.x + 3.0 * gl_FragCoord.y; color = vec4(dFdx(f), dFdy(f), fwidth(f), 0);", input);
+  const RunOutput out =
+      run_snippet("float f = gl_FragCoord.x * gl_FragCoord.x + 3.0 * gl_FragCoord.y; color = vec4(dFdx(f), dFdy(f), fwidth(f), 0);", input);
   for (int lane = 0; lane < models::kWarpLanes; ++lane) {
     const float x = 10.5f + 2.0f * static_cast<float>(lane / 4);
     const float dx = (x + 1) * (x + 1) - x * x;

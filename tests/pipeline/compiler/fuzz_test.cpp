@@ -1,8 +1,8 @@
 /// Random expressions and random control flow, evaluated by the compiled program and by C++ at the same time.
 #include "tests/pipeline/compiler/shader_runner.h"
 
-#include <catch2/catch.hpp>
 #include <fmt/format.h>
+#include <catch2/catch.hpp>
 
 #include <bit>
 #include <cmath>
@@ -32,7 +32,8 @@ class Generator {
       case 4: return {fmt::format("(-{})", x.text), [=](const Point& p) { return -x.value(p); }};
       case 5: return {fmt::format("abs({})", x.text), [=](const Point& p) { return std::abs(x.value(p)); }};
       case 6: return {fmt::format("min({}, {})", x.text, y.text), [=](const Point& p) { return std::fmin(x.value(p), y.value(p)); }};
-      case 7: return {fmt::format("clamp({}, 0.0, 1.0)", x.text), [=](const Point& p) { return std::fmin(std::fmax(x.value(p), 0.0f), 1.0f); }};
+      case 7:
+        return {fmt::format("clamp({}, 0.0, 1.0)", x.text), [=](const Point& p) { return std::fmin(std::fmax(x.value(p), 0.0f), 1.0f); }};
       case 8: return {fmt::format("floor({})", x.text), [=](const Point& p) { return std::floor(x.value(p)); }};
       case 9: {
         const Expression c = expression(depth - 1), d = expression(depth - 1);
@@ -170,10 +171,12 @@ TEST_CASE("fuzz: random control flow computes what C++ does, lane by lane") {
 }
 
 TEST_CASE("fuzz: the same module gives the same program") {
-  const std::string source = fragment_source("vec4 s = a; for (int k = 0; k < i.x; ++k) { s = s.yzwx * b; if (s.x > 2.0) break; } color = s;");
+  const std::string source =
+      fragment_source("vec4 s = a; for (int k = 0; k < i.x; ++k) { s = s.yzwx * b; if (s.x > 2.0) break; } color = s;");
   const auto vertex = vertex_spirv(plain_vertex_source());
   const auto fragment = fragment_spirv(source);
-  CHECK(models::disassemble(compile_pipeline(vertex, "v", fragment, "f").fragment) == models::disassemble(compile_pipeline(vertex, "v", fragment, "f").fragment));
+  CHECK(models::disassemble(compile_pipeline(vertex, "v", fragment, "f").fragment) ==
+        models::disassemble(compile_pipeline(vertex, "v", fragment, "f").fragment));
 }
 
 }  // namespace quadrille::pipeline

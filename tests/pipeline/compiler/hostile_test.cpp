@@ -5,7 +5,6 @@
 
 #include <catch2/catch.hpp>
 
-
 namespace quadrille::pipeline {
 namespace {
 
@@ -13,9 +12,7 @@ namespace {
 std::string error_of(const std::string& body, const std::string& declarations = {}) {
   try {
     (void)compile_fragment(fragment_source(body, declarations));
-  } catch (const UserError& e) {
-    return e.what();
-  }
+  } catch (const UserError& e) { return e.what(); }
   return "compiles";
 }
 
@@ -35,7 +32,8 @@ void main() {
 TEST_CASE("glsl: an error names file and line") {
   CHECK_THROWS_WITH(scenes::compile_glsl("#version 450\nvoid main() {\n  int x = nothing;\n}\n", traces::ShaderStage::kFragment, "my.frag"),
                     Catch::Contains("my.frag:3:") && Catch::Contains("nothing") && !Catch::Contains("\n"));
-  CHECK_THROWS_WITH(scenes::compile_glsl("", traces::ShaderStage::kVertex, "empty.vert"), Catch::Contains("empty.vert") && !Catch::Contains("\n"));
+  CHECK_THROWS_WITH(scenes::compile_glsl("", traces::ShaderStage::kVertex, "empty.vert"),
+                    Catch::Contains("empty.vert") && !Catch::Contains("\n"));
 }
 
 TEST_CASE("glsl: defines come before the first line") {
@@ -50,7 +48,8 @@ TEST_CASE("unsupported features are refused by name and line") {
   CHECK_THAT(error_of("color = textureGrad(t, a.xy, a.zw, b.xy);", "layout(set=0,binding=0) uniform sampler2D t;"),
              Catch::Contains("test.frag:") && Catch::Contains("gradients"));
   CHECK_THAT(error_of("color = texelFetch(t, i.xy, 0);", "layout(set=0,binding=0) uniform sampler2D t;"), Catch::Contains("texelFetch"));
-  CHECK_THAT(error_of("color = texture(t, a.xyz);", "layout(set=0,binding=0) uniform samplerCube t;"), Catch::Contains("'t'") && Catch::Contains("sampler2D"));
+  CHECK_THAT(error_of("color = texture(t, a.xyz);", "layout(set=0,binding=0) uniform samplerCube t;"),
+             Catch::Contains("'t'") && Catch::Contains("sampler2D"));
   CHECK_THAT(error_of("color = texture(t[0], a.xy);", "layout(set=0,binding=0) uniform sampler2D t[2];"), Catch::Contains("'t'"));
   CHECK_THAT(error_of("s.x[0] = 1; color = a;", "layout(set=0,binding=0) buffer S { int x[]; } s;"), Catch::Contains("test.frag"));
   CHECK_THAT(error_of("double d = double(a.x); color = vec4(d);"), Catch::Contains("test.frag"));
@@ -105,7 +104,8 @@ TEST_CASE("spir-v: truncated and damaged modules never crash") {
       CHECK(std::string_view(e.what()).find('\n') == std::string_view::npos);
     }
   };
-  for (std::size_t size = 0; size < fragment.size(); size += 7) attempt({fragment.begin(), fragment.begin() + static_cast<std::ptrdiff_t>(size)});
+  for (std::size_t size = 0; size < fragment.size(); size += 7)
+    attempt({fragment.begin(), fragment.begin() + static_cast<std::ptrdiff_t>(size)});
   Random random(1234);
   for (int k = 0; k < 2500; ++k) {
     std::vector<std::uint32_t> damaged = fragment;

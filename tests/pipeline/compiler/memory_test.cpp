@@ -40,9 +40,11 @@ TEST_CASE("uniform blocks: run-time indices select per lane and stay inside the 
   RunInput input;
   input.points = assorted_points(4);
   input.blocks[{0, 0}] = counting_words(128);
-  const std::string declarations = "struct L { vec4 p; float w[2]; }; layout(set=0, binding=0, std140) uniform U { vec4 first; L l[5]; } u;";
+  const std::string declarations =
+      "struct L { vec4 p; float w[2]; }; layout(set=0, binding=0, std140) uniform U { vec4 first; L l[5]; } u;";
   // l at word 4, 12 words each: p +0, w +4 and +8.
-  const RunOutput out = run_snippet("color = vec4(u.l[abs(i.x) % 5].p.zw, u.l[abs(i.y) % 5].w[abs(i.z) % 2], u.l[i.w].p.x);", input, declarations);
+  const RunOutput out =
+      run_snippet("color = vec4(u.l[abs(i.x) % 5].p.zw, u.l[abs(i.y) % 5].w[abs(i.z) % 2], u.l[i.w].p.x);", input, declarations);
   for (int k = 0; k < models::kWarpQuads; ++k) {
     const auto& i = input.points[static_cast<std::size_t>(k)].i;
     const Vec4 color = out.point(k);
@@ -55,7 +57,8 @@ TEST_CASE("uniform blocks: run-time indices select per lane and stay inside the 
 
 TEST_CASE("uniform blocks: only the words that are read are in the constant file") {
   const std::string declarations =
-      "layout(set=2, binding=1, std140) uniform U { vec4 a0[50]; vec4 late; } u; layout(push_constant) uniform P { vec4 x; mat4 m; vec4 tint; } p;";
+      "layout(set=2, binding=1, std140) uniform U { vec4 a0[50]; vec4 late; } u; layout(push_constant) uniform P { vec4 x; mat4 m; vec4 "
+      "tint; } p;";
   const models::Program program = compile_fragment(fragment_source("color = u.late * p.tint;", declarations));
   CHECK(program.constants.words == 8);
   REQUIRE(program.constants.ranges.size() == 2);
@@ -87,7 +90,8 @@ void main() { c = vec4(v_uv.y, id, lin, 1); })");
   REQUIRE(p.vertex.vertex_inputs.size() == 4);
   CHECK(p.vertex.vertex_inputs[3].location == 5);
   CHECK(p.vertex.vertex_inputs[3].component == 1);
-  const auto out = run_vertex(p.vertex, [](int location, int component, int lane) { return static_cast<float>(location * 100 + component * 10 + lane); });
+  const auto out = run_vertex(
+      p.vertex, [](int location, int component, int lane) { return static_cast<float>(location * 100 + component * 10 + lane); });
   REQUIRE(out.size() == 7);
   CHECK(std::bit_cast<float>(out[0][3]) == 3.0f);
   CHECK(std::bit_cast<float>(out[3][3]) == 1.0f);
@@ -98,12 +102,15 @@ void main() { c = vec4(v_uv.y, id, lin, 1); })");
 
 TEST_CASE("linking: a varying that is read but not written is an error with its location") {
   const auto vertex = vertex_spirv("#version 450\nvoid main() { gl_Position = vec4(0); }");
-  const auto fragment = fragment_spirv("#version 450\nlayout(location=7) in vec2 t; layout(location=0) out vec4 c; void main() { c = t.xyxy; }");
-  CHECK_THROWS_WITH(compile_pipeline(vertex, "a.vert", fragment, "b.frag"), Catch::Contains("b.frag") && Catch::Contains("location 7") && Catch::Contains("a.vert"));
+  const auto fragment =
+      fragment_spirv("#version 450\nlayout(location=7) in vec2 t; layout(location=0) out vec4 c; void main() { c = t.xyxy; }");
+  CHECK_THROWS_WITH(compile_pipeline(vertex, "a.vert", fragment, "b.frag"),
+                    Catch::Contains("b.frag") && Catch::Contains("location 7") && Catch::Contains("a.vert"));
 }
 
 TEST_CASE("built-ins: vertex and instance index, fragment coordinates, facing, depth") {
-  const auto vertex = vertex_spirv("#version 450\nvoid main() { gl_PointSize = 1.0; gl_Position = vec4(gl_VertexIndex, gl_InstanceIndex, 0, 1); }");
+  const auto vertex =
+      vertex_spirv("#version 450\nvoid main() { gl_PointSize = 1.0; gl_Position = vec4(gl_VertexIndex, gl_InstanceIndex, 0, 1); }");
   const auto fragment = fragment_spirv(R"(#version 450
 layout(location=0) out vec4 c;
 void main() { c = vec4(gl_FragCoord.xyz, gl_FrontFacing ? 1.0 : float(gl_PrimitiveID)); gl_FragDepth = gl_FragCoord.w * 0.5; })");
@@ -137,8 +144,9 @@ TEST_CASE("outputs: may be read back, written in branches and by component") {
 }
 
 TEST_CASE("specialisation constants take their defaults") {
-  CHECK(run_snippet("color = vec4(float(n) * k, n * 2 + 1, on ? 1 : 0, 0);", {},
-                    "layout(constant_id=0) const int n = 3; layout(constant_id=1) const float k = 2.5; layout(constant_id=2) const bool on = true;")
+  CHECK(run_snippet(
+            "color = vec4(float(n) * k, n * 2 + 1, on ? 1 : 0, 0);", {},
+            "layout(constant_id=0) const int n = 3; layout(constant_id=1) const float k = 2.5; layout(constant_id=2) const bool on = true;")
             .point(0) == Vec4{7.5f, 7, 1, 0});
 }
 

@@ -2,15 +2,16 @@
 
 #include "scenes/glsl.h"
 
-#include <bit>
 #include <algorithm>
+#include <bit>
 
 namespace quadrille::pipeline {
 
 using models::kWarpLanes;
 
 std::string fragment_source(const std::string& body, const std::string& declarations) {
-  return "#version 450\nlayout(location=0) in vec4 a; layout(location=1) in vec4 b; layout(location=2) flat in ivec4 i; layout(location=0) out vec4 color;\n" +
+  return "#version 450\nlayout(location=0) in vec4 a; layout(location=1) in vec4 b; layout(location=2) flat in ivec4 i; layout(location=0) "
+         "out vec4 color;\n" +
          declarations + "\nvoid main() {\n" + body + "\n}\n";
 }
 
@@ -21,8 +22,12 @@ layout(location=0) out vec4 a; layout(location=1) out vec4 b; layout(location=2)
 void main() { gl_Position = p; a = p; b = p; i = ivec4(gl_VertexIndex); })";
 }
 
-std::vector<std::uint32_t> fragment_spirv(const std::string& source) { return scenes::compile_glsl(source, traces::ShaderStage::kFragment, "test.frag"); }
-std::vector<std::uint32_t> vertex_spirv(const std::string& source) { return scenes::compile_glsl(source, traces::ShaderStage::kVertex, "test.vert"); }
+std::vector<std::uint32_t> fragment_spirv(const std::string& source) {
+  return scenes::compile_glsl(source, traces::ShaderStage::kFragment, "test.frag");
+}
+std::vector<std::uint32_t> vertex_spirv(const std::string& source) {
+  return scenes::compile_glsl(source, traces::ShaderStage::kVertex, "test.vert");
+}
 
 models::Program compile_fragment(const std::string& source) {
   static const std::vector<std::uint32_t> vertex = vertex_spirv(plain_vertex_source());
@@ -126,7 +131,8 @@ Points assorted_points(std::uint32_t seed) {
   return points;
 }
 
-std::vector<models::LaneWords> run_vertex(const models::Program& program, const std::function<float(int, int, int)>& attribute, const RunInput& input) {
+std::vector<models::LaneWords> run_vertex(const models::Program& program, const std::function<float(int, int, int)>& attribute,
+                                          const RunInput& input) {
   const std::vector<std::uint32_t> constants = constant_file(program.constants, input);
   std::vector<models::LaneWords> rows(program.vertex_inputs.size());
   models::VertexInputs in{};

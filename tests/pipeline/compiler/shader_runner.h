@@ -28,8 +28,8 @@ class Random {
 
 using Vec4 = std::array<float, 4>;
 struct Point {
-  Vec4 a{}, b{};                       ///< floats "a" and "b" of the snippet
-  std::array<std::int32_t, 4> i{};     ///< flat integers "i"
+  Vec4 a{}, b{};                    ///< floats "a" and "b" of the snippet
+  std::array<std::int32_t, 4> i{};  ///< flat integers "i"
 };
 using Points = std::array<Point, models::kWarpQuads>;
 
@@ -65,7 +65,8 @@ struct RunOutput {
 /// Eight points of assorted values, by seed.
 [[nodiscard]] Points assorted_points(std::uint32_t seed);
 /// Outputs of a vertex program for 32 vertices: rows by output slot.
-[[nodiscard]] std::vector<models::LaneWords> run_vertex(const models::Program& program, const std::function<float(int location, int component, int lane)>& attribute,
+[[nodiscard]] std::vector<models::LaneWords> run_vertex(const models::Program& program,
+                                                        const std::function<float(int location, int component, int lane)>& attribute,
                                                         const RunInput& input = {});
 
 }  // namespace quadrille::pipeline

@@ -19,7 +19,8 @@ int longest_texture_run(const models::Program& p) {
 
 std::string samplers(int count) {
   std::string text;
-  for (int k = 0; k < count; ++k) text += "layout(set=1, binding=" + std::to_string(k) + ") uniform sampler2D t" + std::to_string(k) + ";\n";
+  for (int k = 0; k < count; ++k)
+    text += "layout(set=1, binding=" + std::to_string(k) + ") uniform sampler2D t" + std::to_string(k) + ";\n";
   return text;
 }
 
@@ -36,7 +37,9 @@ TEST_CASE("textures: coordinates, bias and level reach the request, colours come
   };
   check("color = texture(t0, a.xy);", [](const Point& p) { return Vec4{p.a[0], p.a[1], 0, 0}; });
   check("color = texture(t1, -a.yx, b.z);", [](const Point& p) { return Vec4{-p.a[1], -p.a[0], p.b[2], 0}; });
-  check("color = textureLod(t2, a.xy + b.xy, abs(a.z));", [](const Point& p) { return Vec4{p.a[0] + p.b[0], p.a[1] + p.b[1], std::abs(p.a[2]), 0}; });
+  check("color = textureLod(t2, a.xy + b.xy, abs(a.z));", [](const Point& p) {
+    return Vec4{p.a[0] + p.b[0], p.a[1] + p.b[1], std::abs(p.a[2]), 0};
+  });
   check("color = textureProj(t0, vec3(a.xy, b.x)).gbra;", [](const Point& p) { return Vec4{p.a[1] / p.b[0], 0, p.a[0] / p.b[0], 0}; });
   check("color = vec4(textureSize(t0, 0), textureSize(t0, 1));", [](const Point&) { return Vec4{64, 32, 32, 16}; });
 }
@@ -44,7 +47,9 @@ TEST_CASE("textures: coordinates, bias and level reach the request, colours come
 TEST_CASE("textures: independent ones of a block are one clause, dependent ones follow") {
   RunInput input;
   input.points = assorted_points(2);
-  const std::string body = "vec4 x = texture(t0, a.xy); x += texture(t1, a.zw) * x.w; x *= texture(t2, b.xy); x += texture(t3, x.xy); color = x + texture(t4, b.zw);";
+  const std::string body =
+      "vec4 x = texture(t0, a.xy); x += texture(t1, a.zw) * x.w; x *= texture(t2, b.xy); x += texture(t3, x.xy); color = x + texture(t4, "
+      "b.zw);";
   const models::Program p = compile_fragment(fragment_source(body, samplers(5)));
   CHECK(longest_texture_run(p) == 4);
   CHECK(p.uses_derivatives);
@@ -78,7 +83,9 @@ TEST_CASE("textures: results that nobody reads do not overwrite other values") {
   RunInput input;
   input.points = assorted_points(8);
   input.texture = [](int, float, float, float) { return Vec4{100, 200, 300, 400}; };
-  const RunOutput out = run_snippet("vec4 t = textureLod(t0, a.xy, 0.0); float x = a.x * b.x, y = a.y * b.y, z = a.z * b.z; color = vec4(x, y, z, t.x);", input, samplers(1));
+  const RunOutput out =
+      run_snippet("vec4 t = textureLod(t0, a.xy, 0.0); float x = a.x * b.x, y = a.y * b.y, z = a.z * b.z; color = vec4(x, y, z, t.x);",
+                  input, samplers(1));
   for (int k = 0; k < models::kWarpQuads; ++k) {
     const Point& p = input.points[static_cast<std::size_t>(k)];
     CHECK(out.point(k) == Vec4{p.a[0] * p.b[0], p.a[1] * p.b[1], p.a[2] * p.b[2], 100});
@@ -88,22 +95,27 @@ TEST_CASE("textures: results that nobody reads do not overwrite other values") {
 TEST_CASE("textures: inside divergent control flow only the lanes that ask are answered") {
   RunInput input;
   input.points = assorted_points(7);
-  const RunOutput out = run_snippet("vec4 t = vec4(5); for (int k = 0; k < abs(i.x) % 4; ++k) t = textureLod(t0, t.yx + float(k), 0.0); color = t;", input, samplers(1));
+  const RunOutput out = run_snippet(
+      "vec4 t = vec4(5); for (int k = 0; k < abs(i.x) % 4; ++k) t = textureLod(t0, t.yx + float(k), 0.0); color = t;", input, samplers(1));
   for (int k = 0; k < models::kWarpQuads; ++k) {
     Vec4 t{5, 5, 5, 5};
-    for (int n = 0; n < std::abs(input.points[static_cast<std::size_t>(k)].i[0]) % 4; ++n) t = {t[1] + static_cast<float>(n), t[0] + static_cast<float>(n), 0, 1};
+    for (int n = 0; n < std::abs(input.points[static_cast<std::size_t>(k)].i[0]) % 4; ++n)
+      t = {t[1] + static_cast<float>(n), t[0] + static_cast<float>(n), 0, 1};
     CHECK(out.point(k) == t);
   }
 }
 
 TEST_CASE("textures: a vertex shader samples at an explicit level") {
-  const auto vertex = vertex_spirv("#version 450\nlayout(set=0,binding=2) uniform sampler2D t; layout(location=0) in vec2 p;\nvoid main() { gl_Position = texture(t, p); }");
+  const auto vertex = vertex_spirv(
+      "#version 450\nlayout(set=0,binding=2) uniform sampler2D t; layout(location=0) in vec2 p;\nvoid main() { gl_Position = texture(t, "
+      "p); }");
   const auto fragment = fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
   const CompiledPipeline p = compile_pipeline(vertex, "v", fragment, "f");
   CHECK(std::any_of(p.vertex.code.begin(), p.vertex.code.end(), [](const models::Instruction& i) { return i.op == models::Op::kTexLod; }));
   RunInput input;
   input.texture = [](int, float u, float v, float) { return Vec4{v, u, 3, 4}; };
-  const auto out = run_vertex(p.vertex, [](int, int component, int lane) { return static_cast<float>(lane + component * 50); }, input);
+  const auto out = run_vertex(
+      p.vertex, [](int, int component, int lane) { return static_cast<float>(lane + component * 50); }, input);
   CHECK(std::bit_cast<float>(out[0][9]) == 59.0f);
   CHECK(std::bit_cast<float>(out[1][9]) == 9.0f);
 }
