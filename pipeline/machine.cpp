@@ -27,7 +27,8 @@ Machine::Machine(const MachineConfig& config, DeviceFrame& frame, const MachineO
     : config_(config), frame_(frame), clock_(clock_of(config.gpu.clock_mhz)), memory_clock_(clock_of(config.gpu.memory_mhz)), left_out_(frame.left_out) {
   config.check();
   check_registers();
-  driver_ = make_driver(options);
+  if (options.external_driver == nullptr) own_driver_ = make_driver(options);
+  driver_ = options.external_driver != nullptr ? options.external_driver : own_driver_.get();
   batches_ = std::make_unique<hw::Store<hw::BatchSlot>>(static_cast<std::size_t>(config.vertex_fetch.batch_slots.value()));
   // One piece being written and one being read beyond what the link holds.
   pieces_ = std::make_unique<hw::Store<hw::ClippedPiece>>(static_cast<std::size_t>(config.link.clipper_to_setup.depth.value()) + 2);

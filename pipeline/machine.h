@@ -18,6 +18,7 @@ struct MachineOptions {
   hw::Tick window = 0;                 ///< extra look-ahead of the dispatcher; 0 is exact
   std::uint64_t module_order = 0;      ///< seed: in which order modules are created and handed to the driver; figures must not depend on it
   bool leave_out = true;               ///< do not build what the frame does not need
+  hw::Driver* external_driver = nullptr;   ///< add the units to this driver instead of an own one; its owner runs it
 };
 
 class Machine {
@@ -83,7 +84,8 @@ class Machine {
   std::vector<LeftOut> left_out_;
   int clients_ = 0;
   int next_client_ = 0;
-  std::unique_ptr<hw::Driver> driver_;
+  std::unique_ptr<hw::Driver> own_driver_;
+  hw::Driver* driver_ = nullptr;
   std::unique_ptr<hw::Store<hw::BatchSlot>> batches_;
   std::unique_ptr<hw::Store<hw::ClippedPiece>> pieces_;
   std::unique_ptr<hw::TriangleStore> triangles_;

@@ -39,6 +39,7 @@ struct GpuParams : hw::ParamGroup {
   hw::Param<int> subpixel_bits{*this, "subpixel_bits", 8, "bit", {4, 12}, "Fractional bits of window positions. [VK1.3 limit subPixelPrecisionBits]"};
   hw::Param<int> subtexel_bits{*this, "subtexel_bits", 8, "bit", {1, 8}, "Fractional bits of texture coordinates. [VK1.3 limit subTexelPrecisionBits]"};
   hw::Param<int> lod_bits{*this, "lod_bits", 8, "bit", {1, 8}, "Fractional bits of the level of detail. [VK1.3 limit mipmapPrecisionBits]"};
+  hw::Param<bool> linear_log2{*this, "linear_log2", false, "", "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]"};
 };
 
 /// One class of links. Full rate needs depth >= width * (latency + credit_latency).
@@ -115,7 +116,7 @@ class MachineConfig {
   void set(std::string_view key, std::string_view value, std::string_view where);
   /// Checks that hold between parameters.
   void check() const;
-  [[nodiscard]] models::Precision precision() const { return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits}; }
+  [[nodiscard]] models::Precision precision() const { return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2}; }
 
  private:
   std::vector<std::pair<std::string, hw::ParamGroup*>> groups_;

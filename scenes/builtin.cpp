@@ -12,6 +12,7 @@
 #include "models/base/error.h"
 #include "scenes/mesh_builder.h"
 #include "scenes/procedural_texture.h"
+#include "scenes/rounded_math.h"
 #include "scenes/scene.h"
 
 namespace quadrille::scenes {
@@ -26,9 +27,12 @@ constexpr std::array<Entry, 6> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"}, build_triangle},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"}, build_quad},
     {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"}, build_cubes},
-    {{"courtyard", "a sunlit courtyard with fountain, arcades, trees and glass: 15 materials, normal maps, MASK and BLEND, 380 thousand triangles"}, build_courtyard},
+    {{"courtyard",
+      "a sunlit courtyard with fountain, arcades, trees and glass: 15 materials, normal maps, MASK and BLEND, 380 thousand triangles"},
+     build_courtyard},
     {{"overdraw", "sixteen translucent layers over the whole screen: blending and colour bandwidth"}, build_overdraw},
-    {{"fill", "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most units left out"}, build_fill},
+    {{"fill", "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most units left out"},
+     build_fill},
 }};
 
 /// An unlit quad that fills the picture of `flat_camera`, at distance `depth`.
@@ -104,12 +108,13 @@ SceneData build_quad() {
 SceneData build_cubes() {
   SceneData scene;
   const int image = add_image(scene, "crate", paint(256, true, [](glm::vec2 uv) {
-    const glm::vec2 edge = glm::vec2(0.5F) - glm::abs(uv - 0.5F);
-    const float frame = smooth_ramp(0.075F, 0.085F, std::min(edge.x, edge.y));
-    const float grain = tiling_noise({uv.x * 8, uv.y * 64}, 8, 3, 5);
-    return glm::vec4(glm::mix(glm::vec3(0.75F), glm::vec3(1), frame) * (0.7F + 0.3F * grain), 1);
-  }));
-  constexpr std::array<glm::vec3, 5> kColors{{{0.80F, 0.25F, 0.18F}, {0.90F, 0.66F, 0.20F}, {0.25F, 0.55F, 0.30F}, {0.20F, 0.42F, 0.72F}, {0.75F, 0.72F, 0.68F}}};
+                                const glm::vec2 edge = glm::vec2(0.5F) - glm::abs(uv - 0.5F);
+                                const float frame = smooth_ramp(0.075F, 0.085F, std::min(edge.x, edge.y));
+                                const float grain = tiling_noise({uv.x * 8, uv.y * 64}, 8, 3, 5);
+                                return glm::vec4(glm::mix(glm::vec3(0.75F), glm::vec3(1), frame) * (0.7F + 0.3F * grain), 1);
+                              }));
+  constexpr std::array<glm::vec3, 5> kColors{
+      {{0.80F, 0.25F, 0.18F}, {0.90F, 0.66F, 0.20F}, {0.25F, 0.55F, 0.30F}, {0.20F, 0.42F, 0.72F}, {0.75F, 0.72F, 0.68F}}};
   std::array<std::uint32_t, 5> cubes{};
   for (std::size_t i = 0; i < kColors.size(); ++i) {
     Material m;
@@ -124,8 +129,10 @@ SceneData build_cubes() {
     cubes[i] = mesh.finish(scene, fmt::format("cube {}", i), static_cast<int>(i), {});
   }
   for (int i = 0; i < 125; ++i) {
-    const glm::vec3 at(1.7F * static_cast<float>(i % 5 - 2), 1.7F * static_cast<float>(i / 5 % 5 - 2), 1.7F * static_cast<float>(i / 25 - 2));
-    const glm::mat4 turned = glm::rotate(glm::translate(glm::mat4(1), at), 6.2831853F * lattice_random(i, 0, 3), glm::normalize(glm::vec3(1, 2, lattice_random(i, 1, 3))));
+    const glm::vec3 at(1.7F * static_cast<float>(i % 5 - 2), 1.7F * static_cast<float>(i / 5 % 5 - 2),
+                       1.7F * static_cast<float>(i / 25 - 2));
+    const glm::mat4 turned = glm::translate(glm::mat4(1), at) *
+                             rotation(6.2831853F * lattice_random(i, 0, 3), glm::normalize(glm::vec3(1, 2, lattice_random(i, 1, 3))));
     place(scene, cubes[static_cast<std::size_t>(i) % kColors.size()], turned);
   }
   return scene;
@@ -139,7 +146,8 @@ SceneData build_overdraw() {
     Material m = unlit(fmt::format("layer {}", i), {0.9F - 0.7F * t, 0.3F + 0.4F * t * (1 - t) * 4, 0.2F + 0.7F * t, 0.25F});
     m.alpha = AlphaMode::kBlend;
     scene.materials.push_back(m);
-    place(scene, screen_quad(scene, fmt::format("layer {}", i), i, 50 - static_cast<float>(i)), glm::translate(glm::mat4(1), {0.1F * static_cast<float>(i), 0, 0}));
+    place(scene, screen_quad(scene, fmt::format("layer {}", i), i, 50 - static_cast<float>(i)),
+          glm::translate(glm::mat4(1), {0.1F * static_cast<float>(i), 0, 0}));
   }
   return scene;
 }

@@ -18,7 +18,7 @@ namespace {
 constexpr double kFramingFov = std::numbers::pi / 4;
 constexpr double kUserFov = std::numbers::pi / 3;
 constexpr double kMargin = 1.04;
-constexpr double kNearestRatio = 1e-4;   // near plane over far plane, at least: keeps 32-bit depth useful
+constexpr double kNearestRatio = 1e-4;  // near plane over far plane, at least: keeps 32-bit depth useful
 
 /// Camera axes in world space; the camera looks along -backward.
 struct Pose {
@@ -84,7 +84,9 @@ void for_each_corner(const SceneData& scene, const Visit& visit) {
   for (const Instance& instance : scene.instances) {
     const Bounds box = scene.primitives[instance.primitive].bounds.transformed(instance.world);
     if (box.empty()) continue;
-    for (int c = 0; c < 8; ++c) visit(glm::dvec3((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y, (c & 4) != 0 ? box.high.z : box.low.z));
+    for (int c = 0; c < 8; ++c)
+      visit(
+          glm::dvec3((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y, (c & 4) != 0 ? box.high.z : box.low.z));
   }
 }
 
@@ -131,7 +133,8 @@ View user_view(const SceneData& scene, const SceneOptions& options, double aspec
 View file_view(const Camera& camera, double aspect) {
   const glm::dmat4 world(*camera.pose);
   const glm::dvec3 z(world[2]), y(world[1]);
-  if (!(glm::length(z) > 0) || !(glm::length(glm::cross(y, z)) > 0)) throw user_error("camera '{}': its node's matrix is singular", camera.name);
+  if (!(glm::length(z) > 0) || !(glm::length(glm::cross(y, z)) > 0))
+    throw user_error("camera '{}': its node's matrix is singular", camera.name);
   Pose pose;
   pose.eye = glm::dvec3(world[3]);
   pose.backward = glm::normalize(z);
@@ -147,8 +150,10 @@ const Camera* chosen_camera(const SceneData& scene, int wanted) {
     return placed == scene.cameras.end() ? nullptr : &*placed;
   }
   const auto index = static_cast<std::size_t>(wanted);
-  if (index >= scene.cameras.size()) throw user_error("{}: camera {} does not exist; the scene has {} cameras (numbered from 0)", scene.name, wanted, scene.cameras.size());
-  if (!scene.cameras[index].pose) throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.name, wanted, scene.cameras[index].name);
+  if (index >= scene.cameras.size())
+    throw user_error("{}: camera {} does not exist; the scene has {} cameras (numbered from 0)", scene.name, wanted, scene.cameras.size());
+  if (!scene.cameras[index].pose)
+    throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.name, wanted, scene.cameras[index].name);
   return &scene.cameras[index];
 }
 

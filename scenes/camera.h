@@ -14,9 +14,9 @@ namespace quadrille::scenes {
 /// World space to Vulkan's clip space (y down, 0 <= z <= w), and what shading needs of the camera.
 struct View {
   glm::mat4 view_projection{1};
-  glm::vec3 eye{0};                    ///< world space
+  glm::vec3 eye{0};  ///< world space
   glm::vec3 right{1, 0, 0}, up{0, 1, 0};
-  glm::vec3 toward_viewer{0, 0, 1};    ///< unit vector against the view direction
+  glm::vec3 toward_viewer{0, 0, 1};  ///< unit vector against the view direction
   bool orthographic = false;
 };
 

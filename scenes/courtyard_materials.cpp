@@ -12,6 +12,7 @@
 #include "scenes/mesh_builder.h"
 #include "scenes/parallel.h"
 #include "scenes/procedural_texture.h"
+#include "scenes/rounded_math.h"
 
 namespace quadrille::scenes::courtyard {
 namespace {
@@ -20,7 +21,9 @@ constexpr std::uint32_t kSize = 512;
 
 // ---- surfaces: uv in 0..1, results linear ----
 
-float paving_height(glm::vec2 uv) { return smooth_ramp(0.02F, 0.16F, tiling_cells(uv * 8.0F, 8, 11).border) * 0.8F + 0.2F * tiling_noise(uv * 32.0F, 32, 3, 12); }
+float paving_height(glm::vec2 uv) {
+  return smooth_ramp(0.02F, 0.16F, tiling_cells(uv * 8.0F, 8, 11).border) * 0.8F + 0.2F * tiling_noise(uv * 32.0F, 32, 3, 12);
+}
 
 glm::vec4 paving_color(glm::vec2 uv) {
   const CellPoint cell = tiling_cells(uv * 8.0F, 8, 11);
@@ -81,7 +84,7 @@ glm::vec4 leaf_color(glm::vec2 uv) {
   glm::vec4 color(0.10F, 0.20F, 0.04F, 0);
   for (int i = 0; i < 26; ++i) {
     const glm::vec2 center(0.12F + 0.76F * lattice_random(i, 0, 81), 0.12F + 0.76F * lattice_random(i, 1, 81));
-    const float angle = 6.2831853F * lattice_random(i, 2, 81), c = std::cos(angle), s = std::sin(angle);
+    const float angle = 6.2831853F * lattice_random(i, 2, 81), c = cosine(angle), s = sine(angle);
     const glm::vec2 d = uv - center, local(c * d.x + s * d.y, -s * d.x + c * d.y);
     const float along = local.x / 0.115F, width = 0.05F * (1 - along * along);
     if (std::abs(along) >= 1 || std::abs(local.y) >= width) continue;
@@ -168,11 +171,19 @@ void add_clear_and_bright(SceneData& scene, int ripples) {
 }  // namespace
 
 void add_materials(SceneData& scene) {
-  const std::vector<Job> jobs{colors("paving", paving_color), normals("paving normals", 0.02F, paving_height), values("paving surface", paving_surface),
-                              colors("plaster", plaster_color), normals("plaster normals", 0.008F, plaster_height),
-                              colors("stone", stone_color), normals("stone normals", 0.02F, stone_height),
-                              colors("roof", roof_color), normals("roof normals", 0.05F, roof_height),
-                              normals("ripples", 0.05F, water_height), colors("bark", bark_color), colors("leaves", leaf_color), colors("wood", wood_color)};
+  const std::vector<Job> jobs{colors("paving", paving_color),
+                              normals("paving normals", 0.02F, paving_height),
+                              values("paving surface", paving_surface),
+                              colors("plaster", plaster_color),
+                              normals("plaster normals", 0.008F, plaster_height),
+                              colors("stone", stone_color),
+                              normals("stone normals", 0.02F, stone_height),
+                              colors("roof", roof_color),
+                              normals("roof normals", 0.05F, roof_height),
+                              normals("ripples", 0.05F, water_height),
+                              colors("bark", bark_color),
+                              colors("leaves", leaf_color),
+                              colors("wood", wood_color)};
   std::vector<Rgba8Image> images(jobs.size());
   parallel_for(jobs.size(), [&](std::size_t i) { images[i] = jobs[i].paint(); });
   for (std::size_t i = 0; i < jobs.size(); ++i) add_image(scene, jobs[i].name, std::move(images[i]));

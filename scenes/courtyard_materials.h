@@ -6,7 +6,24 @@
 namespace quadrille::scenes::courtyard {
 
 /// Material numbers, in the order in which `add_materials` adds them.
-enum MaterialId : int { kPaving, kPlaster, kStone, kRoof, kBasin, kWater, kGold, kBark, kLeaves, kIron, kGlass, kLamp, kSky, kWood, kHedge, kMaterialCount };
+enum MaterialId : int {
+  kPaving,
+  kPlaster,
+  kStone,
+  kRoof,
+  kBasin,
+  kWater,
+  kGold,
+  kBark,
+  kLeaves,
+  kIron,
+  kGlass,
+  kLamp,
+  kSky,
+  kWood,
+  kHedge,
+  kMaterialCount
+};
 
 /// Paints all textures and fills `scene.materials`.
 void add_materials(SceneData& scene);

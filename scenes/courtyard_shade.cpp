@@ -13,7 +13,7 @@
 namespace quadrille::scenes::courtyard {
 namespace {
 
-constexpr float kShade = 0.36F;   // of the sunlit colour: what the sky alone gives
+constexpr float kShade = 0.36F;  // of the sunlit colour: what the sky alone gives
 
 bool hits_box(const glm::vec3& p, const glm::vec3& d, const glm::vec3& low, const glm::vec3& high) {
   const glm::vec3 a = (low - p) / d, b = (high - p) / d;
@@ -58,7 +58,7 @@ float Shade::lit(const glm::vec3& point, const glm::vec3& direction) const {
 }
 
 float Shade::at(const glm::vec3& point) const {
-  constexpr float kDisc = 0.012F;   // a sun a little larger than ours: softens the steps between vertices
+  constexpr float kDisc = 0.012F;  // a sun a little larger than ours: softens the steps between vertices
   constexpr std::array<glm::vec3, 4> kOffsets{{{kDisc, 0, kDisc}, {-kDisc, 0, kDisc}, {kDisc, 0, -kDisc}, {-kDisc, 0, -kDisc}}};
   float sum = 0;
   for (const glm::vec3& offset : kOffsets) sum += lit(point, glm::normalize(to_sun() + offset));

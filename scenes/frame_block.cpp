@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxLights = 256;
 constexpr std::size_t kMaxUnrolledLights = 4;
-constexpr float kKeyLux = 2.4F;                       // [G: with the default sky, a white wall in the light is just below white]
-constexpr float kSkyBesideLights = 0.35F;             // the sky's share where the file brings its own lights [G: shadows stay readable]
+constexpr float kKeyLux = 2.4F;            // [G: with the default sky, a white wall in the light is just below white]
+constexpr float kSkyBesideLights = 0.35F;  // the sky's share where the file brings its own lights [G: shadows stay readable]
 
 /// `Light` of interface.glsl, std140.
 struct LightBlock {
@@ -61,7 +61,8 @@ std::size_t count(const std::vector<Light>& lights, Light::Kind kind) {
 
 std::vector<Light> frame_lights(const SceneData& scene, const View& view) {
   if (scene.lights.empty()) return {key_light(view)};
-  if (scene.lights.size() > kMaxLights) throw user_error("{}: {} lights; at most {} are supported", scene.name, scene.lights.size(), kMaxLights);
+  if (scene.lights.size() > kMaxLights)
+    throw user_error("{}: {} lights; at most {} are supported", scene.name, scene.lights.size(), kMaxLights);
   std::vector<Light> lights = scene.lights;
   std::ranges::stable_sort(lights, {}, &Light::kind);
   return lights;
@@ -69,8 +70,8 @@ std::vector<Light> frame_lights(const SceneData& scene, const View& view) {
 
 std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights) {
   const float share = scene.lights.empty() ? 1.0F : kSkyBesideLights;
-  const FrameHead head{view.view_projection, glm::vec4(view.eye, 0), glm::vec4(view.toward_viewer, 0), glm::vec4(scene.environment.sky * share, 0),
-                       glm::vec4(scene.environment.ground * share, 0)};
+  const FrameHead head{view.view_projection, glm::vec4(view.eye, 0), glm::vec4(view.toward_viewer, 0),
+                       glm::vec4(scene.environment.sky * share, 0), glm::vec4(scene.environment.ground * share, 0)};
   std::vector<LightBlock> blocks;
   for (const Light& light : lights) blocks.push_back(light_block(light, view));
   std::vector<std::byte> bytes(sizeof(head) + blocks.size() * sizeof(LightBlock));
@@ -80,11 +81,10 @@ std::vector<std::byte> frame_block(const SceneData& scene, const View& view, con
 }
 
 std::vector<std::string> frame_defines(const View& view, const std::vector<Light>& lights) {
-  std::vector<std::string> defines{fmt::format("LIGHTS {}", lights.size()),
-                                   fmt::format("DIRECTIONAL_LIGHTS {}", count(lights, Light::Kind::kDirectional)),
-                                   fmt::format("POINT_LIGHTS {}", count(lights, Light::Kind::kPoint)),
-                                   fmt::format("SPOT_LIGHTS {}", count(lights, Light::Kind::kSpot)),
-                                   lights.size() <= kMaxUnrolledLights ? "LOOP_HINT [[unroll]]" : "LOOP_HINT"};
+  std::vector<std::string> defines{
+      fmt::format("LIGHTS {}", lights.size()), fmt::format("DIRECTIONAL_LIGHTS {}", count(lights, Light::Kind::kDirectional)),
+      fmt::format("POINT_LIGHTS {}", count(lights, Light::Kind::kPoint)), fmt::format("SPOT_LIGHTS {}", count(lights, Light::Kind::kSpot)),
+      lights.size() <= kMaxUnrolledLights ? "LOOP_HINT [[unroll]]" : "LOOP_HINT"};
   if (view.orthographic) defines.emplace_back("ORTHOGRAPHIC");
   return defines;
 }

@@ -25,7 +25,8 @@ class Reader {
     elements.components = components();
     elements.normalized = accessor_->normalized && elements.component != Component::kFloat;
     size_ = component_bytes(elements.component) * elements.components;
-    if (accessor_->count == 0 || accessor_->count > kMaxAccessorBytes / size_) fail(fmt::format("count {} is not 1..{}", accessor_->count, kMaxAccessorBytes / size_));
+    if (accessor_->count == 0 || accessor_->count > kMaxAccessorBytes / size_)
+      fail(fmt::format("count {} is not 1..{}", accessor_->count, kMaxAccessorBytes / size_));
     elements.count = static_cast<std::uint32_t>(accessor_->count);
     elements.data.resize(elements.count * size_);
     if (accessor_->bufferView >= 0) copy_elements(elements);
@@ -59,10 +60,12 @@ class Reader {
   }
 
   /// `count` elements of `size` bytes, `stride` apart, from `offset` on, must lie within `view`.
-  void check_range(std::span<const std::byte> view, std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t size, const char* what) const {
-    const std::uint64_t length = (count - 1) * stride + size;   // counts and strides are below 2^31
+  void check_range(std::span<const std::byte> view, std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t size,
+                   const char* what) const {
+    const std::uint64_t length = (count - 1) * stride + size;  // counts and strides are below 2^31
     if (offset > view.size() || length > view.size() - offset) {
-      fail(fmt::format("{}{} elements of {} bytes, {} apart, from byte {} on, reach beyond its bufferView of {} bytes", what, count, size, stride, offset, view.size()));
+      fail(fmt::format("{}{} elements of {} bytes, {} apart, from byte {} on, reach beyond its bufferView of {} bytes", what, count, size,
+                       stride, offset, view.size()));
     }
   }
 
@@ -78,18 +81,21 @@ class Reader {
 
   std::uint32_t sparse_index(const std::byte* source, Component type) const {
     std::uint32_t value = 0;
-    std::memcpy(&value, source, component_bytes(type));   // unsigned, little-endian
+    std::memcpy(&value, source, component_bytes(type));  // unsigned, little-endian
     return value;
   }
 
   void put_sparse(Elements& elements) const {
     const auto& sparse = accessor_->sparse;
-    if (sparse.count < 1 || static_cast<std::uint64_t>(sparse.count) > elements.count) fail(fmt::format("sparse.count {} is not 1..{}", sparse.count, elements.count));
+    if (sparse.count < 1 || static_cast<std::uint64_t>(sparse.count) > elements.count)
+      fail(fmt::format("sparse.count {} is not 1..{}", sparse.count, elements.count));
     if (sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) fail("a byteOffset of its sparse part is negative");
     const Component type = component(sparse.indices.componentType);
-    if (type != Component::kUint8 && type != Component::kUint16 && type != Component::kUint32) fail("sparse.indices: not of an unsigned type");
+    if (type != Component::kUint8 && type != Component::kUint16 && type != Component::kUint32)
+      fail("sparse.indices: not of an unsigned type");
     const auto count = static_cast<std::uint64_t>(sparse.count);
-    const auto index_offset = static_cast<std::uint64_t>(sparse.indices.byteOffset), value_offset = static_cast<std::uint64_t>(sparse.values.byteOffset);
+    const auto index_offset = static_cast<std::uint64_t>(sparse.indices.byteOffset),
+               value_offset = static_cast<std::uint64_t>(sparse.values.byteOffset);
     const std::size_t index_size = component_bytes(type);
     const auto indices = buffer_view_bytes(file_, sparse.indices.bufferView, place_ + " sparse.indices");
     const auto values = buffer_view_bytes(file_, sparse.values.bufferView, place_ + " sparse.values");
@@ -105,7 +111,7 @@ class Reader {
   const GltfFile& file_;
   std::string place_;
   const tinygltf::Accessor* accessor_ = nullptr;
-  std::size_t size_ = 0;   ///< bytes an element
+  std::size_t size_ = 0;  ///< bytes an element
 };
 
 }  // namespace

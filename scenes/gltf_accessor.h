@@ -18,7 +18,7 @@ enum class Component : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kUint32, k
 /// The elements of an accessor, packed tightly in their own component type.
 struct Elements {
   Component component = Component::kFloat;
-  std::size_t components = 1;   ///< an element
+  std::size_t components = 1;  ///< an element
   bool normalized = false;
   std::uint32_t count = 0;
   std::vector<std::byte> data;

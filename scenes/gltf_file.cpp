@@ -14,18 +14,20 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 31;
-constexpr int kMaxJsonDepth = 128;   // the parser's walk over unknown members is recursive
-constexpr std::array<std::string_view, 5> kExtensions{"KHR_texture_transform", "KHR_materials_unlit", "KHR_lights_punctual", "KHR_mesh_quantization",
-                                                      "KHR_materials_emissive_strength"};
+constexpr int kMaxJsonDepth = 128;  // the parser's walk over unknown members is recursive
+constexpr std::array<std::string_view, 5> kExtensions{"KHR_texture_transform", "KHR_materials_unlit", "KHR_lights_punctual",
+                                                      "KHR_mesh_quantization", "KHR_materials_emissive_strength"};
 
 using Bytes = std::vector<std::vector<std::byte>>;
 
 /// Keeps the encoded bytes of an image for later. A buffer view's are fetched later too, because tinygltf does not check its range.
-bool keep_image(tinygltf::Image* image, const int index, std::string*, std::string*, int, int, const unsigned char* data, int size, void* user) {
+bool keep_image(tinygltf::Image* image, const int index, std::string*, std::string*, int, int, const unsigned char* data, int size,
+                void* user) {
   auto& kept = *static_cast<Bytes*>(user);
   const auto i = static_cast<std::size_t>(index);
   if (kept.size() <= i) kept.resize(i + 1);
-  if (image->bufferView < 0 && size > 0) kept[i].assign(reinterpret_cast<const std::byte*>(data), reinterpret_cast<const std::byte*>(data) + size);
+  if (image->bufferView < 0 && size > 0)
+    kept[i].assign(reinterpret_cast<const std::byte*>(data), reinterpret_cast<const std::byte*>(data) + size);
   return true;
 }
 
@@ -96,19 +98,19 @@ void parse(GltfFile& file, std::span<const std::byte> bytes) {
   std::string error, warning;
   bool done = false;
   try {
-    done = is_binary(bytes)
-               ? loader.LoadBinaryFromMemory(&file.model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-               : loader.LoadASCIIFromString(&file.model, &error, &warning, reinterpret_cast<const char*>(bytes.data()), size, folder);
-  } catch (const std::exception& failure) {
-    throw user_error("{}: cannot be parsed: {}", file.path, failure.what());
-  }
+    done =
+        is_binary(bytes)
+            ? loader.LoadBinaryFromMemory(&file.model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
+            : loader.LoadASCIIFromString(&file.model, &error, &warning, reinterpret_cast<const char*>(bytes.data()), size, folder);
+  } catch (const std::exception& failure) { throw user_error("{}: cannot be parsed: {}", file.path, failure.what()); }
   if (!done) throw user_error("{}: {}", file.path, first_line(error));
 }
 
 void check_version(const GltfFile& file) {
   const tinygltf::Asset& asset = file.model.asset;
   if (!asset.version.starts_with("2.")) throw user_error("{}: asset.version '{}'; glTF 2.x is read", file.path, asset.version);
-  if (!asset.minVersion.empty() && asset.minVersion != "2.0") throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", file.path, asset.minVersion);
+  if (!asset.minVersion.empty() && asset.minVersion != "2.0")
+    throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", file.path, asset.minVersion);
 }
 
 void check_extensions(const GltfFile& file) {
@@ -125,7 +127,8 @@ GltfFile read_gltf_file(const std::string& path) {
   GltfFile file;
   file.path = path;
   const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxFileBytes);
-  if (std::filesystem::path(path).extension() == ".glb" && !is_binary(bytes)) throw user_error("{}: not a binary glTF file (by its first bytes)", path);
+  if (std::filesystem::path(path).extension() == ".glb" && !is_binary(bytes))
+    throw user_error("{}: not a binary glTF file (by its first bytes)", path);
   if (nesting_depth(json_text(bytes)) > kMaxJsonDepth) throw user_error("{}: its JSON is nested deeper than {}", path, kMaxJsonDepth);
   parse(file, bytes);
   check_version(file);
@@ -140,12 +143,13 @@ std::span<const std::byte> buffer_view_bytes(const GltfFile& file, int index, co
   }
   const tinygltf::BufferView& view = views[static_cast<std::size_t>(index)];
   if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= file.model.buffers.size()) {
-    throw user_error("{}: {}: bufferViews[{}]: buffer {} does not exist (the file has {})", file.path, place, index, view.buffer, file.model.buffers.size());
+    throw user_error("{}: {}: bufferViews[{}]: buffer {} does not exist (the file has {})", file.path, place, index, view.buffer,
+                     file.model.buffers.size());
   }
   const std::vector<unsigned char>& data = file.model.buffers[static_cast<std::size_t>(view.buffer)].data;
   if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
-    throw user_error("{}: {}: bufferViews[{}]: bytes {}+{} reach beyond buffer {} of {} bytes", file.path, place, index, view.byteOffset, view.byteLength,
-                     view.buffer, data.size());
+    throw user_error("{}: {}: bufferViews[{}]: bytes {}+{} reach beyond buffer {} of {} bytes", file.path, place, index, view.byteOffset,
+                     view.byteLength, view.buffer, data.size());
   }
   return std::as_bytes(std::span(data)).subspan(view.byteOffset, view.byteLength);
 }

@@ -13,7 +13,8 @@ namespace quadrille::scenes {
 struct GltfFile {
   std::string path;
   tinygltf::Model model;
-  std::vector<std::vector<std::byte>> image_bytes;   ///< of images that are files or data URIs; empty for the others and for files that are missing
+  std::vector<std::vector<std::byte>>
+      image_bytes;  ///< of images that are files or data URIs; empty for the others and for files that are missing
 };
 
 /// Reads and parses the file and the buffers it names, and checks what it requires. Throws `UserError` whatever goes wrong.

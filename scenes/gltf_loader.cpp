@@ -46,7 +46,9 @@ class SceneReader {
     glm::dmat4 parent{1};
   };
 
-  [[noreturn]] void fail(const std::string& place, const std::string& reason) const { throw user_error("{}: {}: {}", file_.path, place, reason); }
+  [[noreturn]] void fail(const std::string& place, const std::string& reason) const {
+    throw user_error("{}: {}: {}", file_.path, place, reason);
+  }
 
   void warn_once(bool& said, const char* what) const {
     if (!said) fmt::print(stderr, "{}: {}\n", file_.path, what);
@@ -58,15 +60,17 @@ class SceneReader {
   void read_perspective(const tinygltf::PerspectiveCamera& source, const std::string& place, Camera& camera) const {
     if (!(source.yfov > 0 && source.yfov < std::numbers::pi)) fail(place, fmt::format("yfov {} is outside 0..pi", source.yfov));
     if (!(source.znear > 0) || !std::isfinite(source.znear)) fail(place, fmt::format("znear {} is not positive", source.znear));
-    if (source.zfar != 0 && !(source.zfar > source.znear)) fail(place, fmt::format("zfar {} is not beyond znear {}", source.zfar, source.znear));
+    if (source.zfar != 0 && !(source.zfar > source.znear))
+      fail(place, fmt::format("zfar {} is not beyond znear {}", source.zfar, source.znear));
     camera.yfov = source.yfov;
     camera.near = source.znear;
-    camera.far = source.zfar == 0 ? std::nullopt : std::optional<double>(source.zfar);   // tinygltf has 0 for a missing one: infinite
+    camera.far = source.zfar == 0 ? std::nullopt : std::optional<double>(source.zfar);  // tinygltf has 0 for a missing one: infinite
   }
 
   void read_orthographic(const tinygltf::OrthographicCamera& source, const std::string& place, Camera& camera) const {
     if (!(std::abs(source.ymag) > 0) || !std::isfinite(source.ymag)) fail(place, fmt::format("ymag {} is not a size", source.ymag));
-    if (!(source.znear >= 0) || !(source.zfar > source.znear)) fail(place, fmt::format("znear {} and zfar {} are not a range", source.znear, source.zfar));
+    if (!(source.znear >= 0) || !(source.zfar > source.znear))
+      fail(place, fmt::format("znear {} and zfar {} are not a range", source.znear, source.zfar));
     camera.perspective = false;
     camera.half_height = std::abs(source.ymag);
     camera.near = source.znear;
@@ -118,7 +122,8 @@ class SceneReader {
     const tinygltf::Model& model = file_.model;
     if (!model.scenes.empty()) {
       const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
-      if (static_cast<std::size_t>(scene) >= model.scenes.size()) fail("scene", fmt::format("scene {} does not exist (the file has {})", scene, model.scenes.size()));
+      if (static_cast<std::size_t>(scene) >= model.scenes.size())
+        fail("scene", fmt::format("scene {} does not exist (the file has {})", scene, model.scenes.size()));
       return model.scenes[static_cast<std::size_t>(scene)].nodes;
     }
     std::vector<bool> child(model.nodes.size());
@@ -146,7 +151,8 @@ class SceneReader {
       const Visit visit = open.back();
       open.pop_back();
       const auto index = static_cast<std::size_t>(visit.node);
-      if (visit.node < 0 || index >= seen.size()) fail("nodes", fmt::format("node {} does not exist (the file has {})", visit.node, seen.size()));
+      if (visit.node < 0 || index >= seen.size())
+        fail("nodes", fmt::format("node {} does not exist (the file has {})", visit.node, seen.size()));
       const std::string place = fmt::format("nodes[{}]", visit.node);
       if (seen[index]) fail(place, "it is reached twice; nodes form a tree");
       seen[index] = true;
@@ -162,15 +168,18 @@ class SceneReader {
     if (node.mesh >= 0) place_mesh(node, world, place);
     if (node.camera >= 0) {
       const auto camera = static_cast<std::size_t>(node.camera);
-      if (camera >= scene_.cameras.size()) fail(place, fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
+      if (camera >= scene_.cameras.size())
+        fail(place, fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
       if (!scene_.cameras[camera].pose) scene_.cameras[camera].pose = glm::mat4(world);
     }
-    if (const auto found = node.extensions.find("KHR_lights_punctual"); found != node.extensions.end()) place_light(found->second, world, place);
+    if (const auto found = node.extensions.find("KHR_lights_punctual"); found != node.extensions.end())
+      place_light(found->second, world, place);
   }
 
   void place_mesh(const tinygltf::Node& node, const glm::dmat4& world, const std::string& place) {
     const auto mesh = static_cast<std::size_t>(node.mesh);
-    if (mesh >= file_.model.meshes.size()) fail(place, fmt::format("mesh {} does not exist (the file has {})", node.mesh, file_.model.meshes.size()));
+    if (mesh >= file_.model.meshes.size())
+      fail(place, fmt::format("mesh {} does not exist (the file has {})", node.mesh, file_.model.meshes.size()));
     if (node.skin >= 0) warn_once(said_skin_, "skins are not applied; skinned meshes stay in their bind pose");
     for (const tinygltf::Primitive& primitive : file_.model.meshes[mesh].primitives) {
       if (!primitive.targets.empty()) warn_once(said_morph_, "morph targets are not applied");
@@ -193,7 +202,8 @@ class SceneReader {
       fail(place, fmt::format("light type '{}' is not directional, point or spot", source.type.substr(0, 40)));
     }
     if (!source.color.empty() && source.color.size() != 3) fail(place, "color: three numbers are due");
-    for (int i = 0; i < 3; ++i) light.color[i] = static_cast<float>((source.color.empty() ? 1.0 : source.color[static_cast<std::size_t>(i)]) * source.intensity);
+    for (int i = 0; i < 3; ++i)
+      light.color[i] = static_cast<float>((source.color.empty() ? 1.0 : source.color[static_cast<std::size_t>(i)]) * source.intensity);
     light.range = static_cast<float>(source.range);
     light.inner_cone = static_cast<float>(source.spot.innerConeAngle);
     light.outer_cone = static_cast<float>(source.spot.outerConeAngle);
@@ -205,7 +215,8 @@ class SceneReader {
   void place_light(const tinygltf::Value& extension, const glm::dmat4& world, const std::string& place) {
     const int index = extension.Has("light") ? extension.Get("light").GetNumberAsInt() : -1;
     const auto& lights = file_.model.lights;
-    if (index < 0 || static_cast<std::size_t>(index) >= lights.size()) fail(place, fmt::format("light {} does not exist (the file has {})", index, lights.size()));
+    if (index < 0 || static_cast<std::size_t>(index) >= lights.size())
+      fail(place, fmt::format("light {} does not exist (the file has {})", index, lights.size()));
     Light light = read_light(lights[static_cast<std::size_t>(index)], fmt::format("extensions.KHR_lights_punctual.lights[{}]", index));
     const glm::dvec3 backward(world[2]);
     if (!(glm::length(backward) > 0)) fail(place, "a light on a node whose matrix is singular");
@@ -218,7 +229,7 @@ class SceneReader {
 
   /// Decodes only what materials in use refer to, and renumbers their references.
   void decode_images() {
-    std::map<int, int> numbers;   // the file's to the scene's
+    std::map<int, int> numbers;  // the file's to the scene's
     std::vector<std::size_t> wanted;
     for (Material& material : scene_.materials) {
       for (TextureUse& use : material.textures) {
@@ -229,7 +240,8 @@ class SceneReader {
       }
     }
     scene_.images.resize(wanted.size());
-    parallel_for(wanted.size(), [&](std::size_t i) { scene_.images[i] = decode_image(encoded_image(file_, wanted[i]), image_place(wanted[i])); });
+    parallel_for(wanted.size(),
+                 [&](std::size_t i) { scene_.images[i] = decode_image(encoded_image(file_, wanted[i]), image_place(wanted[i])); });
     for (const std::size_t i : wanted) scene_.image_names.push_back(image_name(i));
   }
 

@@ -10,7 +10,8 @@ namespace {
 
 class MaterialReader {
  public:
-  MaterialReader(const GltfFile& file, std::size_t index) : file_(file), source_(file.model.materials[index]), place_(fmt::format("materials[{}]", index)) {}
+  MaterialReader(const GltfFile& file, std::size_t index)
+      : file_(file), source_(file.model.materials[index]), place_(fmt::format("materials[{}]", index)) {}
 
   Material read() {
     const tinygltf::PbrMetallicRoughness& pbr = source_.pbrMetallicRoughness;
@@ -35,7 +36,9 @@ class MaterialReader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& member, const std::string& reason) const { throw user_error("{}: {}.{}: {}", file_.path, place_, member, reason); }
+  [[noreturn]] void fail(const std::string& member, const std::string& reason) const {
+    throw user_error("{}: {}.{}: {}", file_.path, place_, member, reason);
+  }
 
   float number(double value, const std::string& member) const {
     const auto result = static_cast<float>(value);
@@ -73,14 +76,16 @@ class MaterialReader {
   TextureUse texture(const Info& info, const std::string& member) const {
     if (info.index < 0) return {};
     const auto& textures = file_.model.textures;
-    if (static_cast<std::size_t>(info.index) >= textures.size()) fail(member, fmt::format("texture {} does not exist (the file has {})", info.index, textures.size()));
+    if (static_cast<std::size_t>(info.index) >= textures.size())
+      fail(member, fmt::format("texture {} does not exist (the file has {})", info.index, textures.size()));
     const tinygltf::Texture& source = textures[static_cast<std::size_t>(info.index)];
     TextureUse use;
     use.image = image(source.source, info.index);
     if (use.image < 0) return {};
     use.sampler = sampler(source.sampler, info.index);
     use.uv_set = info.texCoord;
-    if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end()) transform(use, found->second, member);
+    if (const auto found = info.extensions.find("KHR_texture_transform"); found != info.extensions.end())
+      transform(use, found->second, member);
     if (use.uv_set < 0 || use.uv_set > 1) fail(member, fmt::format("texCoord {} is not supported; sets 0 and 1 are", use.uv_set));
     return use;
   }
@@ -89,7 +94,8 @@ class MaterialReader {
   int image(int source, int texture_index) const {
     if (source < 0) return -1;
     if (static_cast<std::size_t>(source) >= file_.model.images.size()) {
-      throw user_error("{}: textures[{}].source: image {} does not exist (the file has {})", file_.path, texture_index, source, file_.model.images.size());
+      throw user_error("{}: textures[{}].source: image {} does not exist (the file has {})", file_.path, texture_index, source,
+                       file_.model.images.size());
     }
     return source;
   }
@@ -127,7 +133,8 @@ class MaterialReader {
   }
 
   void minification(traces::Sampler& s, int filter, int sampler_index) const {
-    constexpr float kBaseLevelOnly = 0.25F;   // keeps min and mag filter apart without mip-mapping [VK1.3 #samplers, on GL_LINEAR and GL_NEAREST]
+    constexpr float kBaseLevelOnly =
+        0.25F;  // keeps min and mag filter apart without mip-mapping [VK1.3 #samplers, on GL_LINEAR and GL_NEAREST]
     using traces::Filter;
     const auto set = [&](Filter min, Filter mip, float max_lod) { s.min = min, s.mip = mip, s.max_lod = max_lod; };
     constexpr float kAllLevels = 1000;
@@ -147,12 +154,14 @@ class MaterialReader {
     traces::Sampler s;
     if (index < 0) return s;
     if (static_cast<std::size_t>(index) >= file_.model.samplers.size()) {
-      throw user_error("{}: textures[{}].sampler: sampler {} does not exist (the file has {})", file_.path, texture_index, index, file_.model.samplers.size());
+      throw user_error("{}: textures[{}].sampler: sampler {} does not exist (the file has {})", file_.path, texture_index, index,
+                       file_.model.samplers.size());
     }
     const tinygltf::Sampler& source = file_.model.samplers[static_cast<std::size_t>(index)];
     s.wrap_u = wrap(source.wrapS, index);
     s.wrap_v = wrap(source.wrapT, index);
-    if (source.magFilter != -1 && source.magFilter != TINYGLTF_TEXTURE_FILTER_LINEAR && source.magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST) {
+    if (source.magFilter != -1 && source.magFilter != TINYGLTF_TEXTURE_FILTER_LINEAR &&
+        source.magFilter != TINYGLTF_TEXTURE_FILTER_NEAREST) {
       throw user_error("{}: samplers[{}]: magFilter {} is not one of glTF's", file_.path, index, source.magFilter);
     }
     s.mag = source.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ? traces::Filter::kNearest : traces::Filter::kLinear;

@@ -13,7 +13,7 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::uint64_t kMaxGeometryBytes = std::uint64_t{3} << 29;   // 1.5 GiB of decoded streams
+constexpr std::uint64_t kMaxGeometryBytes = std::uint64_t{3} << 29;  // 1.5 GiB of decoded streams
 constexpr std::array<const char*, kSemantics> kAttributeNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
 
 /// [glTF2.0 #meshes: mode]
@@ -53,7 +53,7 @@ const std::vector<std::uint32_t>& MeshReader::primitives(int index) {
 
 bool MeshReader::read_primitive(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   primitive.topology = topology(file_, source.mode, place);
-  if (!source.attributes.contains("POSITION")) return false;   // nothing to draw [glTF2.0 #meshes-overview]
+  if (!source.attributes.contains("POSITION")) return false;  // nothing to draw [glTF2.0 #meshes-overview]
   read_attributes(source, place, primitive);
   const int positions = primitive.attributes[0];
   primitive.count = scene_.arrays[static_cast<std::size_t>(positions)].count;
@@ -82,14 +82,16 @@ void MeshReader::read_indices(const tinygltf::Primitive& source, const std::stri
   primitive.indices = index_array(source.indices, at);
   primitive.index_type = index_arrays_.at(source.indices).second;
   const std::uint32_t largest = largest_index_.at(primitive.indices);
-  if (largest >= primitive.count) throw user_error("{}: {}: accessor {}: index {} is beyond {} vertices", file_.path, at, source.indices, largest, primitive.count);
+  if (largest >= primitive.count)
+    throw user_error("{}: {}: accessor {}: index {} is beyond {} vertices", file_.path, at, source.indices, largest, primitive.count);
   primitive.count = scene_.arrays[static_cast<std::size_t>(primitive.indices)].count;
 }
 
 int MeshReader::add_array(Array array, const std::string& place) {
   array.name = place;
   total_bytes_ += array.data.size();
-  if (total_bytes_ > kMaxGeometryBytes) throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, kMaxGeometryBytes);
+  if (total_bytes_ > kMaxGeometryBytes)
+    throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, kMaxGeometryBytes);
   scene_.arrays.push_back(std::move(array));
   return static_cast<int>(scene_.arrays.size() - 1);
 }
@@ -97,7 +99,8 @@ int MeshReader::add_array(Array array, const std::string& place) {
 int MeshReader::vertex_array(int accessor, Semantic semantic, const std::string& place) {
   const auto found = vertex_arrays_.find({accessor, semantic});
   if (found != vertex_arrays_.end()) return found->second;
-  const int array = add_array(to_vertex_array(file_, read_accessor(file_, accessor, place), semantic, fmt::format("{}: accessor {}", place, accessor)), place);
+  const int array = add_array(
+      to_vertex_array(file_, read_accessor(file_, accessor, place), semantic, fmt::format("{}: accessor {}", place, accessor)), place);
   return vertex_arrays_[{accessor, semantic}] = array;
 }
 
@@ -105,8 +108,10 @@ int MeshReader::index_array(int accessor, const std::string& place) {
   const auto found = index_arrays_.find(accessor);
   if (found != index_arrays_.end()) return found->second.first;
   Elements elements = read_accessor(file_, accessor, place);
-  const bool is_unsigned = elements.component == Component::kUint8 || elements.component == Component::kUint16 || elements.component == Component::kUint32;
-  if (elements.components != 1 || !is_unsigned) throw user_error("{}: {}: accessor {}: indices are unsigned scalars", file_.path, place, accessor);
+  const bool is_unsigned =
+      elements.component == Component::kUint8 || elements.component == Component::kUint16 || elements.component == Component::kUint32;
+  if (elements.components != 1 || !is_unsigned)
+    throw user_error("{}: {}: accessor {}: indices are unsigned scalars", file_.path, place, accessor);
   const std::size_t size = component_bytes(elements.component);
   std::uint32_t largest = 0;
   for (std::size_t i = 0; i < elements.count; ++i) {
@@ -114,7 +119,9 @@ int MeshReader::index_array(int accessor, const std::string& place) {
     std::memcpy(&value, &elements.data[i * size], size);
     largest = std::max(largest, value);
   }
-  const traces::IndexType type = size == 1 ? traces::IndexType::kUint8 : size == 2 ? traces::IndexType::kUint16 : traces::IndexType::kUint32;
+  const traces::IndexType type = size == 1   ? traces::IndexType::kUint8
+                                 : size == 2 ? traces::IndexType::kUint16
+                                             : traces::IndexType::kUint32;
   const int array = add_array({{}, traces::Format::kUndefined, elements.count, std::move(elements.data)}, place);
   largest_index_[array] = largest;
   index_arrays_[accessor] = {array, type};
@@ -123,7 +130,8 @@ int MeshReader::index_array(int accessor, const std::string& place) {
 
 int MeshReader::material(int index, const std::string& place) {
   if (index < -1 || index >= static_cast<int>(file_.model.materials.size())) {
-    throw user_error("{}: {}.material: material {} does not exist (the file has {})", file_.path, place, index, file_.model.materials.size());
+    throw user_error("{}: {}.material: material {} does not exist (the file has {})", file_.path, place, index,
+                     file_.model.materials.size());
   }
   const auto [entry, added] = materials_.try_emplace(index, static_cast<int>(scene_.materials.size()));
   if (added) scene_.materials.push_back(index < 0 ? Material{} : read_material(file_, static_cast<std::size_t>(index)));

@@ -34,9 +34,9 @@ class MeshReader {
   std::map<int, std::vector<std::uint32_t>> meshes_;
   std::map<std::pair<int, Semantic>, int> vertex_arrays_;
   std::map<int, std::pair<int, traces::IndexType>> index_arrays_;
-  std::map<int, std::uint32_t> largest_index_;   ///< by index array
-  std::map<int, int> materials_;                 ///< the file's number (-1: the default material) to the scene's
-  std::map<int, Bounds> bounds_;                 ///< by position array
+  std::map<int, std::uint32_t> largest_index_;  ///< by index array
+  std::map<int, int> materials_;                ///< the file's number (-1: the default material) to the scene's
+  std::map<int, Bounds> bounds_;                ///< by position array
   std::uint64_t total_bytes_ = 0;
 };
 

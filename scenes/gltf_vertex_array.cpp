@@ -105,7 +105,8 @@ std::vector<std::byte> as_floats(const Elements& e) {
 void require_finite(const GltfFile& file, const Elements& e, const std::string& place) {
   if (e.component != Component::kFloat) return;
   for (std::size_t i = 0; i < e.count * e.components; ++i) {
-    if (!std::isfinite(load<float>(&e.data[4 * i]))) throw user_error("{}: {}: element {} is not finite", file.path, place, i / e.components);
+    if (!std::isfinite(load<float>(&e.data[4 * i])))
+      throw user_error("{}: {}: element {} is not finite", file.path, place, i / e.components);
   }
 }
 
@@ -118,11 +119,13 @@ float component_value(const Elements& elements, std::size_t element, std::size_t
 
 Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic semantic, const std::string& place) {
   if (!allowed_type(elements, semantic)) {
-    throw user_error("{}: {}: {} components of this type are not allowed for {}", file.path, place, elements.components, semantic_name(semantic));
+    throw user_error("{}: {}: {} components of this type are not allowed for {}", file.path, place, elements.components,
+                     semantic_name(semantic));
   }
   require_finite(file, elements, place);
   const Format native = native_format(elements, semantic);
-  if (native == Format::kUndefined) return {semantic_name(semantic), float_format(elements.components), elements.count, as_floats(elements)};
+  if (native == Format::kUndefined)
+    return {semantic_name(semantic), float_format(elements.components), elements.count, as_floats(elements)};
   return {semantic_name(semantic), native, elements.count, elements.components == 3 ? padded(elements) : elements.data};
 }
 

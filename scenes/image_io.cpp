@@ -53,7 +53,8 @@ Module open_module() {
     }
     reasons += fmt::format(" {}", dlerror());
   }
-  throw user_error("{}: not found beside the program, in ../lib or in the build folder; image files cannot be read or written{}", kModuleName, reasons);
+  throw user_error("{}: not found beside the program, in ../lib or in the build folder; image files cannot be read or written{}",
+                   kModuleName, reasons);
 }
 
 const Module& module() {
@@ -92,7 +93,8 @@ std::string format_of(std::span<const std::byte> bytes, const std::string& name)
 /// libjpeg fills a truncated file with grey and goes on, so the end marker is looked for here. [ITU-T T.81 B.1.1.3: EOI]
 void require_jpeg_end(std::span<const std::byte> bytes, const std::string& name) {
   constexpr std::array<std::byte, 2> kEndOfImage{std::byte{0xff}, std::byte{0xd9}};
-  if (std::ranges::find_end(bytes, kEndOfImage).empty()) throw user_error("{}: the JPEG image is truncated", name);
+  if (std::find_end(bytes.begin(), bytes.end(), kEndOfImage.begin(), kEndOfImage.end()) == bytes.end())
+    throw user_error("{}: the JPEG image is truncated", name);
 }
 
 QuadrilleImage decode(std::span<const std::byte> bytes, const std::string& name, bool as_float) {
@@ -107,7 +109,8 @@ QuadrilleImage decode(std::span<const std::byte> bytes, const std::string& name,
 
 void encode(const std::string& path, const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float) {
   QuadrilleImage result{};
-  if (!module().encode(pixels, width, height, channels, as_float, &result)) throw user_error("{}: cannot be encoded: {}", path, result.error);
+  if (!module().encode(pixels, width, height, channels, as_float, &result))
+    throw user_error("{}: cannot be encoded: {}", path, result.error);
   const Held held(result.data);
   traces::write_whole_file(path, {static_cast<const std::byte*>(result.data), result.size});
 }
@@ -131,13 +134,14 @@ FloatImage load_float_image(const std::string& path) {
 }
 
 void save_png(const std::string& path, const Rgba8Image& image) {
-  QUADRILLE_CHECK(image.pixels.size() == std::size_t{4} * image.width * image.height, "{}x{} with {} bytes", image.width, image.height, image.pixels.size());
+  QUADRILLE_CHECK(image.pixels.size() == std::size_t{4} * image.width * image.height, "{}x{} with {} bytes", image.width, image.height,
+                  image.pixels.size());
   encode(path, image.pixels.data(), image.width, image.height, 4, false);
 }
 
 void save_exr(const std::string& path, const FloatImage& image) {
-  QUADRILLE_CHECK(image.pixels.size() == std::size_t{image.channels} * image.width * image.height, "{}x{}x{} with {} samples", image.width, image.height,
-                  image.channels, image.pixels.size());
+  QUADRILLE_CHECK(image.pixels.size() == std::size_t{image.channels} * image.width * image.height, "{}x{}x{} with {} samples", image.width,
+                  image.height, image.channels, image.pixels.size());
   encode(path, image.pixels.data(), image.width, image.height, image.channels, true);
 }
 

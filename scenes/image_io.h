@@ -17,12 +17,12 @@ inline constexpr std::uint32_t kMaxImageSide = 16384;
 /// 8-bit RGBA, rows top to bottom, tightly packed, values as in the file (sRGB-encoded where the file is).
 struct Rgba8Image {
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint8_t> pixels;   ///< 4 * width * height
+  std::vector<std::uint8_t> pixels;  ///< 4 * width * height
 };
 /// Floating-point samples, rows top to bottom, channels interleaved.
 struct FloatImage {
   std::uint32_t width = 0, height = 0, channels = 1;
-  std::vector<float> pixels;          ///< channels * width * height
+  std::vector<float> pixels;  ///< channels * width * height
 };
 
 /// Decodes PNG, JPEG, ... from memory. Grey becomes r=g=b, missing alpha 255; 16-bit and float files are rounded to 8 bits.

@@ -20,7 +20,6 @@ namespace {
 constexpr std::array<const char*, kTextureSlots> kSlotNames{"BASE_COLOR", "METALLIC_ROUGHNESS", "NORMAL", "OCCLUSION", "EMISSIVE"};
 constexpr std::array<const char*, kSemantics> kAttributeDefines{"", "HAS_NORMAL", "HAS_TANGENT", "HAS_UV0", "HAS_UV1", "HAS_COLOR"};
 constexpr std::uint64_t kMaxShaderBytes = 1 << 24;
-constexpr std::size_t kNoSlot = kTextureSlots;
 
 constexpr std::size_t at(Semantic semantic) { return static_cast<std::size_t>(semantic); }
 constexpr std::size_t at(TextureSlot slot) { return static_cast<std::size_t>(slot); }
@@ -31,7 +30,8 @@ bool emits(const Material& m) { return m.emissive != glm::vec3(0); }
 bool shares_occlusion(const Material& m) {
   const TextureUse& a = m.texture(TextureSlot::kMetallicRoughness);
   const TextureUse& b = m.texture(TextureSlot::kOcclusion);
-  return a.image >= 0 && a.image == b.image && a.sampler == b.sampler && a.uv_set == b.uv_set && a.transformed == b.transformed && a.u_row == b.u_row && a.v_row == b.v_row;
+  return a.image >= 0 && a.image == b.image && a.sampler == b.sampler && a.uv_set == b.uv_set && a.transformed == b.transformed &&
+         a.u_row == b.u_row && a.v_row == b.v_row;
 }
 
 bool wants_texture(const Material& m, std::size_t slot, ShaderSet set) {
@@ -54,7 +54,8 @@ void choose_textures(Variant& v, const Material& m, const Primitive& p, ShaderSe
     if (use.image < 0 || p.attributes[uv] < 0 || !wants_texture(m, slot, set)) continue;
     v.textures[slot] = v.attributes[uv] = true;
     const std::string name = fmt::format("v_uv{}", use.uv_set);
-    v.defines.push_back(fmt::format("{}_UV {}", kSlotNames[slot], use.transformed ? fmt::format("transform_uv({}, {})", slot, name) : name));
+    v.defines.push_back(
+        fmt::format("{}_UV {}", kSlotNames[slot], use.transformed ? fmt::format("transform_uv({}, {})", slot, name) : name));
   }
 }
 
@@ -117,16 +118,19 @@ ShaderLibrary::Source ShaderLibrary::read_source(const std::string& path) {
   return {path, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), {}, {}};
 }
 
-ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines, std::vector<traces::Shader>& shaders) : shaders_(shaders) {
+ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines, std::vector<traces::Shader>& shaders)
+    : shaders_(shaders) {
   const bool user = !options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility);
   set_ = user ? ShaderSet::kUser : options.visibility ? ShaderSet::kVisibility : ShaderSet::kMaterial;
   const std::string interface(kInterfaceGlsl);
-  vertex_ = options.vertex_shader.empty() ? Source{"material.vert", interface + std::string(kMaterialVert), {}, {}} : read_source(options.vertex_shader);
+  vertex_ = options.vertex_shader.empty() ? Source{"material.vert", interface + std::string(kMaterialVert), {}, {}}
+                                          : read_source(options.vertex_shader);
   const std::string inputs = interface + std::string(kMaterialGlsl);
   if (options.visibility) {
     fragment_ = {"visibility.frag", inputs + std::string(kVisibilityFrag), {}, {}};
   } else {
-    fragment_ = options.fragment_shader.empty() ? Source{"material.frag", inputs + std::string(kMaterialFrag), {}, {}} : read_source(options.fragment_shader);
+    fragment_ = options.fragment_shader.empty() ? Source{"material.frag", inputs + std::string(kMaterialFrag), {}, {}}
+                                                : read_source(options.fragment_shader);
   }
   // The materials' vertex shader does not depend on the lights beyond the size of their array.
   vertex_.frame_defines = options.vertex_shader.empty() ? std::vector<std::string>{frame_defines.front()} : frame_defines;
@@ -143,7 +147,8 @@ traces::Index ShaderLibrary::shader(traces::ShaderStage stage, const Variant& va
   }
   const std::string key = source.spirv.empty() ? fmt::format("{}", fmt::join(defines, ";")) : std::string();
   const auto [entry, added] = compiled_.try_emplace({stage, key}, static_cast<traces::Index>(shaders_.size()));
-  if (added) shaders_.push_back({source.name, stage, source.spirv.empty() ? compile_glsl(source.glsl, stage, source.name, defines) : source.spirv});
+  if (added)
+    shaders_.push_back({source.name, stage, source.spirv.empty() ? compile_glsl(source.glsl, stage, source.name, defines) : source.spirv});
   return entry->second;
 }
 

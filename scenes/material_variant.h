@@ -17,9 +17,9 @@
 namespace quadrille::scenes {
 
 struct Variant {
-  std::array<bool, kSemantics> attributes{};      ///< vertex streams that the shaders read
-  std::array<bool, kTextureSlots> textures{};     ///< texture slots that the fragment shader samples
-  std::vector<std::string> defines;               ///< of both stages
+  std::array<bool, kSemantics> attributes{};   ///< vertex streams that the shaders read
+  std::array<bool, kTextureSlots> textures{};  ///< texture slots that the fragment shader samples
+  std::vector<std::string> defines;            ///< of both stages
   friend bool operator==(const Variant&, const Variant&) = default;
 };
 
@@ -42,7 +42,7 @@ class ShaderLibrary {
  private:
   struct Source {
     std::string name, glsl;
-    std::vector<std::uint32_t> spirv;   ///< instead of GLSL
+    std::vector<std::uint32_t> spirv;  ///< instead of GLSL
     std::vector<std::string> frame_defines;
   };
   [[nodiscard]] traces::Index shader(traces::ShaderStage stage, const Variant& variant);

@@ -10,7 +10,8 @@ namespace quadrille::scenes {
 namespace {
 
 template <class T, class Get>
-int add_stream(SceneData& scene, const std::string& name, traces::Format format, const std::vector<MeshBuilder::Vertex>& vertices, const Get& get) {
+int add_stream(SceneData& scene, const std::string& name, traces::Format format, const std::vector<MeshBuilder::Vertex>& vertices,
+               const Get& get) {
   std::vector<std::byte> data(vertices.size() * sizeof(T));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const T value = get(vertices[i]);
@@ -72,8 +73,12 @@ void MeshBuilder::box(const glm::vec3& low, const glm::vec3& high, float uv_scal
   struct Face {
     glm::vec3 right, down;
   };
-  constexpr std::array<Face, 6> kFaces{{{{1, 0, 0}, {0, -1, 0}}, {{-1, 0, 0}, {0, -1, 0}}, {{0, 0, -1}, {0, -1, 0}},
-                                        {{0, 0, 1}, {0, -1, 0}}, {{1, 0, 0}, {0, 0, 1}}, {{1, 0, 0}, {0, 0, -1}}}};
+  constexpr std::array<Face, 6> kFaces{{{{1, 0, 0}, {0, -1, 0}},
+                                        {{-1, 0, 0}, {0, -1, 0}},
+                                        {{0, 0, -1}, {0, -1, 0}},
+                                        {{0, 0, 1}, {0, -1, 0}},
+                                        {{1, 0, 0}, {0, 0, 1}},
+                                        {{1, 0, 0}, {0, 0, -1}}}};
   const glm::vec3 center = 0.5F * (low + high), half = 0.5F * (high - low);
   for (const Face& face : kFaces) {
     const glm::vec3 normal = glm::cross(face.down, face.right);
@@ -90,8 +95,10 @@ std::uint32_t MeshBuilder::finish(SceneData& scene, const std::string& name, int
   p.name = name;
   p.material = material;
   p.count = static_cast<std::uint32_t>(indices_.size());
-  const auto stream = [&]<class T>(Semantic semantic, bool wanted, const char* suffix, traces::Format format, T Vertex::* member) {
-    if (wanted) p.attributes[static_cast<std::size_t>(semantic)] = add_stream<T>(scene, name + suffix, format, vertices_, [&](const Vertex& v) { return v.*member; });
+  const auto stream = [&]<class T>(Semantic semantic, bool wanted, const char* suffix, traces::Format format, T Vertex::*member) {
+    if (wanted)
+      p.attributes[static_cast<std::size_t>(semantic)] =
+          add_stream<T>(scene, name + suffix, format, vertices_, [&](const Vertex& v) { return v.*member; });
   };
   stream(Semantic::kPosition, true, ".position", traces::Format::kR32G32B32Float, &Vertex::position);
   stream(Semantic::kNormal, streams.normal, ".normal", traces::Format::kR32G32B32Float, &Vertex::normal);
@@ -100,14 +107,17 @@ std::uint32_t MeshBuilder::finish(SceneData& scene, const std::string& name, int
   stream(Semantic::kColor, streams.color, ".color", traces::Format::kR32G32B32A32Float, &Vertex::color);
   const bool small = vertices_.size() <= 0xffff;
   p.index_type = small ? traces::IndexType::kUint16 : traces::IndexType::kUint32;
-  scene.arrays.push_back({name + ".indices", traces::Format::kUndefined, p.count, small ? narrowed<std::uint16_t>(indices_) : narrowed<std::uint32_t>(indices_)});
+  scene.arrays.push_back({name + ".indices", traces::Format::kUndefined, p.count,
+                          small ? narrowed<std::uint16_t>(indices_) : narrowed<std::uint32_t>(indices_)});
   p.indices = static_cast<int>(scene.arrays.size() - 1);
   for (const Vertex& v : vertices_) p.bounds.add(v.position);
   scene.primitives.push_back(std::move(p));
   return static_cast<std::uint32_t>(scene.primitives.size() - 1);
 }
 
-void place(SceneData& scene, std::uint32_t primitive, const glm::mat4& world) { scene.instances.push_back({primitive, world, scene.primitives[primitive].name}); }
+void place(SceneData& scene, std::uint32_t primitive, const glm::mat4& world) {
+  scene.instances.push_back({primitive, world, scene.primitives[primitive].name});
+}
 
 int add_image(SceneData& scene, const std::string& name, Rgba8Image image) {
   scene.image_names.push_back(name);

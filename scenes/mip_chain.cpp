@@ -9,12 +9,12 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::size_t kEncodeSteps = 16384;   // fine enough that the nearest of the 255 thresholds is one comparison away
+constexpr std::size_t kEncodeSteps = 16384;  // fine enough that the nearest of the 255 thresholds is one comparison away
 
 struct Tables {
   std::array<float, 256> srgb_decode{}, plain_decode{};
-  std::array<std::uint8_t, kEncodeSteps + 1> first_code{};   ///< a code that is at most right for the smallest value of the step
-  std::array<float, 257> threshold{};                        ///< linear values from threshold[c] on encode to at least c
+  std::array<std::uint8_t, kEncodeSteps + 1> first_code{};  ///< a code that is at most right for the smallest value of the step
+  std::array<float, 257> threshold{};                       ///< linear values from threshold[c] on encode to at least c
 
   Tables() {
     for (std::size_t c = 0; c < 256; ++c) {
@@ -22,7 +22,7 @@ struct Tables {
       plain_decode[c] = static_cast<float>(static_cast<double>(c) / 255);
       threshold[c] = c == 0 ? 0.0F : static_cast<float>(srgb_to_linear((static_cast<double>(c) - 0.5) / 255));
     }
-    threshold[256] = 2;   // no linear value in 0..1 reaches it
+    threshold[256] = 2;  // no linear value in 0..1 reaches it
     std::size_t code = 0;
     for (std::size_t step = 0; step <= kEncodeSteps; ++step) {
       const float low = static_cast<float>(step) / kEncodeSteps;
@@ -48,7 +48,7 @@ std::uint8_t encode_plain(float value) { return static_cast<std::uint8_t>(value 
 
 struct FloatLevel {
   std::uint32_t width = 0, height = 0;
-  std::vector<float> texels;   ///< rgba
+  std::vector<float> texels;  ///< rgba
 };
 
 /// The up to three source texels of a target texel along one axis, with weights that add up to one.
@@ -81,7 +81,7 @@ void encode(const FloatLevel& level, bool srgb, std::byte* out) {
   const Tables& table = tables();
   for (std::size_t i = 0; i < level.texels.size(); i += 4) {
     for (std::size_t c = 0; c < 4; ++c) {
-      const float value = std::min(level.texels[i + c], 1.0F);   // sums of weights may round above one
+      const float value = std::min(level.texels[i + c], 1.0F);  // sums of weights may round above one
       out[i + c] = static_cast<std::byte>(srgb && c < 3 ? table.encode_srgb(value) : encode_plain(value));
     }
   }
@@ -144,7 +144,9 @@ double srgb_to_linear(double encoded) { return encoded <= 0.04045 ? encoded / 12
 
 double linear_to_srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
 
-std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height) { return static_cast<std::uint32_t>(std::bit_width(std::max(width, height))); }
+std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height) {
+  return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
+}
 
 std::vector<std::byte> build_mip_chain(const Rgba8Image& image, bool srgb) {
   std::vector<std::byte> chain(image.pixels.size());

@@ -19,14 +19,13 @@ void parallel_for(std::size_t count, const Work& work) {
     for (std::size_t i = next++; i < count; i = next++) {
       try {
         work(i);
-      } catch (...) {
-        failures[i] = std::current_exception();
-      }
+      } catch (...) { failures[i] = std::current_exception(); }
     }
   };
   {
     std::vector<std::jthread> threads;
-    const std::size_t helpers = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), std::max<std::size_t>(count, 1)) - 1;
+    const std::size_t helpers =
+        std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), std::max<std::size_t>(count, 1)) - 1;
     for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(run);
     run();
   }

@@ -109,7 +109,7 @@ Rgba8Image paint_normals(std::uint32_t size, float depth, const std::function<fl
   for (std::uint32_t y = 0; y < size; ++y) {
     for (std::uint32_t x = 0; x < size; ++x) {
       const float du = sample(x + 1, y) - sample(x + size - 1, y), dv = sample(x, y + 1) - sample(x, y + size - 1);
-      const glm::vec3 n = glm::normalize(glm::vec3(-du * slope, dv * slope, 1));   // green points up, against v
+      const glm::vec3 n = glm::normalize(glm::vec3(-du * slope, dv * slope, 1));  // green points up, against v
       for (int i = 0; i < 3; ++i) image.pixels.push_back(to_byte(0.5F * n[i] + 0.5F));
       image.pixels.push_back(255);
     }

@@ -29,7 +29,8 @@ struct MaterialBlock {
 };
 
 MaterialBlock material_values(const Material& m) {
-  MaterialBlock block{m.base_color, glm::vec4(m.emissive, m.alpha_cutoff), {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength}, {}};
+  MaterialBlock block{
+      m.base_color, glm::vec4(m.emissive, m.alpha_cutoff), {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength}, {}};
   for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
     block.uv_rows[2 * slot] = glm::vec4(m.textures[slot].u_row, 0);
     block.uv_rows[2 * slot + 1] = glm::vec4(m.textures[slot].v_row, 0);
@@ -44,7 +45,9 @@ std::vector<std::byte> bytes_of(const T& value, std::size_t size = sizeof(T)) {
   return bytes;
 }
 
-bool is_srgb(std::size_t slot) { return slot == static_cast<std::size_t>(TextureSlot::kBaseColor) || slot == static_cast<std::size_t>(TextureSlot::kEmissive); }
+bool is_srgb(std::size_t slot) {
+  return slot == static_cast<std::size_t>(TextureSlot::kBaseColor) || slot == static_cast<std::size_t>(TextureSlot::kEmissive);
+}
 
 bool mirrors(const glm::mat4& world) { return glm::determinant(glm::mat3(world)) < 0; }
 
@@ -58,23 +61,35 @@ std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world) {
   return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0), glm::vec4(columns[2] * scale, 0)};
 }
 
-const traces::BlendState kOver{true, traces::BlendFactor::kSrcAlpha, traces::BlendFactor::kOneMinusSrcAlpha, traces::BlendFactor::kOne,
-                               traces::BlendFactor::kOneMinusSrcAlpha, traces::BlendOp::kAdd, traces::BlendOp::kAdd, 0xf};
+const traces::BlendState kOver{true,
+                               traces::BlendFactor::kSrcAlpha,
+                               traces::BlendFactor::kOneMinusSrcAlpha,
+                               traces::BlendFactor::kOne,
+                               traces::BlendFactor::kOneMinusSrcAlpha,
+                               traces::BlendOp::kAdd,
+                               traces::BlendOp::kAdd,
+                               0xf};
 
 }  // namespace
 
 Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
-    : scene_(scene), options_(options), view_(make_view(scene, options)), lights_(frame_lights(scene, view_)),
-      shaders_(options, frame_defines(view_, lights_), stream_.shaders), bound_(kVertexSlot + kSemantics, traces::EndPass{}) {}
+    : scene_(scene),
+      options_(options),
+      view_(make_view(scene, options)),
+      lights_(frame_lights(scene, view_)),
+      shaders_(options, frame_defines(view_, lights_), stream_.shaders),
+      bound_(kVertexSlot + kSemantics, traces::EndPass{}) {}
 
 traces::CommandStream Recorder::record() {
   stream_.name = scene_.name;
-  stream_.targets.push_back({options_.width, options_.height, options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
+  stream_.targets.push_back({options_.width, options_.height,
+                             options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
                              scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
   record_arrays();
   record_textures();
   const glm::vec3& back = scene_.background;
-  const std::array<float, 4> clear = options_.visibility ? std::array<float, 4>{0, 0, 0, 0} : std::array<float, 4>{back.r, back.g, back.b, 1};
+  const std::array<float, 4> clear =
+      options_.visibility ? std::array<float, 4>{0, 0, 0, 0} : std::array<float, 4>{back.r, back.g, back.b, 1};
   stream_.commands.emplace_back(traces::BeginPass{0, clear, 1});
   stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width), static_cast<float>(options_.height), 0, 1});
   stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
@@ -86,7 +101,7 @@ traces::CommandStream Recorder::record() {
 
 std::vector<std::size_t> Recorder::draw_order() const {
   std::vector<std::size_t> order;
-  std::vector<std::pair<float, std::size_t>> blended;   // distance along the view direction, instance
+  std::vector<std::pair<float, std::size_t>> blended;  // distance along the view direction, instance
   for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
     const Primitive& primitive = scene_.primitives[scene_.instances[i].primitive];
     if (scene_.materials[static_cast<std::size_t>(primitive.material)].alpha != AlphaMode::kBlend) {
@@ -119,7 +134,8 @@ void Recorder::record_textures() {
     const Primitive& primitive = scene_.primitives[instance.primitive];
     const Variant& v = variant(primitive);
     for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
-      if (v.textures[slot]) used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image, is_srgb(slot)});
+      if (v.textures[slot])
+        used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image, is_srgb(slot)});
     }
   }
   const std::vector<TextureKey> keys(used.begin(), used.end());
@@ -127,8 +143,12 @@ void Recorder::record_textures() {
   parallel_for(keys.size(), [&](std::size_t i) {
     const auto source = static_cast<std::size_t>(keys[i].image);
     const Rgba8Image& image = scene_.images[source];
-    stream_.images[i] = {scene_.image_names[source], keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm, image.width, image.height,
-                         full_chain_levels(image.width, image.height), build_mip_chain(image, keys[i].srgb)};
+    stream_.images[i] = {scene_.image_names[source],
+                         keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm,
+                         image.width,
+                         image.height,
+                         full_chain_levels(image.width, image.height),
+                         build_mip_chain(image, keys[i].srgb)};
   });
   for (std::size_t i = 0; i < keys.size(); ++i) textures_[keys[i]] = static_cast<traces::Index>(i);
 }
@@ -160,7 +180,8 @@ traces::Index Recorder::material_block(int material) {
 }
 
 traces::Index Recorder::material_set(int material, const Variant& v) {
-  const auto [entry, added] = material_sets_.try_emplace({material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  const auto [entry, added] =
+      material_sets_.try_emplace({material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
   if (!added) return entry->second;
   traces::DescriptorSet set{{{0, material_block(material), 0, sizeof(MaterialBlock)}}, {}};
   for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
@@ -205,7 +226,8 @@ void Recorder::bind_geometry(const Primitive& primitive, const Variant& v) {
   for (std::uint32_t i = 0; i < kSemantics; ++i) {
     if (v.attributes[i]) bind_once(traces::BindVertexBuffer{i, static_cast<traces::Index>(primitive.attributes[i]), 0}, kVertexSlot + i);
   }
-  if (primitive.indices >= 0) bind_once(traces::BindIndexBuffer{static_cast<traces::Index>(primitive.indices), 0, primitive.index_type}, kIndexSlot);
+  if (primitive.indices >= 0)
+    bind_once(traces::BindIndexBuffer{static_cast<traces::Index>(primitive.indices), 0, primitive.index_type}, kIndexSlot);
 }
 
 void Recorder::push_constants(const Instance& instance) {
@@ -216,7 +238,9 @@ void Recorder::push_constants(const Instance& instance) {
 void Recorder::record_instance(const Instance& instance) {
   const Primitive& primitive = scene_.primitives[instance.primitive];
   const Variant& v = variant(primitive);
-  bind_once(traces::BindPipeline{pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], v, mirrors(instance.world))}, kPipelineSlot);
+  bind_once(
+      traces::BindPipeline{pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], v, mirrors(instance.world))},
+      kPipelineSlot);
   bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, v)}, kSetSlot);
   bind_geometry(primitive, v);
   push_constants(instance);

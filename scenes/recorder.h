@@ -17,7 +17,7 @@ namespace quadrille::scenes {
 /// Push constants of every draw (`PerDraw` of scenes/shaders/interface.glsl).
 struct DrawConstants {
   glm::mat4 model{1};
-  std::array<glm::vec4, 3> normal_matrix{};   ///< columns of a mat3, 16 bytes apart
+  std::array<glm::vec4, 3> normal_matrix{};  ///< columns of a mat3, 16 bytes apart
   std::uint32_t draw_id = 0, first_triangle = 0;
   float handedness = 1;
 };
@@ -58,10 +58,10 @@ class Recorder {
   traces::CommandStream stream_;
   ShaderLibrary shaders_;
   std::map<TextureKey, traces::Index> textures_;
-  std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;               ///< by material and available attributes
+  std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;  ///< by material and available attributes
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
-  std::vector<traces::Command> bound_;   ///< what each slot holds, to leave out repeated binds
+  std::vector<traces::Command> bound_;  ///< what each slot holds, to leave out repeated binds
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::string_view kBuiltinPrefix = "builtin:";
 constexpr std::uint32_t kMaxTargetSide = 16384;
-constexpr std::uint32_t kIdFactor = 2654435761u;          // odd, so multiplication is a bijection [P: Knuth, The Art of Computer Programming 3, §6.4]
-constexpr std::uint32_t kIdFactorInverse = 244002641u;    // kIdFactor * kIdFactorInverse = 1 mod 2^32
+constexpr std::uint32_t kIdFactor =
+    2654435761u;  // odd, so multiplication is a bijection [P: Knuth, The Art of Computer Programming 3, §6.4]
+constexpr std::uint32_t kIdFactorInverse = 244002641u;  // kIdFactor * kIdFactorInverse = 1 mod 2^32
 static_assert(kIdFactor * kIdFactorInverse == 1u);
 
 bool finite(const std::optional<glm::vec3>& v) { return !v || (std::isfinite(v->x) && std::isfinite(v->y) && std::isfinite(v->z)); }
@@ -30,7 +31,8 @@ void check(const SceneOptions& options) {
 
 traces::CommandStream load_scene(const std::string& file_or_builtin, const SceneOptions& options) {
   check(options);
-  SceneData scene = file_or_builtin.starts_with(kBuiltinPrefix) ? build_builtin(file_or_builtin.substr(kBuiltinPrefix.size())) : load_gltf(file_or_builtin);
+  SceneData scene = file_or_builtin.starts_with(kBuiltinPrefix) ? build_builtin(file_or_builtin.substr(kBuiltinPrefix.size()))
+                                                                : load_gltf(file_or_builtin);
   scene.name = file_or_builtin;
   traces::CommandStream stream = Recorder(scene, options).record();
   traces::validate(stream);

@@ -18,9 +18,10 @@
 namespace quadrille::scenes {
 
 struct SceneOptions {
-  std::uint32_t width = 1920, height = 1080;   ///< pixels, 1..16384
-  int camera = -1;                             ///< index into the file's cameras; -1: the first one a node carries, else one that frames the scene
-  std::optional<glm::vec3> eye, at;            ///< world space; either one makes an own camera (60 degrees high); the other defaults to the centre / the framing eye
+  std::uint32_t width = 1920, height = 1080;  ///< pixels, 1..16384
+  int camera = -1;  ///< index into the file's cameras; -1: the first one a node carries, else one that frames the scene
+  std::optional<glm::vec3> eye,
+      at;  ///< world space; either one makes an own camera (60 degrees high); the other defaults to the centre / the framing eye
   bool visibility = false;                     ///< draw triangle ids instead of colours (see `triangle_id_color`)
   std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
 };

@@ -41,7 +41,7 @@ inline constexpr std::size_t kSemantics = 6;
 /// One tightly packed stream of vertex attributes or indices; primitives share them.
 struct Array {
   std::string name;
-  traces::Format format = traces::Format::kUndefined;   ///< attributes; indices have none
+  traces::Format format = traces::Format::kUndefined;  ///< attributes; indices have none
   std::uint32_t count = 0;
   std::vector<std::byte> data;
 };
@@ -49,12 +49,12 @@ struct Array {
 struct Primitive {
   std::string name;
   traces::Topology topology = traces::Topology::kTriangleList;
-  std::array<int, kSemantics> attributes{-1, -1, -1, -1, -1, -1};   ///< into `SceneData::arrays`; -1: absent
-  int indices = -1;                                                 ///< into `SceneData::arrays`; -1: none
+  std::array<int, kSemantics> attributes{-1, -1, -1, -1, -1, -1};  ///< into `SceneData::arrays`; -1: absent
+  int indices = -1;                                                ///< into `SceneData::arrays`; -1: none
   traces::IndexType index_type = traces::IndexType::kUint16;
-  std::uint32_t count = 0;                                          ///< indices, or vertices without them
+  std::uint32_t count = 0;  ///< indices, or vertices without them
   int material = 0;
-  Bounds bounds;                                                    ///< model space
+  Bounds bounds;  ///< model space
 };
 
 /// Texture roles; the shader binds slot i at binding 1 + i.
@@ -62,11 +62,11 @@ enum class TextureSlot : std::uint8_t { kBaseColor, kMetallicRoughness, kNormal,
 inline constexpr std::size_t kTextureSlots = 5;
 
 struct TextureUse {
-  int image = -1;   ///< into `SceneData::images`; -1: none
+  int image = -1;  ///< into `SceneData::images`; -1: none
   traces::Sampler sampler;
   int uv_set = 0;
   bool transformed = false;
-  glm::vec3 u_row{1, 0, 0}, v_row{0, 1, 0};   ///< u' = dot(u_row, (u, v, 1)), likewise v'
+  glm::vec3 u_row{1, 0, 0}, v_row{0, 1, 0};  ///< u' = dot(u_row, (u, v, 1)), likewise v'
 };
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
@@ -93,21 +93,21 @@ struct Instance {
 struct Light {
   enum class Kind : std::uint8_t { kDirectional, kPoint, kSpot };
   Kind kind = Kind::kDirectional;
-  glm::vec3 color{1};          ///< times intensity: lux (directional) or candela
+  glm::vec3 color{1};  ///< times intensity: lux (directional) or candela
   glm::vec3 position{0};
-  glm::vec3 direction{0, 0, -1};   ///< the way light travels, unit length
-  float range = 0;             ///< metres; 0: unlimited
-  float inner_cone = 0, outer_cone = 0.7853982F;   ///< radians, spot
+  glm::vec3 direction{0, 0, -1};                  ///< the way light travels, unit length
+  float range = 0;                                ///< metres; 0: unlimited
+  float inner_cone = 0, outer_cone = 0.7853982F;  ///< radians, spot
 };
 
 struct Camera {
   std::string name;
   bool perspective = true;
-  double yfov = 1.0471975511965976;   ///< radians
-  double half_height = 1;             ///< orthographic
+  double yfov = 1.0471975511965976;  ///< radians
+  double half_height = 1;            ///< orthographic
   double near = 0.1;
-  std::optional<double> far = 100;    ///< none: infinite (perspective)
-  std::optional<glm::mat4> pose;      ///< the node's world matrix; none: no node carries it
+  std::optional<double> far = 100;  ///< none: infinite (perspective)
+  std::optional<glm::mat4> pose;    ///< the node's world matrix; none: no node carries it
 };
 
 /// Light from everywhere, as the material shader knows it: radiance from straight above and from straight below.
@@ -127,7 +127,7 @@ struct SceneData {
   std::vector<Camera> cameras;
   Environment environment;
   glm::vec3 background{0.30F, 0.42F, 0.58F};
-  bool depth = true;              ///< false: draw without depth test and depth attachment
+  bool depth = true;  ///< false: draw without depth test and depth attachment
   /// The box around all instances, world space.
   [[nodiscard]] Bounds bounds() const;
 };

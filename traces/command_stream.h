@@ -14,16 +14,25 @@
 
 namespace quadrille::traces {
 
-using Index = std::uint32_t;   ///< into one of the tables of `CommandStream`
+using Index = std::uint32_t;  ///< into one of the tables of `CommandStream`
 
 enum class Format : std::uint8_t {
   kUndefined,
   // Images. Each texel is 4 bytes; depth is one 32-bit float.
-  kR8G8B8A8Unorm, kR8G8B8A8Srgb, kD32Float,
+  kR8G8B8A8Unorm,
+  kR8G8B8A8Srgb,
+  kD32Float,
   // Vertex attributes.
-  kR32Float, kR32G32Float, kR32G32B32Float, kR32G32B32A32Float,
-  kR8G8Unorm, kR8G8B8A8UnormVertex, kR16G16Unorm, kR16G16B16A16Unorm,
-  kR8G8B8A8Snorm, kR16G16B16A16Snorm
+  kR32Float,
+  kR32G32Float,
+  kR32G32B32Float,
+  kR32G32B32A32Float,
+  kR8G8Unorm,
+  kR8G8B8A8UnormVertex,
+  kR16G16Unorm,
+  kR16G16B16A16Unorm,
+  kR8G8B8A8Snorm,
+  kR16G16B16A16Snorm
 };
 /// Bytes of a texel or of a vertex attribute.
 [[nodiscard]] std::uint32_t format_bytes(Format format);
@@ -58,20 +67,29 @@ enum class ShaderStage : std::uint8_t { kVertex, kFragment };
 struct Shader {
   std::string name;
   ShaderStage stage = ShaderStage::kVertex;
-  std::vector<std::uint32_t> spirv;   ///< entry point "main"
+  std::vector<std::uint32_t> spirv;  ///< entry point "main"
   friend bool operator==(const Shader&, const Shader&) = default;
 };
 
 enum class Topology : std::uint8_t { kTriangleList, kTriangleStrip, kTriangleFan };
 enum class CullMode : std::uint8_t { kNone, kFront, kBack };
-enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };   ///< as Vulkan: by signed area in framebuffer coordinates (y down)
+enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };  ///< as Vulkan: by signed area in framebuffer coordinates (y down)
 enum class CompareOp : std::uint8_t { kNever, kLess, kEqual, kLessOrEqual, kGreater, kNotEqual, kGreaterOrEqual, kAlways };
 enum class BlendFactor : std::uint8_t {
-  kZero, kOne, kSrcColor, kOneMinusSrcColor, kDstColor, kOneMinusDstColor, kSrcAlpha, kOneMinusSrcAlpha, kDstAlpha, kOneMinusDstAlpha
+  kZero,
+  kOne,
+  kSrcColor,
+  kOneMinusSrcColor,
+  kDstColor,
+  kOneMinusDstColor,
+  kSrcAlpha,
+  kOneMinusSrcAlpha,
+  kDstAlpha,
+  kOneMinusDstAlpha
 };
 enum class BlendOp : std::uint8_t { kAdd, kSubtract, kReverseSubtract, kMin, kMax };
 
-inline constexpr Index kNone = 0xffffffffu;   ///< an index that names nothing (declared after the enumerations, whose kNone it would shadow)
+inline constexpr Index kNone = 0xffffffffu;  ///< an index that names nothing (declared after the enumerations, whose kNone it would shadow)
 
 struct VertexBinding {
   std::uint32_t binding = 0, stride = 0;
@@ -93,7 +111,7 @@ struct BlendState {
   bool enable = false;
   BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne, dst_alpha = BlendFactor::kZero;
   BlendOp color = BlendOp::kAdd, alpha = BlendOp::kAdd;
-  std::uint8_t write_mask = 0xf;   ///< bit 0 red .. bit 3 alpha
+  std::uint8_t write_mask = 0xf;  ///< bit 0 red .. bit 3 alpha
   friend bool operator==(const BlendState&, const BlendState&) = default;
 };
 struct Pipeline {
@@ -113,7 +131,7 @@ struct Pipeline {
 struct UniformBinding {
   std::uint32_t binding = 0;
   Index buffer = kNone;
-  std::uint32_t offset = 0, range = 0;   ///< bytes
+  std::uint32_t offset = 0, range = 0;  ///< bytes
   friend bool operator==(const UniformBinding&, const UniformBinding&) = default;
 };
 struct TextureDescriptor {
@@ -130,7 +148,7 @@ struct DescriptorSet {
 struct RenderTarget {
   std::uint32_t width = 0, height = 0;
   Format color = Format::kR8G8B8A8Srgb;
-  Format depth = Format::kD32Float;      ///< kUndefined: no depth attachment
+  Format depth = Format::kD32Float;  ///< kUndefined: no depth attachment
   friend bool operator==(const RenderTarget&, const RenderTarget&) = default;
 };
 
@@ -138,7 +156,7 @@ struct RenderTarget {
 /// Both attachments are cleared when the pass begins and stored when it ends.
 struct BeginPass {
   Index target = 0;
-  std::array<float, 4> clear_color{0, 0, 0, 1};   ///< linear values
+  std::array<float, 4> clear_color{0, 0, 0, 1};  ///< linear values
   float clear_depth = 1;
   friend bool operator==(const BeginPass&, const BeginPass&) = default;
 };
@@ -190,7 +208,8 @@ struct Draw {
   std::string label;
   friend bool operator==(const Draw&, const Draw&) = default;
 };
-using Command = std::variant<BeginPass, EndPass, BindPipeline, BindDescriptorSet, BindVertexBuffer, BindIndexBuffer, PushConstants, SetViewport, SetScissor, Draw>;
+using Command = std::variant<BeginPass, EndPass, BindPipeline, BindDescriptorSet, BindVertexBuffer, BindIndexBuffer, PushConstants,
+                             SetViewport, SetScissor, Draw>;
 
 struct CommandStream {
   std::string name;

@@ -47,8 +47,9 @@ std::string trace_info(const CommandStream& stream) {
   const StreamTotals totals = stream_totals(stream);
   std::string text = fmt::format("trace '{}'\n", stream.name);
   for (const RenderTarget& target : stream.targets) {
-    text += fmt::format("  target     {}x{}, {}, {}\n", target.width, target.height, target.color == Format::kR8G8B8A8Srgb ? "sRGB" : "UNORM",
-                        target.depth == Format::kUndefined ? "no depth" : "32-bit depth");
+    text +=
+        fmt::format("  target     {}x{}, {}, {}\n", target.width, target.height, target.color == Format::kR8G8B8A8Srgb ? "sRGB" : "UNORM",
+                    target.depth == Format::kUndefined ? "no depth" : "32-bit depth");
   }
   text += fmt::format("  buffers    {:6} {}\n", stream.buffers.size(), megabytes(totals.buffer_bytes));
   text += fmt::format("  images     {:6} {}\n", stream.images.size(), megabytes(totals.image_bytes));

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the trace file is little-endian and is copied as it lies in memory");
 
-constexpr std::uint64_t kMaxElements = std::uint64_t{1} << 23;   // of one table: bounds what a hostile count can make us allocate
+constexpr std::uint64_t kMaxElements = std::uint64_t{1} << 23;  // of one table: bounds what a hostile count can make us allocate
 
 class Writer {
  public:
@@ -69,7 +69,8 @@ class Reader {
   void choice(E& value, E last) {
     std::uint8_t byte = 0;
     copy(&byte, 1);
-    if (byte > static_cast<std::uint8_t>(last)) throw user_error("{}: byte {} is {}; the largest value there is {}", place_, at_ - 1, byte, static_cast<int>(last));
+    if (byte > static_cast<std::uint8_t>(last))
+      throw user_error("{}: byte {} is {}; the largest value there is {}", place_, at_ - 1, byte, static_cast<int>(last));
     value = static_cast<E>(byte);
   }
   template <class T>
@@ -99,7 +100,8 @@ class Reader {
   std::uint64_t length(std::size_t size) {
     std::uint64_t count = 0;
     number(count);
-    if (count > (bytes_.size() - at_) / size) throw user_error("{}: {} elements are announced at byte {} where {} bytes remain", place_, count, at_ - 8, bytes_.size() - at_);
+    if (count > (bytes_.size() - at_) / size)
+      throw user_error("{}: {} elements are announced at byte {} where {} bytes remain", place_, count, at_ - 8, bytes_.size() - at_);
     return count;
   }
   void copy(void* target, std::size_t size) {

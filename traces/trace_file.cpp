@@ -15,8 +15,9 @@
 namespace quadrille::traces {
 namespace {
 
-constexpr std::array<char, 8> kMagic{'\x89', 'Q', 'T', 'R', 'A', 'C', 'E', '\n'};   // the first byte shows transfers that are not 8-bit clean
-constexpr int kCompression = 1;   // zstd level: most of a trace is texels, which gain little from more [G: quick to write matters more]
+constexpr std::array<char, 8> kMagic{'\x89', 'Q', 'T', 'R',
+                                     'A',    'C', 'E', '\n'};  // the first byte shows transfers that are not 8-bit clean
+constexpr int kCompression = 1;  // zstd level: most of a trace is texels, which gain little from more [G: quick to write matters more]
 
 struct FileHeader {
   std::array<char, 8> magic;
@@ -28,7 +29,7 @@ struct ChunkHeader {
   std::array<char, 4> tag;
   std::uint32_t reserved;
   std::uint64_t stored_bytes, decoded_bytes;
-  std::uint64_t checksum;   ///< of the fields above and the payload
+  std::uint64_t checksum;  ///< of the fields above and the payload
 };
 static_assert(sizeof(ChunkHeader) == 32);
 
@@ -81,8 +82,10 @@ class Parser {
   void read_header() {
     const auto header = take<FileHeader>(name_);
     if (header.magic != kMagic) throw user_error("{}: not a trace file (its first bytes are not those of a .qtrace)", name_);
-    if (header.version != kTraceVersion) throw user_error("{}: trace version {}; this program reads version {}", name_, header.version, kTraceVersion);
-    if (header.chunks != kChunkTags.size()) throw user_error("{}: {} chunks; version {} has {}", name_, header.chunks, kTraceVersion, kChunkTags.size());
+    if (header.version != kTraceVersion)
+      throw user_error("{}: trace version {}; this program reads version {}", name_, header.version, kTraceVersion);
+    if (header.chunks != kChunkTags.size())
+      throw user_error("{}: {} chunks; version {} has {}", name_, header.chunks, kTraceVersion, kChunkTags.size());
   }
 
   void read_chunk(CommandStream& stream, Chunk chunk) {
@@ -97,14 +100,17 @@ class Parser {
   void check(const ChunkHeader& header, Chunk chunk, const std::string& place) {
     const std::string_view tag = kChunkTags[static_cast<std::size_t>(chunk)];
     if (std::string_view(header.tag.data(), header.tag.size()) != tag) throw user_error("{}: another chunk is in its place", place);
-    if (header.stored_bytes > bytes_.size()) throw user_error("{}: {} bytes are announced where {} remain", place, header.stored_bytes, bytes_.size());
-    if (header.decoded_bytes > kMaxTraceBytes - decoded_) throw user_error("{}: decodes to {} bytes; a trace may take {}", place, header.decoded_bytes, kMaxTraceBytes);
+    if (header.stored_bytes > bytes_.size())
+      throw user_error("{}: {} bytes are announced where {} remain", place, header.stored_bytes, bytes_.size());
+    if (header.decoded_bytes > kMaxTraceBytes - decoded_)
+      throw user_error("{}: decodes to {} bytes; a trace may take {}", place, header.decoded_bytes, kMaxTraceBytes);
     decoded_ += header.decoded_bytes;
     if (checksum(header, bytes_.data()) != header.checksum) throw user_error("{}: its checksum does not match; the file is damaged", place);
   }
 
   std::vector<std::byte> unpack(const ChunkHeader& header, const std::string& place) {
-    if (ZSTD_getFrameContentSize(bytes_.data(), header.stored_bytes) != header.decoded_bytes) throw user_error("{}: its two sizes disagree", place);
+    if (ZSTD_getFrameContentSize(bytes_.data(), header.stored_bytes) != header.decoded_bytes)
+      throw user_error("{}: its two sizes disagree", place);
     std::vector<std::byte> payload(header.decoded_bytes);
     const std::size_t size = ZSTD_decompress(payload.data(), payload.size(), bytes_.data(), header.stored_bytes);
     if (ZSTD_isError(size)) throw user_error("{}: cannot be decompressed: {}", place, ZSTD_getErrorName(size));
@@ -131,9 +137,7 @@ CommandStream decode_trace(std::span<const std::byte> bytes, const std::string& 
   CommandStream stream = Parser(bytes, name).parse();
   try {
     validate(stream);
-  } catch (const UserError& error) {
-    throw user_error("{}: {}", name, error.what());
-  }
+  } catch (const UserError& error) { throw user_error("{}: {}", name, error.what()); }
   return stream;
 }
 

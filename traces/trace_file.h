@@ -36,8 +36,8 @@ void write_trace(const CommandStream& stream, const std::string& path);
 struct StreamTotals {
   std::uint64_t buffer_bytes = 0, image_bytes = 0;
   std::uint64_t passes = 0, draws = 0;
-  std::uint64_t triangles = 0;   ///< of all draws and instances, degenerate ones included
-  std::uint64_t vertices = 0;    ///< vertex references, before any reuse
+  std::uint64_t triangles = 0;  ///< of all draws and instances, degenerate ones included
+  std::uint64_t vertices = 0;   ///< vertex references, before any reuse
 };
 [[nodiscard]] StreamTotals stream_totals(const CommandStream& stream);
 /// Triangles of `count` vertices in `topology`.

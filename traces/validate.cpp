@@ -13,12 +13,12 @@
 namespace quadrille::traces {
 namespace {
 
-constexpr std::uint32_t kMaxSide = 16384;             // texels or pixels [VK1.3 #limits-maxImageDimension2D]
-constexpr std::uint32_t kMaxVertexSlots = 16;         // bindings and locations [VK1.3 #limits-required: maxVertexInputBindings]
-constexpr std::uint32_t kMaxStride = 2048;            // bytes [VK1.3 #limits-required: maxVertexInputBindingStride]
-constexpr std::uint32_t kMaxAttributeOffset = 2047;   // bytes [VK1.3 #limits-required: maxVertexInputAttributeOffset]
-constexpr std::uint32_t kMaxUniformRange = 65536;     // bytes
-constexpr std::uint32_t kUniformAlignment = 16;       // bytes
+constexpr std::uint32_t kMaxSide = 16384;            // texels or pixels [VK1.3 #limits-maxImageDimension2D]
+constexpr std::uint32_t kMaxVertexSlots = 16;        // bindings and locations [VK1.3 #limits-required: maxVertexInputBindings]
+constexpr std::uint32_t kMaxStride = 2048;           // bytes [VK1.3 #limits-required: maxVertexInputBindingStride]
+constexpr std::uint32_t kMaxAttributeOffset = 2047;  // bytes [VK1.3 #limits-required: maxVertexInputAttributeOffset]
+constexpr std::uint32_t kMaxUniformRange = 65536;    // bytes
+constexpr std::uint32_t kUniformAlignment = 16;      // bytes
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 
 bool is_color_image(Format f) { return f == Format::kR8G8B8A8Unorm || f == Format::kR8G8B8A8Srgb; }
@@ -32,52 +32,69 @@ void check_side(const char* what, std::size_t index, std::uint32_t width, std::u
 
 void check_image(const Image& image, std::size_t index) {
   check_side("image", index, image.width, image.height);
-  if (!is_color_image(image.format)) throw user_error("image {} '{}': its format is not one of a texture (R8G8B8A8 UNORM or SRGB)", index, image.name);
+  if (!is_color_image(image.format))
+    throw user_error("image {} '{}': its format is not one of a texture (R8G8B8A8 UNORM or SRGB)", index, image.name);
   const auto full_chain = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
   if (image.levels == 0 || image.levels > full_chain) {
-    throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels, image.width, image.height, full_chain);
+    throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels, image.width, image.height,
+                     full_chain);
   }
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < image.levels; ++level) {
     bytes += std::uint64_t{4} * std::max(1u, image.width >> level) * std::max(1u, image.height >> level);
   }
   if (image.texels.size() != bytes) {
-    throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index, image.name, image.texels.size(), image.width,
-                     image.height, image.levels, bytes);
+    throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index, image.name, image.texels.size(),
+                     image.width, image.height, image.levels, bytes);
   }
 }
 
 void check_sampler(const Sampler& sampler, std::size_t index) {
-  if (!std::isfinite(sampler.lod_bias) || std::abs(sampler.lod_bias) > 16) throw user_error("sampler {}: lod bias {} is outside -16..16", index, sampler.lod_bias);
+  if (!std::isfinite(sampler.lod_bias) || std::abs(sampler.lod_bias) > 16)
+    throw user_error("sampler {}: lod bias {} is outside -16..16", index, sampler.lod_bias);
   if (!std::isfinite(sampler.min_lod) || !std::isfinite(sampler.max_lod) || sampler.min_lod > sampler.max_lod) {
     throw user_error("sampler {}: lod range {}..{} is not an interval", index, sampler.min_lod, sampler.max_lod);
   }
 }
 
 void check_shader(const Shader& shader, std::size_t index) {
-  if (shader.spirv.size() < 5 || shader.spirv[0] != kSpirvMagic) throw user_error("shader {} '{}': its words are not SPIR-V", index, shader.name);
+  if (shader.spirv.size() < 5 || shader.spirv[0] != kSpirvMagic)
+    throw user_error("shader {} '{}': its words are not SPIR-V", index, shader.name);
 }
 
-void check_stage(const CommandStream& stream, const Pipeline& pipeline, std::size_t index, Index shader, ShaderStage stage, const char* stage_name) {
+void check_stage(const CommandStream& stream, const Pipeline& pipeline, std::size_t index, Index shader, ShaderStage stage,
+                 const char* stage_name) {
   if (shader >= stream.shaders.size()) {
-    throw user_error("pipeline {} '{}': {} shader {} does not exist ({} shaders)", index, pipeline.name, stage_name, shader, stream.shaders.size());
+    throw user_error("pipeline {} '{}': {} shader {} does not exist ({} shaders)", index, pipeline.name, stage_name, shader,
+                     stream.shaders.size());
   }
-  if (stream.shaders[shader].stage != stage) throw user_error("pipeline {} '{}': shader {} is not a {} shader", index, pipeline.name, shader, stage_name);
+  if (stream.shaders[shader].stage != stage)
+    throw user_error("pipeline {} '{}': shader {} is not a {} shader", index, pipeline.name, shader, stage_name);
 }
 
 void check_vertex_input(const Pipeline& pipeline, std::size_t index) {
   std::set<std::uint32_t> bindings, locations;
   for (const auto& b : pipeline.bindings) {
-    if (b.binding >= kMaxVertexSlots) throw user_error("pipeline {} '{}': vertex binding {} is outside 0..15", index, pipeline.name, b.binding);
-    if (!bindings.insert(b.binding).second) throw user_error("pipeline {} '{}': vertex binding {} is given twice", index, pipeline.name, b.binding);
-    if (b.stride > kMaxStride) throw user_error("pipeline {} '{}': binding {} has stride {}, the limit is {}", index, pipeline.name, b.binding, b.stride, kMaxStride);
+    if (b.binding >= kMaxVertexSlots)
+      throw user_error("pipeline {} '{}': vertex binding {} is outside 0..15", index, pipeline.name, b.binding);
+    if (!bindings.insert(b.binding).second)
+      throw user_error("pipeline {} '{}': vertex binding {} is given twice", index, pipeline.name, b.binding);
+    if (b.stride > kMaxStride)
+      throw user_error("pipeline {} '{}': binding {} has stride {}, the limit is {}", index, pipeline.name, b.binding, b.stride,
+                       kMaxStride);
   }
   for (const auto& a : pipeline.attributes) {
     if (a.location >= kMaxVertexSlots) throw user_error("pipeline {} '{}': location {} is outside 0..15", index, pipeline.name, a.location);
-    if (!locations.insert(a.location).second) throw user_error("pipeline {} '{}': location {} is given twice", index, pipeline.name, a.location);
-    if (!bindings.contains(a.binding)) throw user_error("pipeline {} '{}': location {} reads binding {}, which is not declared", index, pipeline.name, a.location, a.binding);
-    if (!is_vertex_format(a.format)) throw user_error("pipeline {} '{}': location {} has a format that is not one of an attribute", index, pipeline.name, a.location);
-    if (a.offset > kMaxAttributeOffset) throw user_error("pipeline {} '{}': location {} has offset {}, the limit is {}", index, pipeline.name, a.location, a.offset, kMaxAttributeOffset);
+    if (!locations.insert(a.location).second)
+      throw user_error("pipeline {} '{}': location {} is given twice", index, pipeline.name, a.location);
+    if (!bindings.contains(a.binding))
+      throw user_error("pipeline {} '{}': location {} reads binding {}, which is not declared", index, pipeline.name, a.location,
+                       a.binding);
+    if (!is_vertex_format(a.format))
+      throw user_error("pipeline {} '{}': location {} has a format that is not one of an attribute", index, pipeline.name, a.location);
+    if (a.offset > kMaxAttributeOffset)
+      throw user_error("pipeline {} '{}': location {} has offset {}, the limit is {}", index, pipeline.name, a.location, a.offset,
+                       kMaxAttributeOffset);
   }
 }
 
@@ -85,17 +102,20 @@ void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::
   check_stage(stream, pipeline, index, pipeline.vertex_shader, ShaderStage::kVertex, "vertex");
   check_stage(stream, pipeline, index, pipeline.fragment_shader, ShaderStage::kFragment, "fragment");
   check_vertex_input(pipeline, index);
-  if (pipeline.blend.write_mask > 0xf) throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name, pipeline.blend.write_mask);
+  if (pipeline.blend.write_mask > 0xf)
+    throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name, pipeline.blend.write_mask);
 }
 
 void check_uniform(const CommandStream& stream, std::size_t set, const UniformBinding& u) {
-  if (u.buffer >= stream.buffers.size()) throw user_error("descriptor set {} binding {}: buffer {} does not exist", set, u.binding, u.buffer);
+  if (u.buffer >= stream.buffers.size())
+    throw user_error("descriptor set {} binding {}: buffer {} does not exist", set, u.binding, u.buffer);
   const std::uint64_t size = stream.buffers[u.buffer].data.size();
   if (u.range == 0 || u.range > kMaxUniformRange || std::uint64_t{u.offset} + u.range > size) {
-    throw user_error("descriptor set {} binding {}: bytes {}+{} are not within buffer {} of {} bytes (at most {})", set, u.binding, u.offset, u.range, u.buffer,
-                     size, kMaxUniformRange);
+    throw user_error("descriptor set {} binding {}: bytes {}+{} are not within buffer {} of {} bytes (at most {})", set, u.binding,
+                     u.offset, u.range, u.buffer, size, kMaxUniformRange);
   }
-  if (u.offset % kUniformAlignment != 0) throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set, u.binding, u.offset, kUniformAlignment);
+  if (u.offset % kUniformAlignment != 0)
+    throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set, u.binding, u.offset, kUniformAlignment);
 }
 
 void check_descriptors(const CommandStream& stream, const DescriptorSet& descriptors, std::size_t set) {
@@ -110,14 +130,16 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
   for (const auto& t : descriptors.textures) {
     claim(t.binding);
     if (t.image >= stream.images.size()) throw user_error("descriptor set {} binding {}: image {} does not exist", set, t.binding, t.image);
-    if (t.sampler >= stream.samplers.size()) throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
+    if (t.sampler >= stream.samplers.size())
+      throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
   }
 }
 
 void check_target(const RenderTarget& target, std::size_t index) {
   check_side("render target", index, target.width, target.height);
   if (!is_color_image(target.color)) throw user_error("render target {}: its colour format is not R8G8B8A8 UNORM or SRGB", index);
-  if (target.depth != Format::kUndefined && target.depth != Format::kD32Float) throw user_error("render target {}: its depth format is not D32 or none", index);
+  if (target.depth != Format::kUndefined && target.depth != Format::kD32Float)
+    throw user_error("render target {}: its depth format is not D32 or none", index);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace quadrille::traces {
 namespace {
 
 constexpr float kMaxViewportSide = 16384;
-constexpr float kViewportBounds = 32768;                           // [VK1.3 #limits-required: viewportBoundsRange]
-constexpr std::uint64_t kMaxVertexReferences = std::uint64_t{1} << 32;   // of a whole stream: a bound on the work that one file can ask for
+constexpr float kViewportBounds = 32768;                                // [VK1.3 #limits-required: viewportBoundsRange]
+constexpr std::uint64_t kMaxVertexReferences = std::uint64_t{1} << 32;  // of a whole stream: a bound on the work that one file can ask for
 
 std::uint32_t index_bytes(IndexType type) { return type == IndexType::kUint8 ? 1 : type == IndexType::kUint16 ? 2 : 4; }
 
@@ -29,7 +29,7 @@ std::pair<std::uint32_t, std::uint32_t> scan(const std::byte* data, std::uint32_
   return {low, high};
 }
 
-bool within(float value, float low, float high) { return value >= low && value <= high; }   // false on NaN
+bool within(float value, float low, float high) { return value >= low && value <= high; }  // false on NaN
 
 }  // namespace
 
@@ -44,7 +44,8 @@ void CommandWalk::run() {
 void CommandWalk::visit(const BeginPass& c) {
   if (target_ != kNone) throw user_error("command {}: a render pass begins inside another", at_);
   if (c.target >= stream_.targets.size()) throw user_error("command {}: render target {} does not exist", at_, c.target);
-  if (!std::ranges::all_of(c.clear_color, [](float v) { return std::isfinite(v); })) throw user_error("command {}: the clear colour is not finite", at_);
+  if (!std::ranges::all_of(c.clear_color, [](float v) { return std::isfinite(v); }))
+    throw user_error("command {}: the clear colour is not finite", at_);
   if (!within(c.clear_depth, 0, 1)) throw user_error("command {}: clear depth {} is outside 0..1", at_, c.clear_depth);
   target_ = c.target;
   ++passes_;
@@ -77,24 +78,29 @@ void CommandWalk::visit(const BindIndexBuffer& c) {
   if (c.buffer >= stream_.buffers.size()) throw user_error("command {}: index buffer {} does not exist", at_, c.buffer);
   const std::uint64_t size = stream_.buffers[c.buffer].data.size();
   if (c.offset > size) throw user_error("command {}: offset {} is beyond index buffer {} of {} bytes", at_, c.offset, c.buffer, size);
-  if (c.offset % index_bytes(c.type) != 0) throw user_error("command {}: index offset {} is not a multiple of {} bytes", at_, c.offset, index_bytes(c.type));
+  if (c.offset % index_bytes(c.type) != 0)
+    throw user_error("command {}: index offset {} is not a multiple of {} bytes", at_, c.offset, index_bytes(c.type));
   indices_ = c;
 }
 
 void CommandWalk::visit(const PushConstants& c) {
   if (c.data.empty() || c.data.size() % 4 != 0 || c.offset % 4 != 0 || c.data.size() > kMaxPushConstantBytes ||
       c.offset > kMaxPushConstantBytes - c.data.size()) {
-    throw user_error("command {}: push constants of bytes {}+{}; they are whole words within {} bytes", at_, c.offset, c.data.size(), kMaxPushConstantBytes);
+    throw user_error("command {}: push constants of bytes {}+{}; they are whole words within {} bytes", at_, c.offset, c.data.size(),
+                     kMaxPushConstantBytes);
   }
 }
 
 void CommandWalk::visit(const SetViewport& c) {
   const bool place = within(c.x, -kViewportBounds, kViewportBounds) && within(c.y, -kViewportBounds, kViewportBounds);
   const bool size = c.width > 0 && c.width <= kMaxViewportSide && c.height != 0 && within(c.height, -kMaxViewportSide, kMaxViewportSide);
-  if (!place || !size || !within(c.x + c.width, -kViewportBounds, kViewportBounds) || !within(c.y + c.height, -kViewportBounds, kViewportBounds)) {
-    throw user_error("command {}: viewport {},{} {}x{} is not within {} pixels, or empty", at_, c.x, c.y, c.width, c.height, kMaxViewportSide);
+  if (!place || !size || !within(c.x + c.width, -kViewportBounds, kViewportBounds) ||
+      !within(c.y + c.height, -kViewportBounds, kViewportBounds)) {
+    throw user_error("command {}: viewport {},{} {}x{} is not within {} pixels, or empty", at_, c.x, c.y, c.width, c.height,
+                     kMaxViewportSide);
   }
-  if (!within(c.min_depth, 0, 1) || !within(c.max_depth, 0, 1)) throw user_error("command {}: viewport depth {}..{} is outside 0..1", at_, c.min_depth, c.max_depth);
+  if (!within(c.min_depth, 0, 1) || !within(c.max_depth, 0, 1))
+    throw user_error("command {}: viewport depth {}..{} is outside 0..1", at_, c.min_depth, c.max_depth);
   viewport_ = c;
 }
 
@@ -108,8 +114,8 @@ void CommandWalk::check_scissor() const {
   const std::uint64_t right = static_cast<std::uint64_t>(scissor_->x) + scissor_->width;
   const std::uint64_t bottom = static_cast<std::uint64_t>(scissor_->y) + scissor_->height;
   if (right > target.width || bottom > target.height) {
-    throw user_error("command {}: draw with scissor {},{} {}x{} outside the target of {}x{}", at_, scissor_->x, scissor_->y, scissor_->width, scissor_->height,
-                     target.width, target.height);
+    throw user_error("command {}: draw with scissor {},{} {}x{} outside the target of {}x{}", at_, scissor_->x, scissor_->y,
+                     scissor_->width, scissor_->height, target.width, target.height);
   }
 }
 
@@ -128,7 +134,8 @@ void CommandWalk::check_draw_state() const {
 void CommandWalk::count_vertices(const Draw& draw) {
   // Both factors are below 2^32, so the product fits.
   const std::uint64_t vertices = std::uint64_t{draw.count} * draw.instances;
-  if (vertices > kMaxVertexReferences - vertices_) throw user_error("command {}: the stream draws more than {} vertices", at_, kMaxVertexReferences);
+  if (vertices > kMaxVertexReferences - vertices_)
+    throw user_error("command {}: the stream draws more than {} vertices", at_, kMaxVertexReferences);
   vertices_ += vertices;
 }
 
@@ -139,7 +146,8 @@ std::pair<std::uint32_t, std::uint32_t> CommandWalk::index_range(const Draw& dra
   const std::uint64_t begin = indices_.offset + draw.first * size;
   const std::uint64_t bytes = draw.count * size;
   if (begin > data.size() || bytes > data.size() - begin) {
-    throw user_error("command {}: indices {}+{} reach beyond index buffer {} of {} bytes", at_, draw.first, draw.count, indices_.buffer, data.size());
+    throw user_error("command {}: indices {}+{} reach beyond index buffer {} of {} bytes", at_, draw.first, draw.count, indices_.buffer,
+                     data.size());
   }
   const auto [entry, added] = index_ranges_.try_emplace({indices_.buffer, begin, indices_.type, draw.count});
   if (added) {
@@ -161,11 +169,13 @@ CommandWalk::VertexRange CommandWalk::vertex_range(const Draw& draw) {
   }
   const auto [low, high] = index_range(draw);
   const std::int64_t first = std::int64_t{low} + draw.vertex_offset, last = std::int64_t{high} + draw.vertex_offset;
-  if (first < 0 || last > 0xffffffff) throw user_error("command {}: vertices {}..{} (index plus offset) do not fit 32 bits", at_, first, last);
+  if (first < 0 || last > 0xffffffff)
+    throw user_error("command {}: vertices {}..{} (index plus offset) do not fit 32 bits", at_, first, last);
   return {static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(last)};
 }
 
-void CommandWalk::check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices, VertexRange instances) const {
+void CommandWalk::check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices,
+                                  VertexRange instances) const {
   const auto binding = std::ranges::find(pipeline.bindings, attribute.binding, &VertexBinding::binding);
   const VertexStream& source = vertex_streams_[attribute.binding];
   if (source.buffer == kNone) throw user_error("command {}: draw without a vertex buffer at binding {}", at_, attribute.binding);
@@ -173,8 +183,8 @@ void CommandWalk::check_attribute(const Pipeline& pipeline, const VertexAttribut
   const std::uint64_t size = stream_.buffers[source.buffer].data.size();
   const std::uint64_t end = source.offset + last * binding->stride + attribute.offset + format_bytes(attribute.format);
   if (end > size) {
-    throw user_error("command {}: {} {} at location {} ends at byte {} of buffer {}, which has {}", at_, binding->per_instance ? "instance" : "vertex", last,
-                     attribute.location, end, source.buffer, size);
+    throw user_error("command {}: {} {} at location {} ends at byte {} of buffer {}, which has {}", at_,
+                     binding->per_instance ? "instance" : "vertex", last, attribute.location, end, source.buffer, size);
   }
 }
 

@@ -49,7 +49,7 @@ class CommandWalk {
   void check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices, VertexRange instances) const;
 
   const CommandStream& stream_;
-  std::size_t at_ = 0;   ///< command index, for messages
+  std::size_t at_ = 0;  ///< command index, for messages
   std::uint64_t vertices_ = 0;
   std::size_t passes_ = 0;
   Index target_ = kNone, pipeline_ = kNone;
@@ -57,7 +57,8 @@ class CommandWalk {
   BindIndexBuffer indices_;
   std::optional<SetViewport> viewport_;
   std::optional<SetScissor> scissor_;
-  std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t>, std::pair<std::uint32_t, std::uint32_t>> index_ranges_;   ///< scanned once
+  std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t>, std::pair<std::uint32_t, std::uint32_t>>
+      index_ranges_;  ///< scanned once
 };
 
 }  // namespace quadrille::traces

@@ -32,7 +32,8 @@ void write_whole_file(const std::string& path, std::span<const std::byte> bytes)
   if (!file || failure) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
-    throw user_error("{}: cannot be written: {}", path, failure ? failure.message() : std::string("no such folder, no permission or no space"));
+    throw user_error("{}: cannot be written: {}", path,
+                     failure ? failure.message() : std::string("no such folder, no permission or no space"));
   }
 }
 

@@ -165,12 +165,9 @@ bool Dispatcher::round() {
 
 void Dispatcher::run_chooser(std::size_t k, Tick bound) {
   Chooser& c = choosers_[k];
+  // What others did in this round shows at the bound or later: it changes no action before it, and the last question below sees it.
+  *c.mark_word &= ~c.mark_bit;
   do {
-    if ((*c.mark_word & c.mark_bit) != 0) {  // someone's push or pop of this round may have changed what it can do
-      *c.mark_word &= ~c.mark_bit;
-      c.wake = c.unit->wake();
-      if (c.wake.at() >= bound) break;
-    }
     c.unit->perform(c.wake);
     c.wake = c.unit->wake();
   } while (c.wake.at() < bound && c.wake.at() <= limits_.max_time);

@@ -7,6 +7,7 @@
 
 #include "hw/base/clock.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <systemc>
@@ -143,9 +144,13 @@ class Fifo final : public FifoBase {
  public:
   Fifo(const char* name, const LinkSpec& spec) : FifoBase(name, spec), slots_(static_cast<std::size_t>(spec.depth)) {}
   void push(Tick now, const T& token) {
-    slots_[tail()] = token;
+    T& slot = slots_[tail()];
+    slot = token;
+    if (fault_) [[unlikely]] fault_(slot);
     note_push(now);
   }
+  /// A fault on the wire, for tests of the conservation laws: changes tokens as they are pushed.
+  void inject_fault(std::function<void(T&)> fault) { fault_ = std::move(fault); }
   [[nodiscard]] const T& front() const { return slots_[head()]; }
   T pop(Tick now) {
     const T token = front();
@@ -155,6 +160,7 @@ class Fifo final : public FifoBase {
 
  private:
   std::vector<T> slots_;
+  std::function<void(T&)> fault_;
 };
 
 /// A port seen without its payload: what attribution, idleness and the deadlock report need.

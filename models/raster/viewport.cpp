@@ -27,9 +27,9 @@ bool to_window(const glm::vec4& clip, const Viewport& viewport, int subpixel_bit
   if (!(clip.w > 0.0f)) return false;
   const float r = 1.0f / clip.w;
   const float half_width = viewport.width * 0.5f, half_height = viewport.height * 0.5f;
-  const float x = (clip.x * r) * half_width + (viewport.x + half_width);
-  const float y = (clip.y * r) * half_height + (viewport.y + half_height);
-  const float z = (clip.z * r) * (viewport.max_depth - viewport.min_depth) + viewport.min_depth;
+  const float x = std::fma(clip.x * r, half_width, viewport.x + half_width);
+  const float y = std::fma(clip.y * r, half_height, viewport.y + half_height);
+  const float z = std::fma(clip.z * r, viewport.max_depth - viewport.min_depth, viewport.min_depth);
   if (!std::isfinite(r) || std::isnan(z)) return false;
   out.z = std::clamp(z, -kDepthLimit, kDepthLimit);
   out.inv_w = r;

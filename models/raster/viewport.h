@@ -22,7 +22,7 @@ struct WindowVertex {
   float z = 0, inv_w = 0;     ///< window depth; 1 / w of clip space
 };
 
-/// Clip space to window, in fp32: r = 1 / w; x = (xc * r) * (width / 2) + (vx + width / 2), snapped to the nearest grid point, ties to
+/// Clip space to window, in fp32: r = 1 / w; x = fma(xc * r, width / 2, vx + width / 2) (one rounding of product and sum), snapped to the nearest grid point, ties to
 /// even; y alike; z = (zc * r) * (max - min) + min, limited to +-2^20 (only depth clamp meets the limit). Returns false, and the triangle
 /// must be discarded, when w is not positive, when a coordinate is not finite or when the position leaves the 2^29 grid; none of these
 /// can happen to the output of `clip_triangle`.

@@ -25,8 +25,16 @@ __m256 log2_positive(__m256 x) {
   return _mm256_add_ps(_mm256_cvtepi32_ps(exponent), _mm256_mul_ps(series, t));
 }
 
+/// The same, linear between powers of two: exponent plus fraction, read off the bits. Too low by up to 0.0861. [P: Mitchell 1962, binary logarithms]
+__m256 log2_piecewise_linear(__m256 x) {
+  const __m256i bits = _mm256_castps_si256(x);
+  const __m256 exponent = _mm256_cvtepi32_ps(_mm256_sub_epi32(_mm256_srli_epi32(bits, 23), _mm256_set1_epi32(128)));
+  const __m256i mantissa = _mm256_or_si256(_mm256_and_si256(bits, _mm256_set1_epi32(0x007fffff)), _mm256_set1_epi32(0x3f800000));
+  return _mm256_add_ps(exponent, _mm256_castsi256_ps(mantissa));
+}
+
 /// lambda_base of the eight quads. [VK1.3 #textures-scale-factor, isotropic]
-__m256 quad_lambdas(const TextureLayout& layout, const LaneFloats& u, const LaneFloats& v) {
+__m256 quad_lambdas(const TextureLayout& layout, const LaneFloats& u, const LaneFloats& v, bool linear_log2) {
   const __m256i first_lane = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
   const auto length_squared = [&](std::size_t neighbour) {
     const auto difference = [&](const LaneFloats& c, std::int32_t size) {
@@ -39,7 +47,7 @@ __m256 quad_lambdas(const TextureLayout& layout, const LaneFloats& u, const Lane
   };
   const __m256 rho_squared = _mm256_max_ps(length_squared(1), length_squared(2));
   const __m256 limited = _mm256_max_ps(_mm256_min_ps(rho_squared, _mm256_set1_ps(1e30f)), _mm256_set1_ps(1e-30f));
-  return _mm256_mul_ps(log2_positive(limited), _mm256_set1_ps(0.5f));
+  return _mm256_mul_ps(linear_log2 ? log2_piecewise_linear(limited) : log2_positive(limited), _mm256_set1_ps(0.5f));
 }
 
 __m256 clamp(__m256 value, float low, float high) { return _mm256_min_ps(_mm256_max_ps(value, _mm256_set1_ps(low)), _mm256_set1_ps(high)); }
@@ -64,7 +72,7 @@ __m256 group_lambda(const SamplerState& sampler, const TextureRequest& request, 
 LaneLevels lane_levels(const TextureLayout& layout, const SamplerState& sampler, const TextureRequest& request, const LaneFloats& u,
                        const LaneFloats& v, const Precision& precision) {
   LaneLevels out;
-  const __m256 quads = request.op == Op::kTexLod ? _mm256_setzero_ps() : quad_lambdas(layout, u, v);
+  const __m256 quads = request.op == Op::kTexLod ? _mm256_setzero_ps() : quad_lambdas(layout, u, v, precision.linear_log2);
   const auto steps = static_cast<float>(1 << precision.lod_bits);
   const auto coarsest = static_cast<float>(layout.levels - 1);
   for (int group = 0; group < 4; ++group) {

@@ -68,7 +68,8 @@ bool decode(const void* bytes, std::size_t size, const char* format, bool as_flo
   if (!input) return fail(result, OIIO::geterror());
   const OIIO::ImageSpec& spec = input->spec();
   const auto side = static_cast<int>(max_side);
-  if (spec.width < 1 || spec.height < 1 || spec.width > side || spec.height > side || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 64) {
+  if (spec.width < 1 || spec.height < 1 || spec.width > side || spec.height > side || spec.depth > 1 || spec.nchannels < 1 ||
+      spec.nchannels > 64) {
     return fail(result, "its size is not 1x1 to " + std::to_string(max_side) + "x" + std::to_string(max_side));
   }
   result.width = static_cast<std::uint32_t>(spec.width);
@@ -78,7 +79,8 @@ bool decode(const void* bytes, std::size_t size, const char* format, bool as_flo
 }
 
 OIIO::ImageSpec output_spec(std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float) {
-  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), as_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels),
+                       as_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   if (as_float && channels == 1) spec.channelnames = {"Z"};
   if (as_float) {
     spec.attribute("compression", "zip");
@@ -110,9 +112,7 @@ bool guarded(QuadrilleImage* result, const Call& call) {
   bool done = false;
   try {
     done = call();
-  } catch (const std::exception& error) {
-    done = fail(*result, error.what());
-  }
+  } catch (const std::exception& error) { done = fail(*result, error.what()); }
   if (!done) {
     std::free(result->data);
     result->data = nullptr;
@@ -124,13 +124,13 @@ bool guarded(QuadrilleImage* result, const Call& call) {
 
 extern "C" {
 
-__attribute__((visibility("default"))) bool quadrille_images_decode(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint32_t max_side,
-                                                                    QuadrilleImage* result) {
+__attribute__((visibility("default"))) bool quadrille_images_decode(const void* bytes, std::size_t size, const char* format, bool as_float,
+                                                                    std::uint32_t max_side, QuadrilleImage* result) {
   return guarded(result, [&] { return decode(bytes, size, format, as_float, max_side, *result); });
 }
 
-__attribute__((visibility("default"))) bool quadrille_images_encode(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
-                                                                    bool as_float, QuadrilleImage* result) {
+__attribute__((visibility("default"))) bool quadrille_images_encode(const void* pixels, std::uint32_t width, std::uint32_t height,
+                                                                    std::uint32_t channels, bool as_float, QuadrilleImage* result) {
   return guarded(result, [&] { return encode(pixels, width, height, channels, as_float, *result); });
 }
 

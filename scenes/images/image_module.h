@@ -9,15 +9,17 @@ extern "C" {
 /// Pixels that the module allocated (return them with `quadrille_images_free`), or an error text.
 struct QuadrilleImage {
   std::uint32_t width, height, channels;
-  void* data;         ///< bytes or floats, interleaved, rows top to bottom; for an encoder: the file
-  std::size_t size;   ///< bytes
+  void* data;        ///< bytes or floats, interleaved, rows top to bottom; for an encoder: the file
+  std::size_t size;  ///< bytes
   char error[400];
 };
 
 /// Decodes a file held in memory; `format` is an extension ("png"). As 8-bit RGBA, or as float with the file's own channels. Returns false and an error.
-using QuadrilleDecode = bool (*)(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint32_t max_side, QuadrilleImage* result);
+using QuadrilleDecode = bool (*)(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint32_t max_side,
+                                 QuadrilleImage* result);
 /// Encodes 8-bit RGBA as PNG, or float channels as EXR. Returns false and an error.
-using QuadrilleEncode = bool (*)(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float, QuadrilleImage* result);
+using QuadrilleEncode = bool (*)(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float,
+                                 QuadrilleImage* result);
 using QuadrilleFree = void (*)(void* data);
 
 }  // extern "C"

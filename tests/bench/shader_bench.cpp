@@ -52,8 +52,6 @@ void measure(benchmark::State& state, const Program& program, bool eight_triangl
   for (auto _ : state) machine.run(program, ~0u);
   const auto instructions = static_cast<double>(program.code.size());
   state.counters["warp_instr/s"] = benchmark::Counter(instructions, benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["ns/warp_instr"] =
-      benchmark::Counter(instructions * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 std::string repeated(const std::string& line, int times) {

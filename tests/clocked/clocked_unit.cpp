@@ -10,7 +10,7 @@ ClockedUnit::ClockedUnit(const UnitSpec& spec)
 void ClockedUnit::tick(std::int64_t now) {
   now_ = now;
   if (spec_.role == Role::kMemory) {
-    for (Place& p : places_) p.cycles_left -= p.phase == Place::Phase::kWait && p.cycles_left > 0 ? 1 : 0;
+    for (Place& p : places_) p.cycles_left -= p.phase == Place::Phase::kWait ? 1 : 0;
   }
   if (busy_edges_ > 0) {
     --busy_edges_;
@@ -163,11 +163,16 @@ int ClockedUnit::core() {
 
 int ClockedUnit::memory() {
   using Phase = Place::Phase;
+  Place* longest = nullptr;   // done for the longest time, of those whose output has room
   for (Place& p : places_) {
     if (p.phase != Phase::kWait || p.cycles_left > 0 || !room(p.port)) continue;
-    p.phase = Phase::kEmpty;
-    push(p.port, p.token);
-    return done('y', p.port, p.token.id, cost(spec_, p.token.id));
+    const bool before = longest == nullptr || p.cycles_left < longest->cycles_left || (p.cycles_left == longest->cycles_left && p.order < longest->order);
+    if (before) longest = &p;
+  }
+  if (longest != nullptr) {
+    longest->phase = Phase::kEmpty;
+    push(longest->port, longest->token);
+    return done('y', longest->port, longest->token.id, cost(spec_, longest->token.id));
   }
   Place* place = find(Phase::kEmpty);
   if (place == nullptr) return 0;
@@ -176,7 +181,7 @@ int ClockedUnit::memory() {
     if (!ready(i)) continue;
     turn_ = (i + 1) % in.size();
     const Token token = pop(i);
-    *place = {Phase::kWait, service(spec_, token.id), 0, i, token};
+    *place = {Phase::kWait, service(spec_, token.id), 0, accepted_++, i, token};
     return done('a', i, token.id, cost(spec_, token.id));
   }
   return 0;

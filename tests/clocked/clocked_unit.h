@@ -41,7 +41,8 @@ class ClockedUnit {
 
   struct Place {  ///< a core's context or a memory's slot
     enum class Phase { kEmpty, kAsk, kWait, kReady } phase = Phase::kEmpty;
-    int cycles_left = 0, requests_left = 0;
+    int cycles_left = 0, requests_left = 0;   ///< cycles below 0: done for so long
+    int order = 0;                            ///< of acceptance
     std::size_t port = 0;
     hw::world::Token token;
   };
@@ -55,6 +56,7 @@ class ClockedUnit {
   hw::world::Token held_;
   int held_count_ = 0;
   std::size_t turn_ = 0;
+  int accepted_ = 0;
 };
 
 }  // namespace quadrille::clocked

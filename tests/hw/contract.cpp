@@ -13,8 +13,8 @@
 #include <cstring>
 #include <sstream>
 
-/// SystemC's library asks for this symbol; the tests have a main of their own.
-int sc_main(int, char**) { return 0; }
+/// SystemC's library asks for this symbol; programs that link the harness have a main of their own.
+extern "C" int sc_main(int, char**) { return 0; }
 
 namespace quadrille::hw::contract {
 

@@ -27,6 +27,8 @@ std::string to_text(const Report& report) {
   const Comparison& r = report.result;
   const Limits& limits = report.limits;
   std::string text = fmt::format("{} {}x{} against {}\n", report.scene, report.width, report.height, report.device.driver);
+  text += fmt::format("        precision: {} sub-pixel, {} sub-texel, {} level-of-detail bits{}\n", report.precision.subpixel_bits,
+                      report.precision.subtexel_bits, report.precision.lod_bits, report.precision.linear_log2 ? ", linear log2" : "");
   text += criterion(r.coverage_ok, "covered in one only", share(r.shape.only_a + r.shape.only_b, r.shape.coverage_fraction()),
                     fmt::format("at most {:.5f} %", 100 * limits.coverage_fraction));
   text += criterion(r.triangles_ok, "another triangle seen", share(r.shape.other_triangle, r.shape.triangle_fraction()),
@@ -55,7 +57,11 @@ std::string to_json(const Report& report) {
   json["device"] = {{"name", report.device.name}, {"driver", report.device.driver}};
   json["precision"] = {{"subpixel_bits", report.precision.subpixel_bits},
                        {"subtexel_bits", report.precision.subtexel_bits},
-                       {"lod_bits", report.precision.lod_bits}};
+                       {"lod_bits", report.precision.lod_bits},
+                       {"linear_log2", report.precision.linear_log2}};
+  json["reported_precision"] = {{"subpixel_bits", report.device.subpixel_bits},
+                                {"subtexel_bits", report.device.subtexel_bits},
+                                {"lod_bits", report.device.mipmap_bits}};
   json["passed"] = r.passed();
   json["criteria"]["coverage"] = {{"pixels", r.shape.only_a + r.shape.only_b}, {"only_quadrille", r.shape.only_a},
                                   {"only_lavapipe", r.shape.only_b},           {"fraction", r.shape.coverage_fraction()},

@@ -26,7 +26,8 @@ SceneData boxes(std::uint32_t seed) {
   const float spread = std::pow(10.0F, random(-3, 4));
   for (int i = 0; i < 5; ++i) {
     const glm::mat4 turn = glm::rotate(glm::mat4(1), random(0, 6), glm::vec3(random(0, 1), 1, random(0, 1)));
-    scene.instances.push_back({0, glm::translate(glm::mat4(1), spread * glm::vec3(random(-9, 9), random(-9, 9), random(-9, 9))) * turn, ""});
+    scene.instances.push_back(
+        {0, glm::translate(glm::mat4(1), spread * glm::vec3(random(-9, 9), random(-9, 9), random(-9, 9))) * turn, ""});
   }
   return scene;
 }
@@ -37,7 +38,8 @@ bool all_inside(const SceneData& scene, const View& view) {
   for (const Instance& instance : scene.instances) {
     const Bounds box = scene.primitives[0].bounds.transformed(instance.world);
     for (int c = 0; c < 8; ++c) {
-      const glm::vec4 corner((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y, (c & 4) != 0 ? box.high.z : box.low.z, 1);
+      const glm::vec4 corner((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y,
+                             (c & 4) != 0 ? box.high.z : box.low.z, 1);
       const glm::vec4 clip = view.view_projection * corner;
       inside = inside && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z >= 0 && clip.z <= clip.w;
     }
@@ -75,8 +77,8 @@ TEST_CASE("camera: a perspective camera maps its near plane to 0, its far plane 
   };
   REQUIRE(project({0, 0, -2}).z == Approx(0).margin(1e-6));
   REQUIRE(project({0, 0, -10}).z == Approx(1));
-  REQUIRE(project({0, 4, -4}).y == Approx(-1));   // window y points down
-  REQUIRE(project({8, 0, -4}).x == Approx(1));    // twice as wide as high
+  REQUIRE(project({0, 4, -4}).y == Approx(-1));  // window y points down
+  REQUIRE(project({8, 0, -4}).x == Approx(1));   // twice as wide as high
   scene.cameras[0].far.reset();
   REQUIRE((make_view(scene, options).view_projection * glm::vec4(0, 0, -2e6F, 1)).z / 2e6F == Approx(1));
 }

@@ -60,9 +60,7 @@ std::vector<float> values(const GltfFile& file) {
 std::string refusal(const GltfFile& file, int index = 0) {
   try {
     (void)read_accessor(file, index, "here");
-  } catch (const UserError& error) {
-    return error.what();
-  }
+  } catch (const UserError& error) { return error.what(); }
   return "read";
 }
 
@@ -71,7 +69,7 @@ std::string refusal(const GltfFile& file, int index = 0) {
 TEST_CASE("accessor: tightly packed and interleaved elements are the same elements") {
   std::vector<unsigned char> packed, interleaved;
   append<float>(packed, {1, 2, 3, 4, 5, 6});
-  append<float>(interleaved, {1, 2, 99, 3, 4, 99, 5, 6});   // the last element may end before its stride does
+  append<float>(interleaved, {1, 2, 99, 3, 4, 99, 5, 6});  // the last element may end before its stride does
   const auto a = accessor(0, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2, 3);
   REQUIRE(values(file_with(packed, {view(0, 24)}, a)) == std::vector<float>{1, 2, 3, 4, 5, 6});
   REQUIRE(values(file_with(interleaved, {view(0, 32, 12)}, a)) == std::vector<float>{1, 2, 3, 4, 5, 6});
@@ -80,12 +78,14 @@ TEST_CASE("accessor: tightly packed and interleaved elements are the same elemen
 TEST_CASE("accessor: normalized integers end at exactly one and minus one") {
   std::vector<unsigned char> data;
   append<std::int8_t>(data, {-128, -127, 0, 127});
-  REQUIRE(values(file_with(data, {view(0, 4)}, accessor(0, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_TYPE_SCALAR, 4, true))) == std::vector<float>{-1, -1, 0, 1});
+  REQUIRE(values(file_with(data, {view(0, 4)}, accessor(0, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_TYPE_SCALAR, 4, true))) ==
+          std::vector<float>{-1, -1, 0, 1});
   data.clear();
   append<std::uint16_t>(data, {0, 65535, 257});
   REQUIRE(values(file_with(data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, 3, true))) ==
           std::vector<float>{0, 1, 257.0F / 65535});
-  REQUIRE(values(file_with(data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, 3))) == std::vector<float>{0, 65535, 257});
+  REQUIRE(values(file_with(data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, 3))) ==
+          std::vector<float>{0, 65535, 257});
 }
 
 TEST_CASE("accessor: without a buffer view it is zeros, and sparse values replace elements") {
@@ -138,7 +138,8 @@ TEST_CASE("vertex array: colours keep their 8 and 16 bits, three components get 
   const GltfFile file = file_with(data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC3, 2, true));
   const Array array = to_vertex_array(file, read_accessor(file, 0, "c"), Semantic::kColor, "c");
   REQUIRE(array.format == traces::Format::kR8G8B8A8UnormVertex);
-  REQUIRE(array.data == std::vector<std::byte>{std::byte{1}, std::byte{2}, std::byte{3}, std::byte{255}, std::byte{250}, std::byte{251}, std::byte{252}, std::byte{255}});
+  REQUIRE(array.data == std::vector<std::byte>{std::byte{1}, std::byte{2}, std::byte{3}, std::byte{255}, std::byte{250}, std::byte{251},
+                                               std::byte{252}, std::byte{255}});
 }
 
 TEST_CASE("vertex array: a type that glTF does not allow, and values that are not finite, are refused") {

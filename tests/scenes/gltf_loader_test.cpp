@@ -66,8 +66,10 @@ TEST_CASE("gltf: loops and shared children are not trees; numbers of things that
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"children":[7])")), Contains("node 7 does not exist"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"camera":2)")), Contains("nodes[0]: camera 2 does not exist"));
   REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":4)")), Contains("material 4 does not exist"));
-  REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":{"light":3}})")), Contains("light 3 does not exist"));
-  REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":0)", R"(,"materials":[{"normalTexture":{"index":5}}])")), Contains("materials[0].normalTexture: texture 5 does not exist"));
+  REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":{"light":3}})")),
+               Contains("light 3 does not exist"));
+  REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":0)", R"(,"materials":[{"normalTexture":{"index":5}}])")),
+               Contains("materials[0].normalTexture: texture 5 does not exist"));
 }
 
 TEST_CASE("gltf: a deep tree of nodes and deeply nested JSON neither overflow the stack") {
@@ -86,8 +88,9 @@ TEST_CASE("gltf: a node that mirrors is seen by its determinant") {
 }
 
 TEST_CASE("gltf: lights take place, direction and colour from node and extension") {
-  const SceneData scene = load(triangle_gltf("", R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0],"intensity":8,"range":4}]}})",
-                                             R"(,"translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":0}})"));
+  const SceneData scene = load(
+      triangle_gltf("", R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","color":[1,0.5,0],"intensity":8,"range":4}]}})",
+                    R"(,"translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":0}})"));
   REQUIRE(scene.lights.size() == 1);
   REQUIRE(scene.lights[0].kind == Light::Kind::kPoint);
   REQUIRE(scene.lights[0].position == glm::vec3(1, 2, 3));
@@ -97,8 +100,11 @@ TEST_CASE("gltf: lights take place, direction and colour from node and extension
 
 TEST_CASE("gltf: a material's factors, modes and unlit extension are read; wrong ones are named") {
   const std::string use = R"(,"material":0)";
-  const Material m = load(triangle_gltf(use, R"(,"materials":[{"alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"extensions":{"KHR_materials_unlit":{}},
-    "emissiveFactor":[0,1,0],"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1],"metallicFactor":0.5,"roughnessFactor":0.75}}])")).materials[0];
+  const Material m =
+      load(triangle_gltf(use,
+                         R"(,"materials":[{"alphaMode":"MASK","alphaCutoff":0.25,"doubleSided":true,"extensions":{"KHR_materials_unlit":{}},
+    "emissiveFactor":[0,1,0],"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1],"metallicFactor":0.5,"roughnessFactor":0.75}}])"))
+          .materials[0];
   REQUIRE(m.alpha == AlphaMode::kMask);
   REQUIRE(m.alpha_cutoff == 0.25F);
   REQUIRE(m.double_sided);
@@ -107,7 +113,8 @@ TEST_CASE("gltf: a material's factors, modes and unlit extension are read; wrong
   REQUIRE(m.metallic == 0.5F);
   REQUIRE(m.roughness == 0.75F);
   REQUIRE_THAT(load_result(triangle_gltf(use, R"(,"materials":[{"alphaMode":"GLASS"}])")), Contains("materials[0].alphaMode: 'GLASS'"));
-  REQUIRE_THAT(load_result(triangle_gltf(use, R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":3}}])")), Contains("materials[0].metallicFactor: 3 is outside 0..1"));
+  REQUIRE_THAT(load_result(triangle_gltf(use, R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":3}}])")),
+               Contains("materials[0].metallicFactor: 3 is outside 0..1"));
 }
 
 TEST_CASE("gltf: what is no glTF is the user's error") {

@@ -42,9 +42,7 @@ std::string load_result(const std::string& text) {
   const TempGltf file(text);
   try {
     (void)load_gltf(file.path());
-  } catch (const UserError& error) {
-    return error.what();
-  }
+  } catch (const UserError& error) { return error.what(); }
   return "loaded";
 }
 

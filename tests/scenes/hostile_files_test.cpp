@@ -11,6 +11,7 @@
 #include "scenes/scene.h"
 #include "tests/scenes/gltf_text.h"
 #include "tests/scenes/scene_folder.h"
+#include "traces/whole_file.h"
 
 using namespace quadrille;
 using namespace quadrille::scenes;
@@ -48,12 +49,13 @@ TEST_CASE("hostile files: every one loads or is refused with its name, within 10
   REQUIRE(files > 100);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  REQUIRE(usage.ru_maxrss < 2 * 1024 * 1024);   // KiB
+  REQUIRE(usage.ru_maxrss < 2 * 1024 * 1024);  // KiB
 }
 
 TEST_CASE("hostile files: random damage to a good file never crashes the loader") {
-  const std::string good = triangle_gltf(R"(,"material":0)", R"(,"materials":[{"alphaMode":"MASK"}],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])",
-                                         R"(,"camera":0)");
+  const std::string good = triangle_gltf(
+      R"(,"material":0)", R"(,"materials":[{"alphaMode":"MASK"}],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])",
+      R"(,"camera":0)");
   std::mt19937 dice(1);
   for (int i = 0; i < 3000; ++i) {
     std::string bad = good;
@@ -61,5 +63,23 @@ TEST_CASE("hostile files: random damage to a good file never crashes the loader"
     if (dice() % 4 == 0) bad.resize(dice() % bad.size());
     const std::string result = load_result(bad);
     REQUIRE(result.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("hostile files: random damage to a binary file never crashes the loader") {
+  const auto folder = scene_folder();
+  if (!folder) {
+    WARN("skipped: no folder of scenes");
+    return;
+  }
+  const std::vector<std::byte> good = traces::read_whole_file((*folder / "BoxVertexColors/BoxVertexColors.glb").string(), 1 << 20);
+  const TempGltf file("", "t.glb");
+  std::mt19937 dice(2);
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<std::byte> bad = good;
+    for (unsigned k = 0; k < 1 + dice() % 4; ++k) bad[dice() % (i % 2 == 0 ? 32 : bad.size())] = static_cast<std::byte>(dice() % 256);
+    if (dice() % 4 == 0) bad.resize(dice() % bad.size());
+    traces::write_whole_file(file.path(), bad);
+    load_or_refuse(file.path());
   }
 }

@@ -49,7 +49,7 @@ TEST_CASE("image_io: every truncation of a PNG is refused with its name") {
   const TempGltf folder("", "a.png");
   save_png(folder.path(), gradient(16, 16));
   const std::vector<std::byte> bytes = traces::read_whole_file(folder.path(), 1 << 20);
-  for (std::size_t size = 0; size + 20 < bytes.size(); size += 7) {   // the last bytes are the end marker, which holds no pixels
+  for (std::size_t size = 0; size + 20 < bytes.size(); size += 7) {  // the last bytes are the end marker, which holds no pixels
     CAPTURE(size);
     REQUIRE_THROWS_WITH(decode_image(std::span(bytes).first(size), "some.png"), Catch::StartsWith("some.png: "));
   }

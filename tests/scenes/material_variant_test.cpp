@@ -112,7 +112,9 @@ TEST_CASE("material variants: occlusion in the metallic-roughness texture is rea
 }
 
 TEST_CASE("material variants: a user's fragment shader is compiled with the same interface; its mistakes carry its name") {
-  const TempGltf good("#version 450\nlayout(location = 0) out vec4 c;\nlayout(location = 1) in vec3 v_normal;\nvoid main() { c = vec4(v_normal, 1.0); }\n", "good.frag");
+  const TempGltf good(
+      "#version 450\nlayout(location = 0) out vec4 c;\nlayout(location = 1) in vec3 v_normal;\nvoid main() { c = vec4(v_normal, 1.0); }\n",
+      "good.frag");
   const TempGltf bad("#version 450\nvoid main() { oops }\n", "bad.frag");
   SceneOptions options;
   options.fragment_shader = good.path();

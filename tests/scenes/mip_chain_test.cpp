@@ -37,16 +37,16 @@ TEST_CASE("mip chain: black and white average in linear light") {
     for (std::size_t c = 0; c < 4; ++c) image.pixels[4 * texel + c] = 255;
   }
   const auto srgb = build_mip_chain(image, true), plain = build_mip_chain(image, false);
-  REQUIRE(static_cast<int>(srgb[16]) == static_cast<int>(std::lround(255 * linear_to_srgb(0.5))));   // 188
+  REQUIRE(static_cast<int>(srgb[16]) == static_cast<int>(std::lround(255 * linear_to_srgb(0.5))));  // 188
   REQUIRE(static_cast<int>(srgb[16]) == 188);
-  REQUIRE(static_cast<int>(srgb[19]) == 128);   // alpha is linear
+  REQUIRE(static_cast<int>(srgb[19]) == 128);  // alpha is linear
   REQUIRE(static_cast<int>(plain[16]) == 128);
 }
 
 TEST_CASE("mip chain: the mean of an odd-sized image is kept") {
   Rgba8Image image = constant(9, 1, 0, 0, 0, 255);
-  image.pixels[0] = 255;   // one of nine texels, at the border
+  image.pixels[0] = 255;  // one of nine texels, at the border
   const auto chain = build_mip_chain(image, false);
   REQUIRE(std::abs(static_cast<int>(chain.back()) - 255) == 0);
-  REQUIRE(static_cast<int>(chain[chain.size() - 4]) == 28);   // 255 / 9 = 28.3
+  REQUIRE(static_cast<int>(chain[chain.size() - 4]) == 28);  // 255 / 9 = 28.3
 }

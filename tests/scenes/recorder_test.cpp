@@ -24,7 +24,8 @@ SceneData row_of_boxes() {
     mesh.box(glm::vec3(-0.5F), glm::vec3(0.5F), 1);
     (void)mesh.finish(scene, i == 0 ? "solid" : "clear", i, {});
   }
-  for (int i = 0; i < 6; ++i) place(scene, static_cast<std::uint32_t>(i % 2), glm::translate(glm::mat4(1), glm::vec3(0.01F * static_cast<float>(i), 0, -2 * i)));
+  for (int i = 0; i < 6; ++i)
+    place(scene, static_cast<std::uint32_t>(i % 2), glm::translate(glm::mat4(1), glm::vec3(0.01F * static_cast<float>(i), 0, -2 * i)));
   scene.cameras.resize(1);
   scene.cameras[0].pose = glm::translate(glm::mat4(1), glm::vec3(0, 0, 5));
   return scene;
@@ -42,7 +43,8 @@ std::vector<Drawn> draws(const traces::CommandStream& stream) {
   Drawn current;
   for (const traces::Command& command : stream.commands) {
     if (const auto* bind = std::get_if<traces::BindPipeline>(&command)) current.pipeline = stream.pipelines[bind->pipeline];
-    if (const auto* push = std::get_if<traces::PushConstants>(&command)) std::memcpy(static_cast<void*>(&current.constants), push->data.data(), push->data.size());
+    if (const auto* push = std::get_if<traces::PushConstants>(&command))
+      std::memcpy(static_cast<void*>(&current.constants), push->data.data(), push->data.size());
     if (const auto* draw = std::get_if<traces::Draw>(&command)) {
       current.label = draw->label;
       result.push_back(current);
@@ -98,7 +100,7 @@ TEST_CASE("recorder: instances share buffers, and a mirrored one turns the front
   REQUIRE(drawn[3].pipeline.front == traces::FrontFace::kClockwise);
   REQUIRE(drawn[3].constants.handedness == -1);
   REQUIRE(drawn[0].pipeline.front == traces::FrontFace::kCounterClockwise);
-  REQUIRE(drawn[3].constants.normal_matrix[0] == glm::vec4(-1, 0, 0, 0));   // a normal along x turns with the mirror
+  REQUIRE(drawn[3].constants.normal_matrix[0] == glm::vec4(-1, 0, 0, 0));  // a normal along x turns with the mirror
   REQUIRE(drawn[3].constants.normal_matrix[1] == glm::vec4(0, 1, 0, 0));
 }
 

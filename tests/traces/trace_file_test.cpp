@@ -24,9 +24,7 @@ struct TempFolder {
 std::string refusal(std::span<const std::byte> bytes) {
   try {
     (void)decode_trace(bytes, "t.qtrace");
-  } catch (const UserError& error) {
-    return error.what();
-  }
+  } catch (const UserError& error) { return error.what(); }
   return {};
 }
 
@@ -62,10 +60,10 @@ TEST_CASE("trace file: every truncation and every appended byte is refused") {
 TEST_CASE("trace file: a chunk that announces more than the file holds, or than a trace may take, is refused before allocation") {
   std::vector<std::byte> bytes = encode_trace(small_stream());
   const std::uint64_t huge = std::uint64_t{1} << 60;
-  std::memcpy(bytes.data() + 16 + 8, &huge, 8);    // stored size of the first chunk
+  std::memcpy(bytes.data() + 16 + 8, &huge, 8);  // stored size of the first chunk
   REQUIRE(refusal(bytes).find("chunk NAME") != std::string::npos);
   bytes = encode_trace(small_stream());
-  std::memcpy(bytes.data() + 16 + 16, &huge, 8);   // decoded size
+  std::memcpy(bytes.data() + 16 + 16, &huge, 8);  // decoded size
   REQUIRE(refusal(bytes).find("a trace may take") != std::string::npos);
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 struct Defect {
-  const char* message;   ///< a part of it
+  const char* message;  ///< a part of it
   std::function<void(CommandStream&)> make;
 };
 
@@ -26,9 +26,7 @@ T& command(CommandStream& s, std::size_t at) {
 std::string refusal(const CommandStream& stream) {
   try {
     validate(stream);
-  } catch (const UserError& error) {
-    return error.what();
-  }
+  } catch (const UserError& error) { return error.what(); }
   return "accepted";
 }
 
@@ -63,10 +61,19 @@ TEST_CASE("validate: objects") {
       {"vertex shader 2 does not exist", [](auto& s) { s.pipelines[0].vertex_shader = 2; }},
       {"fragment shader 4294967295 does not exist", [](auto& s) { s.pipelines[0].fragment_shader = kNone; }},
       {"shader 1 is not a vertex shader", [](auto& s) { s.pipelines[0].vertex_shader = 1; }},
-      {"binding 0 is given twice", [](auto& s) { s.pipelines[0].bindings.push_back({0, 4, false}); }},
-      {"binding 16 is outside", [](auto& s) { s.pipelines[0].bindings.push_back({16, 4, false}); }},
+      {"binding 0 is given twice",
+       [](auto& s) {
+         s.pipelines[0].bindings.push_back({0, 4, false});
+       }},
+      {"binding 16 is outside",
+       [](auto& s) {
+         s.pipelines[0].bindings.push_back({16, 4, false});
+       }},
       {"has stride 2052", [](auto& s) { s.pipelines[0].bindings[0].stride = 2052; }},
-      {"location 0 is given twice", [](auto& s) { s.pipelines[0].attributes.push_back({0, 0, Format::kR32Float, 0}); }},
+      {"location 0 is given twice",
+       [](auto& s) {
+         s.pipelines[0].attributes.push_back({0, 0, Format::kR32Float, 0});
+       }},
       {"location 16 is outside", [](auto& s) { s.pipelines[0].attributes[0].location = 16; }},
       {"reads binding 4, which is not declared", [](auto& s) { s.pipelines[0].attributes[0].binding = 4; }},
       {"not one of an attribute", [](auto& s) { s.pipelines[0].attributes[0].format = Format::kR8G8B8A8Srgb; }},
@@ -108,7 +115,10 @@ TEST_CASE("validate: passes and bound state") {
       {"buffer 9 does not exist", [](auto& s) { command<BindVertexBuffer>(s, 5).buffer = 9; }},
       {"offset 37 is beyond buffer 0", [](auto& s) { command<BindVertexBuffer>(s, 5).offset = 37; }},
       {"index buffer 9 does not exist", [](auto& s) { command<BindIndexBuffer>(s, 6).buffer = 9; }},
-      {"index offset 1 is not a multiple", [](auto& s) { s.commands[6] = BindIndexBuffer{1, 1, IndexType::kUint16}; }},
+      {"index offset 1 is not a multiple",
+       [](auto& s) {
+         s.commands[6] = BindIndexBuffer{1, 1, IndexType::kUint16};
+       }},
       {"viewport", [](auto& s) { command<SetViewport>(s, 1).x = kNan; }},
       {"viewport", [](auto& s) { command<SetViewport>(s, 1).width = kNan; }},
       {"viewport", [](auto& s) { command<SetViewport>(s, 1).height = 0; }},
@@ -116,7 +126,10 @@ TEST_CASE("validate: passes and bound state") {
       {"viewport depth", [](auto& s) { command<SetViewport>(s, 1).max_depth = 1.5F; }},
       {"scissor corner", [](auto& s) { command<SetScissor>(s, 2).x = -1; }},
       {"outside the target of 64x32", [](auto& s) { command<SetScissor>(s, 2).x = 1; }},
-      {"outside the target of 64x32", [](auto& s) { command<SetScissor>(s, 2) = {0x7fffffff, 0, 0xffffffffu, 1}; }},
+      {"outside the target of 64x32",
+       [](auto& s) {
+         command<SetScissor>(s, 2) = {0x7fffffff, 0, 0xffffffffu, 1};
+       }},
       {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 244; }},
       {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 0xfffffff0u; }},
       {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 2; }},

@@ -30,7 +30,7 @@ enum class Role : std::uint8_t {
   kPriority,  ///< chooser: the lowest ready input -> Out0
   kSpread,    ///< chooser: In0 -> round robin over outputs with room
   kCore,      ///< chooser: In0 -> a free context -> `count` requests on Out1, replies on In1 -> Out0; prefers reply, emit, request, accept
-  kMemory,    ///< chooser: InI -> a free slot -> after `service(id)` cycles OutI; whichever is done first; prefers to reply; accepts round robin
+  kMemory,    ///< chooser: InI -> a free slot -> after `service(id)` cycles OutI; first done first among those with room; prefers to reply; accepts round robin
   kSink,      ///< pops In0; cost by token number
 };
 

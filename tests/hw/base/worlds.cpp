@@ -1,6 +1,7 @@
 #include "tests/hw/base/worlds.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <random>
 
@@ -195,15 +196,18 @@ class Pack final : public SyntheticUnit {
   int held_ = 0;
 };
 
+/// The input whose token is visible first; the lowest on a tie.
+const FifoIn<Token>& earliest(const Ports<FifoIn<Token>>& inputs) {
+  const FifoIn<Token>* first = &*inputs[0];
+  for (const auto& in : inputs) first = in->ready() < first->ready() ? &*in : first;
+  return *first;
+}
+
 /// Arbiter and priority: an input that is ready; round robin or the lowest first.
 class Merge final : public SyntheticUnit {
  public:
   using SyntheticUnit::SyntheticUnit;
-  Wake next() const override {
-    Wake wake = own().input(*inputs_[0]).output(*outputs_[0]);
-    for (std::size_t i = 1; i < inputs_.size(); ++i) wake = Wake::sooner(wake, own().input(*inputs_[i]).output(*outputs_[0]));
-    return wake;
-  }
+  Wake next() const override { return own().input(earliest(inputs_)).output(*outputs_[0]); }
   void act(Tick now) override {
     std::size_t i = spec_.role == Role::kArbiter ? turn_ : 0;
     while (!inputs_[i]->ready_at(now)) i = i + 1 == inputs_.size() ? 0 : i + 1;
@@ -243,94 +247,88 @@ class Spread final : public SyntheticUnit {
 class Core final : public SyntheticUnit {
  public:
   Core(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& roles)
-      : SyntheticUnit(name, spec, clock, roles), contexts_(static_cast<std::size_t>(spec.slots)), free_contexts_(spec.slots) {}
+      : SyntheticUnit(name, spec, clock, roles), contexts_(static_cast<std::size_t>(spec.slots)), free_((std::uint64_t{1} << spec.slots) - 1) {}
 
   Wake next() const override {
     Wake wake = own().input(*inputs_[1]);
-    if (emitting_ > 0) wake = Wake::sooner(wake, own().output(*outputs_[0]));
-    if (asking_ > 0) wake = Wake::sooner(wake, own().output(*outputs_[1]));
-    if (free_contexts_ > 0) wake = Wake::sooner(wake, own().input(*inputs_[0]));
+    if (emit_ != 0) wake = Wake::sooner(wake, own().output(*outputs_[0]));
+    if (ask_ != 0) wake = Wake::sooner(wake, own().output(*outputs_[1]));
+    if (free_ != 0) wake = Wake::sooner(wake, own().input(*inputs_[0]));
     return wake;
   }
   void act(Tick now) override {
     if (inputs_[1]->ready_at(now)) take_reply(now);
-    else if (emitting_ > 0 && outputs_[0]->room_at(now)) emit(now);
-    else if (asking_ > 0 && outputs_[1]->room_at(now)) ask(now);
+    else if (emit_ != 0 && outputs_[0]->room_at(now)) emit(now);
+    else if (ask_ != 0 && outputs_[1]->room_at(now)) ask(now);
     else accept(now);
   }
-  std::string state_text() const override { return fmt::format("{} of {} contexts", spec_.slots - free_contexts_, spec_.slots); }
+  std::string state_text() const override { return fmt::format("{} of {} contexts", spec_.slots - std::popcount(free_), spec_.slots); }
 
  private:
-  enum class State : std::uint8_t { kFree, kAsk, kWait, kEmit };
   struct Context {
-    State state = State::kFree;
     int left = 0;
     std::uint32_t id = 0, hops = 0;
   };
-  [[nodiscard]] Context& first(State state) {
-    return *std::find_if(contexts_.begin(), contexts_.end(), [state](const Context& c) { return c.state == state; });
+  /// Takes the lowest context out of a set.
+  std::uint32_t take(std::uint64_t& set) {
+    const int i = std::countr_zero(set);
+    set &= set - 1;
+    return static_cast<std::uint32_t>(i);
   }
   void take_reply(Tick now) {
     const Token reply = inputs_[1]->pop(now);
-    Context& c = contexts_[reply.hops];
-    c.state = --c.left > 0 ? State::kAsk : State::kEmit;
-    ++(c.left > 0 ? asking_ : emitting_);
+    (--contexts_[reply.hops].left > 0 ? ask_ : emit_) |= std::uint64_t{1} << reply.hops;
     note(now, 'y', 1, reply.id);
     use(now, cost(spec_, reply.id));
   }
   void emit(Tick now) {
-    Context& c = first(State::kEmit);
-    c.state = State::kFree;
-    --emitting_;
-    ++free_contexts_;
+    const std::uint32_t i = take(emit_);
+    free_ |= std::uint64_t{1} << i;
+    const Context& c = contexts_[i];
     outputs_[0]->push(now, {c.id, c.hops});
     note(now, 'e', 0, c.id);
     use(now, cost(spec_, c.id));
   }
   void ask(Tick now) {
-    Context& c = first(State::kAsk);
-    c.state = State::kWait;
-    --asking_;
-    const std::uint32_t id = mix(c.id, static_cast<std::uint32_t>(c.left));
-    outputs_[1]->push(now, {id, static_cast<std::uint32_t>(&c - contexts_.data())});
+    const std::uint32_t i = take(ask_);
+    const std::uint32_t id = mix(contexts_[i].id, static_cast<std::uint32_t>(contexts_[i].left));
+    outputs_[1]->push(now, {id, i});
     note(now, 'r', 1, id);
     use(now, cost(spec_, id));
   }
   void accept(Tick now) {
-    Context& c = first(State::kFree);
-    --free_contexts_;
-    ++asking_;
+    const std::uint32_t i = take(free_);
+    ask_ |= std::uint64_t{1} << i;
     const Token token = inputs_[0]->pop(now);
-    c = {State::kAsk, spec_.count, token.id, token.hops};
-    note(now, 'a', 0, c.id);
-    use(now, cost(spec_, c.id));
+    contexts_[i] = {spec_.count, token.id, token.hops};
+    note(now, 'a', 0, token.id);
+    use(now, cost(spec_, token.id));
   }
 
   std::vector<Context> contexts_;
-  int free_contexts_, asking_ = 0, emitting_ = 0;
+  std::uint64_t free_, ask_ = 0, emit_ = 0;  ///< sets of contexts; the others wait for a reply
 };
 
 class Memory final : public SyntheticUnit {
  public:
-  Memory(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& roles)
-      : SyntheticUnit(name, spec, clock, roles), slots_(static_cast<std::size_t>(spec.slots)), free_slots_(spec.slots) {}
+  using SyntheticUnit::SyntheticUnit;
 
   Wake next() const override {
-    Wake wake(kNever);
-    for (const Slot& s : slots_) wake = Wake::sooner(wake, Wake(std::max(own().at(), s.done)).output(*outputs_[s.port]));
-    if (free_slots_ > 0) {
-      for (const auto& in : inputs_) wake = Wake::sooner(wake, own().input(*in));
+    Wake wake = slots_.size() < static_cast<std::size_t>(spec_.slots) ? own().input(earliest(inputs_)) : Wake::never(*inputs_[0]);
+    for (const Slot& s : slots_) {
+      if (s.done >= wake.at()) break;
+      const Wake reply = Wake(std::max(own().at(), s.done)).output(*outputs_[s.port]);
+      if (reply.at() < wake.at()) wake = reply;
     }
-    if (wake.cause() == nullptr && wake.at() == kNever) return Wake::never(*inputs_[0]);
     return wake;
   }
   void act(Tick now) override {
-    for (Slot& s : slots_) {
-      if (s.done <= now && outputs_[s.port]->room_at(now)) return reply(now, s);
+    for (auto s = slots_.begin(); s != slots_.end() && s->done <= now; ++s) {
+      if (outputs_[s->port]->room_at(now)) return reply(now, s);
     }
     accept(now);
   }
-  std::string state_text() const override { return fmt::format("{} of {} slots", spec_.slots - free_slots_, spec_.slots); }
+  std::string state_text() const override { return fmt::format("{} of {} slots", slots_.size(), spec_.slots); }
 
  private:
   struct Slot {
@@ -338,27 +336,27 @@ class Memory final : public SyntheticUnit {
     std::size_t port = 0;
     Token token;
   };
-  void reply(Tick now, Slot& s) {
-    outputs_[s.port]->push(now, s.token);
-    s.done = kNever;
-    ++free_slots_;
-    note(now, 'y', static_cast<int>(s.port), s.token.id);
-    use(now, cost(spec_, s.token.id));
+  void reply(Tick now, std::vector<Slot>::iterator s) {
+    const Slot slot = *s;
+    slots_.erase(s);
+    outputs_[slot.port]->push(now, slot.token);
+    note(now, 'y', static_cast<int>(slot.port), slot.token.id);
+    use(now, cost(spec_, slot.token.id));
   }
   void accept(Tick now) {
     std::size_t i = turn_;
     while (!inputs_[i]->ready_at(now)) i = i + 1 == inputs_.size() ? 0 : i + 1;
     turn_ = i + 1 == inputs_.size() ? 0 : i + 1;
     const Token token = inputs_[i]->pop(now);
-    Slot& s = *std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.done == kNever; });
-    s = {after(now, service(spec_, token.id)), i, token};
-    --free_slots_;
+    const Slot slot{after(now, service(spec_, token.id)), i, token};
+    auto behind = slots_.end();
+    while (behind != slots_.begin() && std::prev(behind)->done > slot.done) --behind;
+    slots_.insert(behind, slot);
     note(now, 'a', static_cast<int>(i), token.id);
     use(now, cost(spec_, token.id));
   }
 
-  std::vector<Slot> slots_;
-  int free_slots_;
+  std::vector<Slot> slots_;  ///< by time done, then by time accepted
   std::size_t turn_ = 0;
 };
 

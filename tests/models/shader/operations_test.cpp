@@ -180,4 +180,23 @@ TEST_CASE("shader operations: fmad rounds twice and ffma once") {
   CHECK(as_float(f.warp.regs[1][0]) == 0x1p-24f);
 }
 
+TEST_CASE(
+    "shader operations: of two NaN operands the first one's bits go on in every form, so that a lane does not see who shares its warp") {
+  WarpFixture f;
+  for (const Op op : {Op::kFAdd, Op::kFMul})
+    for (unsigned constants = 0; constants < 4; ++constants)
+      for (const bool masked : {false, true}) {
+        const Program program = single(instruction_of(op, {.constants = constants}), masked);
+        f.constants = {0x7fc00001u, 0xffc00002u, 0};
+        f.warp.launch(program, f.constants.data(), ~0u);
+        f.warp.regs[0].fill(0x7fc00001u);
+        f.warp.regs[1].fill(0xffc00002u);
+        f.warp.regs[kCondition].fill(0);
+        f.warp.regs[kCondition][9] = 1;
+        f.finish();
+        INFO(disassemble(program));
+        CHECK(f.warp.regs[kResult][9] == 0x7fc00001u);
+      }
+}
+
 }  // namespace quadrille::models::test

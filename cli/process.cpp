@@ -1,0 +1,51 @@
+#include "cli/process.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <optional>
+
+namespace quadrille::cli {
+namespace {
+
+std::optional<Stopwatch> process_watch;
+constexpr double kRefreshSeconds = 0.1;
+
+}  // namespace
+
+void note_start() { process_watch.emplace(); }
+
+double wall_seconds() { return process_watch ? process_watch->seconds() : 0; }
+
+double peak_rss_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+Progress::Progress() : enabled_(isatty(STDERR_FILENO) == 1) {}
+
+void Progress::show(const std::string& text) {
+  if (!enabled_) return;
+  fmt::print(stderr, "\r\x1b[K{}", text);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void Progress::show_cycles(std::int64_t cycles) {
+  if (!enabled_ || since_start_.seconds() < next_) return;
+  const double elapsed = since_start_.seconds();
+  next_ = elapsed + kRefreshSeconds;
+  const double millions = static_cast<double>(cycles) * 1e-6;
+  show(fmt::format("simulating: {:.2f} million cycles, {:.1f} s, {:.2f} million cycles a second", millions, elapsed, millions / elapsed));
+}
+
+void Progress::clear() {
+  if (!shown_) return;
+  fmt::print(stderr, "\r\x1b[K");
+  std::fflush(stderr);
+  shown_ = false;
+}
+
+}  // namespace quadrille::cli

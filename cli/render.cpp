@@ -1,0 +1,29 @@
+/// `quadrille render`: one frame of a scene through the machine.
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/render_job.h"
+
+namespace quadrille::cli {
+
+void add_render(CLI::App& app, Command& chosen) {
+  CLI::App* command = app.add_subcommand("render", "Renders one frame: the picture, its cycles, and where every unit's time went.");
+  const auto job = std::make_shared<RenderJob>();
+  job->scene.add_to(*command);
+  job->add_to(*command);
+  command->footer(R"(Examples:
+  quadrille render builtin:triangle --size 320x240
+      the table of figures alone
+  quadrille render helmet.gltf --out helmet.png --stats helmet.json
+      with the picture and all figures as JSON
+  quadrille render city.gltf --eye 10,4,0 --at 0,2,0 --fidelity functional --out view.png
+      no machine, only the picture: the fast way to look for a view
+  quadrille render city.gltf --machine small --set l2.cache_lines=4096 --set link.client_to_l2.latency=20
+      another machine, two of its parameters changed
+  quadrille render cube.gltf --frag toon.frag --out toon.png
+      with a fragment shader of your own
+Files are checked before the simulation starts, and appear whole or not at all.)");
+  command->callback([job, &chosen] { chosen = [job] { return job->run(); }; });
+}
+
+}  // namespace quadrille::cli

@@ -1,0 +1,98 @@
+#include "cli/render_job.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "cli/command.h"
+#include "cli/image_files.h"
+#include "cli/process.h"
+#include "models/base/error.h"
+#include "pipeline/render.h"
+#include "pipeline/report.h"
+#include "traces/whole_file.h"
+
+namespace quadrille::cli {
+namespace {
+
+constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
+
+/// How the last pass, which is the one shown, stores its colours, and whether it has depths.
+traces::RenderTarget shown_target(const traces::CommandStream& stream) {
+  traces::RenderTarget shown;
+  for (const traces::Command& command : stream.commands) {
+    if (const auto* begin = std::get_if<traces::BeginPass>(&command)) shown = stream.targets[begin->target];
+  }
+  return shown;
+}
+
+}  // namespace
+
+void RenderJob::add_to(CLI::App& command) {
+  machine.add_to(command);
+  command.add_option("--out", out, "writes the picture: .png as stored, .exr as linear floats")->type_name("F.png|F.exr");
+  command.add_option("--depth", depth, "writes the depths: .exr as they are, .png as grey, nearest white")->type_name("F.exr|F.png");
+  command.add_option("--stats", stats, "writes all figures as JSON (docs/figures.md)")->type_name("F.json");
+  command.add_option("--fidelity", fidelity, "exact: the machine, cycle by cycle; functional: the same picture without time")
+      ->check(CLI::IsMember({"exact", "functional"}))
+      ->capture_default_str();
+  command.add_option("--leave-out", leave_out, "auto: units that the frame does not need are not built; none: all are. Same picture, same cycles")
+      ->check(CLI::IsMember({"auto", "none"}))
+      ->capture_default_str();
+  command.add_option("--driver", driver, "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
+      ->check(CLI::IsMember({"dispatcher", "native"}))
+      ->capture_default_str();
+  command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")->type_name("N");
+  command.add_option("--units", units, "rows of the table: folded by kind, or all units")->check(CLI::IsMember({"folded", "all"}))->capture_default_str();
+  command.add_flag("--alpha", alpha, "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
+  command.add_flag("-q,--quiet", quiet, "prints no table");
+}
+
+void RenderJob::check_outputs() const {
+  if (out) check_output("--out", *out, {".png", ".exr"});
+  if (depth) check_output("--depth", *depth, {".exr", ".png"});
+  if (stats) check_output("--stats", *stats, {".json"});
+  check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}});
+}
+
+int RenderJob::run() {
+  scene.check();
+  pipeline::MachineConfig config;
+  machine.apply(config);
+  check_outputs();
+  hw::RunLimits limits;
+  const hw::Clock clock(static_cast<std::int64_t>(config.gpu.clock_mhz * 1e6));
+  if (max_cycles) limits.max_time = clock.edge(parse_whole(*max_cycles, "--max-cycles", 1, kMaxCycles));
+
+  Progress progress;
+  progress.show(fmt::format("loading {}", scene.scene));
+  const Stopwatch load;
+  traces::CommandStream stream = scene.load();
+  const double load_s = load.seconds();
+  const traces::RenderTarget target = shown_target(stream);
+  if (depth && target.depth == traces::Format::kUndefined) throw user_error("--depth: {} has no depth attachment", scene.scene);
+
+  progress.show("compiling shaders, building the machine");
+  limits.progress = [&](hw::Tick now) { progress.show_cycles(clock.edges_before(now)); };
+  const pipeline::MachineOptions options{.driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
+                                         .leave_out = leave_out == "auto"};
+  pipeline::RenderedFrame frame =
+      fidelity == "functional" ? pipeline::render_functional_frame(stream, config.precision()) : pipeline::render_exact(stream, config, options, limits);
+  progress.show("writing");
+  if (out) write_color(*out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
+  if (depth) write_depth(*depth, frame.image);
+
+  pipeline::Figures& figures = frame.figures;
+  figures.host.load_s = load_s;
+  figures.host.wall_s = wall_seconds();
+  figures.host.peak_rss_mib = peak_rss_mib();
+  const pipeline::ReportSubject subject{figures, config, frame.image.width, frame.image.height};
+  if (stats) traces::write_whole_file(*stats, std::as_bytes(std::span(pipeline::report_json(subject))));
+  progress.clear();
+  if (!quiet) fmt::print("{}", pipeline::report_table(subject, units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
+  if (figures.checks_hold()) return kDone;
+  fmt::print(stderr, "quadrille: the figures contradict each other\n{}", pipeline::failed_checks(figures));
+  return kFailed;
+}
+
+}  // namespace quadrille::cli

@@ -1,0 +1,28 @@
+/// A frame to render: what `render` and `trace replay` do with their arguments.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/machine_arguments.h"
+#include "cli/scene_arguments.h"
+
+namespace quadrille::cli {
+
+struct RenderJob {
+  SceneArguments scene;
+  MachineArguments machine;
+  std::optional<std::string> out, depth, stats, max_cycles;
+  std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
+  bool alpha = false, quiet = false;
+
+  /// Adds every option but those of the scene.
+  void add_to(CLI::App& command);
+  /// Checks all arguments, loads, renders, writes the files and prints the table. Returns the exit code; throws `UserError`.
+  int run();
+
+ private:
+  void check_outputs() const;
+};
+
+}  // namespace quadrille::cli

@@ -1,0 +1,104 @@
+#include "cli/scene_arguments.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "models/base/error.h"
+#include "scenes/image_io.h"
+#include "traces/trace_file.h"
+
+namespace quadrille::cli {
+namespace {
+
+/// The extension in lower case, with its dot.
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+template <class T>
+bool read_number(std::string_view text, T& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size();
+}
+
+}  // namespace
+
+std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least, std::int64_t most) {
+  std::int64_t value = 0;
+  if (!read_number(text, value) || value < least || value > most) {
+    if (most == std::numeric_limits<std::int64_t>::max()) throw user_error("{}: '{}' is not a whole number of at least {}", flag, text, least);
+    throw user_error("{}: '{}' is not a whole number within {}..{}", flag, text, least, most);
+  }
+  return value;
+}
+
+std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text, std::string_view flag) {
+  const std::size_t x = text.find('x');
+  std::uint32_t width = 0, height = 0;
+  const bool numbers = x != std::string_view::npos && read_number(text.substr(0, x), width) && read_number(text.substr(x + 1), height);
+  if (!numbers || width < 1 || height < 1 || width > scenes::kMaxImageSide || height > scenes::kMaxImageSide) {
+    throw user_error("{}: '{}' is not WIDTHxHEIGHT with sides of 1..{} pixels, as in 1920x1080", flag, text, scenes::kMaxImageSide);
+  }
+  return {width, height};
+}
+
+glm::vec3 parse_point(std::string_view text, std::string_view flag) {
+  glm::vec3 point(0);
+  std::string_view rest = text;
+  bool good = true;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t comma = i < 2 ? rest.find(',') : rest.size();
+    good = good && comma != std::string_view::npos && read_number(rest.substr(0, comma), point[i]) && std::isfinite(point[i]);
+    if (!good) break;
+    rest.remove_prefix(std::min(rest.size(), comma + 1));
+  }
+  if (!good) throw user_error("{}: '{}' is not X,Y,Z, three numbers, as in 1.5,0,-2", flag, text);
+  return point;
+}
+
+void SceneArguments::add_to(CLI::App& command) {
+  command.add_option("SCENE", scene, "a .gltf or .glb file, a .qtrace file, or builtin:NAME (quadrille scenes lists them)")->required();
+  command.add_option("--size", size, "size of the picture in pixels, 1..16384 a side (default 1920x1080)")->type_name("WxH");
+  command.add_option("--camera", camera, "which camera of the scene, from 0 (default: the first that is placed, else one that frames the scene)")->type_name("N");
+  command.add_option("--eye", eye, "a camera of your own stands here, in world units")->type_name("X,Y,Z");
+  command.add_option("--at", at, "and looks there")->type_name("X,Y,Z");
+  command.add_option("--vert", vert, "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")->type_name("F");
+  command.add_option("--frag", frag, "fragment shader for all materials, as for --vert")->type_name("F");
+}
+
+void SceneArguments::add_trace_to(CLI::App& command) { command.add_option("TRACE", scene, "a .qtrace file")->required(); }
+
+bool SceneArguments::is_trace() const { return extension_of(scene) == ".qtrace"; }
+
+scenes::SceneOptions SceneArguments::options() const {
+  scenes::SceneOptions options;
+  if (size) std::tie(options.width, options.height) = parse_size(*size, "--size");
+  if (camera) options.camera = static_cast<int>(parse_whole(*camera, "--camera", 0, std::numeric_limits<int>::max()));
+  if (eye) options.eye = parse_point(*eye, "--eye");
+  if (at) options.at = parse_point(*at, "--at");
+  if (camera && (eye || at)) throw user_error("--camera: not together with --eye or --at");
+  options.vertex_shader = vert.value_or("");
+  options.fragment_shader = frag.value_or("");
+  return options;
+}
+
+void SceneArguments::check() const {
+  if (is_trace()) {
+    if (size || camera || eye || at || vert || frag) {
+      throw user_error("{}: a trace has its size, camera and shaders in it; --size, --camera, --eye, --at, --vert and --frag are for scenes", scene);
+    }
+    return;
+  }
+  (void)options();
+  const std::string extension = extension_of(scene);
+  if (scene.starts_with("builtin:") || extension == ".gltf" || extension == ".glb") return;
+  throw user_error("{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the names)", scene);
+}
+
+traces::CommandStream SceneArguments::load() const { return is_trace() ? traces::read_trace(scene) : scenes::load_scene(scene, options()); }
+
+}  // namespace quadrille::cli

@@ -1,0 +1,41 @@
+/// The arguments that say what to draw, shared by `render` and `trace record`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scenes/scene.h"
+
+namespace quadrille::cli {
+
+struct SceneArguments {
+  std::string scene;                                      ///< .gltf, .glb, .qtrace or builtin:NAME
+  std::optional<std::string> size, camera, eye, at, vert, frag;
+
+  /// Adds SCENE and the options that choose the view and the shaders.
+  void add_to(CLI::App& command);
+  /// Adds SCENE alone, for a trace, which has its view and shaders in it.
+  void add_trace_to(CLI::App& command);
+  /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
+  void check() const;
+  /// Loads the scene or trace. Throws `UserError`.
+  [[nodiscard]] traces::CommandStream load() const;
+  [[nodiscard]] bool is_trace() const;
+
+ private:
+  [[nodiscard]] scenes::SceneOptions options() const;
+};
+
+/// "1920x1080", each side 1..16384. Throws `UserError` naming `flag`.
+[[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text, std::string_view flag);
+/// "X,Y,Z": three finite numbers. Throws `UserError` naming `flag`.
+[[nodiscard]] glm::vec3 parse_point(std::string_view text, std::string_view flag);
+/// A whole number within [least, most]. Throws `UserError` naming `flag`.
+[[nodiscard]] std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least, std::int64_t most);
+
+}  // namespace quadrille::cli

@@ -1,0 +1,109 @@
+/// The figures as JSON. Keys keep the order in which they are written here, so that two runs compare as text.
+#include "pipeline/report.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json machine_json(const Figures& f, const MachineConfig& machine) {
+  Json parameters = Json::object();
+  for (const auto& [path, group] : machine.groups()) {
+    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->value_text());
+  }
+  return {{"name", f.machine.empty() ? machine.name : f.machine}, {"parameters", std::move(parameters)}};
+}
+
+/// A frame that was not timed has no cycles: null, not zero.
+Json cycles_json(const Figures& f, std::int64_t cycles) { return f.units.empty() ? Json(nullptr) : Json(cycles); }
+
+Json frame_json(const ReportSubject& s) {
+  const FrameFigures& f = s.figures.frame;
+  return {{"width", s.width},
+          {"height", s.height},
+          {"cycles", cycles_json(s.figures, f.cycles)},
+          {"render_cycles", cycles_json(s.figures, f.render_cycles)},
+          {"clock_mhz", s.machine.gpu.clock_mhz.value()},
+          {"draws", f.draws},
+          {"triangles", f.triangles},
+          {"vertices", f.vertices},
+          {"fragments_covered", f.fragments_covered},
+          {"fragments_shaded", f.fragments_shaded},
+          {"helper_lanes", f.helper_lanes},
+          {"executed_lanes", f.fragments_shaded + f.helper_lanes},
+          {"fragment_warps", cycles_json(s.figures, static_cast<std::int64_t>(f.fragment_warps))},
+          {"fragments_written", f.fragments_written}};
+}
+
+Json unit_json(const UnitFigures& u) {
+  Json waits = Json::object(), counters = Json::object();
+  for (const WaitFigure& w : u.waits) waits[w.port] = w.cycles;
+  for (const CounterFigure& c : u.counters) counters[c.name] = c.value;
+  return {{"cycles", u.cycles}, {"busy", u.busy},   {"starved", u.starved},          {"blocked", u.blocked},
+          {"idle", u.idle},     {"waits", std::move(waits)}, {"counters", std::move(counters)}};
+}
+
+/// Unit and definition of every counter, once a kind of unit.
+Json definitions_json(const Figures& f) {
+  Json all = Json::object();
+  for (const UnitFigures& u : f.units) {
+    Json& kind = all[std::string(without_number(u.path))];
+    if (!kind.is_null()) continue;
+    kind = Json::object();
+    for (const CounterFigure& c : u.counters) kind[c.name] = {{"unit", c.unit}, {"definition", c.definition}};
+  }
+  return all;
+}
+
+Json checks_json(const Figures& f) {
+  Json all = Json::array();
+  for (const Check& c : f.checks) {
+    all.push_back({{"law", c.law},
+                   {"left", {{"name", c.left_name}, {"value", c.left}}},
+                   {"right", {{"name", c.right_name}, {"value", c.right}}},
+                   {"holds", c.holds()}});
+  }
+  return all;
+}
+
+Json host_json(const Figures& f) {
+  const HostFigures& h = f.host;
+  return {{"load_s", h.load_s},
+          {"build_s", h.build_s},
+          {"simulate_s", h.simulate_s},
+          {"simulate_cpu_s", h.simulate_cpu_s},
+          {"wall_s", h.wall_s},
+          {"fragments_per_s", h.fragments_per_s},
+          {"cycles_per_s", f.units.empty() ? Json(nullptr) : Json(h.cycles_per_s)},
+          {"peak_rss_mib", h.peak_rss_mib},
+          {"actions", h.actions}};
+}
+
+}  // namespace
+
+std::string report_json(const ReportSubject& s) {
+  const Figures& f = s.figures;
+  Json units = Json::object(), bandwidth = Json::object(), left_out = Json::array();
+  for (const UnitFigures& u : f.units) units[u.path] = unit_json(u);
+  for (const ClientFigures& c : f.bandwidth) bandwidth[c.name] = {{"read_bytes", c.read_bytes}, {"write_bytes", c.write_bytes}};
+  for (const LeftOut& l : f.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
+  const Json document = {{"schema", kFiguresSchema},
+                         {"scene", f.scene},
+                         {"fidelity", f.fidelity},
+                         {"machine", machine_json(f, s.machine)},
+                         {"frame", frame_json(s)},
+                         {"units", std::move(units)},
+                         {"counter_definitions", definitions_json(f)},
+                         {"bandwidth", std::move(bandwidth)},
+                         {"checks", checks_json(f)},
+                         {"left_out", std::move(left_out)},
+                         {"host", host_json(f)}};
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,26 @@
+/// The program under test.
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "tests/cli/program.h"
+
+namespace quadrille::tests {
+
+inline ProgramRun quadrille(const ScratchFolder& folder, const std::vector<std::string>& arguments) {
+  return run_program(QUADRILLE_PROGRAM, arguments, folder.path());
+}
+
+/// A refusal: exit code 2, nothing on standard output, and one line that holds each of these words.
+inline void require_refused(const ProgramRun& run, const std::vector<std::string>& words) {
+  CAPTURE(run.err);
+  CHECK(run.exit_code == 2);
+  CHECK(run.out.empty());
+  CHECK(std::ranges::count(run.err, '\n') == 1);
+  CHECK(run.err.starts_with("quadrille: "));
+  for (const std::string& word : words) CHECK_THAT(run.err, Catch::Contains(word));
+}
+
+}  // namespace quadrille::tests

@@ -1,0 +1,169 @@
+/// A frame from the command line to picture, table and JSON.
+#include <nlohmann/json.hpp>
+
+#include "scenes/image_io.h"
+#include "tests/cli/quadrille.h"
+
+using namespace quadrille::tests;
+using nlohmann::json;
+
+namespace {
+
+/// Renders a small frame of `scene` with these arguments too, and requires success and silence on standard error.
+ProgramRun render(const ScratchFolder& folder, const std::string& scene, std::vector<std::string> more) {
+  std::vector<std::string> arguments{"render", scene};
+  if (!scene.ends_with(".qtrace")) arguments.insert(arguments.end(), {"--size", "96x64"});
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  ProgramRun run = quadrille(folder, arguments);
+  CAPTURE(arguments, run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK(run.err.empty());
+  return run;
+}
+
+void require_equal_pictures(const ScratchFolder& folder, const std::string& a, const std::string& b) {
+  const ProgramRun run = quadrille(folder, {"diff", a, b, "--max-lsb", "0"});
+  CAPTURE(a, b, run.out, run.err);
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(run.out, Catch::StartsWith("equal: 6144 pixels"));
+}
+
+json stats(const ScratchFolder& folder, const std::string& scene, std::vector<std::string> more) {
+  more.insert(more.end(), {"--quiet", "--stats", "stats.json"});
+  CHECK(render(folder, scene, more).out.empty());
+  return json::parse(folder.read("stats.json"));
+}
+
+}  // namespace
+
+TEST_CASE("exact and functional runs give one picture, whatever the driver and what is left out") {
+  for (const std::string scene : {"builtin:triangle", "builtin:quad"}) {
+    const ScratchFolder folder;
+    render(folder, scene, {"--out", "exact.png", "-q"});
+    render(folder, scene, {"--fidelity", "functional", "--out", "functional.png", "-q"});
+    render(folder, scene, {"--driver", "native", "--leave-out", "none", "--machine", "small", "--out", "other.png", "-q"});
+    require_equal_pictures(folder, "exact.png", "functional.png");
+    require_equal_pictures(folder, "exact.png", "other.png");
+  }
+}
+
+TEST_CASE("a picture is opaque unless its alpha is asked for, and is the same as .exr") {
+  const ScratchFolder folder;
+  render(folder, "builtin:triangle", {"--out", "x.png", "-q"});
+  render(folder, "builtin:triangle", {"--out", "x.exr", "--depth", "z.exr", "-q"});
+  const auto picture = quadrille::scenes::load_image((folder.path() / "x.png").string());
+  CHECK((picture.width == 96 && picture.height == 64));
+  for (std::size_t i = 3; i < picture.pixels.size(); i += 4) REQUIRE(picture.pixels[i] == 255);
+  require_equal_pictures(folder, "x.png", "x.exr");
+  const auto depth = quadrille::scenes::load_float_image((folder.path() / "z.exr").string());
+  REQUIRE(depth.channels == 1);
+  CHECK(depth.pixels[0] == 1.0F);                       // the background was cleared to the far plane
+  CHECK(depth.pixels[32 * 96 + 48] < 1.0F);             // the triangle covers the middle
+}
+
+TEST_CASE("the table names every unit, the clients and the checks, without colour") {
+  const ScratchFolder folder;
+  const std::string table = render(folder, "builtin:quad", {}).out;
+  for (const char* word : {"command_processor", "coarse_raster", "core x4", "texture x4", "l2 x2", "memory x2", "scan_out", "BANDWIDTH", "all clients", "laws hold", "HOST"}) {
+    CHECK_THAT(table, Catch::Contains(word));
+  }
+  CHECK(table.find('\x1b') == std::string::npos);
+  CHECK_THAT(table, !Catch::Contains("SystemC"));
+  const std::string all = render(folder, "builtin:quad", {"--units", "all"}).out;
+  CHECK_THAT(all, Catch::Contains("core_0") && Catch::Contains("core_3") && !Catch::Contains("core x4"));
+  CHECK(folder.empty());
+}
+
+TEST_CASE("the JSON holds the frame, every unit's cycles, and laws with both sides") {
+  const ScratchFolder folder;
+  const json s = stats(folder, "builtin:quad", {});
+  CHECK(s.at("schema") == "quadrille-figures-1");
+  CHECK(s.at("scene") == "builtin:quad");
+  CHECK(s.at("fidelity") == "exact");
+  CHECK(s.at("machine").at("name") == "default");
+  CHECK(s.at("machine").at("parameters").at("gpu.cores") == 4);
+  CHECK(s.at("machine").at("parameters").at("coarse_raster.hiz") == true);
+  const json& frame = s.at("frame");
+  CHECK(frame.at("cycles") > 0);
+  CHECK((frame.at("width") == 96 && frame.at("height") == 64));
+  CHECK(frame.at("executed_lanes") == frame.at("fragments_shaded").get<int>() + frame.at("helper_lanes").get<int>());
+  REQUIRE(s.at("units").contains("core_0"));
+  for (const auto& [path, u] : s.at("units").items()) {
+    CAPTURE(path);
+    CHECK(u.at("busy").get<long>() + u.at("starved").get<long>() + u.at("blocked").get<long>() + u.at("idle").get<long>() == u.at("cycles").get<long>());
+    CHECK(u.at("waits").is_object());
+    CHECK(u.at("counters").is_object());
+  }
+  CHECK(s.at("counter_definitions").at("core").at("fragments").at("unit") == "fragment");
+  for (const char* client : {"vertex_fetch", "texture", "depth", "color", "scan_out"}) {
+    CHECK(s.at("bandwidth").at(client).at("read_bytes").is_number_unsigned());
+    CHECK(s.at("bandwidth").at(client).at("write_bytes").is_number_unsigned());
+  }
+  REQUIRE(s.at("checks").size() > 20);
+  for (const json& check : s.at("checks")) {
+    CHECK(check.at("holds") == true);
+    CHECK(check.at("left").at("value") == check.at("right").at("value"));
+    CHECK_FALSE(check.at("left").at("name").get<std::string>().empty());
+  }
+  CHECK(s.at("left_out").is_array());
+  const json& host = s.at("host");
+  for (const char* key : {"load_s", "build_s", "simulate_s", "simulate_cpu_s", "wall_s", "fragments_per_s", "cycles_per_s", "peak_rss_mib"}) CHECK(host.at(key) > 0);
+  CHECK(host.at("wall_s") >= host.at("load_s").get<double>() + host.at("build_s").get<double>() + host.at("simulate_s").get<double>());
+}
+
+TEST_CASE("both drivers and both ways of leaving out count the same cycles") {
+  const ScratchFolder folder;
+  const json a = stats(folder, "builtin:triangle", {}), b = stats(folder, "builtin:triangle", {"--driver", "native"}),
+             c = stats(folder, "builtin:triangle", {"--leave-out", "none"});
+  CHECK(a.at("frame") == b.at("frame"));
+  CHECK(a.at("units") == b.at("units"));
+  CHECK(a.at("frame") == c.at("frame"));
+}
+
+TEST_CASE("a run without time has no cycles, rather than zero") {
+  const ScratchFolder folder;
+  const json exact = stats(folder, "builtin:quad", {}), functional = stats(folder, "builtin:quad", {"--fidelity", "functional"});
+  CHECK(functional.at("fidelity") == "functional");
+  CHECK(functional.at("frame").at("cycles").is_null());
+  CHECK(functional.at("host").at("cycles_per_s").is_null());
+  CHECK(functional.at("units").empty());
+  for (const char* count : {"draws", "triangles", "fragments_written"}) CHECK(functional.at("frame").at(count) == exact.at("frame").at(count));
+}
+
+TEST_CASE("a setting is applied after the machine and is in the figures") {
+  const ScratchFolder folder;
+  const json s = stats(folder, "builtin:triangle", {"--machine", "small", "--set", "gpu.cores=3", "--set", "link.core_to_rop.depth=1"});
+  CHECK(s.at("machine").at("name") == "small");
+  CHECK(s.at("machine").at("parameters").at("gpu.cores") == 3);
+  CHECK(s.at("machine").at("parameters").at("gpu.partitions") == 1);
+  CHECK(s.at("machine").at("parameters").at("link.core_to_rop.depth") == 1);
+  CHECK(s.at("units").contains("core_2"));
+  CHECK_FALSE(s.at("units").contains("core_3"));
+}
+
+TEST_CASE("a recorded trace replays to the picture and the cycles of its scene") {
+  const ScratchFolder folder;
+  REQUIRE(quadrille(folder, {"trace", "record", "builtin:quad", "--size", "96x64", "-o", "quad.qtrace"}).exit_code == 0);
+  const ProgramRun info = quadrille(folder, {"trace", "info", "quad.qtrace"});
+  CHECK(info.exit_code == 0);
+  CHECK_THAT(info.out, Catch::Contains("96x64") && Catch::Contains("draws"));
+  render(folder, "builtin:quad", {"--out", "scene.png", "--stats", "scene.json", "-q"});
+  REQUIRE(quadrille(folder, {"trace", "replay", "quad.qtrace", "--out", "replay.png", "--stats", "replay.json", "-q"}).exit_code == 0);
+  render(folder, "quad.qtrace", {"--out", "render.png", "-q"});
+  require_equal_pictures(folder, "scene.png", "replay.png");
+  require_equal_pictures(folder, "scene.png", "render.png");
+  CHECK(json::parse(folder.read("scene.json")).at("units") == json::parse(folder.read("replay.json")).at("units"));
+}
+
+TEST_CASE("diff tells pictures apart, by how much, and where") {
+  const ScratchFolder folder;
+  render(folder, "builtin:triangle", {"--out", "a.png", "-q"});
+  render(folder, "builtin:quad", {"--out", "b.png", "-q"});
+  CHECK(quadrille(folder, {"diff", "a.png", "b.png"}).exit_code == 0);
+  const ProgramRun run = quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "8", "--heat", "heat.png"});
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.out, Catch::Contains("largest difference") && Catch::Contains("8x8 blocks"));
+  CHECK_THAT(run.err, Catch::Contains("--max-lsb allows 8"));
+  CHECK(quadrille::scenes::load_image((folder.path() / "heat.png").string()).width == 96);
+  CHECK(quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "255"}).exit_code == 0);
+}

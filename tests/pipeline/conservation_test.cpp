@@ -1,0 +1,94 @@
+/// The laws are worth something only if they break: each case loses something on a wire on purpose and finds the law that notices.
+#include "pipeline/figures.h"
+#include "tests/hw/contract.h"
+#include "tests/pipeline/random_stream.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace quadrille;
+using namespace quadrille::pipeline;
+
+namespace {
+
+template <class T>
+hw::Fifo<T>& link(const Machine& machine, std::string_view name) {
+  for (const auto& l : machine.links()) {
+    if (static_cast<const sc_core::sc_object&>(*l).basename() == name) return dynamic_cast<hw::Fifo<T>&>(*l);
+  }
+  throw std::runtime_error("no such link");
+}
+
+/// Runs the default machine with a fault; gives the broken laws, one a line.
+std::string broken_laws(const std::function<void(const Machine&)>& inject) {
+  return hw::contract::in_child([&] {
+    const traces::CommandStream stream = test::random_stream(5);
+    MachineConfig config;
+    DeviceFrame frame(std::uint64_t{1} << 30);
+    build_frame(stream, config.precision(), frame);
+    Machine machine(config, frame, {});
+    inject(machine);
+    machine.run({});
+    std::string lines;
+    for (const Check& c : collect_figures(machine, frame).checks) {
+      if (!c.holds()) lines += c.law + "\n";
+    }
+    return lines;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("conservation: an intact machine breaks no law") { CHECK(broken_laws([](const Machine&) {}).empty()); }
+
+TEST_CASE("conservation: a lost fragment is noticed") {
+  const std::string broken = broken_laws([](const Machine& machine) {
+    link<hw::CoverageToken>(machine, "fine_to_depth_0").inject_fault([n = 0](hw::CoverageToken& t) mutable {
+      if (t.kind == hw::TokenKind::kWork && ++n == 5) t.coverage &= t.coverage - 1;
+    });
+  });
+  CHECK(broken.find("fragments covered = fragments to test") != std::string::npos);
+}
+
+TEST_CASE("conservation: a fragment lost between test and packing is noticed") {
+  const std::string broken = broken_laws([](const Machine& machine) {
+    link<hw::CoverageToken>(machine, "depth_to_packer_1").inject_fault([n = 0](hw::CoverageToken& t) mutable {
+      if (t.kind == hw::TokenKind::kWork && !t.late && ++n == 3) t.coverage &= t.coverage - 1;
+    });
+  });
+  CHECK(broken.find("fragments passed = fragments packed") != std::string::npos);
+}
+
+TEST_CASE("conservation: a lost triangle is noticed") {
+  const std::string broken = broken_laws([](const Machine& machine) {
+    link<hw::PrimitiveToken>(machine, "assembly_to_clipper").inject_fault([n = 0](hw::PrimitiveToken& t) mutable {
+      if (t.kind == hw::TokenKind::kWork && ++n == 4) t.kind = hw::TokenKind::kSync;
+    });
+  });
+  CHECK(broken.find("triangles assembled = triangles to clip") != std::string::npos);
+}
+
+TEST_CASE("conservation: a lost tile is noticed") {
+  const std::string broken = broken_laws([](const Machine& machine) {
+    link<hw::TileToken>(machine, "coarse_to_fine").inject_fault([n = 0](hw::TileToken& t) mutable {
+      if (t.kind == hw::TokenKind::kWork && ++n == 4) t = {hw::TokenKind::kSync, false, 0, 0, t.index, 0};
+    });
+  });
+  CHECK(broken.find("tiles kept = tiles rasterised") != std::string::npos);
+}
+
+TEST_CASE("conservation: lost bytes are noticed, read and written") {
+  const auto shorten = [](hw::MemoryRequest::Kind kind) {
+    return [kind](const Machine& machine) {
+      // Clients 0: vertex fetch; 1..4: texture; 5, 6: depth and colour of partition 0.
+      for (const char* name : {"client_0_to_l2_0", "client_6_to_l2_0"}) {
+        link<hw::MemoryRequest>(machine, name).inject_fault([kind, n = 0](hw::MemoryRequest& r) mutable {
+          if (r.kind == kind && ++n == 1) r.sectors = static_cast<std::uint8_t>(r.sectors & (r.sectors - 1));
+        });
+      }
+    };
+  };
+  CHECK(broken_laws(shorten(hw::MemoryRequest::Kind::kRead)).find("bytes asked by clients = bytes answered by L2") != std::string::npos);
+  CHECK(broken_laws(shorten(hw::MemoryRequest::Kind::kWrite)).find("bytes written by clients = bytes taken by L2") != std::string::npos);
+}

@@ -1,0 +1,68 @@
+#include "tests/pipeline/machine_specimen.h"
+
+#include "pipeline/figures.h"
+#include "pipeline/functional.h"
+#include "tests/pipeline/random_machine.h"
+
+namespace quadrille::pipeline::test {
+
+namespace {
+
+std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ value) * 0x100000001b3u; }
+
+class MachineSpecimen final : public hw::contract::Specimen {
+ public:
+  MachineSpecimen(const traces::CommandStream& stream, std::uint64_t machine_seed, hw::Driver& driver, const hw::contract::Variation& variation)
+      : frame_(std::uint64_t{1} << 30) {
+    if (machine_seed != 0) randomize(config_, machine_seed);
+    if (variation.depth_one) {
+      for (const auto& [path, group] : config_.groups()) {
+        if (path.starts_with("link.")) group->find("depth")->parse("1");
+      }
+    }
+    build_frame(stream, config_.precision(), frame_);
+    MachineOptions options;
+    options.external_driver = &driver;
+    options.module_order = variation.creation_seed;
+    machine_ = std::make_unique<Machine>(config_, frame_, options);
+  }
+  [[nodiscard]] std::uint64_t digest() const override { return image_digest(frame_); }
+  [[nodiscard]] bool finished() const override { return machine_->command_processor().finished(); }
+  [[nodiscard]] hw::Tick end() const override { return machine_->end(); }
+  void add_figures(std::map<std::string, std::int64_t>& figures) const override {
+    const Figures f = collect_figures(*machine_, frame_);
+    for (const Check& c : f.checks) figures["law broken: " + c.law] = c.holds() ? 0 : 1;
+  }
+
+ private:
+  MachineConfig config_;
+  DeviceFrame frame_;
+  std::unique_ptr<Machine> machine_;
+};
+
+}  // namespace
+
+std::uint64_t image_digest(const DeviceFrame& frame) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const hw::PassState& pass : frame.frame.passes) {
+    for (const std::uint32_t pixel : models::detile(frame.memory, pass.color)) hash = mix(hash, pixel);
+    if (!pass.has_depth) continue;
+    for (const std::uint32_t depth : models::detile(frame.memory, pass.depth)) hash = mix(hash, depth);
+  }
+  return hash;
+}
+
+std::uint64_t functional_digest(const traces::CommandStream& stream) {
+  DeviceFrame frame(std::uint64_t{1} << 30);
+  build_frame(stream, {}, frame);
+  (void)render_functional(frame.frame, frame.memory);
+  return image_digest(frame);
+}
+
+hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed) {
+  return [&stream, machine_seed](hw::Driver& driver, const hw::contract::Variation& variation) {
+    return std::make_unique<MachineSpecimen>(stream, machine_seed, driver, variation);
+  };
+}
+
+}  // namespace quadrille::pipeline::test

@@ -1,0 +1,18 @@
+/// The whole machine for the contract harness: random stream, random machine, rendered in any driver and order.
+#pragma once
+
+#include "pipeline/machine.h"
+#include "tests/hw/contract.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::pipeline::test {
+
+/// Checksum of colour and depth.
+[[nodiscard]] std::uint64_t image_digest(const DeviceFrame& frame);
+/// The same for the functional rendering of a stream.
+[[nodiscard]] std::uint64_t functional_digest(const traces::CommandStream& stream);
+
+/// Builds the machine of `machine_seed` (0: the default one) for the stream.
+[[nodiscard]] hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed);
+
+}  // namespace quadrille::pipeline::test

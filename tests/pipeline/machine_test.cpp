@@ -1,0 +1,54 @@
+/// The three laws on the whole machine: timing never changes pixels, every cycle is counted once, every byte and fragment is accounted for.
+#include "tests/pipeline/machine_specimen.h"
+#include "tests/pipeline/random_stream.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille;
+using namespace quadrille::pipeline::test;
+
+namespace {
+
+void check_image_and_laws(const hw::contract::Outcome& outcome, std::uint64_t expected) {
+  INFO(outcome.failure);
+  REQUIRE(outcome.failure.empty());
+  CHECK(outcome.digest == expected);
+  for (const auto& [name, value] : outcome.figures) {
+    if (name.starts_with("law broken")) {
+      INFO(name);
+      CHECK(value == 0);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("machine: a hundred random machines give the pixels of the functional rendering, and keep all laws") {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const traces::CommandStream stream = random_stream(1 + seed / 10);
+    INFO("machine " << seed);
+    check_image_and_laws(hw::contract::run_forked(machine_builder(stream, seed), {}), functional_digest(stream));
+  }
+}
+
+TEST_CASE("machine: random streams give the pixels of the functional rendering on the default machine") {
+  for (std::uint64_t seed = 100; seed < 130; ++seed) {
+    const traces::CommandStream stream = random_stream(seed, {120, 72, 30, 20});
+    INFO("stream " << seed);
+    check_image_and_laws(hw::contract::run_forked(machine_builder(stream, 0), {}), functional_digest(stream));
+  }
+}
+
+TEST_CASE("machine: both drivers, any host order, any order of creating modules: the same cycles and figures") {
+  const traces::CommandStream stream = random_stream(7, {64, 48, 8, 6});
+  for (const std::uint64_t machine : {0, 3, 12}) {
+    INFO("machine " << machine);
+    hw::contract::Options options;
+    options.shuffles = 3;
+    options.creations = 2;
+    for (const std::string& violation : hw::contract::violations(machine_builder(stream, machine), options)) {
+      UNSCOPED_INFO(violation);
+      CHECK(violation.empty());
+    }
+  }
+}

@@ -1,0 +1,63 @@
+#include "tests/pipeline/random_machine.h"
+
+#include <algorithm>
+#include <random>
+
+namespace quadrille::pipeline::test {
+
+namespace {
+
+class Source {
+ public:
+  explicit Source(std::uint64_t seed) : engine_(seed) {}
+  int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
+  int pick(std::initializer_list<int> values) { return *(values.begin() + integer(0, static_cast<int>(values.size()) - 1)); }
+  bool chance(double p) { return std::bernoulli_distribution(p)(engine_); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+void randomize_link(LinkParams& link, Source& random, bool depth_one) {
+  link.depth.set(depth_one ? 1 : random.pick({1, 1, 2, 3, 5, 17}));
+  link.width.set(random.integer(1, 2));
+  link.credit_latency.set(random.pick({1, 2, 9}));
+  link.latency.set(random.chance(0.95) ? random.pick({1, 1, 2, 7, 30}) : random.chance(0.15) ? 100000 : 300);
+}
+
+}  // namespace
+
+void randomize(MachineConfig& config, std::uint64_t seed) {
+  Source random(seed);
+  config.gpu.cores.set(random.integer(1, 8));
+  config.gpu.partitions.set(random.integer(1, 8));
+  config.gpu.channels.set(random.integer(1, 8));
+  const double clocks[] = {1000, 777.777, 31.4159, 3000};
+  config.gpu.memory_mhz.set(clocks[random.integer(0, 3)]);
+  const bool depth_one = random.chance(0.3);
+  for (const auto& [path, group] : config.groups()) {
+    if (path.starts_with("link.")) randomize_link(static_cast<LinkParams&>(*group), random, depth_one);
+    hw::ParamBase* const ways = group->find("cache_ways");
+    if (ways == nullptr) continue;
+    const int w = random.pick({1, 1, 2, 4});
+    ways->parse(std::to_string(w));
+    group->find("cache_lines")->parse(std::to_string(w * random.pick({1, 1, 2, 8, 64})));
+    group->find("cache_misses")->parse(std::to_string(random.pick({1, 2, 8})));
+  }
+  config.core.warp_slots.set(random.pick({2, 3, 8, 32}));
+  config.core.register_rows.set(random.pick({256, 1024}));
+  config.core.simds.set(random.pick({1, 2, 4}));
+  config.vertex_fetch.batch_slots.set(random.pick({2, 3, 16}));
+  config.warp_packer.warp_slots.set(random.pick({1, 2, 16}));
+  config.warp_packer.patience_clk.set(random.pick({1, 5, 1000}));
+  config.triangle_setup.triangle_slots.set(random.pick({1, 2, 9, 64}));
+  config.command_processor.draws_in_flight.set(random.pick({1, 2, 32}));
+  config.depth.tiles_in_flight.set(random.pick({1, 4}));
+  config.rop.warps_in_flight.set(random.pick({1, 4}));
+  config.texture.groups_in_flight.set(random.pick({1, 4}));
+  config.scan_out.lines_in_flight.set(random.pick({1, 50}));
+  config.memory.queue_depth.set(random.pick({1, 8}));
+  config.coarse_raster.hiz.set(random.chance(0.7));
+}
+
+}  // namespace quadrille::pipeline::test

@@ -1,0 +1,162 @@
+#include "tests/pipeline/random_stream.h"
+
+#include "scenes/glsl.h"
+
+#include <array>
+#include <cstring>
+#include <random>
+
+namespace quadrille::pipeline::test {
+
+namespace {
+
+constexpr const char* kVertex = R"(#version 450
+layout(location = 0) in vec4 position; layout(location = 1) in vec4 color; layout(location = 2) in vec2 uv;
+layout(location = 0) out vec4 v_color; layout(location = 1) out vec2 v_uv; layout(location = 2) flat out float v_index;
+void main() { gl_Position = position; v_color = color; v_uv = uv; v_index = float(gl_VertexIndex % 5) * 0.2; })";
+
+constexpr std::array<const char*, 5> kFragments{
+    // Plain.
+    R"(#version 450
+layout(location = 0) in vec4 v_color; layout(location = 2) flat in float v_index; layout(location = 0) out vec4 o;
+void main() { o = vec4(v_color.rgb * 0.8 + 0.2 * v_index, v_color.a); })",
+    // Textured.
+    R"(#version 450
+layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
+layout(set = 0, binding = 0) uniform sampler2D t;
+void main() { o = texture(t, v_uv) * v_color; })",
+    // Discards.
+    R"(#version 450
+layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
+layout(set = 0, binding = 0) uniform sampler2D t;
+void main() { vec4 c = texture(t, v_uv * 2.0); if (c.g < 0.5) discard; o = vec4(c.rgb, v_color.a); })",
+    // Writes depth.
+    R"(#version 450
+layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
+void main() { gl_FragDepth = clamp(gl_FragCoord.z * 0.7 + 0.3 * fract(v_uv.x), 0.0, 1.0); o = v_color.bgra; })",
+    // Diverges, in a loop with derivatives after it.
+    R"(#version 450
+layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
+void main() {
+  float s = 0.0; int n = int(mod(gl_FragCoord.x * 3.0 + gl_FragCoord.y, 7.0));
+  for (int i = 0; i < n; ++i) { s += 0.1 * float(i); if (s > 0.7) break; }
+  o = vec4(v_color.rgb * (0.3 + s), 0.5 + 0.5 * v_color.a) + vec4(abs(dFdx(v_uv)) * 0.5, 0.0, 0.0);
+})"};
+
+struct Vertex {
+  std::array<float, 4> position, color;
+  std::array<float, 2> uv;
+};
+
+class Source {
+ public:
+  explicit Source(std::uint64_t seed) : engine_(seed) {}
+  int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
+  float real(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+std::vector<std::byte> bytes_of(const void* data, std::size_t size) {
+  std::vector<std::byte> bytes(size);
+  std::memcpy(bytes.data(), data, size);
+  return bytes;
+}
+
+/// A triangle of clip-space vertices: mostly on screen, some crossing the near plane, some tiny, some huge.
+void add_triangle(Source& random, std::vector<Vertex>& out) {
+  const float size = random.integer(0, 3) == 0 ? 0.05f : random.integer(0, 5) == 0 ? 40.0f : 0.9f;
+  const float cx = random.real(-1, 1), cy = random.real(-1, 1), cz = random.real(0.05f, 0.95f);
+  for (int i = 0; i < 3; ++i) {
+    const float w = random.integer(0, 9) == 0 ? random.real(-1, 2) : random.real(0.5f, 3);
+    const float z = random.integer(0, 9) == 0 ? random.real(-1, 2) : cz + random.real(-0.04f, 0.04f);
+    out.push_back({{(cx + random.real(-size, size)) * w, (cy + random.real(-size, size)) * w, z * w, w},
+                   {random.real(0, 1), random.real(0, 1), random.real(0, 1), random.real(0, 1)},
+                   {random.real(-2, 2), random.real(-2, 2)}});
+  }
+}
+
+traces::Pipeline random_pipeline(Source& random, traces::Index fragment) {
+  traces::Pipeline p;
+  p.name = "random";
+  p.vertex_shader = 0;
+  p.fragment_shader = fragment;
+  p.bindings = {{0, sizeof(Vertex), false}};
+  p.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0}, {1, 0, traces::Format::kR32G32B32A32Float, 16}, {2, 0, traces::Format::kR32G32Float, 32}};
+  p.cull = random.integer(0, 4) == 0 ? traces::CullMode::kBack : traces::CullMode::kNone;
+  p.depth.test = random.integer(0, 5) != 0;
+  p.depth.write = random.integer(0, 2) != 0;
+  // Mostly "less", so that Hi-Z and early kills are at work; now and then a change of direction.
+  p.depth.compare = random.integer(0, 3) != 0 ? traces::CompareOp::kLess : static_cast<traces::CompareOp>(random.integer(0, 7));
+  p.depth_clamp = random.integer(0, 6) == 0;
+  p.blend.enable = random.integer(0, 2) == 0;
+  p.blend.src_color = static_cast<traces::BlendFactor>(random.integer(0, 9));
+  p.blend.dst_color = static_cast<traces::BlendFactor>(random.integer(0, 9));
+  p.blend.src_alpha = traces::BlendFactor::kOne;
+  p.blend.dst_alpha = traces::BlendFactor::kOneMinusSrcAlpha;
+  p.blend.color = static_cast<traces::BlendOp>(random.integer(0, 4));
+  p.blend.write_mask = random.integer(0, 5) == 0 ? static_cast<std::uint8_t>(random.integer(1, 15)) : std::uint8_t{0xf};
+  return p;
+}
+
+void add_texture(Source& random, traces::CommandStream& stream) {
+  traces::Image image{"noise", traces::Format::kR8G8B8A8Srgb, 32, 16, 6, {}};
+  std::size_t texels = 0;
+  for (std::uint32_t l = 0; l < image.levels; ++l) texels += std::size_t{std::max(1u, image.width >> l)} * std::max(1u, image.height >> l);
+  for (std::size_t i = 0; i < 4 * texels; ++i) image.texels.push_back(static_cast<std::byte>(random.integer(0, 255)));
+  stream.images.push_back(image);
+  stream.samplers.push_back({});
+  stream.descriptor_sets.push_back({{}, {{0, 0, 0}}});
+}
+
+const std::vector<traces::Shader>& shaders() {
+  static const std::vector<traces::Shader> all = [] {
+    std::vector<traces::Shader> s;
+    s.push_back({"random.vert", traces::ShaderStage::kVertex, scenes::compile_glsl(kVertex, traces::ShaderStage::kVertex, "random.vert")});
+    for (const char* text : kFragments) {
+      s.push_back({"random.frag", traces::ShaderStage::kFragment, scenes::compile_glsl(text, traces::ShaderStage::kFragment, "random.frag")});
+    }
+    return s;
+  }();
+  return all;
+}
+
+}  // namespace
+
+traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape) {
+  Source random(seed);
+  traces::CommandStream stream;
+  stream.name = "random";
+  stream.shaders = shaders();
+  add_texture(random, stream);
+  stream.targets.push_back({shape.width, shape.height, traces::Format::kR8G8B8A8Srgb, traces::Format::kD32Float});
+  stream.commands.push_back(traces::BeginPass{0, {0.2f, 0.3f, 0.4f, 1.0f}, 1.0f});
+  stream.commands.push_back(traces::SetViewport{0, 0, static_cast<float>(shape.width), static_cast<float>(shape.height), 0, 1});
+  stream.commands.push_back(traces::SetScissor{0, 0, shape.width, shape.height});
+  for (int d = 0; d < shape.draws; ++d) {
+    stream.pipelines.push_back(random_pipeline(random, static_cast<traces::Index>(1 + random.integer(0, static_cast<int>(kFragments.size()) - 1))));
+    stream.commands.push_back(traces::BindPipeline{static_cast<traces::Index>(stream.pipelines.size() - 1)});
+    stream.commands.push_back(traces::BindDescriptorSet{0, 0});
+    std::vector<Vertex> vertices;
+    const int triangles = random.integer(1, 2 * shape.triangles - 1);
+    for (int t = 0; t < triangles; ++t) add_triangle(random, vertices);
+    stream.buffers.push_back({"vertices", bytes_of(vertices.data(), vertices.size() * sizeof(Vertex))});
+    stream.commands.push_back(traces::BindVertexBuffer{0, static_cast<traces::Index>(stream.buffers.size() - 1), 0});
+    traces::Draw draw;
+    draw.count = static_cast<std::uint32_t>(vertices.size());
+    if (random.integer(0, 1) == 0) {
+      std::vector<std::uint16_t> indices;
+      for (std::uint32_t i = 0; i < draw.count; ++i) indices.push_back(static_cast<std::uint16_t>(random.integer(0, 4) == 0 ? random.integer(0, static_cast<int>(draw.count) - 1) : static_cast<int>(i)));
+      stream.buffers.push_back({"indices", bytes_of(indices.data(), indices.size() * 2)});
+      stream.commands.push_back(traces::BindIndexBuffer{static_cast<traces::Index>(stream.buffers.size() - 1), 0, traces::IndexType::kUint16});
+      draw.indexed = true;
+    }
+    stream.commands.push_back(draw);
+  }
+  stream.commands.push_back(traces::EndPass{});
+  traces::validate(stream);
+  return stream;
+}
+
+}  // namespace quadrille::pipeline::test
