@@ -36,15 +36,15 @@ int fail(int code, std::string message) {
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = error.what();
   std::ranges::replace(text, '\n', ' ');
-  const auto chosen = app.get_subcommands();
-  return fail(kUserError, fmt::format("{}; see quadrille{} --help", text, chosen.empty() ? "" : " " + chosen.front()->get_name()));
+  const auto parsed = app.get_subcommands();
+  return fail(kUserError, fmt::format("{}; see quadrille{} --help", text, parsed.empty() ? "" : " " + parsed.front()->get_name()));
 }
 
 int run(int argc, char** argv) {
   CLI::App app(kAbout, "quadrille");
   app.footer(kExamples);
   app.set_version_flag("--version", "quadrille " QUADRILLE_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // none is refused below, after an unknown word was named
   Command chosen;
   add_render(app, chosen);
   add_diff(app, chosen);
@@ -53,6 +53,7 @@ int run(int argc, char** argv) {
   add_lists(app, chosen);
   try {
     app.parse(argc, argv);
+    if (!chosen) return fail(kUserError, "a subcommand is missing; see quadrille --help");
     return chosen();
   } catch (const CLI::Success& answered) {
     return app.exit(answered);  // --help and --version

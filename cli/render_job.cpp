@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <span>
 
 #include "cli/command.h"
 #include "cli/image_files.h"
@@ -87,7 +87,10 @@ int RenderJob::run() {
   figures.host.wall_s = wall_seconds();
   figures.host.peak_rss_mib = peak_rss_mib();
   const pipeline::ReportSubject subject{figures, config, frame.image.width, frame.image.height};
-  if (stats) traces::write_whole_file(*stats, std::as_bytes(std::span(pipeline::report_json(subject))));
+  if (stats) {
+    const std::string json = pipeline::report_json(subject);
+    traces::write_whole_file(*stats, std::as_bytes(std::span(json.data(), json.size())));
+  }
   progress.clear();
   if (!quiet) fmt::print("{}", pipeline::report_table(subject, units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
   if (figures.checks_hold()) return kDone;

@@ -66,7 +66,10 @@ void add_replay(CLI::App& trace, Command& chosen) {
 
 void add_trace(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand("trace", "Records, inspects and replays the commands of a frame.");
-  command->require_subcommand(1);
+  command->require_subcommand(0, 1);
+  command->callback([&chosen, command] {
+    if (!chosen) throw CLI::RequiredError("record, info or replay");
+  });
   command->footer(R"(Examples:
   quadrille trace record city.gltf --camera 2 -o city.qtrace
   quadrille trace info city.qtrace

@@ -10,8 +10,8 @@ namespace quadrille::pipeline {
 
 namespace {
 
-constexpr std::size_t kColumns = 130;
-constexpr std::size_t kFacetColumn = 82;
+constexpr std::size_t kColumns = 139;
+constexpr std::size_t kFacetColumn = 79;
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 double ratio(std::uint64_t a, std::uint64_t b) { return ratio(static_cast<double>(a), static_cast<double>(b)); }
@@ -57,10 +57,10 @@ std::string frame_text(const ReportSubject& s) {
   out += row("fragments", {fmt::format("{} covered", grouped(f.fragments_covered)), fmt::format("{} shaded", grouped(f.fragments_shaded)),
                            fmt::format("{} written", grouped(f.fragments_written)),
                            fmt::format("{} helper lanes ({:.1f} % of the lanes executed)", grouped(f.helper_lanes), 100 * ratio(f.helper_lanes, executed))});
-  std::vector<std::string> a_pixel{fmt::format("covered {:.2f}", ratio(f.fragments_covered, pixels)), fmt::format("shaded {:.2f}", ratio(f.fragments_shaded, pixels)),
-                                   fmt::format("written {:.2f} (overdraw)", ratio(f.fragments_written, pixels))};
-  if (f.cycles > 0) a_pixel.push_back(fmt::format("fragments shaded a cycle {:.3f}", ratio(static_cast<double>(f.fragments_shaded), static_cast<double>(f.cycles))));
-  return out + row("a pixel", a_pixel);
+  std::vector<std::string> rates{fmt::format("{:.2f} covered", ratio(f.fragments_covered, pixels)), fmt::format("{:.2f} shaded", ratio(f.fragments_shaded, pixels)),
+                                 fmt::format("{:.2f} written (overdraw)", ratio(f.fragments_written, pixels))};
+  if (f.cycles > 0) rates.push_back(fmt::format("and {:.3f} fragments shaded a cycle", ratio(static_cast<double>(f.fragments_shaded), static_cast<double>(f.cycles))));
+  return out + row("per pixel", rates);
 }
 
 std::string wait_text(const UnitGroup& group) {
@@ -70,14 +70,14 @@ std::string wait_text(const UnitGroup& group) {
   }
   const auto longest = std::ranges::max_element(by_port, {}, [](const auto& p) { return p.second; });
   if (longest == by_port.end()) return "-";
-  return fmt::format("{:<16}{:>6.1f}", longest->first, 100 * ratio(static_cast<double>(longest->second), static_cast<double>(group.cycles())));
+  return fmt::format("{:<15}{:>6.1f}", longest->first, 100 * ratio(static_cast<double>(longest->second), static_cast<double>(group.cycles())));
 }
 
 std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
   const auto share = [&](std::int64_t UnitFigures::*member) { return 100 * ratio(static_cast<double>(group.sum(member)), static_cast<double>(group.cycles())); };
   const std::string name = group.units.size() > 1 ? fmt::format("{} x{}", group.kind, group.units.size()) : group.name;
   const std::string spread = group.units.size() > 1 ? fmt::format("+-{:.1f}", group.busy_spread()) : "";
-  std::string out = fmt::format("  {:<19}{:>6.1f} {:<6}{:>8.1f}{:>9.1f}{:>7.1f}   {:<22}  ", name, share(&UnitFigures::busy), spread, share(&UnitFigures::starved),
+  std::string out = fmt::format("  {:<19}{:>6.1f} {:<6}{:>8.1f}{:>9.1f}{:>6.1f}  {:<22} ", name, share(&UnitFigures::busy), spread, share(&UnitFigures::starved),
                                 share(&UnitFigures::blocked), share(&UnitFigures::idle), wait_text(group));
   out.resize(std::max(out.size(), kFacetColumn), ' ');
   const std::vector<std::string> facets = unit_facets(group, machine);
@@ -88,7 +88,7 @@ std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
 std::string units_text(const ReportSubject& s, UnitRows rows) {
   if (s.figures.units.empty()) return "";
   std::string out = fmt::format("\nUNITS  shares of each unit's cycles in %: busy + starved (an input was missing) + blocked (an output was full) + idle (no work in flight)\n"
-                                "  {:<19}{:>6} {:<6}{:>8}{:>9}{:>7}   {:<16}{:>6}  {}\n",
+                                "  {:<19}{:>6} {:<6}{:>8}{:>9}{:>6}  {:<15}{:>6}  {}\n",
                                 "unit", "busy", "", "starved", "blocked", "idle", "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
   for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded)) out += unit_row(group, s.machine);
   return out;

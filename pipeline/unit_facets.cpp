@@ -15,15 +15,17 @@ struct Facet {
     kCount,   ///< the counter
     kShare,   ///< value / of, in per cent
     kMean,    ///< value / of
-    kRate     ///< value a cycle and unit, and its share of the parameter `of`, the peak
+    kRate     ///< value a cycle and unit, and its share of the peak: the parameter `of` times `scale`
   };
   std::string_view label;
   Kind kind;
   std::string_view value;      ///< a counter
   std::string_view of = {};    ///< counters joined by '+', or the path of a parameter
+  int scale = 1;
 };
 
 using enum Facet::Kind;
+constexpr int kQuadPixels = 4;
 
 /// The kinds of units in the order of the pipeline.
 const std::map<std::string_view, std::vector<Facet>>& facet_table() {
@@ -57,7 +59,8 @@ const std::map<std::string_view, std::vector<Facet>>& facet_table() {
         {"quads/tile", kMean, "quads", "tiles"},
         {"full tiles", kShare, "tiles_full", "tiles"}}},
       {"depth",
-       {{"killed early", kShare, "early_killed", "fragments_in"},
+       {{"fragments", kRate, "fragments_in", "depth.quads_per_clk", kQuadPixels},
+        {"killed early", kShare, "early_killed", "fragments_in"},
         {"tested late", kShare, "late_tested", "fragments_in"},
         {"killed late", kCount, "late_killed"},
         {"cache hit", kShare, "cache_hits", "cache_requests"}}},
@@ -79,7 +82,8 @@ const std::map<std::string_view, std::vector<Facet>>& facet_table() {
         {"cache hit", kShare, "cache_hits", "cache_requests"},
         {"merged", kShare, "cache_merged", "cache_requests"}}},
       {"rop",
-       {{"written", kShare, "written", "fragments_in"},
+       {{"written", kRate, "written", "rop.quads_per_clk", kQuadPixels},
+        {"written", kShare, "written", "fragments_in"},
         {"discarded", kShare, "discarded", "fragments_in"},
         {"blended", kShare, "blended", "written"},
         {"cache hit", kShare, "cache_hits", "cache_requests"}}},
@@ -115,7 +119,7 @@ std::string facet_text(const Facet& facet, const UnitGroup& group, const Machine
   const double value = value_of(group, facet.value);
   if (facet.kind == kCount) return fmt::format("{} {}", facet.label, grouped(static_cast<std::uint64_t>(value)));
   if (facet.kind == kRate) {
-    const double peak = parameter(machine, facet.of);
+    const double peak = facet.scale * parameter(machine, facet.of);
     const double rate = value / static_cast<double>(std::max<std::int64_t>(1, group.cycles()));
     return fmt::format("{} {:.2f}/clk ({:.0f} % of {:g})", facet.label, rate, 100 * rate / peak, peak);
   }

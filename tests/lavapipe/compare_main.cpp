@@ -13,9 +13,10 @@
 #include <optional>
 
 #include "models/base/error.h"
-#include "models/reference/reference.h"
+#include "models/reference/compare.h"
 #include "scenes/image_io.h"
 #include "scenes/scene.h"
+#include "tests/lavapipe/alpha_ties.h"
 #include "tests/lavapipe/compare_report.h"
 #include "tests/lavapipe/frame_compare.h"
 #include "tests/lavapipe/machine_side.h"
@@ -88,28 +89,16 @@ models::Precision machine_precision(const Arguments& a, const DeviceInfo& device
           .linear_log2 = llvmpipe};
 }
 
-/// The smallest rectangle that holds all marked pixels.
-models::reference::PixelRect bounds(const std::vector<std::uint8_t>& marks, std::uint32_t width) {
-  std::uint32_t x0 = width, x1 = 0, y0 = 0xffffffffu, y1 = 0;
-  for (std::size_t i = 0; i < marks.size(); ++i) {
-    if (marks[i] == 0) continue;
-    const auto x = static_cast<std::uint32_t>(i % width), y = static_cast<std::uint32_t>(i / width);
-    x0 = std::min(x0, x);
-    x1 = std::max(x1, x + 1);
-    y0 = std::min(y0, y);
-    y1 = std::max(y1, y + 1);
-  }
-  return {x0, y0, x1 - x0, y1 - y0};
-}
-
-/// Distance of alphas to their cut-off, by the double-precision reference, for the pixels whose difference nothing else explains. Empty if
-/// there are none.
-std::vector<float> alpha_margins(const traces::CommandStream& triangles, const FramePair& ours, const FramePair& theirs) {
+/// Pixels that hang on an alpha at its cut-off, in either picture. Empty when nothing needs that excuse.
+std::vector<std::uint8_t> alphas_at_cutoff(const traces::CommandStream& triangles, const FramePair& ours, const FramePair& theirs,
+                                           VulkanRenderer& renderer, const models::Precision& precision) {
   const std::vector<std::uint8_t> marks = unexplained_pixels(ours, theirs);
   if (std::find(marks.begin(), marks.end(), 1) == marks.end()) return {};
-  models::reference::Options options;
-  options.region = bounds(marks, ours.triangles.width);
-  return models::reference::render(triangles, options).alpha_margin;
+  std::vector<std::uint8_t> ties = alpha_ties(triangles, theirs.triangles, [&](const auto& stream) { return renderer.render(stream); });
+  const std::vector<std::uint8_t> our_ties =
+      alpha_ties(triangles, ours.triangles, [&](const auto& stream) { return render_on_machine(stream, precision); });
+  for (std::size_t i = 0; i < ties.size(); ++i) ties[i] = static_cast<std::uint8_t>(ties[i] | our_ties[i]);
+  return ties;
 }
 
 void save_picture(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, const std::vector<std::uint32_t>& pixels) {
@@ -172,7 +161,7 @@ int run(const Arguments& arguments, VulkanRenderer& renderer) {
   report.machine_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   const FramePair ours{std::move(our_color), render_on_machine(triangles, report.precision)};
   if (!arguments.images.empty()) save_pictures(arguments.images, ours, theirs);
-  report.result = compare_frames(ours, theirs, alpha_margins(triangles, ours, theirs), report.limits);
+  report.result = compare_frames(ours, theirs, alphas_at_cutoff(triangles, ours, theirs, renderer, report.precision), report.limits);
   fmt::print("{}", to_text(report));
   if (!arguments.report.empty()) write_file(arguments.report, to_json(report));
   const int validation = report_validation(renderer);

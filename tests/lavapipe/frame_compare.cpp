@@ -47,7 +47,7 @@ std::vector<std::uint8_t> unexplained_pixels(const FramePair& a, const FramePair
   return marks;
 }
 
-Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const float> alpha_margin, const Limits& limits) {
+Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const std::uint8_t> alpha_ties, const Limits& limits) {
   require_same_size(ours.color, theirs.color);
   require_same_size(ours.triangles, theirs.triangles);
   require_same_size(ours.color, ours.triangles);
@@ -56,7 +56,7 @@ Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::s
   const std::vector<std::uint8_t> unexplained = unexplained_pixels(ours, theirs);
   for (std::size_t i = 0; i < excused.size(); ++i) {
     const bool depth_tie = is_depth_tie(ours, theirs, i);
-    const bool alpha_tie = unexplained[i] != 0 && !alpha_margin.empty() && alpha_margin[i] <= kAlphaTie;
+    const bool alpha_tie = unexplained[i] != 0 && !alpha_ties.empty() && alpha_ties[i] != 0;
     result.depth_ties += depth_tie ? 1 : 0;
     result.alpha_ties += alpha_tie ? 1 : 0;
     excused[i] = depth_tie || alpha_tie ? 1 : 0;

@@ -25,7 +25,6 @@ struct Limits {
 };
 
 inline constexpr std::uint32_t kTieUlps = 2;
-inline constexpr float kAlphaTie = 1.0f / 255.0f;
 
 /// Both images of one renderer.
 struct FramePair {
@@ -44,12 +43,12 @@ struct Comparison {
 /// Distance in representable floats; the largest value if either is NaN. Both zeros are the same.
 [[nodiscard]] std::uint32_t ulps_apart(float a, float b);
 
-/// Pixels where the triangles differ and depth does not say why: candidates for an excuse by `alpha_margin`. One entry a pixel, 1 or 0.
+/// Pixels where the triangles differ and depth does not say why: only an alpha at its cut-off may excuse them. One entry a pixel, 1 or 0.
 [[nodiscard]] std::vector<std::uint8_t> unexplained_pixels(const FramePair& a, const FramePair& b);
 
-/// Judges `ours` against `theirs`, which have one size (`UserError` otherwise). `alpha_margin` (empty: unknown, none is excused) holds for
-/// each pixel the smallest distance of any alpha to its cut-off.
-[[nodiscard]] Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const float> alpha_margin,
+/// Judges `ours` against `theirs`, which have one size (`UserError` otherwise). `alpha_ties` (empty: none) marks the pixels with an alpha
+/// within 1/255 of the cut-off (tests/lavapipe/alpha_ties.h).
+[[nodiscard]] Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const std::uint8_t> alpha_ties,
                                         const Limits& limits);
 
 }  // namespace quadrille::lavapipe

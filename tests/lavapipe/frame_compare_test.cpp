@@ -2,8 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
+#include "tests/lavapipe/alpha_ties.h"
 #include "tests/lavapipe/frame_compare.h"
 
 namespace quadrille::lavapipe {
@@ -64,19 +66,41 @@ TEST_CASE("frame_compare: another triangle is excused only within two units in t
   }
 }
 
-TEST_CASE("frame_compare: coverage is excused only by a known alpha within 1/255 of the cut-off") {
+TEST_CASE("frame_compare: coverage is excused only by an alpha at its cut-off, at that very pixel") {
   const FramePair ours = half_covered();
   FramePair theirs = ours;
   theirs.triangles.color[9] = 0;
-  std::vector<float> margins(kSide * kSide, std::numeric_limits<float>::infinity());
+  std::vector<std::uint8_t> ties(kSide * kSide, 0);
   CHECK_FALSE(compare_frames(ours, theirs, {}, kLimits).coverage_ok);
-  CHECK_FALSE(compare_frames(ours, theirs, margins, kLimits).coverage_ok);
-  margins[9] = 1.01f / 255;
-  CHECK_FALSE(compare_frames(ours, theirs, margins, kLimits).coverage_ok);
-  margins[9] = 0.99f / 255;
-  const Comparison result = compare_frames(ours, theirs, margins, kLimits);
+  ties[10] = 1;
+  CHECK_FALSE(compare_frames(ours, theirs, ties, kLimits).coverage_ok);
+  ties[9] = 1;
+  const Comparison result = compare_frames(ours, theirs, ties, kLimits);
   CHECK(result.coverage_ok);
   CHECK(result.alpha_ties == 1);
+}
+
+TEST_CASE("alpha_ties: marks the pixels whose alpha is within 1/255 of the cut-off, and no others") {
+  // The fake renderer covers pixel i if alpha i / 1020 reaches the cut-off, which the stream holds where scenes put it.
+  constexpr float kCutoff = 0.5f;
+  traces::CommandStream stream;
+  stream.buffers.push_back({"material", std::vector<std::byte>(64)});
+  std::memcpy(stream.buffers[0].data.data() + 28 + 32, &kCutoff, sizeof kCutoff);
+  stream.descriptor_sets.push_back({{{0, 0, 32, 32}}, {}});
+  stream.commands = {traces::BindDescriptorSet{1, 0}, traces::BindDescriptorSet{0, 0}, traces::BindDescriptorSet{1, 0}};
+  const auto render = [](const traces::CommandStream& s) {
+    float cutoff = 0;
+    std::memcpy(&cutoff, s.buffers[0].data.data() + 32 + 28, sizeof cutoff);
+    Rendered image{1020, 1, std::vector<std::uint32_t>(1020, 0), {}};
+    for (std::uint32_t i = 0; i < 1020; ++i) image.color[i] = static_cast<float>(i) / 1020.0f >= cutoff ? 1 : 0;
+    return image;
+  };
+  const std::vector<std::uint8_t> ties = alpha_ties(stream, render(stream), render);
+  for (std::uint32_t i = 0; i < 1020; ++i) {
+    const float distance = std::abs(static_cast<float>(i) / 1020.0f - kCutoff);
+    if (distance < 0.99f / 255) CHECK(ties[i] == 1);
+    if (distance > 1.01f / 255) CHECK(ties[i] == 0);
+  }
 }
 
 TEST_CASE("frame_compare: seventeen wrong colours in one block fail the block, sixteen do not") {

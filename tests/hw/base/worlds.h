@@ -11,18 +11,18 @@
 
 namespace quadrille::hw::world {
 
-/// Up to eight ports that lie inside their unit, as the ports of real units do.
+/// Up to eight ports of one direction; they lie inside their unit, as the ports of real units do.
 template <class Port>
 class Ports {
  public:
   void add(Unit& owner, const std::string& name, LinkRole role) { ports_.at(count_++).emplace(owner, name.c_str(), role); }
   [[nodiscard]] std::size_t size() const { return count_; }
-  auto& operator[](std::size_t i) { return ports_[i]; }
-  const auto& operator[](std::size_t i) const { return ports_[i]; }
-  auto begin() { return ports_.begin(); }
-  auto end() { return ports_.begin() + static_cast<std::ptrdiff_t>(count_); }
-  [[nodiscard]] auto begin() const { return ports_.begin(); }
-  [[nodiscard]] auto end() const { return ports_.begin() + static_cast<std::ptrdiff_t>(count_); }
+  std::optional<Port>& operator[](std::size_t i) { return ports_[i]; }
+  const std::optional<Port>& operator[](std::size_t i) const { return ports_[i]; }
+  std::optional<Port>* begin() { return ports_.data(); }
+  std::optional<Port>* end() { return ports_.data() + count_; }
+  [[nodiscard]] const std::optional<Port>* begin() const { return ports_.data(); }
+  [[nodiscard]] const std::optional<Port>* end() const { return ports_.data() + count_; }
 
  private:
   std::array<std::optional<Port>, 8> ports_;
