@@ -10,7 +10,7 @@
 namespace quadrille::cli {
 
 struct UnitCounters {
-  std::string_view kind;                      ///< "coarse_raster"; a number follows in figures where a machine has several
+  std::string_view kind;  ///< "coarse_raster"; a number follows in figures where a machine has several
   std::shared_ptr<const hw::StatGroup> stats;
 };
 

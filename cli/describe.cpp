@@ -32,7 +32,8 @@ class Description {
     for (const auto& [path, group] : config_.groups()) legal.insert(path.starts_with("link.") ? "link" : path);
     for (const UnitCounters& u : units_) legal.insert(std::string(u.kind));
     const bool link = std::ranges::any_of(config_.groups(), [&](const auto& g) { return g.first == *arguments.group; });
-    if (!link && !legal.contains(*arguments.group)) throw user_error("describe: unknown group '{}'; groups: {}", *arguments.group, fmt::join(legal, ", "));
+    if (!link && !legal.contains(*arguments.group))
+      throw user_error("describe: unknown group '{}'; groups: {}", *arguments.group, fmt::join(legal, ", "));
   }
 
   /// Calls `visit(path of the group, group)` for what was asked for.
@@ -55,7 +56,8 @@ class Description {
 
  private:
   [[nodiscard]] bool wanted(std::string_view path) const {
-    return !arguments_.group || path == *arguments_.group || (path.starts_with(*arguments_.group) && path.substr(arguments_.group->size()).starts_with('.'));
+    return !arguments_.group || path == *arguments_.group ||
+           (path.starts_with(*arguments_.group) && path.substr(arguments_.group->size()).starts_with('.'));
   }
   const DescribeArguments& arguments_;
   pipeline::MachineConfig config_;
@@ -90,22 +92,27 @@ std::string markdown(const Description& d) {
   d.each_parameter_group([&](const std::string& path, const hw::ParamGroup& group) {
     parameters += fmt::format("\n## {}\n\n| parameter | default | unit | legal | what and why |\n|---|---|---|---|---|\n", path);
     for (const hw::ParamBase* p : group.params()) {
-      parameters += fmt::format("| `{}` | {} | {} | {} | {} |\n", p->name(), p->default_text(), cell(p->unit()), cell(p->legal_text()), cell(p->reason()));
+      parameters += fmt::format("| `{}` | {} | {} | {} | {} |\n", p->name(), p->default_text(), cell(p->unit()), cell(p->legal_text()),
+                                cell(p->reason()));
     }
   });
   d.each_unit([&](std::string_view kind, const hw::StatGroup& stats) {
     counters += fmt::format("\n## {}\n\n| counter | unit | definition |\n|---|---|---|\n", kind);
-    for (const hw::Counter* c : stats.counters()) counters += fmt::format("| `{}` | {} | {} |\n", c->name(), cell(c->unit()), cell(c->definition()));
+    for (const hw::Counter* c : stats.counters())
+      counters += fmt::format("| `{}` | {} | {} |\n", c->name(), cell(c->unit()), cell(c->definition()));
   });
   std::string text;
   if (!parameters.empty()) {
-    text += "# Parameters\n\nEvery parameter of a machine: a TOML file sets `[group]` `parameter = value`, the command line `--set group.parameter=value`.\n"
-            "A tag in brackets is the source of the default ([sources](sources.md)); `[G]` is a guess.\n" +
-            parameters;
+    text +=
+        "# Parameters\n\nEvery parameter of a machine: a TOML file sets `[group]` `parameter = value`, the command line `--set "
+        "group.parameter=value`.\n"
+        "A tag in brackets is the source of the default ([sources](sources.md)); `[G]` is a guess.\n" +
+        parameters;
   }
   if (!counters.empty()) {
     text += std::string(text.empty() ? "" : "\n") +
-            "# Counters\n\nWhat every kind of unit counts. In the JSON of `quadrille render --stats` they are under `units.<unit>.counters`; a unit of which the\n"
+            "# Counters\n\nWhat every kind of unit counts. In the JSON of `quadrille render --stats` they are under "
+            "`units.<unit>.counters`; a unit of which the\n"
             "machine has several carries its number (`core_0`).\n" +
             counters;
   }
@@ -143,10 +150,13 @@ int run_describe(const DescribeArguments& arguments) {
 }  // namespace
 
 void add_describe(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand("describe", "Lists parameters (value, default, unit, legal values, reason) and counters (unit, definition).");
+  CLI::App* command =
+      app.add_subcommand("describe", "Lists parameters (value, default, unit, legal values, reason) and counters (unit, definition).");
   const auto arguments = std::make_shared<DescribeArguments>();
   command->add_option("GROUP", arguments->group, "a unit, gpu, link or one link such as link.core_to_texture (default: all)");
-  command->add_option("--only", arguments->only, "one half of it")->check(CLI::IsMember({"all", "parameters", "counters"}))->capture_default_str();
+  command->add_option("--only", arguments->only, "one half of it")
+      ->check(CLI::IsMember({"all", "parameters", "counters"}))
+      ->capture_default_str();
   CLI::Option* markdown_flag = command->add_flag("--markdown", arguments->markdown, "as a page of documentation");
   command->add_flag("--json", arguments->json, "as JSON")->excludes(markdown_flag);
   arguments->machine.add_to(*command);

@@ -49,7 +49,9 @@ scenes::FloatImage linear_values(const pipeline::FrameImage& image, bool srgb, b
   return out;
 }
 
-std::uint8_t unorm(float value) { return static_cast<std::uint8_t>(std::lround(std::clamp(std::isnan(value) ? 0.0F : value, 0.0F, 1.0F) * 255.0F)); }
+std::uint8_t unorm(float value) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(std::isnan(value) ? 0.0F : value, 0.0F, 1.0F) * 255.0F));
+}
 
 /// Grey by depth, stretched over the depths that the picture has.
 std::vector<std::uint32_t> grey_of(const std::vector<float>& depth) {

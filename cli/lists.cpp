@@ -19,9 +19,9 @@ int list_machines() {
     pipeline::MachineConfig config;
     pipeline::load_machine(config, name);
     const pipeline::GpuParams& gpu = config.gpu;
-    fmt::print("{:<10} cores {} (of {} SIMDs x {} lanes), partitions {}, memory channels {}, {:g} MHz, memory {:g} MHz\n", name, gpu.cores.value(),
-               config.core.simds.value(), config.core.simd_lanes.value(), gpu.partitions.value(), gpu.channels.value(), gpu.clock_mhz.value(),
-               gpu.memory_mhz.value());
+    fmt::print("{:<10} cores {} (of {} SIMDs x {} lanes), partitions {}, memory channels {}, {:g} MHz, memory {:g} MHz\n", name,
+               gpu.cores.value(), config.core.simds.value(), config.core.simd_lanes.value(), gpu.partitions.value(), gpu.channels.value(),
+               gpu.clock_mhz.value(), gpu.memory_mhz.value());
   }
   return kDone;
 }

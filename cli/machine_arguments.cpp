@@ -5,7 +5,9 @@
 namespace quadrille::cli {
 
 void MachineArguments::add_to(CLI::App& command) {
-  command.add_option("--machine", machine, "a machine by name (quadrille machines lists them) or a .toml file")->type_name("NAME|FILE.toml")->capture_default_str();
+  command.add_option("--machine", machine, "a machine by name (quadrille machines lists them) or a .toml file")
+      ->type_name("NAME|FILE.toml")
+      ->capture_default_str();
   command.add_option("--set", settings, "sets a parameter after the machine is loaded; may be given again (quadrille describe lists all)")
       ->type_name("KEY=VALUE")
       ->expected(1)

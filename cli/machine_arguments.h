@@ -12,7 +12,7 @@ namespace quadrille::cli {
 
 struct MachineArguments {
   std::string machine = "default";
-  std::vector<std::string> settings;   ///< KEY=VALUE, in the order given
+  std::vector<std::string> settings;  ///< KEY=VALUE, in the order given
 
   void add_to(CLI::App& command);
   /// Loads the machine, then applies the settings. Throws `UserError` naming the file or the setting.

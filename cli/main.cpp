@@ -15,7 +15,8 @@ extern "C" int sc_main(int /*argc*/, char** /*argv*/) { return quadrille::cli::k
 namespace quadrille::cli {
 namespace {
 
-constexpr const char* kAbout = R"(Quadrille simulates a GPU's graphics pipeline: a scene goes in; out come the picture that the machine draws,
+constexpr const char* kAbout =
+    R"(Quadrille simulates a GPU's graphics pipeline: a scene goes in; out come the picture that the machine draws,
 the cycles it takes, and for every unit where its time went.)";
 
 constexpr const char* kExamples = R"(Examples:
@@ -57,15 +58,11 @@ int run(int argc, char** argv) {
     return chosen();
   } catch (const CLI::Success& answered) {
     return app.exit(answered);  // --help and --version
-  } catch (const CLI::ParseError& error) {
-    return refuse(app, error);
-  } catch (const UserError& error) {
+  } catch (const CLI::ParseError& error) { return refuse(app, error); } catch (const UserError& error) {
     return fail(kUserError, error.what());
   } catch (const std::bad_alloc&) {
     return fail(kUserError, "out of memory; try a smaller --size, or a machine with less gpu.memory_mib");
-  } catch (const std::exception& error) {
-    return fail(kInternalError, fmt::format("internal error: {}", error.what()));
-  }
+  } catch (const std::exception& error) { return fail(kInternalError, fmt::format("internal error: {}", error.what())); }
 }
 
 }  // namespace

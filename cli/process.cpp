@@ -4,8 +4,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <optional>
-
 namespace quadrille::cli {
 namespace {
 
@@ -34,9 +32,11 @@ void Progress::show(const std::string& text) {
 }
 
 void Progress::show_cycles(std::int64_t cycles) {
-  if (!enabled_ || since_start_.seconds() < next_) return;
-  const double elapsed = since_start_.seconds();
-  next_ = elapsed + kRefreshSeconds;
+  if (!enabled_) return;
+  if (!simulating_) simulating_.emplace();
+  const double elapsed = simulating_->seconds();
+  if (elapsed < next_ + kRefreshSeconds) return;
+  next_ = elapsed;
   const double millions = static_cast<double>(cycles) * 1e-6;
   show(fmt::format("simulating: {:.2f} million cycles, {:.1f} s, {:.2f} million cycles a second", millions, elapsed, millions / elapsed));
 }

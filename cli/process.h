@@ -3,7 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <string>
 
 namespace quadrille::cli {
@@ -41,7 +41,7 @@ class Progress {
  private:
   bool enabled_;
   bool shown_ = false;
-  Stopwatch since_start_;
+  std::optional<Stopwatch> simulating_;  ///< since the first cycles were shown
   double next_ = 0;
 };
 

@@ -36,14 +36,19 @@ void RenderJob::add_to(CLI::App& command) {
   command.add_option("--fidelity", fidelity, "exact: the machine, cycle by cycle; functional: the same picture without time")
       ->check(CLI::IsMember({"exact", "functional"}))
       ->capture_default_str();
-  command.add_option("--leave-out", leave_out, "auto: units that the frame does not need are not built; none: all are. Same picture, same cycles")
+  command
+      .add_option("--leave-out", leave_out,
+                  "auto: units that the frame does not need are not built; none: all are. Same picture, same cycles")
       ->check(CLI::IsMember({"auto", "none"}))
       ->capture_default_str();
   command.add_option("--driver", driver, "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
       ->check(CLI::IsMember({"dispatcher", "native"}))
       ->capture_default_str();
-  command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")->type_name("N");
-  command.add_option("--units", units, "rows of the table: folded by kind, or all units")->check(CLI::IsMember({"folded", "all"}))->capture_default_str();
+  command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")
+      ->type_name("N");
+  command.add_option("--units", units, "rows of the table: folded by kind, or all units")
+      ->check(CLI::IsMember({"folded", "all"}))
+      ->capture_default_str();
   command.add_flag("--alpha", alpha, "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
   command.add_flag("-q,--quiet", quiet, "prints no table");
 }
@@ -76,8 +81,8 @@ int RenderJob::run() {
   limits.progress = [&](hw::Tick now) { progress.show_cycles(clock.edges_before(now)); };
   const pipeline::MachineOptions options{.driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
                                          .leave_out = leave_out == "auto"};
-  pipeline::RenderedFrame frame =
-      fidelity == "functional" ? pipeline::render_functional_frame(stream, config.precision()) : pipeline::render_exact(stream, config, options, limits);
+  pipeline::RenderedFrame frame = fidelity == "functional" ? pipeline::render_functional_frame(stream, config.precision())
+                                                           : pipeline::render_exact(stream, config, options, limits);
   progress.show("writing");
   if (out) write_color(*out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
   if (depth) write_depth(*depth, frame.image);

@@ -30,7 +30,8 @@ bool read_number(std::string_view text, T& value) {
 std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least, std::int64_t most) {
   std::int64_t value = 0;
   if (!read_number(text, value) || value < least || value > most) {
-    if (most == std::numeric_limits<std::int64_t>::max()) throw user_error("{}: '{}' is not a whole number of at least {}", flag, text, least);
+    if (most == std::numeric_limits<std::int64_t>::max())
+      throw user_error("{}: '{}' is not a whole number of at least {}", flag, text, least);
     throw user_error("{}: '{}' is not a whole number within {}..{}", flag, text, least, most);
   }
   return value;
@@ -63,10 +64,14 @@ glm::vec3 parse_point(std::string_view text, std::string_view flag) {
 void SceneArguments::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "a .gltf or .glb file, a .qtrace file, or builtin:NAME (quadrille scenes lists them)")->required();
   command.add_option("--size", size, "size of the picture in pixels, 1..16384 a side (default 1920x1080)")->type_name("WxH");
-  command.add_option("--camera", camera, "which camera of the scene, from 0 (default: the first that is placed, else one that frames the scene)")->type_name("N");
+  command
+      .add_option("--camera", camera,
+                  "which camera of the scene, from 0 (default: the first that is placed, else one that frames the scene)")
+      ->type_name("N");
   command.add_option("--eye", eye, "a camera of your own stands here, in world units")->type_name("X,Y,Z");
   command.add_option("--at", at, "and looks there")->type_name("X,Y,Z");
-  command.add_option("--vert", vert, "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")->type_name("F");
+  command.add_option("--vert", vert, "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")
+      ->type_name("F");
   command.add_option("--frag", frag, "fragment shader for all materials, as for --vert")->type_name("F");
 }
 
@@ -89,7 +94,8 @@ scenes::SceneOptions SceneArguments::options() const {
 void SceneArguments::check() const {
   if (is_trace()) {
     if (size || camera || eye || at || vert || frag) {
-      throw user_error("{}: a trace has its size, camera and shaders in it; --size, --camera, --eye, --at, --vert and --frag are for scenes", scene);
+      throw user_error(
+          "{}: a trace has its size, camera and shaders in it; --size, --camera, --eye, --at, --vert and --frag are for scenes", scene);
     }
     return;
   }

@@ -14,7 +14,7 @@
 namespace quadrille::cli {
 
 struct SceneArguments {
-  std::string scene;                                      ///< .gltf, .glb, .qtrace or builtin:NAME
+  std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
   std::optional<std::string> size, camera, eye, at, vert, frag;
 
   /// Adds SCENE and the options that choose the view and the shaders.

@@ -67,7 +67,7 @@ void add_replay(CLI::App& trace, Command& chosen) {
 void add_trace(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand("trace", "Records, inspects and replays the commands of a frame.");
   command->require_subcommand(0, 1);
-  command->callback([&chosen, command] {
+  command->callback([&chosen] {
     if (!chosen) throw CLI::RequiredError("record, info or replay");
   });
   command->footer(R"(Examples:

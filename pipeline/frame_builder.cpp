@@ -37,6 +37,7 @@ class FrameBuilder {
   }
 
   void build() {
+    reserve();
     for (const traces::Command& command : stream_.commands) {
       std::visit([this](const auto& c) { apply(c); }, command);
     }
@@ -45,6 +46,16 @@ class FrameBuilder {
 
  private:
   static constexpr std::uint64_t kUnplaced = ~std::uint64_t{0};
+
+  /// Takes the memory in one piece, so that growing never copies it.
+  void reserve() {
+    std::uint64_t bytes = 0;
+    const auto add = [&bytes](std::uint64_t size) { bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes; };
+    for (const traces::Buffer& b : stream_.buffers) add(std::max<std::size_t>(1, b.data.size()));
+    for (const traces::Image& i : stream_.images) add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
+    for (const traces::RenderTarget& t : stream_.targets) add(std::uint64_t{2} * models::kTileBytes * ((t.width + 7) / 8) * ((t.height + 7) / 8));
+    out_.memory.reserve(bytes);
+  }
 
   void apply(const traces::BeginPass& c) {
     const traces::RenderTarget& target = stream_.targets[c.target];

@@ -193,25 +193,25 @@ void Machine::wire_core(std::size_t c) {
   connect<hw::TextureToken>(core.texture->response_out, *core.core->texture_in, l.texture_to_core, name("texture_to_core"));
 }
 
-void Machine::attach_client(hw::MemoryPort& port) {
+void Machine::attach_client(const hw::Unit& client_unit, hw::MemoryPort& port) {
   const auto client = static_cast<std::size_t>(next_client_++);
   for (std::size_t i = 0; i < slices_.size(); ++i) {
-    connect<hw::MemoryRequest>(*port.request_out[i], *slices_[i]->request_in[client], config_.link.client_to_l2, fmt::format("client_{}_to_l2_{}", client, i));
+    connect<hw::MemoryRequest>(*port.request_out[i], *slices_[i]->request_in[client], config_.link.client_to_l2, fmt::format("{}_to_l2_{}", client_unit.name(), i));
     connect<hw::MemoryResponse>(*slices_[i]->response_out[client], *port.response_in[i], config_.link.l2_to_client,
-                                fmt::format("l2_{}_to_client_{}", i, client));
+                                fmt::format("l2_{}_to_{}", i, client_unit.name()));
   }
 }
 
 void Machine::wire_memory() {
-  attach_client(vertex_fetch_->memory_port());
+  attach_client(*vertex_fetch_, vertex_fetch_->memory_port());
   for (Core& core : cores_) {
-    if (core.texture) attach_client(core.texture->memory_port());
+    if (core.texture) attach_client(*core.texture, core.texture->memory_port());
   }
   for (Partition& p : partitions_) {
-    attach_client(p.depth->memory_port());
-    attach_client(p.rop->memory_port());
+    attach_client(*p.depth, p.depth->memory_port());
+    attach_client(*p.rop, p.rop->memory_port());
   }
-  attach_client(scan_out_->memory_port());
+  attach_client(*scan_out_, scan_out_->memory_port());
   for (std::size_t i = 0; i < slices_.size(); ++i) {
     connect<hw::MemoryRequest>(slices_[i]->memory_out, channels_[i]->request_in, config_.link.l2_to_memory, fmt::format("l2_to_memory_{}", i));
     connect<hw::MemoryResponse>(channels_[i]->response_out, slices_[i]->fill_in, config_.link.memory_to_l2, fmt::format("memory_to_l2_{}", i));

@@ -73,7 +73,7 @@ class Machine {
   void wire_partition(std::size_t p);
   void wire_core(std::size_t c);
   void wire_memory();
-  void attach_client(hw::MemoryPort& port);
+  void attach_client(const hw::Unit& client_unit, hw::MemoryPort& port);
   template <class T, class Out, class In>
   void connect(Out& out, In& in, const LinkParams& params, const std::string& name);
 

@@ -18,12 +18,12 @@ inline constexpr std::string_view kFiguresSchema = "quadrille-figures-1";
 struct ReportSubject {
   const Figures& figures;
   const MachineConfig& machine;
-  std::uint32_t width = 0, height = 0;   ///< of the target, in pixels
+  std::uint32_t width = 0, height = 0;  ///< of the target, in pixels
 };
 
 enum class UnitRows : std::uint8_t {
-  kFolded,   ///< units of a kind (core_0, core_1, ...) share a row: means, and the spread of busy
-  kAll       ///< one row each
+  kFolded,  ///< units of a kind (core_0, core_1, ...) share a row: means, and the spread of busy
+  kAll      ///< one row each
 };
 
 /// The table, lines of at most about 130 columns, without colour.

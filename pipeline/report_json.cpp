@@ -44,8 +44,13 @@ Json unit_json(const UnitFigures& u) {
   Json waits = Json::object(), counters = Json::object();
   for (const WaitFigure& w : u.waits) waits[w.port] = w.cycles;
   for (const CounterFigure& c : u.counters) counters[c.name] = c.value;
-  return {{"cycles", u.cycles}, {"busy", u.busy},   {"starved", u.starved},          {"blocked", u.blocked},
-          {"idle", u.idle},     {"waits", std::move(waits)}, {"counters", std::move(counters)}};
+  return {{"cycles", u.cycles},
+          {"busy", u.busy},
+          {"starved", u.starved},
+          {"blocked", u.blocked},
+          {"idle", u.idle},
+          {"waits", std::move(waits)},
+          {"counters", std::move(counters)}};
 }
 
 /// Unit and definition of every counter, once a kind of unit.

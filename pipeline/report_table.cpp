@@ -35,31 +35,39 @@ std::string wrapped(const std::vector<std::string>& facets, std::size_t indent) 
   return out + "\n";
 }
 
-std::string row(std::string_view title, const std::vector<std::string>& facets) { return fmt::format("  {:<12}", title) + wrapped(facets, 14); }
+std::string row(std::string_view title, const std::vector<std::string>& facets) {
+  return fmt::format("  {:<12}", title) + wrapped(facets, 14);
+}
 
 std::string time_row(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
   if (s.figures.units.empty()) return row("time", {"not simulated (functional: the picture and its counts only)"});
   const double ms = static_cast<double>(f.cycles) / s.machine.gpu.clock_mhz * 1e-3;
-  return row("time", {fmt::format("{} cycles", grouped(static_cast<std::uint64_t>(f.cycles))), fmt::format("{:.3f} ms at {:g} MHz", ms, s.machine.gpu.clock_mhz.value()),
-                      fmt::format("{:.1f} frames/s", 1000.0 / ms),
-                      fmt::format("all passes flushed at cycle {}, then scan-out", grouped(static_cast<std::uint64_t>(f.render_cycles)))});
+  return row("time",
+             {fmt::format("{} cycles", grouped(static_cast<std::uint64_t>(f.cycles))),
+              fmt::format("{:.3f} ms at {:g} MHz", ms, s.machine.gpu.clock_mhz.value()), fmt::format("{:.1f} frames/s", 1000.0 / ms),
+              fmt::format("all passes flushed at cycle {}, then scan-out", grouped(static_cast<std::uint64_t>(f.render_cycles)))});
 }
 
 std::string frame_text(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
   const std::uint64_t pixels = std::uint64_t{s.width} * s.height;
   const std::uint64_t executed = f.fragments_shaded + f.helper_lanes;
-  std::string out = fmt::format("FRAME  {}, {}x{}, machine {}, {}\n", s.figures.scene, s.width, s.height, s.machine.name, s.figures.fidelity);
+  std::string out =
+      fmt::format("FRAME  {}, {}x{}, machine {}, {}\n", s.figures.scene, s.width, s.height, s.machine.name, s.figures.fidelity);
   out += time_row(s);
   out += row("geometry", {fmt::format("{} draws", grouped(f.draws)), fmt::format("{} triangles", grouped(f.triangles)),
                           fmt::format("{} vertices shaded ({:.2f} a triangle)", grouped(f.vertices), ratio(f.vertices, f.triangles))});
   out += row("fragments", {fmt::format("{} covered", grouped(f.fragments_covered)), fmt::format("{} shaded", grouped(f.fragments_shaded)),
                            fmt::format("{} written", grouped(f.fragments_written)),
-                           fmt::format("{} helper lanes ({:.1f} % of the lanes executed)", grouped(f.helper_lanes), 100 * ratio(f.helper_lanes, executed))});
-  std::vector<std::string> rates{fmt::format("{:.2f} covered", ratio(f.fragments_covered, pixels)), fmt::format("{:.2f} shaded", ratio(f.fragments_shaded, pixels)),
+                           fmt::format("{} helper lanes ({:.1f} % of the lanes executed)", grouped(f.helper_lanes),
+                                       100 * ratio(f.helper_lanes, executed))});
+  std::vector<std::string> rates{fmt::format("{:.2f} covered", ratio(f.fragments_covered, pixels)),
+                                 fmt::format("{:.2f} shaded", ratio(f.fragments_shaded, pixels)),
                                  fmt::format("{:.2f} written (overdraw)", ratio(f.fragments_written, pixels))};
-  if (f.cycles > 0) rates.push_back(fmt::format("and {:.3f} fragments shaded a cycle", ratio(static_cast<double>(f.fragments_shaded), static_cast<double>(f.cycles))));
+  if (f.cycles > 0)
+    rates.push_back(
+        fmt::format("and {:.3f} fragments shaded a cycle", ratio(static_cast<double>(f.fragments_shaded), static_cast<double>(f.cycles))));
   return out + row("per pixel", rates);
 }
 
@@ -70,15 +78,18 @@ std::string wait_text(const UnitGroup& group) {
   }
   const auto longest = std::ranges::max_element(by_port, {}, [](const auto& p) { return p.second; });
   if (longest == by_port.end()) return "-";
-  return fmt::format("{:<15}{:>6.1f}", longest->first, 100 * ratio(static_cast<double>(longest->second), static_cast<double>(group.cycles())));
+  return fmt::format("{:<15}{:>6.1f}", longest->first,
+                     100 * ratio(static_cast<double>(longest->second), static_cast<double>(group.cycles())));
 }
 
 std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
-  const auto share = [&](std::int64_t UnitFigures::*member) { return 100 * ratio(static_cast<double>(group.sum(member)), static_cast<double>(group.cycles())); };
+  const auto share = [&](std::int64_t UnitFigures::*member) {
+    return 100 * ratio(static_cast<double>(group.sum(member)), static_cast<double>(group.cycles()));
+  };
   const std::string name = group.units.size() > 1 ? fmt::format("{} x{}", group.kind, group.units.size()) : group.name;
   const std::string spread = group.units.size() > 1 ? fmt::format("+-{:.1f}", group.busy_spread()) : "";
-  std::string out = fmt::format("  {:<19}{:>6.1f} {:<6}{:>8.1f}{:>9.1f}{:>6.1f}  {:<22} ", name, share(&UnitFigures::busy), spread, share(&UnitFigures::starved),
-                                share(&UnitFigures::blocked), share(&UnitFigures::idle), wait_text(group));
+  std::string out = fmt::format("  {:<19}{:>6.1f} {:<6}{:>8.1f}{:>9.1f}{:>6.1f}  {:<22} ", name, share(&UnitFigures::busy), spread,
+                                share(&UnitFigures::starved), share(&UnitFigures::blocked), share(&UnitFigures::idle), wait_text(group));
   out.resize(std::max(out.size(), kFacetColumn), ' ');
   const std::vector<std::string> facets = unit_facets(group, machine);
   if (facets.empty()) out.erase(out.find_last_not_of(' ') + 1);
@@ -87,25 +98,30 @@ std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
 
 std::string units_text(const ReportSubject& s, UnitRows rows) {
   if (s.figures.units.empty()) return "";
-  std::string out = fmt::format("\nUNITS  shares of each unit's cycles in %: busy + starved (an input was missing) + blocked (an output was full) + idle (no work in flight)\n"
-                                "  {:<19}{:>6} {:<6}{:>8}{:>9}{:>6}  {:<15}{:>6}  {}\n",
-                                "unit", "busy", "", "starved", "blocked", "idle", "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
+  std::string out = fmt::format(
+      "\nUNITS  shares of each unit's cycles in %: busy + starved (an input was missing) + blocked (an output was full) + idle (no work in "
+      "flight)\n"
+      "  {:<19}{:>6} {:<6}{:>8}{:>9}{:>6}  {:<15}{:>6}  {}\n",
+      "unit", "busy", "", "starved", "blocked", "idle", "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
   for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded)) out += unit_row(group, s.machine);
   return out;
 }
 
 std::string bandwidth_row(std::string_view name, std::uint64_t read, std::uint64_t written, std::int64_t cycles, double peak) {
   const double rate = ratio(static_cast<double>(read + written), static_cast<double>(cycles));
-  return fmt::format("  {:<19}{:>12.3f}{:>13.3f}{:>12.3f}{:>11.1f}\n", name, megabytes(read), megabytes(written), rate, 100 * ratio(rate, peak));
+  return fmt::format("  {:<19}{:>12.3f}{:>13.3f}{:>12.3f}{:>11.1f}\n", name, megabytes(read), megabytes(written), rate,
+                     100 * ratio(rate, peak));
 }
 
 std::string bandwidth_text(const ReportSubject& s) {
   const Figures& f = s.figures;
   if (f.bandwidth.empty()) return "";
   const double peak = peak_memory_bytes_per_cycle(s.machine);
-  std::string out = fmt::format("\nBANDWIDTH  clients at the L2 cache, and what reached memory; the memory's peak is {:.1f} byte/clk ({:.1f} GB/s, {} channels)\n"
-                                "  {:<19}{:>12}{:>13}{:>12}{:>11}\n",
-                                peak, peak * s.machine.gpu.clock_mhz * 1e-3, s.machine.gpu.channels.value(), "client", "read MB", "written MB", "byte/clk", "% of peak");
+  std::string out = fmt::format(
+      "\nBANDWIDTH  clients at the L2 cache, and what reached memory; the memory's peak is {:.1f} byte/clk ({:.1f} GB/s, {} channels)\n"
+      "  {:<19}{:>12}{:>13}{:>12}{:>11}\n",
+      peak, peak * s.machine.gpu.clock_mhz * 1e-3, s.machine.gpu.channels.value(), "client", "read MB", "written MB", "byte/clk",
+      "% of peak");
   std::uint64_t read = 0, written = 0;
   for (const ClientFigures& c : f.bandwidth) {
     out += bandwidth_row(c.name, c.read_bytes, c.write_bytes, f.frame.cycles, peak);
@@ -114,7 +130,8 @@ std::string bandwidth_text(const ReportSubject& s) {
   }
   out += bandwidth_row("all clients", read, written, f.frame.cycles, peak);
   for (const UnitGroup& group : group_units(f.units, true)) {
-    if (group.kind == "memory") out += bandwidth_row("memory", group.counter("read_bytes"), group.counter("write_bytes"), f.frame.cycles, peak);
+    if (group.kind == "memory")
+      out += bandwidth_row("memory", group.counter("read_bytes"), group.counter("write_bytes"), f.frame.cycles, peak);
   }
   return out;
 }
@@ -137,11 +154,13 @@ std::string host_text(const Figures& f) {
   std::vector<std::string> speed{fmt::format("{:.3f} million fragments/s", h.fragments_per_s * 1e-6)};
   if (!f.units.empty()) {
     speed.push_back(fmt::format("{:.3f} million cycles/s", h.cycles_per_s * 1e-6));
-    speed.push_back(fmt::format("{} actions of units, {:.0f} ns each", grouped(h.actions), 1e9 * ratio(h.simulate_s, static_cast<double>(h.actions))));
+    speed.push_back(
+        fmt::format("{} actions of units, {:.0f} ns each", grouped(h.actions), 1e9 * ratio(h.simulate_s, static_cast<double>(h.actions))));
   }
   return "\nHOST  what the simulation cost here\n" +
          row("seconds", {fmt::format("load {:.3f}", h.load_s), fmt::format("build {:.3f}", h.build_s),
-                         fmt::format("simulate {:.3f} ({:.3f} of processor time)", h.simulate_s, h.simulate_cpu_s), fmt::format("whole process {:.3f}", h.wall_s)}) +
+                         fmt::format("simulate {:.3f} ({:.3f} of processor time)", h.simulate_s, h.simulate_cpu_s),
+                         fmt::format("whole process {:.3f}", h.wall_s)}) +
          row("speed", speed) + row("memory", {fmt::format("{:.0f} MiB at most", h.peak_rss_mib)});
 }
 
@@ -168,8 +187,8 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
-  return frame_text(subject) + units_text(subject, rows) + bandwidth_text(subject) + checks_text(subject.figures) + left_out_text(subject.figures) +
-         host_text(subject.figures);
+  return frame_text(subject) + units_text(subject, rows) + bandwidth_text(subject) + checks_text(subject.figures) +
+         left_out_text(subject.figures) + host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

@@ -12,15 +12,15 @@ namespace {
 
 struct Facet {
   enum class Kind : std::uint8_t {
-    kCount,   ///< the counter
-    kShare,   ///< value / of, in per cent
-    kMean,    ///< value / of
-    kRate     ///< value a cycle and unit, and its share of the peak: the parameter `of` times `scale`
+    kCount,  ///< the counter
+    kShare,  ///< value / of, in per cent
+    kMean,   ///< value / of
+    kRate    ///< value a cycle and unit, and its share of the peak: the parameter `of` times `scale`
   };
   std::string_view label;
   Kind kind;
-  std::string_view value;      ///< a counter
-  std::string_view of = {};    ///< counters joined by '+', or the path of a parameter
+  std::string_view value;    ///< a counter
+  std::string_view of = {};  ///< counters joined by '+', or the path of a parameter
   int scale = 1;
 };
 
@@ -36,7 +36,10 @@ const std::map<std::string_view, std::vector<Facet>>& facet_table() {
         {"indices/vertex", kMean, "indices", "vertices"},
         {"attributes", kRate, "attribute_fetches", "vertex_fetch.attributes_per_clk"},
         {"cache hit", kShare, "cache_hits", "cache_requests"}}},
-      {"primitive_assembly", {{"triangles", kCount, "triangles"}, {"vertices/batch", kMean, "vertices", "batches"}, {"triangles/batch", kMean, "triangles", "batches"}}},
+      {"primitive_assembly",
+       {{"triangles", kCount, "triangles"},
+        {"vertices/batch", kMean, "vertices", "batches"},
+        {"triangles/batch", kMean, "triangles", "batches"}}},
       {"clipper",
        {{"inside", kShare, "passed", "triangles"},
         {"cut", kShare, "clipped", "triangles"},
@@ -87,8 +90,15 @@ const std::map<std::string_view, std::vector<Facet>>& facet_table() {
         {"discarded", kShare, "discarded", "fragments_in"},
         {"blended", kShare, "blended", "written"},
         {"cache hit", kShare, "cache_hits", "cache_requests"}}},
-      {"l2", {{"requests", kCount, "requests"}, {"hit", kShare, "hits", "requests"}, {"merged", kShare, "merged", "requests"}, {"missed", kShare, "misses", "requests"}}},
-      {"memory", {{"accesses", kCount, "reads+writes"}, {"row hit", kShare, "row_hits", "reads+writes"}, {"data bus held", kShare, "bus_busy", "cycles"}}},
+      {"l2",
+       {{"requests", kCount, "requests"},
+        {"hit", kShare, "hits", "requests"},
+        {"merged", kShare, "merged", "requests"},
+        {"missed", kShare, "misses", "requests"}}},
+      {"memory",
+       {{"accesses", kCount, "reads+writes"},
+        {"row hit", kShare, "row_hits", "reads+writes"},
+        {"data bus held", kShare, "bus_busy", "cycles"}}},
       {"scan_out", {{"lines", kCount, "lines"}}}};
   return table;
 }
@@ -148,7 +158,9 @@ std::uint64_t UnitGroup::counter(std::string_view counter_name) const {
 }
 
 double UnitGroup::busy_spread() const {
-  const auto share = [](std::int64_t busy, std::int64_t of) { return of > 0 ? 100.0 * static_cast<double>(busy) / static_cast<double>(of) : 0.0; };
+  const auto share = [](std::int64_t busy, std::int64_t of) {
+    return of > 0 ? 100.0 * static_cast<double>(busy) / static_cast<double>(of) : 0.0;
+  };
   const double mean = share(sum(&UnitFigures::busy), cycles());
   double spread = 0;
   for (const UnitFigures* unit : units) spread = std::max(spread, std::abs(share(unit->busy, unit->cycles) - mean));

@@ -13,7 +13,7 @@ namespace quadrille::pipeline {
 
 /// Units that share a row.
 struct UnitGroup {
-  std::string kind, name;                  ///< "core", and "core_0" of the first
+  std::string kind, name;  ///< "core", and "core_0" of the first
   std::vector<const UnitFigures*> units;
 
   [[nodiscard]] std::int64_t sum(std::int64_t UnitFigures::*member) const;

@@ -2,6 +2,8 @@
 
 #include "hw/base/unit.h"
 
+#include <bit>
+
 namespace quadrille::hw {
 
 namespace {
@@ -9,10 +11,10 @@ namespace {
 constexpr int kCrossingCycles = 2;
 }  // namespace
 
-FifoBase::FifoBase(const char* name, const LinkSpec& spec)
-    : sc_core::sc_object(name), stamp_(static_cast<std::size_t>(spec.depth > 0 ? spec.depth : 0)), spec_(spec) {
+FifoBase::FifoBase(const char* name, const LinkSpec& spec, std::size_t token_bytes) : sc_core::sc_object(name), depth_(spec.depth), width_(spec.width), spec_(spec) {
   QUADRILLE_CHECK(spec.depth >= 1 && spec.width >= 1 && spec.latency >= 1 && spec.credit_latency >= 1,
                   "link {}: depth {}, width {}, latency {}, credit latency {}", name, spec.depth, spec.width, spec.latency, spec.credit_latency);
+  storage_ = std::make_unique<std::byte[]>(stamp_bytes(depth_) + static_cast<std::size_t>(depth_) * token_bytes);  // zeroes: every slot is free from tick 0 on
 }
 
 void FifoBase::bind_producer(Unit& unit) {
@@ -35,21 +37,28 @@ void FifoBase::elaborate() {
   }
   const Clock& from = producer_->clock();
   const Clock& to = consumer_->clock();
-  uniform_ = from == to && from.uniform();
   producer_period_ = from.uniform() ? from.period() : 0;
   // n cycles from any edge on take at least edge(n): floor(a + b) >= floor(a) + floor(b).
   forward_ = to.edge(spec_.latency);
   credit_ = from.edge(spec_.credit_latency);
-  consumer_mark_ = {consumer_->touched_word(), consumer_->touched_bit()};
-  producer_mark_ = {producer_->touched_word(), producer_->touched_bit()};
+  if (from == to && from.uniform()) {
+    forward_step_ = forward_;
+    credit_step_ = credit_;
+  }
+  consumer_word_ = consumer_->touched_word();
+  producer_word_ = producer_->touched_word();
+  consumer_bit_ = static_cast<std::uint8_t>(std::countr_zero(consumer_->touched_bit()));
+  producer_bit_ = static_cast<std::uint8_t>(std::countr_zero(producer_->touched_bit()));
 }
 
 Tick FifoBase::crossed_push(Tick now) const {
+  QUADRILLE_CHECK(consumer_word_ != nullptr, "push into {} before the driver runs", path());
   const Clock& to = consumer_->clock();
   return to.edge(to.edges_before(now) + spec_.latency);
 }
 
 Tick FifoBase::crossed_pop(Tick now) const {
+  QUADRILLE_CHECK(producer_word_ != nullptr, "pop from {} before the driver runs", path());
   const Clock& from = producer_->clock();
   return from.edge(from.edges_before(now) + spec_.credit_latency);
 }
@@ -58,7 +67,7 @@ Tick FifoBase::crossed_cycle(Tick now) const { return producer_->clock().after(n
 
 int FifoBase::free_slots(Tick now) const {
   int n = 0;
-  for (std::uint32_t i = tail_; n < spec_.depth - count_ && stamp_[i] <= now; i = wrap(i)) ++n;
+  for (std::uint32_t i = tail_; n < depth_ - count_ && stamps()[i] <= now; i = wrap(i)) ++n;
   return n;
 }
 

@@ -34,12 +34,12 @@ enum class LinkRole : std::uint8_t { kFlow, kReply };
 /// what either end asks for, so that asking is one load; a peer is marked only when its answer changes (empty to not empty, full to not full).
 class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
  public:
-  FifoBase(const char* name, const LinkSpec& spec);
+  FifoBase(const char* name, const LinkSpec& spec, std::size_t token_bytes);
 
   // Producer's side.
   /// Earliest tick at which the next push may happen; kNever while every slot holds a token that was not popped.
   [[nodiscard]] Tick room() const { return room_; }
-  /// Slots that the producer may fill at `now` (ignores the width). Only for use inside `act`: no mark follows when it changes.
+  /// Slots that the producer may fill at `now` (ignores the width). For choosers, inside `act`: no mark follows when it changes.
   [[nodiscard]] int free_slots(Tick now) const;
 
   // Consumer's side.
@@ -72,66 +72,73 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
  protected:
   void note_push(Tick now) {
     if (room_ > now) [[unlikely]] refuse_push(now);
-    const Tick visible = uniform_ ? now + forward_ : crossed_push(now);
-    stamp_[tail_] = visible;
+    const Tick visible = forward_step_ != 0 ? now + forward_step_ : crossed_push(now);
+    stamps()[tail_] = visible;
     if (count_ == 0) {
       ready_ = visible;
-      consumer_mark_.set();
+      *consumer_word_ |= std::uint64_t{1} << consumer_bit_;
     }
     tail_ = wrap(tail_);
     ++count_;
     ++pushes_;
-    if (last_push_ != now) burst_ = 0;
+    burst_ = last_push_ == now ? burst_ + 1 : 1;
     last_push_ = now;
-    if (++burst_ == spec_.width) width_free_ = next_cycle(now);
-    room_ = count_ == spec_.depth ? kNever : later(stamp_[tail_], width_free_);
+    if (burst_ == width_) width_free_ = producer_period_ != 0 ? now + producer_period_ : crossed_cycle(now);
+    room_ = count_ == depth_ ? kNever : later(stamps()[tail_], width_free_);
   }
   void note_pop(Tick now) {
     if (ready_ > now) [[unlikely]] refuse_pop(now);
-    const Tick released = uniform_ ? now + credit_ : crossed_pop(now);
-    stamp_[head_] = released;
-    if (count_ == spec_.depth) {
+    const Tick released = credit_step_ != 0 ? now + credit_step_ : crossed_pop(now);
+    stamps()[head_] = released;
+    if (count_ == depth_) {
       room_ = later(released, width_free_);
-      producer_mark_.set();
+      *producer_word_ |= std::uint64_t{1} << producer_bit_;
     }
     head_ = wrap(head_);
     --count_;
     last_pop_ = now;
-    ready_ = count_ == 0 ? kNever : stamp_[head_];
+    ready_ = count_ == 0 ? kNever : stamps()[head_];
   }
   [[nodiscard]] std::size_t head() const { return head_; }
   [[nodiscard]] std::size_t tail() const { return tail_; }
+  /// Where the tokens lie: behind the stamps, aligned for any of them.
+  [[nodiscard]] std::byte* tokens() const { return storage_.get() + stamp_bytes(depth_); }
 
  private:
-  /// A unit's bit among the driver's marks.
-  struct Mark {
-    std::uint64_t* word = nullptr;
-    std::uint64_t bit = 0;
-    void set() const { *word |= bit; }
-  };
-  [[nodiscard]] std::uint32_t wrap(std::uint32_t i) const { return i + 1 == static_cast<std::uint32_t>(spec_.depth) ? 0 : i + 1; }
+  [[nodiscard]] std::uint32_t wrap(std::uint32_t i) const { return i + 1 == static_cast<std::uint32_t>(depth_) ? 0 : i + 1; }
+  [[nodiscard]] Tick* stamps() const { return reinterpret_cast<Tick*>(storage_.get()); }
   [[nodiscard]] static Tick later(Tick a, Tick b) { return a > b ? a : b; }
-  [[nodiscard]] Tick next_cycle(Tick now) const { return producer_period_ != 0 ? now + producer_period_ : crossed_cycle(now); }
+  [[nodiscard]] static std::size_t stamp_bytes(int depth) { return (static_cast<std::size_t>(depth) * sizeof(Tick) + 15) / 16 * 16; }
   [[nodiscard]] Tick crossed_push(Tick now) const;
   [[nodiscard]] Tick crossed_pop(Tick now) const;
   [[nodiscard]] Tick crossed_cycle(Tick now) const;
   [[noreturn]] void refuse_push(Tick now) const;
   [[noreturn]] void refuse_pop(Tick now) const;
 
-  alignas(64) Tick ready_ = kNever;  // what every push, pop and question touches lies together
+  // What most pushes, pops and questions touch: two cache lines, then the stamps and tokens.
+  alignas(64) Tick ready_ = kNever;
   Tick room_ = 0;
-  Tick forward_ = 0, credit_ = 0;
-  std::vector<Tick> stamp_;
-  LinkSpec spec_;
+  std::unique_ptr<std::byte[]> storage_;       ///< `depth` stamps, then `depth` tokens
   std::uint32_t head_ = 0, tail_ = 0;
-  int count_ = 0;
-  int burst_ = 0;               ///< pushes at tick `last_push_`
-  bool uniform_ = false;        ///< one clock with equal cycles: latencies are plain additions
-  Tick producer_period_ = 0;    ///< 0 when the producer's cycles differ in length
-  Tick width_free_ = 0;         ///< the width allows no push before this tick
-  Mark consumer_mark_, producer_mark_;
-  std::uint64_t pushes_ = 0;
+  int count_ = 0, depth_ = 0;
+  Tick forward_step_ = 0, credit_step_ = 0;    ///< the latencies in ticks, where both ends share a clock with equal cycles; else 0
+  int width_ = 1;
+  int burst_ = 0;                              ///< pushes at tick `last_push_`
   Tick last_push_ = -1, last_pop_ = 0;
+  Tick width_free_ = 0;                        ///< the width allows no push before this tick
+  Tick producer_period_ = 0;                   ///< 0 when the producer's cycles differ in length
+  std::uint64_t pushes_ = 0;
+  std::uint64_t* consumer_word_ = nullptr;     ///< of the driver's marks
+  std::uint64_t* producer_word_ = nullptr;
+  std::uint8_t consumer_bit_ = 0, producer_bit_ = 0;
+
+ protected:
+  bool faulty_ = false;                        ///< a test changes tokens as they are pushed
+
+ private:
+
+  LinkSpec spec_;
+  Tick forward_ = 0, credit_ = 0;
   Unit* producer_ = nullptr;
   Unit* consumer_ = nullptr;
 };
@@ -139,19 +146,22 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
 /// A FIFO of tokens. Tokens are trivially copyable and small; bulk travels as a handle into a store.
 template <class T>
 class Fifo final : public FifoBase {
-  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64, "tokens are trivially copyable and at most 64 bytes");
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64 && alignof(T) <= 16, "tokens are trivially copyable and at most 64 bytes");
 
  public:
-  Fifo(const char* name, const LinkSpec& spec) : FifoBase(name, spec), slots_(static_cast<std::size_t>(spec.depth)) {}
+  Fifo(const char* name, const LinkSpec& spec) : FifoBase(name, spec, sizeof(T)) {}
   void push(Tick now, const T& token) {
-    T& slot = slots_[tail()];
+    T& slot = slots()[tail()];
     slot = token;
-    if (fault_) [[unlikely]] fault_(slot);
+    if (faulty_) [[unlikely]] fault_(slot);
     note_push(now);
   }
   /// A fault on the wire, for tests of the conservation laws: changes tokens as they are pushed.
-  void inject_fault(std::function<void(T&)> fault) { fault_ = std::move(fault); }
-  [[nodiscard]] const T& front() const { return slots_[head()]; }
+  void inject_fault(std::function<void(T&)> fault) {
+    fault_ = std::move(fault);
+    faulty_ = true;
+  }
+  [[nodiscard]] const T& front() const { return slots()[head()]; }
   T pop(Tick now) {
     const T token = front();
     note_pop(now);
@@ -159,7 +169,7 @@ class Fifo final : public FifoBase {
   }
 
  private:
-  std::vector<T> slots_;
+  [[nodiscard]] T* slots() const { return reinterpret_cast<T*>(tokens()); }
   std::function<void(T&)> fault_;
 };
 

@@ -1,7 +1,8 @@
 /// What a token-hop costs in four styles of SystemC, and why hw/base is written as it is: a thread a unit with sc_fifo and wait, a method a unit, the kernel's
 /// native driver and its dispatcher. The first two run a chain of 50 units (their best case: no arbiter, no feedback); the drivers run that chain and the
-/// machine of 50 units with arbiters, feedback and a shared memory (world_spec.h). One simulation a process: each measurement runs in a forked child, which
-/// times only `run` and reports through a pipe. Time shown is per action (one token moved by one unit).
+/// machine of 50 units with arbiters, feedback and a shared memory (world_spec.h), with links of 2 cycles forward and 1 back (the least look-ahead that a real
+/// machine leaves) and of 4 cycles each way. One simulation a process: each measurement runs in a forked child, which
+/// times only `run`, in processor time, and reports through a pipe. Time shown is per action (one token moved by one unit).
 #include "hw/base/dispatcher.h"
 #include "hw/base/native_driver.h"
 #include "tests/hw/base/worlds.h"
@@ -148,7 +149,7 @@ void measure(benchmark::State& state, const std::function<Timing()>& body) {
 
 int main(int argc, char** argv) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
-  const WorldSpec machine = benchmark_world(10000);
+  const WorldSpec short_links = benchmark_world(20000), long_links = benchmark_world(20000, {.depth = 16, .latency = 4, .credit = 4});
   const auto add = [](const char* name, std::function<Timing()> body) {
     benchmark::RegisterBenchmark(name, [body](benchmark::State& state) { measure(state, body); })
         ->UseManualTime()
@@ -159,8 +160,10 @@ int main(int argc, char** argv) {
   add("chain/method_sc_fifo", raw_chain<MethodStage>);
   add("chain/native", [] { return kernel_world<NativeDriver>(chain_world()); });
   add("chain/dispatcher", [] { return kernel_world<Dispatcher>(chain_world()); });
-  add("machine/native", [&] { return kernel_world<NativeDriver>(machine); });
-  add("machine/dispatcher", [&] { return kernel_world<Dispatcher>(machine); });
+  add("machine/native/short_links", [&] { return kernel_world<NativeDriver>(short_links); });
+  add("machine/dispatcher/short_links", [&] { return kernel_world<Dispatcher>(short_links); });
+  add("machine/native/long_links", [&] { return kernel_world<NativeDriver>(long_links); });
+  add("machine/dispatcher/long_links", [&] { return kernel_world<Dispatcher>(long_links); });
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

@@ -10,7 +10,7 @@ namespace {
 
 std::string output(const std::vector<std::string>& arguments) {
   const ScratchFolder folder;
-  const ProgramRun run = quadrille(folder, arguments);
+  const ProgramRun run = run_quadrille(folder, arguments);
   CAPTURE(arguments, run.err);
   CHECK(run.exit_code == 0);
   CHECK(run.err.empty());
@@ -21,10 +21,11 @@ std::string output(const std::vector<std::string>& arguments) {
 
 TEST_CASE("help teaches: it names every subcommand and shows examples") {
   const std::string help = output({"--help"});
-  for (const char* word : {"render", "diff", "describe", "trace", "scenes", "machines", "Examples"}) CHECK_THAT(help, Catch::Contains(word));
+  for (const char* word : {"render", "diff", "describe", "trace", "scenes", "machines", "Examples"})
+    CHECK_THAT(help, Catch::Contains(word));
   const std::string render = output({"render", "--help"});
-  for (const char* word : {"--machine", "--set", "--size", "--camera", "--eye", "--at", "--vert", "--frag", "--out", "--depth", "--stats", "--fidelity", "--leave-out",
-                           "--driver", "--max-cycles", "Examples"}) {
+  for (const char* word : {"--machine", "--set", "--size", "--camera", "--eye", "--at", "--vert", "--frag", "--out", "--depth", "--stats",
+                           "--fidelity", "--leave-out", "--driver", "--max-cycles", "Examples"}) {
     CHECK_THAT(render, Catch::Contains(word));
   }
 }
@@ -55,7 +56,8 @@ TEST_CASE("describe gives every parameter a default, legal values and a reason, 
 
 TEST_CASE("describe and a run agree on parameters and counters") {
   const ScratchFolder folder;
-  REQUIRE(quadrille(folder, {"render", "builtin:quad", "--size", "8x8", "--leave-out", "none", "-q", "--stats", "s.json"}).exit_code == 0);
+  REQUIRE(run_quadrille(folder, {"render", "builtin:quad", "--size", "8x8", "--leave-out", "none", "-q", "--stats", "s.json"}).exit_code ==
+          0);
   const json run = json::parse(folder.read("s.json")), described = json::parse(output({"describe", "--json"}));
   CHECK(run.at("counter_definitions").size() == described.at("counters").size());
   for (const auto& [kind, counters] : run.at("counter_definitions").items()) {

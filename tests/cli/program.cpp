@@ -25,7 +25,8 @@ std::string read_file(const std::filesystem::path& path) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600),
+            err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   if (chdir(folder.c_str()) != 0 || dup2(out_file, STDOUT_FILENO) < 0 || dup2(err_file, STDERR_FILENO) < 0) _exit(126);
   unsetenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE");  // the program has to be quiet without it
   execv(argv[0], argv.data());

@@ -8,12 +8,13 @@
 namespace quadrille::tests {
 
 struct ProgramRun {
-  int exit_code = -1;   ///< -1: it was ended by a signal
+  int exit_code = -1;  ///< -1: it was ended by a signal
   std::string out, err;
 };
 
 /// Runs `program` with these arguments, in `folder`, its outputs in files.
-[[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+[[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
+                                     const std::filesystem::path& folder);
 
 /// A new empty folder, removed with all it holds.
 class ScratchFolder {

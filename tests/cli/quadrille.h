@@ -9,7 +9,7 @@
 
 namespace quadrille::tests {
 
-inline ProgramRun quadrille(const ScratchFolder& folder, const std::vector<std::string>& arguments) {
+inline ProgramRun run_quadrille(const ScratchFolder& folder, const std::vector<std::string>& arguments) {
   return run_program(QUADRILLE_PROGRAM, arguments, folder.path());
 }
 

@@ -9,7 +9,7 @@ namespace {
 void refused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
   const ScratchFolder folder;
   CAPTURE(arguments);
-  require_refused(quadrille(folder, arguments), words);
+  require_refused(run_quadrille(folder, arguments), words);
   CHECK(folder.empty());
 }
 
@@ -46,13 +46,14 @@ TEST_CASE("a damaged scene is refused with its name") {
   for (const std::string name : {"broken.gltf", "broken.glb", "broken.qtrace"}) {
     const ScratchFolder folder;
     folder.write(name, "not what its name says");
-    require_refused(quadrille(folder, {"render", name, "--out", "x.png"}), {name});
+    require_refused(run_quadrille(folder, {"render", name, "--out", "x.png"}), {name});
     CHECK_FALSE(folder.has("x.png"));
   }
 }
 
 TEST_CASE("a size is two numbers within 1..16384") {
-  for (const std::string size : {"", "x", "12", "0x4", "4x0", "16385x4", "4x16385", "-4x4", "4x4x4", "4 x4", "1e3x4", "99999999999999999999x1"}) {
+  for (const std::string size :
+       {"", "x", "12", "0x4", "4x0", "16385x4", "4x16385", "-4x4", "4x4x4", "4 x4", "1e3x4", "99999999999999999999x1"}) {
     refused({"render", "builtin:triangle", "--size", size}, {"--size", "16384"});
   }
 }
@@ -73,7 +74,7 @@ TEST_CASE("a shader that is missing or wrong is refused with its name") {
   render_refused({"--frag", "missing.frag"}, {"missing.frag"});
   const ScratchFolder folder;
   folder.write("wrong.frag", "#version 450\nvoid main() { nonsense; }\n");
-  require_refused(quadrille(folder, {"render", "builtin:triangle", "--frag", "wrong.frag"}), {"wrong.frag", "nonsense"});
+  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--frag", "wrong.frag"}), {"wrong.frag", "nonsense"});
 }
 
 TEST_CASE("a machine or setting that is none is refused with what is legal") {
@@ -88,7 +89,7 @@ TEST_CASE("a machine or setting that is none is refused with what is legal") {
   render_refused({"--set", "rop.cache_lines=1", "--set", "rop.cache_ways=8"}, {"rop.cache_lines"});
   const ScratchFolder folder;
   folder.write("m.toml", "[gpu]\ncores = 2\nclock = 3\n");
-  require_refused(quadrille(folder, {"render", "builtin:triangle", "--machine", "m.toml"}), {"m.toml:3", "clock"});
+  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--machine", "m.toml"}), {"m.toml:3", "clock"});
 }
 
 TEST_CASE("a choice is one of its words") {
@@ -109,7 +110,7 @@ TEST_CASE("an output that cannot be written is refused before anything runs") {
   refused({"trace", "record", "builtin:triangle", "-o", "x.trace"}, {"--out", ".qtrace"});
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.path() / "x.png");
-  require_refused(quadrille(folder, {"render", "builtin:triangle", "--out", "x.png"}), {"--out", "x.png", "plain file"});
+  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--out", "x.png"}), {"--out", "x.png", "plain file"});
   CHECK(std::filesystem::is_empty(folder.path() / "x.png"));
 }
 
@@ -117,13 +118,14 @@ TEST_CASE("a wrong output spares the other one") {
   render_refused({"--out", "fine.png", "--stats", "stats.txt"}, {"--stats"});
   const ScratchFolder folder;
   folder.write("old.png", "an older picture");
-  require_refused(quadrille(folder, {"render", "builtin:nothing", "--out", "old.png"}), {"nothing"});
+  require_refused(run_quadrille(folder, {"render", "builtin:nothing", "--out", "old.png"}), {"nothing"});
   CHECK(folder.read("old.png") == "an older picture");
 }
 
 TEST_CASE("a frame that takes longer than it may is given up with who waits for whom") {
   const ScratchFolder folder;
-  const ProgramRun run = quadrille(folder, {"render", "builtin:triangle", "--size", "64x64", "--max-cycles", "10", "--out", "x.png", "--stats", "x.json"});
+  const ProgramRun run =
+      run_quadrille(folder, {"render", "builtin:triangle", "--size", "64x64", "--max-cycles", "10", "--out", "x.png", "--stats", "x.json"});
   CHECK(run.exit_code == 2);
   CHECK(run.out.empty());
   CHECK_THAT(run.err, Catch::StartsWith("quadrille: the time limit was reached"));
@@ -134,9 +136,9 @@ TEST_CASE("pictures that do not compare are refused") {
   refused({"diff", "a.png", "b.png"}, {"a.png"});
   const ScratchFolder folder;
   folder.write("a.png", "no picture");
-  require_refused(quadrille(folder, {"diff", "a.png", "a.png"}), {"a.png"});
-  require_refused(quadrille(folder, {"diff", "a.png", "a.png", "--max-lsb", "256"}), {"--max-lsb", "255"});
-  require_refused(quadrille(folder, {"diff", "a.png", "a.png", "--heat", "h.jpg"}), {"--heat", ".png"});
+  require_refused(run_quadrille(folder, {"diff", "a.png", "a.png"}), {"a.png"});
+  require_refused(run_quadrille(folder, {"diff", "a.png", "a.png", "--max-lsb", "256"}), {"--max-lsb", "255"});
+  require_refused(run_quadrille(folder, {"diff", "a.png", "a.png", "--heat", "h.jpg"}), {"--heat", ".png"});
 }
 
 TEST_CASE("a group that is none is refused with the groups") { refused({"describe", "engine"}, {"engine", "coarse_raster", "link"}); }

@@ -14,7 +14,7 @@ ProgramRun render(const ScratchFolder& folder, const std::string& scene, std::ve
   std::vector<std::string> arguments{"render", scene};
   if (!scene.ends_with(".qtrace")) arguments.insert(arguments.end(), {"--size", "96x64"});
   arguments.insert(arguments.end(), more.begin(), more.end());
-  ProgramRun run = quadrille(folder, arguments);
+  ProgramRun run = run_quadrille(folder, arguments);
   CAPTURE(arguments, run.err);
   REQUIRE(run.exit_code == 0);
   CHECK(run.err.empty());
@@ -22,7 +22,7 @@ ProgramRun render(const ScratchFolder& folder, const std::string& scene, std::ve
 }
 
 void require_equal_pictures(const ScratchFolder& folder, const std::string& a, const std::string& b) {
-  const ProgramRun run = quadrille(folder, {"diff", a, b, "--max-lsb", "0"});
+  const ProgramRun run = run_quadrille(folder, {"diff", a, b, "--max-lsb", "0"});
   CAPTURE(a, b, run.out, run.err);
   CHECK(run.exit_code == 0);
   CHECK_THAT(run.out, Catch::StartsWith("equal: 6144 pixels"));
@@ -57,14 +57,15 @@ TEST_CASE("a picture is opaque unless its alpha is asked for, and is the same as
   require_equal_pictures(folder, "x.png", "x.exr");
   const auto depth = quadrille::scenes::load_float_image((folder.path() / "z.exr").string());
   REQUIRE(depth.channels == 1);
-  CHECK(depth.pixels[0] == 1.0F);                       // the background was cleared to the far plane
-  CHECK(depth.pixels[32 * 96 + 48] < 1.0F);             // the triangle covers the middle
+  CHECK(depth.pixels[0] == 1.0F);            // the background was cleared to the far plane
+  CHECK(depth.pixels[32 * 96 + 48] < 1.0F);  // the triangle covers the middle
 }
 
 TEST_CASE("the table names every unit, the clients and the checks, without colour") {
   const ScratchFolder folder;
   const std::string table = render(folder, "builtin:quad", {}).out;
-  for (const char* word : {"command_processor", "coarse_raster", "core x4", "texture x4", "l2 x2", "memory x2", "scan_out", "BANDWIDTH", "all clients", "laws hold", "HOST"}) {
+  for (const char* word : {"command_processor", "coarse_raster", "core x4", "texture x4", "l2 x2", "memory x2", "scan_out", "BANDWIDTH",
+                           "all clients", "laws hold", "HOST"}) {
     CHECK_THAT(table, Catch::Contains(word));
   }
   CHECK(table.find('\x1b') == std::string::npos);
@@ -90,7 +91,8 @@ TEST_CASE("the JSON holds the frame, every unit's cycles, and laws with both sid
   REQUIRE(s.at("units").contains("core_0"));
   for (const auto& [path, u] : s.at("units").items()) {
     CAPTURE(path);
-    CHECK(u.at("busy").get<long>() + u.at("starved").get<long>() + u.at("blocked").get<long>() + u.at("idle").get<long>() == u.at("cycles").get<long>());
+    CHECK(u.at("busy").get<long>() + u.at("starved").get<long>() + u.at("blocked").get<long>() + u.at("idle").get<long>() ==
+          u.at("cycles").get<long>());
     CHECK(u.at("waits").is_object());
     CHECK(u.at("counters").is_object());
   }
@@ -107,7 +109,8 @@ TEST_CASE("the JSON holds the frame, every unit's cycles, and laws with both sid
   }
   CHECK(s.at("left_out").is_array());
   const json& host = s.at("host");
-  for (const char* key : {"load_s", "build_s", "simulate_s", "simulate_cpu_s", "wall_s", "fragments_per_s", "cycles_per_s", "peak_rss_mib"}) CHECK(host.at(key) > 0);
+  for (const char* key : {"load_s", "build_s", "simulate_s", "simulate_cpu_s", "wall_s", "fragments_per_s", "cycles_per_s", "peak_rss_mib"})
+    CHECK(host.at(key) > 0);
   CHECK(host.at("wall_s") >= host.at("load_s").get<double>() + host.at("build_s").get<double>() + host.at("simulate_s").get<double>());
 }
 
@@ -127,7 +130,8 @@ TEST_CASE("a run without time has no cycles, rather than zero") {
   CHECK(functional.at("frame").at("cycles").is_null());
   CHECK(functional.at("host").at("cycles_per_s").is_null());
   CHECK(functional.at("units").empty());
-  for (const char* count : {"draws", "triangles", "fragments_written"}) CHECK(functional.at("frame").at(count) == exact.at("frame").at(count));
+  for (const char* count : {"draws", "triangles", "fragments_written"})
+    CHECK(functional.at("frame").at(count) == exact.at("frame").at(count));
 }
 
 TEST_CASE("a setting is applied after the machine and is in the figures") {
@@ -143,12 +147,12 @@ TEST_CASE("a setting is applied after the machine and is in the figures") {
 
 TEST_CASE("a recorded trace replays to the picture and the cycles of its scene") {
   const ScratchFolder folder;
-  REQUIRE(quadrille(folder, {"trace", "record", "builtin:quad", "--size", "96x64", "-o", "quad.qtrace"}).exit_code == 0);
-  const ProgramRun info = quadrille(folder, {"trace", "info", "quad.qtrace"});
+  REQUIRE(run_quadrille(folder, {"trace", "record", "builtin:quad", "--size", "96x64", "-o", "quad.qtrace"}).exit_code == 0);
+  const ProgramRun info = run_quadrille(folder, {"trace", "info", "quad.qtrace"});
   CHECK(info.exit_code == 0);
   CHECK_THAT(info.out, Catch::Contains("96x64") && Catch::Contains("draws"));
   render(folder, "builtin:quad", {"--out", "scene.png", "--stats", "scene.json", "-q"});
-  REQUIRE(quadrille(folder, {"trace", "replay", "quad.qtrace", "--out", "replay.png", "--stats", "replay.json", "-q"}).exit_code == 0);
+  REQUIRE(run_quadrille(folder, {"trace", "replay", "quad.qtrace", "--out", "replay.png", "--stats", "replay.json", "-q"}).exit_code == 0);
   render(folder, "quad.qtrace", {"--out", "render.png", "-q"});
   require_equal_pictures(folder, "scene.png", "replay.png");
   require_equal_pictures(folder, "scene.png", "render.png");
@@ -159,11 +163,11 @@ TEST_CASE("diff tells pictures apart, by how much, and where") {
   const ScratchFolder folder;
   render(folder, "builtin:triangle", {"--out", "a.png", "-q"});
   render(folder, "builtin:quad", {"--out", "b.png", "-q"});
-  CHECK(quadrille(folder, {"diff", "a.png", "b.png"}).exit_code == 0);
-  const ProgramRun run = quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "8", "--heat", "heat.png"});
+  CHECK(run_quadrille(folder, {"diff", "a.png", "b.png"}).exit_code == 0);
+  const ProgramRun run = run_quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "8", "--heat", "heat.png"});
   CHECK(run.exit_code == 1);
   CHECK_THAT(run.out, Catch::Contains("largest difference") && Catch::Contains("8x8 blocks"));
   CHECK_THAT(run.err, Catch::Contains("--max-lsb allows 8"));
   CHECK(quadrille::scenes::load_image((folder.path() / "heat.png").string()).width == 96);
-  CHECK(quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "255"}).exit_code == 0);
+  CHECK(run_quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "255"}).exit_code == 0);
 }

@@ -76,8 +76,8 @@ scenes::SceneOptions scene_options(const Arguments& a) {
   return options;
 }
 
-/// Mesa's llvmpipe reports 4 bits for the level of detail, the least Vulkan allows, but keeps the whole fraction of a logarithm that is linear
-/// between powers of two (measured bit by bit in numerics_test.cpp); 8 bits are the nearest Quadrille has.
+/// Mesa's llvmpipe reports 4 bits for the level of detail but keeps the whole fraction of a logarithm that is linear between powers of two
+/// (measured bit by bit in numerics_test.cpp); 8 bits are the nearest Quadrille has.
 constexpr std::uint32_t kLlvmpipeLodBits = 8;
 
 models::Precision machine_precision(const Arguments& a, const DeviceInfo& device) {

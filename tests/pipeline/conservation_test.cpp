@@ -81,8 +81,7 @@ TEST_CASE("conservation: a lost tile is noticed") {
 TEST_CASE("conservation: lost bytes are noticed, read and written") {
   const auto shorten = [](hw::MemoryRequest::Kind kind) {
     return [kind](const Machine& machine) {
-      // Clients 0: vertex fetch; 1..4: texture; 5, 6: depth and colour of partition 0.
-      for (const char* name : {"client_0_to_l2_0", "client_6_to_l2_0"}) {
+      for (const char* name : {"vertex_fetch_to_l2_0", "rop_0_to_l2_0"}) {
         link<hw::MemoryRequest>(machine, name).inject_fault([kind, n = 0](hw::MemoryRequest& r) mutable {
           if (r.kind == kind && ++n == 1) r.sectors = static_cast<std::uint8_t>(r.sectors & (r.sectors - 1));
         });

@@ -12,7 +12,8 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ valu
 
 class MachineSpecimen final : public hw::contract::Specimen {
  public:
-  MachineSpecimen(const traces::CommandStream& stream, std::uint64_t machine_seed, hw::Driver& driver, const hw::contract::Variation& variation)
+  MachineSpecimen(const traces::CommandStream& stream, std::uint64_t machine_seed, bool leave_out, hw::Driver& driver,
+                  const hw::contract::Variation& variation)
       : frame_(std::uint64_t{1} << 30) {
     if (machine_seed != 0) randomize(config_, machine_seed);
     if (variation.depth_one) {
@@ -23,6 +24,7 @@ class MachineSpecimen final : public hw::contract::Specimen {
     build_frame(stream, config_.precision(), frame_);
     MachineOptions options;
     options.external_driver = &driver;
+    options.leave_out = leave_out;
     options.module_order = variation.creation_seed;
     machine_ = std::make_unique<Machine>(config_, frame_, options);
   }
@@ -59,9 +61,9 @@ std::uint64_t functional_digest(const traces::CommandStream& stream) {
   return image_digest(frame);
 }
 
-hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed) {
-  return [&stream, machine_seed](hw::Driver& driver, const hw::contract::Variation& variation) {
-    return std::make_unique<MachineSpecimen>(stream, machine_seed, driver, variation);
+hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed, bool leave_out) {
+  return [&stream, machine_seed, leave_out](hw::Driver& driver, const hw::contract::Variation& variation) {
+    return std::make_unique<MachineSpecimen>(stream, machine_seed, leave_out, driver, variation);
   };
 }
 

@@ -12,7 +12,7 @@ namespace quadrille::pipeline::test {
 /// The same for the functional rendering of a stream.
 [[nodiscard]] std::uint64_t functional_digest(const traces::CommandStream& stream);
 
-/// Builds the machine of `machine_seed` (0: the default one) for the stream.
-[[nodiscard]] hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed);
+/// Builds the machine of `machine_seed` (0: the default one) for the stream; without `leave_out` with every unit, needed or not.
+[[nodiscard]] hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed, bool leave_out = true);
 
 }  // namespace quadrille::pipeline::test

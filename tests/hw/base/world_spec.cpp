@@ -164,9 +164,8 @@ class Grower {
 
 WorldSpec random_world(std::uint64_t seed) { return Grower(seed).grow(); }
 
-WorldSpec benchmark_world(int tokens) {
+WorldSpec benchmark_world(int tokens, WireSpec link) {
   WorldSpec w;
-  const WireSpec deep{.depth = 8, .latency = 2, .credit = 1};
   const int memory = w.add({.role = Role::kMemory, .rate = 4, .service = 4, .spread = 8, .slots = 8});
   const int merge = w.add({.role = Role::kArbiter});
   for (int lane = 0; lane < 8; ++lane) {
@@ -175,24 +174,24 @@ WorldSpec benchmark_world(int tokens) {
     const int stage = w.add({.role = Role::kStage});
     const int core = w.add({.role = Role::kCore, .count = 1, .slots = 4});
     const int back = w.add({.role = Role::kRecycle});
-    w.wire({source, 0}, {loop, 1}, deep);
-    w.wire({loop, 0}, {stage, 0}, deep);
-    w.wire({stage, 0}, {core, 0}, deep);
-    w.wire({core, 0}, {back, 0}, deep);
-    w.wire({core, 1}, {memory, lane}, deep);
-    WireSpec reply = deep;
+    w.wire({source, 0}, {loop, 1}, link);
+    w.wire({loop, 0}, {stage, 0}, link);
+    w.wire({stage, 0}, {core, 0}, link);
+    w.wire({core, 0}, {back, 0}, link);
+    w.wire({core, 1}, {memory, lane}, link);
+    WireSpec reply = link;
     reply.reply = true;
     w.wire({memory, lane}, {core, 1}, reply);
-    w.wire({back, 1}, {loop, 0}, deep);
-    w.wire({back, 0}, {merge, lane}, deep);
+    w.wire({back, 1}, {loop, 0}, link);
+    w.wire({back, 0}, {merge, lane}, link);
   }
   int last = merge;
   for (int i = 0; i < 7; ++i) {
     const int stage = w.add({.role = Role::kStage});
-    w.wire({last, 0}, {stage, 0}, deep);
+    w.wire({last, 0}, {stage, 0}, link);
     last = stage;
   }
-  w.wire({last, 0}, {w.add({.role = Role::kSink}), 0}, deep);
+  w.wire({last, 0}, {w.add({.role = Role::kSink}), 0}, link);
   return w;
 }
 

@@ -95,7 +95,8 @@ using Trace = std::vector<std::vector<Event>>;  ///< by unit of the spec
 
 /// A random machine: sources, then random operators on open streams (with arbiters, feedback loops, shared memories), then sinks. Some of them deadlock.
 [[nodiscard]] WorldSpec random_world(std::uint64_t seed);
-/// 50 units with arbiters and feedback on one clock, for the benchmark: 8 lanes of stages and cores, one shared memory, merged and recycled. `tokens` a source.
-[[nodiscard]] WorldSpec benchmark_world(int tokens);
+/// 50 units with arbiters and feedback on one clock, for the benchmark: 8 lanes of stages and cores, one shared memory, merged and recycled. `tokens` a source;
+/// every link is shaped like `link`.
+[[nodiscard]] WorldSpec benchmark_world(int tokens, WireSpec link = {.depth = 8, .latency = 2, .credit = 1});
 
 }  // namespace quadrille::hw::world

@@ -15,20 +15,6 @@ SyntheticUnit::SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec,
   for (int i = 0; i < spec.outputs; ++i) outputs_.add(*this, fmt::format("out{}", i), LinkRole::kFlow);
 }
 
-void SyntheticUnit::use(Tick now, int cycles) {
-  if (edge_ != now) {
-    edge_ = now;
-    used_ = 0;
-  }
-  if (++used_ < spec_.rate) {
-    free_ = now;
-    occupy(now, 1);
-  } else {
-    free_ = after(now, cycles);
-    occupy(now, cycles);
-  }
-}
-
 namespace {
 
 class Source final : public SyntheticUnit {
@@ -199,7 +185,13 @@ class Pack final : public SyntheticUnit {
 /// The input whose token is visible first; the lowest on a tie.
 const FifoIn<Token>& earliest(const Ports<FifoIn<Token>>& inputs) {
   const FifoIn<Token>* first = &*inputs[0];
-  for (const auto& in : inputs) first = in->ready() < first->ready() ? &*in : first;
+  Tick ready = first->ready();
+  for (const auto& in : inputs) {
+    const Tick t = in->ready();
+    const bool sooner = t < ready;
+    ready = sooner ? t : ready;
+    first = sooner ? &*in : first;
+  }
   return *first;
 }
 
@@ -251,10 +243,9 @@ class Core final : public SyntheticUnit {
 
   Wake next() const override {
     Wake wake = own().input(*inputs_[1]);
-    if (emit_ != 0) wake = Wake::sooner(wake, own().output(*outputs_[0]));
-    if (ask_ != 0) wake = Wake::sooner(wake, own().output(*outputs_[1]));
-    if (free_ != 0) wake = Wake::sooner(wake, own().input(*inputs_[0]));
-    return wake;
+    wake = Wake::sooner(wake, own_if(emit_).output(*outputs_[0]));
+    wake = Wake::sooner(wake, own_if(ask_).output(*outputs_[1]));
+    return Wake::sooner(wake, own_if(free_).input(*inputs_[0]));
   }
   void act(Tick now) override {
     if (inputs_[1]->ready_at(now)) take_reply(now);
@@ -269,6 +260,7 @@ class Core final : public SyntheticUnit {
     int left = 0;
     std::uint32_t id = 0, hops = 0;
   };
+  [[nodiscard]] Wake own_if(std::uint64_t set) const { return Wake(set != 0 ? own().at() : kNever); }
   /// Takes the lowest context out of a set.
   std::uint32_t take(std::uint64_t& set) {
     const int i = std::countr_zero(set);

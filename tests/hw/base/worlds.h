@@ -41,7 +41,11 @@ class SyntheticUnit : public Unit {
  protected:
   [[nodiscard]] Wake own() const { return Wake(free_); }
   /// Fills a place of this edge and charges it; the last one keeps the unit for `cycles`.
-  void use(Tick now, int cycles);
+  void use(Tick now, int cycles) {
+    if (spec_.rate > 1 && !fills_edge(now)) cycles = 0;
+    free_ = after(now, cycles);
+    occupy(now, cycles > 0 ? cycles : 1);
+  }
   void note(Tick now, char what, int port, std::uint32_t id) {
     if (events_ != nullptr) events_->push_back({now, what, static_cast<std::uint8_t>(port), id});
   }
@@ -49,6 +53,11 @@ class SyntheticUnit : public Unit {
 
  private:
   std::vector<Event>* events_ = nullptr;
+  [[nodiscard]] bool fills_edge(Tick now) {
+    used_ = edge_ == now ? used_ + 1 : 1;
+    edge_ = now;
+    return used_ == spec_.rate;
+  }
   Tick free_ = 0, edge_ = -1;
   int used_ = 0;
 

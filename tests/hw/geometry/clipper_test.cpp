@@ -1,0 +1,116 @@
+/// Clipper: one triangle a cycle, the time of a cut, and what becomes of each triangle.
+#include "hw/geometry/clipper.h"
+#include "tests/hw/bench_stub.h"
+
+#include <catch2/catch.hpp>
+
+#include <bit>
+#include <limits>
+
+using namespace quadrille;
+using namespace quadrille::hw;
+using namespace quadrille::hw::bench;
+
+namespace {
+
+/// Lanes of the batch: a triangle each.
+enum Shape : std::uint8_t { kInside, kOneOut, kTwoOut, kBeside, kNan };
+
+struct ClipBench final : Bench {
+  struct Setup {
+    std::vector<Timed<PrimitiveToken>> primitives;
+    int clip_clk = 12;
+    Pace pace{};
+    LinkSpec out{.depth = 64};
+  };
+  ClipBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), batches(1), pieces(static_cast<std::size_t>(s.out.depth) + 2) {
+    DrawState draw;
+    draw.viewport = {0, 0, 64, 64, 0, 1};
+    draw.clip = models::make_clip_state(draw.viewport, false, 8);
+    frame.draws = {draw};
+    batches[0].outputs.resize(4);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    triangle(kInside, {0.5f, 0.5f, 0.5f}, 0);
+    triangle(kOneOut, {-0.5f, 0.5f, 0.5f}, 0);  // the near plane cuts one corner off: a quadrilateral, two pieces
+    triangle(kTwoOut, {-0.5f, -0.5f, 0.5f}, 0);
+    triangle(kBeside, {0.5f, 0.5f, 0.5f}, 5);
+    triangle(kNan, {0.5f, nan, 0.5f}, 0);
+    params.clip_clk.set(s.clip_clk);
+    unit = std::make_unique<Clipper>("unit", params, clock, frame, batches, pieces);
+    add(*unit);
+    feed(unit->primitive_in, s.primitives);
+    sink = &drain<ClippedToken>(unit->clipped_out, [](const ClippedToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); },
+                                s.pace, s.out);
+  }
+  void triangle(Shape shape, std::array<float, 3> z, float x) {
+    const float corner[3][2] = {{-0.5f, -0.5f}, {0.5f, -0.5f}, {0.0f, 0.5f}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float position[4] = {corner[i][0] + x, corner[i][1], z[i], 1.0f};
+      for (std::size_t c = 0; c < 4; ++c) batches[0].outputs[c][3 * shape + i] = std::bit_cast<std::uint32_t>(position[c]);
+    }
+  }
+  Frame frame;
+  Clipper::Params params;
+  Store<BatchSlot> batches;
+  Store<ClippedPiece> pieces;
+  std::unique_ptr<Clipper> unit;
+  StubSink<ClippedToken>* sink = nullptr;
+};
+
+ClipBench::Setup shapes(const std::vector<Shape>& list) {
+  ClipBench::Setup s;
+  for (const Shape shape : list) {
+    const auto first = static_cast<std::uint8_t>(3 * shape);
+    s.primitives.push_back({0, {TokenKind::kWork, {first, static_cast<std::uint8_t>(first + 1), static_cast<std::uint8_t>(first + 2)}, 0, 0, shape}});
+  }
+  return s;
+}
+std::string cycles(const ClipBench::Setup& s) {
+  return run<ClipBench>(s, [](const ClipBench& b) { return b.sink->text(); });
+}
+
+}  // namespace
+
+TEST_CASE("clipper: one triangle a cycle while none is cut") { CHECK(cycles(shapes({kInside, kInside, kInside})) == "2:0 3:0 4:0"); }
+
+TEST_CASE("clipper: a cut triangle takes clip_clk cycles and then one a piece") {
+  for (const int clk : {1, 12, 40}) {
+    auto s = shapes({kOneOut, kInside});
+    s.clip_clk = clk;
+    CHECK(cycles(s) == fmt::format("{}:1 {}:1 {}:0", 2 + clk, 3 + clk, 4 + clk));
+    s = shapes({kTwoOut, kInside});
+    s.clip_clk = clk;
+    CHECK(cycles(s) == fmt::format("{}:2 {}:0", 2 + clk, 3 + clk));
+  }
+}
+
+TEST_CASE("clipper: dropped triangles cost a cycle each, and every triangle is accounted for once") {
+  const auto text = run<ClipBench>(shapes({kBeside, kNan, kInside, kOneOut, kTwoOut, kBeside}), [](const ClipBench& b) {
+    const Unit& u = *b.unit;
+    return fmt::format("{} of {}: {} passed {} clipped {} rejected {} not finite; {} pieces", b.sink->text(), counter(u, "triangles"), counter(u, "passed"),
+                       counter(u, "clipped"), counter(u, "rejected"), counter(u, "not_finite"), counter(u, "pieces"));
+  });
+  CHECK(text == "4:0 17:1 18:1 31:2 of 6: 1 passed 2 clipped 2 rejected 1 not finite; 3 pieces");
+}
+
+TEST_CASE("clipper: the window position of a piece is there when its token is") {
+  const auto text = run<ClipBench>(shapes({kInside}), [](const ClipBench& b) {
+    const ClippedPiece& piece = b.pieces[b.sink->got[0].token.piece];
+    return fmt::format("{},{} {},{} {},{}", piece.vertices[0].x, piece.vertices[0].y, piece.vertices[1].x, piece.vertices[1].y, piece.vertices[2].x, piece.vertices[2].y);
+  });
+  CHECK(text == "4096,4096 12288,4096 8192,12288");  // pixels 16, 48 and 32 in 1/256
+}
+
+TEST_CASE("clipper: stops between pieces while clipped_out is full") {
+  auto s = shapes({kOneOut, kInside});
+  s.pace = {.from = 100, .period = 10};
+  s.out = {.depth = 1};
+  CHECK(cycles(s) == "100:1 110:1 120:0");
+}
+
+TEST_CASE("clipper: keeps the contract, one-deep links included") {
+  auto s = shapes({kInside, kOneOut, kNan, kTwoOut, kBeside, kInside});
+  s.primitives.push_back({30, {TokenKind::kBatchEnd, {}, 0, 0, 0}});
+  s.pace = {.from = 0, .period = 3};
+  CHECK(contract_text<ClipBench>(s) == "");
+}

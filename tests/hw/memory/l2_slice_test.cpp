@@ -1,0 +1,108 @@
+/// L2 slice: latency of hits and misses, merged misses, turns of clients, write-backs.
+#include "hw/memory/l2_slice.h"
+#include "tests/hw/bench_stub.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille::hw;
+using namespace quadrille::hw::bench;
+
+namespace {
+
+using Kind = MemoryRequest::Kind;
+constexpr int kMemory = 50;  ///< cycles between a request's arrival at the stub and its answer
+
+struct L2Bench final : Bench {
+  struct Setup {
+    std::vector<Timed<MemoryRequest>> client_0, client_1{};
+    int lines = 64, ways = 4, misses = 8, hit_clk = 20;
+    Pace pace{};
+    LinkSpec out{.depth = 64};
+  };
+  L2Bench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
+    params.cache_lines.set(s.lines);
+    params.cache_ways.set(s.ways);
+    params.cache_misses.set(s.misses);
+    params.hit_clk.set(s.hit_clk);
+    unit = std::make_unique<L2Slice>("unit", params, clock, 2);
+    add(*unit);
+    feed(*unit->request_in[0], s.client_0);
+    feed(*unit->request_in[1], s.client_1);
+    for (auto& out : unit->response_out) sinks.push_back(&drain<MemoryResponse>(*out, [](const MemoryResponse& t) { return t.tag; }, s.pace, s.out));
+    memory = &serve(unit->memory_out, unit->fill_in, kMemory);
+  }
+  L2Slice::Params params;
+  std::unique_ptr<L2Slice> unit;
+  std::vector<StubSink<MemoryResponse>*> sinks;
+  StubMemory* memory = nullptr;
+};
+
+MemoryRequest read(std::uint32_t line, std::uint32_t tag, std::uint8_t sectors = 0xf) { return {line, tag, sectors, Kind::kRead}; }
+MemoryRequest write(std::uint32_t line, std::uint8_t sectors = 0xf) { return {line, 0, sectors, Kind::kWrite}; }
+MemoryRequest fence(std::uint32_t tag) { return {0, tag, 0, Kind::kFence}; }
+std::string both(const L2Bench& b) { return b.sinks[0]->text() + " | " + b.sinks[1]->text(); }
+
+}  // namespace
+
+TEST_CASE("l2_slice: a miss takes the memory's time and three links, a hit exactly hit_clk and its two links") {
+  for (const int hit : {1, 20, 77}) {
+    const L2Bench::Setup s{.client_0 = {{0, read(7, 1)}, {200, read(7, 2)}}, .hit_clk = hit};
+    const auto text = run<L2Bench>(s, [](const L2Bench& b) { return fmt::format("{} memory {}", b.sinks[0]->text(), b.memory->text()); });
+    CHECK(text == fmt::format("{}:1 {}:2 memory 2:r7/f", 1 + 1 + kMemory + 1 + 1, 200 + 1 + hit + 1));
+  }
+}
+
+TEST_CASE("l2_slice: a line under way serves all who ask for it") {
+  const L2Bench::Setup s{.client_0 = {{0, read(7, 1)}, {0, read(7, 2)}}, .client_1 = {{0, read(7, 3)}}};
+  const auto text = run<L2Bench>(s, [](const L2Bench& b) {
+    return fmt::format("{} memory {} merged {} misses {}", both(b), b.memory->text(), counter(*b.unit, "merged"), counter(*b.unit, "misses"));
+  });
+  CHECK(text == "54:1 54:2 | 54:3 memory 2:r7/f merged 2 misses 1");
+}
+
+TEST_CASE("l2_slice: only sectors that are not there are asked for") {
+  const L2Bench::Setup s{.client_0 = {{0, read(7, 1, 0x3)}, {200, read(7, 2, 0x6)}}};
+  const auto text = run<L2Bench>(s, [](const L2Bench& b) {
+    return fmt::format("{} fill {} read {}", b.memory->text(), counter(*b.unit, "fill_bytes"), counter(*b.unit, "read_bytes"));
+  });
+  CHECK(text == "2:r7/3 202:r7/4 fill 96 read 128");
+}
+
+TEST_CASE("l2_slice: clients take turns, one look-up a cycle") {
+  const L2Bench::Setup s{.client_0 = {{0, fence(1)}, {0, fence(2)}, {0, fence(3)}}, .client_1 = {{0, fence(4)}}};
+  CHECK(run<L2Bench>(s, both) == "22:1 24:2 25:3 | 23:4");
+}
+
+TEST_CASE("l2_slice: a hit overtakes an older miss") {
+  const L2Bench::Setup s{.client_0 = {{0, read(7, 1)}, {100, read(8, 2)}, {101, read(7, 3)}}};
+  CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text(); }) == "54:1 123:3 154:2");
+}
+
+TEST_CASE("l2_slice: a write asks for nothing, and a dirty line is written back when its place is taken") {
+  const L2Bench::Setup s{.client_0 = {{0, write(0, 0x5)}, {10, write(1)}, {20, read(0, 9)}}, .lines = 1, .ways = 1};
+  const auto text = run<L2Bench>(s, [](const L2Bench& b) {
+    return fmt::format("{} memory {} written back {} of {}", b.sinks[0]->text(), b.memory->text(), counter(*b.unit, "writeback_bytes"), counter(*b.unit, "write_bytes"));
+  });
+  CHECK(text == "75:9 memory 12:w0/5 22:w1/f 23:r0/f written back 192 of 192");
+}
+
+TEST_CASE("l2_slice: a cache of one line and one miss answers everything, one line at a time") {
+  L2Bench::Setup s{.client_0 = {}, .lines = 1, .ways = 1, .misses = 1};
+  for (std::uint32_t i = 0; i < 4; ++i) s.client_0.push_back({0, read(i, i)});
+  // The next line is looked up the cycle the last one's fill arrives: 1 + 50 + 1 cycles after the look-up before.
+  CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text(); }) == "54:0 106:1 158:2 210:3");
+}
+
+TEST_CASE("l2_slice: an answer that has no room holds back no other client") {
+  L2Bench::Setup s{.client_0 = {{0, fence(1)}, {0, fence(2)}, {0, fence(3)}}, .client_1 = {{0, fence(4)}, {0, fence(5)}}, .pace = {.from = 100, .period = 10}, .out = {.depth = 1}};
+  CHECK(run<L2Bench>(s, both) == "100:1 110:2 120:3 | 100:4 110:5");
+}
+
+TEST_CASE("l2_slice: keeps the contract, one-deep links included") {
+  L2Bench::Setup s{.client_0 = {{0, read(0, 1)}, {0, write(1)}, {0, read(2, 2, 0x3)}, {0, fence(7)}, {60, read(1, 3)}},
+                   .client_1 = {{0, read(0, 4)}, {0, read(1, 5)}, {0, write(3, 0x1)}, {70, read(3, 6)}},
+                   .lines = 2,
+                   .ways = 1,
+                   .misses = 2};
+  CHECK(contract_text<L2Bench>(s, false) == "");
+}

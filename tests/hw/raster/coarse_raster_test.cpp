@@ -1,0 +1,171 @@
+/// Coarse rasteriser: cycles of a walk, Hi-Z and when it may be trusted, syncs.
+#include "hw/raster/coarse_raster.h"
+#include "tests/hw/bench_stub.h"
+#include "tests/hw/raster/triangles.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille;
+using namespace quadrille::hw;
+using namespace quadrille::hw::bench;
+
+namespace {
+
+constexpr std::uint64_t kBoundary = 900;
+
+struct CoarseBench final : Bench {
+  struct Setup {
+    std::vector<Timed<TriangleToken>> triangles;
+    std::vector<Timed<HiZToken>> hiz{};
+    int rate = 4;
+    Pace pace{};
+    LinkSpec out{.depth = 64};
+    bool use_hiz = true;
+    std::size_t store_slots = 64;
+  };
+  CoarseBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), store(s.store_slots) {
+    make_frame();
+    // Sequence numbers: 0 is in the two tiles (0, 0) and (1, 0); 1 lies in tile (0, 0) alone; 2 the same but nearer; 3 like 1, farther; 4 like 1, of draw 1.
+    store[0] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {12, 0}});
+    store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}});
+    store[2] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}}, 0.25f);
+    store[3] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}}, 0.75f);
+    store[4] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}}, 0.75f, 1);
+    params.tests_per_clk.set(s.rate);
+    params.hiz.set(s.use_hiz);
+    unit = std::make_unique<CoarseRaster>("unit", params, clock, frame, store, 1);
+    add(*unit);
+    feed(unit->triangle_in, s.triangles);
+    feed(*unit->hiz_in[0], s.hiz);
+    sink = &drain<TileToken>(
+        unit->tile_out, [](const TileToken& t) { return t.kind == TokenKind::kWork ? 10 * t.triangle + t.tile_x : kBoundary + static_cast<std::uint64_t>(t.kind); }, s.pace,
+        s.out);
+  }
+  void make_frame() {
+    PassState pass;
+    pass.has_depth = true;
+    pass.depth = {0, 64, 64, 8, 8};
+    pass.draws = 4;
+    frame.passes = {pass};
+    // Draws 0 and 2 write with "less", 1 writes with "greater", 3 only tests with "greater".
+    for (const models::CompareOp op : {models::CompareOp::kLess, models::CompareOp::kGreater, models::CompareOp::kLess, models::CompareOp::kGreater}) {
+      DrawState draw;
+      draw.fragment_program = &program;
+      draw.depth_test = true;
+      draw.depth_write = frame.draws.size() != 3;
+      draw.depth_compare = op;
+      frame.draws.push_back(draw);
+    }
+  }
+  models::Program program;
+  Frame frame;
+  CoarseRaster::Params params;
+  TriangleStore store;
+  std::unique_ptr<CoarseRaster> unit;
+  StubSink<TileToken>* sink = nullptr;
+};
+
+TriangleToken triangle(std::uint64_t sequence, std::uint32_t draw = 0) { return {TokenKind::kWork, draw, sequence}; }
+const TriangleToken kBegin{TokenKind::kPassBegin, 0, 0};
+
+std::uint64_t counter(const CoarseBench& b, std::size_t i) { return b.unit->stats()->counters()[i]->value(); }
+std::string tiles(const CoarseBench::Setup& setup) {
+  return run<CoarseBench>(setup, [](const CoarseBench& b) { return b.sink->text(); });
+}
+
+}  // namespace
+
+TEST_CASE("coarse_raster: one tile a cycle, and one cycle to find a triangle's end") {
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(1)}, {0, triangle(1)}}};
+  // Boundary at 1; tiles of the first triangle at 2 and 3, its end at 4; one tile and its end each for the others.
+  CHECK(tiles(s) == "2:903 3:0 4:1 6:10 8:10");
+}
+
+TEST_CASE("coarse_raster: tests beyond a cycle's rate delay what follows, by tests divided by the rate, rounded up") {
+  // A thin diagonal crosses many rows, each of which costs its kept tiles and the failing tests beside them.
+  const auto cycles_at = [](int rate) {
+    CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(5)}, {0, {TokenKind::kDrawEnd, 0, 0}}}, .rate = rate};
+    return contract::in_child([&] {
+      Dispatcher driver("driver");
+      CoarseBench b(driver, {}, s);
+      b.store[5] = flat_triangle({glm::ivec2{0, 0}, {62, 64}, {64, 64}});
+      driver.run({});
+      models::TileWalk walk(b.store[5].setup);
+      models::TileHit hit;
+      std::int64_t expected = 2, before = 0;  // taken at cycle 2
+      for (bool more = true; more;) {
+        more = walk.next(hit);
+        const auto tests = static_cast<std::int64_t>(walk.tests()) - before;
+        expected += std::max<std::int64_t>(1, (tests + rate - 1) / rate);
+        before += tests;
+      }
+      return fmt::format("{} {}", b.sink->got.back().cycle - 1 == expected, counter(b, 1) == static_cast<std::uint64_t>(before));
+    });
+  };
+  for (const int rate : {1, 2, 4, 64}) CHECK(cycles_at(rate) == "true true");
+}
+
+TEST_CASE("coarse_raster: a tile that Hi-Z proves hidden is dropped, from the cycle the update is there") {
+  const HiZToken update{0, 0, 0, 0.5f};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(3)}}, .hiz = {{10, update}}};
+  const auto read = [](const CoarseBench& b) { return fmt::format("{} hidden {} updates {}", b.sink->text(), counter(b, 3), counter(b, 4)); };
+  CHECK(run<CoarseBench>(s, read) == "2:903 hidden 1 updates 1");
+  s.hiz[0].cycle = 11;
+  CHECK(run<CoarseBench>(s, read) == "2:903 12:30 hidden 0 updates 1");
+  s.hiz[0].cycle = 10;
+  s.use_hiz = false;
+  CHECK(run<CoarseBench>(s, read) == "2:903 12:30 hidden 0 updates 1");
+}
+
+TEST_CASE("coarse_raster: with 'less' a triangle at the held depth is hidden, a nearer one is kept") {
+  const HiZToken update{0, 0, 0, 0.5f};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(1)}, {10, triangle(2)}}, .hiz = {{5, update}}};
+  CHECK(tiles(s) == "2:903 13:20");  // the hidden one costs a cycle
+}
+
+TEST_CASE("coarse_raster: an update never raises what Hi-Z holds, and one of another pass changes nothing") {
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(3)}}, .hiz = {{4, {0, 0, 0, 0.5f}}, {5, {0, 0, 0, 0.9f}}}};
+  CHECK(tiles(s) == "2:903");
+  s.hiz = {{4, {0, 0, 1, 0.5f}}};
+  CHECK(tiles(s) == "2:903 12:30");
+}
+
+TEST_CASE("coarse_raster: Hi-Z is not trusted after a draw that may have raised depths, until the pass ends") {
+  const HiZToken update{0, 0, 0, 0.5f};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(4, 1)}, {20, triangle(3, 2)}}, .hiz = {{5, update}}};
+  CHECK(tiles(s) == "2:903 12:40 22:30");  // both kept although they lie behind what Hi-Z was told
+  s.triangles[1].token.index = 3;          // the draw that only tests with "greater": it is kept, but leaves the trust
+  CHECK(tiles(s) == "2:903 12:40");
+  s.triangles = {{0, kBegin}, {10, triangle(4, 1)}, {15, kBegin}, {20, triangle(3, 2)}};
+  s.hiz = {{17, update}};
+  CHECK(tiles(s) == "2:903 12:40 17:903");
+}
+
+TEST_CASE("coarse_raster: a sync follows every eighth part of the triangle store") {
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(1)}, {0, triangle(2)}, {0, triangle(3)}, {0, triangle(1)}}, .store_slots = 16};
+  const auto text = run<CoarseBench>(s, [](const CoarseBench& b) {
+    std::string all = b.sink->text();
+    for (const auto& t : b.sink->got) {
+      if (t.token.kind == TokenKind::kSync) all += fmt::format(" before {}", t.token.triangle);
+    }
+    return all;
+  });
+  CHECK(text == "2:903 3:10 5:20 7:905 8:30 10:10 12:905 before 3 before 2");
+}
+
+TEST_CASE("coarse_raster: stops while tile_out is full but still takes Hi-Z updates") {
+  const HiZToken update{0, 0, 0, 0.6f};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(3)}}, .hiz = {{20, update}}, .pace = {.from = 100}, .out = {.depth = 1}};
+  const auto text = run<CoarseBench>(s, [](const CoarseBench& b) { return fmt::format("{} hidden {}", b.sink->text(), counter(b, 3)); });
+  CHECK(text == "100:903 102:0 104:1 hidden 1");
+}
+
+TEST_CASE("coarse_raster: keeps the contract, one-deep links included") {
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(1)}, {0, triangle(4, 1)}, {0, triangle(2, 2)}},
+                       .hiz = {{1, {0, 0, 0, 0.5f}}, {9, {1, 0, 0, 0.5f}}},
+                       .rate = 1,
+                       .pace = {.from = 0, .period = 3},
+                       .use_hiz = false,
+                       .store_slots = 16};
+  CHECK(contract_text<CoarseBench>(s) == "");
+}

@@ -1,0 +1,99 @@
+/// Fine rasteriser: cycles of a tile, empty tiles, boundaries, back-pressure.
+#include "hw/raster/fine_raster.h"
+#include "tests/hw/bench_stub.h"
+#include "tests/hw/raster/triangles.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille::hw;
+using namespace quadrille::hw::bench;
+
+namespace {
+
+TileToken tile(int x, int y, bool full = false, std::uint64_t triangle = 0) {
+  return {TokenKind::kWork, full, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0, triangle};
+}
+
+struct FineBench final : Bench {
+  struct Setup {
+    std::vector<Timed<TileToken>> tiles;
+    int rate = 4;
+    int partitions = 1;
+    Pace pace{};
+    LinkSpec out{.depth = 64};
+  };
+  FineBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), store(4) {
+    // Triangle 0 has its right angle at (0, 0) and legs of 32 pixels; 1 covers the pixels of one column of a tile.
+    store[0] = flat_triangle({glm::ivec2{0, 0}, {0, 32}, {32, 0}});
+    store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 8}, {1, 0}});
+    params.quads_per_clk.set(s.rate);
+    unit = std::make_unique<FineRaster>("unit", params, clock, store, s.partitions);
+    add(*unit);
+    feed(unit->tile_in, s.tiles);
+    for (auto& out : unit->coverage_out) {
+      sinks.push_back(&drain<CoverageToken>(*out, [](const CoverageToken& t) { return t.kind == TokenKind::kWork ? t.tile_x : 900u + static_cast<unsigned>(t.kind); },
+                                            s.pace, s.out));
+    }
+  }
+  FineRaster::Params params;
+  TriangleStore store;
+  std::unique_ptr<FineRaster> unit;
+  std::vector<StubSink<CoverageToken>*> sinks;
+};
+
+/// Visible to the unit at cycle 1, one after the other.
+FineBench::Setup tiles_of(std::vector<TileToken> tokens, int rate = 4) {
+  FineBench::Setup s;
+  for (const TileToken& t : tokens) s.tiles.push_back({0, t});
+  s.rate = rate;
+  return s;
+}
+
+std::uint64_t counter(const FineBench& b, std::size_t i) { return b.unit->stats()->counters()[i]->value(); }
+
+}  // namespace
+
+TEST_CASE("fine_raster: a tile keeps it for its covered quads divided by the rate, rounded up") {
+  for (const auto& [rate, cycles] : {std::pair{1, 16}, {3, 6}, {4, 4}, {16, 1}}) {
+    const auto text = run<FineBench>(tiles_of({tile(0, 0, true), tile(1, 0, true), tile(2, 0, true)}, rate), [](const FineBench& b) { return b.sinks[0]->text(); });
+    CHECK(text == fmt::format("2:0 {}:1 {}:2", 2 + cycles, 2 + 2 * cycles));
+  }
+}
+
+TEST_CASE("fine_raster: a tile with quads on its edge costs only those that are covered") {
+  // Tile (3, 0) lies under the hypotenuse from (24, 8) to (32, 0): pixels with x + y < 31, so quads in 4 + 3 + 2 + 1 = 10 places.
+  const auto text = run<FineBench>(tiles_of({tile(3, 0), tile(0, 0, true)}), [](const FineBench& b) {
+    return fmt::format("{} quads {} fragments {}", b.sinks[0]->text(), counter(b, 3) - 16, counter(b, 4) - 64);
+  });
+  CHECK(text == "2:3 5:0 quads 10 fragments 28");
+}
+
+TEST_CASE("fine_raster: an empty tile costs a cycle and goes no further") {
+  const auto text = run<FineBench>(tiles_of({tile(7, 7), tile(7, 6), tile(1, 0, true)}), [](const FineBench& b) {
+    return fmt::format("{} tiles {} empty {} full {}", b.sinks[0]->text(), counter(b, 0), counter(b, 1), counter(b, 2));
+  });
+  CHECK(text == "4:1 tiles 3 empty 2 full 1");
+}
+
+TEST_CASE("fine_raster: stops while coverage_out is full, and goes on the cycle its room comes back") {
+  auto setup = tiles_of({tile(0, 0, true), tile(1, 0, true), tile(2, 0, true), tile(3, 0, true)}, 16);
+  setup.out = {.depth = 2};
+  setup.pace = {.from = 50, .period = 10};
+  // Two tiles wait in the link; each pop gives room one cycle later, and the tile that takes it is there before the sink looks again.
+  const auto text = run<FineBench>(setup, [](const FineBench& b) { return fmt::format("{} blocked {}", b.sinks[0]->text(), b.unit->blocked_cycles()); });
+  CHECK(text == "50:0 60:1 70:2 80:3 blocked 57");  // 3..51 and 52..61
+}
+
+TEST_CASE("fine_raster: tiles go to the partition that owns them, boundaries to all in one cycle") {
+  FineBench::Setup setup = tiles_of({tile(0, 0, true), tile(1, 0, true), {TokenKind::kDrawEnd, false, 0, 0, 0, 0}, tile(0, 1, true), tile(1, 1, true)}, 16);
+  setup.partitions = 2;
+  const auto text = run<FineBench>(setup, [](const FineBench& b) { return b.sinks[0]->text() + " | " + b.sinks[1]->text(); });
+  CHECK(text == "2:0 4:902 5:0 | 3:1 4:902 6:1");
+}
+
+TEST_CASE("fine_raster: keeps the contract, one-deep links included") {
+  auto setup = tiles_of({tile(0, 0), tile(1, 0), tile(0, 0, false, 1), tile(7, 7), {TokenKind::kSync, false, 0, 0, 0, 1}, tile(2, 1), tile(1, 2)}, 2);
+  setup.partitions = 2;
+  setup.pace = {.from = 0, .period = 3};
+  CHECK(contract_text<FineBench>(setup) == "");
+}
