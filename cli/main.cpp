@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <system_error>
 
 #include "cli/command.h"
 #include "cli/process.h"
@@ -55,13 +57,16 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     if (!chosen) return fail(kUserError, "a subcommand is missing; see quadrille --help");
-    return chosen();
+    const int code = chosen();
+    return std::fflush(stdout) == 0 ? code : fail(kUserError, "standard output cannot be written");
   } catch (const CLI::Success& answered) {
     return app.exit(answered);  // --help and --version
   } catch (const CLI::ParseError& error) { return refuse(app, error); } catch (const UserError& error) {
     return fail(kUserError, error.what());
   } catch (const std::bad_alloc&) {
     return fail(kUserError, "out of memory; try a smaller --size, or a machine with less gpu.memory_mib");
+  } catch (const std::system_error& error) {
+    return fail(kUserError, error.what());  // standard output is full or gone
   } catch (const std::exception& error) { return fail(kInternalError, fmt::format("internal error: {}", error.what())); }
 }
 

@@ -67,7 +67,10 @@ int RenderJob::run() {
   check_outputs();
   hw::RunLimits limits;
   const hw::Clock clock(static_cast<std::int64_t>(config.gpu.clock_mhz * 1e6));
-  if (max_cycles) limits.max_time = clock.edge(parse_whole(*max_cycles, "--max-cycles", 1, kMaxCycles));
+  if (max_cycles) {
+    const std::int64_t cycles = parse_whole(*max_cycles, "--max-cycles", 1, kMaxCycles);
+    if (cycles < hw::kNever / (clock.period() + 1)) limits.max_time = clock.edge(cycles);  // beyond that it is later than time goes
+  }
 
   Progress progress;
   progress.show(fmt::format("loading {}", scene.scene));

@@ -72,3 +72,21 @@ TEST_CASE("kernel: both drivers equal the clocked simulator on the benchmark's m
     CHECK(contract::in_child([&] { return compare<NativeDriver>(spec, 7); }) == "");
   }
 }
+
+TEST_CASE("kernel: machines of more units than a word has marks equal the clocked simulator in any host order") {
+  WorldSpec spec;
+  const int merge = spec.add({.role = Role::kArbiter});
+  for (int lane = 0; lane < 4; ++lane) {
+    int last = spec.add({.role = Role::kSource, .jitter = 5, .count = 40});
+    for (int i = 0; i < 40; ++i) {
+      const int stage = spec.add({.role = i % 7 == 3 ? Role::kSerial : Role::kStage, .jitter = 1 + i % 3});
+      spec.wire({last, 0}, {stage, 0}, {.depth = 1 + i % 4});
+      last = stage;
+    }
+    spec.wire({last, 0}, {merge, lane}, {.depth = 2});
+  }
+  spec.wire({merge, 0}, {spec.add({.role = Role::kSink, .period = 2}), 0}, {.depth = 3});
+  REQUIRE(spec.units.size() > 128);
+  for (const std::uint64_t order : {0, 1, 2, 3}) CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, order); }) == "");
+  CHECK(contract::in_child([&] { return compare<NativeDriver>(spec, 1); }) == "");
+}

@@ -147,7 +147,10 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
     draw.count = static_cast<std::uint32_t>(vertices.size());
     if (random.integer(0, 1) == 0) {
       std::vector<std::uint16_t> indices;
-      for (std::uint32_t i = 0; i < draw.count; ++i) indices.push_back(static_cast<std::uint16_t>(random.integer(0, 4) == 0 ? random.integer(0, static_cast<int>(draw.count) - 1) : static_cast<int>(i)));
+      for (int i = 0; i < static_cast<int>(draw.count); ++i) {
+        const int index = random.integer(0, 4) == 0 ? random.integer(0, static_cast<int>(draw.count) - 1) : i;
+        indices.push_back(static_cast<std::uint16_t>(index));
+      }
       stream.buffers.push_back({"indices", bytes_of(indices.data(), indices.size() * 2)});
       stream.commands.push_back(traces::BindIndexBuffer{static_cast<traces::Index>(stream.buffers.size() - 1), 0, traces::IndexType::kUint16});
       draw.indexed = true;
