@@ -78,7 +78,8 @@ std::vector<ClientFigures> bandwidth(const Machine& m) {
 
 class Laws {
  public:
-  Laws(const Machine& m, const DeviceFrame& frame, const std::vector<ClientFigures>& clients) : m_(m), frame_(frame), clients_(clients), sum_(m) {}
+  Laws(const Machine& m, const DeviceFrame& frame, const std::vector<ClientFigures>& clients)
+      : m_(m), frame_(frame), clients_(clients), sum_(m) {}
 
   std::vector<Check> all() {
     geometry();
@@ -100,50 +101,64 @@ class Laws {
     const hw::Unit& clipper = m_.clipper();
     const hw::Unit& setup = m_.setup();
     law("draws issued = draws of the frame", "command_processor.draws", value(command, "draws"), "frame.draws", frame_.frame.draws.size());
-    law("draws issued = draws retired", "command_processor.draws * partitions", value(command, "draws") * m_.partitions().size(), "rop.draws", sum_.rop("draws"));
+    law("draws issued = draws retired", "command_processor.draws * partitions", value(command, "draws") * m_.partitions().size(),
+        "rop.draws", sum_.rop("draws"));
     law("vertices fetched = vertices shaded", "vertex_fetch.vertices", value(fetch, "vertices"), "core.vertices", sum_.core("vertices"));
-    law("vertices shaded = vertices assembled", "core.vertices", sum_.core("vertices"), "primitive_assembly.vertices", value(assembly, "vertices"));
+    law("vertices shaded = vertices assembled", "core.vertices", sum_.core("vertices"), "primitive_assembly.vertices",
+        value(assembly, "vertices"));
     law("triangles fetched = triangles assembled", "vertex_fetch.triangles", value(fetch, "triangles"), "primitive_assembly.triangles",
         value(assembly, "triangles"));
     law("triangles assembled = triangles to clip", "primitive_assembly.triangles", value(assembly, "triangles"), "clipper.triangles",
         value(clipper, "triangles"));
-    law("triangles to clip = passed + cut + dropped", "clipper.triangles", value(clipper, "triangles"), "clipper.passed + clipped + rejected + not_finite",
+    law("triangles to clip = passed + cut + dropped", "clipper.triangles", value(clipper, "triangles"),
+        "clipper.passed + clipped + rejected + not_finite",
         value(clipper, "passed") + value(clipper, "clipped") + value(clipper, "rejected") + value(clipper, "not_finite"));
     law("triangles and pieces passed = triangles set up", "clipper.passed + pieces", value(clipper, "passed") + value(clipper, "pieces"),
         "triangle_setup.triangles", value(setup, "triangles"));
     law("triangles set up = kept + dropped", "triangle_setup.triangles", value(setup, "triangles"),
         "triangle_setup.kept + culled + zero_area + offscreen + no_sample",
         value(setup, "kept") + value(setup, "culled") + value(setup, "zero_area") + value(setup, "offscreen") + value(setup, "no_sample"));
-    law("triangles kept = triangles walked", "triangle_setup.kept", value(setup, "kept"), "coarse_raster.triangles", value(m_.coarse(), "triangles"));
-    law("tiles kept = tiles rasterised", "coarse_raster.tiles_kept", value(m_.coarse(), "tiles_kept"), "fine_raster.tiles", value(m_.fine(), "tiles"));
+    law("triangles kept = triangles walked", "triangle_setup.kept", value(setup, "kept"), "coarse_raster.triangles",
+        value(m_.coarse(), "triangles"));
+    law("tiles kept = tiles rasterised", "coarse_raster.tiles_kept", value(m_.coarse(), "tiles_kept"), "fine_raster.tiles",
+        value(m_.fine(), "tiles"));
   }
 
   void fragments() {
-    law("fragments covered = fragments to test", "fine_raster.fragments", value(m_.fine(), "fragments"), "depth.fragments_in", sum_.depth("fragments_in"));
+    law("fragments covered = fragments to test", "fine_raster.fragments", value(m_.fine(), "fragments"), "depth.fragments_in",
+        sum_.depth("fragments_in"));
     law("fragments to test = killed + passed", "depth.fragments_in", sum_.depth("fragments_in"), "depth.early_killed + fragments_out",
         sum_.depth("early_killed") + sum_.depth("fragments_out"));
-    law("fragments passed = fragments packed", "depth.fragments_out", sum_.depth("fragments_out"), "warp_packer.fragments", sum_.packer("fragments"));
+    law("fragments passed = fragments packed", "depth.fragments_out", sum_.depth("fragments_out"), "warp_packer.fragments",
+        sum_.packer("fragments"));
     law("fragments packed = fragments shaded", "warp_packer.fragments", sum_.packer("fragments"), "core.fragments", sum_.core("fragments"));
     law("warps packed = warps distributed", "warp_packer.warps", sum_.packer("warps"), "work_distributor.fragment_warps",
         value(m_.distributor(), "fragment_warps"));
-    law("warps distributed = warps retired", "work_distributor.fragment_warps", value(m_.distributor(), "fragment_warps"), "rop.warps", sum_.rop("warps"));
+    law("warps distributed = warps retired", "work_distributor.fragment_warps", value(m_.distributor(), "fragment_warps"), "rop.warps",
+        sum_.rop("warps"));
     law("fragments shaded = fragments at the ROP", "core.fragments", sum_.core("fragments"), "rop.fragments_in", sum_.rop("fragments_in"));
-    law("fragments at the ROP = discarded + killed late + written", "rop.fragments_in", sum_.rop("fragments_in"), "rop.discarded + late_killed + written",
-        sum_.rop("discarded") + sum_.rop("late_killed") + sum_.rop("written"));
-    law("killed late, seen by ROP = seen by depth", "rop.late_killed", sum_.rop("late_killed"), "depth.late_killed", sum_.depth("late_killed"));
+    law("fragments at the ROP = discarded + killed late + written", "rop.fragments_in", sum_.rop("fragments_in"),
+        "rop.discarded + late_killed + written", sum_.rop("discarded") + sum_.rop("late_killed") + sum_.rop("written"));
+    law("killed late, seen by ROP = seen by depth", "rop.late_killed", sum_.rop("late_killed"), "depth.late_killed",
+        sum_.depth("late_killed"));
   }
 
   void cache(const std::string& path, std::uint64_t requests, std::uint64_t hits, std::uint64_t merged, std::uint64_t misses) {
-    law(path + ": requests = hits + merged + misses", path + ".requests", requests, path + ".hits + merged + misses", hits + merged + misses);
+    law(path + ": requests = hits + merged + misses", path + ".requests", requests, path + ".hits + merged + misses",
+        hits + merged + misses);
   }
 
   void caches() {
     const hw::Unit& fetch = m_.vertex_fetch();
-    cache("vertex_fetch.cache", value(fetch, "cache_requests"), value(fetch, "cache_hits"), value(fetch, "cache_merged"), value(fetch, "cache_misses"));
+    cache("vertex_fetch.cache", value(fetch, "cache_requests"), value(fetch, "cache_hits"), value(fetch, "cache_merged"),
+          value(fetch, "cache_misses"));
     if (m_.cores()[0].texture) {
-      law("texture requests sent = answered", "core.texture_instructions", sum_.core("texture_instructions"), "texture.requests", sum_.texture("requests"));
-      law("texture groups taken = answered", "texture.groups", sum_.texture("groups"), "texture.groups_answered", sum_.texture("groups_answered"));
-      cache("texture.cache", sum_.texture("cache_requests"), sum_.texture("cache_hits"), sum_.texture("cache_merged"), sum_.texture("cache_misses"));
+      law("texture requests sent = answered", "core.texture_instructions", sum_.core("texture_instructions"), "texture.requests",
+          sum_.texture("requests"));
+      law("texture groups taken = answered", "texture.groups", sum_.texture("groups"), "texture.groups_answered",
+          sum_.texture("groups_answered"));
+      cache("texture.cache", sum_.texture("cache_requests"), sum_.texture("cache_hits"), sum_.texture("cache_merged"),
+            sum_.texture("cache_misses"));
     }
     cache("depth.cache", sum_.depth("cache_requests"), sum_.depth("cache_hits"), sum_.depth("cache_merged"), sum_.depth("cache_misses"));
     cache("rop.cache", sum_.rop("cache_requests"), sum_.rop("cache_hits"), sum_.rop("cache_merged"), sum_.rop("cache_misses"));
@@ -160,10 +175,12 @@ class Laws {
       return value(m_.vertex_fetch(), n) + sum_.texture(n) + sum_.depth(n) + sum_.rop(n) + value(m_.scan_out(), n);
     };
     asked = requests("memory_reads") + requests("memory_writes");
-    law("requests of clients = requests looked up in L2", "clients.memory_reads + memory_writes", asked, "l2.requests", sum_.l2("requests"));
+    law("requests of clients = requests looked up in L2", "clients.memory_reads + memory_writes", asked, "l2.requests",
+        sum_.l2("requests"));
     law("bytes asked by clients = bytes answered by L2", "clients.read_bytes", read, "l2.read_bytes", sum_.l2("read_bytes"));
     law("bytes written by clients = bytes taken by L2", "clients.write_bytes", written, "l2.write_bytes", sum_.l2("write_bytes"));
-    law("bytes filled into L2 = bytes read from memory", "l2.fill_bytes", sum_.l2("fill_bytes"), "memory.read_bytes", sum_.memory("read_bytes"));
+    law("bytes filled into L2 = bytes read from memory", "l2.fill_bytes", sum_.l2("fill_bytes"), "memory.read_bytes",
+        sum_.memory("read_bytes"));
     law("bytes written back by L2 = bytes written to memory", "l2.writeback_bytes", sum_.l2("writeback_bytes"), "memory.write_bytes",
         sum_.memory("write_bytes"));
     if (!frame_.frame.passes.empty()) {

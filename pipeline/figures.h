@@ -23,8 +23,8 @@ struct WaitFigure {
 
 struct UnitFigures {
   std::string path;
-  std::int64_t cycles = 0, busy = 0, starved = 0, blocked = 0, idle = 0;   ///< of the unit's clock; the last four add up to the first
-  std::vector<WaitFigure> waits;                                           ///< longest first, ports that cost nothing left out
+  std::int64_t cycles = 0, busy = 0, starved = 0, blocked = 0, idle = 0;  ///< of the unit's clock; the last four add up to the first
+  std::vector<WaitFigure> waits;                                          ///< longest first, ports that cost nothing left out
   std::vector<CounterFigure> counters;
 };
 
@@ -42,18 +42,18 @@ struct Check {
 };
 
 struct FrameFigures {
-  std::int64_t cycles = 0;             ///< of the GPU clock, from the first command to the last pixel read by scan-out
-  std::int64_t render_cycles = 0;      ///< until the last pass was flushed
+  std::int64_t cycles = 0;         ///< of the GPU clock, from the first command to the last pixel read by scan-out
+  std::int64_t render_cycles = 0;  ///< until the last pass was flushed
   double clock_mhz = 0;
   std::uint64_t draws = 0, triangles = 0, vertices = 0;
-  std::uint64_t fragments_covered = 0;   ///< before any depth test; what Hi-Z dropped is not among them
-  std::uint64_t fragments_shaded = 0;    ///< live lanes
+  std::uint64_t fragments_covered = 0;  ///< before any depth test; what Hi-Z dropped is not among them
+  std::uint64_t fragments_shaded = 0;   ///< live lanes
   std::uint64_t helper_lanes = 0, fragment_warps = 0, fragments_written = 0;
 };
 
 struct HostFigures {
   double load_s = 0, build_s = 0, simulate_s = 0, wall_s = 0;
-  double simulate_cpu_s = 0;   ///< processor time of the simulation: what `simulate_s` is on a machine with nothing else to do
+  double simulate_cpu_s = 0;  ///< processor time of the simulation: what `simulate_s` is on a machine with nothing else to do
   double fragments_per_s = 0, cycles_per_s = 0, peak_rss_mib = 0;
   std::uint64_t actions = 0;
 };

@@ -53,7 +53,8 @@ class FrameBuilder {
     const auto add = [&bytes](std::uint64_t size) { bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes; };
     for (const traces::Buffer& b : stream_.buffers) add(std::max<std::size_t>(1, b.data.size()));
     for (const traces::Image& i : stream_.images) add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
-    for (const traces::RenderTarget& t : stream_.targets) add(std::uint64_t{2} * models::kTileBytes * ((t.width + 7) / 8) * ((t.height + 7) / 8));
+    for (const traces::RenderTarget& t : stream_.targets)
+      add(std::uint64_t{2} * models::kTileBytes * ((t.width + 7) / 8) * ((t.height + 7) / 8));
     out_.memory.reserve(bytes);
   }
 
@@ -81,7 +82,8 @@ class FrameBuilder {
       pass.depth = models::allocate_surface(out_.memory, pass.color.width, pass.color.height);
       out_.surface_bytes += pass.depth.bytes();
     } else if (target_has_depth_) {
-      out_.left_out.push_back({"depth surface", "no draw of the pass tests depth", fmt::format("{} bytes of device memory", pass.color.bytes())});
+      out_.left_out.push_back(
+          {"depth surface", "no draw of the pass tests depth", fmt::format("{} bytes of device memory", pass.color.bytes())});
     }
   }
   void apply(const traces::BindPipeline& c) { pipeline_ = c.pipeline; }
@@ -175,7 +177,8 @@ class FrameBuilder {
     for (const models::VertexInputUse& use : uses) {
       const bool given = std::ranges::any_of(pipeline.attributes, [&](const auto& a) { return a.location == use.location; });
       if (!given) {
-        throw user_error("{}: reads vertex input location {}, which pipeline '{}' does not supply", draw.vertex_program->name, use.location, pipeline.name);
+        throw user_error("{}: reads vertex input location {}, which pipeline '{}' does not supply", draw.vertex_program->name, use.location,
+                         pipeline.name);
       }
     }
   }
@@ -186,7 +189,11 @@ class FrameBuilder {
     const int bits = out_.frame.precision.subpixel_bits;
     draw.viewport = viewport_;
     draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
-    draw.setup = {static_cast<models::CullMode>(pipeline.cull), static_cast<models::FrontFace>(pipeline.front), rect, bits, viewport_.min_depth,
+    draw.setup = {static_cast<models::CullMode>(pipeline.cull),
+                  static_cast<models::FrontFace>(pipeline.front),
+                  rect,
+                  bits,
+                  viewport_.min_depth,
                   viewport_.max_depth};
     draw.depth_test = pipeline.depth.test && target_has_depth_;
     draw.depth_write = draw.depth_test && pipeline.depth.write;
@@ -223,8 +230,8 @@ class FrameBuilder {
     return words;
   }
 
-  static void copy_words(std::span<const std::byte> from, const models::ConstantLayout::Range& range, std::uint32_t* to, const models::Program& program,
-                         const std::string& what) {
+  static void copy_words(std::span<const std::byte> from, const models::ConstantLayout::Range& range, std::uint32_t* to,
+                         const models::Program& program, const std::string& what) {
     const std::uint64_t end = range.byte_offset + std::uint64_t{4} * range.words;
     if (end > from.size()) throw user_error("{}: reads {} bytes of {}, which holds {}", program.name, end, what, from.size());
     std::memcpy(to, from.data() + range.byte_offset, std::size_t{4} * range.words);
@@ -264,7 +271,8 @@ class FrameBuilder {
     std::optional<models::TextureView>& place = images_[index];
     if (!place) {
       const traces::Image& image = stream_.images[index];
-      place = models::upload_texture(out_.memory, static_cast<models::TexelFormat>(image.format), image.width, image.height, image.levels, image.texels);
+      place = models::upload_texture(out_.memory, static_cast<models::TexelFormat>(image.format), image.width, image.height, image.levels,
+                                     image.texels);
       out_.texture_bytes += place->layout.bytes;
     }
     return *place;
@@ -281,7 +289,8 @@ class FrameBuilder {
       image_bytes += stream_.images[i].texels.size();
     }
     note(images > 0, "textures", "no program of a draw reads them", fmt::format("{} textures, {} bytes", images, image_bytes));
-    note(unread_attributes_ > 0, "vertex attributes", "the vertex program does not read them", fmt::format("{} attributes of draws", unread_attributes_));
+    note(unread_attributes_ > 0, "vertex attributes", "the vertex program does not read them",
+         fmt::format("{} attributes of draws", unread_attributes_));
   }
 
   const traces::CommandStream& stream_;
@@ -303,7 +312,8 @@ class FrameBuilder {
 }  // namespace
 
 bool DeviceFrame::reads_textures() const {
-  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return !d.vertex_textures.empty() || !d.fragment_textures.empty(); });
+  return std::ranges::any_of(frame.draws,
+                             [](const hw::DrawState& d) { return !d.vertex_textures.empty() || !d.fragment_textures.empty(); });
 }
 bool DeviceFrame::tests_depth() const {
   return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return d.depth_test; });

@@ -19,8 +19,8 @@ using hw::DrawState;
 using hw::WarpSlot;
 
 /// Runs a warp to its end, filtering its textures as it asks for them.
-void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures, const models::Precision& precision, const models::DeviceMemory& memory,
-              models::TexturePlan& plan) {
+void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures, const models::Precision& precision,
+              const models::DeviceMemory& memory, models::TexturePlan& plan) {
   std::array<models::LaneFloats, 4> rgba;
   while (models::run_clause(warp).end == models::ClauseEnd::kTextures) {
     for (int i = 0; i < warp.texture_count; ++i) {
@@ -64,7 +64,8 @@ class FunctionalRenderer {
   std::uint32_t vertex_number(std::uint32_t position) const {
     if (!draw_->indexed) return draw_->first_vertex + position;
     std::uint32_t index = 0;
-    std::memcpy(&index, memory_.read(draw_->index_address + std::uint64_t{position} * draw_->index_bytes, draw_->index_bytes).data(), draw_->index_bytes);
+    std::memcpy(&index, memory_.read(draw_->index_address + std::uint64_t{position} * draw_->index_bytes, draw_->index_bytes).data(),
+                draw_->index_bytes);
     return index + static_cast<std::uint32_t>(draw_->vertex_offset);
   }
 
@@ -98,7 +99,8 @@ class FunctionalRenderer {
       for (const hw::AttributeFetch& f : draw_->attributes) {
         const std::uint32_t element = f.per_instance ? draw_->first_instance + instance_ : reuse.index(lane);
         float value[4];
-        models::decode_attribute(f.format, memory_.read(f.address + std::uint64_t{element} * f.stride, models::attribute_bytes(f.format)).data(), value);
+        models::decode_attribute(
+            f.format, memory_.read(f.address + std::uint64_t{element} * f.stride, models::attribute_bytes(f.format)).data(), value);
         for (std::size_t c = 0; c < 4; ++c) {
           if (f.input_row[c] >= 0) batch_.attributes[static_cast<std::size_t>(f.input_row[c])][l] = std::bit_cast<std::uint32_t>(value[c]);
         }
@@ -159,7 +161,8 @@ class FunctionalRenderer {
       std::uint64_t coverage = tile.fully_covered ? ~std::uint64_t{0} : models::tile_coverage(setup, tile.tile_x, tile.tile_y);
       counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
       if (draw_->depth_test && !draw_->late_depth) coverage = test_tile(setup, tile, coverage);
-      for (std::uint32_t quads = models::quads_of(coverage); quads != 0; quads &= quads - 1) add_quad(tile, coverage, std::countr_zero(quads));
+      for (std::uint32_t quads = models::quads_of(coverage); quads != 0; quads &= quads - 1)
+        add_quad(tile, coverage, std::countr_zero(quads));
     }
   }
 
@@ -182,7 +185,7 @@ class FunctionalRenderer {
     const auto lanes = static_cast<std::uint32_t>(coverage >> (4 * q)) & 0xfu;
     warp_.covered |= lanes << (4 * warp_.quads);
     warp_.quad[static_cast<std::size_t>(warp_.quads++)] = {sequence_, static_cast<std::uint16_t>(8 * tile.tile_x + 2 * (q & 3)),
-                                                          static_cast<std::uint16_t>(8 * tile.tile_y + 2 * (q >> 2))};
+                                                           static_cast<std::uint16_t>(8 * tile.tile_y + 2 * (q >> 2))};
   }
 
   void shade() {
@@ -191,7 +194,8 @@ class FunctionalRenderer {
     counts_.fragments_shaded += live;
     counts_.helper_lanes += 4 * static_cast<std::uint64_t>(warp_.quads) - live;
     hw::fill_fragment_inputs(warp_, triangles_, inputs_);
-    const models::LaneMask lanes = warp_.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * warp_.quads)) - 1;
+    const models::LaneMask lanes =
+        warp_.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * warp_.quads)) - 1;
     engine_.vertex = nullptr;
     engine_.fragment = &inputs_;
     engine_.outputs = outputs_.data();
@@ -215,7 +219,8 @@ class FunctionalRenderer {
     for (std::size_t c = 0; c < 4; ++c) {
       for (std::size_t i = 0; i < 4; ++i) rgba[c][i] = std::bit_cast<float>(outputs_[c][static_cast<std::size_t>(4 * q) + i]);
     }
-    auto* const tile = reinterpret_cast<std::uint32_t*>(memory_.write(pass_->color.tile_address(quad.x / 8u, quad.y / 8u), models::kTileBytes).data());
+    auto* const tile =
+        reinterpret_cast<std::uint32_t*>(memory_.write(pass_->color.tile_address(quad.x / 8u, quad.y / 8u), models::kTileBytes).data());
     models::blend_quad(draw_->blend, pass_->color_format, rgba, tile + 4 * place, lanes);
   }
 

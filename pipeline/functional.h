@@ -2,8 +2,8 @@
 /// timed run must equal, bit for bit.
 #pragma once
 
-#include "models/memory/device_memory.h"
 #include "hw/frame/frame.h"
+#include "models/memory/device_memory.h"
 
 #include <cstdint>
 #include <functional>

@@ -24,7 +24,11 @@ std::unique_ptr<hw::Driver> make_driver(const MachineOptions& options) {
 }  // namespace
 
 Machine::Machine(const MachineConfig& config, DeviceFrame& frame, const MachineOptions& options)
-    : config_(config), frame_(frame), clock_(clock_of(config.gpu.clock_mhz)), memory_clock_(clock_of(config.gpu.memory_mhz)), left_out_(frame.left_out) {
+    : config_(config),
+      frame_(frame),
+      clock_(clock_of(config.gpu.clock_mhz)),
+      memory_clock_(clock_of(config.gpu.memory_mhz)),
+      left_out_(frame.left_out) {
   config.check();
   check_registers();
   if (options.external_driver == nullptr) own_driver_ = make_driver(options);
@@ -46,8 +50,9 @@ void Machine::check_registers() const {
     fragment = std::max(fragment, draw.fragment_program->num_regs);
   }
   if (vertex + fragment > config_.core.register_rows) {
-    throw user_error("machine: core.register_rows ({}) cannot hold one vertex warp ({} registers) and one fragment warp ({}); at least {} are needed",
-                     config_.core.register_rows.value(), vertex, fragment, vertex + fragment);
+    throw user_error(
+        "machine: core.register_rows ({}) cannot hold one vertex warp ({} registers) and one fragment warp ({}); at least {} are needed",
+        config_.core.register_rows.value(), vertex, fragment, vertex + fragment);
   }
 }
 
@@ -56,7 +61,8 @@ void Machine::create_units(const MachineOptions& options) {
   models::DeviceMemory& memory = frame_.memory;
   const int cores = config_.gpu.cores, partitions = config_.gpu.partitions, channels = config_.gpu.channels;
   const bool textured = frame_.reads_textures() || !options.leave_out;
-  if (!textured) left_out_.push_back({"texture units", "no program of a draw reads a texture", fmt::format("{} units and their caches", cores)});
+  if (!textured)
+    left_out_.push_back({"texture units", "no program of a draw reads a texture", fmt::format("{} units and their caches", cores)});
   if (!frame_.blends()) left_out_.push_back({"blending", "no draw combines with the old colour", "reading colours back"});
   clients_ = 1 + (textured ? cores : 0) + 2 * partitions + 1;
   partitions_.resize(static_cast<std::size_t>(partitions));
@@ -85,47 +91,53 @@ void Machine::create_units(const MachineOptions& options) {
   make(assembly_, [&, cores] { return std::make_unique<hw::PrimitiveAssembly>("primitive_assembly", clock_, *batches_, cores); });
   make(clipper_, [&] { return std::make_unique<hw::Clipper>("clipper", config_.clipper, clock_, frame, *batches_, *pieces_); });
   make(setup_, [&, partitions] {
-    return std::make_unique<hw::TriangleSetupUnit>("triangle_setup", config_.triangle_setup, clock_, frame, *batches_, *pieces_, *triangles_, partitions);
+    return std::make_unique<hw::TriangleSetupUnit>("triangle_setup", config_.triangle_setup, clock_, frame, *batches_, *pieces_,
+                                                   *triangles_, partitions);
   });
   make(coarse_, [&, partitions] {
     return std::make_unique<hw::CoarseRaster>("coarse_raster", config_.coarse_raster, clock_, frame, *triangles_, partitions);
   });
-  make(fine_, [&, partitions] { return std::make_unique<hw::FineRaster>("fine_raster", config_.fine_raster, clock_, *triangles_, partitions); });
-  make(distributor_, [&, partitions, cores] { return std::make_unique<hw::WorkDistributor>("work_distributor", clock_, partitions, cores); });
+  make(fine_,
+       [&, partitions] { return std::make_unique<hw::FineRaster>("fine_raster", config_.fine_raster, clock_, *triangles_, partitions); });
+  make(distributor_,
+       [&, partitions, cores] { return std::make_unique<hw::WorkDistributor>("work_distributor", clock_, partitions, cores); });
   make(scan_out_, [&, channels] { return std::make_unique<hw::ScanOut>("scan_out", config_.scan_out, clock_, frame, memory, channels); });
   for (int p = 0; p < partitions; ++p) {
     Partition& part = partitions_[static_cast<std::size_t>(p)];
     const auto depth_owner = static_cast<models::DeviceMemory::Owner>(1 + 2 * p);
     const auto color_owner = static_cast<models::DeviceMemory::Owner>(2 + 2 * p);
     make(part.depth, [&, p, depth_owner, partitions, channels] {
-      return std::make_unique<hw::DepthUnit>(fmt::format("depth_{}", p).c_str(), config_.depth, clock_, frame, memory, depth_owner, *triangles_, *part.warps,
-                                             p, partitions, channels);
+      return std::make_unique<hw::DepthUnit>(fmt::format("depth_{}", p).c_str(), config_.depth, clock_, frame, memory, depth_owner,
+                                             *triangles_, *part.warps, p, partitions, channels);
     });
-    make(part.packer,
-         [&, p] { return std::make_unique<hw::WarpPacker>(fmt::format("warp_packer_{}", p).c_str(), config_.warp_packer, clock_, *part.warps, p); });
+    make(part.packer, [&, p] {
+      return std::make_unique<hw::WarpPacker>(fmt::format("warp_packer_{}", p).c_str(), config_.warp_packer, clock_, *part.warps, p);
+    });
     make(part.rop, [&, p, color_owner, partitions, cores, channels] {
-      return std::make_unique<hw::Rop>(fmt::format("rop_{}", p).c_str(), config_.rop, clock_, frame, memory, color_owner, *part.warps, p, partitions, cores,
-                                       channels);
+      return std::make_unique<hw::Rop>(fmt::format("rop_{}", p).c_str(), config_.rop, clock_, frame, memory, color_owner, *part.warps, p,
+                                       partitions, cores, channels);
     });
   }
   for (int c = 0; c < cores; ++c) {
     Core& core = cores_[static_cast<std::size_t>(c)];
     core.slots = std::make_unique<hw::Store<hw::CoreSlot>>(static_cast<std::size_t>(config_.core.warp_slots.value()));
     make(core.core, [&, c, textured, warp_stores] {
-      return std::make_unique<hw::ShaderCore>(fmt::format("core_{}", c).c_str(), config_.core, clock_, frame, *core.slots, *batches_, warp_stores, *triangles_,
-                                              textured);
+      return std::make_unique<hw::ShaderCore>(fmt::format("core_{}", c).c_str(), config_.core, clock_, frame, *core.slots, *batches_,
+                                              warp_stores, *triangles_, textured);
     });
     if (textured) {
       make(core.texture, [&, c, channels] {
-        return std::make_unique<hw::TextureUnit>(fmt::format("texture_{}", c).c_str(), config_.texture, clock_, frame, memory, *core.slots, channels);
+        return std::make_unique<hw::TextureUnit>(fmt::format("texture_{}", c).c_str(), config_.texture, clock_, frame, memory, *core.slots,
+                                                 channels);
       });
     }
   }
   for (int i = 0; i < channels; ++i) {
     const auto k = static_cast<std::size_t>(i);
     make(slices_[k], [&, i] { return std::make_unique<hw::L2Slice>(fmt::format("l2_{}", i).c_str(), config_.l2, clock_, clients_); });
-    make(channels_[k],
-         [&, i, channels] { return std::make_unique<hw::MemoryChannel>(fmt::format("memory_{}", i).c_str(), config_.memory, memory_clock_, channels); });
+    make(channels_[k], [&, i, channels] {
+      return std::make_unique<hw::MemoryChannel>(fmt::format("memory_{}", i).c_str(), config_.memory, memory_clock_, channels);
+    });
   }
   if (options.module_order != 0) std::shuffle(makers.begin(), makers.end(), std::mt19937_64(options.module_order));
   for (const auto& maker : makers) driver_->add(*maker());
@@ -183,10 +195,12 @@ void Machine::wire_core(std::size_t c) {
   Core& core = cores_[c];
   const auto name = [c](const char* link) { return fmt::format("{}_{}", link, c); };
   connect<hw::WarpToken>(*distributor_->vertex_out[c], core.core->vertex_in, l.distributor_to_core, name("distributor_to_core_vertex"));
-  connect<hw::WarpToken>(*distributor_->fragment_out[c], core.core->fragment_in, l.distributor_to_core, name("distributor_to_core_fragment"));
+  connect<hw::WarpToken>(*distributor_->fragment_out[c], core.core->fragment_in, l.distributor_to_core,
+                         name("distributor_to_core_fragment"));
   connect<hw::VertexDoneToken>(core.core->vertex_out, *assembly_->done_in[c], l.core_to_assembly, name("core_to_assembly"));
   for (std::size_t p = 0; p < partitions_.size(); ++p) {
-    connect<hw::FragmentDoneToken>(*core.core->fragment_out[p], *partitions_[p].rop->done_in[c], l.core_to_rop, fmt::format("core_to_rop_{}_{}", c, p));
+    connect<hw::FragmentDoneToken>(*core.core->fragment_out[p], *partitions_[p].rop->done_in[c], l.core_to_rop,
+                                   fmt::format("core_to_rop_{}_{}", c, p));
   }
   if (!core.texture) return;
   connect<hw::TextureToken>(*core.core->texture_out, core.texture->request_in, l.core_to_texture, name("core_to_texture"));
@@ -196,7 +210,8 @@ void Machine::wire_core(std::size_t c) {
 void Machine::attach_client(const hw::Unit& client_unit, hw::MemoryPort& port) {
   const auto client = static_cast<std::size_t>(next_client_++);
   for (std::size_t i = 0; i < slices_.size(); ++i) {
-    connect<hw::MemoryRequest>(*port.request_out[i], *slices_[i]->request_in[client], config_.link.client_to_l2, fmt::format("{}_to_l2_{}", client_unit.name(), i));
+    connect<hw::MemoryRequest>(*port.request_out[i], *slices_[i]->request_in[client], config_.link.client_to_l2,
+                               fmt::format("{}_to_l2_{}", client_unit.name(), i));
     connect<hw::MemoryResponse>(*slices_[i]->response_out[client], *port.response_in[i], config_.link.l2_to_client,
                                 fmt::format("l2_{}_to_{}", i, client_unit.name()));
   }
@@ -213,8 +228,10 @@ void Machine::wire_memory() {
   }
   attach_client(*scan_out_, scan_out_->memory_port());
   for (std::size_t i = 0; i < slices_.size(); ++i) {
-    connect<hw::MemoryRequest>(slices_[i]->memory_out, channels_[i]->request_in, config_.link.l2_to_memory, fmt::format("l2_to_memory_{}", i));
-    connect<hw::MemoryResponse>(channels_[i]->response_out, slices_[i]->fill_in, config_.link.memory_to_l2, fmt::format("memory_to_l2_{}", i));
+    connect<hw::MemoryRequest>(slices_[i]->memory_out, channels_[i]->request_in, config_.link.l2_to_memory,
+                               fmt::format("l2_to_memory_{}", i));
+    connect<hw::MemoryResponse>(channels_[i]->response_out, slices_[i]->fill_in, config_.link.memory_to_l2,
+                                fmt::format("memory_to_l2_{}", i));
   }
 }
 

@@ -15,10 +15,10 @@ enum class DriverKind : std::uint8_t { kDispatcher, kNative };
 
 struct MachineOptions {
   DriverKind driver = DriverKind::kDispatcher;
-  hw::Tick window = 0;                 ///< extra look-ahead of the dispatcher; 0 is exact
-  std::uint64_t module_order = 0;      ///< seed: in which order modules are created and handed to the driver; figures must not depend on it
-  bool leave_out = true;               ///< do not build what the frame does not need
-  hw::Driver* external_driver = nullptr;   ///< add the units to this driver instead of an own one; its owner runs it
+  hw::Tick window = 0;             ///< extra look-ahead of the dispatcher; 0 is exact
+  std::uint64_t module_order = 0;  ///< seed: in which order modules are created and handed to the driver; figures must not depend on it
+  bool leave_out = true;           ///< do not build what the frame does not need
+  hw::Driver* external_driver = nullptr;  ///< add the units to this driver instead of an own one; its owner runs it
 };
 
 class Machine {
@@ -39,7 +39,7 @@ class Machine {
   };
   struct Core {
     std::unique_ptr<hw::ShaderCore> core;
-    std::unique_ptr<hw::TextureUnit> texture;   ///< null when left out
+    std::unique_ptr<hw::TextureUnit> texture;  ///< null when left out
     std::unique_ptr<hw::Store<hw::CoreSlot>> slots;
   };
   [[nodiscard]] const std::vector<hw::Unit*>& units() const { return driver_->units(); }

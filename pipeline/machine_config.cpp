@@ -71,9 +71,7 @@ void MachineConfig::set(std::string_view key, std::string_view value, std::strin
   }
   try {
     param->parse(value);
-  } catch (const UserError& e) {
-    throw user_error("{}: {}: {}", where, key, e.what());
-  }
+  } catch (const UserError& e) { throw user_error("{}: {}: {}", where, key, e.what()); }
 }
 
 void MachineConfig::check() const {

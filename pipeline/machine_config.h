@@ -31,15 +31,19 @@ namespace quadrille::pipeline {
 /// The whole: how many of each unit, clocks, widths.
 struct GpuParams : hw::ParamGroup {
   hw::Param<int> cores{*this, "cores", 4, "core", {1, 64}, "Shader cores, each with a texture unit. [G: a small integrated GPU]"};
-  hw::Param<int> partitions{*this, "partitions", 2, "partition", {1, 64}, "Screen partitions, each with a depth unit, a warp packer and a ROP. [G]"};
+  hw::Param<int> partitions{*this,       "partitions", 2,
+                            "partition", {1, 64},      "Screen partitions, each with a depth unit, a warp packer and a ROP. [G]"};
   hw::Param<int> channels{*this, "channels", 2, "channel", {1, 64}, "Memory channels, each with an L2 slice. [G]"};
   hw::Param<double> clock_mhz{*this, "clock_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of everything but the memory channels. [G]"};
   hw::Param<double> memory_mhz{*this, "memory_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of the memory channels. [G]"};
   hw::Param<int> memory_mib{*this, "memory_mib", 4096, "MiB", {1, 16384}, "Device memory. [G]"};
-  hw::Param<int> subpixel_bits{*this, "subpixel_bits", 8, "bit", {4, 12}, "Fractional bits of window positions. [VK1.3 limit subPixelPrecisionBits]"};
-  hw::Param<int> subtexel_bits{*this, "subtexel_bits", 8, "bit", {1, 8}, "Fractional bits of texture coordinates. [VK1.3 limit subTexelPrecisionBits]"};
+  hw::Param<int> subpixel_bits{*this, "subpixel_bits", 8,
+                               "bit", {4, 12},         "Fractional bits of window positions. [VK1.3 limit subPixelPrecisionBits]"};
+  hw::Param<int> subtexel_bits{*this, "subtexel_bits", 8,
+                               "bit", {1, 8},          "Fractional bits of texture coordinates. [VK1.3 limit subTexelPrecisionBits]"};
   hw::Param<int> lod_bits{*this, "lod_bits", 8, "bit", {1, 8}, "Fractional bits of the level of detail. [VK1.3 limit mipmapPrecisionBits]"};
-  hw::Param<bool> linear_log2{*this, "linear_log2", false, "", "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]"};
+  hw::Param<bool> linear_log2{*this, "linear_log2", false, "",
+                              "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]"};
 };
 
 /// One class of links. Full rate needs depth >= width * (latency + credit_latency).

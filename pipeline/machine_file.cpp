@@ -67,16 +67,15 @@ void load_machine(MachineConfig& config, const std::string& name_or_path) {
       if (fs::exists(path)) break;
     }
     if (!fs::exists(path)) {
-      throw user_error("machine '{}' is unknown; machines: {}; or give a path that ends in .toml", name_or_path, fmt::join(machine_names(), ", "));
+      throw user_error("machine '{}' is unknown; machines: {}; or give a path that ends in .toml", name_or_path,
+                       fmt::join(machine_names(), ", "));
     }
     config.name = name_or_path;
   }
   if (!fs::is_regular_file(path)) throw user_error("{}: no such machine file", path.string());
   try {
     apply(config, toml::parse_file(path.string()), "", path.string());
-  } catch (const toml::parse_error& e) {
-    throw user_error("{}:{}: {}", path.string(), e.source().begin.line, e.description());
-  }
+  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", path.string(), e.source().begin.line, e.description()); }
   config.check();
 }
 

@@ -51,7 +51,8 @@ void finish_host(HostFigures& host, const FrameFigures& frame) {
 
 }  // namespace
 
-RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision, const TriangleObserver& observer) {
+RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision,
+                                      const TriangleObserver& observer) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(std::uint64_t{4} << 30);
@@ -78,7 +79,8 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   return out;
 }
 
-RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config, const MachineOptions& options, const hw::RunLimits& limits) {
+RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config, const MachineOptions& options,
+                           const hw::RunLimits& limits) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);

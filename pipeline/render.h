@@ -13,8 +13,8 @@ namespace quadrille::pipeline {
 
 struct FrameImage {
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint32_t> color;   ///< RGBA8 as stored, red in the low byte; rows top to bottom
-  std::vector<float> depth;           ///< rows top to bottom; empty when the pass tests no depth
+  std::vector<std::uint32_t> color;  ///< RGBA8 as stored, red in the low byte; rows top to bottom
+  std::vector<float> depth;          ///< rows top to bottom; empty when the pass tests no depth
 };
 
 struct RenderedFrame {
@@ -27,7 +27,7 @@ struct RenderedFrame {
                                                     const TriangleObserver& observer = {});
 
 /// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream or the machine cannot do.
-[[nodiscard]] RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config, const MachineOptions& options = {},
-                                         const hw::RunLimits& limits = {});
+[[nodiscard]] RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config,
+                                         const MachineOptions& options = {}, const hw::RunLimits& limits = {});
 
 }  // namespace quadrille::pipeline

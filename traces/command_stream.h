@@ -16,6 +16,7 @@ namespace quadrille::traces {
 
 using Index = std::uint32_t;  ///< into one of the tables of `CommandStream`
 
+// clang-format off: formats stay grouped by use
 enum class Format : std::uint8_t {
   kUndefined,
   // Images. Each texel is 4 bytes; depth is one 32-bit float.
@@ -34,6 +35,7 @@ enum class Format : std::uint8_t {
   kR8G8B8A8Snorm,
   kR16G16B16A16Snorm
 };
+// clang-format on
 /// Bytes of a texel or of a vertex attribute.
 [[nodiscard]] std::uint32_t format_bytes(Format format);
 /// Components that an attribute of this format supplies (1..4); missing ones read as (0, 0, 0, 1).

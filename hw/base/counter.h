@@ -24,14 +24,21 @@ class StatGroup {
 
 class Counter {
  public:
-  Counter(StatGroup& group, std::string_view name, std::string_view unit, std::string_view definition) : name_(name), unit_(unit), definition_(definition) {
+  Counter(StatGroup& group, std::string_view name, std::string_view unit, std::string_view definition)
+      : name_(name), unit_(unit), definition_(definition) {
     group.add(*this);
   }
   Counter(const Counter&) = delete;
   Counter& operator=(const Counter&) = delete;
 
-  Counter& operator++() { ++value_; return *this; }
-  Counter& operator+=(std::uint64_t n) { value_ += n; return *this; }
+  Counter& operator++() {
+    ++value_;
+    return *this;
+  }
+  Counter& operator+=(std::uint64_t n) {
+    value_ += n;
+    return *this;
+  }
   [[nodiscard]] std::uint64_t value() const { return value_; }
   [[nodiscard]] std::string_view name() const { return name_; }
   [[nodiscard]] std::string_view unit() const { return unit_; }

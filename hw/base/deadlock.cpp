@@ -30,8 +30,9 @@ std::string waiting_line(const Unit& unit, Tick now) {
   if (waits.empty()) return {};
   for (std::size_t i = 0; i < waits.size(); ++i) {
     const FifoBase& link = waits[i]->fifo();
-    line += fmt::format("{} {} {} (port {}, {} of {} slots taken, {} {})", i == 0 ? "" : " and", is_output(*waits[i]) ? "room in" : "a token in", link.path(),
-                        waits[i]->name(), link.occupancy(), link.spec().depth, is_output(*waits[i]) ? "to" : "from", peer(*waits[i])->name());
+    line += fmt::format("{} {} {} (port {}, {} of {} slots taken, {} {})", i == 0 ? "" : " and",
+                        is_output(*waits[i]) ? "room in" : "a token in", link.path(), waits[i]->name(), link.occupancy(), link.spec().depth,
+                        is_output(*waits[i]) ? "to" : "from", peer(*waits[i])->name());
   }
   if (const std::string state = unit.state_text(); !state.empty()) line += "; it holds " + state;
   return line + '\n';
@@ -62,7 +63,9 @@ std::vector<const PortBase*> shortest_cycle(const Unit* start) {
 /// The shortest cycle of all, one with a full link before any other.
 std::vector<const PortBase*> blamed_cycle(const std::vector<Unit*>& units) {
   std::vector<const PortBase*> best;
-  const auto full_links = [](const std::vector<const PortBase*>& cycle) { return std::count_if(cycle.begin(), cycle.end(), [](auto* p) { return is_full(*p); }); };
+  const auto full_links = [](const std::vector<const PortBase*>& cycle) {
+    return std::count_if(cycle.begin(), cycle.end(), [](auto* p) { return is_full(*p); });
+  };
   for (const Unit* unit : units) {
     const auto cycle = shortest_cycle(unit);
     if (cycle.empty()) continue;
@@ -81,11 +84,11 @@ std::string cycle_text(const std::vector<const PortBase*>& cycle) {
     if (is_full(*p) && (blamed == nullptr || p->fifo().spec().depth < blamed->fifo().spec().depth)) blamed = p;
   }
   if (blamed != nullptr) {
-    text += fmt::format("to blame: link {} is full; raise its depth ({} now), or let {} reserve a place before it sends\n", blamed->fifo().path(),
-                        blamed->fifo().spec().depth, blamed->owner().name());
+    text += fmt::format("to blame: link {} is full; raise its depth ({} now), or let {} reserve a place before it sends\n",
+                        blamed->fifo().path(), blamed->fifo().spec().depth, blamed->owner().name());
   } else {
-    text += fmt::format("to blame: no link of the cycle is full, so a token was dropped or never sent; {} waits for one in link {}\n", cycle.front()->owner().name(),
-                        cycle.front()->fifo().path());
+    text += fmt::format("to blame: no link of the cycle is full, so a token was dropped or never sent; {} waits for one in link {}\n",
+                        cycle.front()->owner().name(), cycle.front()->fifo().path());
   }
   return text;
 }
@@ -97,8 +100,10 @@ std::string leftover_text(const std::vector<Unit*>& units) {
     const PortBase* cause = unit->next().cause();
     for (const PortBase* port : unit->ports()) {
       if (is_output(*port) || port->fifo().occupancy() == 0) continue;
-      text += fmt::format("to blame: link {} holds {} tokens that {} does not take", port->fifo().path(), port->fifo().occupancy(), unit->name());
-      if (cause != nullptr && cause != port) text += fmt::format("; it waits for {} of link {} by {}", cause->name(), cause->fifo().path(), peer(*cause)->name());
+      text += fmt::format("to blame: link {} holds {} tokens that {} does not take", port->fifo().path(), port->fifo().occupancy(),
+                          unit->name());
+      if (cause != nullptr && cause != port)
+        text += fmt::format("; it waits for {} of link {} by {}", cause->name(), cause->fifo().path(), peer(*cause)->name());
       text += '\n';
     }
   }

@@ -45,8 +45,8 @@ class Dispatcher final : public Driver {
   std::vector<Chooser> choosers_;
   std::vector<std::size_t> chooser_of_;       ///< unit index -> chooser index; only for choosers
   std::vector<std::uint64_t> chooser_marks_;  ///< which bits of `touched_` are choosers'
-  std::vector<Tick> times_;      ///< choosers_[i].wake.at(), contiguous for the scans; padded with kNever
-  std::vector<Tick> reach_;      ///< by chooser: smallest distance from any other chooser
+  std::vector<Tick> times_;                   ///< choosers_[i].wake.at(), contiguous for the scans; padded with kNever
+  std::vector<Tick> reach_;                   ///< by chooser: smallest distance from any other chooser
 };
 
 }  // namespace quadrille::hw

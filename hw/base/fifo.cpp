@@ -11,10 +11,13 @@ namespace {
 constexpr int kCrossingCycles = 2;
 }  // namespace
 
-FifoBase::FifoBase(const char* name, const LinkSpec& spec, std::size_t token_bytes) : sc_core::sc_object(name), depth_(spec.depth), width_(spec.width), spec_(spec) {
+FifoBase::FifoBase(const char* name, const LinkSpec& spec, std::size_t token_bytes)
+    : sc_core::sc_object(name), depth_(spec.depth), width_(spec.width), spec_(spec) {
   QUADRILLE_CHECK(spec.depth >= 1 && spec.width >= 1 && spec.latency >= 1 && spec.credit_latency >= 1,
-                  "link {}: depth {}, width {}, latency {}, credit latency {}", name, spec.depth, spec.width, spec.latency, spec.credit_latency);
-  storage_ = std::make_unique<std::byte[]>(stamp_bytes(depth_) + static_cast<std::size_t>(depth_) * token_bytes);  // zeroes: every slot is free from tick 0 on
+                  "link {}: depth {}, width {}, latency {}, credit latency {}", name, spec.depth, spec.width, spec.latency,
+                  spec.credit_latency);
+  storage_ = std::make_unique<std::byte[]>(stamp_bytes(depth_) +
+                                           static_cast<std::size_t>(depth_) * token_bytes);  // zeroes: every slot is free from tick 0 on
 }
 
 void FifoBase::bind_producer(Unit& unit) {
@@ -71,8 +74,14 @@ int FifoBase::free_slots(Tick now) const {
   return n;
 }
 
-void FifoBase::refuse_push(Tick now) const { QUADRILLE_CHECK(false, "push into {} at {} fs without room", path(), now); std::abort(); }
-void FifoBase::refuse_pop(Tick now) const { QUADRILLE_CHECK(false, "pop from {} at {} fs without a token", path(), now); std::abort(); }
+void FifoBase::refuse_push(Tick now) const {
+  QUADRILLE_CHECK(false, "push into {} at {} fs without room", path(), now);
+  std::abort();
+}
+void FifoBase::refuse_pop(Tick now) const {
+  QUADRILLE_CHECK(false, "pop from {} at {} fs without a token", path(), now);
+  std::abort();
+}
 
 PortBase::PortBase(Unit& owner, const char* name, Direction direction, LinkRole role, int stream)
     : owner_(owner), name_(name), direction_(direction), role_(role), stream_(stream) {

@@ -71,7 +71,8 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
 
  protected:
   void note_push(Tick now) {
-    if (room_ > now) [[unlikely]] refuse_push(now);
+    if (room_ > now) [[unlikely]]
+      refuse_push(now);
     const Tick visible = forward_step_ != 0 ? now + forward_step_ : crossed_push(now);
     stamps()[tail_] = visible;
     if (count_ == 0) {
@@ -87,7 +88,8 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
     room_ = count_ == depth_ ? kNever : later(stamps()[tail_], width_free_);
   }
   void note_pop(Tick now) {
-    if (ready_ > now) [[unlikely]] refuse_pop(now);
+    if (ready_ > now) [[unlikely]]
+      refuse_pop(now);
     const Tick released = credit_step_ != 0 ? now + credit_step_ : crossed_pop(now);
     stamps()[head_] = released;
     if (count_ == depth_) {
@@ -118,25 +120,24 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   // What most pushes, pops and questions touch: two cache lines, then the stamps and tokens.
   alignas(64) Tick ready_ = kNever;
   Tick room_ = 0;
-  std::unique_ptr<std::byte[]> storage_;       ///< `depth` stamps, then `depth` tokens
+  std::unique_ptr<std::byte[]> storage_;  ///< `depth` stamps, then `depth` tokens
   std::uint32_t head_ = 0, tail_ = 0;
   int count_ = 0, depth_ = 0;
-  Tick forward_step_ = 0, credit_step_ = 0;    ///< the latencies in ticks, where both ends share a clock with equal cycles; else 0
+  Tick forward_step_ = 0, credit_step_ = 0;  ///< the latencies in ticks, where both ends share a clock with equal cycles; else 0
   int width_ = 1;
-  int burst_ = 0;                              ///< pushes at tick `last_push_`
+  int burst_ = 0;  ///< pushes at tick `last_push_`
   Tick last_push_ = -1, last_pop_ = 0;
-  Tick width_free_ = 0;                        ///< the width allows no push before this tick
-  Tick producer_period_ = 0;                   ///< 0 when the producer's cycles differ in length
+  Tick width_free_ = 0;       ///< the width allows no push before this tick
+  Tick producer_period_ = 0;  ///< 0 when the producer's cycles differ in length
   std::uint64_t pushes_ = 0;
-  std::uint64_t* consumer_word_ = nullptr;     ///< of the driver's marks
+  std::uint64_t* consumer_word_ = nullptr;  ///< of the driver's marks
   std::uint64_t* producer_word_ = nullptr;
   std::uint8_t consumer_bit_ = 0, producer_bit_ = 0;
 
  protected:
-  bool faulty_ = false;                        ///< a test changes tokens as they are pushed
+  bool faulty_ = false;  ///< a test changes tokens as they are pushed
 
  private:
-
   LinkSpec spec_;
   Tick forward_ = 0, credit_ = 0;
   Unit* producer_ = nullptr;
@@ -146,14 +147,16 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
 /// A FIFO of tokens. Tokens are trivially copyable and small; bulk travels as a handle into a store.
 template <class T>
 class Fifo final : public FifoBase {
-  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64 && alignof(T) <= 16, "tokens are trivially copyable and at most 64 bytes");
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 64 && alignof(T) <= 16,
+                "tokens are trivially copyable and at most 64 bytes");
 
  public:
   Fifo(const char* name, const LinkSpec& spec) : FifoBase(name, spec, sizeof(T)) {}
   void push(Tick now, const T& token) {
     T& slot = slots()[tail()];
     slot = token;
-    if (faulty_) [[unlikely]] fault_(slot);
+    if (faulty_) [[unlikely]]
+      fault_(slot);
     note_push(now);
   }
   /// A fault on the wire, for tests of the conservation laws: changes tokens as they are pushed.

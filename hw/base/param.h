@@ -62,8 +62,7 @@ class Param final : public ParamBase {
       : ParamBase(name, unit, reason), value_(value), default_(value), range_(range) {
     group.add(*this);
   }
-  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, std::string_view reason)
-    requires std::is_same_v<T, bool>
+  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, std::string_view reason) requires std::is_same_v<T, bool>
       : ParamBase(name, unit, reason), value_(value), default_(value) {
     group.add(*this);
   }

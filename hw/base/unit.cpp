@@ -60,7 +60,8 @@ Tick Unit::reachable_until() const {
   std::set<const FifoBase*> seen;
   Tick last = 0;
   for (const PortBase* p : ports_) {
-    if (p->direction() == PortBase::Direction::kIn && p->role() == LinkRole::kFlow) last = std::max(last, upstream_activity(p->fifo(), seen));
+    if (p->direction() == PortBase::Direction::kIn && p->role() == LinkRole::kFlow)
+      last = std::max(last, upstream_activity(p->fifo(), seen));
   }
   return last;
 }
@@ -80,8 +81,8 @@ void Unit::close(Tick end) {
   accounted_ = last_edge;
   total_ = clock_.edges_before(end);
   const std::int64_t busy = busy_cycles(), starved = starved_cycles(), blocked = blocked_cycles(), idle = idle_cycles();
-  QUADRILLE_CHECK(busy + starved + blocked + idle == total_, "{}: busy {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy, starved, blocked,
-                  idle, total_);
+  QUADRILLE_CHECK(busy + starved + blocked + idle == total_, "{}: busy {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy,
+                  starved, blocked, idle, total_);
 }
 
 }  // namespace quadrille::hw

@@ -73,7 +73,9 @@ class Wake {
 /// Intervals in which no draw was in flight, recorded by the command processor and shared by all units of a machine.
 class QuietLog {
  public:
-  struct Interval { Tick from = 0, to = 0; };
+  struct Interval {
+    Tick from = 0, to = 0;
+  };
   void add(Tick from, Tick to) {
     if (to > from) intervals_.push_back({from, to});
   }
@@ -165,7 +167,7 @@ class Unit : public sc_core::sc_module {
   /// Last tick at which a token of a draw could still have been on its way to this unit.
   [[nodiscard]] Tick reachable_until() const;
 
-  Tick accounted_ = 0;     ///< every cycle before this tick is charged
+  Tick accounted_ = 0;  ///< every cycle before this tick is charged
   Tick last_action_ = -1;
   std::uint64_t actions_ = 0;
   std::int64_t busy_ = 0, starved_ = 0, blocked_ = 0, idle_ = 0;  ///< spans

@@ -4,8 +4,13 @@
 
 namespace quadrille::hw {
 
-CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, int partitions, QuietLog& quiet)
-    : Unit(name, Kind::kChooser, clock), params_(params), frame_(frame), quiet_log_(quiet), retired_by_(static_cast<std::size_t>(partitions)) {
+CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+                                   int partitions, QuietLog& quiet)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      frame_(frame),
+      quiet_log_(quiet),
+      retired_by_(static_cast<std::size_t>(partitions)) {
   for (int i = 0; i < partitions; ++i) {
     retire_in.push_back(std::make_unique<FifoIn<RetireToken>>(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply));
   }

@@ -18,8 +18,10 @@ namespace quadrille::hw {
 class CommandProcessor final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> draw_clk{*this, "draw_clk", 16, "clk/draw", {1, 1 << 20}, "Cycles to issue a draw's state and launch it. [G: a few register writes a draw]"};
-    Param<int> draws_in_flight{*this, "draws_in_flight", 32, "draw", {1, 65536}, "Draws whose state is kept at a time. [G: context slots of the front end]"};
+    Param<int> draw_clk{*this,      "draw_clk",   16,
+                        "clk/draw", {1, 1 << 20}, "Cycles to issue a draw's state and launch it. [G: a few register writes a draw]"};
+    Param<int> draws_in_flight{*this,  "draws_in_flight", 32,
+                               "draw", {1, 65536},        "Draws whose state is kept at a time. [G: context slots of the front end]"};
   };
   struct Stats : StatGroup {
     Counter draws{*this, "draws", "draw", "Draws issued"};
@@ -27,7 +29,8 @@ class CommandProcessor final : public Unit {
     Counter passes{*this, "passes", "pass", "Passes begun"};
   };
 
-  CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, int partitions, QuietLog& quiet);
+  CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, int partitions,
+                   QuietLog& quiet);
 
   std::vector<std::unique_ptr<FifoIn<RetireToken>>> retire_in;
   FifoIn<ReleaseToken> scan_done_in{*this, "scan_done_in", LinkRole::kReply};
@@ -59,8 +62,8 @@ class CommandProcessor final : public Unit {
   std::uint32_t pass_ = 0, draw_ = 0;
   Tick free_ = 0;
   Tick quiet_since_ = 0, render_end_ = 0, end_ = 0;
-  std::vector<std::uint32_t> retired_by_;   ///< draws retired, by partition
-  std::uint32_t retired_ = 0;               ///< draws retired everywhere
+  std::vector<std::uint32_t> retired_by_;  ///< draws retired, by partition
+  std::uint32_t retired_ = 0;              ///< draws retired everywhere
   int flushes_ = 0;
 };
 

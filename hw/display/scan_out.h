@@ -19,7 +19,8 @@ class ScanOut final : public Unit {
   struct Stats : StatGroup {
     Counter lines{*this, "lines", "line", "Lines of 128 bytes read"};
   };
-  ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory, int slices);
+  ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
+          int slices);
 
   FifoIn<ScanToken> scan_in{*this, "scan_in"};
   FifoOut<ReleaseToken> done_out{*this, "done_out", LinkRole::kReply};

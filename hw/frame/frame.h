@@ -23,11 +23,11 @@ namespace quadrille::hw {
 
 /// One vertex attribute the vertex program reads: where it comes from and which rows of the warp's inputs it feeds.
 struct AttributeFetch {
-  std::uint64_t address = 0;       ///< of vertex (or instance) 0
-  std::uint32_t stride = 0;        ///< bytes
+  std::uint64_t address = 0;  ///< of vertex (or instance) 0
+  std::uint32_t stride = 0;   ///< bytes
   models::AttributeFormat format = models::AttributeFormat::kR32G32B32Float;
   bool per_instance = false;
-  std::array<int, 4> input_row{-1, -1, -1, -1};   ///< row of the warp's inputs for each component; -1: not read
+  std::array<int, 4> input_row{-1, -1, -1, -1};  ///< row of the warp's inputs for each component; -1: not read
 };
 
 struct TextureState {
@@ -42,7 +42,7 @@ struct DrawState {
   models::Topology topology = models::Topology::kTriangleList;
   bool indexed = false;
   std::uint32_t index_bytes = 2;
-  std::uint64_t index_address = 0;   ///< of the draw's first index
+  std::uint64_t index_address = 0;  ///< of the draw's first index
   std::uint32_t count = 0, first_vertex = 0;
   std::int32_t vertex_offset = 0;
   std::uint32_t instances = 1, first_instance = 0;
@@ -51,7 +51,7 @@ struct DrawState {
   const models::Program* vertex_program = nullptr;
   const models::Program* fragment_program = nullptr;
   std::vector<std::uint32_t> vertex_constants, fragment_constants;
-  std::vector<TextureState> vertex_textures, fragment_textures;           ///< by the program's binding index
+  std::vector<TextureState> vertex_textures, fragment_textures;  ///< by the program's binding index
   std::vector<models::TextureSize> vertex_texture_sizes, fragment_texture_sizes;
   // Fixed function.
   models::Viewport viewport;
@@ -72,7 +72,7 @@ struct PassState {
   models::SurfaceLayout color, depth;
   bool has_depth = false;
   models::ColorFormat color_format = models::ColorFormat::kR8G8B8A8Srgb;
-  std::uint32_t clear_color = 0;     ///< encoded
+  std::uint32_t clear_color = 0;  ///< encoded
   float clear_depth = 1;
   std::uint32_t first_draw = 0, draws = 0;
 };

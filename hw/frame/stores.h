@@ -13,9 +13,12 @@ struct BatchSlot {
   std::uint32_t draw = 0;
   int lanes = 0;
   models::VertexInputs inputs;
-  std::vector<models::LaneWords> attributes;    ///< rows by Program::vertex_inputs
-  std::vector<models::LaneWords> outputs;       ///< rows by output slot
-  struct Triangle { std::uint8_t lane[3]; std::uint32_t primitive; };
+  std::vector<models::LaneWords> attributes;  ///< rows by Program::vertex_inputs
+  std::vector<models::LaneWords> outputs;     ///< rows by output slot
+  struct Triangle {
+    std::uint8_t lane[3];
+    std::uint32_t primitive;
+  };
   std::vector<Triangle> triangles;
 };
 
@@ -23,21 +26,21 @@ struct BatchSlot {
 struct TriangleSlot {
   models::TriangleSetup setup;
   std::uint32_t draw = 0, primitive = 0;
-  std::vector<float> varyings;                  ///< 3 a component: a0, a1 - a0, a2 - a0 of the original triangle
+  std::vector<float> varyings;  ///< 3 a component: a0, a1 - a0, a2 - a0 of the original triangle
 };
 
 /// A fragment warp from its packing to its retirement. Owner: the warp packer of its partition.
 struct WarpSlot {
   struct Quad {
     std::uint64_t triangle = 0;
-    std::uint16_t x = 0, y = 0;                 ///< pixel position of the top-left pixel
+    std::uint16_t x = 0, y = 0;  ///< pixel position of the top-left pixel
   };
   std::uint32_t draw = 0;
   int quads = 0;
-  bool late = false;                            ///< depth is tested after shading
-  models::LaneMask covered = 0;                 ///< live lanes at launch
+  bool late = false;             ///< depth is tested after shading
+  models::LaneMask covered = 0;  ///< live lanes at launch
   std::array<Quad, models::kWarpQuads> quad;
-  models::LaneMask alive = 0;                   ///< lanes to write: covered, not discarded, not failed late
+  models::LaneMask alive = 0;  ///< lanes to write: covered, not discarded, not failed late
   std::array<models::LaneFloats, 4> color;
   models::LaneFloats depth;
 };
@@ -65,7 +68,9 @@ class TriangleStore {
  public:
   explicit TriangleStore(std::size_t slots) : slots_(slots) {}
   [[nodiscard]] TriangleSlot& operator[](std::uint64_t sequence) { return slots_[static_cast<std::size_t>(sequence % slots_.size())]; }
-  [[nodiscard]] const TriangleSlot& operator[](std::uint64_t sequence) const { return slots_[static_cast<std::size_t>(sequence % slots_.size())]; }
+  [[nodiscard]] const TriangleSlot& operator[](std::uint64_t sequence) const {
+    return slots_[static_cast<std::size_t>(sequence % slots_.size())];
+  }
   [[nodiscard]] std::uint64_t size() const { return slots_.size(); }
 
  private:

@@ -21,8 +21,8 @@ struct DrawToken {
 /// Vertex fetch -> primitive assembly: a batch's triangles, in draw order.
 struct BatchToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;      ///< draw or pass
-  std::uint32_t slot = 0;       ///< in the batch store
+  std::uint32_t index = 0;  ///< draw or pass
+  std::uint32_t slot = 0;   ///< in the batch store
 };
 
 /// Vertex fetch or warp packer -> core: run this warp.
@@ -51,15 +51,15 @@ struct ClippedToken {
   TokenKind kind = TokenKind::kWork;
   std::uint8_t lane[3] = {};
   std::uint32_t index = 0;
-  std::uint32_t slot = 0;       ///< batch
+  std::uint32_t slot = 0;  ///< batch
   std::uint32_t primitive = 0;
-  std::uint32_t piece = 0;      ///< slot in the ring of clipped pieces
+  std::uint32_t piece = 0;  ///< slot in the ring of clipped pieces
 };
 
 /// Set-up -> coarse rasteriser. `triangle` is a sequence number; its slot in the triangle store is the remainder by the store's size.
 struct TriangleToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;      ///< draw or pass
+  std::uint32_t index = 0;  ///< draw or pass
   std::uint64_t triangle = 0;
 };
 
@@ -69,17 +69,17 @@ struct TileToken {
   bool fully_covered = false;
   std::uint16_t tile_x = 0, tile_y = 0;
   std::uint32_t index = 0;
-  std::uint64_t triangle = 0;   ///< kSync: every triangle before this one
+  std::uint64_t triangle = 0;  ///< kSync: every triangle before this one
 };
 
 /// Fine rasteriser -> depth unit -> warp packer: the covered samples of one triangle in one tile.
 struct CoverageToken {
   TokenKind kind = TokenKind::kWork;
-  bool late = false;            ///< set by the depth unit: test and write after shading
+  bool late = false;  ///< set by the depth unit: test and write after shading
   std::uint16_t tile_x = 0, tile_y = 0;
   std::uint32_t index = 0;
   std::uint64_t triangle = 0;
-  std::uint64_t coverage = 0;   ///< quad-major
+  std::uint64_t coverage = 0;  ///< quad-major
 };
 
 /// Warp packer -> ROP: what retires next, in order. kWork: the warp in `slot`; `sync` (if not 0) may be reported when it has retired.
@@ -131,7 +131,7 @@ struct TextureToken {
 /// requests of its client before it have been taken in.
 struct MemoryRequest {
   enum class Kind : std::uint8_t { kRead, kWrite, kFence };
-  std::uint32_t line = 0;       ///< device address / 128
+  std::uint32_t line = 0;  ///< device address / 128
   std::uint32_t tag = 0;
   std::uint8_t sectors = 0;
   Kind kind = Kind::kRead;

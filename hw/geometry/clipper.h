@@ -15,7 +15,8 @@ namespace quadrille::hw {
 class Clipper final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> clip_clk{*this, "clip_clk", 12, "clk/triangle", {1, 4096}, "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]"};
+    Param<int> clip_clk{*this,          "clip_clk", 12,
+                        "clk/triangle", {1, 4096},  "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]"};
   };
   struct Stats : StatGroup {
     Counter triangles{*this, "triangles", "triangle", "Triangles taken in"};
@@ -42,10 +43,10 @@ class Clipper final : public Unit {
   const Params& params_;
   const Frame& frame_;
   const Store<BatchSlot>& batches_;
-  Store<ClippedPiece>& pieces_;   ///< a ring: more slots than the output link can hold
+  Store<ClippedPiece>& pieces_;  ///< a ring: more slots than the output link can hold
   Stats stats_;
   models::ClippedPolygon polygon_;
-  int next_piece_ = 0;            ///< of the polygon being emitted; 0: none
+  int next_piece_ = 0;  ///< of the polygon being emitted; 0: none
   std::uint32_t ring_ = 0;
   Tick free_ = 0;
 };

@@ -36,8 +36,8 @@ class PrimitiveAssembly final : public Unit {
 
   const Store<BatchSlot>& batches_;
   Stats stats_;
-  std::vector<bool> shaded_;        ///< by batch slot
-  std::size_t next_triangle_ = 0;   ///< of the batch at the head
+  std::vector<bool> shaded_;       ///< by batch slot
+  std::size_t next_triangle_ = 0;  ///< of the batch at the head
   Tick free_ = 0;
 };
 

@@ -6,7 +6,8 @@
 namespace quadrille::hw {
 
 TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                                     const Store<BatchSlot>& batches, const Store<ClippedPiece>& pieces, TriangleStore& triangles, int partitions)
+                                     const Store<BatchSlot>& batches, const Store<ClippedPiece>& pieces, TriangleStore& triangles,
+                                     int partitions)
     : Unit(name, Kind::kChooser, clock),
       params_(params),
       frame_(frame),
@@ -19,7 +20,9 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const Params&
   }
 }
 
-std::string TriangleSetupUnit::state_text() const { return fmt::format("{} of {} triangle slots in use", sequence_ - retired_, triangles_.size()); }
+std::string TriangleSetupUnit::state_text() const {
+  return fmt::format("{} of {} triangle slots in use", sequence_ - retired_, triangles_.size());
+}
 
 Wake TriangleSetupUnit::work_wake() const {
   if (sequence_ - retired_ >= triangles_.size()) return Wake::never(*sync_in[0]);

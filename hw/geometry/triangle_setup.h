@@ -16,7 +16,8 @@ class TriangleSetupUnit final : public Unit {
  public:
   struct Params : ParamGroup {
     Param<int> setup_clk{*this, "setup_clk", 1, "clk/triangle", {1, 1024}, "Cycles a triangle. [G: one triangle a cycle]"};
-    Param<int> triangle_slots{*this, "triangle_slots", 1024, "triangle", {1, 1 << 20}, "Triangles between set-up and their last retired fragment. [G]"};
+    Param<int> triangle_slots{*this,      "triangle_slots", 1024,
+                              "triangle", {1, 1 << 20},     "Triangles between set-up and their last retired fragment. [G]"};
   };
   struct Stats : StatGroup {
     Counter triangles{*this, "triangles", "triangle", "Triangles taken in"};
@@ -26,8 +27,8 @@ class TriangleSetupUnit final : public Unit {
     Counter offscreen{*this, "offscreen", "triangle", "Triangles whose pixels are outside the scissor"};
     Counter no_sample{*this, "no_sample", "triangle", "Triangles whose bounds hold no pixel centre"};
   };
-  TriangleSetupUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const Store<BatchSlot>& batches,
-                    const Store<ClippedPiece>& pieces, TriangleStore& triangles, int partitions);
+  TriangleSetupUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+                    const Store<BatchSlot>& batches, const Store<ClippedPiece>& pieces, TriangleStore& triangles, int partitions);
 
   FifoIn<ClippedToken> clipped_in{*this, "clipped_in"};
   std::vector<std::unique_ptr<FifoIn<ReleaseToken>>> sync_in;
@@ -51,9 +52,9 @@ class TriangleSetupUnit final : public Unit {
   const Store<ClippedPiece>& pieces_;
   TriangleStore& triangles_;
   Stats stats_;
-  std::uint64_t sequence_ = 0;              ///< of the next kept triangle
-  std::uint64_t retired_ = 0;               ///< triangles before this are retired everywhere
-  std::vector<std::uint64_t> retired_by_;   ///< by partition
+  std::uint64_t sequence_ = 0;             ///< of the next kept triangle
+  std::uint64_t retired_ = 0;              ///< triangles before this are retired everywhere
+  std::vector<std::uint64_t> retired_by_;  ///< by partition
   Tick free_ = 0;
 };
 

@@ -4,8 +4,8 @@
 
 namespace quadrille::hw {
 
-VertexFetch::VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
-                         Store<BatchSlot>& batches, int slices)
+VertexFetch::VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+                         const models::DeviceMemory& memory, Store<BatchSlot>& batches, int slices)
     : Unit(name, Kind::kChooser, clock),
       params_(params),
       frame_(frame),
@@ -116,7 +116,8 @@ void VertexFetch::fetch_attributes(BatchSlot& batch) {
       models::decode_attribute(fetch.format, device_.read(address, bytes).data(), value);
       for (std::size_t c = 0; c < 4; ++c) {
         if (fetch.input_row[c] < 0) continue;
-        batch.attributes[static_cast<std::size_t>(fetch.input_row[c])][static_cast<std::size_t>(lane)] = std::bit_cast<std::uint32_t>(value[c]);
+        batch.attributes[static_cast<std::size_t>(fetch.input_row[c])][static_cast<std::size_t>(lane)] =
+            std::bit_cast<std::uint32_t>(value[c]);
       }
     }
   }

@@ -9,8 +9,8 @@
 
 #include "hw/base/param.h"
 #include "hw/frame/stores.h"
-#include "hw/memory/memory_port.h"
 #include "hw/memory/l1_cache.h"
+#include "hw/memory/memory_port.h"
 #include "models/geometry/post_transform.h"
 
 #include <deque>
@@ -20,13 +20,16 @@ namespace quadrille::hw {
 class VertexFetch final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> indices_per_clk{*this, "indices_per_clk", 4, "index/clk", {1, 64}, "Indices looked up a cycle. [G: one triangle a cycle and a little more]"};
+    Param<int> indices_per_clk{*this,       "indices_per_clk", 4,
+                               "index/clk", {1, 64},           "Indices looked up a cycle. [G: one triangle a cycle and a little more]"};
     Param<int> attributes_per_clk{*this, "attributes_per_clk", 8, "fetch/clk", {1, 256}, "Attribute fetches a cycle. [G: 8 address lanes]"};
-    Param<int> batch_slots{*this, "batch_slots", 32, "batch", {2, 4096}, "Vertex batches between fetch and set-up. [G: covers shading latency]"};
+    Param<int> batch_slots{*this,   "batch_slots", 32,
+                           "batch", {2, 4096},     "Vertex batches between fetch and set-up. [G: covers shading latency]"};
     Param<int> batch_triangles{*this, "batch_triangles", 64, "triangle", {1, 1024}, "Triangles a batch may name. [G: twice its vertices]"};
     Param<int> cache_lines{*this, "cache_lines", 128, "line", {1, 1 << 16}, "Lines of 128 bytes in the vertex cache. [G: 16 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 4, "way", {1, 64}, "Associativity of the vertex cache. [G]"};
-    Param<int> cache_misses{*this, "cache_misses", 64, "line", {1, 4096}, "Lines the vertex cache may have under way. [G: bandwidth times latency]"};
+    Param<int> cache_misses{*this,  "cache_misses", 64,
+                            "line", {1, 4096},      "Lines the vertex cache may have under way. [G: bandwidth times latency]"};
   };
   struct Stats : StatGroup {
     Counter indices{*this, "indices", "index", "Indices read (vertex numbers, when a draw has no index buffer)"};
@@ -36,8 +39,8 @@ class VertexFetch final : public Unit {
     Counter triangles{*this, "triangles", "triangle", "Triangles named by batches"};
   };
 
-  VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
-              Store<BatchSlot>& batches, int slices);
+  VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+              const models::DeviceMemory& memory, Store<BatchSlot>& batches, int slices);
 
   FifoIn<DrawToken> draw_in{*this, "draw_in"};
   FifoIn<ReleaseToken> release_in{*this, "release_in", LinkRole::kReply};
@@ -55,7 +58,7 @@ class VertexFetch final : public Unit {
   struct Pending {
     TokenKind kind = TokenKind::kWork;
     std::uint32_t index = 0, slot = 0;
-    int missing = 0;    ///< look-ups not complete
+    int missing = 0;  ///< look-ups not complete
     Tick ready = 0;
   };
   struct Line {
@@ -83,13 +86,13 @@ class VertexFetch final : public Unit {
   models::VertexReuse reuse_;
 
   bool drawing_ = false;
-  std::uint32_t draw_ = 0, instance_ = 0, triangle_ = 0;   ///< next triangle to take
+  std::uint32_t draw_ = 0, instance_ = 0, triangle_ = 0;  ///< next triangle to take
   std::vector<std::uint32_t> free_slots_;
   std::deque<Pending> pending_;
-  std::uint32_t first_pending_ = 0;     ///< number of pending_.front(); waiters are named by number
-  std::vector<Line> lines_;             ///< look-ups of the newest batch
-  std::size_t next_line_ = 0;           ///< the first of them not done
-  bool stalled_ = false;                ///< the cache had no place for it
+  std::uint32_t first_pending_ = 0;  ///< number of pending_.front(); waiters are named by number
+  std::vector<Line> lines_;          ///< look-ups of the newest batch
+  std::size_t next_line_ = 0;        ///< the first of them not done
+  bool stalled_ = false;             ///< the cache had no place for it
   std::uint32_t fetches_ = 0, indices_ = 0;
   Tick free_ = 0;
 };

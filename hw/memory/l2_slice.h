@@ -20,7 +20,8 @@ class L2Slice final : public Unit {
   struct Params : ParamGroup {
     Param<int> cache_lines{*this, "cache_lines", 4096, "line", {1, 1 << 24}, "Lines of 128 bytes in a slice. [G: 512 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 16, "way", {1, 64}, "Associativity. [G]"};
-    Param<int> cache_misses{*this, "cache_misses", 128, "line", {1, 65536}, "Lines under way to and from the channel. [G: bandwidth times latency]"};
+    Param<int> cache_misses{*this,  "cache_misses", 128,
+                            "line", {1, 65536},     "Lines under way to and from the channel. [G: bandwidth times latency]"};
     Param<int> hit_clk{*this, "hit_clk", 20, "clk", {1, 1 << 20}, "Latency from look-up to answer. [G]"};
   };
   struct Stats : StatGroup {
@@ -52,7 +53,7 @@ class L2Slice final : public Unit {
   };
   struct Miss {
     int slot = 0;
-    std::uint8_t pending = 0;       ///< sectors on their way
+    std::uint8_t pending = 0;  ///< sectors on their way
     std::vector<Waiter> waiters;
   };
   struct Answer {
@@ -75,10 +76,10 @@ class L2Slice final : public Unit {
   std::vector<Miss> misses_;
   std::vector<std::uint32_t> free_misses_;
   std::vector<int> miss_of_slot_;
-  std::vector<std::deque<Answer>> answers_;     ///< by client, in order of time
+  std::vector<std::deque<Answer>> answers_;  ///< by client, in order of time
   std::deque<MemoryRequest> to_memory_;
   std::size_t turn_ = 0;
-  bool stalled_ = false;                        ///< the line in turn had no place; a fill will make one
+  bool stalled_ = false;  ///< the line in turn had no place; a fill will make one
   Tick free_ = 0;
 };
 

@@ -59,7 +59,8 @@ void MemoryChannel::take(Tick now) {
   if (access.row_conflict) ++stats_.row_conflicts;
   stats_.bus_busy += static_cast<std::uint64_t>(access.done - access.start);
   const Tick done = clock().edge(access.done + (write ? 0 : params_.path_clk.value()));
-  under_way_.push_back({under_way_.empty() ? done : std::max(done, under_way_.back().done), {request.line, request.tag, request.sectors}, write});
+  under_way_.push_back(
+      {under_way_.empty() ? done : std::max(done, under_way_.back().done), {request.line, request.tag, request.sectors}, write});
   free_ = after(now, 1);
   occupy(now, access.done - access.start);
 }

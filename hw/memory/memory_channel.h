@@ -24,7 +24,8 @@ class MemoryChannel final : public Unit {
     Param<int> t_cas{*this, "t_cas", 14, "clk", {0, 1 << 20}, "Column command to data. [G]"};
     Param<int> t_burst{*this, "t_burst", 1, "clk", {1, 1 << 20}, "Data bus cycles of a 32-byte sector: 1 is 32 bytes a cycle. [G]"};
     Param<int> queue_depth{*this, "queue_depth", 32, "access", {1, 4096}, "Accesses under way. [G]"};
-    Param<int> path_clk{*this, "path_clk", 60, "clk", {0, 1 << 20}, "Controller and wires, added to each answer. [G: about 100 ns idle latency in all]"};
+    Param<int> path_clk{*this, "path_clk",   60,
+                        "clk", {0, 1 << 20}, "Controller and wires, added to each answer. [G: about 100 ns idle latency in all]"};
   };
   struct Stats : StatGroup {
     Counter reads{*this, "reads", "access", "Reads"};
@@ -59,7 +60,7 @@ class MemoryChannel final : public Unit {
   const std::uint32_t channels_;
   Stats stats_;
   models::DramChannel dram_;
-  std::deque<Access> under_way_;   ///< in order of completion
+  std::deque<Access> under_way_;  ///< in order of completion
   Tick free_ = 0;
 };
 

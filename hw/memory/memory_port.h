@@ -48,7 +48,7 @@ class MemoryPort {
   [[nodiscard]] std::optional<MemoryResponse> receive(Tick now);
 
   [[nodiscard]] int slices() const { return static_cast<int>(request_out.size()); }
-  std::vector<std::unique_ptr<FifoOut<MemoryRequest>>> request_out;   ///< by slice
+  std::vector<std::unique_ptr<FifoOut<MemoryRequest>>> request_out;  ///< by slice
   std::vector<std::unique_ptr<FifoIn<MemoryResponse>>> response_in;
 
  private:

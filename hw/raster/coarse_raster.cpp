@@ -10,8 +10,8 @@ namespace {
 bool lowers_depth(models::CompareOp op) { return op == models::CompareOp::kLess || op == models::CompareOp::kLessOrEqual; }
 }  // namespace
 
-CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const TriangleStore& triangles,
-                           int partitions)
+CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+                           const TriangleStore& triangles, int partitions)
     : Unit(name, Kind::kChooser, clock),
       params_(params),
       frame_(frame),
@@ -102,12 +102,14 @@ void CoarseRaster::note_direction(const DrawState& draw) {
     hiz_trusted_ = false;
   }
   // A program that writes depth moves fragments away from the triangle's plane; its tiles cannot be judged by it.
-  hiz_usable_ = hiz_trusted_ && !hiz_.empty() && draw.depth_test && lowers_depth(draw.depth_compare) && !draw.fragment_program->writes_depth;
+  hiz_usable_ =
+      hiz_trusted_ && !hiz_.empty() && draw.depth_test && lowers_depth(draw.depth_compare) && !draw.fragment_program->writes_depth;
 }
 
 bool CoarseRaster::hidden(const models::TileHit& tile) const {
   if (!hiz_usable_) return false;
-  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.tiles_x + static_cast<std::size_t>(tile.tile_x)];
+  const float held =
+      hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.tiles_x + static_cast<std::size_t>(tile.tile_x)];
   const float nearest = models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y).min;
   return frame_.draw(draw_).depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
 }
@@ -128,8 +130,8 @@ void CoarseRaster::walk(Tick now) {
   occupy(now, cycles);
   if (found) {
     ++stats_.tiles_kept;
-    tile_out.push(now, {TokenKind::kWork, tile.fully_covered, static_cast<std::uint16_t>(tile.tile_x), static_cast<std::uint16_t>(tile.tile_y), draw_,
-                        triangle_});
+    tile_out.push(now, {TokenKind::kWork, tile.fully_covered, static_cast<std::uint16_t>(tile.tile_x),
+                        static_cast<std::uint16_t>(tile.tile_y), draw_, triangle_});
     return;
   }
   walking_ = false;

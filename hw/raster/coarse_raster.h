@@ -28,7 +28,8 @@ class CoarseRaster final : public Unit {
     Counter tiles_hidden{*this, "tiles_hidden", "tile", "Tiles dropped by Hi-Z"};
     Counter hiz_updates{*this, "hiz_updates", "update", "Hi-Z updates taken in"};
   };
-  CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const TriangleStore& triangles, int partitions);
+  CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const TriangleStore& triangles,
+               int partitions);
 
   FifoIn<TriangleToken> triangle_in{*this, "triangle_in"};
   std::vector<std::unique_ptr<FifoIn<HiZToken>>> hiz_in;
@@ -52,18 +53,18 @@ class CoarseRaster final : public Unit {
   const Params& params_;
   const Frame& frame_;
   const TriangleStore& triangles_;
-  const std::uint64_t sync_interval_;   ///< triangles between syncs
+  const std::uint64_t sync_interval_;  ///< triangles between syncs
   Stats stats_;
   bool walking_ = false;
   models::TileWalk walk_;
-  std::uint64_t charged_tests_ = 0;     ///< of this walk
-  std::uint64_t triangle_ = 0;          ///< being walked
+  std::uint64_t charged_tests_ = 0;  ///< of this walk
+  std::uint64_t triangle_ = 0;       ///< being walked
   std::uint32_t draw_ = 0, pass_ = 0;
-  bool hiz_usable_ = false;             ///< this draw may be tested
-  bool hiz_trusted_ = true;             ///< no draw of the pass has raised depths
+  bool hiz_usable_ = false;  ///< this draw may be tested
+  bool hiz_trusted_ = true;  ///< no draw of the pass has raised depths
   std::uint64_t since_sync_ = 0;
   bool sync_due_ = false;
-  std::vector<float> hiz_;              ///< by tile of the pass; empty when no draw of it tests depth
+  std::vector<float> hiz_;  ///< by tile of the pass; empty when no draw of it tests depth
   Tick free_ = 0;
 };
 

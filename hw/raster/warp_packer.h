@@ -17,8 +17,10 @@ class WarpPacker final : public Unit {
  public:
   struct Params : ParamGroup {
     Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads packed a cycle. [G: as the fine rasteriser]"};
-    Param<int> warp_slots{*this, "warp_slots", 128, "warp", {1, 65536}, "Reorder buffer: fragment warps of a partition from packing to retirement. [G]"};
-    Param<int> patience_clk{*this, "patience_clk", 64, "clk", {1, 1 << 20}, "Cycles a partial warp waits for more quads. [G: a few tiles' time]"};
+    Param<int> warp_slots{*this,  "warp_slots", 128,
+                          "warp", {1, 65536},   "Reorder buffer: fragment warps of a partition from packing to retirement. [G]"};
+    Param<int> patience_clk{*this, "patience_clk", 64,
+                            "clk", {1, 1 << 20},   "Cycles a partial warp waits for more quads. [G: a few tiles' time]"};
   };
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in"};
@@ -56,12 +58,11 @@ class WarpPacker final : public Unit {
   Store<WarpSlot>& warps_;
   const std::uint16_t partition_;
   Stats stats_;
-  std::uint64_t opened_ = 0;      ///< warps opened so far; the open one is opened_ - 1
+  std::uint64_t opened_ = 0;  ///< warps opened so far; the open one is opened_ - 1
   std::uint64_t retired_ = 0;
-  bool open_ = false;             ///< a partial warp is being filled
-  bool late_ = false;             ///< it holds late-tested quads (it holds only one sort)
-  std::uint64_t sync_ = 0;        ///< to be reported when the open warp retires
-  std::uint32_t taken_quads_ = 0; ///< quads of the tile at the head that are packed already
+  bool open_ = false;              ///< a partial warp is being filled
+  std::uint64_t sync_ = 0;         ///< to be reported when the open warp retires
+  std::uint32_t taken_quads_ = 0;  ///< quads of the tile at the head that are packed already
   Tick last_input_ = 0;
   Tick free_ = 0;
 };

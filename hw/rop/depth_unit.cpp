@@ -40,8 +40,9 @@ int quad_in_tile(const WarpSlot::Quad& quad) { return 4 * ((quad.y % models::kTi
 
 }  // namespace
 
-DepthUnit::DepthUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
-                     models::DeviceMemory::Owner owner, const TriangleStore& triangles, Store<WarpSlot>& warps, int partition, int partitions, int slices)
+DepthUnit::DepthUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+                     models::DeviceMemory& memory, models::DeviceMemory::Owner owner, const TriangleStore& triangles,
+                     Store<WarpSlot>& warps, int partition, int partitions, int slices)
     : Unit(name, Kind::kChooser, clock),
       params_(params),
       frame_(frame),
@@ -53,7 +54,9 @@ DepthUnit::DepthUnit(sc_core::sc_module_name name, const Params& params, const C
       port_(*this, stats_, slices),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner) {}
 
-std::string DepthUnit::state_text() const { return fmt::format("{} tiles in the early port, {} warps in the late port", early_.size(), late_.size()); }
+std::string DepthUnit::state_text() const {
+  return fmt::format("{} tiles in the early port, {} warps in the late port", early_.size(), late_.size());
+}
 
 std::size_t DepthUnit::tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const {
   return std::size_t{tile_y} * frame_.passes[pass_].depth.tiles_x + tile_x;
@@ -184,7 +187,8 @@ void DepthUnit::acquire_waiting(Tick now) {
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.index).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
-    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, sectors, 0, number & ~kLateBit, entry.missing, entry.done, port_)) return false;
+    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, sectors, 0, number & ~kLateBit, entry.missing, entry.done, port_))
+      return false;
   }
   entry.acquired = true;
   return true;

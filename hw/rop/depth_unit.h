@@ -23,7 +23,8 @@ class DepthUnit final : public Unit {
   struct Params : ParamGroup {
     Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads tested a cycle. [G: as the fine rasteriser]"};
     Param<int> tiles_in_flight{*this, "tiles_in_flight", 16, "tile", {1, 4096}, "Tiles waiting for their depths. [G: latency to hide]"};
-    Param<int> cache_lines{*this, "cache_lines", 256, "line", {1, 1 << 20}, "Lines of 128 bytes in the depth cache; two hold a tile. [G: 32 KiB]"};
+    Param<int> cache_lines{*this,  "cache_lines", 256,
+                           "line", {1, 1 << 20},  "Lines of 128 bytes in the depth cache; two hold a tile. [G: 32 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the depth cache. [G]"};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
   };
@@ -41,7 +42,8 @@ class DepthUnit final : public Unit {
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
   };
   DepthUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
-            models::DeviceMemory::Owner owner, const TriangleStore& triangles, Store<WarpSlot>& warps, int partition, int partitions, int slices);
+            models::DeviceMemory::Owner owner, const TriangleStore& triangles, Store<WarpSlot>& warps, int partition, int partitions,
+            int slices);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
@@ -61,7 +63,7 @@ class DepthUnit final : public Unit {
     int missing = 0;
     Tick ready = 0;
     bool acquired = false;
-    std::uint8_t done = 0;                                ///< of `SurfaceCache::acquire`
+    std::uint8_t done = 0;  ///< of `SurfaceCache::acquire`
   };
   struct LateEntry {
     LateToken token;
@@ -112,11 +114,11 @@ class DepthUnit final : public Unit {
   std::uint32_t pass_ = 0;
   std::deque<EarlyEntry> early_;
   std::deque<LateEntry> late_;
-  std::uint32_t first_early_ = 0, first_late_ = 0;   ///< numbers of the fronts; waiters are named by number and port
-  bool stalled_ = false;                             ///< the cache had no place; a fill will make one
-  bool lowering_ = true;                             ///< no draw of the pass so far can raise a depth
-  std::vector<std::uint32_t> late_in_flight_;        ///< quads by tile
-  std::vector<float> known_max_;                     ///< by tile: what Hi-Z was told
+  std::uint32_t first_early_ = 0, first_late_ = 0;  ///< numbers of the fronts; waiters are named by number and port
+  bool stalled_ = false;                            ///< the cache had no place; a fill will make one
+  bool lowering_ = true;                            ///< no draw of the pass so far can raise a depth
+  std::vector<std::uint32_t> late_in_flight_;       ///< quads by tile
+  std::vector<float> known_max_;                    ///< by tile: what Hi-Z was told
   Flush flush_ = Flush::kNone;
   int fences_ = 0;
   Tick free_ = 0, take_free_ = 0;

@@ -12,7 +12,7 @@ constexpr std::uint32_t kFenceTag = 0xffffffffu;
 /// The part of a tile that one quad of a warp covers.
 struct QuadPlace {
   std::uint32_t tile_x = 0, tile_y = 0;
-  int quad = 0;   ///< 0..15 within the tile
+  int quad = 0;  ///< 0..15 within the tile
 };
 
 QuadPlace place_of(const WarpSlot::Quad& quad) {
@@ -25,7 +25,7 @@ models::LaneMask lanes_of(const WarpSlot& warp, int q) { return (warp.alive >> (
 /// Sectors of one tile that a warp touches, and those of them it overwrites whole.
 struct TileTouch {
   std::uint32_t tile_x = 0, tile_y = 0;
-  std::array<std::uint8_t, 8> pixels{};   ///< live pixels by sector, of 8
+  std::array<std::uint8_t, 8> pixels{};  ///< live pixels by sector, of 8
 };
 
 /// Gathers a warp's live quads by tile; at most one entry a quad.
@@ -36,7 +36,9 @@ int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads
     if (lanes == 0) continue;
     const QuadPlace place = place_of(warp.quad[static_cast<std::size_t>(q)]);
     int i = 0;
-    while (i < count && (tiles[static_cast<std::size_t>(i)].tile_x != place.tile_x || tiles[static_cast<std::size_t>(i)].tile_y != place.tile_y)) ++i;
+    while (i < count &&
+           (tiles[static_cast<std::size_t>(i)].tile_x != place.tile_x || tiles[static_cast<std::size_t>(i)].tile_y != place.tile_y))
+      ++i;
     if (i == count) tiles[static_cast<std::size_t>(count++)] = {place.tile_x, place.tile_y, {}};
     auto& pixels = tiles[static_cast<std::size_t>(i)].pixels[static_cast<std::size_t>(place.quad / 2)];
     pixels = static_cast<std::uint8_t>(pixels + std::popcount(lanes));
@@ -58,10 +60,13 @@ Rop::Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock,
       port_(*this, stats_, slices),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner),
       shaded_(static_cast<std::size_t>(warps.size()), false) {
-  for (int i = 0; i < cores; ++i) done_in.push_back(std::make_unique<FifoIn<FragmentDoneToken>>(*this, fmt::format("done_in_{}", i).c_str()));
+  for (int i = 0; i < cores; ++i)
+    done_in.push_back(std::make_unique<FifoIn<FragmentDoneToken>>(*this, fmt::format("done_in_{}", i).c_str()));
 }
 
-std::string Rop::state_text() const { return fmt::format("{} entries in its reorder buffer, {} tested, {} with colours", entries_.size(), awaiting_, acquired_); }
+std::string Rop::state_text() const {
+  return fmt::format("{} entries in its reorder buffer, {} tested, {} with colours", entries_.size(), awaiting_, acquired_);
+}
 
 // --- When ---
 
@@ -82,9 +87,7 @@ Wake Rop::acquire_wake() const {
 
 Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
   switch (entry.token.kind) {
-    case TokenKind::kWork:
-      wake.output(release_out);
-      return entry.token.sync != 0 ? wake.output(sync_out) : wake;
+    case TokenKind::kWork: wake.output(release_out); return entry.token.sync != 0 ? wake.output(sync_out) : wake;
     case TokenKind::kSync: return wake.output(sync_out);
     case TokenKind::kDrawEnd: return wake.output(retire_out);
     case TokenKind::kPassEnd: return wake.output(late_out);
@@ -197,7 +200,8 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
       auto& mask = blends || tile.pixels[s] < 8 ? read : write;
       mask = static_cast<std::uint8_t>(mask | 1u << s);
     }
-    if (!cache_.acquire(tile.tile_x, tile.tile_y, read, write, number, entry.missing, entry.done[static_cast<std::size_t>(i)], port_)) return false;
+    if (!cache_.acquire(tile.tile_x, tile.tile_y, read, write, number, entry.missing, entry.done[static_cast<std::size_t>(i)], port_))
+      return false;
   }
   return true;
 }
@@ -283,7 +287,8 @@ int Rop::write_colors(const WarpSlot& warp) {
     const QuadPlace place = place_of(warp.quad[static_cast<std::size_t>(q)]);
     float rgba[4][4];
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[c].begin() + 4 * q, 4, rgba[c]);
-    auto* const tile = reinterpret_cast<std::uint32_t*>(device_.write(pass.color.tile_address(place.tile_x, place.tile_y), models::kTileBytes).data());
+    auto* const tile =
+        reinterpret_cast<std::uint32_t*>(device_.write(pass.color.tile_address(place.tile_x, place.tile_y), models::kTileBytes).data());
     models::blend_quad(draw.blend, pass.color_format, rgba, tile + 4 * place.quad, lanes);
   }
   const bool blends = models::reads_destination(draw.blend);

@@ -20,7 +20,8 @@ class Rop final : public Unit {
   struct Params : ParamGroup {
     Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads written a cycle. [G: as the fine rasteriser]"};
     Param<int> warps_in_flight{*this, "warps_in_flight", 16, "warp", {1, 4096}, "Warps waiting for their colours. [G: latency to hide]"};
-    Param<int> cache_lines{*this, "cache_lines", 256, "line", {1, 1 << 20}, "Lines of 128 bytes in the colour cache; two hold a tile. [G: 32 KiB]"};
+    Param<int> cache_lines{*this,  "cache_lines", 256,
+                           "line", {1, 1 << 20},  "Lines of 128 bytes in the colour cache; two hold a tile. [G: 32 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the colour cache. [G]"};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
   };
@@ -58,8 +59,8 @@ class Rop final : public Unit {
     Stage stage = Stage::kShading;
     int missing = 0;
     Tick ready = 0;
-    int shaded = 0;      ///< live lanes after discard
-    std::array<std::uint8_t, models::kWarpQuads> done{};   ///< of `SurfaceCache::acquire`, by touched tile
+    int shaded = 0;                                       ///< live lanes after discard
+    std::array<std::uint8_t, models::kWarpQuads> done{};  ///< of `SurfaceCache::acquire`, by touched tile
   };
   enum class Flush : std::uint8_t { kNone, kDepth, kDraining, kFenced };
 

@@ -11,7 +11,8 @@ namespace {
 constexpr unsigned kMaterialized = 1, kAcquired = 4;
 }  // namespace
 
-SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory, models::DeviceMemory::Owner owner)
+SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory,
+                           models::DeviceMemory::Owner owner)
     : cache_(stats, lines, ways, misses), memory_(memory), stats_(stats) {
   cache_.own_dirty_lines(memory, owner);
 }
@@ -43,8 +44,8 @@ bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::
   return true;
 }
 
-bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing,
-                           std::uint8_t& done, MemoryPort& port) {
+bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter,
+                           int& missing, std::uint8_t& done, MemoryPort& port) {
   if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, done, port)) return false;
   for (int half = 0; half < 2; ++half) {
     if ((done & (kAcquired << half)) != 0) continue;

@@ -36,8 +36,8 @@ class SurfaceCache {
   /// Asks for sectors of a tile: those in `read` with their contents, those in `write` because they are overwritten whole.
   /// Adds what is not there yet to `missing` and tells `waiter` of each. False when there is no place now: try again after a fill, with the same `done`,
   /// which starts at 0 and remembers what was asked for already, so that even a cache of one line gets through.
-  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing, std::uint8_t& done,
-               MemoryPort& port);
+  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing,
+               std::uint8_t& done, MemoryPort& port);
   /// Sectors of a tile were written. Takes back a line that was evicted since it was acquired; false when there is no place for it now.
   bool write(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t sectors, MemoryPort& port);
   template <class F>
@@ -58,7 +58,7 @@ class SurfaceCache {
   models::DeviceMemory& memory_;
   SurfaceCacheStats stats_;
   models::SurfaceLayout surface_;
-  std::vector<bool> cleared_;   ///< by tile
+  std::vector<bool> cleared_;  ///< by tile
 };
 
 }  // namespace quadrille::hw

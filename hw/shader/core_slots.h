@@ -8,7 +8,7 @@ namespace quadrille::hw {
 struct CoreSlot {
   models::Warp warp;
   models::FragmentInputs fragment;
-  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs;   ///< fragment stage: colour, depth
+  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs;  ///< fragment stage: colour, depth
   /// Filtered texels of `warp.textures`, by request.
   std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseTextures> texels;
   std::uint32_t draw = 0, store_slot = 0;

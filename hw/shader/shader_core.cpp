@@ -41,8 +41,8 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const
 }
 
 std::string ShaderCore::state_text() const {
-  return fmt::format("{} of {} warp slots, {} of {} register rows in use, {} warps ready", slots_.size() - free_slots_.size(), slots_.size(),
-                     params_.register_rows - free_rows_, params_.register_rows.value(), ready_.size());
+  return fmt::format("{} of {} warp slots, {} of {} register rows in use, {} warps ready", slots_.size() - free_slots_.size(),
+                     slots_.size(), params_.register_rows - free_rows_, params_.register_rows.value(), ready_.size());
 }
 
 bool ShaderCore::fits(const models::Program& program, int kept_rows, int kept_slots) const {

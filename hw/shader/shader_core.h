@@ -21,7 +21,8 @@ class ShaderCore final : public Unit {
  public:
   struct Params : ParamGroup {
     Param<int> simds{*this, "simds", 4, "simd", {1, 64}, "SIMD units, each running one clause at a time. [G: 4 schedulers a core]"};
-    Param<int> simd_lanes{*this, "simd_lanes", 8, "lane", {1, 32}, "Lanes a SIMD computes a cycle; a warp instruction takes 32 / lanes cycles. [G]"};
+    Param<int> simd_lanes{*this,  "simd_lanes", 8,
+                          "lane", {1, 32},      "Lanes a SIMD computes a cycle; a warp instruction takes 32 / lanes cycles. [G]"};
     Param<int> sfu_lanes{*this, "sfu_lanes", 2, "lane", {1, 32}, "Special-function lanes of a SIMD. [G: a quarter of the ALU]"};
     Param<int> alu_clk{*this, "alu_clk", 4, "clk", {0, 1 << 16}, "Latency from the last issue of a clause to its results. [G]"};
     Param<int> warp_slots{*this, "warp_slots", 32, "warp", {2, 1024}, "Warps resident on the core. [G]"};
@@ -41,15 +42,15 @@ class ShaderCore final : public Unit {
     Counter lane_operations{*this, "lane_operations", "lane", "Lanes executed, summed over instructions"};
     Counter simd_busy{*this, "simd_busy", "clk", "Cycles that SIMD units were held, summed over the units"};
   };
-  ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots, Store<BatchSlot>& batches,
-             std::vector<Store<WarpSlot>*> warps, const TriangleStore& triangles, bool textured);
+  ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots,
+             Store<BatchSlot>& batches, std::vector<Store<WarpSlot>*> warps, const TriangleStore& triangles, bool textured);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
   FifoIn<WarpToken> fragment_in{*this, "fragment_in", LinkRole::kFlow, kFragmentStream};
   FifoOut<VertexDoneToken> vertex_out{*this, "vertex_out", LinkRole::kFlow, kVertexStream};
   std::vector<std::unique_ptr<FifoOut<FragmentDoneToken>>> fragment_out;
-  std::unique_ptr<FifoOut<TextureToken>> texture_out;   ///< absent when no program of the frame reads a texture
+  std::unique_ptr<FifoOut<TextureToken>> texture_out;  ///< absent when no program of the frame reads a texture
   std::unique_ptr<FifoIn<TextureToken>> texture_in;
 
   [[nodiscard]] Wake next() const override;
@@ -87,7 +88,7 @@ class ShaderCore final : public Unit {
   Store<BatchSlot>& batches_;
   std::vector<Store<WarpSlot>*> warps_;
   const TriangleStore& triangles_;
-  const int fragment_rows_;               ///< registers of the hungriest fragment program
+  const int fragment_rows_;  ///< registers of the hungriest fragment program
   Stats stats_;
   std::vector<std::uint32_t> free_slots_;
   int free_rows_;

@@ -2,13 +2,15 @@
 
 namespace quadrille::hw {
 
-WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Clock& clock, int partitions, int cores) : Unit(name, Kind::kChooser, clock) {
+WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Clock& clock, int partitions, int cores)
+    : Unit(name, Kind::kChooser, clock) {
   for (int p = 0; p < partitions; ++p) {
     fragment_in.push_back(
         std::make_unique<FifoIn<WarpToken>>(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
   }
   for (int c = 0; c < cores; ++c) {
-    vertex_out.push_back(std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("vertex_out_{}", c).c_str(), LinkRole::kFlow, kVertexStream));
+    vertex_out.push_back(
+        std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("vertex_out_{}", c).c_str(), LinkRole::kFlow, kVertexStream));
     fragment_out.push_back(
         std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("fragment_out_{}", c).c_str(), LinkRole::kFlow, kFragmentStream));
   }

@@ -5,8 +5,8 @@
 
 namespace quadrille::hw {
 
-TextureUnit::TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
-                         Store<CoreSlot>& slots, int slices)
+TextureUnit::TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+                         const models::DeviceMemory& memory, Store<CoreSlot>& slots, int slices)
     : Unit(name, Kind::kChooser, clock),
       params_(params),
       frame_(frame),
@@ -15,7 +15,9 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const Params& params, con
       port_(*this, stats_, slices),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {}
 
-std::string TextureUnit::state_text() const { return fmt::format("{} request groups, {} look-ups left", groups_.size(), lines_.size() - next_line_); }
+std::string TextureUnit::state_text() const {
+  return fmt::format("{} request groups, {} look-ups left", groups_.size(), lines_.size() - next_line_);
+}
 
 Wake TextureUnit::address_wake() const {
   if (next_line_ < lines_.size()) return stalled_ ? Wake::never(*port_.response_in[0]) : Wake(address_free_);
@@ -78,7 +80,9 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group, 
     stats_.bilinear_quads += plan_.bilinear_quads;
     stats_.texels += plan_.texels;
   }
-  const auto per = [](std::size_t work, int rate) { return static_cast<std::int64_t>((work + static_cast<std::size_t>(rate) - 1) / static_cast<std::size_t>(rate)); };
+  const auto per = [](std::size_t work, int rate) {
+    return static_cast<std::int64_t>((work + static_cast<std::size_t>(rate) - 1) / static_cast<std::size_t>(rate));
+  };
   address_cycles = std::max({std::int64_t{1}, per(quads, params_.address_quads_per_clk), per(lines_.size(), params_.tags_per_clk)});
   group.filter_cycles = std::max<std::int64_t>(1, per(quads, params_.filter_quads_per_clk));
 }

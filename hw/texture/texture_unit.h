@@ -10,8 +10,8 @@
 
 #include "hw/base/param.h"
 #include "hw/frame/tokens.h"
-#include "hw/memory/memory_port.h"
 #include "hw/memory/l1_cache.h"
+#include "hw/memory/memory_port.h"
 #include "hw/shader/core_slots.h"
 
 #include <deque>
@@ -22,10 +22,12 @@ class TextureUnit final : public Unit {
  public:
   struct Params : ParamGroup {
     Param<int> address_quads_per_clk{*this, "address_quads_per_clk", 2, "quad/clk", {1, 64}, "Quads and mip levels addressed a cycle. [G]"};
-    Param<int> filter_quads_per_clk{*this, "filter_quads_per_clk", 2, "quad/clk", {1, 64}, "Bilinear quads filtered a cycle. [G: 8 texels x 4 channels]"};
+    Param<int> filter_quads_per_clk{
+        *this, "filter_quads_per_clk", 2, "quad/clk", {1, 64}, "Bilinear quads filtered a cycle. [G: 8 texels x 4 channels]"};
     Param<int> tags_per_clk{*this, "tags_per_clk", 4, "line/clk", {1, 64}, "Distinct lines looked up a cycle. [G: 4 tag banks]"};
     Param<int> filter_clk{*this, "filter_clk", 8, "clk", {0, 1 << 16}, "Latency of the filter. [G]"};
-    Param<int> groups_in_flight{*this, "groups_in_flight", 32, "group", {1, 4096}, "Clauses' requests between addresses and filter. [G: latency to hide]"};
+    Param<int> groups_in_flight{*this,   "groups_in_flight", 32,
+                                "group", {1, 4096},          "Clauses' requests between addresses and filter. [G: latency to hide]"};
     Param<int> cache_lines{*this, "cache_lines", 256, "line", {1, 1 << 20}, "Lines of 128 bytes in the first-level cache. [G: 32 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the first-level cache. [G]"};
     Param<int> cache_misses{*this, "cache_misses", 64, "line", {1, 4096}, "Lines under way. [G: bandwidth times latency]"};
@@ -38,8 +40,8 @@ class TextureUnit final : public Unit {
     Counter texels{*this, "texels", "texel", "Texels read from the cache"};
     Counter groups_answered{*this, "groups_answered", "group", "Groups whose texels went back"};
   };
-  TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
-              Store<CoreSlot>& slots, int slices);
+  TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
+              const models::DeviceMemory& memory, Store<CoreSlot>& slots, int slices);
 
   FifoIn<TextureToken> request_in{*this, "request_in"};
   FifoOut<TextureToken> response_out{*this, "response_out", LinkRole::kReply};
@@ -53,7 +55,7 @@ class TextureUnit final : public Unit {
  private:
   struct Group {
     TextureToken token;
-    int missing = 0;               ///< look-ups not complete
+    int missing = 0;  ///< look-ups not complete
     std::int64_t filter_cycles = 0;
     Tick ready = 0;
   };
@@ -72,8 +74,8 @@ class TextureUnit final : public Unit {
   L1Cache cache_;
   models::TexturePlan plan_;
   std::deque<Group> groups_;
-  std::uint32_t first_group_ = 0;                 ///< number of groups_.front(); waiters are named by number
-  std::vector<models::TextureLine> lines_;        ///< look-ups of the newest group
+  std::uint32_t first_group_ = 0;           ///< number of groups_.front(); waiters are named by number
+  std::vector<models::TextureLine> lines_;  ///< look-ups of the newest group
   std::size_t next_line_ = 0;
   bool stalled_ = false;
   Tick address_free_ = 0, filter_free_ = 0;

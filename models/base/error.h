@@ -26,8 +26,8 @@ template <class... Args>
 }  // namespace quadrille
 
 /// An invariant that holds in release builds too. The detail is a format string with its arguments, evaluated only on failure.
-#define QUADRILLE_CHECK(condition, ...)                                                             \
-  do {                                                                                              \
-    if (!(condition)) [[unlikely]]                                                                  \
-      ::quadrille::internal_error(__FILE__, __LINE__, #condition, ::fmt::format(__VA_ARGS__));      \
+#define QUADRILLE_CHECK(condition, ...)                                                        \
+  do {                                                                                         \
+    if (!(condition)) [[unlikely]]                                                             \
+      ::quadrille::internal_error(__FILE__, __LINE__, #condition, ::fmt::format(__VA_ARGS__)); \
   } while (false)

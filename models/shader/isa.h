@@ -23,6 +23,7 @@ inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attribut
 inline constexpr int kMaxColorOutputs = 4;   ///< scalar components of one colour attachment
 
 /// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones (true) or zero.
+// clang-format off: operations stay grouped by kind
 enum class Op : std::uint8_t {
   kNop,
   kMov,
@@ -118,6 +119,7 @@ enum class Op : std::uint8_t {
   kEnd,
   kCount
 };
+// clang-format on
 
 /// What an instruction occupies while it issues; decides its cycles.
 enum class IssueClass : std::uint8_t { kAlu, kSfu, kInterp, kConst, kTex, kControl, kExport };

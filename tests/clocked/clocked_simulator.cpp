@@ -13,8 +13,8 @@ namespace {
 struct TickingClock {
   std::int64_t hz = 1;
   std::int64_t edge = 0;
-  std::int64_t next = 0;   ///< femtosecond of edge number `edge`
-  bool ticks = false;      ///< has an edge at this moment
+  std::int64_t next = 0;  ///< femtosecond of edge number `edge`
+  bool ticks = false;     ///< has an edge at this moment
 };
 
 class Simulation {

@@ -22,8 +22,8 @@ using hw::world::WorldSpec;
 [[nodiscard]] std::int64_t edge_time(std::int64_t hz, std::int64_t k);
 
 struct Result {
-  Trace trace;                        ///< by unit
-  std::vector<int> tokens_in_links;   ///< by wire, when the simulation stopped
+  Trace trace;                       ///< by unit
+  std::vector<int> tokens_in_links;  ///< by wire, when the simulation stopped
 };
 
 /// Simulates all edges before `end` (femtoseconds).

@@ -20,7 +20,8 @@ std::string first_difference(const WorldSpec& spec, const Trace& kernel, const T
   for (std::size_t u = 0; u < kernel.size(); ++u) {
     for (std::size_t i = 0; i < std::max(kernel[u].size(), clocked[u].size()); ++i) {
       const auto text = [i](const std::vector<Event>& events) {
-        return i < events.size() ? fmt::format("{} {}{} {:x}", events[i].at, events[i].what, events[i].port, events[i].id) : std::string("nothing");
+        return i < events.size() ? fmt::format("{} {}{} {:x}", events[i].at, events[i].what, events[i].port, events[i].id)
+                                 : std::string("nothing");
       };
       if (text(kernel[u]) != text(clocked[u])) {
         return fmt::format("{}, action {}: kernel {}, clocked {}", spec.units[u].name, i, text(kernel[u]), text(clocked[u]));

@@ -5,7 +5,10 @@ namespace quadrille::clocked {
 using namespace hw::world;
 
 ClockedUnit::ClockedUnit(const UnitSpec& spec)
-    : in(static_cast<std::size_t>(spec.inputs)), out(static_cast<std::size_t>(spec.outputs)), spec_(spec), places_(static_cast<std::size_t>(spec.slots)) {}
+    : in(static_cast<std::size_t>(spec.inputs)),
+      out(static_cast<std::size_t>(spec.outputs)),
+      spec_(spec),
+      places_(static_cast<std::size_t>(spec.slots)) {}
 
 void ClockedUnit::tick(std::int64_t now) {
   now_ = now;
@@ -25,10 +28,18 @@ void ClockedUnit::tick(std::int64_t now) {
 
 int ClockedUnit::try_one() {
   switch (spec_.role) {
-    case Role::kSource: case Role::kSink: return generate_or_eat();
-    case Role::kStage: case Role::kFork: case Role::kRoute: case Role::kRecycle: case Role::kJoin: return move_one();
-    case Role::kSerial: case Role::kExpand: case Role::kPack: return hold_one();
-    case Role::kArbiter: case Role::kPriority: return merge();
+    case Role::kSource:
+    case Role::kSink: return generate_or_eat();
+    case Role::kStage:
+    case Role::kFork:
+    case Role::kRoute:
+    case Role::kRecycle:
+    case Role::kJoin: return move_one();
+    case Role::kSerial:
+    case Role::kExpand:
+    case Role::kPack: return hold_one();
+    case Role::kArbiter:
+    case Role::kPriority: return merge();
     case Role::kSpread: return spread();
     case Role::kCore: return core();
     case Role::kMemory: return memory();
@@ -163,10 +174,11 @@ int ClockedUnit::core() {
 
 int ClockedUnit::memory() {
   using Phase = Place::Phase;
-  Place* longest = nullptr;   // done for the longest time, of those whose output has room
+  Place* longest = nullptr;  // done for the longest time, of those whose output has room
   for (Place& p : places_) {
     if (p.phase != Phase::kWait || p.cycles_left > 0 || !room(p.port)) continue;
-    const bool before = longest == nullptr || p.cycles_left < longest->cycles_left || (p.cycles_left == longest->cycles_left && p.order < longest->order);
+    const bool before =
+        longest == nullptr || p.cycles_left < longest->cycles_left || (p.cycles_left == longest->cycles_left && p.order < longest->order);
     if (before) longest = &p;
   }
   if (longest != nullptr) {

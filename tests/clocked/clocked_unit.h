@@ -10,7 +10,7 @@ namespace quadrille::clocked {
 /// One end of a link as a unit sees it.
 struct Pin {
   ClockedLink* link = nullptr;
-  bool together = false;   ///< the other end's clock has an edge at this moment
+  bool together = false;  ///< the other end's clock has an edge at this moment
 };
 
 class ClockedUnit {
@@ -25,10 +25,10 @@ class ClockedUnit {
  private:
   /// One action if one is possible now; the cycles it keeps the unit, or 0 if none is.
   int try_one();
-  int move_one();        ///< stage, fork, route, recycle, join
-  int generate_or_eat(); ///< source, sink
-  int hold_one();        ///< serial, expand, pack
-  int merge();           ///< arbiter, priority
+  int move_one();         ///< stage, fork, route, recycle, join
+  int generate_or_eat();  ///< source, sink
+  int hold_one();         ///< serial, expand, pack
+  int merge();            ///< arbiter, priority
   int spread();
   int core();
   int memory();
@@ -41,8 +41,8 @@ class ClockedUnit {
 
   struct Place {  ///< a core's context or a memory's slot
     enum class Phase { kEmpty, kAsk, kWait, kReady } phase = Phase::kEmpty;
-    int cycles_left = 0, requests_left = 0;   ///< cycles below 0: done for so long
-    int order = 0;                            ///< of acceptance
+    int cycles_left = 0, requests_left = 0;  ///< cycles below 0: done for so long
+    int order = 0;                           ///< of acceptance
     std::size_t port = 0;
     hw::world::Token token;
   };
@@ -50,9 +50,9 @@ class ClockedUnit {
 
   hw::world::UnitSpec spec_;
   std::vector<Place> places_;
-  int busy_edges_ = 0;       ///< edges that pass before the next action
+  int busy_edges_ = 0;  ///< edges that pass before the next action
   std::int64_t now_ = 0;
-  std::uint32_t number_ = 0; ///< tokens sent or eaten
+  std::uint32_t number_ = 0;  ///< tokens sent or eaten
   hw::world::Token held_;
   int held_count_ = 0;
   std::size_t turn_ = 0;

@@ -44,7 +44,8 @@ class StubUnit : public Unit {
 template <class T>
 class StubSource final : public StubUnit {
  public:
-  StubSource(sc_core::sc_module_name name, const Clock& clock, std::vector<Timed<T>> script) : StubUnit(name, Kind::kFixedOrder, clock), script_(std::move(script)) {}
+  StubSource(sc_core::sc_module_name name, const Clock& clock, std::vector<Timed<T>> script)
+      : StubUnit(name, Kind::kFixedOrder, clock), script_(std::move(script)) {}
   FifoOut<T> out{*this, "out"};
   Wake next() const override { return sent_ == script_.size() ? Wake(kNever) : Wake(script_[sent_].cycle * kCycle).output(out); }
   void act(Tick now) override { out.push(now, script_[sent_++].token); }
@@ -60,7 +61,8 @@ template <class T>
 class StubSink final : public StubUnit {
  public:
   using Key = std::function<std::uint64_t(const T&)>;
-  StubSink(sc_core::sc_module_name name, const Clock& clock, Pace pace, Key key) : StubUnit(name, Kind::kFixedOrder, clock), pace_(pace), key_(std::move(key)) {
+  StubSink(sc_core::sc_module_name name, const Clock& clock, Pace pace, Key key)
+      : StubUnit(name, Kind::kFixedOrder, clock), pace_(pace), key_(std::move(key)) {
     free_ = pace.from * kCycle;
   }
   FifoIn<T> in{*this, "in"};
@@ -107,14 +109,16 @@ class StubMemory final : public StubUnit {
     if (free_ > now || !in.ready_at(now)) return;
     const MemoryRequest request = in.pop(now);
     got.push_back({now / kCycle, request});
-    if (request.kind != MemoryRequest::Kind::kWrite) waiting_.push_back({now / kCycle + latency_, {request.line, request.tag, request.sectors}});
+    if (request.kind != MemoryRequest::Kind::kWrite)
+      waiting_.push_back({now / kCycle + latency_, {request.line, request.tag, request.sectors}});
     free_ = after(now, 1);
   }
   /// "cycle:kind line/sectors" of each request; kind r, w or f.
   [[nodiscard]] std::string text() const {
     std::string all;
     for (const Timed<MemoryRequest>& t : got) {
-      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle, "rwf"[static_cast<int>(t.token.kind)], t.token.line, t.token.sectors);
+      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle, "rwf"[static_cast<int>(t.token.kind)], t.token.line,
+                         t.token.sectors);
     }
     return all;
   }
@@ -231,7 +235,9 @@ std::string contract_text(const typename B::Setup& setup, bool same_order = true
     return std::make_unique<B>(driver, v, setup);
   };
   std::string all;
-  for (const std::string& line : contract::violations(build, {.shuffles = 2, .creations = 0, .digest_at_depth_one = same_order, .timeout_s = 20})) all += line + '\n';
+  for (const std::string& line :
+       contract::violations(build, {.shuffles = 2, .creations = 0, .digest_at_depth_one = same_order, .timeout_s = 20}))
+    all += line + '\n';
   return all;
 }
 

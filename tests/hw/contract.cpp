@@ -64,9 +64,11 @@ std::string attribution_failures(const std::vector<Unit*>& units, Tick end) {
     const std::int64_t smallest = std::min({unit->busy_cycles(), unit->starved_cycles(), unit->blocked_cycles(), unit->idle_cycles()});
     std::int64_t starved = 0, blocked = 0;
     for (const PortBase* port : unit->ports()) (port->direction() == PortBase::Direction::kIn ? starved : blocked) += port->waited();
-    if (sum != unit->clock().edges_before(end)) text += fmt::format("{}: the four charges sum to {}, not to its {} cycles\n", unit->name(), sum, unit->clock().edges_before(end));
+    if (sum != unit->clock().edges_before(end))
+      text += fmt::format("{}: the four charges sum to {}, not to its {} cycles\n", unit->name(), sum, unit->clock().edges_before(end));
     if (smallest < 0) text += fmt::format("{}: a negative charge {}\n", unit->name(), smallest);
-    if (starved != unit->starved_cycles() || blocked != unit->blocked_cycles()) text += fmt::format("{}: its ports' waits do not sum to starved and blocked\n", unit->name());
+    if (starved != unit->starved_cycles() || blocked != unit->blocked_cycles())
+      text += fmt::format("{}: its ports' waits do not sum to starved and blocked\n", unit->name());
   }
   return text;
 }
@@ -107,15 +109,14 @@ std::string in_child(const std::function<std::string()>& body, unsigned timeout_
   QUADRILLE_CHECK(child >= 0, "fork: {}", std::strerror(errno));
   if (child == 0) {
     setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
-    for (const int number : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGTERM}) std::signal(number, SIG_DFL);  // the test framework's are the parent's
+    for (const int number : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGTERM})
+      std::signal(number, SIG_DFL);  // the test framework's are the parent's
     alarm(timeout_s);
     dup2(errors[1], STDERR_FILENO);
     for (const int fd : {result[0], errors[0], errors[1]}) close(fd);
     try {
       write_all(result[1], body());
-    } catch (const std::exception& e) {
-      write_all(result[1], std::string("failed: ") + e.what());
-    }
+    } catch (const std::exception& e) { write_all(result[1], std::string("failed: ") + e.what()); }
     _exit(0);
   }
   close(result[1]);

@@ -57,11 +57,11 @@ struct Outcome {
 };
 
 struct Options {
-  int shuffles = 4;               ///< random host orders with the dispatcher (and one with the native driver)
-  int creations = 1;              ///< random orders of creating modules
-  bool depth_one = true;          ///< also with all links one deep, in both drivers
+  int shuffles = 4;                 ///< random host orders with the dispatcher (and one with the native driver)
+  int creations = 1;                ///< random orders of creating modules
+  bool depth_one = true;            ///< also with all links one deep, in both drivers
   bool digest_at_depth_one = true;  ///< the digest at depth one equals the plain one
-  unsigned timeout_s = 120;       ///< of one run, in seconds of the host
+  unsigned timeout_s = 120;         ///< of one run, in seconds of the host
 };
 
 /// Runs one variation in a forked process.

@@ -40,7 +40,9 @@ std::string broken_laws(const std::function<void(const Machine&)>& inject) {
 
 }  // namespace
 
-TEST_CASE("conservation: an intact machine breaks no law") { CHECK(broken_laws([](const Machine&) {}).empty()); }
+TEST_CASE("conservation: an intact machine breaks no law") {
+  CHECK(broken_laws([](const Machine&) {}).empty());
+}
 
 TEST_CASE("conservation: a lost fragment is noticed") {
   const std::string broken = broken_laws([](const Machine& machine) {

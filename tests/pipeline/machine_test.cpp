@@ -70,7 +70,8 @@ TEST_CASE("machine: what is left out changes neither pixels nor cycles") {
       CHECK(without.end == with.end);
       CHECK(with.figures.size() > without.figures.size());
       for (const auto& [name, value] : without.figures) {
-        if (name.starts_with("l2_") && name.find(".waited") != std::string::npos) continue;  // ports are numbered by client; there are more of them
+        if (name.starts_with("l2_") && name.find(".waited") != std::string::npos)
+          continue;  // ports are numbered by client; there are more of them
         const auto same = with.figures.find(name);
         if (same == with.figures.end() || same->second != value) FAIL_CHECK(name << " differs");
       }

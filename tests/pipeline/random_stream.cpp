@@ -15,27 +15,26 @@ layout(location = 0) in vec4 position; layout(location = 1) in vec4 color; layou
 layout(location = 0) out vec4 v_color; layout(location = 1) out vec2 v_uv; layout(location = 2) flat out float v_index;
 void main() { gl_Position = position; v_color = color; v_uv = uv; v_index = float(gl_VertexIndex % 5) * 0.2; })";
 
-constexpr std::array<const char*, 5> kFragments{
-    // Plain.
-    R"(#version 450
+constexpr std::array<const char*, 5> kFragments{// Plain.
+                                                R"(#version 450
 layout(location = 0) in vec4 v_color; layout(location = 2) flat in float v_index; layout(location = 0) out vec4 o;
 void main() { o = vec4(v_color.rgb * 0.8 + 0.2 * v_index, v_color.a); })",
-    // Textured.
-    R"(#version 450
+                                                // Textured.
+                                                R"(#version 450
 layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
 layout(set = 0, binding = 0) uniform sampler2D t;
 void main() { o = texture(t, v_uv) * v_color; })",
-    // Discards.
-    R"(#version 450
+                                                // Discards.
+                                                R"(#version 450
 layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
 layout(set = 0, binding = 0) uniform sampler2D t;
 void main() { vec4 c = texture(t, v_uv * 2.0); if (c.g < 0.5) discard; o = vec4(c.rgb, v_color.a); })",
-    // Writes depth.
-    R"(#version 450
+                                                // Writes depth.
+                                                R"(#version 450
 layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
 void main() { gl_FragDepth = clamp(gl_FragCoord.z * 0.7 + 0.3 * fract(v_uv.x), 0.0, 1.0); o = v_color.bgra; })",
-    // Diverges, in a loop with derivatives after it.
-    R"(#version 450
+                                                // Diverges, in a loop with derivatives after it.
+                                                R"(#version 450
 layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
 void main() {
   float s = 0.0; int n = int(mod(gl_FragCoord.x * 3.0 + gl_FragCoord.y, 7.0));
@@ -83,7 +82,9 @@ traces::Pipeline random_pipeline(Source& random, traces::Index fragment) {
   p.vertex_shader = 0;
   p.fragment_shader = fragment;
   p.bindings = {{0, sizeof(Vertex), false}};
-  p.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0}, {1, 0, traces::Format::kR32G32B32A32Float, 16}, {2, 0, traces::Format::kR32G32Float, 32}};
+  p.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0},
+                  {1, 0, traces::Format::kR32G32B32A32Float, 16},
+                  {2, 0, traces::Format::kR32G32Float, 32}};
   p.cull = random.integer(0, 4) == 0 ? traces::CullMode::kBack : traces::CullMode::kNone;
   p.depth.test = random.integer(0, 5) != 0;
   p.depth.write = random.integer(0, 2) != 0;
@@ -115,7 +116,8 @@ const std::vector<traces::Shader>& shaders() {
     std::vector<traces::Shader> s;
     s.push_back({"random.vert", traces::ShaderStage::kVertex, scenes::compile_glsl(kVertex, traces::ShaderStage::kVertex, "random.vert")});
     for (const char* text : kFragments) {
-      s.push_back({"random.frag", traces::ShaderStage::kFragment, scenes::compile_glsl(text, traces::ShaderStage::kFragment, "random.frag")});
+      s.push_back(
+          {"random.frag", traces::ShaderStage::kFragment, scenes::compile_glsl(text, traces::ShaderStage::kFragment, "random.frag")});
     }
     return s;
   }();
@@ -135,7 +137,8 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
   stream.commands.push_back(traces::SetViewport{0, 0, static_cast<float>(shape.width), static_cast<float>(shape.height), 0, 1});
   stream.commands.push_back(traces::SetScissor{0, 0, shape.width, shape.height});
   for (int d = 0; d < shape.draws; ++d) {
-    stream.pipelines.push_back(random_pipeline(random, static_cast<traces::Index>(1 + random.integer(0, static_cast<int>(kFragments.size()) - 1))));
+    stream.pipelines.push_back(
+        random_pipeline(random, static_cast<traces::Index>(1 + random.integer(0, static_cast<int>(kFragments.size()) - 1))));
     stream.commands.push_back(traces::BindPipeline{static_cast<traces::Index>(stream.pipelines.size() - 1)});
     stream.commands.push_back(traces::BindDescriptorSet{0, 0});
     std::vector<Vertex> vertices;
@@ -152,7 +155,8 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
         indices.push_back(static_cast<std::uint16_t>(index));
       }
       stream.buffers.push_back({"indices", bytes_of(indices.data(), indices.size() * 2)});
-      stream.commands.push_back(traces::BindIndexBuffer{static_cast<traces::Index>(stream.buffers.size() - 1), 0, traces::IndexType::kUint16});
+      stream.commands.push_back(
+          traces::BindIndexBuffer{static_cast<traces::Index>(stream.buffers.size() - 1), 0, traces::IndexType::kUint16});
       draw.indexed = true;
     }
     stream.commands.push_back(draw);

@@ -8,9 +8,9 @@
 namespace quadrille::pipeline::test {
 
 struct StreamShape {
-  std::uint32_t width = 88, height = 56;   ///< not multiples of a tile on purpose
+  std::uint32_t width = 88, height = 56;  ///< not multiples of a tile on purpose
   int draws = 14;
-  int triangles = 10;                      ///< a draw, on average
+  int triangles = 10;  ///< a draw, on average
 };
 
 /// The same seed gives the same stream. It is validated.

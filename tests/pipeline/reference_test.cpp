@@ -1,6 +1,6 @@
 /// The machine against the double-precision reference in *given* mode: the same snapped triangles and precisions, none of the same code.
-#include "models/reference/compare.h"
 #include "models/reference/reference.h"
+#include "models/reference/compare.h"
 #include "pipeline/render.h"
 #include "scenes/scene.h"
 #include "tests/scenes/scene_folder.h"
@@ -67,7 +67,8 @@ void check_scene(const std::string& scene) {
 }  // namespace
 
 TEST_CASE("machine: built-in scenes equal the reference in given mode") {
-  for (const char* scene : {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:overdraw", "builtin:fill", "builtin:courtyard"}) check_scene(scene);
+  for (const char* scene : {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:overdraw", "builtin:fill", "builtin:courtyard"})
+    check_scene(scene);
 }
 
 TEST_CASE("machine: real scenes equal the reference in given mode") {
@@ -76,10 +77,10 @@ TEST_CASE("machine: real scenes equal the reference in given mode") {
     WARN("skipped: the folder of real scenes is absent");
     return;
   }
-  for (const char* scene : {"Box/Box.gltf", "BoxVertexColors/BoxVertexColors.glb", "BoxTextured_interleaved/BoxTextured.gltf", "CornellBox/CornellBox.glb",
-                            "TextureTransformTest/TextureTransformTest.gltf", "Suzanne/Suzanne.gltf", "ManyCubes_u8idx/many-cubes.gltf",
-                            "TerrainBevy/terrain.glb", "Engine2Cyl/2CylinderEngine.glb", "FlightHelmet_512/FlightHelmet.gltf",
-                            "STK_CandelaCity/candela_city.gltf"}) {
+  for (const char* scene : {"Box/Box.gltf", "BoxVertexColors/BoxVertexColors.glb", "BoxTextured_interleaved/BoxTextured.gltf",
+                            "CornellBox/CornellBox.glb", "TextureTransformTest/TextureTransformTest.gltf", "Suzanne/Suzanne.gltf",
+                            "ManyCubes_u8idx/many-cubes.gltf", "TerrainBevy/terrain.glb", "Engine2Cyl/2CylinderEngine.glb",
+                            "FlightHelmet_512/FlightHelmet.gltf", "STK_CandelaCity/candela_city.gltf"}) {
     check_scene((*folder / scene).string());
   }
 }

@@ -61,7 +61,7 @@ TEST_CASE("gltf: a required extension that is lacking is named") {
   REQUIRE(load_result(triangle_gltf("", R"(,"extensionsRequired":["KHR_materials_unlit"])")) == "loaded");
 }
 
-TEST_CASE("gltf: loops and shared children are not trees; numbers of things that do not exist are named") {
+TEST_CASE("gltf: loops and shared children are not trees, numbers of things that do not exist are named") {
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"children":[0])")), Contains("nodes[0]: it is reached twice"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"children":[7])")), Contains("node 7 does not exist"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"camera":2)")), Contains("nodes[0]: camera 2 does not exist"));
@@ -98,7 +98,7 @@ TEST_CASE("gltf: lights take place, direction and colour from node and extension
   REQUIRE(scene.lights[0].direction == glm::vec3(0, 0, -1));
 }
 
-TEST_CASE("gltf: a material's factors, modes and unlit extension are read; wrong ones are named") {
+TEST_CASE("gltf: a material's factors, modes and unlit extension are read, wrong ones are named") {
   const std::string use = R"(,"material":0)";
   const Material m =
       load(triangle_gltf(use,

@@ -111,7 +111,7 @@ TEST_CASE("material variants: occlusion in the metallic-roughness texture is rea
   REQUIRE(std::ranges::count(v.defines, "OCCLUSION_IN_METALLIC_ROUGHNESS") == 1);
 }
 
-TEST_CASE("material variants: a user's fragment shader is compiled with the same interface; its mistakes carry its name") {
+TEST_CASE("material variants: a user's fragment shader is compiled with the same interface, its mistakes carry its name") {
   const TempGltf good(
       "#version 450\nlayout(location = 0) out vec4 c;\nlayout(location = 1) in vec3 v_normal;\nvoid main() { c = vec4(v_normal, 1.0); }\n",
       "good.frag");

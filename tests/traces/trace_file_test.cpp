@@ -73,7 +73,7 @@ TEST_CASE("trace file: another version is named") {
   REQUIRE(refusal(bytes) == "t.qtrace: trace version 9; this program reads version 1");
 }
 
-TEST_CASE("trace file: write and read through the file system; nothing else stays in the folder") {
+TEST_CASE("trace file: write and read through the file system, nothing else stays in the folder") {
   const TempFolder folder;
   const std::string path = (folder.path / "a.qtrace").string();
   const CommandStream stream = random_stream(7);

@@ -43,7 +43,7 @@ TEST_CASE("attribution: a slow source starves the stage") {
   REQUIRE(o.failure == "");
   CHECK(o.end == 48 * kCycle);
   CHECK(charges(o, "source") == Charges{48, 0, 0, 0});  // its slot is taken to cycle 50; the frame ends at 48
-  CHECK(charges(o, "stage") == Charges{10, 37, 0, 1});   // 1 before the first token and 4 between tokens; idle after the last one
+  CHECK(charges(o, "stage") == Charges{10, 37, 0, 1});  // 1 before the first token and 4 between tokens; idle after the last one
   CHECK(charges(o, "sink") == Charges{10, 38, 0, 0});
 }
 

@@ -38,7 +38,8 @@ WorldSpec arbitration(bool lie) {
 TEST_CASE("contract: random worlds keep it, whatever the host order, the order of creation, the driver and the depths") {
   for (std::uint64_t seed = 401; seed <= 412; ++seed) {
     INFO("seed " << seed);
-    CHECK(joined(contract::violations(builder_of(random_world(seed)), {.shuffles = 3, .creations = 2, .digest_at_depth_one = false, .timeout_s = 20})) == "");
+    CHECK(joined(contract::violations(builder_of(random_world(seed)),
+                                      {.shuffles = 3, .creations = 2, .digest_at_depth_one = false, .timeout_s = 20})) == "");
   }
 }
 
@@ -55,7 +56,8 @@ TEST_CASE("contract: a machine whose result does not depend on timing keeps its 
    private:
     World world_;
   };
-  CHECK(joined(contract::violations([](Driver& d, const contract::Variation& v) { return std::make_unique<Sum>(arbitration(false), d, v); })) == "");
+  CHECK(joined(contract::violations(
+            [](Driver& d, const contract::Variation& v) { return std::make_unique<Sum>(arbitration(false), d, v); })) == "");
 }
 
 TEST_CASE("contract: an arbiter declared fixed-order is caught") {
@@ -79,9 +81,19 @@ TEST_CASE("contract: a unit that looks at room and is declared fixed-order is ca
 
 TEST_CASE("contract: a crash, an exception and an endless run of the machine are reported, not suffered") {
   using contract::in_child;
-  CHECK_THAT(in_child([]() -> std::string { QUADRILLE_CHECK(false, "told {}", "so"); return {}; }), Catch::Contains("failed: signal") && Catch::Contains("told so"));
-  CHECK_THAT(in_child([]() -> std::string { throw quadrille::user_error("no such {}", "thing"); }), Catch::Contains("failed: no such thing"));
-  CHECK_THAT(in_child([]() -> std::string { for (;;) pause(); }, 1), Catch::Contains("still running after 1 s"));
+  CHECK_THAT(in_child([]() -> std::string {
+               QUADRILLE_CHECK(false, "told {}", "so");
+               return {};
+             }),
+             Catch::Contains("failed: signal") && Catch::Contains("told so"));
+  CHECK_THAT(in_child([]() -> std::string { throw quadrille::user_error("no such {}", "thing"); }),
+             Catch::Contains("failed: no such thing"));
+  CHECK_THAT(in_child(
+                 []() -> std::string {
+                   for (;;) pause();
+                 },
+                 1),
+             Catch::Contains("still running after 1 s"));
 }
 
 TEST_CASE("driver: a time limit stops both drivers after the same actions") {

@@ -62,14 +62,22 @@ TEST_CASE("fifo: a crossing costs two cycles of the receiver each way, and says 
     World world(w, driver);
     driver.run({});
     const FifoBase& link = world.link(0);
-    return fmt::format("{} {} {} {}", link.crosses_clocks(), link.spec().latency, link.spec().credit_latency, world.trace()[1][0].at / kCycle);
+    return fmt::format("{} {} {} {}", link.crosses_clocks(), link.spec().latency, link.spec().credit_latency,
+                       world.trace()[1][0].at / kCycle);
   });
   CHECK(text == "true 5 3 10");  // pushed at 0, which is an edge of both: five periods of 2 ns later
 }
 
 TEST_CASE("fifo: a second producer, an unbound port, a push without room and an illegal shape are named errors") {
-  const auto shape = [](LinkSpec spec) { return contract::in_child([spec] { Dispatcher d("driver"); Fifo<Token> f("thin", spec); return std::string(); }); };
-  for (const LinkSpec& bad : {LinkSpec{0, 1, 1, 1}, LinkSpec{1, 0, 1, 1}, LinkSpec{1, 1, 0, 1}, LinkSpec{1, 1, 1, 0}, LinkSpec{-1, 1, 1, 1}}) {
+  const auto shape = [](LinkSpec spec) {
+    return contract::in_child([spec] {
+      Dispatcher d("driver");
+      Fifo<Token> f("thin", spec);
+      return std::string();
+    });
+  };
+  for (const LinkSpec& bad :
+       {LinkSpec{0, 1, 1, 1}, LinkSpec{1, 0, 1, 1}, LinkSpec{1, 1, 0, 1}, LinkSpec{1, 1, 1, 0}, LinkSpec{-1, 1, 1, 1}}) {
     CHECK_THAT(shape(bad), Catch::Contains("link thin"));
   }
   const auto two_units = [](const std::function<void(SyntheticUnit&, SyntheticUnit&, SyntheticUnit&, Fifo<Token>&)>& misuse) {
@@ -87,9 +95,17 @@ TEST_CASE("fifo: a second producer, an unbound port, a push without room and an 
       return std::string("ran");
     });
   };
-  CHECK_THAT(two_units([](auto& a, auto& b, auto& c, auto& link) { a.out(0).bind(link); b.out(0).bind(link); c.in(0).bind(link); }),
+  CHECK_THAT(two_units([](auto& a, auto& b, auto& c, auto& link) {
+               a.out(0).bind(link);
+               b.out(0).bind(link);
+               c.in(0).bind(link);
+             }),
              Catch::Contains("link thin has two producers"));
-  CHECK_THAT(two_units([](auto& a, auto&, auto& c, auto& link) { a.out(0).bind(link); c.in(0).bind(link); }), Catch::Contains("out0"));
+  CHECK_THAT(two_units([](auto& a, auto&, auto& c, auto& link) {
+               a.out(0).bind(link);
+               c.in(0).bind(link);
+             }),
+             Catch::Contains("out0"));
   CHECK_THAT(contract::in_child([] {
                Dispatcher driver("driver");
                const WorldSpec w = [] {

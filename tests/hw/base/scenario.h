@@ -18,7 +18,8 @@ inline contract::Outcome outcome_of(const WorldSpec& spec, Tick end = kNever) {
     World world_;
     Tick end_;
   };
-  return contract::run_forked([&](Driver& driver, const contract::Variation& v) { return std::make_unique<Ending>(spec, driver, v, end); }, {});
+  return contract::run_forked([&](Driver& driver, const contract::Variation& v) { return std::make_unique<Ending>(spec, driver, v, end); },
+                              {});
 }
 
 inline contract::Builder builder_of(WorldSpec spec) {

@@ -30,22 +30,22 @@ enum class Role : std::uint8_t {
   kPriority,  ///< chooser: the lowest ready input -> Out0
   kSpread,    ///< chooser: In0 -> round robin over outputs with room
   kCore,      ///< chooser: In0 -> a free context -> `count` requests on Out1, replies on In1 -> Out0; prefers reply, emit, request, accept
-  kMemory,    ///< chooser: InI -> a free slot -> after `service(id)` cycles OutI; first done first among those with room; prefers to reply; accepts round robin
-  kSink,      ///< pops In0; cost by token number
+  kMemory,  ///< chooser: InI -> a free slot -> after `service(id)` cycles OutI; first done first among those with room; prefers to reply; accepts round robin
+  kSink,    ///< pops In0; cost by token number
 };
 
 struct UnitSpec {
   std::string name{};
   Role role = Role::kStage;
-  int clock = 0;                  ///< index in WorldSpec::clocks_hz
-  int rate = 1;                   ///< actions an edge
-  int period = 1, jitter = 1;     ///< cost in cycles: period + hash % jitter
-  int service = 1, spread = 1;    ///< service in cycles: service + hash % spread
-  int count = 1;                  ///< see Role
-  int slots = 1;                  ///< contexts of a core, slots of a memory
+  int clock = 0;                ///< index in WorldSpec::clocks_hz
+  int rate = 1;                 ///< actions an edge
+  int period = 1, jitter = 1;   ///< cost in cycles: period + hash % jitter
+  int service = 1, spread = 1;  ///< service in cycles: service + hash % spread
+  int count = 1;                ///< see Role
+  int slots = 1;                ///< contexts of a core, slots of a memory
   std::uint32_t seed = 0;
-  bool declared_fixed = false;    ///< lie about the kind: a chooser that says it is fixed-order
-  int inputs = 0, outputs = 0;    ///< number of ports
+  bool declared_fixed = false;  ///< lie about the kind: a chooser that says it is fixed-order
+  int inputs = 0, outputs = 0;  ///< number of ports
 };
 
 struct LinkEnd {
@@ -85,8 +85,8 @@ struct WorldSpec {
 
 /// One action of a unit, as both simulators record it.
 struct Event {
-  std::int64_t at = 0;     ///< femtoseconds
-  char what = ' ';         ///< '>' push, '<' pop, 'x' pop and push, 'a' accept, 'r' request, 'y' reply, 'e' emit
+  std::int64_t at = 0;  ///< femtoseconds
+  char what = ' ';      ///< '>' push, '<' pop, 'x' pop and push, 'a' accept, 'r' request, 'y' reply, 'e' emit
   std::uint8_t port = 0;
   std::uint32_t id = 0;
   friend bool operator==(const Event&, const Event&) = default;

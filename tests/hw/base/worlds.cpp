@@ -7,11 +7,10 @@
 
 namespace quadrille::hw::world {
 
-SyntheticUnit::SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles)
+SyntheticUnit::SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock,
+                             const std::vector<LinkRole>& input_roles)
     : Unit(name, is_chooser(spec.role) && !spec.declared_fixed ? Kind::kChooser : Kind::kFixedOrder, clock), spec_(spec) {
-  for (int i = 0; i < spec.inputs; ++i) {
-    inputs_.add(*this, fmt::format("in{}", i), input_roles[static_cast<std::size_t>(i)]);
-  }
+  for (int i = 0; i < spec.inputs; ++i) { inputs_.add(*this, fmt::format("in{}", i), input_roles[static_cast<std::size_t>(i)]); }
   for (int i = 0; i < spec.outputs; ++i) outputs_.add(*this, fmt::format("out{}", i), LinkRole::kFlow);
 }
 
@@ -239,7 +238,9 @@ class Spread final : public SyntheticUnit {
 class Core final : public SyntheticUnit {
  public:
   Core(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& roles)
-      : SyntheticUnit(name, spec, clock, roles), contexts_(static_cast<std::size_t>(spec.slots)), free_((std::uint64_t{1} << spec.slots) - 1) {}
+      : SyntheticUnit(name, spec, clock, roles),
+        contexts_(static_cast<std::size_t>(spec.slots)),
+        free_((std::uint64_t{1} << spec.slots) - 1) {}
 
   Wake next() const override {
     Wake wake = own().input(*inputs_[1]);
@@ -369,11 +370,13 @@ std::unique_ptr<SyntheticUnit> make_unit(const UnitSpec& s, const Clock& clock, 
     case Role::kStage: return std::make_unique<Stage>(name, s, clock, roles);
     case Role::kSerial: return std::make_unique<Serial>(name, s, clock, roles);
     case Role::kFork: return std::make_unique<Fork>(name, s, clock, roles);
-    case Role::kRoute: case Role::kRecycle: return std::make_unique<Router>(name, s, clock, roles);
+    case Role::kRoute:
+    case Role::kRecycle: return std::make_unique<Router>(name, s, clock, roles);
     case Role::kJoin: return std::make_unique<Join>(name, s, clock, roles);
     case Role::kExpand: return std::make_unique<Expand>(name, s, clock, roles);
     case Role::kPack: return std::make_unique<Pack>(name, s, clock, roles);
-    case Role::kArbiter: case Role::kPriority: return std::make_unique<Merge>(name, s, clock, roles);
+    case Role::kArbiter:
+    case Role::kPriority: return std::make_unique<Merge>(name, s, clock, roles);
     case Role::kSpread: return std::make_unique<Spread>(name, s, clock, roles);
     case Role::kCore: return std::make_unique<Core>(name, s, clock, roles);
     case Role::kMemory: return std::make_unique<Memory>(name, s, clock, roles);

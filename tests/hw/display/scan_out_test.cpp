@@ -37,7 +37,9 @@ struct ScanBench final : Bench {
   StubMemory* stub = nullptr;
 };
 
-std::string report(const ScanBench& b) { return fmt::format("{} done {} lines {}", b.stub->text(), b.done->text(), counter(*b.unit, "lines")); }
+std::string report(const ScanBench& b) {
+  return fmt::format("{} done {} lines {}", b.stub->text(), b.done->text(), counter(*b.unit, "lines"));
+}
 
 }  // namespace
 

@@ -23,7 +23,8 @@ struct ClipBench final : Bench {
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
-  ClipBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), batches(1), pieces(static_cast<std::size_t>(s.out.depth) + 2) {
+  ClipBench(Driver& driver, const contract::Variation& v, const Setup& s)
+      : Bench(driver, v), batches(1), pieces(static_cast<std::size_t>(s.out.depth) + 2) {
     DrawState draw;
     draw.viewport = {0, 0, 64, 64, 0, 1};
     draw.clip = models::make_clip_state(draw.viewport, false, 8);
@@ -39,8 +40,10 @@ struct ClipBench final : Bench {
     unit = std::make_unique<Clipper>("unit", params, clock, frame, batches, pieces);
     add(*unit);
     feed(unit->primitive_in, s.primitives);
-    sink = &drain<ClippedToken>(unit->clipped_out, [](const ClippedToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); },
-                                s.pace, s.out);
+    sink = &drain<ClippedToken>(
+        unit->clipped_out,
+        [](const ClippedToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); }, s.pace,
+        s.out);
   }
   void triangle(Shape shape, std::array<float, 3> z, float x) {
     const float corner[3][2] = {{-0.5f, -0.5f}, {0.5f, -0.5f}, {0.0f, 0.5f}};
@@ -61,7 +64,8 @@ ClipBench::Setup shapes(const std::vector<Shape>& list) {
   ClipBench::Setup s;
   for (const Shape shape : list) {
     const auto first = static_cast<std::uint8_t>(3 * shape);
-    s.primitives.push_back({0, {TokenKind::kWork, {first, static_cast<std::uint8_t>(first + 1), static_cast<std::uint8_t>(first + 2)}, 0, 0, shape}});
+    s.primitives.push_back(
+        {0, {TokenKind::kWork, {first, static_cast<std::uint8_t>(first + 1), static_cast<std::uint8_t>(first + 2)}, 0, 0, shape}});
   }
   return s;
 }
@@ -87,8 +91,8 @@ TEST_CASE("clipper: a cut triangle takes clip_clk cycles and then one a piece") 
 TEST_CASE("clipper: dropped triangles cost a cycle each, and every triangle is accounted for once") {
   const auto text = run<ClipBench>(shapes({kBeside, kNan, kInside, kOneOut, kTwoOut, kBeside}), [](const ClipBench& b) {
     const Unit& u = *b.unit;
-    return fmt::format("{} of {}: {} passed {} clipped {} rejected {} not finite; {} pieces", b.sink->text(), counter(u, "triangles"), counter(u, "passed"),
-                       counter(u, "clipped"), counter(u, "rejected"), counter(u, "not_finite"), counter(u, "pieces"));
+    return fmt::format("{} of {}: {} passed {} clipped {} rejected {} not finite; {} pieces", b.sink->text(), counter(u, "triangles"),
+                       counter(u, "passed"), counter(u, "clipped"), counter(u, "rejected"), counter(u, "not_finite"), counter(u, "pieces"));
   });
   CHECK(text == "4:0 17:1 18:1 31:2 of 6: 1 passed 2 clipped 2 rejected 1 not finite; 3 pieces");
 }
@@ -96,7 +100,8 @@ TEST_CASE("clipper: dropped triangles cost a cycle each, and every triangle is a
 TEST_CASE("clipper: the window position of a piece is there when its token is") {
   const auto text = run<ClipBench>(shapes({kInside}), [](const ClipBench& b) {
     const ClippedPiece& piece = b.pieces[b.sink->got[0].token.piece];
-    return fmt::format("{},{} {},{} {},{}", piece.vertices[0].x, piece.vertices[0].y, piece.vertices[1].x, piece.vertices[1].y, piece.vertices[2].x, piece.vertices[2].y);
+    return fmt::format("{},{} {},{} {},{}", piece.vertices[0].x, piece.vertices[0].y, piece.vertices[1].x, piece.vertices[1].y,
+                       piece.vertices[2].x, piece.vertices[2].y);
   });
   CHECK(text == "4096,4096 12288,4096 8192,12288");  // pixels 16, 48 and 32 in 1/256
 }

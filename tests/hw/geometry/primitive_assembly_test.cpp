@@ -28,7 +28,9 @@ struct AssemblyBench final : Bench {
     feed(*unit->done_in[0], s.done_0);
     feed(*unit->done_in[1], s.done_1);
     sink = &drain<PrimitiveToken>(
-        unit->primitive_out, [](const PrimitiveToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); }, s.pace, s.out);
+        unit->primitive_out,
+        [](const PrimitiveToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); }, s.pace,
+        s.out);
   }
   Store<BatchSlot> store;
   std::unique_ptr<PrimitiveAssembly> unit;
@@ -55,25 +57,32 @@ TEST_CASE("primitive_assembly: batches keep their order when the later one is sh
 TEST_CASE("primitive_assembly: a report counts for one use of a slot") {
   const AssemblyBench::Setup s{.batches = {{0, batch(1)}, {0, batch(1)}}, .done_0 = {{10, {1}}}, .done_1 = {{40, {1}}}};
   const auto text = run<AssemblyBench>(s, [](const AssemblyBench& b) {
-    return fmt::format("{} batches {} vertices {} triangles {}", b.sink->text(), counter(*b.unit, "batches"), counter(*b.unit, "vertices"), counter(*b.unit, "triangles"));
+    return fmt::format("{} batches {} vertices {} triangles {}", b.sink->text(), counter(*b.unit, "batches"), counter(*b.unit, "vertices"),
+                       counter(*b.unit, "triangles"));
   });
   CHECK(text == "12:10 13:901 42:10 43:901 batches 2 vertices 6 triangles 2");
 }
 
 TEST_CASE("primitive_assembly: boundaries pass without waiting for a report, and a batch without triangles has only its end") {
-  const AssemblyBench::Setup s{.batches = {{0, {TokenKind::kPassBegin, 0, 0}}, {0, batch(2)}, {0, {TokenKind::kDrawEnd, 0, 0}}}, .done_0 = {{10, {2}}}};
+  const AssemblyBench::Setup s{.batches = {{0, {TokenKind::kPassBegin, 0, 0}}, {0, batch(2)}, {0, {TokenKind::kDrawEnd, 0, 0}}},
+                               .done_0 = {{10, {2}}}};
   CHECK(primitives(s) == "2:903 12:901 13:902");
 }
 
 TEST_CASE("primitive_assembly: takes reports while primitive_out is full") {
-  const AssemblyBench::Setup s{.batches = {{0, batch(0)}, {0, batch(1)}}, .done_0 = {{1, {0}}}, .done_1 = {{20, {1}}}, .pace = {.from = 100, .period = 4}, .out = {.depth = 1}};
+  const AssemblyBench::Setup s{.batches = {{0, batch(0)}, {0, batch(1)}},
+                               .done_0 = {{1, {0}}},
+                               .done_1 = {{20, {1}}},
+                               .pace = {.from = 100, .period = 4},
+                               .out = {.depth = 1}};
   CHECK(primitives(s) == "100:0 104:1 108:901 112:10 116:901");
 }
 
 TEST_CASE("primitive_assembly: keeps the contract, one-deep links included") {
-  const AssemblyBench::Setup s{.batches = {{0, {TokenKind::kPassBegin, 0, 0}}, {0, batch(0)}, {0, batch(2)}, {0, batch(1)}, {5, {TokenKind::kDrawEnd, 0, 0}}},
-                               .done_0 = {{7, {1}}, {9, {0}}},
-                               .done_1 = {{9, {2}}},
-                               .pace = {.from = 0, .period = 3}};
+  const AssemblyBench::Setup s{
+      .batches = {{0, {TokenKind::kPassBegin, 0, 0}}, {0, batch(0)}, {0, batch(2)}, {0, batch(1)}, {5, {TokenKind::kDrawEnd, 0, 0}}},
+      .done_0 = {{7, {1}}, {9, {0}}},
+      .done_1 = {{9, {2}}},
+      .pace = {.from = 0, .period = 3}};
   CHECK(contract_text<AssemblyBench>(s) == "");
 }

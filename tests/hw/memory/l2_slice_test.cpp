@@ -28,7 +28,9 @@ struct L2Bench final : Bench {
     add(*unit);
     feed(*unit->request_in[0], s.client_0);
     feed(*unit->request_in[1], s.client_1);
-    for (auto& out : unit->response_out) sinks.push_back(&drain<MemoryResponse>(*out, [](const MemoryResponse& t) { return t.tag; }, s.pace, s.out));
+    for (auto& out : unit->response_out)
+      sinks.push_back(&drain<MemoryResponse>(
+          *out, [](const MemoryResponse& t) { return t.tag; }, s.pace, s.out));
     memory = &serve(unit->memory_out, unit->fill_in, kMemory);
   }
   L2Slice::Params params;
@@ -55,9 +57,10 @@ TEST_CASE("l2_slice: a miss takes the memory's time and three links, a hit exact
 TEST_CASE("l2_slice: a line under way serves all who ask for it") {
   const L2Bench::Setup s{.client_0 = {{0, read(7, 1)}, {0, read(7, 2)}}, .client_1 = {{0, read(7, 3)}}};
   const auto text = run<L2Bench>(s, [](const L2Bench& b) {
-    return fmt::format("{} memory {} merged {} misses {}", both(b), b.memory->text(), counter(*b.unit, "merged"), counter(*b.unit, "misses"));
+    return fmt::format("{} memory {} merged {} misses {}", both(b), b.memory->text(), counter(*b.unit, "merged"),
+                       counter(*b.unit, "misses"));
   });
-  CHECK(text == "54:1 54:2 | 54:3 memory 2:r7/f merged 2 misses 1");
+  CHECK(text == "54:1 55:2 | 54:3 memory 2:r7/f merged 2 misses 1");
 }
 
 TEST_CASE("l2_slice: only sectors that are not there are asked for") {
@@ -81,7 +84,8 @@ TEST_CASE("l2_slice: a hit overtakes an older miss") {
 TEST_CASE("l2_slice: a write asks for nothing, and a dirty line is written back when its place is taken") {
   const L2Bench::Setup s{.client_0 = {{0, write(0, 0x5)}, {10, write(1)}, {20, read(0, 9)}}, .lines = 1, .ways = 1};
   const auto text = run<L2Bench>(s, [](const L2Bench& b) {
-    return fmt::format("{} memory {} written back {} of {}", b.sinks[0]->text(), b.memory->text(), counter(*b.unit, "writeback_bytes"), counter(*b.unit, "write_bytes"));
+    return fmt::format("{} memory {} written back {} of {}", b.sinks[0]->text(), b.memory->text(), counter(*b.unit, "writeback_bytes"),
+                       counter(*b.unit, "write_bytes"));
   });
   CHECK(text == "75:9 memory 12:w0/5 22:w1/f 23:r0/f written back 192 of 192");
 }
@@ -94,7 +98,10 @@ TEST_CASE("l2_slice: a cache of one line and one miss answers everything, one li
 }
 
 TEST_CASE("l2_slice: an answer that has no room holds back no other client") {
-  L2Bench::Setup s{.client_0 = {{0, fence(1)}, {0, fence(2)}, {0, fence(3)}}, .client_1 = {{0, fence(4)}, {0, fence(5)}}, .pace = {.from = 100, .period = 10}, .out = {.depth = 1}};
+  L2Bench::Setup s{.client_0 = {{0, fence(1)}, {0, fence(2)}, {0, fence(3)}},
+                   .client_1 = {{0, fence(4)}, {0, fence(5)}},
+                   .pace = {.from = 100, .period = 10},
+                   .out = {.depth = 1}};
   CHECK(run<L2Bench>(s, both) == "100:1 110:2 120:3 | 100:4 110:5");
 }
 

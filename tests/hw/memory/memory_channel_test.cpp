@@ -23,7 +23,8 @@ struct ChannelBench final : Bench {
     unit = std::make_unique<MemoryChannel>("unit", params, clock, 1);
     add(*unit);
     feed(unit->request_in, s.requests);
-    sink = &drain<MemoryResponse>(unit->response_out, [](const MemoryResponse& t) { return t.line; }, s.pace, s.out);
+    sink = &drain<MemoryResponse>(
+        unit->response_out, [](const MemoryResponse& t) { return t.line; }, s.pace, s.out);
   }
   MemoryChannel::Params params;
   std::unique_ptr<MemoryChannel> unit;
@@ -43,8 +44,8 @@ TEST_CASE("memory_channel: a read of a closed row, of the open row and of anothe
   // Taken one cycle after the push; seen by the sink one cycle after it leaves: 2 + (rcd) + cas + 4 + 60, with rp for the conflict.
   const ChannelBench::Setup s{.requests = {{0, read(0)}, {200, read(1)}, {400, read(kSameBank)}}};
   const auto text = run<ChannelBench>(s, [](const ChannelBench& b) {
-    return fmt::format("{} hits {} conflicts {} bytes {} bus {}", b.sink->text(), counter(*b.unit, "row_hits"), counter(*b.unit, "row_conflicts"),
-                       counter(*b.unit, "read_bytes"), counter(*b.unit, "bus_busy"));
+    return fmt::format("{} hits {} conflicts {} bytes {} bus {}", b.sink->text(), counter(*b.unit, "row_hits"),
+                       counter(*b.unit, "row_conflicts"), counter(*b.unit, "read_bytes"), counter(*b.unit, "bus_busy"));
   });
   CHECK(text == "94:0 280:1 508:256 hits 1 conflicts 1 bytes 384 bus 12");
 }
@@ -79,13 +80,15 @@ TEST_CASE("memory_channel: a write is not answered, and turns the bus round") {
 }
 
 TEST_CASE("memory_channel: takes no more accesses than its queue holds") {
-  CHECK(answers({.requests = {{0, read(0)}, {0, read(1)}}, .queue_depth = 1}) == "94:0 172:1");  // the second is taken the cycle the first leaves
+  CHECK(answers({.requests = {{0, read(0)}, {0, read(1)}}, .queue_depth = 1}) ==
+        "94:0 172:1");  // the second is taken the cycle the first leaves
 }
 
 TEST_CASE("memory_channel: keeps the contract, one-deep links included") {
-  const ChannelBench::Setup s{.requests = {{0, read(0)}, {0, read(kSameBank, 0x3)}, {1, {17, 0, 0x7, Kind::kWrite}}, {1, read(17)}, {9, read(2)}, {9, read(3)}},
-                              .queue_depth = 2,
-                              .pace = {.from = 0, .period = 9},
-                              .out = {.depth = 2}};
+  const ChannelBench::Setup s{
+      .requests = {{0, read(0)}, {0, read(kSameBank, 0x3)}, {1, {17, 0, 0x7, Kind::kWrite}}, {1, read(17)}, {9, read(2)}, {9, read(3)}},
+      .queue_depth = 2,
+      .pace = {.from = 0, .period = 9},
+      .out = {.depth = 2}};
   CHECK(contract_text<ChannelBench>(s) == "");
 }

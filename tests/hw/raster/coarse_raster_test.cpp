@@ -38,8 +38,11 @@ struct CoarseBench final : Bench {
     feed(unit->triangle_in, s.triangles);
     feed(*unit->hiz_in[0], s.hiz);
     sink = &drain<TileToken>(
-        unit->tile_out, [](const TileToken& t) { return t.kind == TokenKind::kWork ? 10 * t.triangle + t.tile_x : kBoundary + static_cast<std::uint64_t>(t.kind); }, s.pace,
-        s.out);
+        unit->tile_out,
+        [](const TileToken& t) {
+          return t.kind == TokenKind::kWork ? 10 * t.triangle + t.tile_x : kBoundary + static_cast<std::uint64_t>(t.kind);
+        },
+        s.pace, s.out);
   }
   void make_frame() {
     PassState pass;
@@ -48,7 +51,8 @@ struct CoarseBench final : Bench {
     pass.draws = 4;
     frame.passes = {pass};
     // Draws 0 and 2 write with "less", 1 writes with "greater", 3 only tests with "greater".
-    for (const models::CompareOp op : {models::CompareOp::kLess, models::CompareOp::kGreater, models::CompareOp::kLess, models::CompareOp::kGreater}) {
+    for (const models::CompareOp op :
+         {models::CompareOp::kLess, models::CompareOp::kGreater, models::CompareOp::kLess, models::CompareOp::kGreater}) {
       DrawState draw;
       draw.fragment_program = &program;
       draw.depth_test = true;
@@ -108,7 +112,9 @@ TEST_CASE("coarse_raster: tests beyond a cycle's rate delay what follows, by tes
 TEST_CASE("coarse_raster: a tile that Hi-Z proves hidden is dropped, from the cycle the update is there") {
   const HiZToken update{0, 0, 0, 0.5f};
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(3)}}, .hiz = {{10, update}}};
-  const auto read = [](const CoarseBench& b) { return fmt::format("{} hidden {} updates {}", b.sink->text(), counter(b, 3), counter(b, 4)); };
+  const auto read = [](const CoarseBench& b) {
+    return fmt::format("{} hidden {} updates {}", b.sink->text(), counter(b, 3), counter(b, 4));
+  };
   CHECK(run<CoarseBench>(s, read) == "2:903 hidden 1 updates 1");
   s.hiz[0].cycle = 11;
   CHECK(run<CoarseBench>(s, read) == "2:903 12:30 hidden 0 updates 1");
@@ -142,7 +148,8 @@ TEST_CASE("coarse_raster: Hi-Z is not trusted after a draw that may have raised 
 }
 
 TEST_CASE("coarse_raster: a sync follows every eighth part of the triangle store") {
-  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(1)}, {0, triangle(2)}, {0, triangle(3)}, {0, triangle(1)}}, .store_slots = 16};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(1)}, {0, triangle(2)}, {0, triangle(3)}, {0, triangle(1)}},
+                       .store_slots = 16};
   const auto text = run<CoarseBench>(s, [](const CoarseBench& b) {
     std::string all = b.sink->text();
     for (const auto& t : b.sink->got) {
@@ -155,7 +162,8 @@ TEST_CASE("coarse_raster: a sync follows every eighth part of the triangle store
 
 TEST_CASE("coarse_raster: stops while tile_out is full but still takes Hi-Z updates") {
   const HiZToken update{0, 0, 0, 0.6f};
-  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(3)}}, .hiz = {{20, update}}, .pace = {.from = 100}, .out = {.depth = 1}};
+  CoarseBench::Setup s{
+      .triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(3)}}, .hiz = {{20, update}}, .pace = {.from = 100}, .out = {.depth = 1}};
   const auto text = run<CoarseBench>(s, [](const CoarseBench& b) { return fmt::format("{} hidden {}", b.sink->text(), counter(b, 3)); });
   CHECK(text == "100:903 102:0 104:1 hidden 1");
 }

@@ -31,8 +31,9 @@ struct FineBench final : Bench {
     add(*unit);
     feed(unit->tile_in, s.tiles);
     for (auto& out : unit->coverage_out) {
-      sinks.push_back(&drain<CoverageToken>(*out, [](const CoverageToken& t) { return t.kind == TokenKind::kWork ? t.tile_x : 900u + static_cast<unsigned>(t.kind); },
-                                            s.pace, s.out));
+      sinks.push_back(&drain<CoverageToken>(
+          *out, [](const CoverageToken& t) { return t.kind == TokenKind::kWork ? t.tile_x : 900u + static_cast<unsigned>(t.kind); }, s.pace,
+          s.out));
     }
   }
   FineRaster::Params params;
@@ -55,7 +56,8 @@ std::uint64_t counter(const FineBench& b, std::size_t i) { return b.unit->stats(
 
 TEST_CASE("fine_raster: a tile keeps it for its covered quads divided by the rate, rounded up") {
   for (const auto& [rate, cycles] : {std::pair{1, 16}, {3, 6}, {4, 4}, {16, 1}}) {
-    const auto text = run<FineBench>(tiles_of({tile(0, 0, true), tile(1, 0, true), tile(2, 0, true)}, rate), [](const FineBench& b) { return b.sinks[0]->text(); });
+    const auto text = run<FineBench>(tiles_of({tile(0, 0, true), tile(1, 0, true), tile(2, 0, true)}, rate),
+                                     [](const FineBench& b) { return b.sinks[0]->text(); });
     CHECK(text == fmt::format("2:0 {}:1 {}:2", 2 + cycles, 2 + 2 * cycles));
   }
 }
@@ -80,19 +82,22 @@ TEST_CASE("fine_raster: stops while coverage_out is full, and goes on the cycle 
   setup.out = {.depth = 2};
   setup.pace = {.from = 50, .period = 10};
   // Two tiles wait in the link; each pop gives room one cycle later, and the tile that takes it is there before the sink looks again.
-  const auto text = run<FineBench>(setup, [](const FineBench& b) { return fmt::format("{} blocked {}", b.sinks[0]->text(), b.unit->blocked_cycles()); });
+  const auto text =
+      run<FineBench>(setup, [](const FineBench& b) { return fmt::format("{} blocked {}", b.sinks[0]->text(), b.unit->blocked_cycles()); });
   CHECK(text == "50:0 60:1 70:2 80:3 blocked 57");  // 3..51 and 52..61
 }
 
 TEST_CASE("fine_raster: tiles go to the partition that owns them, boundaries to all in one cycle") {
-  FineBench::Setup setup = tiles_of({tile(0, 0, true), tile(1, 0, true), {TokenKind::kDrawEnd, false, 0, 0, 0, 0}, tile(0, 1, true), tile(1, 1, true)}, 16);
+  FineBench::Setup setup =
+      tiles_of({tile(0, 0, true), tile(1, 0, true), {TokenKind::kDrawEnd, false, 0, 0, 0, 0}, tile(0, 1, true), tile(1, 1, true)}, 16);
   setup.partitions = 2;
   const auto text = run<FineBench>(setup, [](const FineBench& b) { return b.sinks[0]->text() + " | " + b.sinks[1]->text(); });
   CHECK(text == "2:0 4:902 5:0 | 3:1 4:902 6:1");
 }
 
 TEST_CASE("fine_raster: keeps the contract, one-deep links included") {
-  auto setup = tiles_of({tile(0, 0), tile(1, 0), tile(0, 0, false, 1), tile(7, 7), {TokenKind::kSync, false, 0, 0, 0, 1}, tile(2, 1), tile(1, 2)}, 2);
+  auto setup = tiles_of(
+      {tile(0, 0), tile(1, 0), tile(0, 0, false, 1), tile(7, 7), {TokenKind::kSync, false, 0, 0, 0, 1}, tile(2, 1), tile(1, 2)}, 2);
   setup.partitions = 2;
   setup.pace = {.from = 0, .period = 3};
   CHECK(contract_text<FineBench>(setup) == "");

@@ -24,8 +24,10 @@ struct PackerBench final : Bench {
     add(*unit);
     feed(unit->coverage_in, s.coverage);
     feed(unit->release_in, s.releases);
-    work = &drain<WarpToken>(unit->warp_out, [](const WarpToken& t) { return t.slot; }, s.pace, s.out);
-    order = &drain<OrderToken>(unit->order_out, [](const OrderToken& t) { return t.kind == TokenKind::kWork ? t.slot : 900u + static_cast<unsigned>(t.kind); });
+    work = &drain<WarpToken>(
+        unit->warp_out, [](const WarpToken& t) { return t.slot; }, s.pace, s.out);
+    order = &drain<OrderToken>(
+        unit->order_out, [](const OrderToken& t) { return t.kind == TokenKind::kWork ? t.slot : 900u + static_cast<unsigned>(t.kind); });
   }
   WarpPacker::Params params;
   Store<WarpSlot> warps;
@@ -56,20 +58,24 @@ TEST_CASE("warp_packer: a full tile makes two warps of eight quads, at the rate 
 }
 
 TEST_CASE("warp_packer: quads of several triangles and tiles of a draw share a warp") {
-  const auto text = run<PackerBench>({.coverage = {{0, tile(3, 0, 7, 1)}, {0, tile(3, 0, 8, 2)}, {0, tile(2, 0, 9, 3)}}}, [](const PackerBench& b) {
-    std::string all = b.work->text();
-    const WarpSlot& warp = b.warps[0];
-    for (int q = 0; q < warp.quads; ++q) {
-      const auto& quad = warp.quad[static_cast<std::size_t>(q)];
-      all += fmt::format(" {}@{},{}", quad.triangle, quad.x, quad.y);
-    }
-    return fmt::format("{} covered {:x} partition {} warps {} partial {}", all, warp.covered, b.work->got[0].token.partition, counter(b, 3), counter(b, 4));
-  });
+  const auto text =
+      run<PackerBench>({.coverage = {{0, tile(3, 0, 7, 1)}, {0, tile(3, 0, 8, 2)}, {0, tile(2, 0, 9, 3)}}}, [](const PackerBench& b) {
+        std::string all = b.work->text();
+        const WarpSlot& warp = b.warps[0];
+        for (int q = 0; q < warp.quads; ++q) {
+          const auto& quad = warp.quad[static_cast<std::size_t>(q)];
+          all += fmt::format(" {}@{},{}", quad.triangle, quad.x, quad.y);
+        }
+        return fmt::format("{} covered {:x} partition {} warps {} partial {}", all, warp.covered, b.work->got[0].token.partition,
+                           counter(b, 3), counter(b, 4));
+      });
   CHECK(text == "5:0 7@8,0 7@10,0 7@12,0 8@16,0 8@18,0 8@20,0 9@24,0 9@26,0 covered ffffffff partition 3 warps 1 partial 0");
 }
 
 TEST_CASE("warp_packer: a partial warp leaves exactly when its patience ends") {
-  const auto read = [](const PackerBench& b) { return fmt::format("{} partial {} timeouts {}", b.work->text(), counter(b, 4), counter(b, 5)); };
+  const auto read = [](const PackerBench& b) {
+    return fmt::format("{} partial {} timeouts {}", b.work->text(), counter(b, 4), counter(b, 5));
+  };
   for (const int patience : {1, 5, 64}) {
     const PackerBench::Setup s{.coverage = {{0, tile(3)}}, .patience = patience};
     CHECK(run<PackerBench>(s, read) == fmt::format("{}:0 partial 1 timeouts 1", 1 + patience + 1));
@@ -80,9 +86,8 @@ TEST_CASE("warp_packer: a partial warp leaves exactly when its patience ends") {
 }
 
 TEST_CASE("warp_packer: a boundary, another draw or another sort of depth test closes the open warp at once") {
-  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {0, boundary(TokenKind::kDrawEnd)}}}, [](const PackerBench& b) {
-          return b.work->text() + " | " + b.order->text();
-        }) == "3:0 | 3:0 4:902");
+  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {0, boundary(TokenKind::kDrawEnd)}}},
+                         [](const PackerBench& b) { return b.work->text() + " | " + b.order->text(); }) == "3:0 | 3:0 4:902");
   CHECK(warps({.coverage = {{0, tile(3)}, {0, tile(3, 1)}}, .patience = 10}) == "3:0 14:1");
   CHECK(warps({.coverage = {{0, tile(3)}, {0, tile(3, 0, 0, 0, true)}}, .patience = 10}) == "3:0 14:1");
 }
@@ -99,7 +104,8 @@ TEST_CASE("warp_packer: a sync travels with the open warp, alone when there is n
 
 TEST_CASE("warp_packer: opens no more warps than the reorder buffer has places") {
   // Four warps; the second place comes free at cycle 51 and the others at 61 and 71: the quads of the waiting tile start then.
-  const PackerBench::Setup s{.coverage = {{0, tile(16)}, {0, tile(16)}}, .releases = {{50, {0, 0}}, {60, {1, 0}}, {70, {2, 0}}}, .slots = 1};
+  const PackerBench::Setup s{
+      .coverage = {{0, tile(16)}, {0, tile(16)}}, .releases = {{50, {0, 0}}, {60, {1, 0}}, {70, {2, 0}}}, .slots = 1};
   CHECK(warps(s) == "4:0 54:0 64:0 74:0");
   PackerBench::Setup wide = s;
   wide.slots = 3;
@@ -112,7 +118,12 @@ TEST_CASE("warp_packer: stops while warp_out is full") {
 }
 
 TEST_CASE("warp_packer: keeps the contract, one-deep links included") {
-  PackerBench::Setup s{.coverage = {{0, tile(3)}, {0, tile(16)}, {0, boundary(TokenKind::kSync, 2)}, {0, tile(5, 1)}, {0, boundary(TokenKind::kDrawEnd)}, {0, tile(9, 2)}},
+  PackerBench::Setup s{.coverage = {{0, tile(3)},
+                                    {0, tile(16)},
+                                    {0, boundary(TokenKind::kSync, 2)},
+                                    {0, tile(5, 1)},
+                                    {0, boundary(TokenKind::kDrawEnd)},
+                                    {0, tile(9, 2)}},
                        .releases = {{40, {0, 0}}, {60, {1, 0}}, {70, {2, 0}}, {80, {3, 0}}, {90, {0, 0}}},
                        .slots = 2,
                        .patience = 7};

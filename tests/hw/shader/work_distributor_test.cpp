@@ -50,13 +50,16 @@ TEST_CASE("work_distributor: cores that are equally free take turns, one warp a 
 }
 
 TEST_CASE("work_distributor: a core that does not take its warps gets no more while others are less loaded") {
-  CHECK(run<DistributorBench>({.vertex = warps(0, 7, 10), .cores = {{.from = 200}, {}, {}}}, vertex_text) == "200:0 | 12:1 32:3 52:5 | 22:2 42:4 62:6");
+  CHECK(run<DistributorBench>({.vertex = warps(0, 7, 10), .cores = {{.from = 200}, {}, {}}}, vertex_text) ==
+        "200:0 | 12:1 32:3 52:5 | 22:2 42:4 62:6");
 }
 
 TEST_CASE("work_distributor: partitions take turns, and vertex work does not slow fragments") {
-  const DistributorBench::Setup s{.vertex = warps(0, 3), .fragment_0 = warps(10, 3), .fragment_1 = warps(20, 3), .cores = {{}}, .out = {.depth = 16}};
+  const DistributorBench::Setup s{
+      .vertex = warps(0, 3), .fragment_0 = warps(10, 3), .fragment_1 = warps(20, 3), .cores = {{}}, .out = {.depth = 16}};
   const auto text = run<DistributorBench>(s, [](const DistributorBench& b) {
-    return fmt::format("{} | {} | {} {}", b.vertex[0]->text(), b.fragment[0]->text(), counter(*b.unit, "vertex_warps"), counter(*b.unit, "fragment_warps"));
+    return fmt::format("{} | {} | {} {}", b.vertex[0]->text(), b.fragment[0]->text(), counter(*b.unit, "vertex_warps"),
+                       counter(*b.unit, "fragment_warps"));
   });
   CHECK(text == "2:0 3:1 4:2 | 2:10 3:20 4:11 5:21 6:12 7:22 | 3 6");
 }
@@ -67,6 +70,9 @@ TEST_CASE("work_distributor: waits while every core is full, and gives the next 
 }
 
 TEST_CASE("work_distributor: keeps the contract, one-deep links included") {
-  const DistributorBench::Setup s{.vertex = warps(0, 9), .fragment_0 = warps(10, 7), .fragment_1 = warps(20, 5, 3), .cores = {{.from = 0, .period = 4}, {.from = 9, .period = 3}}};
+  const DistributorBench::Setup s{.vertex = warps(0, 9),
+                                  .fragment_0 = warps(10, 7),
+                                  .fragment_1 = warps(20, 5, 3),
+                                  .cores = {{.from = 0, .period = 4}, {.from = 9, .period = 3}}};
   CHECK(contract_text<DistributorBench>(s, false) == "");
 }

@@ -22,7 +22,7 @@ Vertex at(float x, float y, std::array<float, 4> value = {1, 1, 1, 1}, float z =
 
 }  // namespace
 
-TEST_CASE("render: given triangles decide coverage, depth and weights; attributes come from the vertices") {
+TEST_CASE("render: given triangles decide coverage, depth and weights, attributes come from the vertices") {
   TestFrame frame(16, 16);
   frame.pipeline().depth = {true, true, traces::CompareOp::kLess};
   frame.draw({at(0, 0, {0, 0, 0, 1}), at(16, 0, {1, 0, 0, 1}), at(0, 16, {0, 1, 0, 1})});

@@ -244,7 +244,7 @@ TEST_CASE("interpreter: functions with several returns, out and inout parameters
   }
 }
 
-TEST_CASE("interpreter: arrays, matrices and vectors indexed by lane-varying values; indices beyond the end are clamped") {
+TEST_CASE("interpreter: arrays, matrices and vectors indexed by lane-varying values, indices beyond the end are clamped") {
   LaneShader shader(
       "float t[3] = float[](1.0, 20.0, 300.0); t[i.x] += a.x; mat2 m = mat2(1, 2, 3, 4); vec4 v = a; v[j.x] = 7.0;"
       "o = vec4(t[0] + t[1] + t[2], t[i.x], m[j.x][1], v[j.x] + a[j.x]); S s[2]; s[j.x].v[1] = 3.5; oi.x = int(s[1].v[1] * 10.0);",

@@ -66,7 +66,7 @@ TEST_CASE("render: strips and fans have Vulkan's triangles, order and provoking 
   CHECK(count_covered(f) == 256);
 }
 
-TEST_CASE("render: facing follows the signed area with y down; culling removes the face it names") {
+TEST_CASE("render: facing follows the signed area with y down, culling removes the face it names") {
   // Clockwise on the screen.
   const std::vector<Vertex> clockwise{at(2, 2), at(14, 2), at(2, 14)};
   const char* facing = "#version 450\nlayout(location = 0) out vec4 o;\nvoid main() { o = vec4(gl_FrontFacing ? 1.0 : 0.0); }\n";

@@ -31,7 +31,7 @@ const traces::Sampler kSmooth{};
 
 }  // namespace
 
-TEST_CASE("sampling: a texel's centre gives the texel; between centres the bilinear filter is linear") {
+TEST_CASE("sampling: a texel's centre gives the texel, between centres the bilinear filter is linear") {
   const traces::Image image = ramp(8, 4, 1);
   const TextureView view{&image, &kSmooth, nullptr};
   CHECK(sample_texture(view, 3.5 / 8, 1.5 / 4, 0, 0)[0] * 255 == Approx(3));
@@ -132,7 +132,7 @@ TEST_CASE("sampling: magnification and minification use their own filters") {
   CHECK(sample_texture(view, 3.9 / 8, 0.5, 1e-9, 0)[0] * 255 == Approx(3.4).epsilon(1e-6));
 }
 
-TEST_CASE("sampling: sRGB texels are decoded before they are filtered; alpha is linear") {
+TEST_CASE("sampling: sRGB texels are decoded before they are filtered, alpha is linear") {
   traces::Image image{"two", traces::Format::kR8G8B8A8Srgb, 2, 1, 1, {}};
   for (const int value : {0, 0, 0, 0, 255, 188, 128, 255}) image.texels.push_back(static_cast<std::byte>(value));
   const Texel middle = sample_texture({&image, &kSmooth, nullptr}, 0.5, 0.5, 0, 0);

@@ -1,0 +1,123 @@
+/// Triangle set-up: its rate, what is culled, and the bound of the triangle store.
+#include "hw/geometry/triangle_setup.h"
+#include "tests/hw/bench_stub.h"
+
+#include <catch2/catch.hpp>
+
+#include <bit>
+
+using namespace quadrille;
+using namespace quadrille::hw;
+using namespace quadrille::hw::bench;
+
+namespace {
+
+struct SetupBench final : Bench {
+  struct Setup {
+    std::vector<Timed<ClippedToken>> pieces;
+    std::vector<Timed<ReleaseToken>> sync_0{}, sync_1{};
+    int setup_clk = 1;
+    std::size_t slots = 16;
+    Pace pace{};
+    LinkSpec out{.depth = 64};
+  };
+  /// Piece 0 is kept, 1 faces away, 2 has no area, 3 lies outside the scissor, 4 between pixel centres.
+  SetupBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), batches(1), pieces(5), triangles(s.slots) {
+    DrawState draw;
+    program.varyings.resize(1);
+    draw.vertex_program = &program;
+    draw.setup.cull = models::CullMode::kBack;
+    draw.setup.scissor = {0, 0, 64, 64};
+    frame.draws = {draw};
+    batches[0].outputs.resize(5);
+    for (std::size_t lane = 0; lane < 3; ++lane)
+      batches[0].outputs[4][lane] = std::bit_cast<std::uint32_t>(1.0f + static_cast<float>(lane * lane));
+    piece(0, {0, 0}, {0, 16 * 256}, {16 * 256, 0});
+    piece(1, {0, 0}, {16 * 256, 0}, {0, 16 * 256});
+    piece(2, {0, 0}, {512, 512}, {1024, 1024});
+    piece(3, {100 * 256, 0}, {100 * 256, 2560}, {110 * 256, 0});
+    piece(4, {0, 0}, {0, 64}, {64, 0});
+    params.setup_clk.set(s.setup_clk);
+    unit = std::make_unique<TriangleSetupUnit>("unit", params, clock, frame, batches, pieces, triangles, 2);
+    add(*unit);
+    feed(unit->clipped_in, s.pieces);
+    feed(*unit->sync_in[0], s.sync_0);
+    feed(*unit->sync_in[1], s.sync_1);
+    kept = &drain<TriangleToken>(
+        unit->triangle_out,
+        [](const TriangleToken& t) { return t.kind == TokenKind::kWork ? t.triangle : 900u + static_cast<unsigned>(t.kind); }, s.pace,
+        s.out);
+    released = &drain<ReleaseToken>(unit->release_out, [](const ReleaseToken& t) { return t.slot; });
+  }
+  void piece(std::uint64_t slot, glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
+    pieces[slot].vertices = {models::WindowVertex{a.x, a.y, 0.5f, 1}, models::WindowVertex{b.x, b.y, 0.5f, 1},
+                             models::WindowVertex{c.x, c.y, 0.5f, 1}};
+    pieces[slot].weights = models::whole_triangle_weights();
+  }
+  models::Program program;
+  Frame frame;
+  TriangleSetupUnit::Params params;
+  Store<BatchSlot> batches;
+  Store<ClippedPiece> pieces;
+  TriangleStore triangles;
+  std::unique_ptr<TriangleSetupUnit> unit;
+  StubSink<TriangleToken>* kept = nullptr;
+  StubSink<ReleaseToken>* released = nullptr;
+};
+
+ClippedToken piece(std::uint32_t i) { return {TokenKind::kWork, {0, 1, 2}, 0, 0, 0, i}; }
+ClippedToken boundary(TokenKind kind) { return {kind, {}, 0, 0, 0, 0}; }
+std::string kept(const SetupBench& b) { return b.kept->text(); }
+
+}  // namespace
+
+TEST_CASE("triangle_setup: a triangle takes setup_clk cycles, kept or not, a boundary one") {
+  for (const int clk : {1, 5}) {
+    const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, piece(2)}, {0, piece(0)}, {0, boundary(TokenKind::kDrawEnd)}, {0, piece(0)}},
+                              .setup_clk = clk};
+    CHECK(run<SetupBench>(s, kept) == fmt::format("2:0 {}:1 {}:902 {}:2", 2 + 2 * clk, 2 + 3 * clk, 3 + 3 * clk));
+  }
+}
+
+TEST_CASE("triangle_setup: every triangle is counted once by what became of it") {
+  const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, piece(1)}, {0, piece(2)}, {0, piece(3)}, {0, piece(4)}, {0, piece(1)}}};
+  const auto text = run<SetupBench>(s, [](const SetupBench& b) {
+    const Unit& u = *b.unit;
+    return fmt::format("{}: kept {} culled {} zero {} offscreen {} no sample {}", counter(u, "triangles"), counter(u, "kept"),
+                       counter(u, "culled"), counter(u, "zero_area"), counter(u, "offscreen"), counter(u, "no_sample"));
+  });
+  CHECK(text == "6: kept 1 culled 2 zero 1 offscreen 1 no sample 1");
+}
+
+TEST_CASE("triangle_setup: varyings are the first corner's and the differences to it") {
+  const auto text = run<SetupBench>({.pieces = {{0, piece(0)}}}, [](const SetupBench& b) {
+    return fmt::format("{} {} {}", b.triangles[0].varyings[0], b.triangles[0].varyings[1], b.triangles[0].varyings[2]);
+  });
+  CHECK(text == "1 1 4");
+}
+
+TEST_CASE("triangle_setup: a batch's end releases its slot in its turn") {
+  const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, boundary(TokenKind::kBatchEnd)}, {0, piece(0)}}};
+  CHECK(run<SetupBench>(s, [](const SetupBench& b) { return b.kept->text() + " | " + b.released->text(); }) == "2:0 4:1 | 3:0");
+}
+
+TEST_CASE("triangle_setup: waits while the triangle store is full, until every partition has retired its oldest") {
+  const SetupBench::Setup s{
+      .pieces = {{0, piece(0)}, {0, piece(0)}, {0, piece(0)}}, .sync_0 = {{30, {0, 1}}}, .sync_1 = {{70, {0, 2}}}, .slots = 2};
+  CHECK(run<SetupBench>(s, kept) == "2:0 3:1 72:2");
+}
+
+TEST_CASE("triangle_setup: keeps the contract, one-deep links included") {
+  const SetupBench::Setup s{.pieces = {{0, piece(0)},
+                                       {0, piece(1)},
+                                       {0, boundary(TokenKind::kBatchEnd)},
+                                       {0, piece(0)},
+                                       {0, piece(0)},
+                                       {0, boundary(TokenKind::kPassEnd)}},
+                            .sync_0 = {{30, {0, 1}}, {90, {0, 2}}},
+                            .sync_1 = {{50, {0, 2}}},
+                            .setup_clk = 3,
+                            .slots = 2,
+                            .pace = {.from = 0, .period = 5}};
+  CHECK(contract_text<SetupBench>(s) == "");
+}
