@@ -88,6 +88,6 @@ TEST_CASE("kernel: machines of more units than a word has marks equal the clocke
   }
   spec.wire({merge, 0}, {spec.add({.role = Role::kSink, .period = 2}), 0}, {.depth = 3});
   REQUIRE(spec.units.size() > 128);
-  for (const std::uint64_t order : {0, 1, 2, 3}) CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, order); }) == "");
+  for (const std::uint64_t order : {0u, 1u, 2u, 3u}) CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, order); }) == "");
   CHECK(contract::in_child([&] { return compare<NativeDriver>(spec, 1); }) == "");
 }

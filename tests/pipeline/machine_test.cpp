@@ -42,7 +42,7 @@ TEST_CASE("machine: random streams give the pixels of the functional rendering o
 
 TEST_CASE("machine: both drivers, any host order, any order of creating modules: the same cycles and figures") {
   const traces::CommandStream stream = random_stream(7, {64, 48, 8, 6});
-  for (const std::uint64_t machine : {0, 3, 12}) {
+  for (const std::uint64_t machine : {0u, 3u, 12u}) {
     INFO("machine " << machine);
     hw::contract::Options options;
     options.shuffles = 3;
@@ -60,7 +60,7 @@ TEST_CASE("machine: what is left out changes neither pixels nor cycles") {
   options.height = 64;
   for (const char* scene : {"builtin:triangle", "builtin:fill"}) {  // neither reads a texture
     const traces::CommandStream stream = scenes::load_scene(scene, options);
-    for (const std::uint64_t machine : {0, 5}) {
+    for (const std::uint64_t machine : {0u, 5u}) {
       INFO(scene << " on machine " << machine);
       const auto without = hw::contract::run_forked(machine_builder(stream, machine, true), {});
       const auto with = hw::contract::run_forked(machine_builder(stream, machine, false), {});
