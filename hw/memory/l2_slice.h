@@ -68,7 +68,7 @@ class L2Slice final : public Unit {
   bool write(const MemoryRequest& request);
   [[nodiscard]] int place(std::uint32_t line);
   void take_fill(Tick now);
-  void answer(Tick now, std::uint32_t client, const MemoryResponse& token);
+  void answer(Tick at, std::uint32_t client, const MemoryResponse& token);
 
   const Params& params_;
   Stats stats_;

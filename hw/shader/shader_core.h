@@ -79,7 +79,7 @@ class ShaderCore final : public Unit {
   void launch_fragment(CoreSlot& slot);
   void issue(Tick now);
   void complete(Tick now, const Completion& done);
-  void retire(Tick now, std::uint32_t slot);
+  void retire(Tick now, std::uint32_t index);
   void take_texels(Tick now);
 
   const Params& params_;
