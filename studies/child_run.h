@@ -1,0 +1,38 @@
+/// A piece of work in a process of its own: what every study runs its frames with.
+///
+/// SystemC elaborates once in a process, a hostile file may take all memory, and host times mean something only when runs do not share a heap. The child is
+/// forked, works under limits, and hands back a string; its end is one of a few known ways, never the parent's end.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace quadrille::studies {
+
+enum class ChildEnd : std::uint8_t {
+  kDone,
+  kRefused,   ///< the work threw `UserError`, or ran out of memory
+  kFailed,    ///< the work threw anything else
+  kCrashed,   ///< a signal ended it
+  kTimedOut,  ///< it was still running at its limit, and was killed
+};
+/// "done", "refused", "failed", "crashed", "timed out".
+[[nodiscard]] const char* child_end_name(ChildEnd end);
+
+struct ChildLimits {
+  double seconds = 600;
+  std::uint64_t memory_bytes = 0;  ///< of address space; 0: no limit. (Sanitizers reserve terabytes: give none in a sanitized build.)
+};
+
+struct ChildRun {
+  ChildEnd end = ChildEnd::kFailed;
+  std::string output;  ///< what the work returned, or one line that says how it ended instead
+  double wall_s = 0, cpu_s = 0;
+  double peak_rss_mib = 0;  ///< of the child, with what it inherited resident
+};
+
+/// Runs `work` in a forked child. Call it with no other thread running. Throws `UserError` when the host cannot fork.
+[[nodiscard]] ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimits& limits = {});
+
+}  // namespace quadrille::studies

@@ -1,0 +1,67 @@
+#include "studies/child_run.h"
+
+#include <unistd.h>
+#include <catch2/catch.hpp>
+
+#include <csignal>
+#include <stdexcept>
+#include <vector>
+
+#include "models/base/error.h"
+
+namespace quadrille::studies {
+namespace {
+
+using Catch::Matchers::Contains;
+
+TEST_CASE("a child hands back everything that its work returned") {
+  const std::string large(3'000'000, 'x');
+  const ChildRun run = run_in_child([&] { return large + '\0' + "end"; });
+  CHECK(run.end == ChildEnd::kDone);
+  CHECK(run.output == large + '\0' + "end");
+  CHECK(run.peak_rss_mib > 1);
+}
+
+TEST_CASE("each way in which a child can end is told apart") {
+  const ChildRun refused = run_in_child([]() -> std::string { throw user_error("file: no such {}", "thing"); });
+  CHECK(refused.end == ChildEnd::kRefused);
+  CHECK(refused.output == "file: no such thing");
+  CHECK(run_in_child([]() -> std::string { throw std::logic_error("ours"); }).end == ChildEnd::kFailed);
+  const ChildRun killed = run_in_child([]() -> std::string {
+    raise(SIGKILL);
+    return "";
+  });
+  CHECK(killed.end == ChildEnd::kCrashed);
+  CHECK_THAT(killed.output, Contains("signal 9"));
+  const ChildRun left = run_in_child([]() -> std::string { _exit(7); });
+  CHECK(left.end == ChildEnd::kCrashed);
+  CHECK_THAT(left.output, Contains("exit code 7"));
+}
+
+TEST_CASE("a child that does not end is ended at its limit") {
+  const ChildRun run = run_in_child(
+      []() -> std::string {
+        while (true) pause();
+      },
+      {.seconds = 0.2});
+  CHECK(run.end == ChildEnd::kTimedOut);
+  CHECK(run.wall_s >= 0.2);
+  CHECK(run.wall_s < 10);
+}
+
+#ifdef __has_feature
+#if __has_feature(address_sanitizer)
+#define RESERVES_TERABYTES  // address space cannot be limited
+#endif
+#endif
+#ifndef RESERVES_TERABYTES
+TEST_CASE("a child that asks for more memory than it may is refused") {
+  const ChildRun run = run_in_child([] { return std::to_string(std::vector<char>(std::size_t{1} << 30).size()); },
+                                    {.seconds = 60, .memory_bytes = std::uint64_t{512} << 20});
+  CHECK(run.end == ChildEnd::kRefused);
+  CHECK_THAT(run.output, Contains("memory"));
+}
+#endif
+
+}  // namespace
+}  // namespace quadrille::studies
