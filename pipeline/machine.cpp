@@ -179,15 +179,15 @@ void Machine::wire_partition(std::size_t p) {
   Partition& part = partitions_[p];
   const auto name = [p](const char* link) { return fmt::format("{}_{}", link, p); };
   connect<hw::CoverageToken>(*fine_->coverage_out[p], part.depth->coverage_in, l.fine_to_depth, name("fine_to_depth"));
-  connect<hw::HiZToken>(part.depth->hiz_out, *coarse_->hiz_in[p], l.depth_to_coarse, name("depth_to_coarse"));
+  connect<hw::HiZToken>(part.depth->hiz_out, coarse_->hiz_in[p], l.depth_to_coarse, name("depth_to_coarse"));
   connect<hw::CoverageToken>(part.depth->coverage_out, part.packer->coverage_in, l.depth_to_packer, name("depth_to_packer"));
-  connect<hw::WarpToken>(part.packer->warp_out, *distributor_->fragment_in[p], l.packer_to_distributor, name("packer_to_distributor"));
+  connect<hw::WarpToken>(part.packer->warp_out, distributor_->fragment_in[p], l.packer_to_distributor, name("packer_to_distributor"));
   connect<hw::OrderToken>(part.packer->order_out, part.rop->order_in, l.packer_to_rop, name("packer_to_rop"));
   connect<hw::ReleaseToken>(part.rop->release_out, part.packer->release_in, l.rop_to_packer, name("rop_to_packer"));
   connect<hw::LateToken>(part.rop->late_out, part.depth->late_in, l.rop_to_depth, name("rop_to_depth"));
   connect<hw::LateToken>(part.depth->late_out, part.rop->late_in, l.depth_to_rop, name("depth_to_rop"));
-  connect<hw::ReleaseToken>(part.rop->sync_out, *setup_->sync_in[p], l.rop_to_setup, name("rop_to_setup"));
-  connect<hw::RetireToken>(part.rop->retire_out, *command_processor_->retire_in[p], l.rop_to_command, name("rop_to_command"));
+  connect<hw::ReleaseToken>(part.rop->sync_out, setup_->sync_in[p], l.rop_to_setup, name("rop_to_setup"));
+  connect<hw::RetireToken>(part.rop->retire_out, command_processor_->retire_in[p], l.rop_to_command, name("rop_to_command"));
 }
 
 void Machine::wire_core(std::size_t c) {
@@ -197,9 +197,9 @@ void Machine::wire_core(std::size_t c) {
   connect<hw::WarpToken>(*distributor_->vertex_out[c], core.core->vertex_in, l.distributor_to_core, name("distributor_to_core_vertex"));
   connect<hw::WarpToken>(*distributor_->fragment_out[c], core.core->fragment_in, l.distributor_to_core,
                          name("distributor_to_core_fragment"));
-  connect<hw::VertexDoneToken>(core.core->vertex_out, *assembly_->done_in[c], l.core_to_assembly, name("core_to_assembly"));
+  connect<hw::VertexDoneToken>(core.core->vertex_out, assembly_->done_in[c], l.core_to_assembly, name("core_to_assembly"));
   for (std::size_t p = 0; p < partitions_.size(); ++p) {
-    connect<hw::FragmentDoneToken>(*core.core->fragment_out[p], *partitions_[p].rop->done_in[c], l.core_to_rop,
+    connect<hw::FragmentDoneToken>(*core.core->fragment_out[p], partitions_[p].rop->done_in[c], l.core_to_rop,
                                    fmt::format("core_to_rop_{}_{}", c, p));
   }
   if (!core.texture) return;
@@ -210,9 +210,9 @@ void Machine::wire_core(std::size_t c) {
 void Machine::attach_client(const hw::Unit& client_unit, hw::MemoryPort& port) {
   const auto client = static_cast<std::size_t>(next_client_++);
   for (std::size_t i = 0; i < slices_.size(); ++i) {
-    connect<hw::MemoryRequest>(*port.request_out[i], *slices_[i]->request_in[client], config_.link.client_to_l2,
+    connect<hw::MemoryRequest>(*port.request_out[i], slices_[i]->request_in[client], config_.link.client_to_l2,
                                fmt::format("{}_to_l2_{}", client_unit.name(), i));
-    connect<hw::MemoryResponse>(*slices_[i]->response_out[client], *port.response_in[i], config_.link.l2_to_client,
+    connect<hw::MemoryResponse>(*slices_[i]->response_out[client], port.response_in[i], config_.link.l2_to_client,
                                 fmt::format("l2_{}_to_{}", i, client_unit.name()));
   }
 }

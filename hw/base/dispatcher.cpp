@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <map>
 #include <queue>
+#include <unordered_map>
 #include <utility>
 
 namespace quadrille::hw {
@@ -15,23 +15,6 @@ namespace {
 constexpr int kRoundsPerActivation = 1 << 14;
 
 Tick saturating_add(Tick a, Tick b) { return a > kNever - b ? kNever : a + b; }
-
-/// A unit that another can surprise, and how soon.
-struct Neighbour {
-  const Unit* unit = nullptr;
-  Tick latency = 0;
-};
-
-/// Everyone who can surprise `unit`: producers by tokens, consumers by credits.
-std::vector<Neighbour> surprisers(const Unit& unit) {
-  std::vector<Neighbour> all;
-  for (const PortBase* port : unit.ports()) {
-    const FifoBase& link = port->fifo();
-    if (port->direction() == PortBase::Direction::kIn) all.push_back({link.producer(), link.forward_lookahead()});
-    else all.push_back({link.consumer(), link.credit_lookahead()});
-  }
-  return all;
-}
 
 constexpr std::size_t kLanes = 4;  // of 64 bits in a vector register
 
@@ -63,6 +46,7 @@ Earliest earliest_of(const std::vector<Tick>& times) {
 }  // namespace
 
 void Dispatcher::prepare() {
+  const std::vector<std::vector<Neighbour>> neighbours = surprisers();
   chooser_of_.assign(units_.size(), 0);
   chooser_marks_.assign(touched_.size(), 0);
   for (std::size_t i = 0; i < units_.size(); ++i) {
@@ -70,7 +54,7 @@ void Dispatcher::prepare() {
     if (unit.unit_kind() != Unit::Kind::kChooser) continue;
     chooser_of_[i] = choosers_.size();
     chooser_marks_[i / 64] |= std::uint64_t{1} << (i % 64);
-    const Reach reach = reach_of(unit);
+    const Reach reach = reach_of(i, neighbours);
     choosers_.push_back({&unit, unit.touched_word(), unit.touched_bit(), reach.self, Wake(kNever)});
     reach_.push_back(reach.others);
   }
@@ -80,23 +64,52 @@ void Dispatcher::prepare() {
   sc_core::sc_spawn([this] { step(); }, "step", &options);
 }
 
-/// Dijkstra's algorithm against the flow of surprises. A fixed-order unit adds no time of its own: it may act in the very tick that enables it.
-Dispatcher::Reach Dispatcher::reach_of(const Unit& chooser) const {
+/// Producers surprise by tokens, consumers by credits.
+std::vector<std::vector<Dispatcher::Neighbour>> Dispatcher::surprisers() const {
+  std::unordered_map<const Unit*, std::uint32_t> number;
+  for (const Unit* unit : units_) number.emplace(unit, static_cast<std::uint32_t>(number.size()));
+  std::vector<std::vector<Neighbour>> all(units_.size());
+  std::vector<std::size_t> place(units_.size());  // of a neighbour in the list being made; valid where `owner` says so
+  std::vector<const Unit*> owner(units_.size());
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    for (const PortBase* port : units_[i]->ports()) {
+      const FifoBase& link = port->fifo();
+      const bool input = port->direction() == PortBase::Direction::kIn;
+      const std::uint32_t peer = number.at(input ? link.producer() : link.consumer());
+      const Tick latency = input ? link.forward_lookahead() : link.credit_lookahead();
+      if (owner[peer] != units_[i]) {
+        owner[peer] = units_[i];
+        place[peer] = all[i].size();
+        all[i].push_back({peer, latency});
+      } else {
+        all[i][place[peer]].latency = std::min(all[i][place[peer]].latency, latency);
+      }
+    }
+  }
+  return all;
+}
+
+/// Dijkstra's algorithm against the flow of surprises, until the nearest other chooser and the shortest way back are known. A fixed-order unit adds no time of
+/// its own: it may act in the very tick that enables it.
+Dispatcher::Reach Dispatcher::reach_of(std::size_t chooser, const std::vector<std::vector<Neighbour>>& surprisers) const {
   Reach reach;
-  std::map<const Unit*, Tick> settled;
-  using Entry = std::pair<Tick, const Unit*>;
+  std::vector<bool> settled(units_.size());
+  using Entry = std::pair<Tick, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  for (const Neighbour& n : surprisers(chooser)) open.emplace(n.latency, n.unit);
-  while (!open.empty()) {
+  for (const Neighbour& n : surprisers[chooser]) open.emplace(n.latency, n.unit);
+  while (!open.empty() && (reach.self == kNever || reach.others == kNever)) {
     const auto [distance, unit] = open.top();
     open.pop();
-    if (!settled.emplace(unit, distance).second) continue;
-    if (unit == &chooser) {
+    if (settled[unit]) continue;
+    settled[unit] = true;
+    if (unit == chooser) {
       reach.self = distance;
       continue;
     }
-    if (unit->unit_kind() == Unit::Kind::kChooser) reach.others = std::min(reach.others, distance);
-    for (const Neighbour& n : surprisers(*unit)) open.emplace(saturating_add(distance, n.latency), n.unit);
+    if (units_[unit]->unit_kind() == Unit::Kind::kChooser) reach.others = std::min(reach.others, distance);
+    for (const Neighbour& n : surprisers[unit]) {
+      if (!settled[n.unit]) open.emplace(saturating_add(distance, n.latency), n.unit);
+    }
   }
   return {saturating_add(reach.others, window_), saturating_add(reach.self, window_)};
 }

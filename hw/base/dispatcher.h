@@ -29,7 +29,14 @@ class Dispatcher final : public Driver {
     Wake wake;
   };
   void prepare() override;
-  [[nodiscard]] Reach reach_of(const Unit& chooser) const;
+  /// A unit that can surprise another, by number, and how soon.
+  struct Neighbour {
+    std::uint32_t unit = 0;
+    Tick latency = 0;
+  };
+  /// Who can surprise each unit. Of several links between two units only the quickest counts.
+  [[nodiscard]] std::vector<std::vector<Neighbour>> surprisers() const;
+  [[nodiscard]] Reach reach_of(std::size_t chooser, const std::vector<std::vector<Neighbour>>& surprisers) const;
   void step();
   /// Runs marked fixed-order units until none can act, then asks marked choosers again.
   void settle();

@@ -66,6 +66,11 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   [[nodiscard]] bool full_rate() const { return spec_.depth >= spec_.width * (spec_.latency + spec_.credit_latency); }
   void bind_producer(Unit& unit);
   void bind_consumer(Unit& unit);
+  /// Sets bit `bit` of `word` whenever a token arrives while none is held.
+  void mark_arrivals(std::uint64_t& word, int bit) {
+    arrival_word_ = &word;
+    arrival_mask_ = std::uint64_t{1} << bit;
+  }
   /// Precomputes latencies and marks once both ends are known.
   void elaborate();
 
@@ -78,6 +83,7 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
     if (count_ == 0) {
       ready_ = visible;
       *consumer_word_ |= std::uint64_t{1} << consumer_bit_;
+      *arrival_word_ |= arrival_mask_;
     }
     tail_ = wrap(tail_);
     ++count_;
@@ -133,6 +139,9 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   std::uint64_t* consumer_word_ = nullptr;  ///< of the driver's marks
   std::uint64_t* producer_word_ = nullptr;
   std::uint8_t consumer_bit_ = 0, producer_bit_ = 0;
+  std::uint64_t unwatched_ = 0;
+  std::uint64_t* arrival_word_ = &unwatched_;  ///< of the consumer's own marks (FifoInGroup)
+  std::uint64_t arrival_mask_ = 0;
 
  protected:
   bool faulty_ = false;  ///< a test changes tokens as they are pushed
@@ -230,10 +239,23 @@ template <class T>
 class FifoIn final : public FifoPort<T, PortBase::Direction::kIn> {
  public:
   using FifoPort<T, PortBase::Direction::kIn>::FifoPort;
+  void attach() override {
+    FifoPort<T, PortBase::Direction::kIn>::attach();
+    if (arrival_word_ != nullptr) this->channel_->mark_arrivals(*arrival_word_, arrival_bit_);
+  }
+  /// The link shall mark arrivals in bit `bit` of `word`, once it is attached.
+  void mark_arrivals(std::uint64_t& word, int bit) {
+    arrival_word_ = &word;
+    arrival_bit_ = bit;
+  }
   [[nodiscard]] Tick ready() const { return this->channel_->ready(); }
   [[nodiscard]] bool ready_at(Tick now) const { return this->channel_->ready_at(now); }
   [[nodiscard]] const T& front() const { return this->channel_->front(); }
   T pop(Tick now) { return this->channel_->pop(now); }
+
+ private:
+  std::uint64_t* arrival_word_ = nullptr;
+  int arrival_bit_ = 0;
 };
 
 /// Producer's end.

@@ -11,9 +11,7 @@ CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const Params& p
       frame_(frame),
       quiet_log_(quiet),
       retired_by_(static_cast<std::size_t>(partitions)) {
-  for (int i = 0; i < partitions; ++i) {
-    retire_in.push_back(std::make_unique<FifoIn<RetireToken>>(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply));
-  }
+  for (int i = 0; i < partitions; ++i) { retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply); }
   if (frame.passes.empty()) step_ = Step::kDone;
 }
 
@@ -21,21 +19,17 @@ std::string CommandProcessor::state_text() const {
   return fmt::format("pass {} of {}, {} draws issued, {} retired", pass_, frame_.passes.size(), draw_, retired_);
 }
 
-Wake CommandProcessor::retire_wake() const {
-  Wake first = Wake().input(*retire_in[0]);
-  for (std::size_t i = 1; i < retire_in.size(); ++i) first = Wake::sooner(first, Wake().input(*retire_in[i]));
-  return first;
-}
+Wake CommandProcessor::retire_wake() const { return retire_in.earliest(); }
 
 Wake CommandProcessor::issue_wake() const {
   switch (step_) {
     case Step::kDraw:
-      if (draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value())) return Wake::never(*retire_in[0]);
+      if (draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value())) return Wake::never(retire_in[0]);
       return Wake(free_).output(draw_out);
     case Step::kPassBegin:
     case Step::kDrawEnd:
     case Step::kPassEnd: return Wake(free_).output(draw_out);
-    case Step::kWaitFlush: return Wake::never(*retire_in[0]);
+    case Step::kWaitFlush: return Wake::never(retire_in[0]);
     case Step::kScan: return Wake(free_).output(scan_out);
     case Step::kWaitScan: return Wake().input(scan_done_in);
     case Step::kDone: return Wake::never(scan_done_in);
@@ -51,13 +45,10 @@ void CommandProcessor::act(Tick now) {
 }
 
 void CommandProcessor::take_retirements(Tick now) {
-  for (std::size_t p = 0; p < retire_in.size(); ++p) {
-    while (retire_in[p]->ready_at(now)) {
-      const RetireToken token = retire_in[p]->pop(now);
-      if (token.kind == TokenKind::kPassEnd) ++flushes_;
-      else ++retired_by_[p];
-    }
-  }
+  retire_in.take_ready(now, [&](std::size_t partition, const RetireToken& token) {
+    if (token.kind == TokenKind::kPassEnd) ++flushes_;
+    else ++retired_by_[partition];
+  });
   const std::uint32_t all = *std::min_element(retired_by_.begin(), retired_by_.end());
   stats_.draws_retired += all - retired_;
   retired_ = all;

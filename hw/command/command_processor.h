@@ -8,8 +8,8 @@
 /// Not modelled: fetching and parsing the command buffer itself (docs/deviations.md#D1)
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/unit.h"
 #include "hw/frame/frame.h"
 #include "hw/frame/tokens.h"
 
@@ -32,7 +32,7 @@ class CommandProcessor final : public Unit {
   CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, int partitions,
                    QuietLog& quiet);
 
-  std::vector<std::unique_ptr<FifoIn<RetireToken>>> retire_in;
+  FifoInGroup<RetireToken> retire_in;
   FifoIn<ReleaseToken> scan_done_in{*this, "scan_done_in", LinkRole::kReply};
   FifoOut<DrawToken> draw_out{*this, "draw_out"};
   FifoOut<ScanToken> scan_out{*this, "scan_out"};

@@ -10,8 +10,8 @@ std::string ScanOut::state_text() const { return fmt::format("{} lines left, {} 
 
 Wake ScanOut::ask_wake() const {
   if (!scanning_) return Wake(free_).input(scan_in);
-  if (next_line_ < end_line_) return in_flight_ < params_.lines_in_flight ? Wake(free_) : Wake::never(*port_.response_in[0]);
-  return in_flight_ == 0 ? Wake(free_).output(done_out) : Wake::never(*port_.response_in[0]);
+  if (next_line_ < end_line_) return in_flight_ < params_.lines_in_flight ? Wake(free_) : Wake::never(port_.response_in[0]);
+  return in_flight_ == 0 ? Wake(free_).output(done_out) : Wake::never(port_.response_in[0]);
 }
 
 Wake ScanOut::next() const {
@@ -21,7 +21,7 @@ Wake ScanOut::next() const {
 }
 
 void ScanOut::act(Tick now) {
-  while (port_.receive(now)) --in_flight_;
+  port_.receive(now, [&](const MemoryResponse&) { --in_flight_; });
   if (ask_wake().at() <= now) {
     if (!scanning_) {
       const models::SurfaceLayout& surface = frame_.passes[scan_in.pop(now).pass].color;

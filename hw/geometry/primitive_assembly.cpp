@@ -4,7 +4,7 @@ namespace quadrille::hw {
 
 PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const Clock& clock, const Store<BatchSlot>& batches, int cores)
     : Unit(name, Kind::kChooser, clock), batches_(batches), shaded_(static_cast<std::size_t>(batches.size()), false) {
-  for (int i = 0; i < cores; ++i) done_in.push_back(std::make_unique<FifoIn<VertexDoneToken>>(*this, fmt::format("done_in_{}", i).c_str()));
+  for (int i = 0; i < cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 
 std::string PrimitiveAssembly::state_text() const { return fmt::format("triangle {} of the batch at its head", next_triangle_); }
@@ -13,20 +13,14 @@ Wake PrimitiveAssembly::emit_wake() const {
   Wake wake = Wake(free_).input(batch_in);
   if (batch_in.ready() == kNever) return wake;
   const BatchToken& head = batch_in.front();
-  if (head.kind == TokenKind::kWork && !shaded_[head.slot]) return Wake::never(*done_in[0]);
+  if (head.kind == TokenKind::kWork && !shaded_[head.slot]) return Wake::never(done_in[0]);
   return wake.output(primitive_out);
 }
 
-Wake PrimitiveAssembly::next() const {
-  Wake wake = emit_wake();
-  for (const auto& in : done_in) wake = Wake::sooner(wake, Wake().input(*in));
-  return wake;
-}
+Wake PrimitiveAssembly::next() const { return Wake::sooner(emit_wake(), done_in.earliest()); }
 
 void PrimitiveAssembly::act(Tick now) {
-  for (auto& in : done_in) {
-    while (in->ready_at(now)) shaded_[in->pop(now).slot] = true;
-  }
+  done_in.take_ready(now, [&](std::size_t, const VertexDoneToken& done) { shaded_[done.slot] = true; });
   if (emit_wake().at() <= now) emit(now);
 }
 

@@ -5,8 +5,8 @@
 /// Time  one token a cycle
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/unit.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 
@@ -22,7 +22,7 @@ class PrimitiveAssembly final : public Unit {
   PrimitiveAssembly(sc_core::sc_module_name name, const Clock& clock, const Store<BatchSlot>& batches, int cores);
 
   FifoIn<BatchToken> batch_in{*this, "batch_in"};
-  std::vector<std::unique_ptr<FifoIn<VertexDoneToken>>> done_in;
+  FifoInGroup<VertexDoneToken> done_in;
   FifoOut<PrimitiveToken> primitive_out{*this, "primitive_out"};
 
   [[nodiscard]] Wake next() const override;

@@ -15,9 +15,7 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const Params&
       pieces_(pieces),
       triangles_(triangles),
       retired_by_(static_cast<std::size_t>(partitions)) {
-  for (int i = 0; i < partitions; ++i) {
-    sync_in.push_back(std::make_unique<FifoIn<ReleaseToken>>(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply));
-  }
+  for (int i = 0; i < partitions; ++i) { sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply); }
 }
 
 std::string TriangleSetupUnit::state_text() const {
@@ -25,17 +23,13 @@ std::string TriangleSetupUnit::state_text() const {
 }
 
 Wake TriangleSetupUnit::work_wake() const {
-  if (sequence_ - retired_ >= triangles_.size()) return Wake::never(*sync_in[0]);
+  if (sequence_ - retired_ >= triangles_.size()) return Wake::never(sync_in[0]);
   Wake wake = Wake(free_).input(clipped_in);
   if (clipped_in.ready() == kNever) return wake;
   return clipped_in.front().kind == TokenKind::kBatchEnd ? wake.output(release_out) : wake.output(triangle_out);
 }
 
-Wake TriangleSetupUnit::next() const {
-  Wake wake = work_wake();
-  for (const auto& in : sync_in) wake = Wake::sooner(wake, Wake().input(*in));
-  return wake;
-}
+Wake TriangleSetupUnit::next() const { return Wake::sooner(work_wake(), sync_in.earliest()); }
 
 void TriangleSetupUnit::act(Tick now) {
   take_syncs(now);
@@ -43,10 +37,12 @@ void TriangleSetupUnit::act(Tick now) {
 }
 
 void TriangleSetupUnit::take_syncs(Tick now) {
-  for (std::size_t p = 0; p < sync_in.size(); ++p) {
-    while (sync_in[p]->ready_at(now)) retired_by_[p] = sync_in[p]->pop(now).sequence;
-  }
-  retired_ = *std::min_element(retired_by_.begin(), retired_by_.end());
+  bool any = false;
+  sync_in.take_ready(now, [&](std::size_t partition, const ReleaseToken& token) {
+    retired_by_[partition] = token.sequence;
+    any = true;
+  });
+  if (any) retired_ = *std::min_element(retired_by_.begin(), retired_by_.end());
 }
 
 void TriangleSetupUnit::work(Tick now) {

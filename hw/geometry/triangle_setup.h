@@ -5,8 +5,8 @@
 /// Time  `setup_clk` cycles a triangle, culled or kept; waits while the triangle store is full
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/unit.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 
@@ -31,7 +31,7 @@ class TriangleSetupUnit final : public Unit {
                     const Store<BatchSlot>& batches, const Store<ClippedPiece>& pieces, TriangleStore& triangles, int partitions);
 
   FifoIn<ClippedToken> clipped_in{*this, "clipped_in"};
-  std::vector<std::unique_ptr<FifoIn<ReleaseToken>>> sync_in;
+  FifoInGroup<ReleaseToken> sync_in;
   FifoOut<TriangleToken> triangle_out{*this, "triangle_out"};
   FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
 

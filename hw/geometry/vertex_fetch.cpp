@@ -22,7 +22,7 @@ std::string VertexFetch::state_text() const {
 
 Wake VertexFetch::build_wake() const {
   if (next_line_ < lines_.size()) {
-    if (stalled_) return Wake::never(*port_.response_in[0]);
+    if (stalled_) return Wake::never(port_.response_in[0]);
     return Wake(free_);
   }
   if (!drawing_) return Wake(free_).input(draw_in);
@@ -34,7 +34,7 @@ Wake VertexFetch::leave_wake() const {
   if (pending_.empty()) return Wake::never(draw_in);
   const Pending& head = pending_.front();
   const bool still_looking_up = pending_.size() == 1 && next_line_ < lines_.size();
-  if (head.missing > 0 || still_looking_up) return Wake::never(*port_.response_in[0]);
+  if (head.missing > 0 || still_looking_up) return Wake::never(port_.response_in[0]);
   Wake wake(head.ready);
   if (head.kind == TokenKind::kWork) wake.output(warp_out);
   return wake.output(batch_out);
@@ -49,14 +49,14 @@ Wake VertexFetch::next() const {
 
 void VertexFetch::act(Tick now) {
   while (release_in.ready_at(now)) free_slots_.push_back(release_in.pop(now).slot);
-  while (const auto answer = port_.receive(now)) {
+  port_.receive(now, [&](const MemoryResponse& answer) {
     stalled_ = false;
-    cache_.fill(*answer, [&](std::uint32_t number) {
+    cache_.fill(answer, [&](std::uint32_t number) {
       Pending& p = pending_[number - first_pending_];
       --p.missing;
       p.ready = std::max(p.ready, now);
     });
-  }
+  });
   if (build_wake().at() <= now) build(now);
   if (leave_wake().at() <= now) leave(now);
   port_.send(now);

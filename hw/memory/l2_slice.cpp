@@ -18,9 +18,10 @@ L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock
       tags_(whole_sets(params.cache_lines, params.cache_ways), static_cast<std::uint32_t>(params.cache_ways.value())),
       misses_(static_cast<std::size_t>(params.cache_misses.value())),
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
-      answers_(static_cast<std::size_t>(clients)) {
+      answers_(static_cast<std::size_t>(clients)),
+      answering_((static_cast<std::size_t>(clients) + 63) / 64, 0) {
   for (int i = 0; i < clients; ++i) {
-    request_in.push_back(std::make_unique<FifoIn<MemoryRequest>>(*this, fmt::format("request_in_{}", i).c_str()));
+    request_in.add(*this, fmt::format("request_in_{}", i).c_str());
     response_out.push_back(std::make_unique<FifoOut<MemoryResponse>>(*this, fmt::format("response_out_{}", i).c_str(), LinkRole::kReply));
   }
   for (std::size_t i = misses_.size(); i-- > 0;) free_misses_.push_back(static_cast<std::uint32_t>(i));
@@ -34,37 +35,31 @@ bool L2Slice::can_look_up() const { return !stalled_ && to_memory_.size() < miss
 
 Wake L2Slice::look_up_wake() const {
   if (!can_look_up()) return Wake::never(fill_in);
-  Wake first(kNever);
-  for (const auto& in : request_in) {
-    if (in->ready() != kNever) first = Wake::sooner(first, Wake(free_).input(*in));
-  }
-  return first;
+  return request_in.earliest(Wake(free_));
 }
 
 Wake L2Slice::next() const {
   Wake wake = look_up_wake();
   wake = Wake::sooner(wake, Wake().input(fill_in));
   if (!to_memory_.empty()) wake = Wake::sooner(wake, Wake().output(memory_out));
-  for (std::size_t c = 0; c < answers_.size(); ++c) {
-    if (!answers_[c].empty()) wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c]));
-  }
-  return wake.at() == kNever && wake.cause() == nullptr ? Wake::never(*request_in[0]) : wake;
+  visit_answering([&](std::size_t c) { wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c])); });
+  return wake;
 }
 
 void L2Slice::act(Tick now) {
   while (fill_in.ready_at(now)) take_fill(now);
-  for (std::size_t c = 0; c < answers_.size(); ++c) {
-    if (answers_[c].empty() || answers_[c].front().at > now || !response_out[c]->room_at(now)) continue;
+  visit_answering([&](std::size_t c) {
+    if (answers_[c].front().at > now || !response_out[c]->room_at(now)) return;
     response_out[c]->push(now, answers_[c].front().token);
     answers_[c].pop_front();
-  }
+    if (answers_[c].empty()) answering_[c / 64] ^= std::uint64_t{1} << (c % 64);
+  });
   if (can_look_up() && free_ <= now) {
-    for (std::size_t i = 0; i < request_in.size(); ++i) {
-      const std::size_t c = (turn_ + i) % request_in.size();
-      if (!request_in[c]->ready_at(now)) continue;
+    request_in.visit_holding(turn_, [&](std::size_t c, const FifoIn<MemoryRequest>& in) {
+      if (!in.ready_at(now)) return false;
       look_up(now, static_cast<std::uint32_t>(c));
-      break;
-    }
+      return true;
+    });
   }
   if (!to_memory_.empty() && memory_out.room_at(now)) {
     memory_out.push(now, to_memory_.front());
@@ -73,7 +68,7 @@ void L2Slice::act(Tick now) {
 }
 
 void L2Slice::look_up(Tick now, std::uint32_t client) {
-  const MemoryRequest request = request_in[client]->front();
+  const MemoryRequest request = request_in[client].front();
   bool taken = true;
   switch (request.kind) {
     case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
@@ -85,8 +80,8 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
     return;
   }
   if (request.kind != MemoryRequest::Kind::kFence) ++stats_.requests;
-  (void)request_in[client]->pop(now);
-  turn_ = client + 1;
+  (void)request_in[client].pop(now);
+  turn_ = (client + 1) % request_in.size();
   free_ = after(now, 1);
   occupy(now, 1);
 }
@@ -163,6 +158,7 @@ void L2Slice::answer(Tick at, std::uint32_t client, const MemoryResponse& token)
   auto place = queue.end();
   while (place != queue.begin() && std::prev(place)->at > at) --place;
   queue.insert(place, {at, token});
+  answering_[client / 64] |= std::uint64_t{1} << (client % 64);
 }
 
 }  // namespace quadrille::hw

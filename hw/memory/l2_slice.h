@@ -5,11 +5,12 @@
 /// Time  one request a cycle, clients take turns; an answer leaves when its sectors are there; a line that is under way serves all who ask for it
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/unit.h"
 #include "hw/frame/tokens.h"
 #include "models/cache/tag_array.h"
 
+#include <bit>
 #include <deque>
 #include <memory>
 
@@ -36,7 +37,7 @@ class L2Slice final : public Unit {
   };
   L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, int clients);
 
-  std::vector<std::unique_ptr<FifoIn<MemoryRequest>>> request_in;
+  FifoInGroup<MemoryRequest> request_in;
   std::vector<std::unique_ptr<FifoOut<MemoryResponse>>> response_out;
   FifoIn<MemoryResponse> fill_in{*this, "fill_in", LinkRole::kReply};
   FifoOut<MemoryRequest> memory_out{*this, "memory_out"};
@@ -69,6 +70,14 @@ class L2Slice final : public Unit {
   [[nodiscard]] int place(std::uint32_t line);
   void take_fill(Tick now);
   void answer(Tick at, std::uint32_t client, const MemoryResponse& token);
+  /// Calls `visit(client)` for the clients that have answers.
+  template <class Visit>
+  void visit_answering(Visit&& visit) const {
+    for (std::size_t w = 0; w < answering_.size(); ++w) {
+      for (std::uint64_t bits = answering_[w]; bits != 0; bits &= bits - 1)
+        visit(w * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
+    }
+  }
 
   const Params& params_;
   Stats stats_;
@@ -77,6 +86,7 @@ class L2Slice final : public Unit {
   std::vector<std::uint32_t> free_misses_;
   std::vector<int> miss_of_slot_;
   std::vector<std::deque<Answer>> answers_;  ///< by client, in order of time
+  std::vector<std::uint64_t> answering_;     ///< a bit a client: it has answers
   std::deque<MemoryRequest> to_memory_;
   std::size_t turn_ = 0;
   bool stalled_ = false;  ///< the line in turn had no place; a fill will make one

@@ -9,7 +9,7 @@ namespace quadrille::hw {
 MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices) : stats_(stats) {
   for (int i = 0; i < slices; ++i) {
     request_out.push_back(std::make_unique<FifoOut<MemoryRequest>>(owner, fmt::format("memory_out_{}", i).c_str(), LinkRole::kReply));
-    response_in.push_back(std::make_unique<FifoIn<MemoryResponse>>(owner, fmt::format("memory_in_{}", i).c_str(), LinkRole::kReply));
+    response_in.add(owner, fmt::format("memory_in_{}", i).c_str(), LinkRole::kReply);
   }
 }
 
@@ -44,17 +44,6 @@ void MemoryPort::send(Tick now) {
   }
 }
 
-Wake MemoryPort::receive_wake() const {
-  Wake first = Wake().input(*response_in[0]);
-  for (std::size_t i = 1; i < response_in.size(); ++i) first = Wake::sooner(first, Wake().input(*response_in[i]));
-  return first;
-}
-
-std::optional<MemoryResponse> MemoryPort::receive(Tick now) {
-  for (auto& in : response_in) {
-    if (in->ready_at(now)) return in->pop(now);
-  }
-  return std::nullopt;
-}
+Wake MemoryPort::receive_wake() const { return response_in.earliest(); }
 
 }  // namespace quadrille::hw

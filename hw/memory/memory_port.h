@@ -3,12 +3,11 @@
 /// Lines are spread over the slices so that any stride uses them all: slice = (line + line / slices) mod slices.
 #pragma once
 
-#include "hw/base/unit.h"
+#include "hw/base/fifo_group.h"
 #include "hw/frame/tokens.h"
 
 #include <deque>
 #include <memory>
-#include <optional>
 
 namespace quadrille::hw {
 
@@ -44,12 +43,15 @@ class MemoryPort {
   void send(Tick now);
   /// When the next answer is there.
   [[nodiscard]] Wake receive_wake() const;
-  /// One answer that is there at `now`, if any.
-  [[nodiscard]] std::optional<MemoryResponse> receive(Tick now);
+  /// Calls `take(answer)` for every answer that is there at `now`, slice by slice.
+  template <class Take>
+  void receive(Tick now, Take&& take) {
+    response_in.take_ready(now, [&](std::size_t, const MemoryResponse& answer) { take(answer); });
+  }
 
   [[nodiscard]] int slices() const { return static_cast<int>(request_out.size()); }
   std::vector<std::unique_ptr<FifoOut<MemoryRequest>>> request_out;  ///< by slice
-  std::vector<std::unique_ptr<FifoIn<MemoryResponse>>> response_in;
+  FifoInGroup<MemoryResponse> response_in;
 
  private:
   MemoryPortStats stats_;

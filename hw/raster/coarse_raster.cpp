@@ -17,9 +17,7 @@ CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const Params& params, c
       frame_(frame),
       triangles_(triangles),
       sync_interval_(std::max<std::uint64_t>(1, triangles.size() / 8)) {
-  for (int i = 0; i < partitions; ++i) {
-    hiz_in.push_back(std::make_unique<FifoIn<HiZToken>>(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply));
-  }
+  for (int i = 0; i < partitions; ++i) { hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply); }
 }
 
 std::string CoarseRaster::state_text() const { return fmt::format("triangle {} of draw {}", triangle_, draw_); }
@@ -31,11 +29,7 @@ Wake CoarseRaster::work_wake() const {
   return wake.output(tile_out);
 }
 
-Wake CoarseRaster::next() const {
-  Wake wake = work_wake();
-  for (const auto& in : hiz_in) wake = Wake::sooner(wake, Wake().input(*in));
-  return wake;
-}
+Wake CoarseRaster::next() const { return Wake::sooner(work_wake(), hiz_in.earliest()); }
 
 void CoarseRaster::act(Tick now) {
   take_updates(now);
@@ -43,15 +37,12 @@ void CoarseRaster::act(Tick now) {
 }
 
 void CoarseRaster::take_updates(Tick now) {
-  for (auto& in : hiz_in) {
-    while (in->ready_at(now)) {
-      const HiZToken update = in->pop(now);
-      ++stats_.hiz_updates;
-      if (update.pass != pass_ || hiz_.empty()) continue;
-      float& held = hiz_[std::size_t{update.tile_y} * frame_.passes[pass_].depth.tiles_x + update.tile_x];
-      held = std::min(held, update.max_depth);
-    }
-  }
+  hiz_in.take_ready(now, [&](std::size_t, const HiZToken& update) {
+    ++stats_.hiz_updates;
+    if (update.pass != pass_ || hiz_.empty()) return;
+    float& held = hiz_[std::size_t{update.tile_y} * frame_.passes[pass_].depth.tiles_x + update.tile_x];
+    held = std::min(held, update.max_depth);
+  });
 }
 
 void CoarseRaster::work(Tick now) {

@@ -7,8 +7,8 @@
 /// trusted only while every depth write of the pass can but lower depths: a draw that writes with another comparison switches it off until the next clear.
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/unit.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 #include "models/raster/coarse.h"
@@ -32,7 +32,7 @@ class CoarseRaster final : public Unit {
                int partitions);
 
   FifoIn<TriangleToken> triangle_in{*this, "triangle_in"};
-  std::vector<std::unique_ptr<FifoIn<HiZToken>>> hiz_in;
+  FifoInGroup<HiZToken> hiz_in;
   FifoOut<TileToken> tile_out{*this, "tile_out"};
 
   [[nodiscard]] Wake next() const override;

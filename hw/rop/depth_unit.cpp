@@ -77,7 +77,7 @@ Wake DepthUnit::early_test_wake() const {
   if (early_.empty()) return Wake::never(coverage_in);
   const EarlyEntry& head = early_.front();
   if (!head.acquired && !stalled_) return Wake(std::max(free_, head.ready));
-  if (!head.acquired || head.missing > 0) return Wake::never(*port_.response_in[0]);
+  if (!head.acquired || head.missing > 0) return Wake::never(port_.response_in[0]);
   return Wake(std::max(free_, head.ready)).output(coverage_out);
 }
 
@@ -90,12 +90,12 @@ Wake DepthUnit::late_test_wake() const {
   if (late_.empty()) return Wake::never(late_in);
   const LateEntry& head = late_.front();
   if (!head.acquired && !stalled_) return Wake(std::max(free_, head.ready));
-  if (!head.acquired || head.missing > 0) return Wake::never(*port_.response_in[0]);
+  if (!head.acquired || head.missing > 0) return Wake::never(port_.response_in[0]);
   return Wake(std::max(free_, head.ready)).output(late_out);
 }
 
 Wake DepthUnit::flush_wake() const {
-  if (flush_ != Flush::kFenced || fences_ > 0) return Wake::never(*port_.response_in[0]);
+  if (flush_ != Flush::kFenced || fences_ > 0) return Wake::never(port_.response_in[0]);
   return Wake(free_).output(late_out);
 }
 
@@ -131,13 +131,13 @@ bool DepthUnit::early_ready(Tick now) const { return !early_.empty() && early_.f
 bool DepthUnit::late_ready(Tick now) const { return !late_.empty() && late_.front().acquired && late_test_wake().at() <= now; }
 
 void DepthUnit::take_answers(Tick now) {
-  while (const auto answer = port_.receive(now)) {
-    if (answer->tag == kFenceTag) {
+  port_.receive(now, [&](const MemoryResponse& answer) {
+    if (answer.tag == kFenceTag) {
       --fences_;
-      continue;
+      return;
     }
     stalled_ = false;
-    cache_.fill(*answer, [&](std::uint32_t waiter) {
+    cache_.fill(answer, [&](std::uint32_t waiter) {
       if ((waiter & kLateBit) != 0) {
         LateEntry& entry = late_[(waiter & ~kLateBit) - first_late_];
         --entry.missing;
@@ -148,7 +148,7 @@ void DepthUnit::take_answers(Tick now) {
         entry.ready = std::max(entry.ready, now);
       }
     });
-  }
+  });
 }
 
 void DepthUnit::take_early(Tick now) {

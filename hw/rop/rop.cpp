@@ -60,8 +60,7 @@ Rop::Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock,
       port_(*this, stats_, slices),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner),
       shaded_(static_cast<std::size_t>(warps.size()), false) {
-  for (int i = 0; i < cores; ++i)
-    done_in.push_back(std::make_unique<FifoIn<FragmentDoneToken>>(*this, fmt::format("done_in_{}", i).c_str()));
+  for (int i = 0; i < cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 
 std::string Rop::state_text() const {
@@ -74,7 +73,7 @@ Wake Rop::test_wake() const {
   if (tested_ >= entries_.size()) return Wake::never(order_in);
   const Entry& entry = entries_[tested_];
   if (entry.token.kind != TokenKind::kWork) return Wake(test_free_);
-  if (!shaded_[entry.token.slot]) return Wake::never(*done_in[0]);
+  if (!shaded_[entry.token.slot]) return Wake::never(done_in[0]);
   return warps_[entry.token.slot].late ? Wake(test_free_).output(late_out) : Wake(test_free_);
 }
 
@@ -82,7 +81,7 @@ Wake Rop::acquire_wake() const {
   if (acquired_ >= awaiting_ || acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value())) return Wake(kNever);
   // What follows a pass's begin must find its surface set up.
   if (acquired_ > 0 && entries_[acquired_ - 1].token.kind == TokenKind::kPassBegin) return Wake(kNever);
-  return stalled_ ? Wake::never(*port_.response_in[0]) : Wake(acquire_free_);
+  return stalled_ ? Wake::never(port_.response_in[0]) : Wake(acquire_free_);
 }
 
 Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
@@ -102,7 +101,7 @@ Wake Rop::retire_wake() const {
   if (flush_ != Flush::kNone) return Wake(kNever);
   if (entries_.empty() || acquired_ == 0) return Wake(kNever);
   const Entry& head = entries_.front();
-  if (head.missing > 0 || claim_stalled_) return Wake::never(*port_.response_in[0]);
+  if (head.missing > 0 || claim_stalled_) return Wake::never(port_.response_in[0]);
   return outputs_of(head, Wake(std::max(free_, head.ready)));
 }
 
@@ -111,7 +110,7 @@ Wake Rop::next() const {
   wake = Wake::sooner(wake, test_wake());
   wake = Wake::sooner(wake, Wake().input(late_in));
   if (entries_.size() < warps_.size()) wake = Wake::sooner(wake, Wake().input(order_in));
-  for (const auto& in : done_in) wake = Wake::sooner(wake, Wake().input(*in));
+  wake = Wake::sooner(wake, done_in.earliest());
   wake = Wake::sooner(wake, port_.receive_wake());
   if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
   return wake;
@@ -129,22 +128,20 @@ void Rop::act(Tick now) {
 }
 
 void Rop::take_inputs(Tick now) {
-  while (const auto answer = port_.receive(now)) {
-    if (answer->tag == kFenceTag) {
+  port_.receive(now, [&](const MemoryResponse& answer) {
+    if (answer.tag == kFenceTag) {
       --fences_;
-      continue;
+      return;
     }
     stalled_ = false;
     claim_stalled_ = false;
-    cache_.fill(*answer, [&](std::uint32_t number) {
+    cache_.fill(answer, [&](std::uint32_t number) {
       Entry& entry = entries_[number - first_entry_];
       --entry.missing;
       entry.ready = std::max(entry.ready, now);
     });
-  }
-  for (auto& in : done_in) {
-    while (in->ready_at(now)) shaded_[in->pop(now).slot] = true;
-  }
+  });
+  done_in.take_ready(now, [&](std::size_t, const FragmentDoneToken& done) { shaded_[done.slot] = true; });
   while (late_in.ready_at(now)) take_late(now);
   while (entries_.size() < warps_.size() && order_in.ready_at(now)) entries_.push_back({order_in.pop(now)});
 }

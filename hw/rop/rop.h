@@ -7,6 +7,7 @@
 /// Time  `quads_per_clk` quads a cycle (half of that when blending reads the old colour); up to `warps_in_flight` warps wait for their lines
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
 #include "hw/frame/stores.h"
 #include "hw/rop/surface_cache.h"
@@ -38,7 +39,7 @@ class Rop final : public Unit {
       models::DeviceMemory::Owner owner, Store<WarpSlot>& warps, int partition, int partitions, int cores, int slices);
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
-  std::vector<std::unique_ptr<FifoIn<FragmentDoneToken>>> done_in;
+  FifoInGroup<FragmentDoneToken> done_in;
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
   FifoOut<LateToken> late_out{*this, "late_out", LinkRole::kReply};
   FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};

@@ -5,8 +5,7 @@ namespace quadrille::hw {
 WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Clock& clock, int partitions, int cores)
     : Unit(name, Kind::kChooser, clock) {
   for (int p = 0; p < partitions; ++p) {
-    fragment_in.push_back(
-        std::make_unique<FifoIn<WarpToken>>(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
+    fragment_in.add(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream);
   }
   for (int c = 0; c < cores; ++c) {
     vertex_out.push_back(
@@ -16,34 +15,41 @@ WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Clock& cloc
   }
 }
 
-Wake WorkDistributor::with_room(Wake input, const Outputs& outputs) {
+const FifoOut<WarpToken>& WorkDistributor::first_with_room(const Outputs& outputs) {
   const FifoOut<WarpToken>* first = outputs[0].get();
   for (const auto& out : outputs) {
     if (out->room() < first->room()) first = out.get();
   }
-  return input.output(*first);
+  return *first;
 }
 
-Wake WorkDistributor::next() const {
-  Wake wake = with_room(Wake(vertex_free_).input(vertex_in), vertex_out);
-  for (const auto& in : fragment_in) wake = Wake::sooner(wake, with_room(Wake(fragment_free_).input(*in), fragment_out));
-  return wake;
+Wake WorkDistributor::vertex_wake() const {
+  const Wake wake = Wake(vertex_free_).input(vertex_in);
+  return vertex_in.ready() == kNever ? wake : Wake(wake).output(first_with_room(vertex_out));
 }
+
+Wake WorkDistributor::fragment_wake() const {
+  const Wake wake = fragment_in.earliest(Wake(fragment_free_));
+  return wake.at() == kNever ? wake : Wake(wake).output(first_with_room(fragment_out));
+}
+
+Wake WorkDistributor::next() const { return Wake::sooner(vertex_wake(), fragment_wake()); }
 
 void WorkDistributor::act(Tick now) {
-  if (with_room(Wake(vertex_free_).input(vertex_in), vertex_out).at() <= now) {
+  if (vertex_wake().at() <= now) {
     hand_out(now, vertex_in, vertex_out, vertex_turn_);
     vertex_free_ = after(now, 1);
     ++stats_.vertex_warps;
   }
-  for (std::size_t i = 0; i < fragment_in.size(); ++i) {
-    FifoIn<WarpToken>& in = *fragment_in[(partition_turn_ + i) % fragment_in.size()];
-    if (with_room(Wake(fragment_free_).input(in), fragment_out).at() > now) continue;
-    hand_out(now, in, fragment_out, fragment_turn_);
-    fragment_free_ = after(now, 1);
-    ++stats_.fragment_warps;
-    partition_turn_ = (partition_turn_ + i + 1) % fragment_in.size();
-    break;
+  if (fragment_wake().at() <= now) {
+    fragment_in.visit_holding(partition_turn_, [&](std::size_t p, FifoIn<WarpToken>& in) {
+      if (!in.ready_at(now)) return false;
+      hand_out(now, in, fragment_out, fragment_turn_);
+      fragment_free_ = after(now, 1);
+      ++stats_.fragment_warps;
+      partition_turn_ = (p + 1) % fragment_in.size();
+      return true;
+    });
   }
   occupy(now, 1);
 }

@@ -5,8 +5,8 @@
 /// Time  one vertex and one fragment warp a cycle; partitions take turns
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/unit.h"
 #include "hw/frame/tokens.h"
 
 namespace quadrille::hw {
@@ -21,7 +21,7 @@ class WorkDistributor final : public Unit {
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
-  std::vector<std::unique_ptr<FifoIn<WarpToken>>> fragment_in;
+  FifoInGroup<WarpToken> fragment_in;
   std::vector<std::unique_ptr<FifoOut<WarpToken>>> vertex_out;
   std::vector<std::unique_ptr<FifoOut<WarpToken>>> fragment_out;
 
@@ -31,7 +31,9 @@ class WorkDistributor final : public Unit {
 
  private:
   using Outputs = std::vector<std::unique_ptr<FifoOut<WarpToken>>>;
-  [[nodiscard]] static Wake with_room(Wake input, const Outputs& outputs);
+  [[nodiscard]] static const FifoOut<WarpToken>& first_with_room(const Outputs& outputs);
+  [[nodiscard]] Wake vertex_wake() const;
+  [[nodiscard]] Wake fragment_wake() const;
   void hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t& turn);
 
   Stats stats_;

@@ -20,7 +20,7 @@ std::string TextureUnit::state_text() const {
 }
 
 Wake TextureUnit::address_wake() const {
-  if (next_line_ < lines_.size()) return stalled_ ? Wake::never(*port_.response_in[0]) : Wake(address_free_);
+  if (next_line_ < lines_.size()) return stalled_ ? Wake::never(port_.response_in[0]) : Wake(address_free_);
   if (groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value())) return Wake::never(response_out);
   return Wake(address_free_).input(request_in);
 }
@@ -29,7 +29,7 @@ Wake TextureUnit::answer_wake() const {
   if (groups_.empty()) return Wake::never(request_in);
   const Group& head = groups_.front();
   const bool still_looking_up = groups_.size() == 1 && next_line_ < lines_.size();
-  if (head.missing > 0 || still_looking_up) return Wake::never(*port_.response_in[0]);
+  if (head.missing > 0 || still_looking_up) return Wake::never(port_.response_in[0]);
   return Wake(after(std::max(head.ready, filter_free_), head.filter_cycles)).output(response_out);
 }
 
@@ -41,14 +41,14 @@ Wake TextureUnit::next() const {
 }
 
 void TextureUnit::act(Tick now) {
-  while (const auto answer = port_.receive(now)) {
+  port_.receive(now, [&](const MemoryResponse& answer) {
     stalled_ = false;
-    cache_.fill(*answer, [&](std::uint32_t number) {
+    cache_.fill(answer, [&](std::uint32_t number) {
       Group& group = groups_[number - first_group_];
       --group.missing;
       group.ready = std::max(group.ready, now);
     });
-  }
+  });
   if (answer_wake().at() <= now) {
     response_out.push(now, groups_.front().token);
     filter_free_ = now;

@@ -156,7 +156,7 @@ class Bench : public contract::Specimen {
     return keep(std::move(stub));
   }
   /// Answers a memory port of one slice.
-  StubMemory& serve(MemoryPort& port, int latency) { return serve(*port.request_out[0], *port.response_in[0], latency); }
+  StubMemory& serve(MemoryPort& port, int latency) { return serve(*port.request_out[0], port.response_in[0], latency); }
   StubMemory& serve(FifoOut<MemoryRequest>& requests, FifoIn<MemoryResponse>& answers, int latency) {
     auto stub = std::make_unique<StubMemory>(name("memory").c_str(), clock, latency);
     connect<MemoryRequest>(requests, stub->in, kWide);

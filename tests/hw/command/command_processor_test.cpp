@@ -30,8 +30,8 @@ struct CommandBench final : Bench {
     params.draws_in_flight.set(s.in_flight);
     unit = std::make_unique<CommandProcessor>("unit", params, clock, frame, 2, quiet);
     add(*unit);
-    feed(*unit->retire_in[0], s.retire_0);
-    feed(*unit->retire_in[1], s.retire_1);
+    feed(unit->retire_in[0], s.retire_0);
+    feed(unit->retire_in[1], s.retire_1);
     feed(unit->scan_done_in, s.scan_done);
     issued = &drain<DrawToken>(
         unit->draw_out, [](const DrawToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; }, s.pace, s.out);

@@ -25,8 +25,8 @@ struct AssemblyBench final : Bench {
     unit = std::make_unique<PrimitiveAssembly>("unit", clock, store, 2);
     add(*unit);
     feed(unit->batch_in, s.batches);
-    feed(*unit->done_in[0], s.done_0);
-    feed(*unit->done_in[1], s.done_1);
+    feed(unit->done_in[0], s.done_0);
+    feed(unit->done_in[1], s.done_1);
     sink = &drain<PrimitiveToken>(
         unit->primitive_out,
         [](const PrimitiveToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); }, s.pace,

@@ -41,8 +41,8 @@ struct SetupBench final : Bench {
     unit = std::make_unique<TriangleSetupUnit>("unit", params, clock, frame, batches, pieces, triangles, 2);
     add(*unit);
     feed(unit->clipped_in, s.pieces);
-    feed(*unit->sync_in[0], s.sync_0);
-    feed(*unit->sync_in[1], s.sync_1);
+    feed(unit->sync_in[0], s.sync_0);
+    feed(unit->sync_in[1], s.sync_1);
     kept = &drain<TriangleToken>(
         unit->triangle_out,
         [](const TriangleToken& t) { return t.kind == TokenKind::kWork ? t.triangle : 900u + static_cast<unsigned>(t.kind); }, s.pace,

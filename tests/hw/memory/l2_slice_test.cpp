@@ -26,8 +26,8 @@ struct L2Bench final : Bench {
     params.hit_clk.set(s.hit_clk);
     unit = std::make_unique<L2Slice>("unit", params, clock, 2);
     add(*unit);
-    feed(*unit->request_in[0], s.client_0);
-    feed(*unit->request_in[1], s.client_1);
+    feed(unit->request_in[0], s.client_0);
+    feed(unit->request_in[1], s.client_1);
     for (auto& out : unit->response_out)
       sinks.push_back(&drain<MemoryResponse>(
           *out, [](const MemoryResponse& t) { return t.tag; }, s.pace, s.out));

@@ -36,7 +36,7 @@ struct CoarseBench final : Bench {
     unit = std::make_unique<CoarseRaster>("unit", params, clock, frame, store, 1);
     add(*unit);
     feed(unit->triangle_in, s.triangles);
-    feed(*unit->hiz_in[0], s.hiz);
+    feed(unit->hiz_in[0], s.hiz);
     sink = &drain<TileToken>(
         unit->tile_out,
         [](const TileToken& t) {

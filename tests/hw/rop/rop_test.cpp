@@ -36,7 +36,7 @@ struct RopBench final : Bench {
     unit = std::make_unique<Rop>("unit", params, clock, frame, device, 1, warps, 0, 1, 1, 1);
     add(*unit);
     feed(unit->order_in, s.order);
-    feed(*unit->done_in[0], s.done);
+    feed(unit->done_in[0], s.done);
     feed(unit->late_in, s.late);
     late = &drain<LateToken>(unit->late_out, [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
     released = &drain<ReleaseToken>(unit->release_out, [](const ReleaseToken& t) { return t.slot; });

@@ -19,8 +19,8 @@ struct DistributorBench final : Bench {
     unit = std::make_unique<WorkDistributor>("unit", clock, 2, static_cast<int>(s.cores.size()));
     add(*unit);
     feed(unit->vertex_in, s.vertex);
-    feed(*unit->fragment_in[0], s.fragment_0);
-    feed(*unit->fragment_in[1], s.fragment_1);
+    feed(unit->fragment_in[0], s.fragment_0);
+    feed(unit->fragment_in[1], s.fragment_1);
     const auto key = [](const WarpToken& t) { return t.slot; };
     for (std::size_t c = 0; c < s.cores.size(); ++c) {
       vertex.push_back(&drain<WarpToken>(*unit->vertex_out[c], key, s.cores[c], s.out));
