@@ -63,8 +63,13 @@ void Machine::create_units(const MachineOptions& options) {
   const bool textured = frame_.reads_textures() || !options.leave_out;
   if (!textured)
     left_out_.push_back({"texture units", "no program of a draw reads a texture", fmt::format("{} units and their caches", cores)});
+  const bool depth_memory = frame_.tests_depth() || !options.leave_out;
+  if (!depth_memory) {
+    left_out_.push_back({"depth units' links to memory", "no draw tests depth",
+                         fmt::format("{} links, and their places in the arbiters of {} L2 slices", 2 * partitions * channels, channels)});
+  }
   if (!frame_.blends()) left_out_.push_back({"blending", "no draw combines with the old colour", "reading colours back"});
-  clients_ = 1 + (textured ? cores : 0) + 2 * partitions + 1;
+  clients_ = 1 + (textured ? cores : 0) + (depth_memory ? 2 : 1) * partitions + 1;
   partitions_.resize(static_cast<std::size_t>(partitions));
   cores_.resize(static_cast<std::size_t>(cores));
   slices_.resize(static_cast<std::size_t>(channels));
@@ -106,9 +111,9 @@ void Machine::create_units(const MachineOptions& options) {
     Partition& part = partitions_[static_cast<std::size_t>(p)];
     const auto depth_owner = static_cast<models::DeviceMemory::Owner>(1 + 2 * p);
     const auto color_owner = static_cast<models::DeviceMemory::Owner>(2 + 2 * p);
-    make(part.depth, [&, p, depth_owner, partitions, channels] {
+    make(part.depth, [&, p, depth_owner, partitions, slices = depth_memory ? channels : 0] {
       return std::make_unique<hw::DepthUnit>(fmt::format("depth_{}", p).c_str(), config_.depth, clock_, frame, memory, depth_owner,
-                                             *triangles_, *part.warps, p, partitions, channels);
+                                             *triangles_, *part.warps, p, partitions, slices);
     });
     make(part.packer, [&, p] {
       return std::make_unique<hw::WarpPacker>(fmt::format("warp_packer_{}", p).c_str(), config_.warp_packer, clock_, *part.warps, p);
@@ -223,7 +228,7 @@ void Machine::wire_memory() {
     if (core.texture) attach_client(*core.texture, core.texture->memory_port());
   }
   for (Partition& p : partitions_) {
-    attach_client(*p.depth, p.depth->memory_port());
+    if (p.depth->memory_port().slices() > 0) attach_client(*p.depth, p.depth->memory_port());
     attach_client(*p.rop, p.rop->memory_port());
   }
   attach_client(*scan_out_, scan_out_->memory_port());

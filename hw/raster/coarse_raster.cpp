@@ -66,6 +66,7 @@ void CoarseRaster::take_token(Tick now) {
     triangle_ = token.triangle;
     walk_ = models::TileWalk(triangles_[triangle_].setup);
     charged_tests_ = 0;
+    look_ahead();
     walking_ = true;
     ++stats_.triangles;
     free_ = now;  // the first tile may leave in this very cycle
@@ -105,12 +106,18 @@ bool CoarseRaster::hidden(const models::TileHit& tile) const {
   return frame_.draw(draw_).depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
 }
 
-void CoarseRaster::walk(Tick now) {
+void CoarseRaster::look_ahead() {
   models::TileHit tile;
-  bool found = false;
-  while (!found && walk_.next(tile)) {
-    found = !hidden(tile);
-    if (!found) ++stats_.tiles_hidden;
+  ahead_.reset();
+  if (walk_.next(tile)) ahead_ = tile;
+}
+
+void CoarseRaster::walk(Tick now) {
+  std::optional<models::TileHit> found;
+  while (ahead_ && !found) {
+    if (hidden(*ahead_)) ++stats_.tiles_hidden;
+    else found = ahead_;
+    look_ahead();
   }
   const std::uint64_t tests = walk_.tests() - charged_tests_;
   charged_tests_ = walk_.tests();
@@ -121,10 +128,10 @@ void CoarseRaster::walk(Tick now) {
   occupy(now, cycles);
   if (found) {
     ++stats_.tiles_kept;
-    tile_out.push(now, {TokenKind::kWork, tile.fully_covered, static_cast<std::uint16_t>(tile.tile_x),
-                        static_cast<std::uint16_t>(tile.tile_y), draw_, triangle_});
-    return;
+    tile_out.push(now, {TokenKind::kWork, found->fully_covered, static_cast<std::uint16_t>(found->tile_x),
+                        static_cast<std::uint16_t>(found->tile_y), draw_, triangle_});
   }
+  if (ahead_) return;
   walking_ = false;
   sync_due_ = ++since_sync_ >= sync_interval_;
 }

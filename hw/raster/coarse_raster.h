@@ -13,6 +13,8 @@
 #include "hw/frame/tokens.h"
 #include "models/raster/coarse.h"
 
+#include <optional>
+
 namespace quadrille::hw {
 
 class CoarseRaster final : public Unit {
@@ -45,6 +47,8 @@ class CoarseRaster final : public Unit {
   void work(Tick now);
   void take_token(Tick now);
   void take_updates(Tick now);
+  /// Finds the next tile of the walk, so that the last one is known as such when it leaves.
+  void look_ahead();
   void walk(Tick now);
   void begin_pass(std::uint32_t pass);
   [[nodiscard]] bool hidden(const models::TileHit& tile) const;
@@ -57,8 +61,9 @@ class CoarseRaster final : public Unit {
   Stats stats_;
   bool walking_ = false;
   models::TileWalk walk_;
-  std::uint64_t charged_tests_ = 0;  ///< of this walk
-  std::uint64_t triangle_ = 0;       ///< being walked
+  std::optional<models::TileHit> ahead_;  ///< the next tile of the walk; none at its end
+  std::uint64_t charged_tests_ = 0;       ///< of this walk
+  std::uint64_t triangle_ = 0;            ///< being walked
   std::uint32_t draw_ = 0, pass_ = 0;
   bool hiz_usable_ = false;  ///< this draw may be tested
   bool hiz_trusted_ = true;  ///< no draw of the pass has raised depths

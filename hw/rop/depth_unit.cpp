@@ -95,7 +95,7 @@ Wake DepthUnit::late_test_wake() const {
 }
 
 Wake DepthUnit::flush_wake() const {
-  if (flush_ != Flush::kFenced || fences_ > 0) return Wake::never(port_.response_in[0]);
+  if (flush_ != Flush::kFenced || fences_ > 0) return Wake(kNever);
   return Wake(free_).output(late_out);
 }
 
@@ -104,7 +104,7 @@ Wake DepthUnit::next() const {
   wake = Wake::sooner(wake, late_test_wake());
   wake = Wake::sooner(wake, late_take_wake());
   wake = Wake::sooner(wake, flush_wake());
-  wake = Wake::sooner(wake, port_.receive_wake());
+  if (port_.slices() > 0) wake = Wake::sooner(wake, port_.receive_wake());
   if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
   return wake;
 }
@@ -344,8 +344,10 @@ models::LaneMask DepthUnit::test_quad(const DrawState& draw, const WarpSlot& war
 
 void DepthUnit::advance_flush(Tick now) {
   if (flush_ != Flush::kDraining || !port_.queue_empty()) return;
-  port_.fence(kFenceTag);
-  fences_ = port_.slices();
+  if (frame_.passes[pass_].has_depth) {  // without depths nothing was written that others could miss
+    port_.fence(kFenceTag);
+    fences_ = port_.slices();
+  }
   flush_ = Flush::kFenced;
   free_ = after(now, 1);
 }

@@ -2,7 +2,7 @@
 ///
 /// In    coverage_in  covered samples of a triangle in a tile; boundaries      late_in  shaded warps to test, in order; flush
 /// Out   coverage_out what survives, marked early (tested and written) or late       late_out  tested warps; flushed      hiz_out  a tile's greatest depth fell
-/// Mem   depth tiles
+/// Mem   depth tiles; a frame without depth tests needs no links to memory (`slices` = 0)
 /// Time  `quads_per_clk` quads a cycle through either port, one port a cycle, the late one first; waits for the tile's lines
 ///
 /// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of the tile in flight. Otherwise the tile goes
