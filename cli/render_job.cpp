@@ -16,6 +16,7 @@ namespace quadrille::cli {
 namespace {
 
 constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
+constexpr std::int64_t kMaxWindow = 1'000'000;  // cycles: far beyond what any frame gains by
 
 /// How the last pass, which is the one shown, stores its colours, and whether it has depths.
 traces::RenderTarget shown_target(const traces::CommandStream& stream) {
@@ -44,6 +45,10 @@ void RenderJob::add_to(CLI::App& command) {
   command.add_option("--driver", driver, "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
       ->check(CLI::IsMember({"dispatcher", "native"}))
       ->capture_default_str();
+  command
+      .add_option("--window", window,
+                  "how many cycles units may be simulated ahead of the exact bound: 0 is exact, more is faster and approximate")
+      ->type_name("W");
   command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")
       ->type_name("N");
   command.add_option("--units", units, "rows of the table: folded by kind, or all units")
@@ -60,8 +65,17 @@ void RenderJob::check_outputs() const {
   check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}});
 }
 
+std::int64_t RenderJob::window_cycles() const {
+  if (!window) return 0;
+  const std::int64_t cycles = parse_whole(*window, "--window", 0, kMaxWindow);
+  if (fidelity == "functional") throw user_error("--window: a functional run has no cycles to look ahead; leave --fidelity or --window out");
+  if (driver == "native" && cycles > 0) throw user_error("--window: the native driver is always exact; --window {} is for the dispatcher", cycles);
+  return cycles;
+}
+
 int RenderJob::run() {
   scene.check();
+  const std::int64_t ahead = window_cycles();
   pipeline::MachineConfig config;
   machine.apply(config);
   check_outputs();
@@ -83,6 +97,7 @@ int RenderJob::run() {
   progress.show("compiling shaders, building the machine");
   limits.progress = [&](hw::Tick now) { progress.show_cycles(clock.edges_before(now)); };
   const pipeline::MachineOptions options{.driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
+                                         .window = clock.edge(ahead),
                                          .leave_out = leave_out == "auto"};
   pipeline::RenderedFrame frame = fidelity == "functional" ? pipeline::render_functional_frame(stream, config.precision())
                                                            : pipeline::render_exact(stream, config, options, limits);

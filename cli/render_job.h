@@ -12,7 +12,7 @@ namespace quadrille::cli {
 struct RenderJob {
   SceneArguments scene;
   MachineArguments machine;
-  std::optional<std::string> out, depth, stats, max_cycles;
+  std::optional<std::string> out, depth, stats, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
   bool alpha = false, quiet = false;
 
@@ -23,6 +23,8 @@ struct RenderJob {
 
  private:
   void check_outputs() const;
+  /// The window in cycles; 0 for an exact run. Throws `UserError` when it does not go with the other arguments.
+  [[nodiscard]] std::int64_t window_cycles() const;
 };
 
 }  // namespace quadrille::cli

@@ -122,7 +122,7 @@ void Dispatcher::step() {
   }
   if (!alive) return;  // SystemC runs out of events and sc_start returns
   const Tick floor = earliest_of(times_).first;
-  if (limits_.progress) limits_.progress(floor);
+  if (limits_.progress && floor != kNever) limits_.progress(floor);  // never: whoever acts next was marked in the last round
   const auto now = static_cast<Tick>(sc_core::sc_time_stamp().value());
   const Tick ahead = floor == kNever || floor <= now ? 1 : floor - now;
   sc_core::next_trigger(sc_core::sc_time::from_value(static_cast<sc_dt::uint64>(ahead)));
