@@ -68,8 +68,10 @@ void RenderJob::check_outputs() const {
 std::int64_t RenderJob::window_cycles() const {
   if (!window) return 0;
   const std::int64_t cycles = parse_whole(*window, "--window", 0, kMaxWindow);
-  if (fidelity == "functional") throw user_error("--window: a functional run has no cycles to look ahead; leave --fidelity or --window out");
-  if (driver == "native" && cycles > 0) throw user_error("--window: the native driver is always exact; --window {} is for the dispatcher", cycles);
+  if (fidelity == "functional")
+    throw user_error("--window: a functional run has no cycles to look ahead; leave --fidelity or --window out");
+  if (driver == "native" && cycles > 0)
+    throw user_error("--window: the native driver is always exact; --window {} is for the dispatcher", cycles);
   return cycles;
 }
 

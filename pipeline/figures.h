@@ -60,6 +60,7 @@ struct HostFigures {
 
 struct Figures {
   std::string scene, machine, fidelity = "exact";
+  std::int64_t window_cycles = 0;  ///< how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
   FrameFigures frame;
   std::vector<UnitFigures> units;
   std::vector<ClientFigures> bandwidth;

@@ -95,7 +95,10 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   out.figures = collect_figures(machine, frame);
   out.figures.scene = stream.name;
   out.figures.machine = config.name;
-  if (options.window > 0) out.figures.fidelity = "approximate";
+  if (options.window > 0) {
+    out.figures.fidelity = "approximate";
+    out.figures.window_cycles = machine.clock().edges_before(options.window);
+  }
   out.figures.host.build_s = build_s;
   out.figures.host.simulate_s = simulate_s;
   out.figures.host.simulate_cpu_s = simulate_cpu_s;

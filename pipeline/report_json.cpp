@@ -100,6 +100,7 @@ std::string report_json(const ReportSubject& s) {
   const Json document = {{"schema", kFiguresSchema},
                          {"scene", f.scene},
                          {"fidelity", f.fidelity},
+                         {"window_cycles", f.window_cycles},
                          {"machine", machine_json(f, s.machine)},
                          {"frame", frame_json(s)},
                          {"units", std::move(units)},

@@ -44,17 +44,23 @@ std::string time_row(const ReportSubject& s) {
   if (s.figures.units.empty()) return row("time", {"not simulated (functional: the picture and its counts only)"});
   const double ms = static_cast<double>(f.cycles) / s.machine.gpu.clock_mhz * 1e-3;
   return row("time",
-             {fmt::format("{} cycles", grouped(static_cast<std::uint64_t>(f.cycles))),
+             {fmt::format("{}{} cycles", s.figures.window_cycles > 0 ? "approximate: " : "", grouped(static_cast<std::uint64_t>(f.cycles))),
               fmt::format("{:.3f} ms at {:g} MHz", ms, s.machine.gpu.clock_mhz.value()), fmt::format("{:.1f} frames/s", 1000.0 / ms),
               fmt::format("all passes flushed at cycle {}, then scan-out", grouped(static_cast<std::uint64_t>(f.render_cycles)))});
+}
+
+/// Empty for an exact run.
+std::string window_text(const Figures& f) {
+  if (f.window_cycles == 0) return "";
+  return fmt::format(" (window of {} cycles; quadrille accuracy measures its error)", f.window_cycles);
 }
 
 std::string frame_text(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
   const std::uint64_t pixels = std::uint64_t{s.width} * s.height;
   const std::uint64_t executed = f.fragments_shaded + f.helper_lanes;
-  std::string out =
-      fmt::format("FRAME  {}, {}x{}, machine {}, {}\n", s.figures.scene, s.width, s.height, s.machine.name, s.figures.fidelity);
+  std::string out = fmt::format("FRAME  {}, {}x{}, machine {}, {}{}\n", s.figures.scene, s.width, s.height, s.machine.name,
+                                s.figures.fidelity, window_text(s.figures));
   out += time_row(s);
   out += row("geometry", {fmt::format("{} draws", grouped(f.draws)), fmt::format("{} triangles", grouped(f.triangles)),
                           fmt::format("{} vertices shaded ({:.2f} a triangle)", grouped(f.vertices), ratio(f.vertices, f.triangles))});
@@ -99,10 +105,12 @@ std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
 std::string units_text(const ReportSubject& s, UnitRows rows) {
   if (s.figures.units.empty()) return "";
   std::string out = fmt::format(
-      "\nUNITS  shares of each unit's cycles in %: busy + starved (an input was missing) + blocked (an output was full) + idle (no work in "
+      "\nUNITS{}  shares of each unit's cycles in %: busy + starved (an input was missing) + blocked (an output was full) + idle (no work "
+      "in "
       "flight)\n"
       "  {:<19}{:>6} {:<6}{:>8}{:>9}{:>6}  {:<15}{:>6}  {}\n",
-      "unit", "busy", "", "starved", "blocked", "idle", "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
+      s.figures.window_cycles > 0 ? " (approximate)" : "", "unit", "busy", "", "starved", "blocked", "idle", "longest wait", "%",
+      "what it did; /clk is a unit's mean rate, with % of its peak");
   for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded)) out += unit_row(group, s.machine);
   return out;
 }
@@ -118,10 +126,10 @@ std::string bandwidth_text(const ReportSubject& s) {
   if (f.bandwidth.empty()) return "";
   const double peak = peak_memory_bytes_per_cycle(s.machine);
   std::string out = fmt::format(
-      "\nBANDWIDTH  clients at the L2 cache, and what reached memory; the memory's peak is {:.1f} byte/clk ({:.1f} GB/s, {} channels)\n"
+      "\nBANDWIDTH{}  clients at the L2 cache, and what reached memory; the memory's peak is {:.1f} byte/clk ({:.1f} GB/s, {} channels)\n"
       "  {:<19}{:>12}{:>13}{:>12}{:>11}\n",
-      peak, peak * s.machine.gpu.clock_mhz * 1e-3, s.machine.gpu.channels.value(), "client", "read MB", "written MB", "byte/clk",
-      "% of peak");
+      s.figures.window_cycles > 0 ? " (approximate)" : "", peak, peak * s.machine.gpu.clock_mhz * 1e-3, s.machine.gpu.channels.value(),
+      "client", "read MB", "written MB", "byte/clk", "% of peak");
   std::uint64_t read = 0, written = 0;
   for (const ClientFigures& c : f.bandwidth) {
     out += bandwidth_row(c.name, c.read_bytes, c.write_bytes, f.frame.cycles, peak);

@@ -77,7 +77,7 @@ std::string attribution_failures(const std::vector<Unit*>& units, Tick end) {
 std::string run_here(const Builder& build, const Variation& v) {
   std::unique_ptr<Driver> driver;
   if (v.native) driver = std::make_unique<NativeDriver>("driver");
-  else driver = std::make_unique<Dispatcher>("driver");
+  else driver = std::make_unique<Dispatcher>("driver", v.window);
   const std::unique_ptr<Specimen> specimen = build(*driver, v);
   if (v.order_seed != 0) driver->shuffle(v.order_seed);
   driver->run({});
@@ -143,9 +143,11 @@ Outcome run_forked(const Builder& build, const Variation& variation, unsigned ti
   }
   std::istringstream lines(text);
   lines >> outcome.digest >> outcome.end;
-  std::string name;
-  std::int64_t value = 0;
-  while (lines >> name >> value) outcome.figures[name] = value;
+  lines >> std::ws;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t space = line.rfind(' ');  // a law's name has spaces of its own
+    outcome.figures[line.substr(0, space)] = std::stoll(line.substr(space + 1));
+  }
   return outcome;
 }
 

@@ -24,6 +24,7 @@ struct Variation {
   std::uint64_t order_seed = 0;     ///< host order of the units; 0 as added
   std::uint64_t creation_seed = 0;  ///< order of creating modules, for builders that can vary it; 0 as written
   bool depth_one = false;           ///< every link holds one token
+  Tick window = 0;                  ///< of the dispatcher; with one, cycles are approximate and everything else holds
   [[nodiscard]] LinkSpec link(LinkSpec spec) const {
     if (depth_one) spec.depth = 1;
     return spec;

@@ -32,6 +32,17 @@ TEST_CASE("machine: a hundred random machines give the pixels of the functional 
   }
 }
 
+TEST_CASE("machine: a window of any size keeps pixels and laws, and never deadlocks") {
+  constexpr hw::Tick kCycle = 1'000'000;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const traces::CommandStream stream = random_stream(1 + seed / 10);
+    hw::contract::Variation variation;
+    variation.window = kCycle << (seed * 5 % 13);  // 1 to 4096 cycles
+    INFO("machine " << seed << ", window of " << variation.window / kCycle << " cycles");
+    check_image_and_laws(hw::contract::run_forked(machine_builder(stream, seed), variation), functional_digest(stream));
+  }
+}
+
 TEST_CASE("machine: random streams give the pixels of the functional rendering on the default machine") {
   for (std::uint64_t seed = 100; seed < 130; ++seed) {
     const traces::CommandStream stream = random_stream(seed, {120, 72, 30, 20});
