@@ -16,6 +16,7 @@ void add_render(CLI::App& app, Command& chosen);
 void add_diff(CLI::App& app, Command& chosen);
 void add_describe(CLI::App& app, Command& chosen);
 void add_trace(CLI::App& app, Command& chosen);
+void add_accuracy(CLI::App& app, Command& chosen);
 void add_lists(CLI::App& app, Command& chosen);
 
 }  // namespace quadrille::cli

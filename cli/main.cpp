@@ -26,6 +26,7 @@ constexpr const char* kExamples = R"(Examples:
   quadrille render helmet.gltf --size 1280x720 --machine large --set gpu.cores=8 --stats helmet.json
   quadrille describe texture        parameters and counters of the texture unit
   quadrille diff a.png b.png        how far apart two pictures are
+  quadrille accuracy builtin:courtyard      what speed costs in truth: windows and precisions
   quadrille trace record helmet.gltf -o helmet.qtrace
 Each subcommand has its own --help.
 Exit code: 0 done, 1 a check failed or pictures differ, 2 something given was wrong.)";
@@ -53,6 +54,7 @@ int run(int argc, char** argv) {
   add_diff(app, chosen);
   add_describe(app, chosen);
   add_trace(app, chosen);
+  add_accuracy(app, chosen);
   add_lists(app, chosen);
   try {
     app.parse(argc, argv);

@@ -63,7 +63,11 @@ glm::vec3 parse_point(std::string_view text, std::string_view flag) {
 
 void SceneArguments::add_to(CLI::App& command) {
   command.add_option("SCENE", scene, "a .gltf or .glb file, a .qtrace file, or builtin:NAME (quadrille scenes lists them)")->required();
-  command.add_option("--size", size, "size of the picture in pixels, 1..16384 a side (default 1920x1080)")->type_name("WxH");
+  add_view_to(command, "1920x1080");
+}
+
+void SceneArguments::add_view_to(CLI::App& command, const std::string& default_size) {
+  command.add_option("--size", size, "size of the picture in pixels, 1..16384 a side (default " + default_size + ")")->type_name("WxH");
   command
       .add_option("--camera", camera,
                   "which camera of the scene, from 0 (default: the first that is placed, else one that frames the scene)")
@@ -103,6 +107,12 @@ void SceneArguments::check() const {
   const std::string extension = extension_of(scene);
   if (scene.starts_with("builtin:") || extension == ".gltf" || extension == ".glb") return;
   throw user_error("{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the names)", scene);
+}
+
+traces::CommandStream SceneArguments::load_visibility() const {
+  scenes::SceneOptions visible = options();
+  visible.visibility = true;
+  return scenes::load_scene(scene, visible);
 }
 
 traces::CommandStream SceneArguments::load() const { return is_trace() ? traces::read_trace(scene) : scenes::load_scene(scene, options()); }

@@ -19,12 +19,16 @@ struct SceneArguments {
 
   /// Adds SCENE and the options that choose the view and the shaders.
   void add_to(CLI::App& command);
+  /// Adds those options alone, for a command that takes several scenes. `default_size` is what its help names.
+  void add_view_to(CLI::App& command, const std::string& default_size);
   /// Adds SCENE alone, for a trace, which has its view and shaders in it.
   void add_trace_to(CLI::App& command);
   /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
   void check() const;
   /// Loads the scene or trace. Throws `UserError`.
   [[nodiscard]] traces::CommandStream load() const;
+  /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
+  [[nodiscard]] traces::CommandStream load_visibility() const;
   [[nodiscard]] bool is_trace() const;
 
  private:
