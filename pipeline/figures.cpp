@@ -1,6 +1,7 @@
 #include "pipeline/figures.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace quadrille::pipeline {
 
@@ -23,7 +24,7 @@ UnitFigures figures_of(const hw::Unit& unit) {
   f.blocked = unit.blocked_cycles();
   f.idle = unit.idle_cycles();
   for (const hw::PortBase* port : unit.ports()) {
-    if (port->waited() > 0) f.waits.push_back({port->name(), port->direction() == hw::PortBase::Direction::kIn, port->waited()});
+    if (port->waited() > 0) f.waits.push_back({port->name(), port->direction() == hw::PortBase::Direction::kIn, port->waited(), port->fifo().path()});
   }
   std::ranges::stable_sort(f.waits, std::ranges::greater{}, &WaitFigure::cycles);
   if (unit.stats() != nullptr) {
@@ -32,6 +33,21 @@ UnitFigures figures_of(const hw::Unit& unit) {
     }
   }
   return f;
+}
+
+/// The least time in which a link carries `tokens`, in ticks: a slot is taken from a push until its credit is back, and `width` bounds the pushes of a cycle.
+double least_ticks(const hw::FifoBase& link, std::uint64_t tokens) {
+  if (tokens == 0) return 0;
+  const auto last = static_cast<double>(tokens - 1);  // the frame may end with the last push
+  const double round_trip = static_cast<double>(link.forward_lookahead() + link.credit_lookahead());
+  const double cycle = static_cast<double>(link.producer()->clock().edge(1));
+  return std::max(std::floor(last / link.spec().depth) * round_trip, std::floor(last / link.spec().width) * cycle);
+}
+
+LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tick end) {
+  const hw::LinkSpec& spec = link.spec();
+  return {link.path(),        key,           link.producer()->name(), link.consumer()->name(), spec.depth, spec.width, spec.latency,
+          spec.credit_latency, link.pushes(), end > 0 ? least_ticks(link, link.pushes()) / static_cast<double>(end) : 0};
 }
 
 /// Sums over the units of a kind.
@@ -216,6 +232,7 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
   f.frame.fragment_warps = sum.core("fragment_warps");
   f.frame.fragments_written = sum.rop("written");
   for (const hw::Unit* unit : m.units()) f.units.push_back(figures_of(*unit));
+  for (std::size_t i = 0; i < m.links().size(); ++i) f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));
   f.bandwidth = bandwidth(m);
   f.checks = Laws(m, frame, f.bandwidth).all();
   f.left_out = m.left_out();

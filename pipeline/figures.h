@@ -19,6 +19,17 @@ struct WaitFigure {
   std::string port;
   bool input = true;
   std::int64_t cycles = 0;
+  std::string link = {};  ///< path of the link at the port
+};
+
+/// A link and what went through it. A slot is taken for a round trip at least, so what a link carries bounds the frame's time from below.
+struct LinkFigures {
+  std::string path, key;           ///< "coarse_to_fine"; the key of its class in a machine file, "link.coarse_to_fine"
+  std::string producer, consumer;  ///< paths of units
+  int depth = 0, width = 0;
+  int latency = 0, credit_latency = 0;  ///< cycles of the receiving side, a clock crossing's cost included
+  std::uint64_t tokens = 0;
+  double use = 0;  ///< least time in which the link can carry its tokens, over the frame's time: 0..1
 };
 
 struct UnitFigures {
@@ -63,6 +74,7 @@ struct Figures {
   std::int64_t window_cycles = 0;  ///< how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
   FrameFigures frame;
   std::vector<UnitFigures> units;
+  std::vector<LinkFigures> links;
   std::vector<ClientFigures> bandwidth;
   std::vector<Check> checks;
   std::vector<LeftOut> left_out;

@@ -154,6 +154,9 @@ void Machine::connect(Out& out, In& in, const LinkParams& params, const std::str
   out.bind(*link);
   in.bind(*link);
   links_.push_back(std::move(link));
+  const auto group = std::ranges::find_if(config_.groups(), [&](const auto& g) { return g.second == &params; });
+  QUADRILLE_CHECK(group != config_.groups().end(), "link {} has parameters outside the machine", name);
+  link_keys_.push_back(group->first);
 }
 
 void Machine::wire() {

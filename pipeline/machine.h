@@ -8,6 +8,8 @@
 #include "pipeline/machine_config.h"
 
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace quadrille::pipeline {
 
@@ -44,6 +46,8 @@ class Machine {
   };
   [[nodiscard]] const std::vector<hw::Unit*>& units() const { return driver_->units(); }
   [[nodiscard]] const std::vector<std::unique_ptr<hw::FifoBase>>& links() const { return links_; }
+  /// By link: its key in a machine file ("link.coarse_to_fine").
+  [[nodiscard]] const std::vector<std::string>& link_keys() const { return link_keys_; }
   [[nodiscard]] const hw::CommandProcessor& command_processor() const { return *command_processor_; }
   [[nodiscard]] const hw::VertexFetch& vertex_fetch() const { return *vertex_fetch_; }
   [[nodiscard]] const hw::PrimitiveAssembly& assembly() const { return *assembly_; }
@@ -103,6 +107,7 @@ class Machine {
   std::vector<std::unique_ptr<hw::L2Slice>> slices_;
   std::vector<std::unique_ptr<hw::MemoryChannel>> channels_;
   std::vector<std::unique_ptr<hw::FifoBase>> links_;
+  std::vector<std::string> link_keys_;
 };
 
 }  // namespace quadrille::pipeline

@@ -1,4 +1,5 @@
 /// The figures as JSON. Keys keep the order in which they are written here, so that two runs compare as text.
+#include "pipeline/limiter.h"
 #include "pipeline/report.h"
 
 #include <nlohmann/json.hpp>
@@ -76,6 +77,18 @@ Json checks_json(const Figures& f) {
   return all;
 }
 
+/// What holds the frame up, and all uses above a hundredth.
+Json limit_json(const Figures& f) {
+  const Limiter limiter = find_limiter(f);
+  if (limiter.kind == Limiter::Kind::kNothing) return nullptr;
+  Json uses = Json::object();
+  for (const ResourceUse& use : resource_uses(f)) {
+    if (use.use >= 0.01) uses[use.name] = use.use;
+  }
+  return {{"kind", limiter_kind_name(limiter.kind)}, {"name", limiter.name}, {"share", limiter.share}, {"walk", limiter.walk},
+          {"text", limiter.text},                    {"uses", std::move(uses)}};
+}
+
 Json host_json(const Figures& f) {
   const HostFigures& h = f.host;
   return {{"load_s", h.load_s},
@@ -105,6 +118,7 @@ std::string report_json(const ReportSubject& s) {
                          {"frame", frame_json(s)},
                          {"units", std::move(units)},
                          {"counter_definitions", definitions_json(f)},
+                         {"limit", limit_json(f)},
                          {"bandwidth", std::move(bandwidth)},
                          {"checks", checks_json(f)},
                          {"left_out", std::move(left_out)},

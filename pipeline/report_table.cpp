@@ -1,4 +1,5 @@
 /// The table: what a person reads first. Every share says of what, every rate its unit and what the best would be.
+#include "pipeline/limiter.h"
 #include "pipeline/report.h"
 #include "pipeline/unit_facets.h"
 
@@ -115,6 +116,11 @@ std::string units_text(const ReportSubject& s, UnitRows rows) {
   return out;
 }
 
+std::string limit_text(const Figures& f) {
+  const Limiter limiter = find_limiter(f);
+  return limiter.kind == Limiter::Kind::kNothing ? "" : fmt::format("\nLIMIT  {}\n", limiter.text);
+}
+
 std::string bandwidth_row(std::string_view name, std::uint64_t read, std::uint64_t written, std::int64_t cycles, double peak) {
   const double rate = ratio(static_cast<double>(read + written), static_cast<double>(cycles));
   return fmt::format("  {:<19}{:>12.3f}{:>13.3f}{:>12.3f}{:>11.1f}\n", name, megabytes(read), megabytes(written), rate,
@@ -195,7 +201,7 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
-  return frame_text(subject) + units_text(subject, rows) + bandwidth_text(subject) + checks_text(subject.figures) +
+  return frame_text(subject) + units_text(subject, rows) + limit_text(subject.figures) + bandwidth_text(subject) + checks_text(subject.figures) +
          left_out_text(subject.figures) + host_text(subject.figures);
 }
 

@@ -1,0 +1,155 @@
+#include "pipeline/limiter.h"
+
+#include "pipeline/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+double share(std::int64_t part, std::int64_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0; }
+
+std::string kind_of(std::string_view path) { return std::string(without_number(path)); }
+
+/// A wait of all units of a kind together.
+struct KindWait {
+  std::int64_t cycles = 0;
+  bool input = true;
+  const LinkFigures* link = nullptr;  ///< one of its class: the one waited for longest
+  std::int64_t longest = 0;
+};
+
+/// Units of a kind: what they did with their cycles, and whom they waited for (by class of link and direction).
+struct Kind {
+  std::int64_t cycles = 0, busy = 0;
+  double busiest = 0;
+  std::map<std::pair<std::string, std::string>, KindWait> waits;  ///< by key of the link and kind of the other end
+};
+
+class Graph {
+ public:
+  explicit Graph(const Figures& figures) {
+    std::map<std::string_view, const LinkFigures*> links;
+    for (const LinkFigures& link : figures.links) links.emplace(link.path, &link);
+    for (const UnitFigures& unit : figures.units) {
+      Kind& kind = kinds_[kind_of(unit.path)];
+      kind.cycles += unit.cycles;
+      kind.busy += unit.busy;
+      kind.busiest = std::max(kind.busiest, share(unit.busy, unit.cycles));
+      for (const WaitFigure& wait : unit.waits) {
+        const auto found = links.find(wait.link);
+        if (found == links.end()) continue;
+        const LinkFigures& link = *found->second;
+        KindWait& sum = kind.waits[{link.key, kind_of(wait.input ? link.producer : link.consumer)}];
+        sum.cycles += wait.cycles;
+        sum.input = wait.input;
+        if (wait.cycles > sum.longest) sum.link = &link;
+        sum.longest = std::max(sum.longest, wait.cycles);
+      }
+    }
+  }
+  [[nodiscard]] const std::map<std::string, Kind>& kinds() const { return kinds_; }
+  [[nodiscard]] const Kind* find(const std::string& name) const {
+    const auto found = kinds_.find(name);
+    return found == kinds_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  std::map<std::string, Kind> kinds_;
+};
+
+std::string link_detail(const LinkFigures& link) {
+  const int round_trip = link.latency + link.credit_latency;
+  const double rate = std::min(static_cast<double>(link.width), static_cast<double>(link.depth) / round_trip);
+  return fmt::format("depth {}, round trip {} clk: {:.3g} token/clk at most", link.depth, round_trip, rate);
+}
+
+std::string arrows(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " <- ") + name;
+  return text;
+}
+
+/// The walk of longest waits from the command processor.
+Limiter walk(const Graph& graph) {
+  Limiter limiter;
+  std::vector<const KindWait*> steps;  // steps[i] leads from walk[i] to the next
+  std::string at = "command_processor";
+  while (true) {
+    const Kind* const kind = graph.find(at);
+    if (kind == nullptr) break;
+    limiter.walk.push_back(at);
+    const auto longest = std::ranges::max_element(kind->waits, {}, [](const auto& w) { return w.second.cycles; });
+    if (longest == kind->waits.end() || longest->second.cycles <= kind->busy) {
+      limiter.kind = Limiter::Kind::kWork;
+      limiter.name = at;
+      limiter.share = share(kind->busy, kind->cycles);
+      limiter.loop = limiter.walk.size();
+      limiter.text = fmt::format("work of {}, one at a time: busy {:.1f} %; waits {}", at, 100 * limiter.share, arrows(limiter.walk));
+      return limiter;
+    }
+    limiter.share = share(longest->second.cycles, kind->cycles);
+    steps.push_back(&longest->second);
+    at = longest->first.second;
+    const auto seen = std::ranges::find(limiter.walk, at);
+    if (seen == limiter.walk.end()) continue;
+    limiter.loop = static_cast<std::size_t>(seen - limiter.walk.begin());
+    break;
+  }
+  if (steps.empty()) return limiter;
+  limiter.kind = Limiter::Kind::kLatency;
+  const auto delay = [](const KindWait* step) { return step->input ? step->link->latency : step->link->credit_latency; };
+  const auto slowest = *std::ranges::max_element(steps.begin() + static_cast<std::ptrdiff_t>(std::min(limiter.loop, steps.size() - 1)),
+                                                 steps.end(), {}, delay);
+  limiter.name = slowest->link->key;
+  const std::vector<std::string> around(limiter.walk.begin() + static_cast<std::ptrdiff_t>(limiter.loop), limiter.walk.end());
+  limiter.text = fmt::format("latency around {} <- {}: the longest link of the loop is {}, {} clk; waits {}", arrows(around), at,
+                             slowest->link->key, delay(slowest), arrows(limiter.walk));
+  return limiter;
+}
+
+}  // namespace
+
+const char* limiter_kind_name(Limiter::Kind kind) {
+  switch (kind) {
+    case Limiter::Kind::kNothing: return "nothing";
+    case Limiter::Kind::kUnit: return "unit";
+    case Limiter::Kind::kLink: return "link";
+    case Limiter::Kind::kWork: return "work";
+    case Limiter::Kind::kLatency: return "latency";
+  }
+  return "";
+}
+
+std::vector<ResourceUse> resource_uses(const Figures& figures) {
+  std::vector<ResourceUse> uses;
+  const Graph graph(figures);
+  for (const auto& [name, kind] : graph.kinds()) uses.push_back({name, kind.busiest, fmt::format("busy {:.1f} %", 100 * kind.busiest)});
+  std::map<std::string, const LinkFigures*> most;
+  for (const LinkFigures& link : figures.links) {
+    const LinkFigures*& best = most[link.key];
+    if (best == nullptr || link.use > best->use) best = &link;
+  }
+  for (const auto& [key, link] : most) uses.push_back({key, link->use, fmt::format("used {:.1f} % ({})", 100 * link->use, link_detail(*link))});
+  std::ranges::stable_sort(uses, std::ranges::greater{}, &ResourceUse::use);
+  return uses;
+}
+
+Limiter find_limiter(const Figures& figures) {
+  if (figures.units.empty()) return {};
+  const std::vector<ResourceUse> uses = resource_uses(figures);
+  if (uses.front().use < kUsedUp) return walk(Graph(figures));
+  Limiter limiter;
+  limiter.kind = uses.front().name.starts_with("link.") ? Limiter::Kind::kLink : Limiter::Kind::kUnit;
+  limiter.name = uses.front().name;
+  limiter.share = uses.front().use;
+  limiter.text = fmt::format("{}: {}; next {}: {}", limiter.name, uses.front().detail, uses[1].name, uses[1].detail);
+  return limiter;
+}
+
+}  // namespace quadrille::pipeline
