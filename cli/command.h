@@ -18,5 +18,6 @@ void add_describe(CLI::App& app, Command& chosen);
 void add_trace(CLI::App& app, Command& chosen);
 void add_accuracy(CLI::App& app, Command& chosen);
 void add_lists(CLI::App& app, Command& chosen);
+void add_stability(CLI::App& app, Command& chosen);
 
 }  // namespace quadrille::cli

@@ -28,6 +28,7 @@ constexpr const char* kExamples = R"(Examples:
   quadrille diff a.png b.png        how far apart two pictures are
   quadrille accuracy builtin:courtyard      what speed costs in truth: windows and precisions
   quadrille trace record helmet.gltf -o helmet.qtrace
+  quadrille stability --quick       frames and machines at the edge of what is possible
 Each subcommand has its own --help.
 Exit code: 0 done, 1 a check failed or pictures differ, 2 something given was wrong.)";
 
@@ -56,6 +57,7 @@ int run(int argc, char** argv) {
   add_trace(app, chosen);
   add_accuracy(app, chosen);
   add_lists(app, chosen);
+  add_stability(app, chosen);
   try {
     app.parse(argc, argv);
     if (!chosen) return fail(kUserError, "a subcommand is missing; see quadrille --help");

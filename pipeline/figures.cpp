@@ -24,7 +24,8 @@ UnitFigures figures_of(const hw::Unit& unit) {
   f.blocked = unit.blocked_cycles();
   f.idle = unit.idle_cycles();
   for (const hw::PortBase* port : unit.ports()) {
-    if (port->waited() > 0) f.waits.push_back({port->name(), port->direction() == hw::PortBase::Direction::kIn, port->waited(), port->fifo().path()});
+    if (port->waited() > 0)
+      f.waits.push_back({port->name(), port->direction() == hw::PortBase::Direction::kIn, port->waited(), port->fifo().path()});
   }
   std::ranges::stable_sort(f.waits, std::ranges::greater{}, &WaitFigure::cycles);
   if (unit.stats() != nullptr) {
@@ -46,8 +47,16 @@ double least_ticks(const hw::FifoBase& link, std::uint64_t tokens) {
 
 LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tick end) {
   const hw::LinkSpec& spec = link.spec();
-  return {link.path(),        key,           link.producer()->name(), link.consumer()->name(), spec.depth, spec.width, spec.latency,
-          spec.credit_latency, link.pushes(), end > 0 ? least_ticks(link, link.pushes()) / static_cast<double>(end) : 0};
+  return {link.path(),
+          key,
+          link.producer()->name(),
+          link.consumer()->name(),
+          spec.depth,
+          spec.width,
+          spec.latency,
+          spec.credit_latency,
+          link.pushes(),
+          end > 0 ? least_ticks(link, link.pushes()) / static_cast<double>(end) : 0};
 }
 
 /// Sums over the units of a kind.

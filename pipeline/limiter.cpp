@@ -135,7 +135,8 @@ std::vector<ResourceUse> resource_uses(const Figures& figures) {
     const LinkFigures*& best = most[link.key];
     if (best == nullptr || link.use > best->use) best = &link;
   }
-  for (const auto& [key, link] : most) uses.push_back({key, link->use, fmt::format("used {:.1f} % ({})", 100 * link->use, link_detail(*link))});
+  for (const auto& [key, link] : most)
+    uses.push_back({key, link->use, fmt::format("used {:.1f} % ({})", 100 * link->use, link_detail(*link))});
   std::ranges::stable_sort(uses, std::ranges::greater{}, &ResourceUse::use);
   return uses;
 }

@@ -85,8 +85,12 @@ Json limit_json(const Figures& f) {
   for (const ResourceUse& use : resource_uses(f)) {
     if (use.use >= 0.01) uses[use.name] = use.use;
   }
-  return {{"kind", limiter_kind_name(limiter.kind)}, {"name", limiter.name}, {"share", limiter.share}, {"walk", limiter.walk},
-          {"text", limiter.text},                    {"uses", std::move(uses)}};
+  return {{"kind", limiter_kind_name(limiter.kind)},
+          {"name", limiter.name},
+          {"share", limiter.share},
+          {"walk", limiter.walk},
+          {"text", limiter.text},
+          {"uses", std::move(uses)}};
 }
 
 Json host_json(const Figures& f) {

@@ -201,8 +201,8 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
-  return frame_text(subject) + units_text(subject, rows) + limit_text(subject.figures) + bandwidth_text(subject) + checks_text(subject.figures) +
-         left_out_text(subject.figures) + host_text(subject.figures);
+  return frame_text(subject) + units_text(subject, rows) + limit_text(subject.figures) + bandwidth_text(subject) +
+         checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

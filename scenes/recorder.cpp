@@ -49,7 +49,7 @@ bool is_srgb(std::size_t slot) {
   return slot == static_cast<std::size_t>(TextureSlot::kBaseColor) || slot == static_cast<std::size_t>(TextureSlot::kEmissive);
 }
 
-bool mirrors(const glm::mat4& world) { return glm::determinant(glm::mat3(world)) < 0; }
+bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::mat3(world))) < 0; }
 
 /// Inverse transpose by cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its normals). The longest column is
 /// made one long, so that squares in the shader neither vanish nor overflow.
@@ -73,10 +73,12 @@ const traces::BlendState kOver{true,
 }  // namespace
 
 Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
-    : scene_(scene),
-      options_(options),
-      view_(make_view(scene, options)),
-      lights_(frame_lights(scene, view_)),
+    : range_(needed_range(scene, options)),
+      moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
+      scene_(moved_ ? *moved_ : scene),
+      options_(range_ ? moved(options, *range_) : options),
+      view_(make_view(scene_, options_)),
+      lights_(frame_lights(scene_, view_)),
       shaders_(options, frame_defines(view_, lights_), stream_.shaders),
       bound_(kVertexSlot + kSemantics, traces::EndPass{}) {}
 

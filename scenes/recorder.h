@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "scenes/material_variant.h"
 #include "scenes/scene.h"
 #include "scenes/scene_data.h"
+#include "scenes/world_range.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::scenes {
@@ -27,6 +29,8 @@ inline constexpr std::size_t kDrawConstantBytes = 124;
 class Recorder {
  public:
   Recorder(const SceneData& scene, const SceneOptions& options);
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
   [[nodiscard]] traces::CommandStream record();
 
  private:
@@ -51,6 +55,8 @@ class Recorder {
   [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
   [[nodiscard]] const Variant& variant(const Primitive& primitive);
 
+  std::optional<WorldRange> range_;  ///< how the world was moved, if it had to be
+  std::optional<SceneData> moved_;   ///< and the scene in that world
   const SceneData& scene_;
   SceneOptions options_;
   View view_;

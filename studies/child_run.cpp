@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -64,19 +65,47 @@ void send(int pipe, std::string_view bytes) {
   _exit(0);  // destructors and exit handlers belong to the parent
 }
 
-/// Reads until the child closes its end or the limit has passed; false when it has.
-bool receive(int pipe, Clock::time_point limit, std::string& bytes) {
-  std::array<char, 1 << 16> part{};
-  while (true) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(limit - Clock::now()).count();
-    if (left <= 0) return false;
-    pollfd ready{pipe, POLLIN, 0};
-    if (poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left, 1'000'000))) <= 0) continue;
-    const ssize_t got = read(pipe, part.data(), part.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return true;
-    bytes.append(part.data(), static_cast<std::size_t>(got));
+/// A child at work, and what it has sent so far.
+struct Child {
+  pid_t pid = 0;
+  int pipe = -1;
+  std::size_t number = 0;
+  Clock::time_point start;
+  ChildLimits limits;
+  std::string bytes;
+  [[nodiscard]] Clock::time_point end() const {
+    return start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));
   }
+};
+
+Child start_child(const ChildWork& work, std::size_t number) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw user_error("cannot start a run: {}", std::strerror(errno));
+  std::fflush(nullptr);  // what is buffered would be written twice
+  const auto start = Clock::now();
+  const pid_t pid = fork();
+  if (pid < 0) {
+    const int reason = errno;
+    close(ends[0]);
+    close(ends[1]);
+    throw user_error("cannot start a run: {}", std::strerror(reason));
+  }
+  if (pid == 0) {
+    close(ends[0]);
+    work_and_exit(ends[1], work.work, work.limits);
+  }
+  close(ends[1]);
+  return {pid, ends[0], number, start, work.limits, {}};
+}
+
+/// Takes what the child has sent; false once it has closed its end.
+bool receive(Child& child) {
+  std::array<char, 1 << 16> part{};
+  const ssize_t got = read(child.pipe, part.data(), part.size());
+  if (got < 0 && errno == EINTR) return true;
+  if (got <= 0) return false;
+  child.bytes.append(part.data(), static_cast<std::size_t>(got));
+  return true;
 }
 
 double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
@@ -84,6 +113,43 @@ double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 *
 ChildEnd end_of(char said) {
   if (said == kSaidDone) return ChildEnd::kDone;
   return said == kSaidRefused ? ChildEnd::kRefused : ChildEnd::kFailed;
+}
+
+/// Reaps a child that has closed its end or has run out of time.
+ChildRun finish_child(const Child& child, bool in_time) {
+  close(child.pipe);
+  if (!in_time) kill(child.pid, SIGKILL);
+  int status = 0;
+  rusage usage{};
+  while (wait4(child.pid, &status, 0, &usage) < 0 && errno == EINTR) {}
+  ChildRun run;
+  run.wall_s = std::chrono::duration<double>(Clock::now() - child.start).count();
+  run.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  run.peak_rss_mib = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  if (!in_time) {
+    run.end = ChildEnd::kTimedOut;
+    run.output = fmt::format("still running after {:g} s", child.limits.seconds);
+  } else if (WIFSIGNALED(status) || child.bytes.empty()) {
+    run.end = ChildEnd::kCrashed;
+    run.output = WIFSIGNALED(status) ? fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
+                                     : fmt::format("left with exit code {}", WEXITSTATUS(status));
+  } else {
+    run.end = end_of(child.bytes.front());
+    run.output = child.bytes.substr(1);
+  }
+  return run;
+}
+
+/// Waits until a child has something to say or is out of time.
+void wait_for_any(const std::vector<Child>& children, std::vector<pollfd>& ready) {
+  Clock::time_point soonest = children.front().end();
+  ready.clear();
+  for (const Child& child : children) {
+    soonest = std::min(soonest, child.end());
+    ready.push_back({child.pipe, POLLIN, 0});
+  }
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(soonest - Clock::now()).count();
+  poll(ready.data(), ready.size(), static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000'000)));
 }
 
 }  // namespace
@@ -100,46 +166,30 @@ const char* child_end_name(ChildEnd end) {
 }
 
 ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw user_error("cannot start a run: {}", std::strerror(errno));
-  std::fflush(nullptr);  // what is buffered would be written twice
-  const auto start = Clock::now();
-  const pid_t child = fork();
-  if (child < 0) {
-    const int reason = errno;
-    close(ends[0]);
-    close(ends[1]);
-    throw user_error("cannot start a run: {}", std::strerror(reason));
-  }
-  if (child == 0) {
-    close(ends[0]);
-    work_and_exit(ends[1], work, limits);
-  }
-  close(ends[1]);
-  std::string bytes;
-  const bool in_time =
-      receive(ends[0], start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds)), bytes);
-  close(ends[0]);
-  if (!in_time) kill(child, SIGKILL);
-  int status = 0;
-  rusage usage{};
-  while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {}
+  const ChildWork one{work, limits};
   ChildRun run;
-  run.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-  run.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
-  run.peak_rss_mib = static_cast<double>(usage.ru_maxrss) / 1024.0;
-  if (!in_time) {
-    run.end = ChildEnd::kTimedOut;
-    run.output = fmt::format("still running after {:g} s", limits.seconds);
-  } else if (WIFSIGNALED(status) || bytes.empty()) {
-    run.end = ChildEnd::kCrashed;
-    run.output = WIFSIGNALED(status) ? fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                                     : fmt::format("left with exit code {}", WEXITSTATUS(status));
-  } else {
-    run.end = end_of(bytes.front());
-    run.output = bytes.substr(1);
-  }
+  run_in_children({&one, 1}, 1, [&](std::size_t, const ChildRun& ended) { run = ended; });
   return run;
+}
+
+void run_in_children(std::span<const ChildWork> works, int jobs, const std::function<void(std::size_t, const ChildRun&)>& done) {
+  std::vector<Child> children;
+  std::vector<pollfd> ready;
+  std::size_t next = 0;
+  while (next < works.size() || !children.empty()) {
+    while (next < works.size() && children.size() < static_cast<std::size_t>(std::max(1, jobs))) {
+      children.push_back(start_child(works[next], next));
+      ++next;
+    }
+    wait_for_any(children, ready);
+    for (std::size_t i = children.size(); i-- > 0;) {
+      const bool ended = ready[i].revents != 0 && !receive(children[i]);
+      if (!ended && Clock::now() < children[i].end()) continue;
+      const Child child = std::move(children[i]);
+      children.erase(children.begin() + static_cast<std::ptrdiff_t>(i));
+      done(child.number, finish_child(child, ended));
+    }
+  }
 }
 
 }  // namespace quadrille::studies

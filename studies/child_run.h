@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 
 namespace quadrille::studies {
@@ -34,5 +35,13 @@ struct ChildRun {
 
 /// Runs `work` in a forked child. Call it with no other thread running. Throws `UserError` when the host cannot fork.
 [[nodiscard]] ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimits& limits = {});
+
+/// A piece of work for `run_in_children`.
+struct ChildWork {
+  std::function<std::string()> work;
+  ChildLimits limits;
+};
+/// Runs all works, up to `jobs` children at a time, in their order; `done(i, run)` is called here, as each ends.
+void run_in_children(std::span<const ChildWork> works, int jobs, const std::function<void(std::size_t, const ChildRun&)>& done);
 
 }  // namespace quadrille::studies

@@ -34,10 +34,11 @@ double distance(const WorkVertex& v, Cut plane, const ClipState& s) {
   return 0.0;
 }
 
-/// Where the edge from `in` (distance d_in >= 0) to `out` (d_out < 0) crosses a plane.
+/// Where the edge from `in` (distance d_in >= 0) to `out` (d_out < 0) crosses a plane. Both ends are weighed: a step from one of them would lose the other when
+/// their magnitudes are far apart.
 WorkVertex crossing(const WorkVertex& in, double d_in, const WorkVertex& out, double d_out, Cut plane) {
-  const double t = d_in / (d_in - d_out);
-  const auto mix = [t](double a, double b) { return a + (b - a) * t; };
+  const double length = d_in - d_out, to_in = -d_out / length, to_out = d_in / length;
+  const auto mix = [=](double a, double b) { return a * to_in + b * to_out; };
   WorkVertex v{mix(in.x, out.x), mix(in.y, out.y), mix(in.z, out.z), mix(in.w, out.w), mix(in.b1, out.b1), mix(in.b2, out.b2)};
   if (plane == Cut::kNear) v.z = 0.0;  // exactly on the plane, so that window depth stays in range
   if (plane == Cut::kFar) v.z = v.w;

@@ -16,8 +16,9 @@
 
 namespace quadrille::models {
 
-/// Smallest w that is kept. [G: far below any near plane in use, far above the least normal float, so that 1 / w stays accurate]
-inline constexpr float kMinClipW = 1e-6f;
+/// Smallest w that is kept. [G: below the near plane of any world that a float can hold, far enough above the least normal float that w and 1 / w are both
+/// normal, with all their bits]
+inline constexpr float kMinClipW = 0x1p-120f;
 /// Three vertices, and one more for each of seven planes.
 inline constexpr int kMaxClipVertices = 10;
 

@@ -1,0 +1,80 @@
+#include "scenes/world_range.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/ext/matrix_double4x4.hpp>
+#include <glm/ext/vector_double3.hpp>
+#include <glm/geometric.hpp>
+
+#include "scenes/camera.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr int kLeastExponent = -20, kMostExponent = 40;
+constexpr double kFarFromOrigin = 1024;
+
+/// Half the diagonal, in double: the squares of float32 may overflow.
+double radius(const Bounds& box) { return 0.5 * glm::length(glm::dvec3(box.high) - glm::dvec3(box.low)); }
+
+/// About how far away the nearest thing is that the eye may look at: over instances, the distance of its middle and its own size.
+double nearest_reach(const SceneData& scene, const glm::dvec3& eye) {
+  double reach = INFINITY;
+  for (const Instance& instance : scene.instances) {
+    const Bounds box = scene.primitives[instance.primitive].bounds.transformed(instance.world);
+    if (!box.empty()) reach = std::min(reach, glm::length(glm::dvec3(box.center()) - eye) + radius(box));
+  }
+  return reach;
+}
+
+glm::vec3 moved_point(const glm::dvec3& p, const WorldRange& range) { return glm::vec3((p - glm::dvec3(range.origin)) * range.scale); }
+
+glm::mat4 moved_matrix(const glm::mat4& matrix, const WorldRange& range, double axes) {
+  glm::mat4 out = matrix;
+  for (int c = 0; c < 3; ++c) out[c] = glm::vec4(glm::vec3(glm::dvec3(matrix[c]) * axes), matrix[c].w);
+  out[3] = glm::vec4(moved_point(glm::dvec3(matrix[3]), range), matrix[3].w);
+  return out;
+}
+
+}  // namespace
+
+std::optional<WorldRange> needed_range(const SceneData& scene, const SceneOptions& options) {
+  const Bounds box = scene.bounds();
+  if (box.empty()) return std::nullopt;
+  const double size = radius(box);
+  if (!std::isfinite(size) || !(size > 0)) return std::nullopt;
+  const View view = make_view(scene, options);
+  const glm::dvec3 eye(view.eye);
+  WorldRange range;
+  const int exponent = std::ilogb(size);
+  if (exponent < kLeastExponent || exponent > kMostExponent) range.scale = std::ldexp(1.0, -exponent);
+  if (glm::length(eye) > kFarFromOrigin * nearest_reach(scene, eye)) range.origin = view.eye;
+  if (range.scale == 1 && range.origin == glm::vec3(0)) return std::nullopt;
+  return range;
+}
+
+SceneData moved(SceneData scene, const WorldRange& range) {
+  for (Instance& instance : scene.instances) instance.world = moved_matrix(instance.world, range, range.scale);
+  for (Light& light : scene.lights) {
+    if (light.kind == Light::Kind::kDirectional) continue;
+    light.position = moved_point(glm::dvec3(light.position), range);
+    light.range = static_cast<float>(static_cast<double>(light.range) * range.scale);
+    light.color = glm::vec3(glm::dvec3(light.color) * (range.scale * range.scale));  // it falls with the square of the distance
+  }
+  for (Camera& camera : scene.cameras) {
+    if (camera.pose) camera.pose = moved_matrix(*camera.pose, range, 1);
+    camera.near *= range.scale;
+    if (camera.far) *camera.far *= range.scale;
+    camera.half_height *= range.scale;
+  }
+  return scene;
+}
+
+SceneOptions moved(SceneOptions options, const WorldRange& range) {
+  if (options.eye) options.eye = moved_point(glm::dvec3(*options.eye), range);
+  if (options.at) options.at = moved_point(glm::dvec3(*options.at), range);
+  return options;
+}
+
+}  // namespace quadrille::scenes
