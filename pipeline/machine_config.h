@@ -128,6 +128,8 @@ class MachineConfig {
 
 /// Applies a machine file: a path ending in .toml, or the name of a machine in configs/. Throws `UserError`.
 void load_machine(MachineConfig& config, const std::string& name_or_path);
+/// Applies the text of a machine file (TOML); `file` is its name in errors. Throws `UserError` with file and line.
+void apply_machine_text(MachineConfig& config, std::string_view text, const std::string& file);
 /// Names of the machines that come with the program.
 [[nodiscard]] std::vector<std::string> machine_names();
 

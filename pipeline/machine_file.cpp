@@ -5,11 +5,16 @@
 
 #include <filesystem>
 
+#include "traces/whole_file.h"
+
 namespace quadrille::pipeline {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 20;
+constexpr std::size_t kMaxLineBytes = 1000;  // bounds how deep a dotted key can nest tables, which are walked and freed by recursion
 
 /// Folders that may hold the machines that come with the program, the likeliest first.
 std::vector<fs::path> config_folders() {
@@ -19,6 +24,24 @@ std::vector<fs::path> config_folders() {
   if (!error) folders.push_back(exe.parent_path().parent_path() / "share" / "quadrille" / "configs");
   folders.emplace_back(QUADRILLE_CONFIG_DIR);
   return folders;
+}
+
+void check_lines(std::string_view text, const std::string& file) {
+  std::size_t line = 1, begin = 0;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    if (i < text.size() && text[i] != '\n') continue;
+    if (i - begin > kMaxLineBytes)
+      throw user_error("{}:{}: the line has {} bytes; at most {} are read", file, line, i - begin, kMaxLineBytes);
+    begin = i + 1;
+    ++line;
+  }
+}
+
+/// One line of printable text: what a parser says may quote the file.
+std::string one_line(std::string_view text) {
+  std::string out(text.substr(0, text.find('\n')));
+  for (char& c : out) c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return out;
 }
 
 std::string value_text(const toml::node& node, const std::string& where, const std::string& key) {
@@ -59,6 +82,16 @@ std::vector<std::string> machine_names() {
   return names;
 }
 
+void apply_machine_text(MachineConfig& config, std::string_view text, const std::string& file) {
+  check_lines(text, file);
+  try {
+    apply(config, toml::parse(text, file), "", file);
+  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", file, e.source().begin.line, one_line(e.description())); }
+  try {
+    config.check();
+  } catch (const UserError& e) { throw user_error("{}: {}", file, e.what()); }
+}
+
 void load_machine(MachineConfig& config, const std::string& name_or_path) {
   fs::path path = name_or_path;
   if (path.extension() != ".toml") {
@@ -72,11 +105,8 @@ void load_machine(MachineConfig& config, const std::string& name_or_path) {
     }
     config.name = name_or_path;
   }
-  if (!fs::is_regular_file(path)) throw user_error("{}: no such machine file", path.string());
-  try {
-    apply(config, toml::parse_file(path.string()), "", path.string());
-  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", path.string(), e.source().begin.line, e.description()); }
-  config.check();
+  const std::vector<std::byte> bytes = traces::read_whole_file(path.string(), kMaxFileBytes);
+  apply_machine_text(config, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string());
 }
 
 }  // namespace quadrille::pipeline

@@ -9,6 +9,7 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr std::uint64_t kMaxAccessorBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxZeroBytes = std::uint64_t{1} << 26;  // of an accessor that no file has to bring the bytes of
 
 /// An accessor under inspection, with the words for its errors.
 class Reader {
@@ -27,6 +28,10 @@ class Reader {
     size_ = component_bytes(elements.component) * elements.components;
     if (accessor_->count == 0 || accessor_->count > kMaxAccessorBytes / size_)
       fail(fmt::format("count {} is not 1..{}", accessor_->count, kMaxAccessorBytes / size_));
+    if (accessor_->bufferView < 0 && accessor_->count > kMaxZeroBytes / size_)
+      fail(fmt::format("count {} without a bufferView; at most {} elements of {} bytes are legal", accessor_->count, kMaxZeroBytes / size_,
+                       size_));
+    if (accessor_->bufferView >= 0) check_view();
     elements.count = static_cast<std::uint32_t>(accessor_->count);
     elements.data.resize(elements.count * size_);
     if (accessor_->bufferView >= 0) copy_elements(elements);
@@ -69,12 +74,21 @@ class Reader {
     }
   }
 
+  std::size_t stride() const {
+    const std::size_t given = file_.model.bufferViews[static_cast<std::size_t>(accessor_->bufferView)].byteStride;
+    return given == 0 ? size_ : given;
+  }
+
+  /// That the bytes are there, before anything is allocated for them.
+  void check_view() const {
+    const std::span<const std::byte> view = buffer_view_bytes(file_, accessor_->bufferView, place_);
+    if (stride() < size_ || stride() > 252) fail(fmt::format("its bufferView's byteStride {} is not {}..252", stride(), size_));
+    check_range(view, accessor_->byteOffset, accessor_->count, stride(), size_, "");
+  }
+
   void copy_elements(Elements& elements) const {
     const std::span<const std::byte> view = buffer_view_bytes(file_, accessor_->bufferView, place_);
-    const std::size_t given = file_.model.bufferViews[static_cast<std::size_t>(accessor_->bufferView)].byteStride;
-    const std::size_t stride = given == 0 ? size_ : given;
-    if (stride < size_ || stride > 252) fail(fmt::format("its bufferView's byteStride {} is not {}..252", stride, size_));
-    check_range(view, accessor_->byteOffset, elements.count, stride, size_, "");
+    const std::size_t stride = this->stride();
     const std::byte* source = view.data() + accessor_->byteOffset;
     for (std::size_t i = 0; i < elements.count; ++i) std::memcpy(&elements.data[i * size_], source + i * stride, size_);
   }

@@ -17,10 +17,14 @@
 #include "models/base/error.h"
 #include "scenes/gltf_file.h"
 #include "scenes/gltf_mesh.h"
+#include "scenes/image_header.h"
 #include "scenes/parallel.h"
 
 namespace quadrille::scenes {
 namespace {
+
+constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
+                        kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
 
 bool all_finite(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i) {
@@ -239,10 +243,27 @@ class SceneReader {
         use.image = entry->second;
       }
     }
+    check_image_budget(wanted);
     scene_.images.resize(wanted.size());
     parallel_for(wanted.size(),
                  [&](std::size_t i) { scene_.images[i] = decode_image(encoded_image(file_, wanted[i]), image_place(wanted[i])); });
     for (const std::size_t i : wanted) scene_.image_names.push_back(image_name(i));
+  }
+
+  /// A few bytes can say that they are many pixels: what a scene may unpack grows with what it brings.
+  void check_image_budget(const std::vector<std::size_t>& wanted) const {
+    std::uint64_t pixels = 0, bytes = 0;
+    for (const std::size_t i : wanted) {
+      const auto encoded = encoded_image(file_, i);
+      const ImageHeader header = check_image_header(encoded, image_place(i));
+      pixels += std::uint64_t{header.width} * header.height;
+      bytes += encoded.size();
+      if (pixels > kFreePixels + kPixelsAByte * bytes) {
+        fail(fmt::format("images[{}]", i),
+             fmt::format("the images up to here are {} pixels in {} bytes of files; legal are {} and {} more a byte", pixels, bytes,
+                         kFreePixels, kPixelsAByte));
+      }
+    }
   }
 
   std::string image_name(std::size_t index) const {

@@ -13,7 +13,8 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::uint64_t kMaxGeometryBytes = std::uint64_t{3} << 29;  // 1.5 GiB of decoded streams
+constexpr std::uint64_t kMaxGeometryBytes = std::uint64_t{3} << 29;   // 1.5 GiB of decoded streams
+constexpr std::uint64_t kFreeGeometryBytes = std::uint64_t{1} << 28;  // and of these, what a file may have beyond four times its buffers
 constexpr std::array<const char*, kSemantics> kAttributeNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
 
 /// [glTF2.0 #meshes: mode]
@@ -90,8 +91,10 @@ void MeshReader::read_indices(const tinygltf::Primitive& source, const std::stri
 int MeshReader::add_array(Array array, const std::string& place) {
   array.name = place;
   total_bytes_ += array.data.size();
-  if (total_bytes_ > kMaxGeometryBytes)
-    throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, kMaxGeometryBytes);
+  std::uint64_t limit = kFreeGeometryBytes;
+  for (const tinygltf::Buffer& buffer : file_.model.buffers) limit += 4 * std::uint64_t{buffer.data.size()};
+  limit = std::min(limit, kMaxGeometryBytes);
+  if (total_bytes_ > limit) throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, limit);
   scene_.arrays.push_back(std::move(array));
   return static_cast<int>(scene_.arrays.size() - 1);
 }

@@ -3,15 +3,13 @@
 
 #include <dlfcn.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string_view>
 
 #include "models/base/error.h"
+#include "scenes/image_header.h"
 #include "scenes/images/image_module.h"
 #include "traces/whole_file.h"
 
@@ -19,7 +17,8 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr const char* kModuleName = "libquadrille_images.so";
-constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{1} << 31;
+constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxDecodedBytes = std::uint64_t{12} * kMaxImagePixels;  // the largest picture with three floats a pixel
 
 struct Module {
   QuadrilleDecode decode = nullptr;
@@ -67,41 +66,10 @@ struct Freed {
 };
 using Held = std::unique_ptr<void, Freed>;
 
-std::string lower_extension(const std::string& name) {
-  std::string extension = std::filesystem::path(name).extension().string();
-  if (!extension.empty()) extension.erase(0, 1);
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
-}
-
-/// The format by the first bytes, which outlive renaming, or else by the name.
-std::string format_of(std::span<const std::byte> bytes, const std::string& name) {
-  if (starts_with(bytes, "\x89PNG")) return "png";
-  if (starts_with(bytes, "\xff\xd8\xff")) return "jpg";
-  if (starts_with(bytes, "\x76\x2f\x31\x01")) return "exr";
-  const std::string extension = lower_extension(name);
-  if (extension.empty() || extension == "png" || extension == "jpg" || extension == "jpeg" || extension == "exr") {
-    throw user_error("{}: not a PNG, JPEG or EXR image (by its first bytes)", name);
-  }
-  return extension;
-}
-
-/// libjpeg fills a truncated file with grey and goes on, so the end marker is looked for here. [ITU-T T.81 B.1.1.3: EOI]
-void require_jpeg_end(std::span<const std::byte> bytes, const std::string& name) {
-  constexpr std::array<std::byte, 2> kEndOfImage{std::byte{0xff}, std::byte{0xd9}};
-  if (std::find_end(bytes.begin(), bytes.end(), kEndOfImage.begin(), kEndOfImage.end()) == bytes.end())
-    throw user_error("{}: the JPEG image is truncated", name);
-}
-
 QuadrilleImage decode(std::span<const std::byte> bytes, const std::string& name, bool as_float) {
-  const std::string format = format_of(bytes, name);
-  if (format == "jpg") require_jpeg_end(bytes, name);
+  const char* const format = format_extension(check_image_header(bytes, name).format);
   QuadrilleImage result{};
-  if (!module().decode(bytes.data(), bytes.size(), format.c_str(), as_float, kMaxImageSide, &result)) {
+  if (!module().decode(bytes.data(), bytes.size(), format, as_float, kMaxDecodedBytes, &result)) {
     throw user_error("{}: cannot be decoded as {}: {}", name, format, result.error);
   }
   return result;

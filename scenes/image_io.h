@@ -13,6 +13,7 @@
 namespace quadrille::scenes {
 
 inline constexpr std::uint32_t kMaxImageSide = 16384;
+inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 26;  ///< of a file that is read: 8192x8192
 
 /// 8-bit RGBA, rows top to bottom, tightly packed, values as in the file (sRGB-encoded where the file is).
 struct Rgba8Image {
@@ -25,8 +26,8 @@ struct FloatImage {
   std::vector<float> pixels;  ///< channels * width * height
 };
 
-/// Decodes PNG, JPEG, ... from memory. Grey becomes r=g=b, missing alpha 255; 16-bit and float files are rounded to 8 bits.
-/// Throws `UserError` that starts with `name` when the data is damaged, truncated or larger than 16384 a side.
+/// Decodes a PNG, JPEG or EXR file held in memory. Grey becomes r=g=b, missing alpha 255; 16-bit and float files are rounded to 8 bits.
+/// Throws `UserError` that starts with `name` when the data is damaged, truncated, or has more than 16384 pixels a side or `kMaxImagePixels` in all.
 [[nodiscard]] Rgba8Image decode_image(std::span<const std::byte> bytes, const std::string& name);
 /// Reads an image file as 8-bit RGBA. Throws `UserError` with the path.
 [[nodiscard]] Rgba8Image load_image(const std::string& path);

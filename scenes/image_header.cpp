@@ -1,0 +1,155 @@
+#include "scenes/image_header.h"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+#include "models/base/error.h"
+#include "scenes/image_io.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::uint64_t kMaxPixelPasses = std::uint64_t{1} << 30;  // of a progressive JPEG: each scan may visit every coefficient
+constexpr std::size_t kMaxExrAttributes = 1000;
+
+/// A file read from front to back; every step is checked against its end.
+class Reader {
+ public:
+  Reader(std::span<const std::byte> bytes, const std::string& name, const char* kind) : bytes_(bytes), name_(name), kind_(kind) {}
+
+  [[noreturn]] void fail(const std::string& reason) const { throw user_error("{}: the {} image {}", name_, kind_, reason); }
+  [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+  void skip(std::size_t count) {
+    if (count > bytes_.size()) fail("is truncated");
+    bytes_ = bytes_.subspan(count);
+  }
+  [[nodiscard]] unsigned byte(std::size_t at) const { return at < bytes_.size() ? std::to_integer<unsigned>(bytes_[at]) : 0; }
+  [[nodiscard]] std::uint32_t big(std::size_t at, std::size_t size) const {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) value = value << 8 | byte(at + i);
+    return value;
+  }
+  [[nodiscard]] std::uint32_t little(std::size_t at) const {
+    return byte(at) | byte(at + 1) << 8 | byte(at + 2) << 16 | byte(at + 3) << 24;
+  }
+  /// A text that ends in a zero byte, and steps behind it.
+  std::string_view text() {
+    const std::string_view rest(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+    const std::size_t end = rest.find('\0');
+    if (end == std::string_view::npos || end > 255) fail("is truncated, or has a name of more than 255 bytes");
+    skip(end + 1);
+    return rest.substr(0, end);
+  }
+  /// A header of these sides, once they are legal.
+  [[nodiscard]] ImageHeader sized(ImageFormat format, std::uint64_t width, std::uint64_t height) const {
+    if (width == 0 || height == 0 || width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImagePixels)
+      fail(fmt::format("has {}x{} pixels; legal are 1..{} a side and {} in all", width, height, kMaxImageSide, kMaxImagePixels));
+    return {format, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+  }
+
+ private:
+  std::span<const std::byte> bytes_;
+  const std::string& name_;
+  const char* kind_;
+};
+
+bool starts_with(std::span<const std::byte> bytes, std::string_view magic) {
+  return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+/// Signature, then IHDR, then chunks of a length, a type, data and a checksum, the last one IEND. [PNG #5-chunk-layout]
+ImageHeader check_png(Reader file) {
+  constexpr std::size_t kSignature = 8, kAround = 12;
+  constexpr std::uint32_t kHeader = 0x49484452, kEnd = 0x49454e44;
+  file.skip(kSignature);
+  if (file.big(4, 4) != kHeader) file.fail("does not begin with its header");
+  const ImageHeader header = file.sized(ImageFormat::kPng, file.big(8, 4), file.big(12, 4));
+  while (true) {
+    if (file.left() < kAround) file.fail("is truncated");
+    const std::uint32_t length = file.big(0, 4), type = file.big(4, 4);
+    file.skip(kAround);
+    file.skip(length);
+    if (type == kEnd) return header;
+  }
+}
+
+/// Markers with lengths; after a scan's header, entropy-coded data up to the next marker. The frame header gives the size. [ITU-T T.81 B.1, B.2]
+ImageHeader check_jpeg(Reader file) {
+  ImageHeader header;
+  std::uint64_t pixels = 0, scans = 0;
+  for (file.skip(2); file.left() > 0;) {
+    const unsigned marker = file.byte(1);
+    if (file.byte(0) != 0xff || marker == 0xff || marker < 0xc0 || (marker >= 0xd0 && marker <= 0xd7)) {  // data, fill or a restart
+      file.skip(1);
+      continue;
+    }
+    if (marker == 0xd9) {
+      if (pixels == 0 || scans == 0) file.fail("has no picture");
+      return header;
+    }
+    const bool is_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (is_frame) {
+      header = file.sized(ImageFormat::kJpeg, file.big(7, 2), file.big(5, 2));
+      pixels = std::uint64_t{header.width} * header.height;
+    }
+    if (marker == 0xda && ++scans * pixels > kMaxPixelPasses) file.fail(fmt::format("has too many scans for {} pixels", pixels));
+    file.skip(2);
+    file.skip(std::max(2U, file.big(0, 2)));
+  }
+  file.fail("is truncated");
+}
+
+struct Box {
+  std::array<std::int64_t, 4> v{};
+};
+
+/// Magic, version, then attributes: name, type, length, value. Both windows are boxes of corners, ends included. [OpenEXR file layout, #header]
+ImageHeader check_exr(Reader file) {
+  file.skip(8);
+  std::optional<Box> data, display;
+  for (std::size_t i = 0; file.byte(0) != 0; ++i) {
+    if (i == kMaxExrAttributes) file.fail(fmt::format("has more than {} attributes", kMaxExrAttributes));
+    const std::string_view name = file.text();
+    (void)file.text();
+    const std::uint32_t length = file.little(0);
+    file.skip(4);
+    if (length > file.left()) file.fail("is truncated");
+    if (name == "dataWindow" || name == "displayWindow") {
+      Box box;
+      for (std::size_t k = 0; k < 4; ++k) box.v[k] = static_cast<std::int32_t>(file.little(4 * k));
+      (name == "dataWindow" ? data : display) = box;
+    }
+    file.skip(length);
+  }
+  ImageHeader header;
+  for (const std::optional<Box>& box : {data, display}) {
+    if (!box) file.fail("does not say its size");
+    if (box->v[2] < box->v[0] || box->v[3] < box->v[1]) file.fail("has an empty window");
+    header = file.sized(ImageFormat::kExr, static_cast<std::uint64_t>(box->v[2] - box->v[0] + 1),
+                        static_cast<std::uint64_t>(box->v[3] - box->v[1] + 1));
+  }
+  return header;
+}
+
+}  // namespace
+
+ImageHeader check_image_header(std::span<const std::byte> bytes, const std::string& name) {
+  if (starts_with(bytes, "\x89PNG")) return check_png({bytes, name, "PNG"});
+  if (starts_with(bytes, "\xff\xd8\xff")) return check_jpeg({bytes, name, "JPEG"});
+  if (starts_with(bytes, "\x76\x2f\x31\x01")) return check_exr({bytes, name, "EXR"});
+  throw user_error("{}: not a PNG, JPEG or EXR image (by its first bytes)", name);
+}
+
+const char* format_extension(ImageFormat format) {
+  switch (format) {
+    case ImageFormat::kPng: return "png";
+    case ImageFormat::kJpeg: return "jpg";
+    case ImageFormat::kExr: return "exr";
+  }
+  return "";
+}
+
+}  // namespace quadrille::scenes
