@@ -20,11 +20,16 @@ class Reader {
     accessor_ = &all[static_cast<std::size_t>(index)];
   }
 
-  Elements read() {
+  Elements type() const {
     Elements elements;
     elements.component = component(accessor_->componentType);
     elements.components = components();
     elements.normalized = accessor_->normalized && elements.component != Component::kFloat;
+    return elements;
+  }
+
+  Elements read() {
+    Elements elements = type();
     size_ = component_bytes(elements.component) * elements.components;
     if (accessor_->count == 0 || accessor_->count > kMaxAccessorBytes / size_)
       fail(fmt::format("count {} is not 1..{}", accessor_->count, kMaxAccessorBytes / size_));
@@ -142,6 +147,11 @@ std::size_t component_bytes(Component component) {
   return 0;
 }
 
-Elements read_accessor(const GltfFile& file, int index, const std::string& place) { return Reader(file, index, place).read(); }
+Elements accessor_type(const GltfFile& file, int index, const std::string& place) { return Reader(file, index, place).type(); }
+
+Elements read_accessor(const GltfFile& file, int index, const std::string& place) {
+  if (const auto decoded = file.decoded_accessors.find(index); decoded != file.decoded_accessors.end()) return *decoded->second;
+  return Reader(file, index, place).read();
+}
 
 }  // namespace quadrille::scenes

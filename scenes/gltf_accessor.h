@@ -28,6 +28,9 @@ struct Elements {
 /// when anything about it is out of range, is a matrix, or takes more than 1 GiB.
 [[nodiscard]] Elements read_accessor(const GltfFile& file, int index, const std::string& place);
 
+/// Component, number of components and normalization of accessor `index`, which must exist, without its elements. Throws like `read_accessor`.
+[[nodiscard]] Elements accessor_type(const GltfFile& file, int index, const std::string& place);
+
 /// One component as a float; normalized integers by glTF's table. [glTF2.0 #animations: decoding of normalized integers]
 [[nodiscard]] float component_value(const Elements& elements, std::size_t element, std::size_t component);
 

@@ -1,87 +1,22 @@
 #include "scenes/gltf_file.h"
 
-#include <algorithm>
-#include <array>
-#include <cstring>
 #include <exception>
 #include <filesystem>
-#include <string_view>
+#include <limits>
 
 #include "models/base/error.h"
+#include "scenes/gltf_container.h"
+#include "scenes/gltf_draco.h"
+#include "scenes/gltf_extensions.h"
+#include "scenes/gltf_json.h"
+#include "scenes/gltf_meshopt.h"
+#include "scenes/gltf_uri.h"
 #include "traces/whole_file.h"
 
 namespace quadrille::scenes {
 namespace {
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 31;
-constexpr int kMaxJsonDepth = 128;  // the parser's walk over unknown members is recursive
-constexpr std::array<std::string_view, 5> kExtensions{"KHR_texture_transform", "KHR_materials_unlit", "KHR_lights_punctual",
-                                                      "KHR_mesh_quantization", "KHR_materials_emissive_strength"};
-
-using Bytes = std::vector<std::vector<std::byte>>;
-
-/// Keeps the encoded bytes of an image for later. A buffer view's are fetched later too, because tinygltf does not check its range.
-bool keep_image(tinygltf::Image* image, const int index, std::string*, std::string*, int, int, const unsigned char* data, int size,
-                void* user) {
-  auto& kept = *static_cast<Bytes*>(user);
-  const auto i = static_cast<std::size_t>(index);
-  if (kept.size() <= i) kept.resize(i + 1);
-  if (image->bufferView < 0 && size > 0)
-    kept[i].assign(reinterpret_cast<const std::byte*>(data), reinterpret_cast<const std::byte*>(data) + size);
-  return true;
-}
-
-bool file_exists(const std::string& path, void*) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
-}
-
-std::string same_path(const std::string& path, void*) { return path; }
-
-bool read_file(std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
-  try {
-    const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxFileBytes);
-    out->resize(bytes.size());
-    if (!bytes.empty()) std::memcpy(out->data(), bytes.data(), bytes.size());
-    return true;
-  } catch (const UserError& failure) {
-    if (error != nullptr) *error += failure.what();
-    return false;
-  }
-}
-
-bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
-
-bool is_binary(std::span<const std::byte> bytes) { return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0; }
-
-/// The deepest nesting of brackets outside strings, whether or not the text is JSON.
-int nesting_depth(std::string_view text) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == '}' || c == ']') {
-      --depth;
-    }
-  }
-  return deepest;
-}
-
-/// The JSON text: the whole file, or the first chunk of a binary one. [glTF2.0 #binary-gltf-layout: 12 bytes header, 8 bytes chunk header]
-std::string_view json_text(std::span<const std::byte> bytes) {
-  const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (!is_binary(bytes) || bytes.size() < 20) return all;
-  std::uint32_t length = 0;
-  std::memcpy(&length, bytes.data() + 12, sizeof(length));
-  return all.substr(20, length);
-}
 
 /// tinygltf's messages span several lines; ours are one.
 std::string first_line(const std::string& text) {
@@ -89,21 +24,59 @@ std::string first_line(const std::string& text) {
   return line.empty() ? "it is not valid glTF" : line;
 }
 
-void parse(GltfFile& file, std::span<const std::byte> bytes) {
+/// The parser sees neither buffers nor images, so it opens no file.
+void parse(GltfFile& file, const PreparedJson& json) {
+  if (json.text.size() > std::numeric_limits<unsigned int>::max()) throw user_error("{}: its JSON is too large", file.path);
   tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keep_image, &file.image_bytes);
-  loader.SetFsCallbacks({file_exists, same_path, read_file, write_nothing, nullptr});
-  const std::string folder = std::filesystem::path(file.path).parent_path().string();
-  const auto size = static_cast<unsigned int>(bytes.size());
   std::string error, warning;
   bool done = false;
   try {
-    done =
-        is_binary(bytes)
-            ? loader.LoadBinaryFromMemory(&file.model, &error, &warning, reinterpret_cast<const unsigned char*>(bytes.data()), size, folder)
-            : loader.LoadASCIIFromString(&file.model, &error, &warning, reinterpret_cast<const char*>(bytes.data()), size, folder);
+    done = loader.LoadASCIIFromString(&file.model, &error, &warning, json.text.data(), static_cast<unsigned int>(json.text.size()), "");
   } catch (const std::exception& failure) { throw user_error("{}: cannot be parsed: {}", file.path, failure.what()); }
   if (!done) throw user_error("{}: {}", file.path, first_line(error));
+  for (const std::size_t i : json.viewless) {
+    if (i < file.model.accessors.size()) file.model.accessors[i].bufferView = -1;
+  }
+}
+
+/// The bytes of one buffer, cut to its length. Without a URI the first one of a binary file is its BIN chunk. [glTF2.0 #glb-stored-buffer]
+std::vector<std::byte> buffer_bytes(const GltfFile& file, const BufferSource& source, std::size_t index, const GltfContainer& container,
+                                    std::uint64_t room) {
+  const std::string place = fmt::format("{}: buffers[{}]", file.path, index);
+  std::vector<std::byte> bytes;
+  if (source.uri) {
+    bytes = fetch_uri(file.path, *source.uri, place, room);
+  } else if (index == 0 && container.binary) {
+    bytes.assign(container.binary->begin(), container.binary->end());
+  } else if (source.fallback) {
+    return {};
+  } else {
+    throw user_error("{}: it has no uri, and the file no BIN chunk for it", place);
+  }
+  if (bytes.size() < source.bytes) throw user_error("{}: byteLength {} where there are {} bytes", place, source.bytes, bytes.size());
+  if (source.bytes > room) throw user_error("{}: the buffers take more than {} bytes", place, kMaxFileBytes);
+  bytes.resize(source.bytes);
+  return bytes;
+}
+
+void read_buffers(GltfFile& file, const PreparedJson& json, const GltfContainer& container) {
+  std::uint64_t room = kMaxFileBytes;
+  for (std::size_t i = 0; i < json.buffers.size(); ++i) {
+    const std::vector<std::byte> bytes = buffer_bytes(file, json.buffers[i], i, container, room);
+    room -= bytes.size();
+    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+    file.model.buffers.emplace_back().data.assign(data, data + bytes.size());
+  }
+}
+
+void list_images(GltfFile& file, const PreparedJson& json) {
+  for (const ImageSource& source : json.images) {
+    tinygltf::Image& image = file.model.images.emplace_back();
+    image.name = source.name;
+    image.bufferView = source.buffer_view;
+    if (source.uri && !is_data_uri(*source.uri)) image.uri = *source.uri;
+    file.image_uris.push_back(source.uri);
+  }
 }
 
 void check_version(const GltfFile& file) {
@@ -113,26 +86,21 @@ void check_version(const GltfFile& file) {
     throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", file.path, asset.minVersion);
 }
 
-void check_extensions(const GltfFile& file) {
-  std::string lacking;
-  for (const std::string& name : file.model.extensionsRequired) {
-    if (std::ranges::find(kExtensions, name) == kExtensions.end()) lacking += (lacking.empty() ? "" : ", ") + name;
-  }
-  if (!lacking.empty()) throw user_error("{}: extensionsRequired: {} not supported", file.path, lacking);
-}
-
 }  // namespace
 
 GltfFile read_gltf_file(const std::string& path) {
   GltfFile file;
   file.path = path;
   const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxFileBytes);
-  if (std::filesystem::path(path).extension() == ".glb" && !is_binary(bytes))
-    throw user_error("{}: not a binary glTF file (by its first bytes)", path);
-  if (nesting_depth(json_text(bytes)) > kMaxJsonDepth) throw user_error("{}: its JSON is nested deeper than {}", path, kMaxJsonDepth);
-  parse(file, bytes);
+  const GltfContainer container = split_gltf(path, bytes);
+  const PreparedJson json = prepare_json(path, container.json);
+  parse(file, json);
   check_version(file);
-  check_extensions(file);
+  check_extensions(path, file.model);
+  read_buffers(file, json, container);
+  list_images(file, json);
+  decode_meshopt_views(file);
+  decode_draco_primitives(file);
   return file;
 }
 
@@ -141,6 +109,7 @@ std::span<const std::byte> buffer_view_bytes(const GltfFile& file, int index, co
   if (index < 0 || static_cast<std::size_t>(index) >= views.size()) {
     throw user_error("{}: {}: bufferView {} does not exist (the file has {})", file.path, place, index, views.size());
   }
+  if (const auto decoded = file.decoded_views.find(index); decoded != file.decoded_views.end()) return decoded->second;
   const tinygltf::BufferView& view = views[static_cast<std::size_t>(index)];
   if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= file.model.buffers.size()) {
     throw user_error("{}: {}: bufferViews[{}]: buffer {} does not exist (the file has {})", file.path, place, index, view.buffer,
@@ -154,13 +123,15 @@ std::span<const std::byte> buffer_view_bytes(const GltfFile& file, int index, co
   return std::as_bytes(std::span(data)).subspan(view.byteOffset, view.byteLength);
 }
 
-std::span<const std::byte> encoded_image(const GltfFile& file, std::size_t index) {
+std::vector<std::byte> encoded_image(const GltfFile& file, std::size_t index) {
   const tinygltf::Image& image = file.model.images[index];
-  if (image.bufferView >= 0) return buffer_view_bytes(file, image.bufferView, fmt::format("images[{}]", index));
-  if (index >= file.image_bytes.size() || file.image_bytes[index].empty()) {
-    throw user_error("{}: images[{}]: '{}' cannot be read", file.path, index, image.uri.substr(0, 200));
+  const std::string place = fmt::format("images[{}]", index);
+  if (image.bufferView >= 0) {
+    const std::span<const std::byte> bytes = buffer_view_bytes(file, image.bufferView, place);
+    return {bytes.begin(), bytes.end()};
   }
-  return file.image_bytes[index];
+  if (!file.image_uris[index]) throw user_error("{}: {}: it has neither uri nor bufferView", file.path, place);
+  return fetch_uri(file.path, *file.image_uris[index], file.path + ": " + place, kMaxFileBytes);
 }
 
 }  // namespace quadrille::scenes

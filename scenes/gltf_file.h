@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,20 +13,24 @@
 
 namespace quadrille::scenes {
 
+struct Elements;
+
 struct GltfFile {
   std::string path;
-  tinygltf::Model model;
-  std::vector<std::vector<std::byte>>
-      image_bytes;  ///< of images that are files or data URIs; empty for the others and for files that are missing
+  tinygltf::Model model;  ///< its buffers and images are filled in by us; an image's `uri` is empty where it is data
+  std::vector<std::optional<std::string>> image_uris;   ///< as the file has them
+  std::map<int, std::vector<std::byte>> decoded_views;  ///< buffer views that were compressed, by number [EXT_meshopt_compression]
+  std::map<int, std::shared_ptr<const Elements>>
+      decoded_accessors;  ///< accessors that were compressed, by number [KHR_draco_mesh_compression]
 };
 
-/// Reads and parses the file and the buffers it names, and checks what it requires. Throws `UserError` whatever goes wrong.
+/// Reads and parses the file and the buffers it names, expands what is compressed, and checks what it requires. Throws `UserError` whatever goes wrong.
 [[nodiscard]] GltfFile read_gltf_file(const std::string& path);
 
 /// The bytes of buffer view `index`. Throws `UserError` with `place` when it or its range does not exist.
 [[nodiscard]] std::span<const std::byte> buffer_view_bytes(const GltfFile& file, int index, const std::string& place);
 
 /// The encoded bytes of image `index`, from wherever it keeps them. Throws `UserError` when it has none.
-[[nodiscard]] std::span<const std::byte> encoded_image(const GltfFile& file, std::size_t index);
+[[nodiscard]] std::vector<std::byte> encoded_image(const GltfFile& file, std::size_t index);
 
 }  // namespace quadrille::scenes

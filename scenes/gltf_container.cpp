@@ -1,0 +1,53 @@
+#include "scenes/gltf_container.h"
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+
+#include "models/base/error.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x46546c67, kJson = 0x4e4f534a, kBin = 0x004e4942;  // "glTF", "JSON", "BIN", little-endian
+constexpr std::size_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+
+std::uint32_t word(std::span<const std::byte> bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof(value));
+  return value;
+}
+
+GltfContainer split_binary(const std::string& path, std::span<const std::byte> bytes) {
+  if (bytes.size() < kHeaderBytes + kChunkHeaderBytes)
+    throw user_error("{}: a binary glTF file of {} bytes is truncated", path, bytes.size());
+  if (word(bytes, 4) != 2) throw user_error("{}: version {} of the binary container; 2 is read", path, word(bytes, 4));
+  const std::size_t length = word(bytes, 8);
+  if (length > bytes.size()) throw user_error("{}: its header says {} bytes, the file has {}", path, length, bytes.size());
+  GltfContainer result;
+  int chunk = 0;
+  for (std::size_t at = kHeaderBytes; at + kChunkHeaderBytes <= length; ++chunk) {
+    const std::size_t size = word(bytes, at);
+    const std::uint32_t type = word(bytes, at + 4);
+    at += kChunkHeaderBytes;
+    if (size > length - at) throw user_error("{}: chunk {} of {} bytes reaches beyond the end", path, chunk, size);
+    if ((chunk == 0) != (type == kJson))
+      throw user_error("{}: the first chunk, and only it, holds JSON; chunk {} breaks that", path, chunk);
+    const std::span<const std::byte> data = bytes.subspan(at, size);
+    if (type == kJson) result.json = {reinterpret_cast<const char*>(data.data()), data.size()};
+    if (type == kBin && !result.binary) result.binary = data;
+    at += size;
+  }
+  if (chunk == 0) throw user_error("{}: a binary glTF file without a chunk", path);
+  return result;
+}
+
+}  // namespace
+
+GltfContainer split_gltf(const std::string& path, std::span<const std::byte> bytes) {
+  if (bytes.size() >= 4 && word(bytes, 0) == kMagic) return split_binary(path, bytes);
+  if (std::filesystem::path(path).extension() == ".glb") throw user_error("{}: not a binary glTF file (by its first bytes)", path);
+  return {{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}};
+}
+
+}  // namespace quadrille::scenes

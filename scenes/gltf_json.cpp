@@ -1,0 +1,128 @@
+#include "scenes/gltf_json.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "models/base/error.h"
+
+namespace quadrille::scenes {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kMaxJsonDepth = 128;  // tinygltf's walk over unknown members is recursive
+
+/// The deepest nesting of brackets outside strings, whether or not the text is JSON.
+int nesting_depth(std::string_view text) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      deepest = std::max(deepest, ++depth);
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+class Preparer {
+ public:
+  Preparer(const std::string& path, std::string_view json) : path_(path) {
+    if (nesting_depth(json) > kMaxJsonDepth) fail("its JSON", fmt::format("is nested deeper than {}", kMaxJsonDepth));
+    try {
+      root_ = Json::parse(json);
+    } catch (const Json::parse_error& error) {
+      fail("its JSON", fmt::format("cannot be parsed at byte {}: not JSON in UTF-8", error.byte));
+    }
+    if (!root_.is_object()) fail("its JSON", "is no object");
+  }
+
+  PreparedJson prepare() {
+    PreparedJson result;
+    for_each("buffers", [&](const Json& item, const std::string& place) { result.buffers.push_back(buffer(item, place)); });
+    for_each("images", [&](const Json& item, const std::string& place) { result.images.push_back(image(item, place)); });
+    root_.erase("buffers");
+    root_.erase("images");
+    if (root_.contains("bufferViews") && !root_["bufferViews"].empty()) give_views(result.viewless);
+    result.text = root_.dump();
+    return result;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& place, const std::string& reason) const { throw user_error("{}: {} {}", path_, place, reason); }
+
+  template <class Visit>
+  void for_each(const char* table, const Visit& visit) const {
+    const auto found = root_.find(table);
+    if (found == root_.end()) return;
+    if (!found->is_array()) fail(fmt::format("{}:", table), "an array is due");
+    for (std::size_t i = 0; i < found->size(); ++i) {
+      const std::string place = fmt::format("{}[{}]:", table, i);
+      if (!(*found)[i].is_object()) fail(place, "an object is due");
+      visit((*found)[i], place);
+    }
+  }
+
+  std::optional<std::string> text(const Json& item, const char* member, const std::string& place) const {
+    const auto found = item.find(member);
+    if (found == item.end()) return std::nullopt;
+    if (!found->is_string()) fail(place, fmt::format("{}: a string is due", member));
+    return found->get<std::string>();
+  }
+
+  BufferSource buffer(const Json& item, const std::string& place) const {
+    BufferSource result;
+    const auto length = item.find("byteLength");
+    if (length == item.end() || !length->is_number_unsigned() || *length == 0U) fail(place, "byteLength: a positive integer is due");
+    result.bytes = length->get<std::uint64_t>();
+    result.uri = text(item, "uri", place);
+    const Json::json_pointer mark("/extensions/EXT_meshopt_compression/fallback");
+    result.fallback = contains(item, mark) && item[mark] == Json(true);
+    return result;
+  }
+
+  ImageSource image(const Json& item, const std::string& place) const {
+    ImageSource result;
+    result.name = text(item, "name", place).value_or("");
+    result.uri = text(item, "uri", place);
+    const auto view = item.find("bufferView");
+    if (view == item.end()) return result;
+    if (!view->is_number_unsigned() || view->get<std::uint64_t>() > 0x7fffffff) fail(place, "bufferView: an index is due");
+    result.buffer_view = view->get<int>();
+    return result;
+  }
+
+  static bool contains(const Json& item, const Json::json_pointer& pointer) {
+    try {
+      return item.contains(pointer);
+    } catch (const Json::exception&) { return false; }  // something on the way is no object
+  }
+
+  void give_views(std::vector<std::size_t>& viewless) {
+    const auto found = root_.find("accessors");
+    if (found == root_.end() || !found->is_array()) return;
+    for (std::size_t i = 0; i < found->size(); ++i) {
+      Json& accessor = (*found)[i];
+      if (!accessor.is_object() || accessor.contains("bufferView")) continue;
+      accessor["bufferView"] = 0;
+      viewless.push_back(i);
+    }
+  }
+
+  std::string path_;
+  Json root_;
+};
+
+}  // namespace
+
+PreparedJson prepare_json(const std::string& path, std::string_view json) { return Preparer(path, json).prepare(); }
+
+}  // namespace quadrille::scenes
