@@ -17,7 +17,9 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::array<const char*, kTextureSlots> kSlotNames{"BASE_COLOR", "METALLIC_ROUGHNESS", "NORMAL", "OCCLUSION", "EMISSIVE"};
+constexpr std::array<const char*, kTextureSlots> kSlotNames{
+    "BASE_COLOR",          "METALLIC_ROUGHNESS", "NORMAL",      "OCCLUSION",       "EMISSIVE",     "SPECULAR", "SPECULAR_COLOR", "CLEARCOAT",
+    "CLEARCOAT_ROUGHNESS", "CLEARCOAT_NORMAL",   "SHEEN_COLOR", "SHEEN_ROUGHNESS", "TRANSMISSION", "THICKNESS"};
 constexpr std::array<const char*, kSemantics> kAttributeDefines{"", "HAS_NORMAL", "HAS_TANGENT", "HAS_UV0", "HAS_UV1", "HAS_COLOR"};
 constexpr std::uint64_t kMaxShaderBytes = 1 << 24;
 
@@ -34,8 +36,30 @@ bool shares_occlusion(const Material& m) {
          a.u_row == b.u_row && a.v_row == b.v_row;
 }
 
+/// Does the layer that the texture belongs to exist?
+bool has_layer(const MaterialLayers& layers, TextureSlot slot) {
+  switch (slot) {
+    case TextureSlot::kBaseColor:
+    case TextureSlot::kMetallicRoughness:
+    case TextureSlot::kNormal:
+    case TextureSlot::kOcclusion:
+    case TextureSlot::kEmissive: return true;
+    case TextureSlot::kSpecular: return layers.specular && !layers.specular_glossiness;
+    case TextureSlot::kSpecularColor: return layers.specular;
+    case TextureSlot::kClearcoat:
+    case TextureSlot::kClearcoatRoughness:
+    case TextureSlot::kClearcoatNormal: return layers.coats();
+    case TextureSlot::kSheenColor:
+    case TextureSlot::kSheenRoughness: return layers.sheens();
+    case TextureSlot::kTransmission:
+    case TextureSlot::kThickness: return layers.transmits();
+  }
+  return false;
+}
+
 bool wants_texture(const Material& m, std::size_t slot, ShaderSet set) {
   const bool base_color = slot == at(TextureSlot::kBaseColor);
+  if (!has_layer(m.layers, static_cast<TextureSlot>(slot))) return false;
   switch (set) {
     case ShaderSet::kUser: return true;
     case ShaderSet::kVisibility: return base_color && m.alpha == AlphaMode::kMask;
@@ -55,7 +79,8 @@ void choose_textures(Variant& v, const Material& m, const Primitive& p, ShaderSe
     v.textures[slot] = v.attributes[uv] = true;
     const std::string name = fmt::format("v_uv{}", use.uv_set);
     v.defines.push_back(
-        fmt::format("{}_UV {}", kSlotNames[slot], use.transformed ? fmt::format("transform_uv({}, {})", slot, name) : name));
+        fmt::format("{}_UV {}", kSlotNames[slot],
+                    use.transformed ? fmt::format("transform{}_uv({}, {})", slot < kBaseTextureSlots ? "" : "_layer", slot, name) : name));
   }
 }
 
@@ -70,12 +95,23 @@ void choose_attributes(Variant& v, const Material& m, const Primitive& p, Shader
     use(Semantic::kNormal);
   }
   // Tangents without normals mean nothing. [glTF2.0 #meshes-overview]
-  const bool tangents = v.attributes[at(Semantic::kNormal)] && (set == ShaderSet::kUser || v.textures[at(TextureSlot::kNormal)]);
+  const bool normal_map = v.textures[at(TextureSlot::kNormal)] || v.textures[at(TextureSlot::kClearcoatNormal)];
+  const bool tangents = v.attributes[at(Semantic::kNormal)] && (set == ShaderSet::kUser || normal_map);
   if (tangents) use(Semantic::kTangent);
   if (set == ShaderSet::kUser) {
     use(Semantic::kUv0);
     use(Semantic::kUv1);
   }
+}
+
+void choose_layers(Variant& v, const MaterialLayers& layers) {
+  if (!layers.any()) return;
+  v.defines.emplace_back("LAYERS");
+  if (layers.specular) v.defines.emplace_back("SPECULAR");
+  if (layers.specular_glossiness) v.defines.emplace_back("SPECULAR_GLOSSINESS");
+  if (layers.coats()) v.defines.emplace_back("CLEARCOAT");
+  if (layers.sheens()) v.defines.emplace_back("SHEEN");
+  if (layers.transmits()) v.defines.emplace_back("TRANSMISSION");
 }
 
 void choose_modes(Variant& v, const Material& m, ShaderSet set) {
@@ -84,6 +120,7 @@ void choose_modes(Variant& v, const Material& m, ShaderSet set) {
   if (m.alpha == AlphaMode::kBlend) v.defines.emplace_back("ALPHA_BLEND");
   if (m.unlit) v.defines.emplace_back("UNLIT");
   if (m.unlit) return;
+  choose_layers(v, m.layers);
   if (m.double_sided) v.defines.emplace_back("DOUBLE_SIDED");
   if (emits(m)) v.defines.emplace_back("EMISSIVE");
   if (v.textures[at(TextureSlot::kMetallicRoughness)] && !v.textures[at(TextureSlot::kOcclusion)] && shares_occlusion(m)) {
@@ -129,7 +166,7 @@ ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::strin
   if (options.visibility) {
     fragment_ = {"visibility.frag", inputs + std::string(kVisibilityFrag), {}, {}};
   } else {
-    fragment_ = options.fragment_shader.empty() ? Source{"material.frag", inputs + std::string(kMaterialFrag), {}, {}}
+    fragment_ = options.fragment_shader.empty() ? Source{"material.frag", inputs + std::string(kLayersGlsl) + std::string(kMaterialFrag), {}, {}}
                                                 : read_source(options.fragment_shader);
   }
   // The materials' vertex shader does not depend on the lights beyond the size of their array.

@@ -25,15 +25,36 @@ static_assert(offsetof(DrawConstants, draw_id) == 112 && offsetof(DrawConstants,
 /// `Material` of scenes/shaders/material.glsl, std140.
 struct MaterialBlock {
   glm::vec4 base_color, emissive, factors;
-  std::array<glm::vec4, 2 * kTextureSlots> uv_rows;
+  std::array<glm::vec4, 2 * kBaseTextureSlots> uv_rows;
+};
+
+/// What follows it where the material has layers.
+struct LayerBlock {
+  glm::vec4 specular, clearcoat, sheen, transmission;
+  std::array<glm::vec4, 2 * (kTextureSlots - kBaseTextureSlots)> uv_rows;
 };
 
 MaterialBlock material_values(const Material& m) {
   MaterialBlock block{
       m.base_color, glm::vec4(m.emissive, m.alpha_cutoff), {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength}, {}};
-  for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+  for (std::size_t slot = 0; slot < kBaseTextureSlots; ++slot) {
     block.uv_rows[2 * slot] = glm::vec4(m.textures[slot].u_row, 0);
     block.uv_rows[2 * slot + 1] = glm::vec4(m.textures[slot].v_row, 0);
+  }
+  return block;
+}
+
+LayerBlock layer_values(const Material& m) {
+  const MaterialLayers& l = m.layers;
+  LayerBlock block{glm::vec4(l.specular_color, l.specular_weight),
+                   glm::vec4(l.clearcoat, l.clearcoat_roughness, l.clearcoat_normal_scale, 0),
+                   glm::vec4(l.sheen_color, l.sheen_roughness),
+                   glm::vec4(l.absorption, l.transmission),
+                   {}};
+  for (std::size_t slot = kBaseTextureSlots; slot < kTextureSlots; ++slot) {
+    const std::size_t row = 2 * (slot - kBaseTextureSlots);
+    block.uv_rows[row] = glm::vec4(m.textures[slot].u_row, 0);
+    block.uv_rows[row + 1] = glm::vec4(m.textures[slot].v_row, 0);
   }
   return block;
 }
@@ -46,7 +67,9 @@ std::vector<std::byte> bytes_of(const T& value, std::size_t size = sizeof(T)) {
 }
 
 bool is_srgb(std::size_t slot) {
-  return slot == static_cast<std::size_t>(TextureSlot::kBaseColor) || slot == static_cast<std::size_t>(TextureSlot::kEmissive);
+  const auto role = static_cast<TextureSlot>(slot);
+  return role == TextureSlot::kBaseColor || role == TextureSlot::kEmissive || role == TextureSlot::kSpecularColor ||
+         role == TextureSlot::kSheenColor;
 }
 
 bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::mat3(world))) < 0; }
@@ -69,6 +92,16 @@ const traces::BlendState kOver{true,
                                traces::BlendOp::kAdd,
                                traces::BlendOp::kAdd,
                                0xf};
+
+/// The colour comes multiplied by how much of what lies behind it hides.
+const traces::BlendState kPremultiplied{true,
+                                        traces::BlendFactor::kOne,
+                                        traces::BlendFactor::kOneMinusSrcAlpha,
+                                        traces::BlendFactor::kOne,
+                                        traces::BlendFactor::kOneMinusSrcAlpha,
+                                        traces::BlendOp::kAdd,
+                                        traces::BlendOp::kAdd,
+                                        0xf};
 
 }  // namespace
 
@@ -106,7 +139,7 @@ std::vector<std::size_t> Recorder::draw_order() const {
   std::vector<std::pair<float, std::size_t>> blended;  // distance along the view direction, instance
   for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
     const Primitive& primitive = scene_.primitives[scene_.instances[i].primitive];
-    if (scene_.materials[static_cast<std::size_t>(primitive.material)].alpha != AlphaMode::kBlend) {
+    if (!scene_.materials[static_cast<std::size_t>(primitive.material)].see_through()) {
       order.push_back(i);
       continue;
     }
@@ -176,7 +209,10 @@ traces::Index Recorder::material_block(int material) {
   const auto [entry, added] = material_blocks_.try_emplace(material, static_cast<traces::Index>(stream_.buffers.size()));
   if (added) {
     const Material& m = scene_.materials[static_cast<std::size_t>(material)];
-    stream_.buffers.push_back({"material " + m.name, bytes_of(material_values(m))});
+    std::vector<std::byte> block = bytes_of(material_values(m));
+    const std::vector<std::byte> layers = m.layers.any() ? bytes_of(layer_values(m)) : std::vector<std::byte>();
+    block.insert(block.end(), layers.begin(), layers.end());
+    stream_.buffers.push_back({"material " + m.name, std::move(block)});
   }
   return entry->second;
 }
@@ -185,7 +221,8 @@ traces::Index Recorder::material_set(int material, const Variant& v) {
   const auto [entry, added] =
       material_sets_.try_emplace({material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
   if (!added) return entry->second;
-  traces::DescriptorSet set{{{0, material_block(material), 0, sizeof(MaterialBlock)}}, {}};
+  const traces::Index block = material_block(material);
+  traces::DescriptorSet set{{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers[block].data.size())}}, {}};
   for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
     if (!v.textures[slot]) continue;
     const TextureUse& use = scene_.materials[static_cast<std::size_t>(material)].textures[slot];
@@ -205,12 +242,12 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
     p.bindings.push_back({i, traces::format_bytes(format), false});
     p.attributes.push_back({i, i, format, 0});
   }
-  const bool blended = material.alpha == AlphaMode::kBlend && !options_.visibility;
+  const bool blended = material.see_through() && !options_.visibility;
   p.topology = primitive.topology;
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
   p.front = mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
-  p.depth = {scene_.depth, scene_.depth && !blended, traces::CompareOp::kLess};
-  if (blended) p.blend = kOver;
+  p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend), traces::CompareOp::kLess};
+  if (blended) p.blend = material.layers.transmits() ? kPremultiplied : kOver;
   const auto found = std::ranges::find_if(stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
   if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());
   p.name = "pipeline " + std::to_string(stream_.pipelines.size());

@@ -57,9 +57,24 @@ struct Primitive {
   Bounds bounds;  ///< model space
 };
 
-/// Texture roles; the shader binds slot i at binding 1 + i.
-enum class TextureSlot : std::uint8_t { kBaseColor, kMetallicRoughness, kNormal, kOcclusion, kEmissive };
-inline constexpr std::size_t kTextureSlots = 5;
+/// Texture roles; the shader binds slot i at binding 1 + i. From kSpecular on they belong to `MaterialLayers`.
+enum class TextureSlot : std::uint8_t {
+  kBaseColor,
+  kMetallicRoughness,
+  kNormal,
+  kOcclusion,
+  kEmissive,
+  kSpecular,            ///< a: weight
+  kSpecularColor,       ///< sRGB; with specular-glossiness rgb: reflectance, a: glossiness
+  kClearcoat,           ///< r
+  kClearcoatRoughness,  ///< g
+  kClearcoatNormal,
+  kSheenColor,      ///< sRGB
+  kSheenRoughness,  ///< a
+  kTransmission,    ///< r
+  kThickness        ///< g
+};
+inline constexpr std::size_t kBaseTextureSlots = 5, kTextureSlots = 14;
 
 struct TextureUse {
   int image = -1;  ///< into `SceneData::images`; -1: none
@@ -71,6 +86,23 @@ struct TextureUse {
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
+/// What extensions of glTF add to a material. A member at its default adds nothing.
+struct MaterialLayers {
+  bool specular = false;             ///< the dielectric's reflectance differs from 0.04 [KHR_materials_ior, KHR_materials_specular]
+  glm::vec3 specular_color{0.04F};   ///< reflectance at normal incidence, not yet limited to 1
+  float specular_weight = 1;
+  bool specular_glossiness = false;  ///< `specular_color` is the reflectance of all; no metals [KHR_materials_pbrSpecularGlossiness]
+  float clearcoat = 0, clearcoat_roughness = 0, clearcoat_normal_scale = 1;
+  glm::vec3 sheen_color{0};
+  float sheen_roughness = 0;
+  float transmission = 0;
+  glm::vec3 absorption{0};  ///< log2 of what the whole thickness lets through, 0 or less [KHR_materials_volume]
+  [[nodiscard]] bool coats() const { return clearcoat > 0; }
+  [[nodiscard]] bool sheens() const { return sheen_color != glm::vec3(0); }
+  [[nodiscard]] bool transmits() const { return transmission > 0; }
+  [[nodiscard]] bool any() const { return specular || coats() || sheens() || transmits(); }
+};
+
 struct Material {
   std::string name = "default";
   glm::vec4 base_color{1};
@@ -79,7 +111,10 @@ struct Material {
   AlphaMode alpha = AlphaMode::kOpaque;
   float alpha_cutoff = 0.5F;
   bool double_sided = false, unlit = false;
+  MaterialLayers layers;
   std::array<TextureUse, kTextureSlots> textures;
+  /// Is what lies behind seen through it? Such draws come after the others, from back to front.
+  [[nodiscard]] bool see_through() const { return alpha == AlphaMode::kBlend || layers.transmits(); }
   [[nodiscard]] const TextureUse& texture(TextureSlot slot) const { return textures[static_cast<std::size_t>(slot)]; }
   [[nodiscard]] TextureUse& texture(TextureSlot slot) { return textures[static_cast<std::size_t>(slot)]; }
 };

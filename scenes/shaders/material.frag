@@ -10,14 +10,13 @@ vec3 emitted() {
 }
 
 #ifndef UNLIT
-#ifdef NORMAL_UV
-// Moves the normal-map sample into world space. Green points along -v, as glTF asks.
-vec3 perturb(vec3 n, vec3 m) {
+#if defined(NORMAL_UV) || defined(CLEARCOAT_NORMAL_UV)
+// Moves the normal-map sample at `uv` into world space. Green points along -v, as glTF asks.
+vec3 perturb(vec3 n, vec3 m, vec2 uv) {
 #ifdef HAS_TANGENT
   return m.x * v_tangent.xyz + m.y * v_tangent.w * cross(n, v_tangent.xyz) + m.z * n;
 #else
   // No tangents in the file: the frame that the texture coordinates span on the surface, from screen-space differences.
-  vec2 uv = NORMAL_UV;
   vec3 px = dFdx(v_position), py = dFdy(v_position);
   vec2 tx = dFdx(uv), ty = dFdy(uv);
   vec3 across_y = cross(n, py), across_x = cross(px, n);  // window y points down, so these turn the other way than with y up
@@ -29,26 +28,38 @@ vec3 perturb(vec3 n, vec3 m) {
 }
 #endif
 
-vec3 shading_normal() {
+vec3 surface_normal() {
 #ifdef HAS_NORMAL
-  vec3 n = normalize(v_normal);
+  return normalize(v_normal);
 #else
-  vec3 n = normalize(cross(dFdy(v_position), dFdx(v_position)));  // flat, toward the viewer
+  return normalize(cross(dFdy(v_position), dFdx(v_position)));  // flat, toward the viewer
 #endif
+}
+
+vec3 toward_viewer(vec3 n) {
+#if defined(DOUBLE_SIDED) && defined(HAS_NORMAL)
+  return gl_FrontFacing ? n : -n;
+#else
+  return n;
+#endif
+}
+
+vec3 shading_normal() {
+  vec3 n = surface_normal();
 #ifdef NORMAL_UV
   vec3 m = texture(normal_texture, NORMAL_UV).xyz * 2.0 - 1.0;
   m.xy *= material.factors.z;
-  n = normalize(perturb(n, m));
+  n = normalize(perturb(n, m, NORMAL_UV));
 #endif
-#if defined(DOUBLE_SIDED) && defined(HAS_NORMAL)
-  n = gl_FrontFacing ? n : -n;
-#endif
-  return n;
+  return toward_viewer(n);
 }
 
 struct Surface {
   vec3 n, v, diffuse, f0;
   float n_dot_v, alpha, roughness, occlusion;
+#ifdef LAYERS
+  Layers layers;
+#endif
 };
 
 // Radiance that leaves toward the viewer per unit of irradiance from `l` at normal incidence, times pi and the cosine.
@@ -64,12 +75,27 @@ vec3 reflect_light(Surface s, vec3 l) {
   float specular = a2 * visibility / (d * d);
   float k = 1.0 - v_dot_h;
   float k2 = k * k;
+#ifndef LAYERS
   vec3 fresnel = s.f0 + (1.0 - s.f0) * (k2 * k2 * k);
   return (s.diffuse * (1.0 - fresnel) + specular * fresnel) * n_dot_l;
+#else
+  vec3 fresnel = s.f0 + (s.layers.f90 - s.f0) * (k2 * k2 * k);
+  vec3 color = (s.diffuse * (1.0 - largest(fresnel)) + specular * fresnel) * n_dot_l;
+#ifdef SHEEN
+  color = color * s.layers.under_sheen + s.layers.sheen * sheen_lobe(s.layers, n_dot_l, s.n_dot_v, n_dot_h);
+#endif
+#ifdef CLEARCOAT
+  float coat = s.layers.coat * (kCoatReflectance + (1.0 - kCoatReflectance) * (k2 * k2 * k));
+  float lobe = coat_lobe(s.layers, clamp(dot(s.layers.coat_n, l), 0.0, 1.0), clamp(dot(s.layers.coat_n, h), 0.0, 1.0));
+  color = mix(color, vec3(lobe), coat);
+#endif
+  return color;
+#endif
 }
 
 // Light of the sky and the ground: irradiance is a blend by the normal's height; the reflection blurs the horizon by roughness. The directional
 // albedo of the specular lobe is Karis' fit (Physically Based Shading on Mobile, 2014).
+#ifndef LAYERS
 vec3 reflect_environment(Surface s) {
   vec3 irradiance = mix(frame.ground.rgb, frame.sky.rgb, s.n.y * 0.5 + 0.5);
   float up = 2.0 * dot(s.n, s.v) * s.n.y - s.v.y;
@@ -79,6 +105,35 @@ vec3 reflect_environment(Surface s) {
   vec3 specular = s.f0 * (r.z - 1.04 * a) + (r.w + 1.04 * a);
   return (s.diffuse * irradiance + specular * radiance) * s.occlusion;
 }
+#else
+// The same with layers. The outer ones take from the inner ones, and from what passes through, the share that they reflect themselves.
+vec3 reflect_environment(inout Surface s) {
+  vec3 irradiance = mix(frame.ground.rgb, frame.sky.rgb, s.n.y * 0.5 + 0.5);
+  vec2 lobe = specular_albedo(s.roughness, s.n_dot_v);
+  vec3 specular = s.f0 * lobe.x + s.layers.f90 * lobe.y;
+  vec3 color = s.diffuse * irradiance + specular * sky_radiance(2.0 * dot(s.n, s.v) * s.n.y - s.v.y, s.roughness);
+#ifdef TRANSMISSION
+  s.layers.transmittance *= 1.0 - min(largest(specular), 1.0);
+#endif
+#ifdef SHEEN
+  float sheen = sheen_albedo(inversesqrt(s.layers.sheen_exponent), s.n_dot_v);
+  color = color * s.layers.under_sheen + s.layers.sheen * (sheen * irradiance);
+#ifdef TRANSMISSION
+  s.layers.transmittance *= s.layers.under_sheen;
+#endif
+#endif
+#ifdef CLEARCOAT
+  vec2 coat_lobe = specular_albedo(s.layers.coat_roughness, s.layers.coat_n_dot_v);
+  float coat = s.layers.coat * (kCoatReflectance * coat_lobe.x + coat_lobe.y);
+  float up = 2.0 * dot(s.layers.coat_n, s.v) * s.layers.coat_n.y - s.v.y;
+  color = mix(color, sky_radiance(up, s.layers.coat_roughness), coat);
+#ifdef TRANSMISSION
+  s.layers.transmittance *= 1.0 - coat;
+#endif
+#endif
+  return color * s.occlusion;
+}
+#endif
 
 #if POINT_LIGHTS + SPOT_LIGHTS > 0
 // Inverse square with the smooth cut at the range that KHR_lights_punctual recommends.
@@ -111,6 +166,90 @@ vec3 reflect_lights(Surface s) {
   return sum;
 }
 
+#ifdef LAYERS
+#ifdef CLEARCOAT
+void add_clearcoat(inout Surface s) {
+  s.layers.coat = material.clearcoat.x;
+  s.layers.coat_roughness = material.clearcoat.y;
+#ifdef CLEARCOAT_UV
+  s.layers.coat *= texture(clearcoat_texture, CLEARCOAT_UV).r;
+#endif
+#ifdef CLEARCOAT_ROUGHNESS_UV
+  s.layers.coat_roughness *= texture(clearcoat_roughness_texture, CLEARCOAT_ROUGHNESS_UV).g;
+#endif
+  vec3 n = surface_normal();
+#ifdef CLEARCOAT_NORMAL_UV
+  vec3 m = texture(clearcoat_normal_texture, CLEARCOAT_NORMAL_UV).xyz * 2.0 - 1.0;
+  m.xy *= material.clearcoat.z;
+  n = normalize(perturb(n, m, CLEARCOAT_NORMAL_UV));
+#endif
+  s.layers.coat_n = toward_viewer(n);
+  s.layers.coat_n_dot_v = clamp(dot(s.layers.coat_n, s.v), 0.0, 1.0);
+  s.layers.coat_alpha = max(s.layers.coat_roughness * s.layers.coat_roughness, kMinAlpha);
+}
+#endif
+
+#ifdef SHEEN
+void add_sheen(inout Surface s) {
+  s.layers.sheen = material.sheen.rgb;
+  float roughness = material.sheen.w;
+#ifdef SHEEN_COLOR_UV
+  s.layers.sheen *= texture(sheen_color_texture, SHEEN_COLOR_UV).rgb;
+#endif
+#ifdef SHEEN_ROUGHNESS_UV
+  roughness *= texture(sheen_roughness_texture, SHEEN_ROUGHNESS_UV).a;
+#endif
+  roughness = max(roughness, 0.1);  // below, the lobe is too narrow to be met by a light
+  s.layers.sheen_exponent = 1.0 / (roughness * roughness);
+  s.layers.under_sheen = 1.0 - largest(s.layers.sheen) * sheen_albedo(roughness, s.n_dot_v);
+}
+#endif
+
+#ifdef TRANSMISSION
+void add_transmission(inout Surface s, vec3 base, float metallic) {
+  float share = material.transmission.w;
+#ifdef TRANSMISSION_UV
+  share *= texture(transmission_texture, TRANSMISSION_UV).r;
+#endif
+  vec3 depth = material.transmission.rgb;
+#ifdef THICKNESS_UV
+  depth *= texture(thickness_texture, THICKNESS_UV).g;
+#endif
+  s.layers.transmittance = base * exp2(depth) * (share * (1.0 - metallic));
+  s.diffuse *= 1.0 - share;
+}
+#endif
+
+// Reflectance of the base: of a dielectric or a metal, or as specular-glossiness says.
+void set_reflectance(inout Surface s, vec3 base, float metallic) {
+#ifdef SPECULAR
+  vec3 f0 = material.specular.rgb;
+  float weight = material.specular.w;
+#ifdef SPECULAR_COLOR_UV
+  vec4 color = texture(specular_color_texture, SPECULAR_COLOR_UV);
+  f0 *= color.rgb;
+#endif
+#ifdef SPECULAR_GLOSSINESS
+#ifdef SPECULAR_COLOR_UV
+  s.roughness = 1.0 - (1.0 - s.roughness) * color.a;
+  s.alpha = max(s.roughness * s.roughness, kMinAlpha);
+#endif
+  s.f0 = f0;
+  s.diffuse = base * (1.0 - largest(f0));
+  s.layers.f90 = vec3(1.0);
+#else
+#ifdef SPECULAR_UV
+  weight *= texture(specular_texture, SPECULAR_UV).a;
+#endif
+  s.f0 = mix(min(f0, 1.0) * weight, base, metallic);
+  s.layers.f90 = vec3(mix(weight, 1.0, metallic));
+#endif
+#else
+  s.layers.f90 = vec3(1.0);
+#endif
+}
+#endif  // LAYERS
+
 Surface surface(vec3 base) {
   Surface s;
   float metallic = material.factors.x, roughness = material.factors.y;
@@ -137,6 +276,18 @@ Surface surface(vec3 base) {
   s.alpha = max(roughness * roughness, kMinAlpha);
   s.diffuse = base * (1.0 - metallic);
   s.f0 = mix(vec3(0.04), base, metallic);
+#ifdef LAYERS
+  set_reflectance(s, base, metallic);
+#ifdef SHEEN
+  add_sheen(s);
+#endif
+#ifdef CLEARCOAT
+  add_clearcoat(s);
+#endif
+#ifdef TRANSMISSION
+  add_transmission(s, base, metallic);
+#endif
+#endif
   return s;
 }
 #endif  // !UNLIT
@@ -150,10 +301,23 @@ void main() {
   Surface s = surface(base.rgb);
   vec3 color = reflect_lights(s) + reflect_environment(s);
 #ifdef EMISSIVE
+#ifdef CLEARCOAT
+  color += emitted() * (1.0 - s.layers.coat * (kCoatReflectance + (1.0 - kCoatReflectance) * fifth_power(1.0 - s.layers.coat_n_dot_v)));
+#else
   color += emitted();
 #endif
 #endif
+#endif
+#ifdef TRANSMISSION
+  // Grey of the picture behind, sharp; what is missing to the colour or blurred by roughness, from the sky and the ground in that direction.
+  float seen = min(min(s.layers.transmittance.r, s.layers.transmittance.g), s.layers.transmittance.b) * (1.0 - s.roughness);
+  color += (s.layers.transmittance - seen) * sky_radiance(-s.v.y, s.roughness);
 #ifdef ALPHA_BLEND
+  out_color = vec4(color * base.a, base.a * (1.0 - seen));
+#else
+  out_color = vec4(color, 1.0 - seen);
+#endif
+#elif defined(ALPHA_BLEND)
   out_color = vec4(color, base.a);
 #else
   out_color = vec4(color, 1.0);

@@ -4,6 +4,13 @@ layout(set = 1, binding = 0, std140) uniform Material {
   vec4 emissive;       // rgb; w: alpha cut-off
   vec4 factors;        // metallic, roughness, normal scale, occlusion strength
   vec4 uv_rows[10];    // slot i: u' = dot(uv_rows[2 i].xyz, (u, v, 1)), v' by uv_rows[2 i + 1]
+#ifdef LAYERS
+  vec4 specular;       // rgb: reflectance at normal incidence; w: weight
+  vec4 clearcoat;      // weight, roughness, normal scale
+  vec4 sheen;          // rgb: colour; w: roughness
+  vec4 transmission;   // rgb: log2 of what the thickness lets through; w: share that is transmitted
+  vec4 layer_uv_rows[18];  // slots 5 to 13
+#endif
 } material;
 
 #ifdef NEEDS_POSITION
@@ -40,6 +47,40 @@ layout(set = 1, binding = 4) uniform sampler2D occlusion_texture;
 #endif
 #ifdef EMISSIVE_UV
 layout(set = 1, binding = 5) uniform sampler2D emissive_texture;
+#endif
+#ifdef SPECULAR_UV
+layout(set = 1, binding = 6) uniform sampler2D specular_texture;
+#endif
+#ifdef SPECULAR_COLOR_UV
+layout(set = 1, binding = 7) uniform sampler2D specular_color_texture;
+#endif
+#ifdef CLEARCOAT_UV
+layout(set = 1, binding = 8) uniform sampler2D clearcoat_texture;
+#endif
+#ifdef CLEARCOAT_ROUGHNESS_UV
+layout(set = 1, binding = 9) uniform sampler2D clearcoat_roughness_texture;
+#endif
+#ifdef CLEARCOAT_NORMAL_UV
+layout(set = 1, binding = 10) uniform sampler2D clearcoat_normal_texture;
+#endif
+#ifdef SHEEN_COLOR_UV
+layout(set = 1, binding = 11) uniform sampler2D sheen_color_texture;
+#endif
+#ifdef SHEEN_ROUGHNESS_UV
+layout(set = 1, binding = 12) uniform sampler2D sheen_roughness_texture;
+#endif
+#ifdef TRANSMISSION_UV
+layout(set = 1, binding = 13) uniform sampler2D transmission_texture;
+#endif
+#ifdef THICKNESS_UV
+layout(set = 1, binding = 14) uniform sampler2D thickness_texture;
+#endif
+
+#ifdef LAYERS
+vec2 transform_layer_uv(int slot, vec2 uv) {
+  vec3 p = vec3(uv, 1.0);
+  return vec2(dot(material.layer_uv_rows[2 * slot - 10].xyz, p), dot(material.layer_uv_rows[2 * slot - 9].xyz, p));
+}
 #endif
 
 // KHR_texture_transform of one slot.
