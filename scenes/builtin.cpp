@@ -23,7 +23,7 @@ struct Entry {
   SceneData (*build)();
 };
 
-constexpr std::array<Entry, 6> kEntries{{
+constexpr std::array<Entry, 7> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"}, build_triangle},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"}, build_quad},
     {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"}, build_cubes},
@@ -33,6 +33,7 @@ constexpr std::array<Entry, 6> kEntries{{
     {{"overdraw", "sixteen translucent layers over the whole screen: blending and colour bandwidth"}, build_overdraw},
     {{"fill", "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most units left out"},
      build_fill},
+    {{"materials", "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"}, build_materials},
 }};
 
 /// An unlit quad that fills the picture of `flat_camera`, at distance `depth`.

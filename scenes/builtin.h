@@ -16,6 +16,7 @@ namespace quadrille::scenes {
 [[nodiscard]] SceneData build_cubes();
 [[nodiscard]] SceneData build_overdraw();
 [[nodiscard]] SceneData build_fill();
+[[nodiscard]] SceneData build_materials();
 [[nodiscard]] SceneData build_courtyard();
 
 }  // namespace quadrille::scenes
