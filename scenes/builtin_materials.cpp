@@ -145,9 +145,10 @@ SceneData build_materials() {
   using Row = Material (*)(int, const Textures&);
   constexpr std::array<Row, kRows> kMaterials{ior, specular, clearcoat, sheen, transmission, volume, specular_glossiness};
   SceneData scene;
-  const Textures textures{add_image(scene, "mask", stripes(false, glm::vec4(1), glm::vec4(0.1F))),
-                          add_image(scene, "color", stripes(true, {0.9F, 0.25F, 0.1F, 1}, {0.1F, 0.5F, 0.8F, 0.4F})),
-                          add_image(scene, "bumps", paint_normals(128, 0.02F, [](glm::vec2 uv) { return tiling_noise(uv * 16.0F, 16, 2, 9); }))};
+  const Textures textures{
+      add_image(scene, "mask", stripes(false, glm::vec4(1), glm::vec4(0.1F))),
+      add_image(scene, "color", stripes(true, {0.9F, 0.25F, 0.1F, 1}, {0.1F, 0.5F, 0.8F, 0.4F})),
+      add_image(scene, "bumps", paint_normals(128, 0.02F, [](glm::vec2 uv) { return tiling_noise(uv * 16.0F, 16, 2, 9); }))};
   add_wall(scene);
   MeshBuilder mesh;
   sphere(mesh);

@@ -82,7 +82,7 @@ Pose upright(const glm::dvec3& eye, const glm::dvec3& backward) {
 template <class Visit>
 void for_each_corner(const SceneData& scene, const Visit& visit) {
   for (const Instance& instance : scene.instances) {
-    const Bounds box = scene.primitives[instance.primitive].bounds.transformed(instance.world);
+    const Bounds box = scene.box(instance);
     if (box.empty()) continue;
     for (int c = 0; c < 8; ++c)
       visit(

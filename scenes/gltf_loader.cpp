@@ -2,6 +2,7 @@
 #include "scenes/gltf_loader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -9,13 +10,16 @@
 
 #include <fmt/format.h>
 
+#include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/ext/quaternion_double.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
 
 #include "models/base/error.h"
 #include "scenes/gltf_file.h"
+#include "scenes/gltf_instancing.h"
 #include "scenes/gltf_mesh.h"
 #include "scenes/image_header.h"
 #include "scenes/parallel.h"
@@ -25,6 +29,7 @@ namespace {
 
 constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
                         kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
+constexpr std::size_t kMaxCopies = std::size_t{1} << 20;  // of all nodes together
 
 bool all_finite(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i) {
@@ -188,9 +193,34 @@ class SceneReader {
     for (const tinygltf::Primitive& primitive : file_.model.meshes[mesh].primitives) {
       if (!primitive.targets.empty()) warn_once(said_morph_, "morph targets are not applied");
     }
+    const std::size_t first = scene_.instances.size();
     for (const std::uint32_t primitive : meshes_.primitives(node.mesh)) {
       const std::string& name = scene_.primitives[primitive].name;
       scene_.instances.push_back({primitive, glm::mat4(world), node.name.empty() ? name : node.name + "/" + name});
+    }
+    if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end())
+      copy_instances(first, world, read_instances(file_, found->second, place), place);
+  }
+
+  /// Turns the instances from `first` on into instanced draws: one of the copies that mirror and one of those that do not, since they face the other way.
+  void copy_instances(std::size_t first, const glm::dmat4& world, const std::vector<glm::dmat4>& local, const std::string& place) {
+    std::array<std::vector<glm::mat4>, 2> sides;
+    for (const glm::dmat4& matrix : local) {
+      const glm::dmat4 placed = world * matrix;
+      if (!all_finite(placed)) fail(place, "the matrix of one of its instances is not finite");
+      sides[glm::determinant(glm::dmat3(placed)) < 0 ? 1 : 0].emplace_back(placed);
+    }
+    copies_ += local.size();
+    if (copies_ > kMaxCopies) fail(place, fmt::format("the scene has more than {} instances", kMaxCopies));
+    const std::vector<Instance> originals(scene_.instances.begin() + static_cast<std::ptrdiff_t>(first), scene_.instances.end());
+    scene_.instances.resize(first);
+    for (std::vector<glm::mat4>& side : sides) {
+      if (side.empty()) continue;
+      for (Instance instance : originals) {
+        instance.copies = static_cast<int>(scene_.copies.size());
+        scene_.instances.push_back(std::move(instance));
+      }
+      scene_.copies.push_back(std::move(side));
     }
   }
 
@@ -280,6 +310,7 @@ class SceneReader {
   GltfFile file_;
   SceneData scene_;
   MeshReader meshes_;
+  std::size_t copies_ = 0;
   bool said_skin_ = false, said_morph_ = false;
 };
 

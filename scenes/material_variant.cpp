@@ -18,8 +18,8 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr std::array<const char*, kTextureSlots> kSlotNames{
-    "BASE_COLOR",          "METALLIC_ROUGHNESS", "NORMAL",      "OCCLUSION",       "EMISSIVE",     "SPECULAR", "SPECULAR_COLOR", "CLEARCOAT",
-    "CLEARCOAT_ROUGHNESS", "CLEARCOAT_NORMAL",   "SHEEN_COLOR", "SHEEN_ROUGHNESS", "TRANSMISSION", "THICKNESS"};
+    "BASE_COLOR", "METALLIC_ROUGHNESS",  "NORMAL",           "OCCLUSION",   "EMISSIVE",        "SPECULAR",     "SPECULAR_COLOR",
+    "CLEARCOAT",  "CLEARCOAT_ROUGHNESS", "CLEARCOAT_NORMAL", "SHEEN_COLOR", "SHEEN_ROUGHNESS", "TRANSMISSION", "THICKNESS"};
 constexpr std::array<const char*, kSemantics> kAttributeDefines{"", "HAS_NORMAL", "HAS_TANGENT", "HAS_UV0", "HAS_UV1", "HAS_COLOR"};
 constexpr std::uint64_t kMaxShaderBytes = 1 << 24;
 
@@ -166,8 +166,9 @@ ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::strin
   if (options.visibility) {
     fragment_ = {"visibility.frag", inputs + std::string(kVisibilityFrag), {}, {}};
   } else {
-    fragment_ = options.fragment_shader.empty() ? Source{"material.frag", inputs + std::string(kLayersGlsl) + std::string(kMaterialFrag), {}, {}}
-                                                : read_source(options.fragment_shader);
+    fragment_ = options.fragment_shader.empty()
+                    ? Source{"material.frag", inputs + std::string(kLayersGlsl) + std::string(kMaterialFrag), {}, {}}
+                    : read_source(options.fragment_shader);
   }
   // The materials' vertex shader does not depend on the lights beyond the size of their array.
   vertex_.frame_defines = options.vertex_shader.empty() ? std::vector<std::string>{frame_defines.front()} : frame_defines;
@@ -182,6 +183,7 @@ traces::Index ShaderLibrary::shader(traces::ShaderStage stage, const Variant& va
     const bool stream = define.starts_with("HAS_") || define == "NEEDS_POSITION";
     if (stream || source.name != "material.vert") defines.push_back(define);
   }
+  if (variant.instanced && stage == traces::ShaderStage::kVertex) defines.emplace_back("INSTANCED");
   const std::string key = source.spirv.empty() ? fmt::format("{}", fmt::join(defines, ";")) : std::string();
   const auto [entry, added] = compiled_.try_emplace({stage, key}, static_cast<traces::Index>(shaders_.size()));
   if (added)

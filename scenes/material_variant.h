@@ -20,6 +20,7 @@ struct Variant {
   std::array<bool, kSemantics> attributes{};   ///< vertex streams that the shaders read
   std::array<bool, kTextureSlots> textures{};  ///< texture slots that the fragment shader samples
   std::vector<std::string> defines;            ///< of both stages
+  bool instanced = false;                      ///< the vertex shader takes its matrices from streams that advance by instance
   friend bool operator==(const Variant&, const Variant&) = default;
 };
 

@@ -17,9 +17,6 @@
 namespace quadrille::scenes {
 namespace {
 
-// Slots of the bound state: pipeline, material set, index buffer, then a vertex stream for each semantic.
-constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kVertexSlot = 3;
-constexpr std::uint32_t kFrameSet = 0, kMaterialSet = 1;
 static_assert(offsetof(DrawConstants, draw_id) == 112 && offsetof(DrawConstants, handedness) + 4 == kDrawConstantBytes);
 
 /// `Material` of scenes/shaders/material.glsl, std140.
@@ -72,18 +69,6 @@ bool is_srgb(std::size_t slot) {
          role == TextureSlot::kSheenColor;
 }
 
-bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::mat3(world))) < 0; }
-
-/// Inverse transpose by cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its normals). The longest column is
-/// made one long, so that squares in the shader neither vanish nor overflow.
-std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world) {
-  const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
-  std::array<glm::dvec3, 3> columns{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
-  const double longest = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
-  const double scale = (mirrors(world) ? -1.0 : 1.0) / (longest > 0 ? longest : 1.0);
-  return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0), glm::vec4(columns[2] * scale, 0)};
-}
-
 const traces::BlendState kOver{true,
                                traces::BlendFactor::kSrcAlpha,
                                traces::BlendFactor::kOneMinusSrcAlpha,
@@ -105,6 +90,18 @@ const traces::BlendState kPremultiplied{true,
 
 }  // namespace
 
+bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::mat3(world))) < 0; }
+
+// By cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its normals). With the longest column one long, squares in
+// the shader neither vanish nor overflow.
+std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world) {
+  const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
+  std::array<glm::dvec3, 3> columns{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
+  const double longest = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
+  const double scale = (mirrors(world) ? -1.0 : 1.0) / (longest > 0 ? longest : 1.0);
+  return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0), glm::vec4(columns[2] * scale, 0)};
+}
+
 Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
     : range_(needed_range(scene, options)),
       moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
@@ -113,7 +110,7 @@ Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
       view_(make_view(scene_, options_)),
       lights_(frame_lights(scene_, view_)),
       shaders_(options, frame_defines(view_, lights_), stream_.shaders),
-      bound_(kVertexSlot + kSemantics, traces::EndPass{}) {}
+      bound_(kVertexSlot + kLocations, traces::EndPass{}) {}
 
 traces::CommandStream Recorder::record() {
   stream_.name = scene_.name;
@@ -143,7 +140,7 @@ std::vector<std::size_t> Recorder::draw_order() const {
       order.push_back(i);
       continue;
     }
-    const Bounds box = primitive.bounds.transformed(scene_.instances[i].world);
+    const Bounds box = scene_.box(scene_.instances[i]);
     blended.emplace_back(box.empty() ? 0.0F : glm::dot(view_.eye - box.center(), view_.toward_viewer), i);
   }
   std::ranges::stable_sort(blended, std::ranges::greater{}, &std::pair<float, std::size_t>::first);
@@ -232,6 +229,19 @@ traces::Index Recorder::material_set(int material, const Variant& v) {
   return entry->second;
 }
 
+namespace {
+
+/// Three rows of the model matrix, then three columns of the normal matrix, 16 bytes each.
+void add_copy_streams(traces::Pipeline& p) {
+  constexpr std::uint32_t kVectorBytes = 16;
+  p.bindings.push_back({kCopiesBinding, 6 * kVectorBytes, true});
+  for (std::uint32_t i = 0; i < 6; ++i)
+    p.attributes.push_back({kCopiesBinding + i, kCopiesBinding,
+                            i < 3 ? traces::Format::kR32G32B32A32Float : traces::Format::kR32G32B32Float, i * kVectorBytes});
+}
+
+}  // namespace
+
 traces::Index Recorder::pipeline(const Primitive& primitive, const Material& material, const Variant& v, bool mirrored) {
   traces::Pipeline p;
   p.vertex_shader = shaders_.vertex(v);
@@ -242,6 +252,7 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
     p.bindings.push_back({i, traces::format_bytes(format), false});
     p.attributes.push_back({i, i, format, 0});
   }
+  if (v.instanced) add_copy_streams(p);
   const bool blended = material.see_through() && !options_.visibility;
   p.topology = primitive.topology;
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
@@ -275,6 +286,7 @@ void Recorder::push_constants(const Instance& instance) {
 }
 
 void Recorder::record_instance(const Instance& instance) {
+  if (instance.copies >= 0) return record_copies(instance);
   const Primitive& primitive = scene_.primitives[instance.primitive];
   const Variant& v = variant(primitive);
   bind_once(

@@ -25,6 +25,17 @@ struct DrawConstants {
 };
 inline constexpr std::size_t kDrawConstantBytes = 124;
 
+/// Does the matrix turn front faces into back faces?
+[[nodiscard]] bool mirrors(const glm::mat4& world);
+/// Inverse transpose of the upper 3x3, scaled so that its longest column is one long: columns, 16 bytes apart.
+[[nodiscard]] std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world);
+
+// Slots of the bound state: pipeline, material set, index buffer, then a vertex stream for each location.
+inline constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kVertexSlot = 3, kLocations = 16;
+inline constexpr std::uint32_t kFrameSet = 0, kMaterialSet = 1;
+/// Vertex binding and first location of an instanced draw's matrices.
+inline constexpr std::uint32_t kCopiesBinding = 10;
+
 /// Records one frame.
 class Recorder {
  public:
@@ -46,6 +57,11 @@ class Recorder {
   void record_textures();
   void record_frame_set();
   void record_instance(const Instance& instance);
+  /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their triangles apart or is not ours.
+  void record_copies(const Instance& instance);
+  /// The matrices of its copies, from back to front where `sorted`.
+  [[nodiscard]] std::vector<glm::mat4> ordered_copies(const Instance& instance, bool sorted) const;
+  [[nodiscard]] traces::Index copies_buffer(const Instance& instance, bool sorted);
   void bind_geometry(const Primitive& primitive, const Variant& variant);
   void push_constants(const Instance& instance);
   void bind_once(const traces::Command& command, std::size_t slot);
@@ -67,7 +83,8 @@ class Recorder {
   std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;  ///< by material and available attributes
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
-  std::vector<traces::Command> bound_;  ///< what each slot holds, to leave out repeated binds
+  std::map<int, traces::Index> copies_buffers_;  ///< by `Instance::copies`, where their order is the scene's
+  std::vector<traces::Command> bound_;           ///< what each slot holds, to leave out repeated binds
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

@@ -27,10 +27,18 @@ Bounds Bounds::transformed(const glm::mat4& matrix) const {
   return result;
 }
 
+Bounds SceneData::box(const Instance& instance) const {
+  const Bounds& own = primitives[instance.primitive].bounds;
+  if (instance.copies < 0) return own.transformed(instance.world);
+  Bounds result;
+  for (const glm::mat4& copy : copies[static_cast<std::size_t>(instance.copies)]) result.add(own.transformed(copy));
+  return result;
+}
+
 Bounds SceneData::bounds() const {
-  Bounds box;
-  for (const Instance& instance : instances) box.add(primitives[instance.primitive].bounds.transformed(instance.world));
-  return box;
+  Bounds result;
+  for (const Instance& instance : instances) result.add(box(instance));
+  return result;
 }
 
 }  // namespace quadrille::scenes

@@ -88,8 +88,8 @@ enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
 /// What extensions of glTF add to a material. A member at its default adds nothing.
 struct MaterialLayers {
-  bool specular = false;             ///< the dielectric's reflectance differs from 0.04 [KHR_materials_ior, KHR_materials_specular]
-  glm::vec3 specular_color{0.04F};   ///< reflectance at normal incidence, not yet limited to 1
+  bool specular = false;            ///< the dielectric's reflectance differs from 0.04 [KHR_materials_ior, KHR_materials_specular]
+  glm::vec3 specular_color{0.04F};  ///< reflectance at normal incidence, not yet limited to 1
   float specular_weight = 1;
   bool specular_glossiness = false;  ///< `specular_color` is the reflectance of all; no metals [KHR_materials_pbrSpecularGlossiness]
   float clearcoat = 0, clearcoat_roughness = 0, clearcoat_normal_scale = 1;
@@ -123,6 +123,7 @@ struct Instance {
   std::uint32_t primitive = 0;
   glm::mat4 world{1};
   std::string label;
+  int copies = -1;  ///< into `SceneData::copies`: drawn once with each of these matrices instead of `world`; -1: drawn once
 };
 
 struct Light {
@@ -158,11 +159,14 @@ struct SceneData {
   std::vector<Material> materials;
   std::vector<Primitive> primitives;
   std::vector<Instance> instances;
+  std::vector<std::vector<glm::mat4>> copies;  ///< world matrices of one draw, all of them mirror or none does; never empty
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   Environment environment;
   glm::vec3 background{0.30F, 0.42F, 0.58F};
   bool depth = true;  ///< false: draw without depth test and depth attachment
+  /// The box around one instance, world space.
+  [[nodiscard]] Bounds box(const Instance& instance) const;
   /// The box around all instances, world space.
   [[nodiscard]] Bounds bounds() const;
 };

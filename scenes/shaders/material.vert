@@ -24,17 +24,32 @@ layout(location = 5) out vec4 v_color;
 layout(location = 0) out vec3 v_position;  // world axes, relative to the eye: differences stay exact far from the origin
 #endif
 
+// Model and normal matrix: of the draw, or of each of its instances.
+#ifdef INSTANCED
+layout(location = 10) in vec4 model_row_0;
+layout(location = 11) in vec4 model_row_1;
+layout(location = 12) in vec4 model_row_2;
+layout(location = 13) in vec3 normal_column_0;
+layout(location = 14) in vec3 normal_column_1;
+layout(location = 15) in vec3 normal_column_2;
+#define MODEL transpose(mat4(model_row_0, model_row_1, model_row_2, vec4(0.0, 0.0, 0.0, 1.0)))
+#define NORMAL_MATRIX mat3(normal_column_0, normal_column_1, normal_column_2)
+#else
+#define MODEL draw.model
+#define NORMAL_MATRIX draw.normal_matrix
+#endif
+
 void main() {
-  vec4 world = draw.model * vec4(position, 1.0);
+  vec4 world = MODEL * vec4(position, 1.0);
   gl_Position = frame.view_projection * world;
 #ifdef NEEDS_POSITION
   v_position = world.xyz - frame.eye.xyz;
 #endif
 #ifdef HAS_NORMAL
-  v_normal = draw.normal_matrix * normal;
+  v_normal = NORMAL_MATRIX * normal;
 #endif
 #ifdef HAS_TANGENT
-  vec3 along = mat3(draw.model) * tangent.xyz;
+  vec3 along = mat3(MODEL) * tangent.xyz;
   v_tangent = vec4(along * inversesqrt(max(dot(along, along), 1e-30)), tangent.w * draw.handedness);
 #endif
 #ifdef HAS_UV0

@@ -1,0 +1,91 @@
+#include "scenes/gltf_instancing.h"
+
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/ext/quaternion_double.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "scenes/gltf_accessor.h"
+#include "scenes/gltf_value.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::uint32_t kMaxInstances = 1u << 20;
+
+class InstanceReader {
+ public:
+  InstanceReader(const GltfFile& file, const tinygltf::Value& extension, const std::string& place)
+      : file_(file), object_(file.path, place + ".EXT_mesh_gpu_instancing", extension) {}
+
+  std::vector<glm::dmat4> read() {
+    if (!object_.has("attributes")) object_.fail("attributes", "it is missing");
+    const GltfObject attributes = object_.object("attributes");
+    const auto translation = stream(attributes, "TRANSLATION", 3), rotation = stream(attributes, "ROTATION", 4),
+               scale = stream(attributes, "SCALE", 3);
+    std::vector<glm::dmat4> result;
+    result.reserve(count_.value_or(0));
+    for (std::uint32_t i = 0; i < count_.value_or(0); ++i) {
+      glm::dmat4 m(1);
+      if (rotation) m = glm::mat4_cast(quaternion(attributes, *rotation, i));
+      if (scale) {
+        for (std::size_t k = 0; k < 3; ++k) m[static_cast<int>(k)] *= value(*scale, i, k);
+      }
+      if (translation) m[3] = glm::dvec4(value(*translation, i, 0), value(*translation, i, 1), value(*translation, i, 2), 1);
+      result.push_back(m);
+    }
+    return result;
+  }
+
+ private:
+  static double value(const Elements& elements, std::uint32_t i, std::size_t k) {
+    return static_cast<double>(component_value(elements, i, k));
+  }
+
+  /// Floats, or for rotations normalized integers too.
+  std::optional<Elements> stream(const GltfObject& attributes, const char* name, std::size_t components) {
+    if (!attributes.has(name)) return std::nullopt;
+    const int accessor = attributes.index(name, file_.model.accessors.size());
+    Elements elements = read_accessor(file_, accessor, attributes.place() + "." + name);
+    const bool is_float = elements.component == Component::kFloat;
+    const bool is_fraction =
+        components == 4 && elements.normalized && (elements.component == Component::kInt8 || elements.component == Component::kInt16);
+    if (elements.components != components || !(is_float || is_fraction))
+      attributes.fail(name, fmt::format("accessor {} is not of {} floats{}", accessor, components,
+                                        components == 4 ? " or normalized bytes or shorts" : ""));
+    if (elements.count > kMaxInstances)
+      attributes.fail(name, fmt::format("{} instances; at most {} are drawn", elements.count, kMaxInstances));
+    if (count_ && *count_ != elements.count)
+      attributes.fail(name, fmt::format("{} elements where another attribute has {}", elements.count, *count_));
+    count_ = elements.count;
+    for (std::uint32_t i = 0; i < elements.count; ++i) {
+      for (std::size_t k = 0; k < components; ++k) {
+        if (!std::isfinite(value(elements, i, k))) attributes.fail(name, fmt::format("element {} is not finite", i));
+      }
+    }
+    return elements;
+  }
+
+  static glm::dquat quaternion(const GltfObject& attributes, const Elements& rotation, std::uint32_t i) {
+    const glm::dquat q(value(rotation, i, 3), value(rotation, i, 0), value(rotation, i, 1), value(rotation, i, 2));
+    const double length = glm::length(q);
+    if (!(length > 0)) attributes.fail("ROTATION", fmt::format("element {} is not a quaternion", i));
+    return q / length;
+  }
+
+  const GltfFile& file_;
+  GltfObject object_;
+  std::optional<std::uint32_t> count_;
+};
+
+}  // namespace
+
+std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Value& extension, const std::string& place) {
+  return InstanceReader(file, extension, place).read();
+}
+
+}  // namespace quadrille::scenes

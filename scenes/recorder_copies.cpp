@@ -1,0 +1,73 @@
+/// Instanced draws: many copies of one primitive in a single command.
+#include <algorithm>
+#include <cstring>
+
+#include <glm/geometric.hpp>
+
+#include "scenes/recorder.h"
+#include "traces/trace_file.h"
+
+namespace quadrille::scenes {
+namespace {
+
+/// What the vertex shader reads for an instance (scenes/shaders/material.vert).
+struct CopyStreams {
+  std::array<glm::vec4, 3> model_rows, normal_columns;
+};
+
+CopyStreams copy_streams(const glm::mat4& world) {
+  CopyStreams streams{{}, normal_matrix(world)};
+  for (int row = 0; row < 3; ++row)
+    streams.model_rows[static_cast<std::size_t>(row)] = glm::vec4(world[0][row], world[1][row], world[2][row], world[3][row]);
+  return streams;
+}
+
+}  // namespace
+
+std::vector<glm::mat4> Recorder::ordered_copies(const Instance& instance, bool sorted) const {
+  std::vector<glm::mat4> copies = scene_.copies[static_cast<std::size_t>(instance.copies)];
+  if (!sorted) return copies;
+  const glm::vec4 center(scene_.primitives[instance.primitive].bounds.center(), 1);
+  const auto distance = [&](const glm::mat4& m) { return glm::dot(view_.eye - glm::vec3(m * center), view_.toward_viewer); };
+  std::ranges::stable_sort(copies, std::ranges::greater{}, distance);
+  return copies;
+}
+
+traces::Index Recorder::copies_buffer(const Instance& instance, bool sorted) {
+  if (const auto found = copies_buffers_.find(instance.copies); !sorted && found != copies_buffers_.end()) return found->second;
+  const std::vector<glm::mat4> copies = ordered_copies(instance, sorted);
+  std::vector<std::byte> data(copies.size() * sizeof(CopyStreams));
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    const CopyStreams streams = copy_streams(copies[i]);
+    std::memcpy(&data[i * sizeof(streams)], &streams, sizeof(streams));
+  }
+  stream_.buffers.push_back({instance.label + " instances", std::move(data)});
+  const auto buffer = static_cast<traces::Index>(stream_.buffers.size() - 1);
+  if (!sorted) copies_buffers_[instance.copies] = buffer;
+  return buffer;
+}
+
+void Recorder::record_copies(const Instance& instance) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
+  if (options_.visibility || !options_.vertex_shader.empty()) {
+    for (const glm::mat4& copy : ordered_copies(instance, material.see_through()))
+      record_instance({instance.primitive, copy, instance.label});
+    return;
+  }
+  const std::vector<glm::mat4>& copies = scene_.copies[static_cast<std::size_t>(instance.copies)];
+  Variant v = variant(primitive);
+  v.instanced = true;
+  const bool mirrored = mirrors(copies.front());
+  bind_once(traces::BindPipeline{pipeline(primitive, material, v, mirrored)}, kPipelineSlot);
+  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, v)}, kSetSlot);
+  bind_geometry(primitive, v);
+  bind_once(traces::BindVertexBuffer{kCopiesBinding, copies_buffer(instance, material.see_through()), 0}, kVertexSlot + kCopiesBinding);
+  push_constants({instance.primitive, copies.front(), instance.label});
+  const auto count = static_cast<std::uint32_t>(copies.size());
+  stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, count, 0, instance.label});
+  ++draws_;
+  triangles_ += traces::triangle_count(primitive.topology, primitive.count) * count;
+}
+
+}  // namespace quadrille::scenes

@@ -1,0 +1,126 @@
+/// Instanced draws: one command for all copies, and the same streams as the copies one by one would have.
+#include "scenes/gltf_instancing.h"
+
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include <glm/ext/matrix_transform.hpp>
+
+#include "scenes/gltf_loader.h"
+#include "scenes/recorder.h"
+#include "tests/scenes/gltf_text.h"
+#include "traces/trace_file.h"
+
+using namespace quadrille;
+using namespace quadrille::scenes;
+using Catch::Contains;
+
+namespace {
+
+/// The triangle with an extension of these streams (each a name, a type, and floats).
+struct Stream {
+  const char *name, *type;
+  std::vector<float> values;
+};
+
+std::string instanced(const std::vector<Stream>& streams, const std::string& material = "") {
+  std::string accessors, views, buffers, attributes;
+  for (std::size_t i = 0; i < streams.size(); ++i) {
+    const Stream& s = streams[i];
+    const std::size_t components = std::string(s.type) == "VEC4" ? 4 : 3;
+    accessors +=
+        fmt::format(R"(,{{"bufferView":{},"componentType":5126,"count":{},"type":"{}"}})", i + 1, s.values.size() / components, s.type);
+    views += fmt::format(R"(,{{"buffer":{},"byteLength":{}}})", i + 1, 4 * s.values.size());
+    buffers += fmt::format(R"(,{{"byteLength":{},"uri":"{}"}})", 4 * s.values.size(), data_uri_of(s.values));
+    attributes += fmt::format(R"({}"{}":{})", i == 0 ? "" : ",", s.name, i + 1);
+  }
+  std::string text = triangle_gltf(material.empty() ? "" : R"(,"material":0)", material,
+                                   R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{)" + attributes + "}}}");
+  const auto put = [&](const std::string& before, const std::string& what) { text.insert(text.find(before) + before.size(), what); };
+  put(R"("max":[1,1,0]})", accessors);
+  put(R"("byteLength":36})", views);
+  text.insert(text.find("]", text.find(R"("buffers":[)")), buffers);
+  return text;
+}
+
+SceneData load(const std::string& text) {
+  const TempGltf file(text);
+  return load_gltf(file.path());
+}
+
+const Stream kThree{"TRANSLATION", "VEC3", {0, 0, 0, 2, 0, 0, 0, 3, 0}};
+
+}  // namespace
+
+TEST_CASE("instancing: one draw for all copies, framed by all of them") {
+  const SceneData scene = load(instanced({kThree, {"_COLOR_0", "VEC3", {1, 0, 0, 0, 1, 0, 0, 0, 1}}}));
+  REQUIRE(scene.instances.size() == 1);
+  REQUIRE(scene.copies.size() == 1);
+  REQUIRE(scene.bounds().low == glm::vec3(0));
+  REQUIRE(scene.bounds().high == glm::vec3(3, 4, 0));
+  const traces::CommandStream stream = Recorder(scene, {}).record();
+  traces::validate(stream);
+  const traces::StreamTotals totals = traces::stream_totals(stream);
+  REQUIRE(totals.draws == 1);
+  REQUIRE(totals.triangles == 3);
+}
+
+TEST_CASE("instancing: copies that mirror are a draw of their own, with the other front face") {
+  const SceneData scene = load(instanced({kThree, {"SCALE", "VEC3", {1, 1, 1, -1, 1, 1, 2, 2, 2}}}));
+  REQUIRE(scene.instances.size() == 2);
+  REQUIRE(scene.copies[0].size() == 2);
+  REQUIRE(scene.copies[1].size() == 1);
+  const traces::CommandStream stream = Recorder(scene, {}).record();
+  REQUIRE(stream.pipelines.size() == 2);
+  REQUIRE(stream.pipelines[0].front != stream.pipelines[1].front);
+}
+
+TEST_CASE("instancing: matrices are scale, then rotation, then translation, under the node's own") {
+  const float half = 0.70710678F;
+  std::string text =
+      instanced({{"TRANSLATION", "VEC3", {1, 2, 3}}, {"ROTATION", "VEC4", {0, 0, half, half}}, {"SCALE", "VEC3", {2, 3, 4}}});
+  text.insert(text.find(R"("mesh":0)"), R"("translation":[10,0,0],)");
+  const glm::mat4 m = load(text).copies[0][0];
+  const glm::vec4 x = m * glm::vec4(1, 0, 0, 1), y = m * glm::vec4(0, 1, 0, 1);
+  REQUIRE(glm::length(x - glm::vec4(11, 4, 3, 1)) < 1e-5F);
+  REQUIRE(glm::length(y - glm::vec4(8, 2, 3, 1)) < 1e-5F);
+}
+
+TEST_CASE("instancing: blended copies are sorted from back to front, opaque ones keep their order") {
+  for (const bool blended : {false, true}) {
+    SceneData scene = load(instanced({{"TRANSLATION", "VEC3", {0, 0, 1, 0, 0, 5, 0, 0, 3}}}, R"(,"materials":[{}])"));
+    if (blended) scene.materials[0].alpha = AlphaMode::kBlend;
+    scene.cameras.resize(1);
+    scene.cameras[0].pose = glm::translate(glm::mat4(1), glm::vec3(0, 0, 10));
+    const traces::CommandStream stream = Recorder(scene, {}).record();
+    const auto found = std::ranges::find_if(stream.buffers, [](const traces::Buffer& b) { return b.name.ends_with(" instances"); });
+    REQUIRE(found != stream.buffers.end());
+    std::vector<float> z;
+    for (std::size_t i = 0; i < 3; ++i) {
+      z.push_back(0);
+      std::memcpy(&z.back(), &found->data[i * 96 + 44], 4);  // third row, last column
+    }
+    REQUIRE(z == (blended ? std::vector<float>{1, 3, 5} : std::vector<float>{1, 5, 3}));
+  }
+}
+
+TEST_CASE("instancing: in visibility mode each copy is a draw, so that its triangles have their own numbers") {
+  const SceneData scene = load(instanced({kThree}));
+  SceneOptions options;
+  options.visibility = true;
+  const traces::StreamTotals totals = traces::stream_totals(Recorder(scene, options).record());
+  REQUIRE(totals.draws == 3);
+  REQUIRE(totals.triangles == 3);
+}
+
+TEST_CASE("instancing: unequal counts, other types and values that are not finite are refused with their place") {
+  REQUIRE_THAT(load_result(instanced({kThree, {"SCALE", "VEC3", {1, 1, 1}}})),
+               Contains("nodes[0].EXT_mesh_gpu_instancing.attributes.SCALE: 1 elements where another attribute has 3"));
+  REQUIRE_THAT(load_result(instanced({{"ROTATION", "VEC3", {1, 1, 1}}})), Contains("ROTATION: accessor 1 is not of 4 floats"));
+  REQUIRE_THAT(load_result(instanced({{"ROTATION", "VEC4", {0, 0, 0, 0}}})), Contains("element 0 is not a quaternion"));
+  REQUIRE_THAT(load_result(instanced({{"SCALE", "VEC3", {1, INFINITY, 1}}})), Contains("element 0 is not finite"));
+  REQUIRE_THAT(load_result(instanced({{"SCALE", "VEC3", {1e38F, 1e38F, 1e38F}}, {"TRANSLATION", "VEC3", {3e38F, 3e38F, 3e38F}}})),
+               Catch::Equals("loaded"));
+}
