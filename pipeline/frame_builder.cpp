@@ -25,7 +25,7 @@ static_assert(static_cast<int>(models::Topology::kTriangleFan) == static_cast<in
 static_assert(static_cast<int>(models::Wrap::kClampToEdge) == static_cast<int>(traces::Wrap::kClampToEdge));
 static_assert(static_cast<int>(models::Filter::kLinear) == static_cast<int>(traces::Filter::kLinear));
 static_assert(static_cast<int>(models::AttributeFormat::kR32Float) == static_cast<int>(traces::Format::kR32Float));
-static_assert(static_cast<int>(models::AttributeFormat::kR16G16B16A16Snorm) == static_cast<int>(traces::Format::kR16G16B16A16Snorm));
+static_assert(static_cast<int>(models::AttributeFormat::kR16G16B16A16Uint) == static_cast<int>(traces::kLastFormat));
 static_assert(static_cast<int>(models::TexelFormat::kR8G8B8A8Srgb) == static_cast<int>(traces::Format::kR8G8B8A8Srgb));
 static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) == static_cast<int>(traces::Format::kR8G8B8A8Srgb));
 
@@ -107,7 +107,7 @@ class FrameBuilder {
     draw.vertex_program = &programs.vertex;
     draw.fragment_program = &programs.fragment;
     geometry(c, pipeline, draw);
-    attributes(pipeline, draw);
+    attributes(pipeline, programs.integer_inputs, draw);
     fixed_function(pipeline, draw);
     draw.vertex_constants = constants(programs.vertex);
     draw.fragment_constants = constants(programs.fragment);
@@ -152,7 +152,7 @@ class FrameBuilder {
     }
   }
 
-  void attributes(const traces::Pipeline& pipeline, hw::DrawState& draw) {
+  void attributes(const traces::Pipeline& pipeline, std::uint32_t integer_inputs, hw::DrawState& draw) {
     const auto& uses = draw.vertex_program->vertex_inputs;
     for (const traces::VertexAttribute& attribute : pipeline.attributes) {
       hw::AttributeFetch fetch;
@@ -165,6 +165,11 @@ class FrameBuilder {
       if (!used) {
         ++unread_attributes_;
         continue;
+      }
+      const bool integers = (integer_inputs >> attribute.location & 1u) != 0;
+      if (integers != traces::is_integer_format(attribute.format)) {
+        throw user_error("{}: reads vertex input location {} as {}, which pipeline '{}' supplies as {}", draw.vertex_program->name,
+                         attribute.location, integers ? "integers" : "floats", pipeline.name, integers ? "floats" : "integers");
       }
       const auto binding = std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
       const traces::BindVertexBuffer& bound = vertex_buffers_.at(attribute.binding);

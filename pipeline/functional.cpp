@@ -98,11 +98,11 @@ class FunctionalRenderer {
       batch_.inputs.instance_index[l] = draw_->first_instance + instance_;
       for (const hw::AttributeFetch& f : draw_->attributes) {
         const std::uint32_t element = f.per_instance ? draw_->first_instance + instance_ : reuse.index(lane);
-        float value[4];
+        std::uint32_t value[4];
         models::decode_attribute(
             f.format, memory_.read(f.address + std::uint64_t{element} * f.stride, models::attribute_bytes(f.format)).data(), value);
         for (std::size_t c = 0; c < 4; ++c) {
-          if (f.input_row[c] >= 0) batch_.attributes[static_cast<std::size_t>(f.input_row[c])][l] = std::bit_cast<std::uint32_t>(value[c]);
+          if (f.input_row[c] >= 0) batch_.attributes[static_cast<std::size_t>(f.input_row[c])][l] = value[c];
         }
       }
     }

@@ -13,10 +13,12 @@ std::uint32_t format_bytes(Format format) {
     case Format::kR32Float:
     case Format::kR8G8B8A8UnormVertex:
     case Format::kR16G16Unorm:
-    case Format::kR8G8B8A8Snorm: return 4;
+    case Format::kR8G8B8A8Snorm:
+    case Format::kR8G8B8A8Uint: return 4;
     case Format::kR32G32Float:
     case Format::kR16G16B16A16Unorm:
-    case Format::kR16G16B16A16Snorm: return 8;
+    case Format::kR16G16B16A16Snorm:
+    case Format::kR16G16B16A16Uint: return 8;
     case Format::kR32G32B32Float: return 12;
     case Format::kR32G32B32A32Float: return 16;
   }
@@ -38,9 +40,13 @@ int format_components(Format format) {
     case Format::kR8G8B8A8UnormVertex:
     case Format::kR16G16B16A16Unorm:
     case Format::kR8G8B8A8Snorm:
-    case Format::kR16G16B16A16Snorm: return 4;
+    case Format::kR16G16B16A16Snorm:
+    case Format::kR8G8B8A8Uint:
+    case Format::kR16G16B16A16Uint: return 4;
   }
   return 0;
 }
+
+bool is_integer_format(Format format) { return format == Format::kR8G8B8A8Uint || format == Format::kR16G16B16A16Uint; }
 
 }  // namespace quadrille::traces

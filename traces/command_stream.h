@@ -33,13 +33,19 @@ enum class Format : std::uint8_t {
   kR16G16Unorm,
   kR16G16B16A16Unorm,
   kR8G8B8A8Snorm,
-  kR16G16B16A16Snorm
+  kR16G16B16A16Snorm,
+  // Vertex attributes that a shader reads as unsigned integers.
+  kR8G8B8A8Uint,
+  kR16G16B16A16Uint
 };
+inline constexpr Format kLastFormat = Format::kR16G16B16A16Uint;
 // clang-format on
 /// Bytes of a texel or of a vertex attribute.
 [[nodiscard]] std::uint32_t format_bytes(Format format);
 /// Components that an attribute of this format supplies (1..4); missing ones read as (0, 0, 0, 1).
 [[nodiscard]] int format_components(Format format);
+/// Does a shader read attributes of this format as unsigned integers? All others arrive as floats.
+[[nodiscard]] bool is_integer_format(Format format);
 
 struct Buffer {
   std::string name;

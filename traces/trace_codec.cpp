@@ -128,7 +128,7 @@ void transfer(A& a, Buffer& v) {
 template <class A>
 void transfer(A& a, Image& v) {
   a.text(v.name);
-  a.choice(v.format, Format::kR16G16B16A16Snorm);
+  a.choice(v.format, kLastFormat);
   numbers(a, v.width, v.height, v.levels);
   a.array(v.texels);
 }
@@ -162,7 +162,7 @@ void transfer(A& a, Pipeline& v) {
   a.table(v.bindings, [&](VertexBinding& b) { numbers(a, b.binding, b.stride, b.per_instance); });
   a.table(v.attributes, [&](VertexAttribute& t) {
     numbers(a, t.location, t.binding);
-    a.choice(t.format, Format::kR16G16B16A16Snorm);
+    a.choice(t.format, kLastFormat);
     numbers(a, t.offset);
   });
   a.choice(v.topology, Topology::kTriangleFan);
@@ -182,8 +182,8 @@ void transfer(A& a, DescriptorSet& v) {
 template <class A>
 void transfer(A& a, RenderTarget& v) {
   numbers(a, v.width, v.height);
-  a.choice(v.color, Format::kR16G16B16A16Snorm);
-  a.choice(v.depth, Format::kR16G16B16A16Snorm);
+  a.choice(v.color, kLastFormat);
+  a.choice(v.depth, kLastFormat);
 }
 
 template <class A>

@@ -112,12 +112,11 @@ void VertexFetch::fetch_attributes(BatchSlot& batch) {
       const std::uint64_t address = fetch.address + std::uint64_t{element} * fetch.stride;
       touch_bytes(address, bytes);
       ++fetches_;
-      float value[4];
+      std::uint32_t value[4];
       models::decode_attribute(fetch.format, device_.read(address, bytes).data(), value);
       for (std::size_t c = 0; c < 4; ++c) {
         if (fetch.input_row[c] < 0) continue;
-        batch.attributes[static_cast<std::size_t>(fetch.input_row[c])][static_cast<std::size_t>(lane)] =
-            std::bit_cast<std::uint32_t>(value[c]);
+        batch.attributes[static_cast<std::size_t>(fetch.input_row[c])][static_cast<std::size_t>(lane)] = value[c];
       }
     }
   }

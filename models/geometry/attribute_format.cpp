@@ -1,6 +1,7 @@
 #include "models/geometry/attribute_format.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <limits>
 #include <type_traits>
@@ -9,16 +10,25 @@ namespace quadrille::models {
 namespace {
 
 template <class T>
-void decode_components(const std::byte* source, int count, float out[4]) {
+void decode_components(const std::byte* source, int count, std::uint32_t out[4]) {
   for (int i = 0; i < count; ++i) {
     T value;
     std::memcpy(&value, source + static_cast<std::size_t>(i) * sizeof(T), sizeof(T));
     if constexpr (std::is_floating_point_v<T>) {
-      out[i] = value;
+      out[i] = std::bit_cast<std::uint32_t>(value);
     } else {
       const float scaled = static_cast<float>(value) / static_cast<float>(std::numeric_limits<T>::max());
-      out[i] = std::max(scaled, -1.0f);  // the most negative SNORM code is -1 too
+      out[i] = std::bit_cast<std::uint32_t>(std::max(scaled, -1.0f));  // the most negative SNORM code is -1 too
     }
+  }
+}
+
+template <class T>
+void decode_integers(const std::byte* source, std::uint32_t out[4]) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    T value;
+    std::memcpy(&value, source + i * sizeof(T), sizeof(T));
+    out[i] = value;
   }
 }
 
@@ -30,19 +40,21 @@ std::uint32_t attribute_bytes(AttributeFormat format) {
     case AttributeFormat::kR32Float:
     case AttributeFormat::kR8G8B8A8UnormVertex:
     case AttributeFormat::kR8G8B8A8Snorm:
+    case AttributeFormat::kR8G8B8A8Uint:
     case AttributeFormat::kR16G16Unorm: return 4;
     case AttributeFormat::kR32G32Float:
     case AttributeFormat::kR16G16B16A16Unorm:
-    case AttributeFormat::kR16G16B16A16Snorm: return 8;
+    case AttributeFormat::kR16G16B16A16Snorm:
+    case AttributeFormat::kR16G16B16A16Uint: return 8;
     case AttributeFormat::kR32G32B32Float: return 12;
     case AttributeFormat::kR32G32B32A32Float: return 16;
   }
   return 0;
 }
 
-void decode_attribute(AttributeFormat format, const std::byte* source, float out[4]) {
-  out[0] = out[1] = out[2] = 0.0f;
-  out[3] = 1.0f;
+void decode_attribute(AttributeFormat format, const std::byte* source, std::uint32_t out[4]) {
+  out[0] = out[1] = out[2] = 0;
+  out[3] = std::bit_cast<std::uint32_t>(1.0f);
   switch (format) {
     case AttributeFormat::kR32Float: return decode_components<float>(source, 1, out);
     case AttributeFormat::kR32G32Float: return decode_components<float>(source, 2, out);
@@ -54,6 +66,8 @@ void decode_attribute(AttributeFormat format, const std::byte* source, float out
     case AttributeFormat::kR16G16B16A16Unorm: return decode_components<std::uint16_t>(source, 4, out);
     case AttributeFormat::kR8G8B8A8Snorm: return decode_components<std::int8_t>(source, 4, out);
     case AttributeFormat::kR16G16B16A16Snorm: return decode_components<std::int16_t>(source, 4, out);
+    case AttributeFormat::kR8G8B8A8Uint: return decode_integers<std::uint8_t>(source, out);
+    case AttributeFormat::kR16G16B16A16Uint: return decode_integers<std::uint16_t>(source, out);
   }
 }
 

@@ -88,8 +88,6 @@ void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& dec
     }
   } else {
     const ScalarKind kind = scalar_kind(module_.scalar_of(type).kind);
-    if (stage_ == traces::ShaderStage::kVertex && input && kind != ScalarKind::kFloat)
-      unsupported("a vertex attribute that is not of floats");
     const auto interpolation = decorations.flat             ? Interpolation::kFlat
                                : decorations.no_perspective ? Interpolation::kLinear
                                                             : Interpolation::kPerspective;

@@ -25,6 +25,7 @@ std::uint32_t read_bytes(const traces::Buffer& buffer, std::uint64_t offset, std
 struct FormatLayout {
   std::uint32_t components, bytes;  ///< bytes of one component
   bool is_float, is_signed;
+  bool is_integer = false;
 };
 
 FormatLayout layout_of(traces::Format format) {
@@ -42,6 +43,8 @@ FormatLayout layout_of(traces::Format format) {
     case Format::kR16G16B16A16Unorm: return {4, 2, false, false};
     case Format::kR8G8B8A8Snorm: return {4, 1, false, true};
     case Format::kR16G16B16A16Snorm: return {4, 2, false, true};
+    case Format::kR8G8B8A8Uint: return {4, 1, false, false, true};
+    case Format::kR16G16B16A16Uint: return {4, 2, false, false, true};
     case Format::kUndefined:
     case Format::kR8G8B8A8Srgb: break;
   }
@@ -50,6 +53,7 @@ FormatLayout layout_of(traces::Format format) {
 
 double component(std::uint32_t word, const FormatLayout& layout) {
   if (layout.is_float) return static_cast<double>(std::bit_cast<float>(word));
+  if (layout.is_integer) return word;
   const std::uint32_t bits = 8 * layout.bytes;
   if (!layout.is_signed) return word / static_cast<double>((1u << bits) - 1);
   const std::uint32_t sign = 1u << (bits - 1);
@@ -83,6 +87,7 @@ struct AttributeFeed {
   bool per_instance = false;
   traces::Format format = traces::Format::kUndefined;
   std::array<Slot, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
+  bool integers = false;  ///< how the shader declares it
 };
 
 std::vector<AttributeFeed> attribute_feeds(const DrawState& state, const ShaderProgram& program) {
@@ -90,9 +95,13 @@ std::vector<AttributeFeed> attribute_feeds(const DrawState& state, const ShaderP
   for (const traces::VertexAttribute& attribute : state.pipeline->attributes) {
     AttributeFeed feed;
     for (const Port& port : program.inputs) {
-      if (port.location == attribute.location && port.component < 4) feed.slots.at(port.component) = port.slot;
+      if (port.location == attribute.location && port.component < 4) feed.slots.at(port.component) = port.slot, feed.integers = port.kind == ScalarKind::kInt;
     }
     if (feed.slots == std::array<Slot, 4>{kNoSlot, kNoSlot, kNoSlot, kNoSlot}) continue;
+    if (feed.integers != traces::is_integer_format(attribute.format)) {
+      throw user_error("draw {}: vertex input location {} is declared as {} and supplied as {}", state.number, attribute.location,
+                       feed.integers ? "integers" : "floats", feed.integers ? "floats" : "integers");
+    }
     const auto bound = state.vertex_buffers.find(attribute.binding);
     if (bound == state.vertex_buffers.end()) throw user_error("draw {}: vertex binding {} has no buffer", state.number, attribute.binding);
     feed.buffer = &state.stream->buffers[bound->second.buffer];
@@ -129,7 +138,9 @@ class VertexWorker {
       const std::uint64_t element = feed.per_instance ? instance_index_ : index;
       const std::array<double, 4> values = read_attribute(*feed.buffer, feed.offset + element * feed.stride, feed.format);
       for (std::size_t c = 0; c < 4; ++c) {
-        if (feed.slots[c] != kNoSlot) lanes_.cells[feed.slots[c]].set_f(lane, values[c]);
+        if (feed.slots[c] == kNoSlot) continue;
+        Cell& cell = lanes_.cells[feed.slots[c]];
+        feed.integers ? cell.set_u(lane, static_cast<std::uint32_t>(values[c])) : cell.set_f(lane, values[c]);
       }
     }
     if (program_.builtins.vertex_index != kNoSlot) lanes_.cells[program_.builtins.vertex_index].set_u(lane, index);

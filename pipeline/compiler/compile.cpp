@@ -61,7 +61,7 @@ CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, s
   ScalarShader vertex = compile_stage(vertex_spirv, vertex_name, traces::ShaderStage::kVertex);
   drop_unread_outputs(vertex, fragment, linkage);
   clean_up(vertex);
-  CompiledPipeline pipeline{emit_program(vertex, linkage), emit_program(fragment, linkage)};
+  CompiledPipeline pipeline{emit_program(vertex, linkage), emit_program(fragment, linkage), vertex.integer_inputs};
   models::prepare(pipeline.vertex);
   models::prepare(pipeline.fragment);
   return pipeline;

@@ -17,6 +17,7 @@ namespace quadrille::pipeline {
 /// inputs that only fed them.
 struct CompiledPipeline {
   models::Program vertex, fragment;
+  std::uint32_t integer_inputs = 0;  ///< bit i: the vertex shader declares input location i as integers
 };
 
 /// Compiles and links two SPIR-V modules (entry point "main"; Vulkan 1.1 environment; specialisation constants take their defaults).

@@ -22,6 +22,8 @@ VkFormat vk_format(traces::Format format) {
     case F::kR16G16B16A16Unorm: return VK_FORMAT_R16G16B16A16_UNORM;
     case F::kR8G8B8A8Snorm: return VK_FORMAT_R8G8B8A8_SNORM;
     case F::kR16G16B16A16Snorm: return VK_FORMAT_R16G16B16A16_SNORM;
+    case F::kR8G8B8A8Uint: return VK_FORMAT_R8G8B8A8_UINT;
+    case F::kR16G16B16A16Uint: return VK_FORMAT_R16G16B16A16_UINT;
   }
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }

@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include <array>
+#include <bit>
 #include <cstring>
+#include <span>
 
 using namespace quadrille::models;
 
@@ -14,9 +16,9 @@ std::array<float, 4> decode(AttributeFormat format, const std::array<T, n>& valu
   CHECK(attribute_bytes(format) == sizeof(values));
   std::array<std::byte, sizeof(values) + 1> bytes{};  // read from an odd address
   std::memcpy(bytes.data() + 1, values.data(), sizeof(values));
-  std::array<float, 4> out{9, 9, 9, 9};
-  decode_attribute(format, bytes.data() + 1, out.data());
-  return out;
+  std::array<std::uint32_t, 4> words{9, 9, 9, 9};
+  decode_attribute(format, bytes.data() + 1, words.data());
+  return std::bit_cast<std::array<float, 4>>(words);
 }
 using Four = std::array<float, 4>;
 
@@ -37,4 +39,13 @@ TEST_CASE("attribute_format: normalized integers reach exactly -1 and 0 and 1") 
   CHECK(decode(AttributeFormat::kR8G8B8A8Snorm, std::array<std::int8_t, 4>{-128, -127, 127, 0}) == Four{-1, -1, 1, 0});
   CHECK(decode(AttributeFormat::kR16G16B16A16Snorm, std::array<std::int16_t, 4>{-32768, -32767, 32767, 1}) ==
         Four{-1, -1, 1, 1.0f / 32767});
+}
+
+TEST_CASE("attribute_format: unsigned integers arrive as they are") {
+  const std::array<std::uint8_t, 9> bytes{77, 0, 1, 128, 255, 2, 0, 255, 255};  // read from an odd address
+  std::array<std::uint32_t, 4> words{9, 9, 9, 9};
+  decode_attribute(AttributeFormat::kR8G8B8A8Uint, std::as_bytes(std::span(bytes)).data() + 1, words.data());
+  CHECK(words == std::array<std::uint32_t, 4>{0, 1, 128, 255});
+  decode_attribute(AttributeFormat::kR16G16B16A16Uint, std::as_bytes(std::span(bytes)).data() + 1, words.data());
+  CHECK(words == std::array<std::uint32_t, 4>{256, 65408, 2, 65535});
 }
