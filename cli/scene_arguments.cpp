@@ -12,6 +12,8 @@
 namespace quadrille::cli {
 namespace {
 
+constexpr double kMaxSeconds = 1e6;
+
 /// The extension in lower case, with its dot.
 std::string extension_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
@@ -34,6 +36,13 @@ std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int6
       throw user_error("{}: '{}' is not a whole number of at least {}", flag, text, least);
     throw user_error("{}: '{}' is not a whole number within {}..{}", flag, text, least, most);
   }
+  return value;
+}
+
+double parse_number(std::string_view text, std::string_view flag, double least, double most) {
+  double value = 0;
+  if (!read_number(text, value) || !(value >= least && value <= most))
+    throw user_error("{}: '{}' is not a number within {}..{}", flag, text, least, most);
   return value;
 }
 
@@ -68,12 +77,17 @@ void SceneArguments::add_to(CLI::App& command) {
 
 void SceneArguments::add_view_to(CLI::App& command, const std::string& default_size) {
   command.add_option("--size", size, "size of the picture in pixels, 1..16384 a side (default " + default_size + ")")->type_name("WxH");
+  command.add_option("--scene", scene_choice, "which scene of the file, by number from 0 or by name (default: the file's own)")
+      ->type_name("N|NAME");
   command
       .add_option("--camera", camera,
-                  "which camera of the scene, from 0 (default: the first that is placed, else one that frames the scene)")
-      ->type_name("N");
+                  "which camera of the scene, by number from 0 or by name (default: the first that is placed, else one that frames the scene)")
+      ->type_name("N|NAME");
   command.add_option("--eye", eye, "a camera of your own stands here, in world units")->type_name("X,Y,Z");
   command.add_option("--at", at, "and looks there")->type_name("X,Y,Z");
+  command.add_option("--time", time, "poses the scene by its animation, S seconds after its start (default: at rest)")->type_name("S");
+  command.add_option("--animation", animation, "which animation, by number from 0 or by name, or all of them at once (default: the first)")
+      ->type_name("N|NAME|all");
   command.add_option("--vert", vert, "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")
       ->type_name("F");
   command.add_option("--frag", frag, "fragment shader for all materials, as for --vert")->type_name("F");
@@ -86,7 +100,12 @@ bool SceneArguments::is_trace() const { return extension_of(scene) == ".qtrace";
 scenes::SceneOptions SceneArguments::options() const {
   scenes::SceneOptions options;
   if (size) std::tie(options.width, options.height) = parse_size(*size, "--size");
-  if (camera) options.camera = static_cast<int>(parse_whole(*camera, "--camera", 0, std::numeric_limits<int>::max()));
+  // A negative number is neither a number of a camera nor likely its name; the list of the file's own says what there is.
+  options.camera_name = camera.value_or("");
+  if (camera && camera->empty()) throw user_error("--camera: neither a number nor a name");
+  options.scene = scene_choice.value_or("");
+  options.animation = animation.value_or("");
+  if (time) options.time = parse_number(*time, "--time", 0, kMaxSeconds);
   if (eye) options.eye = parse_point(*eye, "--eye");
   if (at) options.at = parse_point(*at, "--at");
   if (camera && (eye || at)) throw user_error("--camera: not together with --eye or --at");
@@ -97,9 +116,11 @@ scenes::SceneOptions SceneArguments::options() const {
 
 void SceneArguments::check() const {
   if (is_trace()) {
-    if (size || camera || eye || at || vert || frag) {
+    if (size || scene_choice || camera || eye || at || time || animation || vert || frag) {
       throw user_error(
-          "{}: a trace has its size, camera and shaders in it; --size, --camera, --eye, --at, --vert and --frag are for scenes", scene);
+          "{}: a trace has its size, camera, pose and shaders in it; --size, --scene, --camera, --eye, --at, --time, --animation, --vert and --frag "
+          "are for scenes",
+          scene);
     }
     return;
   }

@@ -15,7 +15,7 @@ namespace quadrille::cli {
 
 struct SceneArguments {
   std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
-  std::optional<std::string> size, camera, eye, at, vert, frag;
+  std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, vert, frag;
 
   /// Adds SCENE and the options that choose the view and the shaders.
   void add_to(CLI::App& command);
@@ -30,8 +30,7 @@ struct SceneArguments {
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;
   [[nodiscard]] bool is_trace() const;
-
- private:
+  /// The options as the scene library takes them. Throws `UserError` naming the flag.
   [[nodiscard]] scenes::SceneOptions options() const;
 };
 
@@ -39,6 +38,8 @@ struct SceneArguments {
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text, std::string_view flag);
 /// "X,Y,Z": three finite numbers. Throws `UserError` naming `flag`.
 [[nodiscard]] glm::vec3 parse_point(std::string_view text, std::string_view flag);
+/// A number within [least, most]. Throws `UserError` naming `flag`.
+[[nodiscard]] double parse_number(std::string_view text, std::string_view flag, double least, double most);
 /// A whole number within [least, most]. Throws `UserError` naming `flag`.
 [[nodiscard]] std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least, std::int64_t most);
 

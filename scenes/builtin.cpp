@@ -20,20 +20,29 @@ namespace {
 
 struct Entry {
   BuiltinScene scene;
-  SceneData (*build)();
+  SceneData (*build)(double time);
+  double length = 0;  ///< seconds
 };
 
-constexpr std::array<Entry, 7> kEntries{{
-    {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"}, build_triangle},
-    {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"}, build_quad},
-    {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"}, build_cubes},
+constexpr std::array<Entry, 8> kEntries{{
+    {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
+     [](double) { return build_triangle(); }},
+    {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
+     [](double) { return build_quad(); }},
+    {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"},
+     [](double) { return build_cubes(); }},
     {{"courtyard",
       "a sunlit courtyard with fountain, arcades, trees and glass: 15 materials, normal maps, MASK and BLEND, 380 thousand triangles"},
-     build_courtyard},
-    {{"overdraw", "sixteen translucent layers over the whole screen: blending and colour bandwidth"}, build_overdraw},
+     [](double) { return build_courtyard(); }},
+    {{"overdraw", "sixteen translucent layers over the whole screen: blending and colour bandwidth"},
+     [](double) { return build_overdraw(); }},
     {{"fill", "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most units left out"},
-     build_fill},
-    {{"materials", "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"}, build_materials},
+      [](double) { return build_fill(); }},
+    {{"materials", "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"},
+     [](double) { return build_materials(); }},
+    {{"flag", "a flag in the wind, two seconds that repeat: a skin of 25 joints and two morph targets, posed by the vertex shader"},
+     build_flag,
+     kFlagSeconds},
 }};
 
 /// An unlit quad that fills the picture of `flat_camera`, at distance `depth`.
@@ -174,12 +183,20 @@ const std::vector<BuiltinScene>& builtin_scenes() {
   return kScenes;
 }
 
-SceneData build_builtin(const std::string& name) {
+namespace {
+
+const Entry& entry_of(const std::string& name) {
   const auto found = std::ranges::find(kEntries, name, [](const Entry& entry) { return entry.scene.name; });
-  if (found != kEntries.end()) return found->build();
+  if (found != kEntries.end()) return *found;
   std::string names;
   for (const Entry& entry : kEntries) names += fmt::format("{}builtin:{}", names.empty() ? "" : ", ", entry.scene.name);
   throw user_error("builtin:{}: no such built-in scene; there are {}", name.substr(0, 60), names);
 }
+
+}  // namespace
+
+SceneData build_builtin(const std::string& name, double time) { return entry_of(name).build(time); }
+
+double builtin_length(const std::string& name) { return entry_of(name).length; }
 
 }  // namespace quadrille::scenes

@@ -7,8 +7,10 @@
 
 namespace quadrille::scenes {
 
-/// Builds the scene `name` (without `builtin:`). Throws `UserError` that lists the legal names.
-[[nodiscard]] SceneData build_builtin(const std::string& name);
+/// Builds the scene `name` (without `builtin:`) as it is at `time`, in seconds. Throws `UserError` that lists the legal names.
+[[nodiscard]] SceneData build_builtin(const std::string& name, double time = 0);
+/// Seconds that its animation takes; 0: nothing moves. Throws as `build_builtin`.
+[[nodiscard]] double builtin_length(const std::string& name);
 
 // One function a scene; the descriptions are in builtin.cpp.
 [[nodiscard]] SceneData build_triangle();
@@ -18,5 +20,7 @@ namespace quadrille::scenes {
 [[nodiscard]] SceneData build_fill();
 [[nodiscard]] SceneData build_materials();
 [[nodiscard]] SceneData build_courtyard();
+[[nodiscard]] SceneData build_flag(double time);
+inline constexpr double kFlagSeconds = 2;
 
 }  // namespace quadrille::scenes

@@ -11,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "models/base/error.h"
+#include "scenes/named_choice.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -18,14 +19,15 @@ namespace {
 constexpr double kFramingFov = std::numbers::pi / 4;
 constexpr double kUserFov = std::numbers::pi / 3;
 constexpr double kMargin = 1.04;
+constexpr int kOrbitPlaces = 32;
 constexpr double kNearestRatio = 1e-4;  // near plane over far plane, at least: keeps 32-bit depth useful
 
 /// Camera axes in world space; the camera looks along -backward.
-struct Pose {
+struct CameraPose {
   glm::dvec3 eye{0}, right{1, 0, 0}, up{0, 1, 0}, backward{0, 0, 1};
 };
 
-glm::dmat4 view_matrix(const Pose& pose) {
+glm::dmat4 view_matrix(const CameraPose& pose) {
   glm::dmat4 view(1);
   for (int i = 0; i < 3; ++i) {
     view[i][0] = pose.right[i];
@@ -57,7 +59,7 @@ glm::dmat4 orthographic(double half_height, double aspect, double near, double f
   return p;
 }
 
-View finish(const Pose& pose, const glm::dmat4& projection, bool is_orthographic) {
+View finish(const CameraPose& pose, const glm::dmat4& projection, bool is_orthographic) {
   View view;
   view.view_projection = glm::mat4(projection * view_matrix(pose));
   view.eye = glm::vec3(pose.eye);
@@ -69,8 +71,8 @@ View finish(const Pose& pose, const glm::dmat4& projection, bool is_orthographic
 }
 
 /// Axes for a camera at `eye` that looks against `backward`, its top toward +y (or -z when it looks straight up or down).
-Pose upright(const glm::dvec3& eye, const glm::dvec3& backward) {
-  Pose pose;
+CameraPose upright(const glm::dvec3& eye, const glm::dvec3& backward) {
+  CameraPose pose;
   pose.eye = eye;
   pose.backward = glm::normalize(backward);
   const glm::dvec3 top = std::abs(pose.backward.y) > 0.9999 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
@@ -81,8 +83,7 @@ Pose upright(const glm::dvec3& eye, const glm::dvec3& backward) {
 
 template <class Visit>
 void for_each_corner(const SceneData& scene, const Visit& visit) {
-  for (const Instance& instance : scene.instances) {
-    const Bounds box = scene.box(instance);
+  for (const Bounds& box : scene.boxes()) {
     if (box.empty()) continue;
     for (int c = 0; c < 8; ++c)
       visit(
@@ -91,7 +92,7 @@ void for_each_corner(const SceneData& scene, const Visit& visit) {
 }
 
 /// Near and far planes that hold the scene as seen from `pose`.
-std::pair<double, double> depth_range(const SceneData& scene, const Pose& pose) {
+std::pair<double, double> depth_range(const SceneData& scene, const CameraPose& pose) {
   double nearest = INFINITY, farthest = 0;
   for_each_corner(scene, [&](const glm::dvec3& corner) {
     const double depth = glm::dot(pose.eye - corner, pose.backward);
@@ -103,10 +104,16 @@ std::pair<double, double> depth_range(const SceneData& scene, const Pose& pose) 
   return {std::max(nearest * 0.99, far * kNearestRatio), far};
 }
 
-Pose framing_pose(const SceneData& scene, double aspect) {
-  const Bounds box = scene.bounds();
-  const glm::dvec3 center = box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
-  Pose pose = upright(center, {0.55, 0.42, 1});
+/// A pose carried around the vertical axis through `center` by a part of a turn, counter-clockwise seen from above.
+CameraPose turned(const CameraPose& pose, const glm::dvec3& center, double turns) {
+  if (turns == 0) return pose;
+  const double angle = 2 * std::numbers::pi * turns, c = std::cos(angle), s = std::sin(angle);
+  const auto turn = [&](const glm::dvec3& v) { return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x); };
+  return {center + turn(pose.eye - center), turn(pose.right), turn(pose.up), turn(pose.backward)};
+}
+
+/// How far before the centre a camera with the axes of `pose` has to stand to hold the scene.
+double framing_distance(const SceneData& scene, const CameraPose& pose, const glm::dvec3& center, double aspect) {
   const double tangent_y = std::tan(kFramingFov / 2) / kMargin, tangent_x = tangent_y * aspect;
   double distance = 0;
   for_each_corner(scene, [&](const glm::dvec3& corner) {
@@ -114,53 +121,71 @@ Pose framing_pose(const SceneData& scene, double aspect) {
     const double reach = std::max(std::abs(glm::dot(offset, pose.right)) / tangent_x, std::abs(glm::dot(offset, pose.up)) / tangent_y);
     distance = std::max(distance, glm::dot(offset, pose.backward) + reach);
   });
-  pose.eye = center + pose.backward * (distance > 0 ? distance : 1.0);
-  return pose;
+  return distance;
+}
+
+CameraPose framing_pose(const SceneData& scene, double aspect, bool orbiting) {
+  const Bounds box = scene.bounds();
+  const glm::dvec3 center = box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
+  const CameraPose pose = upright(center, {0.55, 0.42, 1});
+  double distance = 0;
+  // A camera that goes around stays as far away as its worst place needs.
+  const int places = orbiting ? kOrbitPlaces : 1;
+  for (int i = 0; i < places; ++i)
+    distance = std::max(distance, framing_distance(scene, turned(pose, center, static_cast<double>(i) / places), center, aspect));
+  CameraPose placed = pose;
+  placed.eye = center + pose.backward * (distance > 0 ? distance : 1.0);
+  return placed;
 }
 
 View user_view(const SceneData& scene, const SceneOptions& options, double aspect) {
   const Bounds box = scene.bounds();
   const glm::dvec3 at = options.at ? glm::dvec3(*options.at) : box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
-  const glm::dvec3 eye = options.eye ? glm::dvec3(*options.eye) : framing_pose(scene, aspect).eye;
+  const glm::dvec3 eye = options.eye ? glm::dvec3(*options.eye) : framing_pose(scene, aspect, options.orbit.has_value()).eye;
   const double distance = glm::length(eye - at);
   if (!std::isfinite(distance) || !(distance > 0)) throw user_error("camera: the eye is where it looks at ({}, {}, {})", at.x, at.y, at.z);
-  const Pose pose = upright(eye, eye - at);
+  const CameraPose pose = turned(upright(eye, eye - at), at, options.orbit.value_or(0));
   const auto [near, far] = depth_range(scene, pose);
   return finish(pose, perspective(kUserFov, aspect, near, far), false);
 }
 
 /// The node's pose without its scale, which glTF gives no meaning for a camera. [glTF2.0 #cameras]
-View file_view(const Camera& camera, double aspect) {
+View file_view(const SceneData& scene, const Camera& camera, const SceneOptions& options, double aspect) {
   const glm::dmat4 world(*camera.pose);
   const glm::dvec3 z(world[2]), y(world[1]);
   if (!(glm::length(z) > 0) || !(glm::length(glm::cross(y, z)) > 0))
     throw user_error("camera '{}': its node's matrix is singular", camera.name);
-  Pose pose;
+  CameraPose pose;
   pose.eye = glm::dvec3(world[3]);
   pose.backward = glm::normalize(z);
   pose.right = glm::normalize(glm::cross(y, z));
   pose.up = glm::cross(pose.backward, pose.right);
+  if (options.orbit) pose = turned(pose, glm::dvec3(scene.bounds().empty() ? glm::vec3(0) : scene.bounds().center()), *options.orbit);
   if (camera.perspective) return finish(pose, perspective(camera.yfov, aspect, camera.near, camera.far), false);
   return finish(pose, orthographic(camera.half_height, aspect, camera.near, camera.far.value_or(camera.near + 1)), true);
 }
 
-const Camera* chosen_camera(const SceneData& scene, int wanted) {
-  if (wanted < 0) {
+const Camera* chosen_camera(const SceneData& scene, const SceneOptions& options) {
+  if (options.camera < 0 && options.camera_name.empty()) {
     const auto placed = std::ranges::find_if(scene.cameras, [](const Camera& c) { return c.pose.has_value(); });
     return placed == scene.cameras.end() ? nullptr : &*placed;
   }
-  const auto index = static_cast<std::size_t>(wanted);
-  if (index >= scene.cameras.size())
-    throw user_error("{}: camera {} does not exist; the scene has {} cameras (numbered from 0)", scene.name, wanted, scene.cameras.size());
-  if (!scene.cameras[index].pose)
-    throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.name, wanted, scene.cameras[index].name);
-  return &scene.cameras[index];
+  std::vector<std::string> names;
+  for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+  const std::string wanted = options.camera < 0 ? options.camera_name : std::to_string(options.camera);
+  const std::optional<std::size_t> index = find_choice(names, wanted);
+  if (!index) throw user_error("{}: camera '{}' does not exist; cameras: {}", scene.name, wanted.substr(0, 60), list_of_choices(names));
+  if (!scene.cameras[*index].pose)
+    throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.name, *index, names[*index].substr(0, 60));
+  return &scene.cameras[*index];
 }
 
 }  // namespace
 
-View framing_view(const SceneData& scene, double aspect) {
-  const Pose pose = framing_pose(scene, aspect);
+View framing_view(const SceneData& scene, double aspect, std::optional<double> orbit) {
+  const Bounds box = scene.bounds();
+  const glm::dvec3 center = box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
+  const CameraPose pose = turned(framing_pose(scene, aspect, orbit.has_value()), center, orbit.value_or(0));
   const auto [near, far] = depth_range(scene, pose);
   return finish(pose, perspective(kFramingFov, aspect, near, far), false);
 }
@@ -168,8 +193,8 @@ View framing_view(const SceneData& scene, double aspect) {
 View make_view(const SceneData& scene, const SceneOptions& options) {
   const double aspect = static_cast<double>(options.width) / options.height;
   if (options.eye || options.at) return user_view(scene, options, aspect);
-  const Camera* camera = chosen_camera(scene, options.camera);
-  return camera != nullptr ? file_view(*camera, aspect) : framing_view(scene, aspect);
+  const Camera* camera = chosen_camera(scene, options);
+  return camera != nullptr ? file_view(scene, *camera, options, aspect) : framing_view(scene, aspect, options.orbit);
 }
 
 }  // namespace quadrille::scenes

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -25,6 +26,7 @@ struct View {
 [[nodiscard]] View make_view(const SceneData& scene, const SceneOptions& options);
 
 /// A perspective camera, 45 degrees high, right of, above and before the scene, as near as keeps every instance's box inside with a margin of 4 %.
-[[nodiscard]] View framing_view(const SceneData& scene, double aspect);
+/// `orbit`: carried around the scene's centre by this part of a turn, as far away as all parts of the turn need.
+[[nodiscard]] View framing_view(const SceneData& scene, double aspect, std::optional<double> orbit = std::nullopt);
 
 }  // namespace quadrille::scenes

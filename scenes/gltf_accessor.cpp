@@ -65,7 +65,8 @@ class Reader {
       case TINYGLTF_TYPE_VEC2: return 2;
       case TINYGLTF_TYPE_VEC3: return 3;
       case TINYGLTF_TYPE_VEC4: return 4;
-      default: fail("its type is not SCALAR, VEC2, VEC3 or VEC4");
+      case TINYGLTF_TYPE_MAT4: return 16;  // columns of whole words whatever the component
+      default: fail("its type is not SCALAR, VEC2, VEC3, VEC4 or MAT4");
     }
   }
 

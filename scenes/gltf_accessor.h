@@ -25,7 +25,7 @@ struct Elements {
 };
 
 /// Fetches accessor `index`: strides resolved, sparse values put in, zeros where it has no buffer view. Throws `UserError` with `place` and `index`
-/// when anything about it is out of range, is a matrix, or takes more than 1 GiB.
+/// when anything about it is out of range, is a matrix other than 4x4, or takes more than 1 GiB.
 [[nodiscard]] Elements read_accessor(const GltfFile& file, int index, const std::string& place);
 
 /// Component, number of components and normalization of accessor `index`, which must exist, without its elements. Throws like `read_accessor`.
@@ -37,5 +37,13 @@ struct Elements {
 /// Elements as a vertex stream for `semantic`, keeping 8- and 16-bit normalized components where a vertex format has them. Throws `UserError` with `place`
 /// for a type that glTF does not allow there, or values that are not finite.
 [[nodiscard]] Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic semantic, const std::string& place);
+
+/// Elements of `components` each as a stream of floats: what a morph target adds. Throws as `to_vertex_array`.
+[[nodiscard]] Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components, const std::string& place);
+
+/// JOINTS_n and WEIGHTS_n as vertex streams of the same number of elements; joints of no weight become joint 0. Throws as `to_vertex_array`, and for
+/// a weight below zero.
+[[nodiscard]] std::pair<Array, Array> to_joint_arrays(const GltfFile& file, const Elements& joints, const Elements& weights,
+                                                      const std::string& place);
 
 }  // namespace quadrille::scenes

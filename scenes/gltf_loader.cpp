@@ -1,12 +1,10 @@
-/// The scene graph: nodes to instances, cameras and lights, and the images that its materials turn out to need.
+/// The scene graph: nodes, where the animation puts them, to instances, cameras and lights, and the images that the materials turn out to need.
 #include "scenes/gltf_loader.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -18,10 +16,14 @@
 #include <glm/matrix.hpp>
 
 #include "models/base/error.h"
+#include "scenes/gltf_animation.h"
 #include "scenes/gltf_file.h"
 #include "scenes/gltf_instancing.h"
 #include "scenes/gltf_mesh.h"
+#include "scenes/gltf_skin.h"
+#include "scenes/gltf_view.h"
 #include "scenes/image_header.h"
+#include "scenes/named_choice.h"
 #include "scenes/parallel.h"
 
 namespace quadrille::scenes {
@@ -30,6 +32,7 @@ namespace {
 constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
                         kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
 constexpr std::size_t kMaxCopies = std::size_t{1} << 20;  // of all nodes together
+constexpr int kExtentMoments = 32;
 
 bool all_finite(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i) {
@@ -38,16 +41,37 @@ bool all_finite(const glm::dmat4& m) {
   return true;
 }
 
-class SceneReader {
- public:
-  explicit SceneReader(const std::string& path) : file_(read_gltf_file(path)), meshes_(file_, scene_) { scene_.name = path; }
+}  // namespace
 
-  SceneData read() {
-    read_cameras();
+class GltfScene::Reader {
+ public:
+  Reader(const std::string& path, const GltfChoice& choice) : file_(read_gltf_file(path)), choice_(choice), meshes_(file_, scene_) {
+    scene_.name = path;
+    if (choice.animated) animations_ = choose_animations(file_, choice.animation);
+    for (const Animation& animation : animations_) length_ = std::max(length_, animation.length);
+    for (std::size_t i = 0; i < file_.model.cameras.size(); ++i) scene_.cameras.push_back(read_camera(file_, i));
     visit_nodes();
     decode_images();
-    return std::move(scene_);
+    if (!animations_.empty()) {
+      hold_extent();
+      pose(0);
+    }
   }
+
+  void pose(double time) {
+    motions_ = motions_at(animations_, time);
+    scene_.instances.clear();
+    scene_.copies.clear();
+    copies_ = 0;
+    scene_.poses.clear();
+    scene_.lights.clear();
+    for (Camera& camera : scene_.cameras) camera.pose.reset();
+    visit_nodes();
+  }
+
+  [[nodiscard]] SceneData& scene() { return scene_; }
+  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] bool animated() const { return !animations_.empty(); }
 
  private:
   struct Visit {
@@ -59,51 +83,26 @@ class SceneReader {
     throw user_error("{}: {}: {}", file_.path, place, reason);
   }
 
-  void warn_once(bool& said, const char* what) const {
-    if (!said) fmt::print(stderr, "{}: {}\n", file_.path, what);
-    said = true;
-  }
+  /// A mesh whose skin is posed when all nodes have their places.
+  struct SkinnedNode {
+    int skin = 0;
+    std::size_t pose = 0, first_instance = 0, instances = 0;
+  };
 
-  // ---- cameras ----
-
-  void read_perspective(const tinygltf::PerspectiveCamera& source, const std::string& place, Camera& camera) const {
-    if (!(source.yfov > 0 && source.yfov < std::numbers::pi)) fail(place, fmt::format("yfov {} is outside 0..pi", source.yfov));
-    if (!(source.znear > 0) || !std::isfinite(source.znear)) fail(place, fmt::format("znear {} is not positive", source.znear));
-    if (source.zfar != 0 && !(source.zfar > source.znear))
-      fail(place, fmt::format("zfar {} is not beyond znear {}", source.zfar, source.znear));
-    camera.yfov = source.yfov;
-    camera.near = source.znear;
-    camera.far = source.zfar == 0 ? std::nullopt : std::optional<double>(source.zfar);  // tinygltf has 0 for a missing one: infinite
-  }
-
-  void read_orthographic(const tinygltf::OrthographicCamera& source, const std::string& place, Camera& camera) const {
-    if (!(std::abs(source.ymag) > 0) || !std::isfinite(source.ymag)) fail(place, fmt::format("ymag {} is not a size", source.ymag));
-    if (!(source.znear >= 0) || !(source.zfar > source.znear))
-      fail(place, fmt::format("znear {} and zfar {} are not a range", source.znear, source.zfar));
-    camera.perspective = false;
-    camera.half_height = std::abs(source.ymag);
-    camera.near = source.znear;
-    camera.far = source.zfar;
-  }
-
-  void read_cameras() {
-    for (std::size_t i = 0; i < file_.model.cameras.size(); ++i) {
-      const tinygltf::Camera& source = file_.model.cameras[i];
-      Camera camera;
-      camera.name = source.name;
-      const std::string place = fmt::format("cameras[{}]", i);
-      if (source.type == "perspective") {
-        read_perspective(source.perspective, place, camera);
-      } else {
-        read_orthographic(source.orthographic, place, camera);
-      }
-      scene_.cameras.push_back(std::move(camera));
+  /// The boxes of all instances at moments all over the animation, so that a camera that frames the scene stands still.
+  void hold_extent() {
+    std::vector<Bounds> extent(scene_.instances.size());
+    for (int i = 0; i <= kExtentMoments; ++i) {
+      pose(length_ * i / kExtentMoments);
+      extent.resize(std::max(extent.size(), scene_.instances.size()));
+      for (std::size_t k = 0; k < scene_.instances.size(); ++k) extent[k].add(scene_.box(scene_.instances[k]));
     }
+    scene_.extent = std::move(extent);
   }
 
   // ---- nodes ----
 
-  glm::dmat4 local_matrix(const tinygltf::Node& node, const std::string& place) const {
+  glm::dmat4 local_matrix(const tinygltf::Node& node, const NodeMotion& motion, const std::string& place) const {
     const auto sized = [&](const std::vector<double>& values, std::size_t size, const char* member) {
       if (!values.empty() && values.size() != size) fail(place, fmt::format("{}: {} numbers instead of {}", member, values.size(), size));
       return !values.empty();
@@ -113,28 +112,37 @@ class SceneReader {
       for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
       return m;
     }
-    if (sized(node.rotation, 4, "rotation")) {
+    if (motion.rotation) {
+      m = glm::mat4_cast(*motion.rotation);
+    } else if (sized(node.rotation, 4, "rotation")) {
       const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
       const double length = glm::length(q);
       if (!(length > 0) || !std::isfinite(length)) fail(place, "rotation: not a quaternion");
       m = glm::mat4_cast(q / length);
     }
-    if (sized(node.scale, 3, "scale")) {
+    if (motion.scale) {
+      for (int i = 0; i < 3; ++i) m[i] *= (*motion.scale)[i];
+    } else if (sized(node.scale, 3, "scale")) {
       for (int i = 0; i < 3; ++i) m[i] *= node.scale[static_cast<std::size_t>(i)];
     }
-    if (sized(node.translation, 3, "translation")) m[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1);
+    if (motion.translation) {
+      m[3] = glm::dvec4(*motion.translation, 1);
+    } else if (sized(node.translation, 3, "translation")) {
+      m[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1);
+    }
     return m;
   }
 
-  /// The roots of the file's scene; without any scene, the nodes that are nobody's child. [glTF2.0 #scenes]
+  /// The roots of the scene that was asked for, or of the file's own; without any scene, the nodes that are nobody's child. [glTF2.0 #scenes]
   std::vector<int> roots() const {
     const tinygltf::Model& model = file_.model;
     if (!model.scenes.empty()) {
-      const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
+      const int scene = choice_.scene.empty() ? std::max(0, model.defaultScene) : chosen_scene();
       if (static_cast<std::size_t>(scene) >= model.scenes.size())
         fail("scene", fmt::format("scene {} does not exist (the file has {})", scene, model.scenes.size()));
       return model.scenes[static_cast<std::size_t>(scene)].nodes;
     }
+    if (!choice_.scene.empty()) (void)chosen_scene();
     std::vector<bool> child(model.nodes.size());
     for (const tinygltf::Node& node : model.nodes) {
       for (const int c : node.children) {
@@ -148,9 +156,18 @@ class SceneReader {
     return result;
   }
 
+  int chosen_scene() const {
+    std::vector<std::string> names;
+    for (const tinygltf::Scene& scene : file_.model.scenes) names.push_back(scene.name);
+    const std::optional<std::size_t> found = find_choice(names, choice_.scene);
+    if (!found) fail("scenes", fmt::format("scene '{}' does not exist; scenes: {}", choice_.scene.substr(0, 60), list_of_choices(names)));
+    return static_cast<int>(*found);
+  }
+
   /// Depth first, children in order, without recursion. A node seen twice would make the graph no tree, or a loop.
   void visit_nodes() {
-    std::vector<bool> seen(file_.model.nodes.size());
+    worlds_.assign(file_.model.nodes.size(), std::nullopt);
+    skinned_.clear();
     std::vector<Visit> open;
     const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
       for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent});
@@ -160,21 +177,24 @@ class SceneReader {
       const Visit visit = open.back();
       open.pop_back();
       const auto index = static_cast<std::size_t>(visit.node);
-      if (visit.node < 0 || index >= seen.size())
-        fail("nodes", fmt::format("node {} does not exist (the file has {})", visit.node, seen.size()));
+      if (visit.node < 0 || index >= worlds_.size())
+        fail("nodes", fmt::format("node {} does not exist (the file has {})", visit.node, worlds_.size()));
       const std::string place = fmt::format("nodes[{}]", visit.node);
-      if (seen[index]) fail(place, "it is reached twice; nodes form a tree");
-      seen[index] = true;
+      if (worlds_[index]) fail(place, "it is reached twice; nodes form a tree");
       const tinygltf::Node& node = file_.model.nodes[index];
-      const glm::dmat4 world = visit.parent * local_matrix(node, place);
+      const auto moved = motions_.find(visit.node);
+      const NodeMotion motion = moved == motions_.end() ? NodeMotion{} : moved->second;
+      const glm::dmat4 world = visit.parent * local_matrix(node, motion, place);
       if (!all_finite(world)) fail(place, "its world matrix is not finite");
-      place_node(node, world, place);
+      worlds_[index] = world;
+      place_node(node, motion, world, place);
       push(node.children, world);
     }
+    for (const SkinnedNode& s : skinned_) pose_skinned(s);
   }
 
-  void place_node(const tinygltf::Node& node, const glm::dmat4& world, const std::string& place) {
-    if (node.mesh >= 0) place_mesh(node, world, place);
+  void place_node(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, const std::string& place) {
+    if (node.mesh >= 0) place_mesh(node, motion, world, place);
     if (node.camera >= 0) {
       const auto camera = static_cast<std::size_t>(node.camera);
       if (camera >= scene_.cameras.size())
@@ -185,20 +205,28 @@ class SceneReader {
       place_light(found->second, world, place);
   }
 
-  void place_mesh(const tinygltf::Node& node, const glm::dmat4& world, const std::string& place) {
+  void place_mesh(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, const std::string& place) {
     const auto mesh = static_cast<std::size_t>(node.mesh);
     if (mesh >= file_.model.meshes.size())
       fail(place, fmt::format("mesh {} does not exist (the file has {})", node.mesh, file_.model.meshes.size()));
-    if (node.skin >= 0) warn_once(said_skin_, "skins are not applied; skinned meshes stay in their bind pose");
-    for (const tinygltf::Primitive& primitive : file_.model.meshes[mesh].primitives) {
-      if (!primitive.targets.empty()) warn_once(said_morph_, "morph targets are not applied");
+    const std::vector<std::uint32_t>& primitives = meshes_.primitives(node.mesh);
+    Pose pose{morph_weights(node, file_.model.meshes[mesh], motion, place), {}, false};
+    const bool posed = node.skin >= 0 || std::ranges::any_of(pose.weights, [](float w) { return w != 0; });
+    const int number = posed ? static_cast<int>(scene_.poses.size()) : -1;
+    if (posed) scene_.poses.push_back(std::move(pose));
+    if (node.skin >= 0) {
+      const auto [skin, added] = skins_.try_emplace(node.skin);
+      if (added) skin->second = read_skin(file_, node.skin, place);
+      meshes_.read_skinning(node.mesh, skin->second.joints.size(), node.skin);
+      skinned_.push_back({node.skin, static_cast<std::size_t>(number), scene_.instances.size(), primitives.size()});
     }
     const std::size_t first = scene_.instances.size();
-    for (const std::uint32_t primitive : meshes_.primitives(node.mesh)) {
+    for (const std::uint32_t primitive : primitives) {
       const std::string& name = scene_.primitives[primitive].name;
-      scene_.instances.push_back({primitive, glm::mat4(world), node.name.empty() ? name : node.name + "/" + name});
+      scene_.instances.push_back({primitive, glm::mat4(world), node.name.empty() ? name : node.name + "/" + name, -1, number});
     }
-    if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end())
+    // A skin places its mesh by joints alone, so that instances of it would all lie in one place.
+    if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end() && node.skin < 0)
       copy_instances(first, world, read_instances(file_, found->second, place), place);
   }
 
@@ -224,34 +252,35 @@ class SceneReader {
     }
   }
 
-  // ---- lights ----
-
-  Light read_light(const tinygltf::Light& source, const std::string& place) const {
-    Light light;
-    if (source.type == "point") {
-      light.kind = Light::Kind::kPoint;
-    } else if (source.type == "spot") {
-      light.kind = Light::Kind::kSpot;
-    } else if (source.type != "directional") {
-      fail(place, fmt::format("light type '{}' is not directional, point or spot", source.type.substr(0, 40)));
+  /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]
+  std::vector<float> morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh, const NodeMotion& motion,
+                                   const std::string& place) const {
+    const std::size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
+    const std::vector<double>& weights = motion.weights ? *motion.weights : node.weights.empty() ? mesh.weights : node.weights;
+    if (!weights.empty() && weights.size() != targets)
+      fail(place, fmt::format("{} weights for a mesh of {} morph targets", weights.size(), targets));
+    std::vector<float> result;
+    for (const double weight : weights) {
+      result.push_back(static_cast<float>(weight));
+      if (!std::isfinite(result.back())) fail(place, "a morph target's weight is not finite");
     }
-    if (!source.color.empty() && source.color.size() != 3) fail(place, "color: three numbers are due");
-    for (int i = 0; i < 3; ++i)
-      light.color[i] = static_cast<float>((source.color.empty() ? 1.0 : source.color[static_cast<std::size_t>(i)]) * source.intensity);
-    light.range = static_cast<float>(source.range);
-    light.inner_cone = static_cast<float>(source.spot.innerConeAngle);
-    light.outer_cone = static_cast<float>(source.spot.outerConeAngle);
-    const float sum = light.color.r + light.color.g + light.color.b + light.range + light.inner_cone + light.outer_cone;
-    if (!std::isfinite(sum) || light.range < 0) fail(place, "its numbers are not those of a light");
-    return light;
+    return result;
   }
+
+  void pose_skinned(const SkinnedNode& s) {
+    glm::mat4 model(1);
+    pose_skin(file_, s.skin, skins_.at(s.skin), worlds_, scene_.poses[s.pose], model);
+    for (std::size_t i = 0; i < s.instances; ++i) scene_.instances[s.first_instance + i].world = model;
+  }
+
+  // ---- lights ----
 
   void place_light(const tinygltf::Value& extension, const glm::dmat4& world, const std::string& place) {
     const int index = extension.Has("light") ? extension.Get("light").GetNumberAsInt() : -1;
     const auto& lights = file_.model.lights;
     if (index < 0 || static_cast<std::size_t>(index) >= lights.size())
       fail(place, fmt::format("light {} does not exist (the file has {})", index, lights.size()));
-    Light light = read_light(lights[static_cast<std::size_t>(index)], fmt::format("extensions.KHR_lights_punctual.lights[{}]", index));
+    Light light = read_light(file_, static_cast<std::size_t>(index));
     const glm::dvec3 backward(world[2]);
     if (!(glm::length(backward) > 0)) fail(place, "a light on a node whose matrix is singular");
     light.position = glm::vec3(world[3]);
@@ -308,14 +337,30 @@ class SceneReader {
   }
 
   GltfFile file_;
+  GltfChoice choice_;
   SceneData scene_;
   MeshReader meshes_;
   std::size_t copies_ = 0;
-  bool said_skin_ = false, said_morph_ = false;
+  std::vector<Animation> animations_;
+  double length_ = 0;
+  NodeMotions motions_;
+  std::map<int, Skin> skins_;
+  std::vector<std::optional<glm::dmat4>> worlds_;  ///< by node; none: not visited
+  std::vector<SkinnedNode> skinned_;
 };
 
-}  // namespace
+GltfScene::GltfScene(const std::string& path, const GltfChoice& choice) : reader_(std::make_unique<Reader>(path, choice)) {}
+GltfScene::~GltfScene() = default;
+GltfScene::GltfScene(GltfScene&&) noexcept = default;
+GltfScene& GltfScene::operator=(GltfScene&&) noexcept = default;
+SceneData& GltfScene::data() { return reader_->scene(); }
+double GltfScene::length() const { return reader_->length(); }
+bool GltfScene::animated() const { return reader_->animated(); }
 
-SceneData load_gltf(const std::string& path) { return SceneReader(path).read(); }
+void GltfScene::pose(double time) {
+  if (reader_->animated()) reader_->pose(time);
+}
+
+SceneData load_gltf(const std::string& path) { return std::move(GltfScene(path, {}).data()); }
 
 }  // namespace quadrille::scenes

@@ -48,6 +48,11 @@ const std::vector<std::uint32_t>& MeshReader::primitives(int index) {
     if (!read_primitive(mesh.primitives[i], place, primitive)) continue;
     entry->second.push_back(static_cast<std::uint32_t>(scene_.primitives.size()));
     scene_.primitives.push_back(std::move(primitive));
+    sources_.push_back(&mesh.primitives[i]);
+    if (mesh.primitives[i].targets.size() != mesh.primitives[0].targets.size()) {
+      throw user_error("{}: {}.targets: {} where the mesh's first primitive has {}", file_.path, place, mesh.primitives[i].targets.size(),
+                       mesh.primitives[0].targets.size());
+    }
   }
   return entry->second;
 }
@@ -63,6 +68,7 @@ bool MeshReader::read_primitive(const tinygltf::Primitive& source, const std::st
   const auto [box, added] = bounds_.try_emplace(positions);
   if (added) box->second = position_bounds(scene_.arrays[static_cast<std::size_t>(positions)]);
   primitive.bounds = box->second;
+  read_targets(source, place, primitive);
   return true;
 }
 

@@ -1,8 +1,10 @@
 /// glTF meshes as primitives over shared arrays.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,10 +20,15 @@ class MeshReader {
   MeshReader(const GltfFile& file, SceneData& scene) : file_(file), scene_(scene) {}
   /// The primitives (into `SceneData::primitives`) of mesh `index`. Throws `UserError` with the place of what is wrong.
   [[nodiscard]] const std::vector<std::uint32_t>& primitives(int index);
+  /// Reads the joints and weights of mesh `index`, for a skin of `joints`. Throws `UserError` when a primitive has none, or names a joint beyond.
+  void read_skinning(int index, std::size_t joints, int skin);
 
  private:
   [[nodiscard]] bool read_primitive(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
   void read_attributes(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  void read_targets(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  void read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  [[nodiscard]] int delta_array(int accessor, std::size_t components, const std::string& place);
   void read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
   [[nodiscard]] int vertex_array(int accessor, Semantic semantic, const std::string& place);
   [[nodiscard]] int index_array(int accessor, const std::string& place);
@@ -32,6 +39,10 @@ class MeshReader {
   const GltfFile& file_;
   SceneData& scene_;
   std::map<int, std::vector<std::uint32_t>> meshes_;
+  std::vector<const tinygltf::Primitive*> sources_;  ///< by primitive of the scene
+  std::set<int> with_joints_;                        ///< meshes whose joints have been read
+  std::map<std::pair<int, std::size_t>, int> delta_arrays_;
+  std::map<std::pair<int, int>, std::array<int, 2>> joint_arrays_;
   std::map<std::pair<int, Semantic>, int> vertex_arrays_;
   std::map<int, std::pair<int, traces::IndexType>> index_arrays_;
   std::map<int, std::uint32_t> largest_index_;  ///< by index array

@@ -129,4 +129,36 @@ Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic s
   return {semantic_name(semantic), native, elements.count, elements.components == 3 ? padded(elements) : elements.data};
 }
 
+Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components, const std::string& place) {
+  const bool small = elements.component != Component::kUint32;
+  if (elements.components != components || !small)
+    throw user_error("{}: {}: {} components of this type are not what a morph target adds here ({} are)", file.path, place, elements.components,
+                     components);
+  require_finite(file, elements, place);
+  return {"morph target", float_format(components), elements.count, as_floats(elements)};
+}
+
+std::pair<Array, Array> to_joint_arrays(const GltfFile& file, const Elements& joints, const Elements& weights, const std::string& place) {
+  const bool wide = joints.component == Component::kUint16;
+  if (joints.components != 4 || joints.normalized || (!wide && joints.component != Component::kUint8))
+    throw user_error("{}: {}: JOINTS are four unsigned integers of 8 or 16 bits", file.path, place);
+  const bool fraction = weights.normalized && (weights.component == Component::kUint8 || weights.component == Component::kUint16);
+  if (weights.components != 4 || (!fraction && weights.component != Component::kFloat))
+    throw user_error("{}: {}: WEIGHTS are four floats or normalized unsigned integers of 8 or 16 bits", file.path, place);
+  if (joints.count != weights.count)
+    throw user_error("{}: {}: {} JOINTS where WEIGHTS has {}", file.path, place, joints.count, weights.count);
+  require_finite(file, weights, place);
+  Array numbers{"JOINTS", wide ? Format::kR16G16B16A16Uint : Format::kR8G8B8A8Uint, joints.count, joints.data};
+  const std::size_t size = component_bytes(joints.component);
+  for (std::size_t i = 0; i < std::size_t{4} * weights.count; ++i) {
+    const float weight = component_value(weights, i / 4, i % 4);
+    if (weight < 0) throw user_error("{}: {}: vertex {} has the weight {}", file.path, place, i / 4, weight);
+    if (weight == 0) std::memset(&numbers.data[i * size], 0, size);
+  }
+  const Format format = !fraction                                  ? Format::kR32G32B32A32Float
+                        : weights.component == Component::kUint8 ? Format::kR8G8B8A8UnormVertex
+                                                                   : Format::kR16G16B16A16Unorm;
+  return {std::move(numbers), Array{"WEIGHTS", format, weights.count, weights.data}};
+}
+
 }  // namespace quadrille::scenes

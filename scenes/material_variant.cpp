@@ -160,7 +160,7 @@ ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::strin
   const bool user = !options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility);
   set_ = user ? ShaderSet::kUser : options.visibility ? ShaderSet::kVisibility : ShaderSet::kMaterial;
   const std::string interface(kInterfaceGlsl);
-  vertex_ = options.vertex_shader.empty() ? Source{"material.vert", interface + std::string(kMaterialVert), {}, {}}
+  vertex_ = options.vertex_shader.empty() ? Source{"material.vert", interface + std::string(kPoseGlsl) + std::string(kMaterialVert), {}, {}}
                                           : read_source(options.vertex_shader);
   const std::string inputs = interface + std::string(kMaterialGlsl);
   if (options.visibility) {
@@ -184,6 +184,7 @@ traces::Index ShaderLibrary::shader(traces::ShaderStage stage, const Variant& va
     if (stream || source.name != "material.vert") defines.push_back(define);
   }
   if (variant.instanced && stage == traces::ShaderStage::kVertex) defines.emplace_back("INSTANCED");
+  if (source.name == "material.vert") defines.insert(defines.end(), variant.pose_defines.begin(), variant.pose_defines.end());
   const std::string key = source.spirv.empty() ? fmt::format("{}", fmt::join(defines, ";")) : std::string();
   const auto [entry, added] = compiled_.try_emplace({stage, key}, static_cast<traces::Index>(shaders_.size()));
   if (added)

@@ -21,6 +21,7 @@ struct Variant {
   std::array<bool, kTextureSlots> textures{};  ///< texture slots that the fragment shader samples
   std::vector<std::string> defines;            ///< of both stages
   bool instanced = false;                      ///< the vertex shader takes its matrices from streams that advance by instance
+  std::vector<std::string> pose_defines;       ///< of the materials' vertex shader (scenes/pose_streams.h)
   friend bool operator==(const Variant&, const Variant&) = default;
 };
 

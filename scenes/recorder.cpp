@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "models/base/error.h"
+#include "scenes/host_pose.h"
 #include "scenes/mip_chain.h"
 #include "scenes/parallel.h"
 #include "traces/trace_file.h"
@@ -94,11 +95,11 @@ bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::m
 
 // By cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its normals). With the longest column one long, squares in
 // the shader neither vanish nor overflow.
-std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world) {
+std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored) {
   const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
   std::array<glm::dvec3, 3> columns{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
   const double longest = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
-  const double scale = (mirrors(world) ? -1.0 : 1.0) / (longest > 0 ? longest : 1.0);
+  const double scale = (mirrored ? -1.0 : 1.0) / (longest > 0 ? longest : 1.0);
   return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0), glm::vec4(columns[2] * scale, 0)};
 }
 
@@ -149,7 +150,75 @@ std::vector<std::size_t> Recorder::draw_order() const {
 }
 
 void Recorder::record_arrays() {
-  for (const Array& array : scene_.arrays) stream_.buffers.push_back({array.name, array.data});
+  std::vector<bool> deltas(scene_.arrays.size());
+  for (const Primitive& primitive : scene_.primitives) {
+    for (const MorphTarget& target : primitive.targets) {
+      for (const int array : target.deltas) {
+        if (array >= 0) deltas[static_cast<std::size_t>(array)] = true;
+      }
+    }
+  }
+  array_buffers_.assign(scene_.arrays.size(), traces::kNone);
+  for (std::size_t i = 0; i < scene_.arrays.size(); ++i) {
+    if (!deltas[i]) (void)array_buffer(static_cast<int>(i));  // of morph targets, those with weight are recorded when a draw reads them
+  }
+}
+
+traces::Index Recorder::array_buffer(int array) {
+  traces::Index& buffer = array_buffers_[static_cast<std::size_t>(array)];
+  if (buffer == traces::kNone) {
+    buffer = static_cast<traces::Index>(stream_.buffers.size());
+    stream_.buffers.push_back({scene_.arrays[static_cast<std::size_t>(array)].name, scene_.arrays[static_cast<std::size_t>(array)].data});
+  }
+  return buffer;
+}
+
+traces::Index Recorder::pose_set(const std::vector<std::byte>& block) {
+  const auto [entry, added] = pose_sets_.try_emplace({reinterpret_cast<const char*>(block.data()), block.size()}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  if (!added) return entry->second;
+  const auto buffer = static_cast<traces::Index>(stream_.buffers.size());
+  stream_.buffers.push_back({"pose", block});
+  stream_.descriptor_sets.push_back({{{0, buffer, 0, static_cast<std::uint32_t>(block.size())}}, {}});
+  return entry->second;
+}
+
+void Recorder::add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer) {
+  geometry.streams.emplace_back(location, buffer);
+  geometry.formats.push_back(array.format);
+}
+
+Recorder::Geometry Recorder::geometry(const Instance& instance) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  Geometry g;
+  g.variant = variant(primitive);
+  g.mirrored = mirrors(instance.copies < 0 ? instance.world : scene_.copies[static_cast<std::size_t>(instance.copies)].front());
+  for (std::uint32_t i = 0; i < kSemantics; ++i) {
+    if (!g.variant.attributes[i]) continue;
+    add_stream(g, i, scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])], array_buffer(primitive.attributes[i]));
+  }
+  if (instance.pose >= 0) pose(instance, g);
+  return g;
+}
+
+/// Adds what the shader poses with, or puts what the host has posed in the place of the mesh's own streams.
+void Recorder::pose(const Instance& instance, Geometry& g) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  const Pose& pose = scene_.poses[static_cast<std::size_t>(instance.pose)];
+  const bool on_host = !options_.vertex_shader.empty() || instance.copies >= 0;  // copies have their matrices where a pose has its streams
+  g.mirrored = g.mirrored != pose.mirrored;
+  PoseStreams plan = choose_pose_streams(primitive, pose, g.variant.attributes, on_host);
+  g.variant.pose_defines = std::move(plan.defines);
+  for (const PoseStream& s : plan.streams) add_stream(g, s.location, scene_.arrays[static_cast<std::size_t>(s.array)], array_buffer(s.array));
+  if (!plan.block.empty()) g.pose_set = pose_set(plan.block);
+  if (!plan.morph_on_host && !plan.skin_on_host) return;
+  const auto posed = pose_on_host(scene_, primitive, pose, plan.skin_on_host);
+  for (std::size_t i = 0; i < g.streams.size(); ++i) {
+    const std::uint32_t location = g.streams[i].first;
+    if (location >= kSemantics || !posed[location]) continue;
+    g.streams[i].second = static_cast<traces::Index>(stream_.buffers.size());
+    g.formats[i] = posed[location]->format;
+    stream_.buffers.push_back({posed[location]->name, posed[location]->data});
+  }
 }
 
 const Variant& Recorder::variant(const Primitive& primitive) {
@@ -242,21 +311,19 @@ void add_copy_streams(traces::Pipeline& p) {
 
 }  // namespace
 
-traces::Index Recorder::pipeline(const Primitive& primitive, const Material& material, const Variant& v, bool mirrored) {
+traces::Index Recorder::pipeline(const Primitive& primitive, const Material& material, const Geometry& g) {
   traces::Pipeline p;
-  p.vertex_shader = shaders_.vertex(v);
-  p.fragment_shader = shaders_.fragment(v);
-  for (std::uint32_t i = 0; i < kSemantics; ++i) {
-    if (!v.attributes[i]) continue;
-    const traces::Format format = scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])].format;
-    p.bindings.push_back({i, traces::format_bytes(format), false});
-    p.attributes.push_back({i, i, format, 0});
+  p.vertex_shader = shaders_.vertex(g.variant);
+  p.fragment_shader = shaders_.fragment(g.variant);
+  for (std::size_t i = 0; i < g.streams.size(); ++i) {
+    p.bindings.push_back({g.streams[i].first, traces::format_bytes(g.formats[i]), false});
+    p.attributes.push_back({g.streams[i].first, g.streams[i].first, g.formats[i], 0});
   }
-  if (v.instanced) add_copy_streams(p);
+  if (g.variant.instanced) add_copy_streams(p);
   const bool blended = material.see_through() && !options_.visibility;
   p.topology = primitive.topology;
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
-  p.front = mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
+  p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
   p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend), traces::CompareOp::kLess};
   if (blended) p.blend = material.layers.transmits() ? kPremultiplied : kOver;
   const auto found = std::ranges::find_if(stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
@@ -272,29 +339,25 @@ void Recorder::bind_once(const traces::Command& command, std::size_t slot) {
   stream_.commands.push_back(command);
 }
 
-void Recorder::bind_geometry(const Primitive& primitive, const Variant& v) {
-  for (std::uint32_t i = 0; i < kSemantics; ++i) {
-    if (v.attributes[i]) bind_once(traces::BindVertexBuffer{i, static_cast<traces::Index>(primitive.attributes[i]), 0}, kVertexSlot + i);
-  }
-  if (primitive.indices >= 0)
-    bind_once(traces::BindIndexBuffer{static_cast<traces::Index>(primitive.indices), 0, primitive.index_type}, kIndexSlot);
+void Recorder::bind_geometry(const Primitive& primitive, const Geometry& g) {
+  if (g.pose_set != traces::kNone) bind_once(traces::BindDescriptorSet{kPoseSet, g.pose_set}, kPoseSlot);
+  for (const auto& [location, buffer] : g.streams) bind_once(traces::BindVertexBuffer{location, buffer, 0}, kVertexSlot + location);
+  if (primitive.indices >= 0) bind_once(traces::BindIndexBuffer{array_buffer(primitive.indices), 0, primitive.index_type}, kIndexSlot);
 }
 
-void Recorder::push_constants(const Instance& instance) {
-  const DrawConstants constants{instance.world, normal_matrix(instance.world), draws_, triangles_, mirrors(instance.world) ? -1.0F : 1.0F};
+void Recorder::push_constants(const Instance& instance, bool mirrored) {
+  const DrawConstants constants{instance.world, normal_matrix(instance.world, mirrored), draws_, triangles_, mirrored ? -1.0F : 1.0F};
   stream_.commands.emplace_back(traces::PushConstants{0, bytes_of(constants, kDrawConstantBytes)});
 }
 
 void Recorder::record_instance(const Instance& instance) {
   if (instance.copies >= 0) return record_copies(instance);
   const Primitive& primitive = scene_.primitives[instance.primitive];
-  const Variant& v = variant(primitive);
-  bind_once(
-      traces::BindPipeline{pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], v, mirrors(instance.world))},
-      kPipelineSlot);
-  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, v)}, kSetSlot);
-  bind_geometry(primitive, v);
-  push_constants(instance);
+  const Geometry g = geometry(instance);
+  bind_once(traces::BindPipeline{pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], g)}, kPipelineSlot);
+  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, g.variant)}, kSetSlot);
+  bind_geometry(primitive, g);
+  push_constants(instance, g.mirrored);
   stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, 1, 0, instance.label});
   ++draws_;
   triangles_ += traces::triangle_count(primitive.topology, primitive.count);

@@ -9,6 +9,7 @@
 
 #include "scenes/camera.h"
 #include "scenes/material_variant.h"
+#include "scenes/pose_streams.h"
 #include "scenes/scene.h"
 #include "scenes/scene_data.h"
 #include "scenes/world_range.h"
@@ -27,12 +28,13 @@ inline constexpr std::size_t kDrawConstantBytes = 124;
 
 /// Does the matrix turn front faces into back faces?
 [[nodiscard]] bool mirrors(const glm::mat4& world);
-/// Inverse transpose of the upper 3x3, scaled so that its longest column is one long: columns, 16 bytes apart.
-[[nodiscard]] std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world);
+/// Inverse transpose of the upper 3x3, scaled so that its longest column is one long: columns, 16 bytes apart. `mirrored`: it turns front faces into back
+/// faces, by itself or with the pose of its mesh.
+[[nodiscard]] std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored);
 
-// Slots of the bound state: pipeline, material set, index buffer, then a vertex stream for each location.
-inline constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kVertexSlot = 3, kLocations = 16;
-inline constexpr std::uint32_t kFrameSet = 0, kMaterialSet = 1;
+// Slots of the bound state: pipeline, material set, index buffer, pose set, then a vertex stream for each location.
+inline constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kPoseSlot = 3, kVertexSlot = 4, kLocations = 16;
+inline constexpr std::uint32_t kFrameSet = 0, kMaterialSet = 1, kPoseSet = 2;
 /// Vertex binding and first location of an instanced draw's matrices.
 inline constexpr std::uint32_t kCopiesBinding = 10;
 
@@ -51,6 +53,15 @@ class Recorder {
     auto operator<=>(const TextureKey&) const = default;
   };
 
+  /// What one draw reads: the variant of its shaders, and its vertex streams by location.
+  struct Geometry {
+    Variant variant;
+    std::vector<std::pair<std::uint32_t, traces::Index>> streams;  ///< location, buffer
+    std::vector<traces::Format> formats;                           ///< of the streams
+    traces::Index pose_set = traces::kNone;
+    bool mirrored = false;
+  };
+
   /// Indices into `scene.instances`: opaque and masked ones in scene order, then blended ones back to front.
   [[nodiscard]] std::vector<std::size_t> draw_order() const;
   void record_arrays();
@@ -61,11 +72,16 @@ class Recorder {
   void record_copies(const Instance& instance);
   /// The matrices of its copies, from back to front where `sorted`.
   [[nodiscard]] std::vector<glm::mat4> ordered_copies(const Instance& instance, bool sorted) const;
-  [[nodiscard]] traces::Index copies_buffer(const Instance& instance, bool sorted);
-  void bind_geometry(const Primitive& primitive, const Variant& variant);
-  void push_constants(const Instance& instance);
+  [[nodiscard]] traces::Index copies_buffer(const Instance& instance, bool sorted, bool mirrored);
+  [[nodiscard]] Geometry geometry(const Instance& instance);
+  void pose(const Instance& instance, Geometry& geometry);
+  void add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer);
+  [[nodiscard]] traces::Index array_buffer(int array);
+  [[nodiscard]] traces::Index pose_set(const std::vector<std::byte>& block);
+  void bind_geometry(const Primitive& primitive, const Geometry& geometry);
+  void push_constants(const Instance& instance, bool mirrored);
   void bind_once(const traces::Command& command, std::size_t slot);
-  [[nodiscard]] traces::Index pipeline(const Primitive& primitive, const Material& material, const Variant& variant, bool mirrored);
+  [[nodiscard]] traces::Index pipeline(const Primitive& primitive, const Material& material, const Geometry& geometry);
   [[nodiscard]] traces::Index material_set(int material, const Variant& variant);
   [[nodiscard]] traces::Index material_block(int material);
   [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
@@ -83,8 +99,10 @@ class Recorder {
   std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;  ///< by material and available attributes
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
-  std::map<int, traces::Index> copies_buffers_;  ///< by `Instance::copies`, where their order is the scene's
-  std::vector<traces::Command> bound_;           ///< what each slot holds, to leave out repeated binds
+  std::map<int, traces::Index> copies_buffers_;      ///< by `Instance::copies`, where their order is the scene's
+  std::vector<traces::Index> array_buffers_;         ///< by array of the scene; kNone: not recorded
+  std::map<std::string, traces::Index> pose_sets_;   ///< by the block's bytes
+  std::vector<traces::Command> bound_;               ///< what each slot holds, to leave out repeated binds
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

@@ -15,8 +15,8 @@ struct CopyStreams {
   std::array<glm::vec4, 3> model_rows, normal_columns;
 };
 
-CopyStreams copy_streams(const glm::mat4& world) {
-  CopyStreams streams{{}, normal_matrix(world)};
+CopyStreams copy_streams(const glm::mat4& world, bool mirrored) {
+  CopyStreams streams{{}, normal_matrix(world, mirrored)};
   for (int row = 0; row < 3; ++row)
     streams.model_rows[static_cast<std::size_t>(row)] = glm::vec4(world[0][row], world[1][row], world[2][row], world[3][row]);
   return streams;
@@ -33,12 +33,12 @@ std::vector<glm::mat4> Recorder::ordered_copies(const Instance& instance, bool s
   return copies;
 }
 
-traces::Index Recorder::copies_buffer(const Instance& instance, bool sorted) {
+traces::Index Recorder::copies_buffer(const Instance& instance, bool sorted, bool mirrored) {
   if (const auto found = copies_buffers_.find(instance.copies); !sorted && found != copies_buffers_.end()) return found->second;
   const std::vector<glm::mat4> copies = ordered_copies(instance, sorted);
   std::vector<std::byte> data(copies.size() * sizeof(CopyStreams));
   for (std::size_t i = 0; i < copies.size(); ++i) {
-    const CopyStreams streams = copy_streams(copies[i]);
+    const CopyStreams streams = copy_streams(copies[i], mirrored);
     std::memcpy(&data[i * sizeof(streams)], &streams, sizeof(streams));
   }
   stream_.buffers.push_back({instance.label + " instances", std::move(data)});
@@ -52,18 +52,18 @@ void Recorder::record_copies(const Instance& instance) {
   const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
   if (options_.visibility || !options_.vertex_shader.empty()) {
     for (const glm::mat4& copy : ordered_copies(instance, material.see_through()))
-      record_instance({instance.primitive, copy, instance.label});
+      record_instance({instance.primitive, copy, instance.label, -1, instance.pose});
     return;
   }
   const std::vector<glm::mat4>& copies = scene_.copies[static_cast<std::size_t>(instance.copies)];
-  Variant v = variant(primitive);
-  v.instanced = true;
-  const bool mirrored = mirrors(copies.front());
-  bind_once(traces::BindPipeline{pipeline(primitive, material, v, mirrored)}, kPipelineSlot);
-  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, v)}, kSetSlot);
-  bind_geometry(primitive, v);
-  bind_once(traces::BindVertexBuffer{kCopiesBinding, copies_buffer(instance, material.see_through()), 0}, kVertexSlot + kCopiesBinding);
-  push_constants({instance.primitive, copies.front(), instance.label});
+  Geometry g = geometry(instance);
+  g.variant.instanced = true;
+  bind_once(traces::BindPipeline{pipeline(primitive, material, g)}, kPipelineSlot);
+  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, g.variant)}, kSetSlot);
+  bind_geometry(primitive, g);
+  bind_once(traces::BindVertexBuffer{kCopiesBinding, copies_buffer(instance, material.see_through(), g.mirrored), 0},
+            kVertexSlot + kCopiesBinding);
+  push_constants({instance.primitive, copies.front(), instance.label}, g.mirrored);
   const auto count = static_cast<std::uint32_t>(copies.size());
   stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, count, 0, instance.label});
   ++draws_;

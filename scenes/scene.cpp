@@ -24,19 +24,65 @@ void check(const SceneOptions& options) {
   if (options.width == 0 || options.height == 0 || options.width > kMaxTargetSide || options.height > kMaxTargetSide) {
     throw user_error("size: {}x{} is outside 1x1 .. {}x{}", options.width, options.height, kMaxTargetSide, kMaxTargetSide);
   }
+  if (options.time && !std::isfinite(*options.time)) throw user_error("time: {} is not a number of seconds", *options.time);
   if (!finite(options.eye) || !finite(options.at)) throw user_error("camera: eye and point looked at are finite numbers");
 }
 
 }  // namespace
 
-traces::CommandStream load_scene(const std::string& file_or_builtin, const SceneOptions& options) {
+/// A file's scene is posed anew for each moment, a built-in one is made anew.
+struct Scene::Parts {
+  SceneOptions options;
+  std::string name, builtin;
+  bool animated = false;
+  double length = 0;
+  std::optional<GltfScene> file;
+};
+
+Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options) : parts_(std::make_unique<Parts>()) {
   check(options);
-  SceneData scene = file_or_builtin.starts_with(kBuiltinPrefix) ? build_builtin(file_or_builtin.substr(kBuiltinPrefix.size()))
-                                                                : load_gltf(file_or_builtin);
-  scene.name = file_or_builtin;
+  parts_->options = options;
+  parts_->name = file_or_builtin;
+  const bool animated = options.time.has_value() || !options.animation.empty();
+  if (file_or_builtin.starts_with(kBuiltinPrefix)) {
+    parts_->builtin = file_or_builtin.substr(kBuiltinPrefix.size());
+    parts_->length = builtin_length(parts_->builtin);
+    parts_->animated = animated && parts_->length > 0;
+    if (!options.scene.empty()) throw user_error("{}: a built-in scene is one scene; there is no other to choose", file_or_builtin);
+    if (!options.animation.empty() && options.animation != "0" && options.animation != "all")
+      throw user_error("{}: animation '{}' does not exist; animations: {}", file_or_builtin, options.animation.substr(0, 60),
+                       parts_->length > 0 ? "0" : "none");
+    return;
+  }
+  parts_->file.emplace(file_or_builtin, GltfChoice{options.scene, animated, options.animation});
+  parts_->animated = parts_->file->animated();
+  parts_->length = parts_->file->length();
+}
+
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+bool Scene::animated() const { return parts_->animated; }
+double Scene::length() const { return parts_->length; }
+
+traces::CommandStream Scene::record(const Moment& moment) {
+  SceneOptions options = parts_->options;
+  options.orbit = moment.orbit;
+  SceneData made;
+  if (parts_->file) {
+    parts_->file->pose(moment.time);
+  } else {
+    made = build_builtin(parts_->builtin, parts_->animated ? moment.time : 0);
+  }
+  SceneData& scene = parts_->file ? parts_->file->data() : made;
+  scene.name = parts_->name;
   traces::CommandStream stream = Recorder(scene, options).record();
   traces::validate(stream);
   return stream;
+}
+
+traces::CommandStream load_scene(const std::string& file_or_builtin, const SceneOptions& options) {
+  return Scene(file_or_builtin, options).record({options.time.value_or(0), options.orbit});
 }
 
 std::uint32_t triangle_id_color(std::uint32_t number) { return (number + 1) * kIdFactor; }

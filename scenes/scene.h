@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,8 +23,40 @@ struct SceneOptions {
   int camera = -1;  ///< index into the file's cameras; -1: the first one a node carries, else one that frames the scene
   std::optional<glm::vec3> eye,
       at;  ///< world space; either one makes an own camera (60 degrees high); the other defaults to the centre / the framing eye
+  std::string camera_name;          ///< used where `camera` is -1: a camera's name
+  std::string scene;                ///< which scene of the file, by number or name; empty: the file's own
+  std::optional<double> time;       ///< seconds into the animation; none: at rest, unless an animation is named
+  std::string animation;            ///< number, name or `all`; empty: the first
+  std::optional<double> orbit;      ///< part of a turn by which the camera is carried around the scene's centre
   bool visibility = false;                     ///< draw triangle ids instead of colours (see `triangle_id_color`)
   std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
+};
+
+/// When, and from where, a frame of a scene is taken.
+struct Moment {
+  double time = 0;              ///< seconds into the animation
+  std::optional<double> orbit;  ///< as `SceneOptions::orbit`
+};
+
+/// A scene that is read once, to record any number of frames of.
+class Scene {
+ public:
+  /// Throws `UserError` with file, place and reason. `options.time` and `options.orbit` are those of `record(options)`'s moment.
+  Scene(const std::string& file_or_builtin, const SceneOptions& options);
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  /// Is there an animation that `options` ask for?
+  [[nodiscard]] bool animated() const;
+  /// Seconds to the animation's last key; 0 without one.
+  [[nodiscard]] double length() const;
+  /// One frame, validated. Throws `UserError`.
+  [[nodiscard]] traces::CommandStream record(const Moment& moment);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 /// Loads a glTF file (.gltf, .glb) or `builtin:NAME` and records one frame. The stream is validated. Throws `UserError` with file, place and reason.

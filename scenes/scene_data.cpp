@@ -1,6 +1,9 @@
 #include "scenes/scene_data.h"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 namespace quadrille::scenes {
 
@@ -27,18 +30,53 @@ Bounds Bounds::transformed(const glm::mat4& matrix) const {
   return result;
 }
 
+namespace {
+
+/// Every vertex moves by a weighted sum of deltas, each within its reach.
+Bounds morphed(Bounds box, const Primitive& primitive, const std::vector<float>& weights) {
+  if (box.empty()) return box;
+  for (std::size_t i = 0; i < std::min(weights.size(), primitive.targets.size()); ++i) {
+    const Bounds& reach = primitive.targets[i].reach;
+    if (weights[i] == 0 || reach.empty()) continue;
+    box.low += glm::min(glm::vec3(0), glm::min(weights[i] * reach.low, weights[i] * reach.high));
+    box.high += glm::max(glm::vec3(0), glm::max(weights[i] * reach.low, weights[i] * reach.high));
+  }
+  return box;
+}
+
+glm::mat4 matrix_of(const JointMatrix& rows) { return glm::transpose(glm::mat4(rows[0], rows[1], rows[2], glm::vec4(0, 0, 0, 1))); }
+
+/// Holds the posed vertices: a skinned one is a mean of where its joints would put it, each within its joint's moved box.
+Bounds posed(const Primitive& primitive, const Pose& pose) {
+  if (pose.joints.empty()) return morphed(primitive.bounds, primitive, pose.weights);
+  Bounds box;
+  for (std::size_t j = 0; j < std::min(pose.joints.size(), primitive.joint_boxes.size()); ++j)
+    box.add(morphed(primitive.joint_boxes[j], primitive, pose.weights).transformed(matrix_of(pose.joints[j])));
+  return box;
+}
+
+}  // namespace
+
 Bounds SceneData::box(const Instance& instance) const {
-  const Bounds& own = primitives[instance.primitive].bounds;
-  if (instance.copies < 0) return own.transformed(instance.world);
-  Bounds result;
-  for (const glm::mat4& copy : copies[static_cast<std::size_t>(instance.copies)]) result.add(own.transformed(copy));
-  return result;
+  const Primitive& primitive = primitives[instance.primitive];
+  const Bounds model = instance.pose < 0 ? primitive.bounds : posed(primitive, poses[static_cast<std::size_t>(instance.pose)]);
+  if (instance.copies < 0) return model.transformed(instance.world);
+  Bounds all;
+  for (const glm::mat4& copy : copies[static_cast<std::size_t>(instance.copies)]) all.add(model.transformed(copy));
+  return all;
+}
+
+std::vector<Bounds> SceneData::boxes() const {
+  if (!extent.empty()) return extent;
+  std::vector<Bounds> all;
+  for (const Instance& instance : instances) all.push_back(box(instance));
+  return all;
 }
 
 Bounds SceneData::bounds() const {
-  Bounds result;
-  for (const Instance& instance : instances) result.add(box(instance));
-  return result;
+  Bounds all;
+  for (const Bounds& one : boxes()) all.add(one);
+  return all;
 }
 
 }  // namespace quadrille::scenes

@@ -46,6 +46,17 @@ struct Array {
   std::vector<std::byte> data;
 };
 
+/// What a morph target adds to the attributes at weight one, as float vectors of 2 (texture coordinates), 3 or 4 (colours) components.
+struct MorphTarget {
+  std::array<int, kSemantics> deltas{-1, -1, -1, -1, -1, -1};  ///< into `SceneData::arrays`; -1: nothing
+  Bounds reach;                                                ///< of the position deltas
+};
+
+/// Joints that move a vertex, and how much each counts: one set of four.
+struct JointSet {
+  int joints = -1, weights = -1;  ///< into `SceneData::arrays`: integers of 8 or 16 bits, and fractions; -1: absent
+};
+
 struct Primitive {
   std::string name;
   traces::Topology topology = traces::Topology::kTriangleList;
@@ -55,6 +66,9 @@ struct Primitive {
   std::uint32_t count = 0;  ///< indices, or vertices without them
   int material = 0;
   Bounds bounds;  ///< model space
+  std::vector<MorphTarget> targets;
+  std::array<JointSet, 2> joint_sets;
+  std::vector<Bounds> joint_boxes;  ///< by joint: the vertices that it moves; one more than the largest joint in use
 };
 
 /// Texture roles; the shader binds slot i at binding 1 + i. From kSpecular on they belong to `MaterialLayers`.
@@ -119,11 +133,22 @@ struct Material {
   [[nodiscard]] TextureUse& texture(TextureSlot slot) { return textures[static_cast<std::size_t>(slot)]; }
 };
 
+/// The upper three rows of an affine matrix.
+using JointMatrix = std::array<glm::vec4, 3>;
+
+/// How the vertices of a mesh are moved before its model matrix is applied.
+struct Pose {
+  std::vector<float> weights;       ///< by morph target; empty: no morphing
+  std::vector<JointMatrix> joints;  ///< from the mesh's space at rest; empty: no skin
+  bool mirrored = false;            ///< the joints turn front faces over
+};
+
 struct Instance {
   std::uint32_t primitive = 0;
   glm::mat4 world{1};
   std::string label;
   int copies = -1;  ///< into `SceneData::copies`: drawn once with each of these matrices instead of `world`; -1: drawn once
+  int pose = -1;    ///< into `SceneData::poses`; -1: as the arrays have it
 };
 
 struct Light {
@@ -160,14 +185,19 @@ struct SceneData {
   std::vector<Primitive> primitives;
   std::vector<Instance> instances;
   std::vector<std::vector<glm::mat4>> copies;  ///< world matrices of one draw, all of them mirror or none does; never empty
+  std::vector<Pose> poses;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   Environment environment;
   glm::vec3 background{0.30F, 0.42F, 0.58F};
   bool depth = true;  ///< false: draw without depth test and depth attachment
-  /// The box around one instance, world space.
+  /// What a camera that frames the scene has to hold, world space, where that is more than this moment: the boxes of all of an animation's moments.
+  std::vector<Bounds> extent;
+  /// A box that holds an instance, world space.
   [[nodiscard]] Bounds box(const Instance& instance) const;
-  /// The box around all instances, world space.
+  /// The boxes that a camera has to hold: the extent, or those of all instances.
+  [[nodiscard]] std::vector<Bounds> boxes() const;
+  /// The box around all of `boxes`.
   [[nodiscard]] Bounds bounds() const;
 };
 

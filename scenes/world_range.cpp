@@ -22,7 +22,7 @@ double radius(const Bounds& box) { return 0.5 * glm::length(glm::dvec3(box.high)
 double nearest_reach(const SceneData& scene, const glm::dvec3& eye) {
   double reach = INFINITY;
   for (const Instance& instance : scene.instances) {
-    const Bounds box = scene.primitives[instance.primitive].bounds.transformed(instance.world);
+    const Bounds box = scene.box(instance);
     if (!box.empty()) reach = std::min(reach, glm::length(glm::dvec3(box.center()) - eye) + radius(box));
   }
   return reach;
@@ -56,6 +56,12 @@ std::optional<WorldRange> needed_range(const SceneData& scene, const SceneOption
 
 SceneData moved(SceneData scene, const WorldRange& range) {
   for (Instance& instance : scene.instances) instance.world = moved_matrix(instance.world, range, range.scale);
+  for (std::vector<glm::mat4>& copies : scene.copies) {
+    for (glm::mat4& copy : copies) copy = moved_matrix(copy, range, range.scale);
+  }
+  for (Bounds& box : scene.extent) {
+    if (!box.empty()) box = {moved_point(glm::dvec3(box.low), range), moved_point(glm::dvec3(box.high), range)};
+  }
   for (Light& light : scene.lights) {
     if (light.kind == Light::Kind::kDirectional) continue;
     light.position = moved_point(glm::dvec3(light.position), range);

@@ -40,16 +40,38 @@ layout(location = 15) in vec3 normal_column_2;
 #endif
 
 void main() {
-  vec4 world = MODEL * vec4(position, 1.0);
+  vec3 at = position;
+#ifdef POSE_POSITION
+  at += POSE_POSITION;
+#endif
+#ifdef POSE_JOINTS
+  Skin skin = skin_of_vertex();
+  at = turned(skin, at) + vec3(skin.x.w, skin.y.w, skin.z.w);
+#endif
+  vec4 world = MODEL * vec4(at, 1.0);
   gl_Position = frame.view_projection * world;
 #ifdef NEEDS_POSITION
   v_position = world.xyz - frame.eye.xyz;
 #endif
 #ifdef HAS_NORMAL
-  v_normal = NORMAL_MATRIX * normal;
+  vec3 up = normal;
+#ifdef POSE_NORMAL
+  up += POSE_NORMAL;
+#endif
+#ifdef POSE_JOINTS
+  up = turned_normal(skin, up);
+#endif
+  v_normal = NORMAL_MATRIX * up;
 #endif
 #ifdef HAS_TANGENT
-  vec3 along = mat3(MODEL) * tangent.xyz;
+  vec3 along = tangent.xyz;
+#ifdef POSE_TANGENT
+  along += POSE_TANGENT;
+#endif
+#ifdef POSE_JOINTS
+  along = turned(skin, along);
+#endif
+  along = mat3(MODEL) * along;
   v_tangent = vec4(along * inversesqrt(max(dot(along, along), 1e-30)), tangent.w * draw.handedness);
 #endif
 #ifdef HAS_UV0

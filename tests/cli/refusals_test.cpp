@@ -63,9 +63,10 @@ TEST_CASE("a view is numbers, and a camera that exists") {
     render_refused({"--eye", point}, {"--eye", "X,Y,Z"});
     render_refused({"--at", point}, {"--at", "X,Y,Z"});
   }
-  render_refused({"--camera", "99"}, {"camera 99"});
-  render_refused({"--camera", "-1"}, {"--camera"});
-  render_refused({"--camera", "one"}, {"--camera"});
+  render_refused({"--camera", "99"}, {"camera '99'", "cameras: "});
+  render_refused({"--camera", "-1"}, {"camera '-1'"});
+  render_refused({"--camera", "one"}, {"camera 'one'"});
+  render_refused({"--camera", ""}, {"--camera"});
   render_refused({"--camera", "0", "--eye", "1,2,3"}, {"--camera", "--eye"});
   render_refused({"--eye", "1,2,3", "--at", "1,2,3"}, {"eye"});
 }

@@ -1,0 +1,120 @@
+/// What moves a mesh's vertices: its morph targets, and the joints that a skin moves them with.
+#include "scenes/gltf_mesh.h"
+
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "models/base/error.h"
+#include "scenes/gltf_accessor.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::array<const char*, kSemantics> kTargetNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
+
+std::uint32_t joint_at(const Array& joints, std::size_t component) {
+  const std::size_t size = joints.format == traces::Format::kR16G16B16A16Uint ? 2 : 1;
+  std::uint32_t value = 0;
+  std::memcpy(&value, &joints.data[component * size], size);
+  return value;
+}
+
+bool has_weight(const Array& weights, std::size_t component) {
+  const std::size_t size = traces::format_bytes(weights.format) / 4;
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &weights.data[component * size], size);
+  return bits << 1 != 0;  // minus zero is none either
+}
+
+bool is_vec4(const GltfFile& file, int accessor) {
+  const auto& all = file.model.accessors;
+  return accessor >= 0 && static_cast<std::size_t>(accessor) < all.size() && all[static_cast<std::size_t>(accessor)].type == TINYGLTF_TYPE_VEC4;
+}
+
+glm::vec3 point_at(const Array& positions, std::size_t vertex) {
+  glm::vec3 point;
+  std::memcpy(&point, &positions.data[vertex * sizeof(point)], sizeof(point));
+  return point;
+}
+
+}  // namespace
+
+int MeshReader::delta_array(int accessor, std::size_t components, const std::string& place) {
+  const auto [entry, added] = delta_arrays_.try_emplace({accessor, components}, -1);
+  if (!added) return entry->second;
+  Array array = to_delta_array(file_, read_accessor(file_, accessor, place), components, fmt::format("{}: accessor {}", place, accessor));
+  return entry->second = add_array(std::move(array), place);
+}
+
+void MeshReader::read_targets(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+  for (std::size_t t = 0; t < source.targets.size(); ++t) {
+    MorphTarget& target = primitive.targets.emplace_back();
+    for (std::size_t i = 0; i < kSemantics; ++i) {
+      const auto found = source.targets[t].find(kTargetNames[i]);
+      if (found == source.targets[t].end() || primitive.attributes[i] < 0) continue;
+      const std::string at = fmt::format("{}.targets[{}].{}", place, t, kTargetNames[i]);
+      const Array& base = scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])];
+      const auto given = static_cast<std::size_t>(traces::format_components(base.format));
+      const bool alpha = static_cast<Semantic>(i) == Semantic::kColor && is_vec4(file_, found->second);
+      target.deltas[i] = delta_array(found->second, alpha ? 4 : std::min<std::size_t>(3, given), at);
+      const std::uint32_t count = scene_.arrays[static_cast<std::size_t>(target.deltas[i])].count;
+      const std::uint32_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
+      if (count != vertices) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, at, count, vertices);
+    }
+    if (target.deltas[0] >= 0) {
+      const auto [box, added] = bounds_.try_emplace(target.deltas[0]);
+      if (added) box->second = position_bounds(scene_.arrays[static_cast<std::size_t>(target.deltas[0])]);
+      target.reach = box->second;
+    }
+  }
+}
+
+void MeshReader::read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+  const Array& positions = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])];
+  const std::size_t vertices = positions.count;
+  for (std::size_t set = 0; set < primitive.joint_sets.size(); ++set) {
+    const auto joints = source.attributes.find(fmt::format("JOINTS_{}", set)), weights = source.attributes.find(fmt::format("WEIGHTS_{}", set));
+    const bool has_joints = joints != source.attributes.end(), has_weights = weights != source.attributes.end();
+    if (has_joints != has_weights)
+      throw user_error("{}: {}: JOINTS_{} and WEIGHTS_{} come together; one is missing", file_.path, place, set, set);
+    if (!has_joints) break;
+    const std::string at = fmt::format("{}.attributes.JOINTS_{}", place, set);
+    const auto [entry, added] = joint_arrays_.try_emplace({joints->second, weights->second});
+    if (added) {
+      auto [numbers, fractions] =
+          to_joint_arrays(file_, read_accessor(file_, joints->second, at), read_accessor(file_, weights->second, at), at);
+      entry->second = {add_array(std::move(numbers), at), add_array(std::move(fractions), at)};
+    }
+    primitive.joint_sets[set] = {entry->second[0], entry->second[1]};
+    const Array& numbers = scene_.arrays[static_cast<std::size_t>(entry->second[0])];
+    const Array& fractions = scene_.arrays[static_cast<std::size_t>(entry->second[1])];
+    if (numbers.count != vertices) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, at, numbers.count, vertices);
+    for (std::size_t i = 0; i < 4 * vertices; ++i) {
+      if (!has_weight(fractions, i)) continue;
+      const std::uint32_t joint = joint_at(numbers, i);
+      if (primitive.joint_boxes.size() <= joint) primitive.joint_boxes.resize(joint + 1);
+      primitive.joint_boxes[joint].add(point_at(scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])], i / 4));
+    }
+  }
+}
+
+void MeshReader::read_skinning(int index, std::size_t joints, int skin) {
+  const std::vector<std::uint32_t>& numbers = primitives(index);
+  const bool first = with_joints_.insert(index).second;
+  for (const std::uint32_t number : numbers) {
+    const tinygltf::Primitive& source = *sources_[number];
+    const auto offset = &source - file_.model.meshes[static_cast<std::size_t>(index)].primitives.data();
+    const std::string place = fmt::format("meshes[{}].primitives[{}]", index, offset);
+    if (first) read_joints(source, place, scene_.primitives[number]);
+    const Primitive& primitive = scene_.primitives[number];
+    if (primitive.joint_sets[0].joints < 0)
+      throw user_error("{}: {}: it is drawn with skins[{}], and has no JOINTS_0 and WEIGHTS_0", file_.path, place, skin);
+    if (primitive.joint_boxes.size() > joints) {
+      throw user_error("{}: {}: JOINTS name joint {}; skins[{}] has {} joints", file_.path, place, primitive.joint_boxes.size() - 1, skin,
+                       joints);
+    }
+  }
+}
+
+}  // namespace quadrille::scenes
