@@ -7,10 +7,11 @@
 namespace quadrille::cli {
 
 void add_render(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand("render", "Renders one frame: the picture, its cycles, and where every unit's time went.");
+  CLI::App* command = app.add_subcommand("render", "Renders a frame, or several: the picture, its cycles, and where every unit's time went.");
   const auto job = std::make_shared<RenderJob>();
   job->scene.add_to(*command);
   job->add_to(*command);
+  job->frames.add_to(*command);
   command->footer(R"(Examples:
   quadrille render builtin:triangle --size 320x240
       the table of figures alone
@@ -18,6 +19,10 @@ void add_render(CLI::App& app, Command& chosen) {
       with the picture and all figures as JSON
   quadrille render city.gltf --eye 10,4,0 --at 0,2,0 --fidelity functional --out view.png
       no machine, only the picture: the fast way to look for a view
+  quadrille render walk.glb --time 0.4 --out step.png
+      0.4 seconds into its animation
+  quadrille render walk.glb --frames 24 --out walk_##.png --stats walk.json
+      24 frames over the animation: a picture and a row of figures each
   quadrille render city.gltf --machine small --set l2.cache_lines=4096 --set link.client_to_l2.latency=20
       another machine, two of its parameters changed
   quadrille render cube.gltf --frag toon.frag --out toon.png

@@ -8,7 +8,6 @@
 #include "cli/image_files.h"
 #include "cli/process.h"
 #include "models/base/error.h"
-#include "pipeline/render.h"
 #include "pipeline/report.h"
 #include "traces/whole_file.h"
 
@@ -25,6 +24,16 @@ traces::RenderTarget shown_target(const traces::CommandStream& stream) {
     if (const auto* begin = std::get_if<traces::BeginPass>(&command)) shown = stream.targets[begin->target];
   }
   return shown;
+}
+
+void note_host(pipeline::Figures& figures, double load_s) {
+  figures.host.load_s = load_s;
+  figures.host.wall_s = wall_seconds();
+  figures.host.peak_rss_mib = peak_rss_mib();
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  traces::write_whole_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
 }  // namespace
@@ -59,8 +68,13 @@ void RenderJob::add_to(CLI::App& command) {
 }
 
 void RenderJob::check_outputs() const {
-  if (out) check_output("--out", *out, {".png", ".exr"});
-  if (depth) check_output("--depth", *depth, {".exr", ".png"});
+  const auto check = [&](std::string_view flag, const std::optional<std::string>& path, const std::vector<std::string>& extensions) {
+    if (!path) return;
+    if (frames.wanted()) check_pattern(flag, *path);
+    check_output(flag, frames.wanted() ? numbered(*path, 0) : *path, extensions);
+  };
+  check("--out", out, {".png", ".exr"});
+  check("--depth", depth, {".exr", ".png"});
   if (stats) check_output("--stats", *stats, {".json"});
   check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}});
 }
@@ -75,52 +89,78 @@ std::int64_t RenderJob::window_cycles() const {
   return cycles;
 }
 
-int RenderJob::run() {
-  scene.check();
-  const std::int64_t ahead = window_cycles();
-  pipeline::MachineConfig config;
-  machine.apply(config);
-  check_outputs();
-  hw::RunLimits limits;
+RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) const {
   const hw::Clock clock(static_cast<std::int64_t>(config.gpu.clock_mhz * 1e6));
+  hw::RunLimits limits;
   if (max_cycles) {
     const std::int64_t cycles = parse_whole(*max_cycles, "--max-cycles", 1, kMaxCycles);
     if (cycles < hw::kNever / (clock.period() + 1)) limits.max_time = clock.edge(cycles);  // beyond that it is later than time goes
   }
+  return {config, std::move(limits), clock, clock.edge(window_cycles())};
+}
 
-  Progress progress;
-  progress.show(fmt::format("loading {}", scene.scene));
-  const Stopwatch load;
-  traces::CommandStream stream = scene.load();
-  const double load_s = load.seconds();
+int RenderJob::run() {
+  scene.check();
+  frames.check();
+  pipeline::MachineConfig config;
+  machine.apply(config);
+  check_outputs();
+  const Setting chosen = setting(config);
+  return frames.wanted() ? run_frames(chosen) : run_one(chosen);
+}
+
+pipeline::RenderedFrame RenderJob::draw(const traces::CommandStream& stream, const Setting& setting, const Outputs& outputs) const {
   const traces::RenderTarget target = shown_target(stream);
   if (depth && target.depth == traces::Format::kUndefined) throw user_error("--depth: {} has no depth attachment", scene.scene);
-
+  Progress progress;
   progress.show("compiling shaders, building the machine");
-  limits.progress = [&](hw::Tick now) { progress.show_cycles(clock.edges_before(now)); };
+  hw::RunLimits limits = setting.limits;
+  limits.progress = [&](hw::Tick now) { progress.show_cycles(setting.clock.edges_before(now)); };
   const pipeline::MachineOptions options{.driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
-                                         .window = clock.edge(ahead),
+                                         .window = setting.window,
                                          .leave_out = leave_out == "auto"};
-  pipeline::RenderedFrame frame = fidelity == "functional" ? pipeline::render_functional_frame(stream, config.precision())
-                                                           : pipeline::render_exact(stream, config, options, limits);
+  pipeline::RenderedFrame frame = fidelity == "functional" ? pipeline::render_functional_frame(stream, setting.config.precision())
+                                                           : pipeline::render_exact(stream, setting.config, options, limits);
   progress.show("writing");
-  if (out) write_color(*out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
-  if (depth) write_depth(*depth, frame.image);
+  if (outputs.out) write_color(*outputs.out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
+  if (outputs.depth) write_depth(*outputs.depth, frame.image);
+  return frame;
+}
 
-  pipeline::Figures& figures = frame.figures;
-  figures.host.load_s = load_s;
-  figures.host.wall_s = wall_seconds();
-  figures.host.peak_rss_mib = peak_rss_mib();
-  const pipeline::ReportSubject subject{figures, config, frame.image.width, frame.image.height};
-  if (stats) {
-    const std::string json = pipeline::report_json(subject);
-    traces::write_whole_file(*stats, std::as_bytes(std::span(json.data(), json.size())));
-  }
+int RenderJob::run_one(const Setting& setting) const {
+  const Stopwatch load;
+  Progress progress;
+  progress.show(fmt::format("loading {}", scene.scene));
+  const traces::CommandStream stream = scene.load();
+  const double load_s = load.seconds();
   progress.clear();
+  pipeline::RenderedFrame frame = draw(stream, setting, {out, depth});
+  pipeline::Figures& figures = frame.figures;
+  note_host(figures, load_s);
+  const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
+  if (stats) write_text(*stats, pipeline::report_json(subject));
   if (!quiet) fmt::print("{}", pipeline::report_table(subject, units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
   if (figures.checks_hold()) return kDone;
   fmt::print(stderr, "quadrille: the figures contradict each other\n{}", pipeline::failed_checks(figures));
   return kFailed;
+}
+
+int RenderJob::run_frames(const Setting& setting) const {
+  const auto file = [](const std::optional<std::string>& pattern, std::int64_t number) {
+    return pattern ? std::optional(numbered(*pattern, number)) : std::nullopt;
+  };
+  const auto draw_one = [&](const traces::CommandStream& stream, std::int64_t number) {
+    const Stopwatch whole;
+    pipeline::RenderedFrame frame = draw(stream, setting, {file(out, number), file(depth, number)});
+    note_host(frame.figures, 0);
+    frame.figures.host.wall_s = whole.seconds();
+    return pipeline::report_json({frame.figures, setting.config, frame.image.width, frame.image.height});
+  };
+  const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();
+  const std::string about = fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.name, fidelity);
+  const SequenceResult result = draw_frames(scene, frames, about, quiet, draw_one);
+  if (stats) write_text(*stats, result.json);
+  return result.exit_code;
 }
 
 }  // namespace quadrille::cli

@@ -1,17 +1,21 @@
-/// A frame to render: what `render` and `trace replay` do with their arguments.
+/// A frame, or several, to render: what `render` and `trace replay` do with their arguments.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "cli/frame_sequence.h"
 #include "cli/machine_arguments.h"
 #include "cli/scene_arguments.h"
+#include "hw/base/clock.h"
+#include "pipeline/render.h"
 
 namespace quadrille::cli {
 
 struct RenderJob {
   SceneArguments scene;
   MachineArguments machine;
+  FrameArguments frames;  ///< of `render` alone
   std::optional<std::string> out, depth, stats, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
   bool alpha = false, quiet = false;
@@ -22,9 +26,26 @@ struct RenderJob {
   int run();
 
  private:
+  /// What the arguments say of the run, checked.
+  struct Setting {
+    const pipeline::MachineConfig& config;
+    hw::RunLimits limits;
+    hw::Clock clock;
+    hw::Tick window = 0;
+  };
+  /// Where one frame's files go.
+  struct Outputs {
+    std::optional<std::string> out, depth;
+  };
+
   void check_outputs() const;
   /// The window in cycles; 0 for an exact run. Throws `UserError` when it does not go with the other arguments.
   [[nodiscard]] std::int64_t window_cycles() const;
+  [[nodiscard]] Setting setting(const pipeline::MachineConfig& config) const;
+  /// Draws a frame and writes its pictures.
+  [[nodiscard]] pipeline::RenderedFrame draw(const traces::CommandStream& stream, const Setting& setting, const Outputs& outputs) const;
+  [[nodiscard]] int run_one(const Setting& setting) const;
+  [[nodiscard]] int run_frames(const Setting& setting) const;
 };
 
 }  // namespace quadrille::cli

@@ -104,7 +104,7 @@ TEST_CASE("camera: a camera that is not there, or not placed, or looks at itself
   scene.cameras.resize(1);
   SceneOptions options;
   options.camera = 1;
-  REQUIRE_THROWS_WITH(make_view(scene, options), Catch::Contains("camera 1 does not exist"));
+  REQUIRE_THROWS_WITH(make_view(scene, options), Catch::Contains("camera '1' does not exist; cameras: 0"));
   options.camera = 0;
   REQUIRE_THROWS_WITH(make_view(scene, options), Catch::Contains("not placed by any node"));
   options.eye = options.at = glm::vec3(1, 2, 3);

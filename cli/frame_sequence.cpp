@@ -1,0 +1,201 @@
+#include "cli/frame_sequence.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/process.h"
+#include "models/base/error.h"
+#include "pipeline/report.h"
+#include "studies/child_run.h"
+
+namespace quadrille::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kFramesSchema = "quadrille-frames-1";
+constexpr std::int64_t kMaxFrames = 100'000;
+constexpr double kMaxFps = 1e6, kNoLimit = 1e9;  // seconds: a frame takes as long as it takes
+
+/// Which moments are drawn.
+struct Plan {
+  std::int64_t frames = 1;
+  double start = 0, step = 0;  ///< seconds
+  bool animated = false, orbit = false;
+
+  [[nodiscard]] scenes::Moment moment(std::int64_t frame) const {
+    scenes::Moment m{start + step * static_cast<double>(frame), std::nullopt};
+    if (orbit) m.orbit = static_cast<double>(frame) / static_cast<double>(frames);
+    return m;
+  }
+};
+
+Plan make_plan(const FrameArguments& arguments, const scenes::SceneOptions& options, const scenes::Scene& scene) {
+  Plan plan;
+  plan.frames = parse_whole(*arguments.frames, "--frames", 1, kMaxFrames);
+  plan.animated = scene.animated() && scene.length() > 0;
+  plan.orbit = arguments.orbit || !plan.animated;
+  plan.start = options.time.value_or(0);
+  if (arguments.fps && !plan.animated) throw user_error("--fps: the scene has no animation; its frames are a turn around it");
+  if (arguments.fps) {
+    plan.step = 1 / parse_number(*arguments.fps, "--fps", 1 / kMaxFps, kMaxFps);
+  } else if (plan.animated) {
+    plan.step = scene.length() / static_cast<double>(plan.frames);
+  }
+  return plan;
+}
+
+/// The kind of unit whose units are busy for the largest share of their cycles, and that share.
+std::pair<std::string, double> busiest(const Json& units) {
+  std::map<std::string, std::pair<double, double>> kinds;  // busy, cycles
+  for (const auto& [path, unit] : units.items()) {
+    auto& [busy, cycles] = kinds[std::string(pipeline::without_number(path))];
+    busy += unit["busy"].get<double>();
+    cycles += unit["cycles"].get<double>();
+  }
+  std::pair<std::string, double> best{"-", 0};
+  for (const auto& [kind, sums] : kinds) {
+    const double share = sums.second > 0 ? sums.first / sums.second : 0;
+    if (share > best.second) best = {kind, share};
+  }
+  return best;
+}
+
+std::uint64_t memory_bytes(const Json& units) {
+  std::uint64_t bytes = 0;
+  for (const auto& [path, unit] : units.items()) {
+    if (pipeline::without_number(path) == "memory")
+      bytes += unit["counters"]["read_bytes"].get<std::uint64_t>() + unit["counters"]["write_bytes"].get<std::uint64_t>();
+  }
+  return bytes;
+}
+
+std::string head() {
+  return fmt::format("  {:>6}{:>10}{:>8}{:>13}{:>10}{:>8}{:>12}{:>13}{:>11}  {}\n", "frame", "time s", "turn", "cycles", "ms", "draws",
+                     "triangles", "fragments", "memory MB", "busiest unit, % of its cycles");
+}
+
+std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
+  const Json& f = figures["frame"];
+  const scenes::Moment moment = plan.moment(number);
+  const bool timed = !f["cycles"].is_null();
+  const auto number_or_dash = [](bool given, const std::string& text) { return given ? text : std::string("-"); };
+  std::string out = fmt::format("  {:>6}{:>10}{:>8}", number, number_or_dash(plan.animated, fmt::format("{:.3f}", moment.time)),
+                                number_or_dash(moment.orbit.has_value(), fmt::format("{:.3f}", moment.orbit.value_or(0))));
+  if (timed) {
+    const double cycles = f["cycles"].get<double>();
+    out += fmt::format("{:>13}{:>10.3f}", f["cycles"].get<std::int64_t>(), cycles / f["clock_mhz"].get<double>() * 1e-3);
+  } else {
+    out += fmt::format("{:>13}{:>10}", "-", "-");
+  }
+  out += fmt::format("{:>8}{:>12}{:>13}", f["draws"].get<std::uint64_t>(), f["triangles"].get<std::uint64_t>(),
+                     f["fragments_shaded"].get<std::uint64_t>());
+  if (!timed) return out + fmt::format("{:>11}  -\n", "-");
+  const auto [unit, share] = busiest(figures["units"]);
+  return out + fmt::format("{:>11.3f}  {} {:.1f}\n", static_cast<double>(memory_bytes(figures["units"])) * 1e-6, unit, 100 * share);
+}
+
+/// The laws that a frame's figures break, a line each.
+std::string broken_laws(std::int64_t number, const Json& figures) {
+  std::string text;
+  for (const Json& check : figures["checks"]) {
+    if (!check["holds"].get<bool>()) text += fmt::format("quadrille: frame {}: its figures contradict each other: {}\n", number, check["law"].get<std::string>());
+  }
+  return text;
+}
+
+/// What one frame's process came to: its figures, or an error that names the frame.
+Json figures_of(const studies::ChildRun& run, std::int64_t number) {
+  switch (run.end) {
+    case studies::ChildEnd::kDone: return Json::parse(run.output);
+    case studies::ChildEnd::kRefused: throw user_error("frame {}: {}", number, run.output);
+    case studies::ChildEnd::kFailed:
+    case studies::ChildEnd::kCrashed:
+    case studies::ChildEnd::kTimedOut: break;
+  }
+  throw std::runtime_error(fmt::format("frame {} {}: {}", number, studies::child_end_name(run.end), run.output));
+}
+
+}  // namespace
+
+void FrameArguments::add_to(CLI::App& command) {
+  command
+      .add_option("--frames", frames,
+                  "draws N frames over the scene's animation, or around the scene if it has none; the names of --out and --depth then need #, "
+                  "as in frame_####.png")
+      ->type_name("N");
+  command.add_option("--fps", fps, "with --frames: frames a second of the animation (default: N frames over its whole length)")->type_name("F");
+  command.add_flag("--orbit", orbit, "with --frames: carries the camera once around the scene (the scene moves too if --time or --animation is given)");
+}
+
+void FrameArguments::check() const {
+  if (frames) {
+    (void)parse_whole(*frames, "--frames", 1, kMaxFrames);
+    if (fps) (void)parse_number(*fps, "--fps", 1 / kMaxFps, kMaxFps);
+    return;
+  }
+  if (fps) throw user_error("--fps: goes with --frames");
+  if (orbit) throw user_error("--orbit: goes with --frames");
+}
+
+void check_pattern(std::string_view flag, const std::string& pattern) {
+  const std::string name = std::filesystem::path(pattern).filename().string();
+  const std::size_t first = name.find('#');
+  const std::size_t end = first == std::string::npos ? first : name.find_first_not_of('#', first);
+  if (first == std::string::npos || (end != std::string::npos && name.find('#', end) != std::string::npos))
+    throw user_error("{}: {}: with --frames the name needs one run of # for the frame's number, as in frame_####.png", flag, pattern);
+}
+
+std::string numbered(const std::string& pattern, std::int64_t frame) {
+  const std::filesystem::path path(pattern);
+  std::string name = path.filename().string();
+  const std::size_t first = name.find('#'), end = std::min(name.size(), name.find_first_not_of('#', first));
+  name.replace(first, end - first, fmt::format("{:0{}}", frame, end - first));
+  return (path.parent_path() / name).string();
+}
+
+SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments& frames, const std::string& about, bool quiet,
+                           const DrawFrame& draw) {
+  if (arguments.is_trace()) throw user_error("--frames: {} is a trace, which holds one frame", arguments.scene);
+  scenes::SceneOptions options = arguments.options();
+  const bool moves = !frames.orbit || frames.fps || options.time || !options.animation.empty();
+  if (moves && !options.time) options.time = 0;
+  Progress progress;
+  progress.show(fmt::format("loading {}", arguments.scene));
+  scenes::Scene scene(arguments.scene, options);
+  const Plan plan = make_plan(frames, options, scene);
+  progress.clear();
+  const std::string over = plan.animated ? fmt::format("{} frames over {:g} s", plan.frames, plan.step * static_cast<double>(plan.frames))
+                                         : fmt::format("{} frames around the scene", plan.frames);
+  if (!quiet) fmt::print("FRAMES  {}, {}, {}\n{}", arguments.scene, over, about, head());
+  SequenceResult result;
+  Json all = Json::array();
+  for (std::int64_t i = 0; i < plan.frames; ++i) {
+    progress.show(fmt::format("frame {} of {}", i, plan.frames));
+    const scenes::Moment moment = plan.moment(i);
+    Json figures = figures_of(studies::run_in_child([&] { return draw(scene.record(moment), i); }, {kNoLimit, 0}), i);
+    progress.clear();
+    if (!quiet) fmt::print("{}", row(i, plan, figures));
+    std::fflush(stdout);
+    if (const std::string broken = broken_laws(i, figures); !broken.empty()) {
+      fmt::print(stderr, "{}", broken);
+      result.exit_code = kFailed;
+    }
+    all.push_back({{"frame", i},
+                   {"time_s", plan.animated ? Json(moment.time) : Json(nullptr)},
+                   {"turn", moment.orbit ? Json(*moment.orbit) : Json(nullptr)},
+                   {"figures", std::move(figures)}});
+  }
+  const Json document = {{"schema", kFramesSchema},
+                         {"scene", arguments.scene},
+                         {"animation_s", plan.animated ? Json(scene.length()) : Json(nullptr)},
+                         {"frames", std::move(all)}};
+  result.json = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return result;
+}
+
+}  // namespace quadrille::cli

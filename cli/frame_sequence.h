@@ -1,0 +1,42 @@
+/// Many frames of one scene: `quadrille render --frames N`. Each frame is a process of its own; this one reads the scene once and collects the rows.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "cli/scene_arguments.h"
+#include "pipeline/machine_config.h"
+
+namespace quadrille::cli {
+
+struct FrameArguments {
+  std::optional<std::string> frames, fps;
+  bool orbit = false;
+
+  void add_to(CLI::App& command);
+  /// Throws `UserError` for options that go with `--frames` alone.
+  void check() const;
+  [[nodiscard]] bool wanted() const { return frames.has_value(); }
+};
+
+/// `frame_####.png` with the number of a frame in the place of the signs, which stand for at least that many digits.
+[[nodiscard]] std::string numbered(const std::string& pattern, std::int64_t frame);
+/// Throws `UserError` that starts with `flag` when a file's name has no `#`, or several runs of them.
+void check_pattern(std::string_view flag, const std::string& pattern);
+
+/// Draws frame `number` from its commands, writes its files, and returns its figures as JSON. Runs in the frame's own process.
+using DrawFrame = std::function<std::string(const traces::CommandStream& stream, std::int64_t number)>;
+
+struct SequenceResult {
+  int exit_code = 0;
+  std::string json;  ///< all frames' figures, schema `quadrille-frames-1`
+};
+
+/// Draws all frames, one after another, printing a row for each unless `quiet`. Throws `UserError` that names the frame.
+[[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about, bool quiet,
+                                         const DrawFrame& draw);
+
+}  // namespace quadrille::cli
