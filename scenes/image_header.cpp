@@ -1,5 +1,6 @@
 #include "scenes/image_header.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -102,6 +103,31 @@ ImageHeader check_jpeg(Reader file) {
   file.fail("is truncated");
 }
 
+/// RIFF of chunks; the first one says the size: of a canvas, or of the lossy or lossless picture itself. [P: RFC 9649, 2.4 to 2.7; RFC 6386, 9.1]
+ImageHeader check_webp(Reader file) {
+  if (std::uint64_t{file.little(4)} + 8 > file.left()) file.fail("is truncated");
+  file.skip(12);
+  const std::uint32_t kind = file.big(0, 4);
+  file.skip(8);
+  switch (kind) {
+    case 0x56503858:  // VP8X
+      return file.sized(ImageFormat::kWebp, (file.little(4) & 0xffffff) + 1, (file.little(7) & 0xffffff) + 1);
+    case 0x5650384c: {  // VP8L
+      const std::uint32_t sides = file.little(1);
+      return file.sized(ImageFormat::kWebp, (sides & 0x3fff) + 1, (sides >> 14 & 0x3fff) + 1);
+    }
+    case 0x56503820:  // VP8
+      return file.sized(ImageFormat::kWebp, file.little(6) & 0x3fff, file.little(8) & 0x3fff);
+    default: file.fail("does not begin with a picture");
+  }
+}
+
+/// Magic, then a header of 124 bytes. [P: Microsoft, DDS_HEADER]
+ImageHeader check_dds(Reader file) {
+  if (file.left() < 128) file.fail("is truncated");
+  return file.sized(ImageFormat::kDds, file.little(16), file.little(12));
+}
+
 struct Box {
   std::array<std::int64_t, 4> v{};
 };
@@ -140,13 +166,19 @@ ImageHeader check_image_header(std::span<const std::byte> bytes, const std::stri
   if (starts_with(bytes, "\x89PNG")) return check_png({bytes, name, "PNG"});
   if (starts_with(bytes, "\xff\xd8\xff")) return check_jpeg({bytes, name, "JPEG"});
   if (starts_with(bytes, "\x76\x2f\x31\x01")) return check_exr({bytes, name, "EXR"});
-  throw user_error("{}: not a PNG, JPEG or EXR image (by its first bytes)", name);
+  if (starts_with(bytes, "RIFF") && starts_with(bytes.subspan(std::min<std::size_t>(8, bytes.size())), "WEBP"))
+    return check_webp({bytes, name, "WebP"});
+  if (starts_with(bytes, "DDS ")) return check_dds({bytes, name, "DDS"});
+  if (starts_with(bytes, "\xabKTX ")) throw user_error("{}: a KTX image; PNG, JPEG, WebP, DDS and EXR are read", name);
+  throw user_error("{}: not a PNG, JPEG, WebP, DDS or EXR image (by its first bytes)", name);
 }
 
 const char* format_extension(ImageFormat format) {
   switch (format) {
     case ImageFormat::kPng: return "png";
     case ImageFormat::kJpeg: return "jpg";
+    case ImageFormat::kWebp: return "webp";
+    case ImageFormat::kDds: return "dds";
     case ImageFormat::kExr: return "exr";
   }
   return "";

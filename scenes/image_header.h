@@ -8,14 +8,14 @@
 
 namespace quadrille::scenes {
 
-enum class ImageFormat : std::uint8_t { kPng, kJpeg, kExr };
+enum class ImageFormat : std::uint8_t { kPng, kJpeg, kWebp, kDds, kExr };
 
 struct ImageHeader {
   ImageFormat format = ImageFormat::kPng;
   std::uint32_t width = 0, height = 0;
 };
 
-/// Recognises a PNG, JPEG or EXR file by its first bytes and checks its headers: sides of 1..`kMaxImageSide`, at most `kMaxImagePixels`, parts that lie
+/// Recognises a PNG, JPEG, WebP, DDS or EXR file by its first bytes and checks its headers: sides of 1..`kMaxImageSide`, at most `kMaxImagePixels`, parts that lie
 /// within the file, a bounded number of passes. Throws `UserError` that starts with `name`.
 [[nodiscard]] ImageHeader check_image_header(std::span<const std::byte> bytes, const std::string& name);
 

@@ -26,7 +26,7 @@ struct FloatImage {
   std::vector<float> pixels;  ///< channels * width * height
 };
 
-/// Decodes a PNG, JPEG or EXR file held in memory. Grey becomes r=g=b, missing alpha 255; 16-bit and float files are rounded to 8 bits.
+/// Decodes a PNG, JPEG, WebP, DDS or EXR file held in memory. Grey becomes r=g=b, missing alpha 255; 16-bit and float files are rounded to 8 bits.
 /// Throws `UserError` that starts with `name` when the data is damaged, truncated, or has more than 16384 pixels a side or `kMaxImagePixels` in all.
 [[nodiscard]] Rgba8Image decode_image(std::span<const std::byte> bytes, const std::string& name);
 /// Reads an image file as 8-bit RGBA. Throws `UserError` with the path.

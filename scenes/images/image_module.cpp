@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -89,6 +90,21 @@ bool read_floats(OIIO::ImageInput& input, QuadrilleImage& result) {
   return input.read_image(0, 0, 0, static_cast<int>(result.channels), OIIO::TypeDesc::FLOAT, result.data) || fail(result, input.geterror());
 }
 
+/// OpenImageIO tries a file's first bytes before it opens it, and its DDS reader then does not go back: that one is named instead.
+std::unique_ptr<OIIO::ImageInput> open_input(const std::string& format, const OIIO::ImageSpec& config, OIIO::Filesystem::IOProxy* proxy,
+                                             std::string& error) {
+  if (format != "dds") {
+    auto input = OIIO::ImageInput::open("image." + format, &config, proxy);
+    if (!input) error = OIIO::geterror();
+    return input;
+  }
+  auto input = OIIO::ImageInput::create(format);
+  OIIO::ImageSpec spec;
+  if (input && input->open("image." + format, spec, config)) return input;
+  error = input ? input->geterror() : OIIO::geterror();
+  return nullptr;
+}
+
 bool decode(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint64_t max_bytes, QuadrilleImage& result) {
   configure();
   const QuietErrors quiet;
@@ -97,8 +113,9 @@ bool decode(const void* bytes, std::size_t size, const char* format, bool as_flo
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
-  const auto input = OIIO::ImageInput::open(std::string("image.") + format, &config, proxy);
-  if (!input) return fail(result, OIIO::geterror());
+  std::string error;
+  const auto input = open_input(format, config, proxy, error);
+  if (!input) return fail(result, error);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) return fail(result, "it is not a picture");
   const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);

@@ -139,7 +139,8 @@ TEST_CASE("material layers: clear glass shows what lies behind less what it refl
   const auto clear = seen(stage);
   REQUIRE(clear[0] > 0.9 * 0.6);
   for (int i = 0; i < 3; ++i)
-    REQUIRE(clear[static_cast<std::size_t>(i)] / static_cast<double>(stage.background[i]) == Approx(clear[0] / 0.6).epsilon(0.015));  // the background has eight bits
+    REQUIRE(clear[static_cast<std::size_t>(i)] / static_cast<double>(stage.background[i]) ==
+            Approx(clear[0] / 0.6).epsilon(0.015));  // the background has eight bits
   stage.environment = 1;
   stage.background = glm::vec3(1);
   for (const double angle : {0.0, 0.8, 1.3}) {

@@ -57,9 +57,47 @@ TEST_CASE("image_io: every truncation of a PNG is refused with its name") {
 
 TEST_CASE("image_io: what is no image, and what cannot be written, is the user's error") {
   const std::vector<std::byte> noise(100, std::byte{42});
-  REQUIRE_THROWS_WITH(decode_image(noise, "x.png"), "x.png: not a PNG, JPEG or EXR image (by its first bytes)");
+  REQUIRE_THROWS_WITH(decode_image(noise, "x.png"), "x.png: not a PNG, JPEG, WebP, DDS or EXR image (by its first bytes)");
   const std::vector<std::byte> jpeg{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}, std::byte{0xe0}};
   REQUIRE_THROWS_WITH(decode_image(jpeg, "x.jpg"), "x.jpg: the JPEG image is truncated");
   REQUIRE_THROWS_AS(load_image("/nonexistent/x.png"), UserError);
   REQUIRE_THROWS_AS(save_png("/nonexistent/x.png", gradient(2, 2)), UserError);
+}
+
+TEST_CASE("image_io: a WebP image is decoded, a truncated one is refused") {
+  // 3 x 2 texels of (200, 100, 50), lossless, written by libwebp.
+  const std::vector<unsigned char> file{0x52, 0x49, 0x46, 0x46, 0x1e, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56,
+                                        0x50, 0x38, 0x4c, 0x11, 0x00, 0x00, 0x00, 0x2f, 0x02, 0x40, 0x00, 0x00, 0x07,
+                                        0x50, 0xb2, 0x22, 0x57, 0xa6, 0xff, 0x81, 0x88, 0xe8, 0x7f, 0x00, 0x00};
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
+  const Rgba8Image image = decode_image(bytes, "a.webp");
+  REQUIRE(image.width == 3);
+  REQUIRE(image.height == 2);
+  for (std::size_t i = 0; i < 6; ++i)
+    REQUIRE(std::vector<std::uint8_t>(&image.pixels[4 * i], &image.pixels[4 * i] + 4) == std::vector<std::uint8_t>{200, 100, 50, 255});
+  for (std::size_t size = 12; size < bytes.size() - 4; size += 3)
+    REQUIRE_THROWS_WITH(decode_image(bytes.first(size), "a.webp"), Catch::StartsWith("a.webp: "));
+}
+
+TEST_CASE("image_io: a DDS image of one DXT1 block is decoded, a truncated one is refused") {
+  std::vector<std::uint32_t> file(32 + 2, 0);
+  file[0] = 0x20534444;  // "DDS "
+  file[1] = 124, file[2] = 0x81007, file[3] = file[4] = 4, file[5] = 8;
+  file[19] = 32, file[20] = 4, file[21] = 0x31545844;  // pixel format: four characters, "DXT1"
+  file[27] = 0x1000;                                   // a texture
+  file[32] = 0x07e0f800;                               // the block's colours: red, green
+  file[33] = 0x55000000;                               // rows of the first, the last row of the second
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
+  const Rgba8Image image = decode_image(bytes, "a.dds");
+  REQUIRE(image.width == 4);
+  REQUIRE(image.height == 4);
+  REQUIRE(std::vector<std::uint8_t>(image.pixels.begin(), image.pixels.begin() + 4) == std::vector<std::uint8_t>{255, 0, 0, 255});
+  REQUIRE(std::vector<std::uint8_t>(image.pixels.end() - 4, image.pixels.end()) == std::vector<std::uint8_t>{0, 255, 0, 255});
+  for (const std::size_t size : {4U, 60U, 127U, 130U})
+    REQUIRE_THROWS_WITH(decode_image(bytes.first(size), "a.dds"), Catch::StartsWith("a.dds: "));
+}
+
+TEST_CASE("image_io: a KTX image is refused by that name") {
+  const std::vector<unsigned char> file{0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, 13, 10, 26, 10};
+  REQUIRE_THROWS_WITH(decode_image(std::as_bytes(std::span(file)), "a.ktx2"), Catch::Contains("a.ktx2: a KTX image"));
 }

@@ -33,6 +33,13 @@ Material material_with(unsigned features) {
   m.double_sided = (features >> 7 & 1) != 0;
   m.unlit = (features >> 8 & 1) != 0;
   m.emissive = glm::vec3((features >> 9 & 1) != 0 ? 1.0F : 0.0F);
+  const unsigned layers = features * 2654435761U >> 26;  // in company of their own
+  m.layers.specular = (layers & 3) != 0;
+  m.layers.specular_glossiness = (layers & 3) == 3;
+  m.layers.clearcoat = (layers & 4) != 0 ? 1.0F : 0.0F;
+  m.layers.sheen_color = glm::vec3((layers & 8) != 0 ? 1.0F : 0.0F);
+  m.layers.transmission = (layers & 16) != 0 ? 1.0F : 0.0F;
+  if ((layers & 32) == 0) m.layers = {};
   if ((features >> 10 & 1) != 0) m.texture(TextureSlot::kOcclusion) = m.texture(TextureSlot::kMetallicRoughness);
   return m;
 }
@@ -105,6 +112,7 @@ TEST_CASE("material variants: the same features share shaders, a texture without
 
 TEST_CASE("material variants: occlusion in the metallic-roughness texture is read with it") {
   Material m = material_with(0x02);
+  m.layers = {};
   m.texture(TextureSlot::kOcclusion) = m.texture(TextureSlot::kMetallicRoughness);
   const Variant v = choose_variant(m, primitive_with(0xff), ShaderSet::kMaterial);
   REQUIRE(v.textures == std::array<bool, kTextureSlots>{false, true, false, false, false});

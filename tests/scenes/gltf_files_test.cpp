@@ -1,0 +1,192 @@
+/// Containers, URIs and extensions: what of a glTF file lies where, and what is refused.
+#include <fmt/format.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <fstream>
+
+#include "models/base/error.h"
+#include "scenes/gltf_container.h"
+#include "scenes/gltf_file.h"
+#include "scenes/gltf_loader.h"
+#include "scenes/gltf_uri.h"
+#include "tests/scenes/gltf_text.h"
+
+using namespace quadrille;
+using namespace quadrille::scenes;
+using Catch::Contains;
+
+namespace {
+
+struct Chunk {
+  std::string type, data;
+};
+
+std::string word(std::size_t value) {
+  const auto w = static_cast<std::uint32_t>(value);
+  std::string text(4, '\0');
+  std::memcpy(text.data(), &w, 4);
+  return text;
+}
+
+std::string binary_file(const std::vector<Chunk>& chunks) {
+  std::string body;
+  for (const Chunk& c : chunks) body += word(c.data.size()) + c.type + c.data;
+  return "glTF" + word(2) + word(12 + body.size()) + body;
+}
+
+std::string load_binary(const std::string& bytes) {
+  const TempGltf file(bytes, "t.glb");
+  try {
+    (void)load_gltf(file.path());
+  } catch (const UserError& error) { return error.what(); }
+  return "loaded";
+}
+
+const std::string kBin{"BIN\0", 4};
+
+std::string triangle_bytes() {
+  const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  return {reinterpret_cast<const char*>(corners.data()), 36};
+}
+
+/// The triangle whose buffer has this URI (none: the BIN chunk).
+std::string triangle_from(const std::string& uri, std::size_t bytes = 36) {
+  std::string text = triangle_gltf();
+  const std::size_t start = text.find(R"("byteLength":36,"uri":)"), end = text.find('}', start);
+  return text.replace(start, end - start, fmt::format(R"("byteLength":{}{})", bytes, uri.empty() ? "" : R"(,"uri":")" + uri + "\""));
+}
+
+/// Loads the triangle from a file beside it.
+std::string load_beside(const std::string& uri, const std::string& name) {
+  const TempGltf file(triangle_from(uri));
+  const auto folder = std::filesystem::path(file.path()).parent_path();
+  std::filesystem::create_directories((folder / name).parent_path());
+  std::ofstream(folder / name, std::ios::binary) << triangle_bytes() << "and more than the buffer needs";
+  try {
+    (void)load_gltf(file.path());
+  } catch (const UserError& error) { return error.what(); }
+  return "loaded";
+}
+
+}  // namespace
+
+TEST_CASE("binary glTF: chunks of unknown types are passed over, the first BIN chunk is the buffer, its padding too") {
+  const std::string json = triangle_from("");
+  REQUIRE(load_binary(binary_file({{"JSON", json}, {kBin, triangle_bytes()}})) == "loaded");
+  REQUIRE(load_binary(binary_file({{"JSON", json}, {"XYZ1", "what"}, {kBin, triangle_bytes() + std::string(3, '\0')}, {kBin, "two"}})) ==
+          "loaded");
+}
+
+TEST_CASE("binary glTF: chunks that do not fit, come in another order or are missing are refused") {
+  const std::string json = triangle_from("");
+  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}, {kBin, "short"}})), Contains("buffers[0]: byteLength 36 where there are 5 bytes"));
+  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}})), Contains("buffers[0]: it has no uri, and the file no BIN chunk for it"));
+  REQUIRE_THAT(load_binary(binary_file({{kBin, triangle_bytes()}, {"JSON", json}})),
+               Contains("the first chunk, and only it, holds JSON; chunk 0"));
+  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}, {"JSON", json}})), Contains("chunk 1 breaks that"));
+  REQUIRE_THAT(load_binary(binary_file({})), Contains("is truncated"));
+  std::string bytes = binary_file({{"JSON", json}, {kBin, triangle_bytes()}});
+  REQUIRE_THAT(load_binary(bytes.substr(0, bytes.size() - 1)), Contains("its header says"));
+  bytes.replace(12, 4, word(0xfffffff0));
+  REQUIRE_THAT(load_binary(bytes), Contains("chunk 0 of 4294967280 bytes reaches beyond the end"));
+  bytes.replace(4, 4, word(1));
+  REQUIRE_THAT(load_binary(bytes), Contains("version 1 of the binary container; 2 is read"));
+}
+
+TEST_CASE("uris: files beside the scene or below it, plain or percent-encoded") {
+  REQUIRE(load_beside("a.bin", "a.bin") == "loaded");
+  REQUIRE(load_beside("sub/./a%20b.bin", "sub/a b.bin") == "loaded");
+  REQUIRE(load_beside("sub/../a%C3%A9.bin", "a\xc3\xa9.bin") == "loaded");
+  REQUIRE(load_beside("100%.bin", "100%.bin") == "loaded");
+  REQUIRE_THAT(load_beside("b.bin", "a.bin"), Contains("buffers[0]: ") && Contains("b.bin"));
+}
+
+TEST_CASE("uris: absolute paths, other schemes and ways out of the folder are refused before anything is opened") {
+  REQUIRE_THAT(load_result(triangle_from("/etc/passwd")), Contains("buffers[0]: '/etc/passwd': an absolute path"));
+  REQUIRE_THAT(load_result(triangle_from("../a.bin")), Contains("leads out of the scene's folder"));
+  REQUIRE_THAT(load_result(triangle_from("a/%2e%2e/..%2fb.bin")), Contains("leads out of the scene's folder"));
+  REQUIRE_THAT(load_result(triangle_from("file:///a.bin")), Contains("only data URIs and files beside the scene are read"));
+  REQUIRE_THAT(load_result(triangle_from("https://a.b/c.bin")), Contains("only data URIs"));
+  REQUIRE_THAT(load_result(triangle_from("C:\\\\a.bin")), Contains("only data URIs"));
+  REQUIRE_THAT(load_result(triangle_from("a%00b.bin")), Contains("no zero byte"));
+  REQUIRE_THAT(load_result(triangle_from(".")), Contains("buffers[0]: "));
+}
+
+TEST_CASE("uris: data with and without base64 and padding, and what is no base64") {
+  const std::string good = data_uri_of(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+  REQUIRE(load_result(triangle_from(good)) == "loaded");
+  REQUIRE(load_result(triangle_from(good, 35)) != "loaded");  // the view reaches beyond
+  const auto fetched = [](const std::string& uri) {
+    const std::vector<std::byte> bytes = fetch_uri("t.gltf", uri, "t.gltf: here", 1000);
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  REQUIRE(fetched("data:;base64,YWJjZA==") == "abcd");
+  REQUIRE(fetched("data:text/plain;base64,YWJjZA") == "abcd");
+  REQUIRE(fetched("data:,a%20b") == "a b");
+  REQUIRE(fetched("data:;base64,").empty());
+  for (const char* bad :
+       {"data:;base64,YWJjZA=", "data:;base64,Y", "data:;base64,YW*j", "data:;base64,Y=Wj", "data:;base64,YW-_", "data:base64"}) {
+    CAPTURE(bad);
+    REQUIRE_THROWS_WITH(fetched(bad), Catch::StartsWith("t.gltf: here: its data URI"));
+  }
+}
+
+TEST_CASE("gltf: JSON that is not UTF-8 is refused") {
+  std::string text = triangle_gltf("", R"(,"extras":"?")");
+  text[text.rfind('?')] = '\xff';
+  REQUIRE_THAT(load_result(text), Contains("not JSON in UTF-8"));
+}
+
+TEST_CASE("gltf: Basis textures fall back to the plain image, and are refused where there is none") {
+  const auto file = [](const std::string& texture, const std::string& more) {
+    return triangle_gltf(R"(,"material":0)",
+                         R"(,"materials":[{"emissiveTexture":{"index":0}}],"textures":[{)" + texture +
+                             R"("extensions":{"KHR_texture_basisu":{"source":1}}}],"images":[{"uri":"none.png"},{"uri":"none.ktx2"}])" +
+                             more);
+  };
+  REQUIRE_THAT(load_result(file("", "")),
+               Contains("textures[0]: its only image is KHR_texture_basisu's; Basis textures are not supported"));
+  REQUIRE_THAT(load_result(file(R"("source":0,)", "")), Contains("images[0]") && Contains("none.png"));  // the fallback is what is opened
+  REQUIRE_THAT(load_result(file(R"("source":0,)", R"(,"extensionsRequired":["KHR_texture_basisu"])")),
+               Contains("extensionsRequired: KHR_texture_basisu not supported"));
+}
+
+TEST_CASE("gltf: an image of EXT_texture_webp or MSFT_texture_dds goes before the texture's own") {
+  for (const char* name : {"EXT_texture_webp", "MSFT_texture_dds"}) {
+    const std::string text = triangle_gltf(
+        R"(,"material":0)",
+        fmt::format(
+            R"(,"materials":[{{"emissiveTexture":{{"index":0}}}}],"textures":[{{"source":0,"extensions":{{"{}":{{"source":1}}}}}}],)"
+            R"("images":[{{"uri":"a.png"}},{{"uri":"b.other"}}])",
+            name));
+    REQUIRE_THAT(load_result(text), Contains("images[1]") && Contains("b.other"));
+  }
+}
+
+TEST_CASE("gltf: the layers of a material are read from its extensions, wrong values are named") {
+  const auto material = [](const std::string& extensions) {
+    return triangle_gltf(R"(,"material":0)", R"(,"materials":[{"extensions":{)" + extensions + "}}]");
+  };
+  const auto layers = [&](const std::string& extensions) {
+    const TempGltf file(material(extensions));
+    return load_gltf(file.path()).materials[0].layers;
+  };
+  REQUIRE_FALSE(
+      layers(R"("KHR_materials_ior":{"ior":1.5},"KHR_materials_specular":{},"KHR_materials_clearcoat":{},"KHR_materials_sheen":{})").any());
+  REQUIRE(layers(R"("KHR_materials_ior":{"ior":3})").specular_color == glm::vec3(0.25F));
+  REQUIRE(layers(R"("KHR_materials_ior":{"ior":0})").specular_color == glm::vec3(1));
+  REQUIRE(layers(R"("KHR_materials_ior":{"ior":3},"KHR_materials_specular":{"specularFactor":0.5,"specularColorFactor":[1,2,0]})")
+              .specular_color == glm::vec3(0.25F, 0.5F, 0));
+  const MaterialLayers glass = layers(
+      R"("KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_volume":{"thicknessFactor":2,"attenuationDistance":1,"attenuationColor":[1,0.5,0.25]})");
+  REQUIRE(glass.transmits());
+  REQUIRE(glass.absorption == glm::vec3(0, -2, -4));
+  REQUIRE_THAT(load_result(material(R"("KHR_materials_ior":{"ior":0.5})")),
+               Contains("materials[0].KHR_materials_ior.ior: 0.5 is neither 0 nor at least 1"));
+  REQUIRE_THAT(load_result(material(R"("KHR_materials_clearcoat":{"clearcoatFactor":2})")), Contains("clearcoatFactor: 2 is outside 0..1"));
+  REQUIRE_THAT(load_result(material(R"("KHR_materials_sheen":{"sheenColorFactor":[1,1]})")),
+               Contains("sheenColorFactor: three numbers are due"));
+  REQUIRE_THAT(load_result(material(R"("KHR_materials_transmission":{"transmissionTexture":{"index":4}})")),
+               Contains("materials[0].KHR_materials_transmission.transmissionTexture: texture 4 does not exist"));
+}
