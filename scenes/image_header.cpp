@@ -122,10 +122,20 @@ ImageHeader check_webp(Reader file) {
   }
 }
 
-/// Magic, then a header of 124 bytes. [P: Microsoft, DDS_HEADER]
+/// Magic and header, then the first level, in blocks of 4x4 pixels where a code names them, else in pixels. OpenImageIO fills a truncated one with what it has.
+/// [DDS: Microsoft, Programming Guide for DDS]
 ImageHeader check_dds(Reader file) {
-  if (file.left() < 128) file.fail("is truncated");
-  return file.sized(ImageFormat::kDds, file.little(16), file.little(12));
+  constexpr std::size_t kHeaderBytes = 128;
+  if (file.left() < kHeaderBytes) file.fail("is truncated");
+  const ImageHeader header = file.sized(ImageFormat::kDds, file.little(16), file.little(12));
+  const std::uint32_t code = file.big(84, 4), maker = code >> 16, bits = file.little(88);
+  const bool blocks = code >> 8 == 0x445854 || code >> 8 == 0x415449 || maker == 0x4243;        // DXTn, ATIn, BCn
+  const bool small = code == 0x44585431 || code == 0x41544931 || code >> 8 == 0x424334;          // DXT1, ATI1, BC4
+  const std::uint64_t width = header.width, height = header.height;
+  if (!blocks && bits > 128) file.fail(fmt::format("has {} bits a pixel; legal are up to 128", bits));
+  const std::uint64_t data = blocks ? (width + 3) / 4 * ((height + 3) / 4) * (small ? 8 : 16) : width * height * bits / 8;
+  if (file.left() - kHeaderBytes < data) file.fail("is truncated");
+  return header;
 }
 
 struct Box {
