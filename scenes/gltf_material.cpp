@@ -33,7 +33,8 @@ class MaterialReader {
     m.texture(TextureSlot::kNormal) = texture(source_.normalTexture, "normalTexture");
     m.texture(TextureSlot::kOcclusion) = texture(source_.occlusionTexture, "occlusionTexture");
     m.texture(TextureSlot::kEmissive) = texture(source_.emissiveTexture, "emissiveTexture");
-    if (!m.unlit) read_layers(file_, source_, place_, m);
+    read_layers(file_, source_, place_, m);
+    if (m.unlit) m.layers = {};
     return m;
   }
 

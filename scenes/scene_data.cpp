@@ -57,9 +57,13 @@ Bounds posed(const Primitive& primitive, const Pose& pose) {
 
 }  // namespace
 
-Bounds SceneData::box(const Instance& instance) const {
+Bounds SceneData::model_box(const Instance& instance) const {
   const Primitive& primitive = primitives[instance.primitive];
-  const Bounds model = instance.pose < 0 ? primitive.bounds : posed(primitive, poses[static_cast<std::size_t>(instance.pose)]);
+  return instance.pose < 0 ? primitive.bounds : posed(primitive, poses[static_cast<std::size_t>(instance.pose)]);
+}
+
+Bounds SceneData::box(const Instance& instance) const {
+  const Bounds model = model_box(instance);
   if (instance.copies < 0) return model.transformed(instance.world);
   Bounds all;
   for (const glm::mat4& copy : copies[static_cast<std::size_t>(instance.copies)]) all.add(model.transformed(copy));
@@ -69,7 +73,14 @@ Bounds SceneData::box(const Instance& instance) const {
 std::vector<Bounds> SceneData::boxes() const {
   if (!extent.empty()) return extent;
   std::vector<Bounds> all;
-  for (const Instance& instance : instances) all.push_back(box(instance));
+  for (const Instance& instance : instances) {
+    if (instance.copies < 0) {
+      all.push_back(box(instance));
+      continue;
+    }
+    const Bounds model = model_box(instance);
+    for (const glm::mat4& copy : copies[static_cast<std::size_t>(instance.copies)]) all.push_back(model.transformed(copy));
+  }
   return all;
 }
 

@@ -193,9 +193,11 @@ struct SceneData {
   bool depth = true;  ///< false: draw without depth test and depth attachment
   /// What a camera that frames the scene has to hold, world space, where that is more than this moment: the boxes of all of an animation's moments.
   std::vector<Bounds> extent;
-  /// A box that holds an instance, world space.
+  /// A box that holds an instance as it is posed, model space.
+  [[nodiscard]] Bounds model_box(const Instance& instance) const;
+  /// A box that holds an instance with all its copies, world space.
   [[nodiscard]] Bounds box(const Instance& instance) const;
-  /// The boxes that a camera has to hold: the extent, or those of all instances.
+  /// The boxes that a camera has to hold: the extent, or those of all instances, each copy's by itself.
   [[nodiscard]] std::vector<Bounds> boxes() const;
   /// The box around all of `boxes`.
   [[nodiscard]] Bounds bounds() const;

@@ -23,7 +23,7 @@ namespace {
 
 int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, int components, const std::vector<float>& values) {
   draco::GeometryAttribute form;
-  form.Init(type, nullptr, static_cast<std::int8_t>(components), draco::DT_FLOAT32, false, 4 * components, 0);
+  form.Init(type, nullptr, static_cast<std::uint8_t>(components), draco::DT_FLOAT32, false, 4 * components, 0);
   const auto count = static_cast<std::uint32_t>(values.size() / static_cast<std::size_t>(components));
   const int id = mesh.AddAttribute(form, true, count);
   for (std::uint32_t i = 0; i < count; ++i)
