@@ -33,9 +33,10 @@ GltfContainer split_binary(const std::string& path, std::span<const std::byte> b
     if (size > length - at) throw user_error("{}: chunk {} of {} bytes reaches beyond the end", path, chunk, size);
     if ((chunk == 0) != (type == kJson))
       throw user_error("{}: the first chunk, and only it, holds JSON; chunk {} breaks that", path, chunk);
+    if (type == kBin && chunk != 1) throw user_error("{}: chunk {} is BIN, which has its place right after the JSON", path, chunk);
     const std::span<const std::byte> data = bytes.subspan(at, size);
     if (type == kJson) result.json = {reinterpret_cast<const char*>(data.data()), data.size()};
-    if (type == kBin && !result.binary) result.binary = data;
+    if (type == kBin) result.binary = data;
     at += size;
   }
   if (chunk == 0) throw user_error("{}: a binary glTF file without a chunk", path);

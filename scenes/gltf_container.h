@@ -14,8 +14,8 @@ struct GltfContainer {
   std::optional<std::span<const std::byte>> binary;  ///< the BIN chunk, with its padding
 };
 
-/// Splits the bytes of `path`, which must outlive the result. A binary file is known by its first bytes; its chunks are JSON, then at most one BIN, and
-/// chunks of other types, which are passed over. Throws `UserError` when a chunk does not fit or the first one is not JSON. [glTF2.0 #glb-file-format-specification]
+/// Splits the bytes of `path`, which must outlive the result. A binary file is known by its first bytes; its chunks are JSON, then BIN where there is one, then
+/// chunks of other types, which are passed over. Throws `UserError` when a chunk does not fit or is out of its place. [glTF2.0 #glb-file-format-specification]
 [[nodiscard]] GltfContainer split_gltf(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace quadrille::scenes
