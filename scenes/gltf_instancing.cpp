@@ -1,14 +1,19 @@
 #include "scenes/gltf_instancing.h"
 
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/ext/quaternion_double.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 
+#include "models/base/error.h"
 #include "scenes/gltf_accessor.h"
 #include "scenes/gltf_value.h"
 
@@ -16,6 +21,13 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr std::uint32_t kMaxInstances = 1u << 20;
+
+bool all_finite(const glm::mat4& m) {
+  for (int i = 0; i < 16; ++i) {
+    if (!std::isfinite(m[i / 4][i % 4])) return false;
+  }
+  return true;
+}
 
 class InstanceReader {
  public:
@@ -86,6 +98,29 @@ class InstanceReader {
 
 std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Value& extension, const std::string& place) {
   return InstanceReader(file, extension, place).read();
+}
+
+void place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place, const glm::dmat4& world,
+                  std::size_t first, SceneData& scene) {
+  std::array<std::vector<glm::mat4>, 2> sides;
+  for (const glm::dmat4& matrix : read_instances(file, extension, place)) {
+    const glm::dmat4 placed = world * matrix;
+    if (!all_finite(glm::mat4(placed))) throw user_error("{}: {}: the matrix of one of its instances is not finite", file.path, place);
+    sides[glm::determinant(glm::dmat3(placed)) < 0 ? 1 : 0].emplace_back(placed);
+  }
+  std::size_t total = sides[0].size() + sides[1].size();
+  for (const auto& copies : scene.copies) total += copies.size();
+  if (total > kMaxInstances) throw user_error("{}: {}: the scene has more than {} instances", file.path, place, kMaxInstances);
+  const std::vector<Instance> originals(scene.instances.begin() + static_cast<std::ptrdiff_t>(first), scene.instances.end());
+  scene.instances.resize(first);
+  for (std::vector<glm::mat4>& side : sides) {
+    if (side.empty()) continue;
+    for (Instance instance : originals) {
+      instance.copies = static_cast<int>(scene.copies.size());
+      scene.instances.push_back(std::move(instance));
+    }
+    scene.copies.push_back(std::move(side));
+  }
 }
 
 }  // namespace quadrille::scenes

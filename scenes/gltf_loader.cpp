@@ -2,18 +2,15 @@
 #include "scenes/gltf_loader.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
 #include <fmt/format.h>
 
-#include <glm/ext/matrix_double3x3.hpp>
 #include <glm/ext/matrix_double4x4.hpp>
 #include <glm/ext/quaternion_double.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <glm/matrix.hpp>
 
 #include "models/base/error.h"
 #include "scenes/gltf_animation.h"
@@ -31,7 +28,6 @@ namespace {
 
 constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
                         kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
-constexpr std::size_t kMaxCopies = std::size_t{1} << 20;  // of all nodes together
 constexpr int kExtentMoments = 32;
 
 bool all_finite(const glm::dmat4& m) {
@@ -62,7 +58,6 @@ class GltfScene::Reader {
     motions_ = motions_at(animations_, time);
     scene_.instances.clear();
     scene_.copies.clear();
-    copies_ = 0;
     scene_.poses.clear();
     scene_.lights.clear();
     for (Camera& camera : scene_.cameras) camera.pose.reset();
@@ -227,29 +222,7 @@ class GltfScene::Reader {
     }
     // A skin places its mesh by joints alone, so that instances of it would all lie in one place.
     if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end() && node.skin < 0)
-      copy_instances(first, world, read_instances(file_, found->second, place), place);
-  }
-
-  /// Turns the instances from `first` on into instanced draws: one of the copies that mirror and one of those that do not, since they face the other way.
-  void copy_instances(std::size_t first, const glm::dmat4& world, const std::vector<glm::dmat4>& local, const std::string& place) {
-    std::array<std::vector<glm::mat4>, 2> sides;
-    for (const glm::dmat4& matrix : local) {
-      const glm::dmat4 placed = world * matrix;
-      if (!all_finite(placed)) fail(place, "the matrix of one of its instances is not finite");
-      sides[glm::determinant(glm::dmat3(placed)) < 0 ? 1 : 0].emplace_back(placed);
-    }
-    copies_ += local.size();
-    if (copies_ > kMaxCopies) fail(place, fmt::format("the scene has more than {} instances", kMaxCopies));
-    const std::vector<Instance> originals(scene_.instances.begin() + static_cast<std::ptrdiff_t>(first), scene_.instances.end());
-    scene_.instances.resize(first);
-    for (std::vector<glm::mat4>& side : sides) {
-      if (side.empty()) continue;
-      for (Instance instance : originals) {
-        instance.copies = static_cast<int>(scene_.copies.size());
-        scene_.instances.push_back(std::move(instance));
-      }
-      scene_.copies.push_back(std::move(side));
-    }
+      place_copies(file_, found->second, place, world, first, scene_);
   }
 
   /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]
@@ -340,7 +313,6 @@ class GltfScene::Reader {
   GltfChoice choice_;
   SceneData scene_;
   MeshReader meshes_;
-  std::size_t copies_ = 0;
   std::vector<Animation> animations_;
   double length_ = 0;
   NodeMotions motions_;
