@@ -1,0 +1,242 @@
+/// Skins, morph targets and moving nodes, against closed forms.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "models/base/error.h"
+#include "scenes/gltf_loader.h"
+#include "scenes/host_pose.h"
+#include "scenes/pose_streams.h"
+#include "scenes/scene.h"
+#include "tests/scenes/gltf_builder.h"
+#include "tests/scenes/gltf_text.h"
+
+using namespace quadrille;
+using namespace quadrille::scenes;
+using Catch::Contains;
+
+namespace {
+
+constexpr double kQuarter = 1.5707963267948966;
+
+/// The positions, or another attribute, of an instance as the host poses them, in the world.
+std::vector<glm::vec3> posed(const SceneData& scene, std::size_t instance = 0, Semantic semantic = Semantic::kPosition) {
+  const Instance& i = scene.instances.at(instance);
+  const Primitive& primitive = scene.primitives[i.primitive];
+  const Pose& pose = scene.poses.at(static_cast<std::size_t>(i.pose));
+  const auto arrays = pose_on_host(scene, primitive, pose, !pose.joints.empty());
+  const Array& array = arrays[static_cast<std::size_t>(semantic)].value();
+  std::vector<glm::vec3> values(array.count);
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    std::memcpy(&values[v], &array.data[v * sizeof(glm::vec3)], sizeof(glm::vec3));
+    if (semantic == Semantic::kPosition) values[v] = glm::vec3(i.world * glm::vec4(values[v], 1));
+  }
+  return values;
+}
+
+void check_near(const glm::vec3& a, const glm::vec3& b) {
+  for (int c = 0; c < 3; ++c) CHECK(a[c] == Approx(b[c]).margin(1e-6));
+}
+
+GltfScene opened(const std::string& text, const GltfChoice& choice = {"", true, ""}) {
+  const TempGltf file(text);
+  return {file.path(), choice};
+}
+
+std::string message(const std::string& text, const GltfChoice& choice = {"", true, ""}) {
+  try {
+    (void)opened(text, choice);
+  } catch (const UserError& error) { return error.what(); }
+  return "loaded";
+}
+
+/// Where the upper corners of the arm and its middle are when bone 1 has turned by `angle` around z.
+void check_arm(const SceneData& scene, double angle) {
+  const auto s = static_cast<float>(std::sin(angle)), c = static_cast<float>(std::cos(angle));
+  const std::vector<glm::vec3> at = posed(scene);
+  check_near(at[0], {-0.5F, 0, 0});
+  check_near(at[4], {-0.5F * c - s, 1 - 0.5F * s + c, 0});
+  check_near(at[5], {0.5F * c - s, 1 + 0.5F * s + c, 0});
+  // The middle hangs half on each bone.
+  check_near(at[2], {0.5F * (-0.5F - 0.5F * c), 0.5F * (1 + 1 - 0.5F * s), 0});
+}
+
+}  // namespace
+
+TEST_CASE("pose: a two-bone arm bends as its joints turn, at the keys, between them and beyond") {
+  GltfScene arm = opened(arm_gltf());
+  CHECK(arm.length() == 1);
+  for (const double time : {0.0, 0.25, 0.5, 1.0, 7.0}) {
+    CAPTURE(time);
+    arm.pose(time);
+    check_arm(arm.data(), std::min(time, 1.0) * kQuarter);
+  }
+}
+
+TEST_CASE("pose: joints of 16 bits, weights of 8 and 16 bits and a second set of four give the same arm") {
+  for (const auto& [wide, bits, second] : {std::tuple{true, 32, false}, {false, 16, false}, {true, 8, false}, {false, 32, true}}) {
+    CAPTURE(wide, bits, second);
+    ArmOptions options;
+    options.wide_joints = wide;
+    options.weight_bits = bits;
+    options.second_set = second;
+    GltfScene arm = opened(arm_gltf(options));
+    arm.pose(1);
+    const std::vector<glm::vec3> at = posed(arm.data());
+    // A half in 8 or 16 bits is a little less than a half, so the middle is compared loosely.
+    check_near(at[4], {-1, 0.5F, 0});
+    CHECK(at[2].y == Approx(0.75F).margin(0.01));
+  }
+}
+
+TEST_CASE("pose: without an animation the skin follows its bones at rest, and the node's own matrix counts for nothing") {
+  ArmOptions options;
+  options.node_of_mesh = R"(,"translation":[50,60,70],"scale":[3,3,3])";
+  const TempGltf file(arm_gltf(options));
+  const SceneData scene = load_gltf(file.path());
+  check_arm(scene, 0);
+}
+
+TEST_CASE("pose: a skin's normals turn with its joints") {
+  GltfScene arm = opened(arm_gltf());
+  arm.pose(1);
+  for (const glm::vec3& n : posed(arm.data(), 0, Semantic::kNormal)) check_near(n, {0, 0, 1});
+}
+
+TEST_CASE("pose: the box of a posed instance holds its posed vertices") {
+  GltfScene arm = opened(arm_gltf());
+  for (int i = 0; i <= 8; ++i) {
+    arm.pose(i / 8.0);
+    const Bounds box = arm.data().box(arm.data().instances[0]);
+    for (const glm::vec3& p : posed(arm.data())) {
+      for (int c = 0; c < 3; ++c) CHECK((p[c] >= box.low[c] - 1e-5F && p[c] <= box.high[c] + 1e-5F));
+    }
+  }
+}
+
+TEST_CASE("pose: a camera that frames an animated scene stands still, and one on a bone rides along") {
+  GltfScene arm = opened(arm_gltf());
+  arm.pose(0);
+  const Bounds first = arm.data().bounds();
+  const glm::mat4 start = arm.data().cameras[0].pose.value();
+  arm.pose(1);
+  CHECK(arm.data().bounds().low == first.low);
+  CHECK(arm.data().bounds().high == first.high);
+  CHECK(first.low.x <= -1);
+  check_near(glm::vec3(start[3]), {0, 1, 5});
+  check_near(glm::vec3(arm.data().cameras[0].pose.value()[0]), {0, 1, 0});  // its right is now up
+}
+
+TEST_CASE("pose: a morph target of half weight moves half as far") {
+  const TempGltf file(morph_gltf(2, "[0.5,0.25]"));
+  const SceneData scene = load_gltf(file.path());
+  check_near(posed(scene)[0], {0.5F, 0.25F, 0});
+  check_near(posed(scene)[3], {1.5F, 1.25F, 0});
+  check_near(posed(scene, 0, Semantic::kNormal)[0], {0.75F, 0, 1});
+  const Bounds box = scene.box(scene.instances[0]);
+  CHECK((box.high.x >= 1.5F && box.high.y >= 1.25F));
+}
+
+TEST_CASE("pose: animated weights replace the mesh's") {
+  GltfScene square = opened(morph_gltf(3, "[0.5,0.5,0.5]"));
+  square.pose(0);
+  CHECK(square.data().instances[0].pose == -1);  // nothing is moved, so nothing is posed
+  square.pose(0.5);
+  check_near(posed(square.data())[0], {0.25F, 0.25F, 0.25F});
+}
+
+TEST_CASE("pose: only targets with weight become streams, and what does not fit is left to the host") {
+  const std::array<bool, kSemantics> lit{true, true, false, false, false, false}, flat{true, false, false, false, false, false};
+  const TempGltf file(morph_gltf(11, "[1,1,1,1,1,0,0,0,0,0,0]"));
+  const SceneData scene = load_gltf(file.path());
+  Pose pose = scene.poses[0];
+  PoseStreams plan = choose_pose_streams(scene.primitives[0], pose, lit, false);
+  CHECK_FALSE(plan.morph_on_host);
+  REQUIRE(plan.streams.size() == 10);
+  CHECK(plan.streams.back().location == 15);
+  CHECK(plan.block.size() == 32);  // five weights in two vectors
+  pose.weights[7] = 0.1F;          // a sixth, with normals too, is too many
+  CHECK(choose_pose_streams(scene.primitives[0], pose, lit, false).morph_on_host);
+  CHECK_FALSE(choose_pose_streams(scene.primitives[0], pose, flat, false).morph_on_host);
+  CHECK(choose_pose_streams(scene.primitives[0], pose, flat, true).streams.empty());
+}
+
+TEST_CASE("pose: a skin of more joints than a block holds is posed on the host") {
+  const TempGltf file(arm_gltf());
+  const SceneData scene = load_gltf(file.path());
+  const std::array<bool, kSemantics> flat{true, false, false, false, false, false};
+  Pose pose = scene.poses[0];
+  CHECK(choose_pose_streams(scene.primitives[0], pose, flat, false).block.size() == 16 * 48);
+  pose.joints.resize(kMaxShaderJoints);
+  CHECK(choose_pose_streams(scene.primitives[0], pose, flat, false).block.size() == kMaxShaderJoints * 48);
+  pose.joints.resize(kMaxShaderJoints + 1);
+  const PoseStreams plan = choose_pose_streams(scene.primitives[0], pose, flat, false);
+  CHECK((plan.skin_on_host && plan.block.empty() && plan.streams.empty()));
+}
+
+TEST_CASE("pose: malformed skins are refused with their place") {
+  ArmOptions options;
+  options.last_joint = 2;
+  CHECK_THAT(message(arm_gltf(options)), Contains("meshes[0].primitives[0]: JOINTS name joint 2; skins[0] has 2 joints"));
+  options = {};
+  options.inverse_binds = 1;
+  CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].inverseBindMatrices: 1 matrices for 2 joints"));
+  options = {};
+  options.joints = "[1,9]";
+  CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].joints: node 9 does not exist (the file has 4)"));
+  options.joints = "[]";
+  CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].joints"));
+  options = {};
+  options.weight = -1;
+  CHECK_THAT(message(arm_gltf(options)), Contains("JOINTS_0: vertex 0 has the weight -1"));
+  std::string text = arm_gltf();
+  text.replace(text.find(R"("skin":0)"), 8, R"("skin":5)");
+  CHECK_THAT(message(text), Contains("nodes[0]: skin 5 does not exist (the file has 1)"));
+  text = arm_gltf();
+  text.replace(text.find("\"WEIGHTS_0\""), 11, "\"WEIGHTS_9\"");
+  CHECK_THAT(message(text), Contains("JOINTS_0 and WEIGHTS_0 come together"));
+  text = arm_gltf();
+  text.replace(text.find(R"("nodes":[0,1])"), 13, R"("nodes":[0])");
+  CHECK_THAT(message(text), Contains("skins[0].joints: node 1 is not in the scene that is drawn"));
+}
+
+TEST_CASE("pose: malformed animations are refused with their place, and only when they are played") {
+  ArmOptions options;
+  for (const auto& [times, words] : {std::pair{std::vector<float>{0, 0}, "input: key 1 at 0 s is not after the one before it"},
+                                     {std::vector<float>{1, 0.5F}, "key 1 at 0.5 s is not after"},
+                                     {std::vector<float>{0, std::nanf("")}, "key 1 is at nan s"},
+                                     {std::vector<float>{-1, 0}, "key 0 is at -1 s"},
+                                     {std::vector<float>{0, 1, 2}, "output: 2 elements where 3 keys take 3"}}) {
+    options.key_times = times;
+    CHECK_THAT(message(arm_gltf(options)), Contains("animations[0].samplers[0]") && Contains(words));
+  }
+  CHECK(load_result(arm_gltf(options)) == "loaded");
+  options = {};
+  options.interpolation = "BOUNCE";
+  CHECK_THAT(message(arm_gltf(options)), Contains("interpolation 'BOUNCE' is not STEP, LINEAR or CUBICSPLINE"));
+  options.interpolation = "CUBICSPLINE";
+  CHECK_THAT(message(arm_gltf(options)), Contains("output: 2 elements where 2 keys take 6"));
+  std::string text = arm_gltf();
+  text.replace(text.find(R"("path":"rotation")"), 17, R"("path":"weights")");
+  CHECK_THAT(message(text), Contains("animations[0].channels[0]: weights of node 2, which has no morph targets"));
+  text = arm_gltf();
+  text.replace(text.find(R"("path":"rotation")"), 17, R"("path":"pointer")");
+  CHECK(message(text) == "loaded");
+}
+
+TEST_CASE("pose: an animation and a scene are chosen by number or name, and a wrong choice lists what there is") {
+  CHECK(message(arm_gltf(), {"", true, "bend"}) == "loaded");
+  CHECK(message(arm_gltf(), {"", true, "all"}) == "loaded");
+  CHECK_THAT(message(arm_gltf(), {"", true, "1"}), Contains("animation '1' does not exist; animations: 0 'bend'"));
+  CHECK(opened(arm_gltf(), {"bones", false, ""}).data().instances.empty());
+  CHECK(opened(arm_gltf(), {"0", false, ""}).data().instances.size() == 1);
+  CHECK_THAT(message(arm_gltf(), {"legs", false, ""}), Contains("scene 'legs' does not exist; scenes: 0 'all', 1 'bones'"));
+}
+
+TEST_CASE("pose: morph targets that do not match their mesh are refused") {
+  CHECK_THAT(message(morph_gltf(2, "[1]")), Contains("nodes[0]: 1 weights for a mesh of 2 morph targets"));
+  CHECK_THAT(message(morph_gltf(1, "[1e39]")), Contains("weight is not finite"));
+  std::string text = morph_gltf(1, "[1]");
+  text.replace(text.find(R"("targets":[{"POSITION":4)"), 24, R"("targets":[{"POSITION":3)");
+  CHECK_THAT(message(text), Contains("meshes[0].primitives[0].targets[0].POSITION"));
+}
