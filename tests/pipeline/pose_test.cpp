@@ -1,0 +1,90 @@
+/// Posed pictures: by the vertex shader and by the host, on the machine and in the reference.
+#include <catch2/catch.hpp>
+
+
+#include "models/reference/compare.h"
+#include "pipeline/render.h"
+#include "scenes/scene.h"
+#include "scenes/shader_sources.h"
+#include "tests/scenes/gltf_builder.h"
+#include "tests/scenes/gltf_text.h"
+
+using namespace quadrille;
+namespace ref = models::reference;
+
+namespace {
+
+constexpr std::uint32_t kSide = 160;
+
+std::vector<std::uint32_t> picture(const std::string& file, double time, const std::string& vertex_shader = "") {
+  scenes::SceneOptions options;
+  options.width = options.height = kSide;
+  options.time = time;
+  options.vertex_shader = vertex_shader;
+  return pipeline::render_functional_frame(scenes::load_scene(file, options), {}).image.color;
+}
+
+/// The materials' own vertex shader without its part about poses, as a user might give it.
+class PlainShader {
+ public:
+  PlainShader() : file_(std::string(scenes::kInterfaceGlsl) + std::string(scenes::kMaterialVert), "plain.vert") {}
+  [[nodiscard]] std::string path() const { return file_.path(); }
+
+ private:
+  scenes::TempGltf file_;
+};
+
+/// Equal but for edges and shades that a last place of a position or normal decides.
+void require_same(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  const auto difference = ref::compare_images({kSide, kSide, a}, {kSide, kSide, b});
+  CHECK(difference.fraction_within(1) >= 0.9995);
+  CHECK(difference.bad_blocks == 0);
+}
+
+void require_other(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  CHECK(ref::compare_images({kSide, kSide, a}, {kSide, kSide, b}).fraction_within(8) < 0.99);
+}
+
+/// The whole arm hung on a root that mirrors it.
+std::string mirrored_arm() {
+  std::string text = scenes::arm_gltf();
+  const auto put = [&](const std::string& what, const std::string& with) { text.replace(text.find(what), what.size(), with); };
+  put(R"({"name":"lower")", R"({"name":"lower","scale":[-1,1,1])");
+  put(R"("doubleSided":true)", R"("doubleSided":false)");
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("posed pictures: the vertex shader and the host pose alike, for skins, mirrored skins, morph targets and both") {
+  const PlainShader plain;
+  for (const std::string& text : {scenes::arm_gltf(), mirrored_arm(), scenes::morph_gltf(4, "[0,0,0,0]")}) {
+    const scenes::TempGltf file(text);
+    const auto by_shader = picture(file.path(), 0.6);
+    require_same(by_shader, picture(file.path(), 0.6, plain.path()));
+    require_other(by_shader, picture(file.path(), 0.1));
+  }
+  require_same(picture("builtin:flag", 0.3), picture("builtin:flag", 0.3, plain.path()));
+  require_other(picture("builtin:flag", 0.3), picture("builtin:flag", 0.9));
+}
+
+TEST_CASE("posed pictures: a mirrored skin shows its front faces, and is lit from the same side") {
+  const scenes::TempGltf mirrored(mirrored_arm()), plain(scenes::arm_gltf());
+  const auto a = picture(mirrored.path(), 0), b = picture(plain.path(), 0);  // a rectangle is its own mirror image
+  require_same(a, b);
+}
+
+TEST_CASE("posed pictures: too many targets for the shader's locations are blended by the host, to the same picture") {
+  // Twelve targets, of which each four move what one of three would.
+  std::string many = "[";
+  for (int i = 0; i < 12; ++i) many += (i == 0 ? "" : ",") + std::string(i % 3 == 0 ? "0.075" : i % 3 == 1 ? "0.05" : "0.025");
+  const auto at_rest = [](const std::string& text) {
+    const scenes::TempGltf file(text);
+    scenes::SceneOptions options;
+    options.width = options.height = kSide;
+    options.eye = glm::vec3(1, 1, 4);
+    options.at = glm::vec3(0.5F, 0.5F, 0);
+    return pipeline::render_functional_frame(scenes::load_scene(file.path(), options), {}).image.color;
+  };
+  require_same(at_rest(scenes::morph_gltf(12, many + "]")), at_rest(scenes::morph_gltf(12, "[0.3,0.2,0.1,0,0,0,0,0,0,0,0,0]")));
+}
