@@ -37,7 +37,7 @@ json stats(const ScratchFolder& folder, const std::string& scene, std::vector<st
 }  // namespace
 
 TEST_CASE("exact and functional runs give one picture, whatever the driver and what is left out") {
-  for (const std::string scene : {"builtin:triangle", "builtin:quad"}) {
+  for (const std::string scene : {"builtin:triangle", "builtin:quad", "builtin:flag"}) {
     const ScratchFolder folder;
     render(folder, scene, {"--out", "exact.png", "-q"});
     render(folder, scene, {"--fidelity", "functional", "--out", "functional.png", "-q"});

@@ -1,0 +1,115 @@
+/// Several frames of a scene: moments, files, rows and the JSON.
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/quadrille.h"
+
+using namespace quadrille::tests;
+using nlohmann::json;
+
+namespace {
+
+ProgramRun frames(const ScratchFolder& folder, const std::string& scene, std::vector<std::string> more) {
+  more.insert(more.begin(), {"render", scene, "--size", "64x48"});
+  return run_quadrille(folder, more);
+}
+
+void require_equal(const ScratchFolder& folder, const std::string& a, const std::string& b, bool equal = true) {
+  CAPTURE(a, b);
+  CHECK((run_quadrille(folder, {"diff", a, b, "--max-lsb", "0"}).exit_code == 0) == equal);
+}
+
+}  // namespace
+
+TEST_CASE("frames of an animation are those that --time draws, one file and one row each") {
+  const ScratchFolder folder;
+  const ProgramRun run = frames(folder, "builtin:flag", {"--frames", "4", "--out", "f_##.png", "--stats", "f.json"});
+  CAPTURE(run.err);
+  REQUIRE(run.exit_code == 0);
+  CHECK(run.err.empty());
+  CHECK(std::ranges::count(run.out, '\n') == 6);
+  const json all = json::parse(folder.read("f.json"));
+  CHECK(all["schema"] == "quadrille-frames-1");
+  CHECK(all["animation_s"] == 2.0);
+  REQUIRE(all["frames"].size() == 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const json& frame = all["frames"][i];
+    CHECK(frame["frame"] == i);
+    CHECK(frame["time_s"] == 0.5 * static_cast<double>(i));
+    CHECK(frame["turn"].is_null());
+    CHECK(frame["figures"]["schema"] == "quadrille-figures-1");
+    CHECK(frame["figures"]["frame"]["cycles"] > 0);
+  }
+  // Exact frames here, a functional picture of one moment there.
+  CHECK(frames(folder, "builtin:flag", {"--time", "1.5", "--fidelity", "functional", "--out", "one.png", "-q"}).exit_code == 0);
+  require_equal(folder, "f_03.png", "one.png");
+  require_equal(folder, "f_02.png", "one.png", false);
+}
+
+TEST_CASE("frames a second step through the animation from --time on, and stay at its end") {
+  const ScratchFolder folder;
+  const ProgramRun run = frames(folder, "builtin:flag", {"--frames", "2", "--fps", "4", "--time", "0.5", "--fidelity", "functional", "--out",
+                                                         "f#.png", "-q"});
+  REQUIRE(run.exit_code == 0);
+  CHECK(run.out.empty());
+  CHECK(frames(folder, "builtin:flag", {"--time", "0.75", "--fidelity", "functional", "--out", "one.png", "-q"}).exit_code == 0);
+  require_equal(folder, "f1.png", "one.png");
+}
+
+TEST_CASE("frames of a scene without an animation, or with --orbit, go around it") {
+  const ScratchFolder folder;
+  REQUIRE(frames(folder, "builtin:cubes", {"--frames", "4", "--fidelity", "functional", "--out", "c#.png", "--stats", "c.json"}).exit_code == 0);
+  const json all = json::parse(folder.read("c.json"));
+  CHECK(all["animation_s"].is_null());
+  CHECK(all["frames"][3]["time_s"].is_null());
+  CHECK(all["frames"][3]["turn"] == 0.75);
+  CHECK(all["frames"][3]["figures"]["frame"]["draws"] == 125);
+  require_equal(folder, "c0.png", "c2.png", false);
+  REQUIRE(frames(folder, "builtin:flag", {"--frames", "2", "--orbit", "--fidelity", "functional", "--out", "o#.png", "-q"}).exit_code == 0);
+  REQUIRE(frames(folder, "builtin:flag", {"--fidelity", "functional", "--out", "still.png", "-q"}).exit_code == 0);
+  require_equal(folder, "o0.png", "still.png");
+  require_equal(folder, "o1.png", "still.png", false);
+}
+
+TEST_CASE("a frame that fails names its number, and those before it stay") {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder.path() / "f_1.png");  // the second frame cannot be written
+  const ProgramRun run = frames(folder, "builtin:flag", {"--frames", "3", "--fidelity", "functional", "--out", "f_#.png", "--stats", "s.json", "-q"});
+  require_refused(run, {"frame 1", "f_1.png"});
+  CHECK(folder.has("f_0.png"));
+  CHECK_FALSE(folder.has("f_2.png"));
+  CHECK_FALSE(folder.has("s.json"));
+}
+
+TEST_CASE("frames that cannot be are refused before any is drawn") {
+  const ScratchFolder folder;
+  require_refused(frames(folder, "builtin:flag", {"--frames", "0"}), {"--frames", "1..100000"});
+  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--out", "f.png"}), {"--out", "frame_####.png"});
+  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--out", "f#_#.png"}), {"--out", "frame_####.png"});
+  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--fps", "0"}), {"--fps"});
+  require_refused(frames(folder, "builtin:flag", {"--fps", "3"}), {"--fps", "--frames"});
+  require_refused(frames(folder, "builtin:flag", {"--orbit"}), {"--orbit", "--frames"});
+  require_refused(frames(folder, "builtin:cubes", {"--frames", "2", "--fps", "3"}), {"--fps", "no animation"});
+  require_refused(frames(folder, "builtin:flag", {"--time", "-1"}), {"--time"});
+  require_refused(frames(folder, "builtin:flag", {"--time", "nan"}), {"--time"});
+  require_refused(frames(folder, "builtin:flag", {"--animation", "walk"}), {"animation 'walk' does not exist", "0"});
+  require_refused(frames(folder, "builtin:flag", {"--scene", "1"}), {"one scene"});
+  CHECK(folder.empty());
+}
+
+TEST_CASE("a trace of a posed moment replays to its picture") {
+  const ScratchFolder folder;
+  REQUIRE(run_quadrille(folder, {"trace", "record", "builtin:flag", "--size", "64x48", "--time", "0.7", "-o", "f.qtrace"}).exit_code == 0);
+  REQUIRE(run_quadrille(folder, {"trace", "replay", "f.qtrace", "--fidelity", "functional", "--out", "a.png", "-q"}).exit_code == 0);
+  REQUIRE(frames(folder, "builtin:flag", {"--time", "0.7", "--fidelity", "functional", "--out", "b.png", "-q"}).exit_code == 0);
+  require_equal(folder, "a.png", "b.png");
+  require_refused(run_quadrille(folder, {"render", "f.qtrace", "--frames", "2"}), {"--frames", "f.qtrace"});
+  require_refused(run_quadrille(folder, {"render", "f.qtrace", "--time", "1"}), {"--time"});
+}
+
+TEST_CASE("the scenes, cameras and animations of a file are listed with their numbers") {
+  const ScratchFolder folder;
+  const ProgramRun run = run_quadrille(folder, {"scenes", "builtin:flag"});
+  CHECK(run.exit_code == 0);
+  for (const char* words : {"scenes 1, cameras 1, animations 1", "'below', perspective", "2 s"}) CHECK_THAT(run.out, Catch::Contains(words));
+  require_refused(run_quadrille(folder, {"scenes", "missing.gltf"}), {"missing.gltf"});
+}
