@@ -103,7 +103,8 @@ std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
 std::string broken_laws(std::int64_t number, const Json& figures) {
   std::string text;
   for (const Json& check : figures["checks"]) {
-    if (!check["holds"].get<bool>()) text += fmt::format("quadrille: frame {}: its figures contradict each other: {}\n", number, check["law"].get<std::string>());
+    if (!check["holds"].get<bool>())
+      text += fmt::format("quadrille: frame {}: its figures contradict each other: {}\n", number, check["law"].get<std::string>());
   }
   return text;
 }
@@ -124,12 +125,15 @@ Json figures_of(const studies::ChildRun& run, std::int64_t number) {
 
 void FrameArguments::add_to(CLI::App& command) {
   command
-      .add_option("--frames", frames,
-                  "draws N frames over the scene's animation, or around the scene if it has none; the names of --out and --depth then need #, "
-                  "as in frame_####.png")
+      .add_option(
+          "--frames", frames,
+          "draws N frames over the scene's animation, or around the scene if it has none; the names of --out and --depth then need #, "
+          "as in frame_####.png")
       ->type_name("N");
-  command.add_option("--fps", fps, "with --frames: frames a second of the animation (default: N frames over its whole length)")->type_name("F");
-  command.add_flag("--orbit", orbit, "with --frames: carries the camera once around the scene (the scene moves too if --time or --animation is given)");
+  command.add_option("--fps", fps, "with --frames: frames a second of the animation (default: N frames over its whole length)")
+      ->type_name("F");
+  command.add_flag("--orbit", orbit,
+                   "with --frames: carries the camera once around the scene (the scene moves too if --time or --animation is given)");
 }
 
 void FrameArguments::check() const {

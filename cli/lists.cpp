@@ -20,11 +20,13 @@ int list_scenes() {
 int list_contents(const std::string& file) {
   const scenes::SceneContents contents = scenes::scene_contents(file);
   const auto named = [](const std::string& name) { return name.empty() ? std::string("(no name)") : fmt::format("'{}'", name); };
-  fmt::print("{}: scenes {}, cameras {}, animations {}\n", file, contents.scenes.size(), contents.cameras.size(), contents.animations.size());
+  fmt::print("{}: scenes {}, cameras {}, animations {}\n", file, contents.scenes.size(), contents.cameras.size(),
+             contents.animations.size());
   for (std::size_t i = 0; i < contents.scenes.size(); ++i)
     fmt::print("  scene     {:>3}  {}{}\n", i, named(contents.scenes[i]), i == contents.own_scene ? ", drawn by default" : "");
   for (std::size_t i = 0; i < contents.cameras.size(); ++i)
-    fmt::print("  camera    {:>3}  {}, {}\n", i, named(contents.cameras[i].name), contents.cameras[i].perspective ? "perspective" : "orthographic");
+    fmt::print("  camera    {:>3}  {}, {}\n", i, named(contents.cameras[i].name),
+               contents.cameras[i].perspective ? "perspective" : "orthographic");
   for (std::size_t i = 0; i < contents.animations.size(); ++i) {
     const auto& animation = contents.animations[i];
     fmt::print("  animation {:>3}  {}, {:g} s{}\n", i, named(animation.name), animation.length,

@@ -80,8 +80,9 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
   command.add_option("--scene", scene_choice, "which scene of the file, by number from 0 or by name (default: the file's own)")
       ->type_name("N|NAME");
   command
-      .add_option("--camera", camera,
-                  "which camera of the scene, by number from 0 or by name (default: the first that is placed, else one that frames the scene)")
+      .add_option(
+          "--camera", camera,
+          "which camera of the scene, by number from 0 or by name (default: the first that is placed, else one that frames the scene)")
       ->type_name("N|NAME");
   command.add_option("--eye", eye, "a camera of your own stands here, in world units")->type_name("X,Y,Z");
   command.add_option("--at", at, "and looks there")->type_name("X,Y,Z");
@@ -118,7 +119,8 @@ void SceneArguments::check() const {
   if (is_trace()) {
     if (size || scene_choice || camera || eye || at || time || animation || vert || frag) {
       throw user_error(
-          "{}: a trace has its size, camera, pose and shaders in it; --size, --scene, --camera, --eye, --at, --time, --animation, --vert and --frag "
+          "{}: a trace has its size, camera, pose and shaders in it; --size, --scene, --camera, --eye, --at, --time, --animation, --vert "
+          "and --frag "
           "are for scenes",
           scene);
     }

@@ -27,10 +27,8 @@ struct Entry {
 constexpr std::array<Entry, 8> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
-    {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
-     [](double) { return build_quad(); }},
-    {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"},
-     [](double) { return build_cubes(); }},
+    {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"}, [](double) { return build_quad(); }},
+    {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"}, [](double) { return build_cubes(); }},
     {{"courtyard",
       "a sunlit courtyard with fountain, arcades, trees and glass: 15 materials, normal maps, MASK and BLEND, 380 thousand triangles"},
      [](double) { return build_courtyard(); }},

@@ -130,13 +130,15 @@ SceneData build_flag(double time) {
   MeshBuilder pole;
   pole.patch(20, 1, [](float u, float v) {
     const double angle = kTurn * static_cast<double>(u);
-    return PatchPoint{{static_cast<float>(0.06 * std::cos(angle)) - 0.06F, 4.6F * (1 - v), static_cast<float>(-0.06 * std::sin(angle))}, {u, v}};
+    return PatchPoint{{static_cast<float>(0.06 * std::cos(angle)) - 0.06F, 4.6F * (1 - v), static_cast<float>(-0.06 * std::sin(angle))},
+                      {u, v}};
   });
   MeshBuilder ground;
   ground.patch(8, 8, [](float u, float v) { return PatchPoint{{16 * (u - 0.4F), 0, 16 * (v - 0.5F)}, {u, v}}; });
 
   const double turns = time / kFlagSeconds;
-  scene.poses.push_back({{static_cast<float>(std::cos(kTurn * turns)), static_cast<float>(-std::sin(kTurn * turns))}, joints_at(turns), false});
+  scene.poses.push_back(
+      {{static_cast<float>(std::cos(kTurn * turns)), static_cast<float>(-std::sin(kTurn * turns))}, joints_at(turns), false});
   scene.instances.push_back({flag, glm::mat4(1), "flag", -1, 0});
   place(scene, pole.finish(scene, "pole", 1, {.normal = true, .tangent = false, .uv = false, .color = false}));
   place(scene, ground.finish(scene, "ground", 2, {.normal = true, .tangent = false, .uv = false, .color = false}));

@@ -1,5 +1,6 @@
 #include "scenes/gltf_animation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -24,7 +25,8 @@ class Reader {
   Animation read() {
     animation_.name = source_.name;
     for (std::size_t i = 0; i < source_.channels.size(); ++i) read_channel(i);
-    for (const Keyframes& keys : animation_.keyframes) animation_.length = std::max(animation_.length, static_cast<double>(keys.times.back()));
+    for (const Keyframes& keys : animation_.keyframes)
+      animation_.length = std::max(animation_.length, static_cast<double>(keys.times.back()));
     return std::move(animation_);
   }
 
@@ -56,10 +58,8 @@ class Reader {
     const std::string place = fmt::format("channels[{}]", index);
     const std::optional<TrackTarget> target = target_of(channel.target_path);
     if (!target) {
-      if (!said_) fmt::print(stderr, "{}: {}.{}: target path '{}' (KHR_animation_pointer) is not supported; left out\n", file_.path, place_, place,
-                             channel.target_path.substr(0, 40));
-      said_ = true;
-      return;
+      if (channel.target_path == "pointer") return;  // said once for the file
+      fail(place, fmt::format("path '{}' is not translation, rotation, scale or weights", channel.target_path.substr(0, 40)));
     }
     if (channel.target_node < 0) return;  // to be ignored [glTF2.0 #animations: target.node]
     if (static_cast<std::size_t>(channel.target_node) >= file_.model.nodes.size())
@@ -108,7 +108,8 @@ class Reader {
 
   void read_times(Keyframes& keys, int accessor, const std::string& place) {
     const Elements e = read_accessor(file_, accessor, fmt::format("{}.{}.input", place_, place));
-    if (e.components != 1 || e.component != Component::kFloat) fail(place, fmt::format("input: accessor {} is not of float scalars", accessor));
+    if (e.components != 1 || e.component != Component::kFloat)
+      fail(place, fmt::format("input: accessor {} is not of float scalars", accessor));
     charge(e.count, place);
     keys.times.resize(e.count);
     for (std::size_t i = 0; i < e.count; ++i) {
@@ -150,7 +151,6 @@ class Reader {
   Animation animation_;
   std::map<std::tuple<int, std::size_t, bool>, std::size_t> read_;
   std::size_t values_ = 0;
-  bool said_ = false;
 };
 
 void apply(NodeMotion& motion, TrackTarget target, const std::vector<double>& v) {
@@ -169,6 +169,8 @@ Animation read_animation(const GltfFile& file, std::size_t index) { return Reade
 std::vector<Animation> choose_animations(const GltfFile& file, const std::string& choice) {
   std::vector<std::string> names;
   for (const tinygltf::Animation& animation : file.model.animations) names.push_back(animation.name);
+  if (std::ranges::find(file.model.extensionsUsed, "KHR_animation_pointer") != file.model.extensionsUsed.end())
+    fmt::print(stderr, "{}: KHR_animation_pointer is not supported; its channels are left out\n", file.path);
   std::vector<Animation> chosen;
   if (choice == kAll) {
     for (std::size_t i = 0; i < names.size(); ++i) chosen.push_back(read_animation(file, i));
@@ -176,7 +178,8 @@ std::vector<Animation> choose_animations(const GltfFile& file, const std::string
   }
   if (choice.empty() && names.empty()) return chosen;
   const std::optional<std::size_t> index = find_choice(names, choice.empty() ? "0" : choice);
-  if (!index) throw user_error("{}: animation '{}' does not exist; animations: {}", file.path, choice.substr(0, 60), list_of_choices(names));
+  if (!index)
+    throw user_error("{}: animation '{}' does not exist; animations: {}", file.path, choice.substr(0, 60), list_of_choices(names));
   chosen.push_back(read_animation(file, *index));
   return chosen;
 }

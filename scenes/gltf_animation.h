@@ -22,11 +22,11 @@ struct NodeMotion {
 };
 using NodeMotions = std::map<int, NodeMotion>;  ///< by node number
 
-/// Reads and checks animation `index`. Channels of other kinds (KHR_animation_pointer) are left out with a warning on standard error.
-/// Throws `UserError` with the place of what is wrong.
+/// Reads and checks animation `index`. Channels of KHR_animation_pointer are left out. Throws `UserError` with the place of what is wrong.
 [[nodiscard]] Animation read_animation(const GltfFile& file, std::size_t index);
 
 /// The animations that `choice` names: a number, a name, `all`, or empty for the first; none when the file has none and nothing is named.
+/// Warns on standard error of a file that uses KHR_animation_pointer.
 /// Throws `UserError` that lists the file's animations when there is no such one.
 [[nodiscard]] std::vector<Animation> choose_animations(const GltfFile& file, const std::string& choice);
 

@@ -29,6 +29,8 @@ namespace {
 constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
                         kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
 constexpr int kExtentMoments = 32;
+constexpr std::size_t kMaxPoseValues = std::size_t{1}
+                                       << 22;  // joints and weights of all posed nodes: a file may show one skin any number of times
 
 bool all_finite(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i) {
@@ -163,6 +165,7 @@ class GltfScene::Reader {
   void visit_nodes() {
     worlds_.assign(file_.model.nodes.size(), std::nullopt);
     skinned_.clear();
+    pose_values_ = 0;
     std::vector<Visit> open;
     const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
       for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent});
@@ -208,10 +211,14 @@ class GltfScene::Reader {
     Pose pose{morph_weights(node, file_.model.meshes[mesh], motion, place), {}, false};
     const bool posed = node.skin >= 0 || std::ranges::any_of(pose.weights, [](float w) { return w != 0; });
     const int number = posed ? static_cast<int>(scene_.poses.size()) : -1;
-    if (posed) scene_.poses.push_back(std::move(pose));
+    if (posed) {
+      charge_pose(pose.weights.size(), place);
+      scene_.poses.push_back(std::move(pose));
+    }
     if (node.skin >= 0) {
       const auto [skin, added] = skins_.try_emplace(node.skin);
       if (added) skin->second = read_skin(file_, node.skin, place);
+      charge_pose(skin->second.joints.size(), place);
       meshes_.read_skinning(node.mesh, skin->second.joints.size(), node.skin);
       skinned_.push_back({node.skin, static_cast<std::size_t>(number), scene_.instances.size(), primitives.size()});
     }
@@ -238,6 +245,11 @@ class GltfScene::Reader {
       if (!std::isfinite(result.back())) fail(place, "a morph target's weight is not finite");
     }
     return result;
+  }
+
+  void charge_pose(std::size_t values, const std::string& place) {
+    pose_values_ += values;
+    if (pose_values_ > kMaxPoseValues) fail(place, fmt::format("the scene poses more than {} joints and weights", kMaxPoseValues));
   }
 
   void pose_skinned(const SkinnedNode& s) {
@@ -319,6 +331,7 @@ class GltfScene::Reader {
   std::map<int, Skin> skins_;
   std::vector<std::optional<glm::dmat4>> worlds_;  ///< by node; none: not visited
   std::vector<SkinnedNode> skinned_;
+  std::size_t pose_values_ = 0;
 };
 
 GltfScene::GltfScene(const std::string& path, const GltfChoice& choice) : reader_(std::make_unique<Reader>(path, choice)) {}

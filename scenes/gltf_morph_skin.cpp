@@ -29,7 +29,8 @@ bool has_weight(const Array& weights, std::size_t component) {
 
 bool is_vec4(const GltfFile& file, int accessor) {
   const auto& all = file.model.accessors;
-  return accessor >= 0 && static_cast<std::size_t>(accessor) < all.size() && all[static_cast<std::size_t>(accessor)].type == TINYGLTF_TYPE_VEC4;
+  return accessor >= 0 && static_cast<std::size_t>(accessor) < all.size() &&
+         all[static_cast<std::size_t>(accessor)].type == TINYGLTF_TYPE_VEC4;
 }
 
 glm::vec3 point_at(const Array& positions, std::size_t vertex) {
@@ -74,7 +75,8 @@ void MeshReader::read_joints(const tinygltf::Primitive& source, const std::strin
   const Array& positions = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])];
   const std::size_t vertices = positions.count;
   for (std::size_t set = 0; set < primitive.joint_sets.size(); ++set) {
-    const auto joints = source.attributes.find(fmt::format("JOINTS_{}", set)), weights = source.attributes.find(fmt::format("WEIGHTS_{}", set));
+    const auto joints = source.attributes.find(fmt::format("JOINTS_{}", set)),
+               weights = source.attributes.find(fmt::format("WEIGHTS_{}", set));
     const bool has_joints = joints != source.attributes.end(), has_weights = weights != source.attributes.end();
     if (has_joints != has_weights)
       throw user_error("{}: {}: JOINTS_{} and WEIGHTS_{} come together; one is missing", file_.path, place, set, set);

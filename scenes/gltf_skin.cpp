@@ -59,8 +59,7 @@ Skin read_skin(const GltfFile& file, int index, const std::string& place) {
   const Elements e = read_accessor(file, source.inverseBindMatrices, at);
   if (e.components != 16 || e.component != Component::kFloat)
     throw user_error("{}: {}: accessor {} is not of 4x4 float matrices", file.path, at, source.inverseBindMatrices);
-  if (e.count < skin.joints.size())
-    throw user_error("{}: {}: {} matrices for {} joints", file.path, at, e.count, skin.joints.size());
+  if (e.count < skin.joints.size()) throw user_error("{}: {}: {} matrices for {} joints", file.path, at, e.count, skin.joints.size());
   for (std::size_t i = 0; i < skin.joints.size(); ++i) {
     skin.inverse_binds[i] = matrix_of(e, i);
     if (!is_affine(skin.inverse_binds[i])) throw user_error("{}: {}: matrix {} is not finite and affine", file.path, at, i);
@@ -87,8 +86,10 @@ void pose_skin(const GltfFile& file, int index, const Skin& skin, const std::vec
   pose.joints.clear();
   for (const glm::dmat4& m : joints) {
     JointMatrix rows;
-    for (int r = 0; r < 3; ++r) rows[static_cast<std::size_t>(r)] = glm::vec4(m[0][r] / unit, m[1][r] / unit, m[2][r] / unit, m[3][r] / unit);
-    if (!std::isfinite(rows[0].w + rows[1].w + rows[2].w)) throw user_error("{}: skins[{}]: a joint's matrix is not finite", file.path, index);
+    for (int r = 0; r < 3; ++r)
+      rows[static_cast<std::size_t>(r)] = glm::vec4(m[0][r] / unit, m[1][r] / unit, m[2][r] / unit, m[3][r] / unit);
+    if (!std::isfinite(rows[0].w + rows[1].w + rows[2].w))
+      throw user_error("{}: skins[{}]: a joint's matrix is not finite", file.path, index);
     pose.joints.push_back(rows);
     mirrored += glm::determinant(glm::dmat3(m)) < 0 ? 1 : -1;
   }

@@ -132,8 +132,8 @@ Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic s
 Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components, const std::string& place) {
   const bool small = elements.component != Component::kUint32;
   if (elements.components != components || !small)
-    throw user_error("{}: {}: {} components of this type are not what a morph target adds here ({} are)", file.path, place, elements.components,
-                     components);
+    throw user_error("{}: {}: {} components of this type are not what a morph target adds here ({} are)", file.path, place,
+                     elements.components, components);
   require_finite(file, elements, place);
   return {"morph target", float_format(components), elements.count, as_floats(elements)};
 }
@@ -155,9 +155,9 @@ std::pair<Array, Array> to_joint_arrays(const GltfFile& file, const Elements& jo
     if (weight < 0) throw user_error("{}: {}: vertex {} has the weight {}", file.path, place, i / 4, weight);
     if (weight == 0) std::memset(&numbers.data[i * size], 0, size);
   }
-  const Format format = !fraction                                  ? Format::kR32G32B32A32Float
+  const Format format = !fraction                                ? Format::kR32G32B32A32Float
                         : weights.component == Component::kUint8 ? Format::kR8G8B8A8UnormVertex
-                                                                   : Format::kR16G16B16A16Unorm;
+                                                                 : Format::kR16G16B16A16Unorm;
   return {std::move(numbers), Array{"WEIGHTS", format, weights.count, weights.data}};
 }
 

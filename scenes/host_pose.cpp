@@ -20,7 +20,8 @@ using Vector = std::array<double, 4>;
 
 std::array<std::uint32_t, 4> words_at(const Array& array, std::size_t vertex) {
   std::array<std::uint32_t, 4> words{};
-  models::decode_attribute(static_cast<AttributeFormat>(array.format), &array.data[vertex * traces::format_bytes(array.format)], words.data());
+  models::decode_attribute(static_cast<AttributeFormat>(array.format), &array.data[vertex * traces::format_bytes(array.format)],
+                           words.data());
   return words;
 }
 
@@ -145,7 +146,8 @@ class HostPose {
 
 }  // namespace
 
-std::array<std::optional<Array>, kSemantics> pose_on_host(const SceneData& scene, const Primitive& primitive, const Pose& pose, bool skinned) {
+std::array<std::optional<Array>, kSemantics> pose_on_host(const SceneData& scene, const Primitive& primitive, const Pose& pose,
+                                                          bool skinned) {
   return HostPose(scene, primitive, pose, skinned).run();
 }
 

@@ -105,7 +105,8 @@ class Chooser {
 
 }  // namespace
 
-PoseStreams choose_pose_streams(const Primitive& primitive, const Pose& pose, const std::array<bool, kSemantics>& attributes, bool on_host) {
+PoseStreams choose_pose_streams(const Primitive& primitive, const Pose& pose, const std::array<bool, kSemantics>& attributes,
+                                bool on_host) {
   return Chooser(primitive, pose, attributes).run(on_host);
 }
 

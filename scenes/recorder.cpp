@@ -18,6 +18,7 @@
 namespace quadrille::scenes {
 namespace {
 
+constexpr std::size_t kMaxPosedBytes = std::size_t{3} << 28;  // 768 MiB
 static_assert(offsetof(DrawConstants, draw_id) == 112 && offsetof(DrawConstants, handedness) + 4 == kDrawConstantBytes);
 
 /// `Material` of scenes/shaders/material.glsl, std140.
@@ -174,7 +175,8 @@ traces::Index Recorder::array_buffer(int array) {
 }
 
 traces::Index Recorder::pose_set(const std::vector<std::byte>& block) {
-  const auto [entry, added] = pose_sets_.try_emplace({reinterpret_cast<const char*>(block.data()), block.size()}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  const auto [entry, added] = pose_sets_.try_emplace({reinterpret_cast<const char*>(block.data()), block.size()},
+                                                     static_cast<traces::Index>(stream_.descriptor_sets.size()));
   if (!added) return entry->second;
   const auto buffer = static_cast<traces::Index>(stream_.buffers.size());
   stream_.buffers.push_back({"pose", block});
@@ -208,7 +210,8 @@ void Recorder::pose(const Instance& instance, Geometry& g) {
   g.mirrored = g.mirrored != pose.mirrored;
   PoseStreams plan = choose_pose_streams(primitive, pose, g.variant.attributes, on_host);
   g.variant.pose_defines = std::move(plan.defines);
-  for (const PoseStream& s : plan.streams) add_stream(g, s.location, scene_.arrays[static_cast<std::size_t>(s.array)], array_buffer(s.array));
+  for (const PoseStream& s : plan.streams)
+    add_stream(g, s.location, scene_.arrays[static_cast<std::size_t>(s.array)], array_buffer(s.array));
   if (!plan.block.empty()) g.pose_set = pose_set(plan.block);
   if (!plan.morph_on_host && !plan.skin_on_host) return;
   const auto posed = pose_on_host(scene_, primitive, pose, plan.skin_on_host);
@@ -217,6 +220,9 @@ void Recorder::pose(const Instance& instance, Geometry& g) {
     if (location >= kSemantics || !posed[location]) continue;
     g.streams[i].second = static_cast<traces::Index>(stream_.buffers.size());
     g.formats[i] = posed[location]->format;
+    posed_bytes_ += posed[location]->data.size();
+    if (posed_bytes_ > kMaxPosedBytes)
+      throw user_error("{}: vertices posed by the host take more than {} bytes", scene_.name, kMaxPosedBytes);
     stream_.buffers.push_back({posed[location]->name, posed[location]->data});
   }
 }

@@ -99,10 +99,11 @@ class Recorder {
   std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;  ///< by material and available attributes
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
-  std::map<int, traces::Index> copies_buffers_;      ///< by `Instance::copies`, where their order is the scene's
-  std::vector<traces::Index> array_buffers_;         ///< by array of the scene; kNone: not recorded
-  std::map<std::string, traces::Index> pose_sets_;   ///< by the block's bytes
-  std::vector<traces::Command> bound_;               ///< what each slot holds, to leave out repeated binds
+  std::map<int, traces::Index> copies_buffers_;     ///< by `Instance::copies`, where their order is the scene's
+  std::vector<traces::Index> array_buffers_;        ///< by array of the scene; kNone: not recorded
+  std::map<std::string, traces::Index> pose_sets_;  ///< by the block's bytes
+  std::vector<traces::Command> bound_;              ///< what each slot holds, to leave out repeated binds
+  std::size_t posed_bytes_ = 0;                     ///< by the host
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

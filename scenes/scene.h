@@ -23,11 +23,11 @@ struct SceneOptions {
   int camera = -1;  ///< index into the file's cameras; -1: the first one a node carries, else one that frames the scene
   std::optional<glm::vec3> eye,
       at;  ///< world space; either one makes an own camera (60 degrees high); the other defaults to the centre / the framing eye
-  std::string camera_name;          ///< used where `camera` is -1: a camera's name
-  std::string scene;                ///< which scene of the file, by number or name; empty: the file's own
-  std::optional<double> time;       ///< seconds into the animation; none: at rest, unless an animation is named
-  std::string animation;            ///< number, name or `all`; empty: the first
-  std::optional<double> orbit;      ///< part of a turn by which the camera is carried around the scene's centre
+  std::string camera_name;                     ///< used where `camera` is -1: a camera's name
+  std::string scene;                           ///< which scene of the file, by number or name; empty: the file's own
+  std::optional<double> time;                  ///< seconds into the animation; none: at rest, unless an animation is named
+  std::string animation;                       ///< number, name or `all`; empty: the first
+  std::optional<double> orbit;                 ///< part of a turn by which the camera is carried around the scene's centre
   bool visibility = false;                     ///< draw triangle ids instead of colours (see `triangle_id_color`)
   std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
 };

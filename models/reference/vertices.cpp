@@ -95,7 +95,8 @@ std::vector<AttributeFeed> attribute_feeds(const DrawState& state, const ShaderP
   for (const traces::VertexAttribute& attribute : state.pipeline->attributes) {
     AttributeFeed feed;
     for (const Port& port : program.inputs) {
-      if (port.location == attribute.location && port.component < 4) feed.slots.at(port.component) = port.slot, feed.integers = port.kind == ScalarKind::kInt;
+      if (port.location == attribute.location && port.component < 4)
+        feed.slots.at(port.component) = port.slot, feed.integers = port.kind == ScalarKind::kInt;
     }
     if (feed.slots == std::array<Slot, 4>{kNoSlot, kNoSlot, kNoSlot, kNoSlot}) continue;
     if (feed.integers != traces::is_integer_format(attribute.format)) {

@@ -55,7 +55,7 @@ struct ScalarShader {
   std::vector<ConstantBlock> blocks;
   std::vector<models::TextureBinding> textures;
   std::map<std::uint16_t, models::Interpolation> varyings;  ///< fragment: interpolation by raw slot
-  std::uint32_t integer_inputs = 0;  ///< vertex: bit i: input location i is of integers
+  std::uint32_t integer_inputs = 0;                         ///< vertex: bit i: input location i is of integers
   bool early_fragment_tests = false;
 };
 

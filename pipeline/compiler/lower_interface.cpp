@@ -55,7 +55,8 @@ void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Deco
     slots.push_back(inherited.built_in >= 0 ? built_in_slot(inherited.built_in, k, output)
                                             : location_slot(location, first + k, inherited, output));
   const Id scalar_type = type.kind == Kind::kVector ? type.element : type_id;
-  const bool integers = shader_.stage == Stage::kVertex && !output && inherited.built_in < 0 && module_.type(scalar_type).kind != Kind::kFloat;
+  const bool integers =
+      shader_.stage == Stage::kVertex && !output && inherited.built_in < 0 && module_.type(scalar_type).kind != Kind::kFloat;
   if (integers && location < kMaxAttributeLocations) shader_.integer_inputs |= 1u << location;
   ++location;
 }
@@ -103,8 +104,7 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
 Value Lowering::load_input(Id variable, std::uint32_t place, const spirv::Instruction& i) {
   const Slot& slot = slots_[variable].at(place);
   if (slot.kind != Slot::Kind::kUsed)
-    throw unsupported(
-        i, fmt::format("input {} (a built-in, or a location beyond the limit)", module_.name(variable)));
+    throw unsupported(i, fmt::format("input {} (a built-in, or a location beyond the limit)", module_.name(variable)));
   if (shader_.stage == Stage::kVertex || slot.system) return build_.emit(Op::kInput, {}, {}, {}, slot.imm);
   shader_.varyings[slot.imm] = slot.interpolation;
   return build_.emit(Op::kInterp, {}, {}, {}, slot.imm);

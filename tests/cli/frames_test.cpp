@@ -47,8 +47,8 @@ TEST_CASE("frames of an animation are those that --time draws, one file and one 
 
 TEST_CASE("frames a second step through the animation from --time on, and stay at its end") {
   const ScratchFolder folder;
-  const ProgramRun run = frames(folder, "builtin:flag", {"--frames", "2", "--fps", "4", "--time", "0.5", "--fidelity", "functional", "--out",
-                                                         "f#.png", "-q"});
+  const ProgramRun run =
+      frames(folder, "builtin:flag", {"--frames", "2", "--fps", "4", "--time", "0.5", "--fidelity", "functional", "--out", "f#.png", "-q"});
   REQUIRE(run.exit_code == 0);
   CHECK(run.out.empty());
   CHECK(frames(folder, "builtin:flag", {"--time", "0.75", "--fidelity", "functional", "--out", "one.png", "-q"}).exit_code == 0);
@@ -57,7 +57,9 @@ TEST_CASE("frames a second step through the animation from --time on, and stay a
 
 TEST_CASE("frames of a scene without an animation, or with --orbit, go around it") {
   const ScratchFolder folder;
-  REQUIRE(frames(folder, "builtin:cubes", {"--frames", "4", "--fidelity", "functional", "--out", "c#.png", "--stats", "c.json"}).exit_code == 0);
+  REQUIRE(
+      frames(folder, "builtin:cubes", {"--frames", "4", "--fidelity", "functional", "--out", "c#.png", "--stats", "c.json"}).exit_code ==
+      0);
   const json all = json::parse(folder.read("c.json"));
   CHECK(all["animation_s"].is_null());
   CHECK(all["frames"][3]["time_s"].is_null());
@@ -73,7 +75,8 @@ TEST_CASE("frames of a scene without an animation, or with --orbit, go around it
 TEST_CASE("a frame that fails names its number, and those before it stay") {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.path() / "f_1.png");  // the second frame cannot be written
-  const ProgramRun run = frames(folder, "builtin:flag", {"--frames", "3", "--fidelity", "functional", "--out", "f_#.png", "--stats", "s.json", "-q"});
+  const ProgramRun run =
+      frames(folder, "builtin:flag", {"--frames", "3", "--fidelity", "functional", "--out", "f_#.png", "--stats", "s.json", "-q"});
   require_refused(run, {"frame 1", "f_1.png"});
   CHECK(folder.has("f_0.png"));
   CHECK_FALSE(folder.has("f_2.png"));
@@ -110,6 +113,7 @@ TEST_CASE("the scenes, cameras and animations of a file are listed with their nu
   const ScratchFolder folder;
   const ProgramRun run = run_quadrille(folder, {"scenes", "builtin:flag"});
   CHECK(run.exit_code == 0);
-  for (const char* words : {"scenes 1, cameras 1, animations 1", "'below', perspective", "2 s"}) CHECK_THAT(run.out, Catch::Contains(words));
+  for (const char* words : {"scenes 1, cameras 1, animations 1", "'below', perspective", "2 s"})
+    CHECK_THAT(run.out, Catch::Contains(words));
   require_refused(run_quadrille(folder, {"scenes", "missing.gltf"}), {"missing.gltf"});
 }

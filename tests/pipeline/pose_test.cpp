@@ -1,7 +1,6 @@
 /// Posed pictures: by the vertex shader and by the host, on the machine and in the reference.
 #include <catch2/catch.hpp>
 
-
 #include "models/reference/compare.h"
 #include "pipeline/render.h"
 #include "scenes/scene.h"

@@ -6,12 +6,13 @@
 
 namespace quadrille::scenes {
 
-int GltfBuilder::add(std::span<const std::byte> bytes, std::size_t components, int component_type, const std::string& type, bool normalized) {
+int GltfBuilder::add(std::span<const std::byte> bytes, std::size_t components, int component_type, const std::string& type,
+                     bool normalized) {
   const std::size_t width = type == "SCALAR" ? 1 : type == "VEC2" ? 2 : type == "VEC3" ? 3 : type == "VEC4" ? 4 : 16;
   const std::string comma = count_ == 0 ? "" : ",";
   views_ += fmt::format(R"({}{{"buffer":0,"byteOffset":{},"byteLength":{}}})", comma, buffer_.size(), bytes.size());
-  accessors_ += fmt::format(R"({}{{"bufferView":{},"componentType":{},"count":{},"type":"{}","normalized":{}}})", comma, count_, component_type,
-                            components / width, type, normalized);
+  accessors_ += fmt::format(R"({}{{"bufferView":{},"componentType":{},"count":{},"type":"{}","normalized":{}}})", comma, count_,
+                            component_type, components / width, type, normalized);
   buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
   buffer_.resize((buffer_.size() + 3) / 4 * 4);
   return count_++;

@@ -44,7 +44,7 @@ struct ArmOptions {
   bool second_set = false;        ///< JOINTS_1 and WEIGHTS_1 with half of each weight
   std::string node_of_mesh = "";  ///< more members of the node that shows the mesh
   std::string joints = "[1,2]";
-  float weight = 1;               ///< of the joint that holds a vertex alone
+  float weight = 1;  ///< of the joint that holds a vertex alone
 };
 /// Its animation "bend" turns bone 1 by a quarter around z from 0 to 1 s. Nodes: 0 the mesh, 1 and 2 the bones, 3 a camera on bone 2.
 [[nodiscard]] std::string arm_gltf(const ArmOptions& options = {});

@@ -220,8 +220,39 @@ TEST_CASE("pose: malformed animations are refused with their place, and only whe
   text.replace(text.find(R"("path":"rotation")"), 17, R"("path":"weights")");
   CHECK_THAT(message(text), Contains("animations[0].channels[0]: weights of node 2, which has no morph targets"));
   text = arm_gltf();
-  text.replace(text.find(R"("path":"rotation")"), 17, R"("path":"pointer")");
-  CHECK(message(text) == "loaded");
+  text.replace(text.find(R"("path":"rotation")"), 17, R"("path":"colour")");
+  CHECK_THAT(message(text), Contains("path 'colour' is not translation, rotation, scale or weights"));
+}
+
+TEST_CASE("pose: channels of KHR_animation_pointer are left out, and the others play") {
+  std::string text = arm_gltf();
+  const std::string channels = R"("channels":[)";
+  text.insert(text.find(channels) + channels.size(),
+              R"({"sampler":0,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/nodes/2/scale"}}}},)");
+  text.insert(text.rfind('}'), R"(,"extensionsUsed":["KHR_animation_pointer"])");
+  GltfScene arm = opened(text);
+  arm.pose(1);
+  check_arm(arm.data(), kQuarter);
+  text.insert(text.rfind('}'), R"(,"extensionsRequired":["KHR_animation_pointer"])");
+  CHECK_THAT(message(text), Contains("extensionsRequired: KHR_animation_pointer not supported"));
+}
+
+TEST_CASE("pose: a skin that is shown without end is refused before it takes all memory") {
+  // A skin of 1000 joints, all the same node, on 5000 nodes.
+  ArmOptions options;
+  options.joints = "[1,2";
+  for (int i = 2; i < 1000; ++i) options.joints += ",1";
+  options.joints += "]";
+  options.inverse_binds = 1000;
+  std::string text = arm_gltf(options), nodes, roots;
+  for (int i = 4; i < 5000; ++i) {
+    nodes += R"(,{"mesh":0,"skin":0})";
+    roots += "," + std::to_string(i);
+  }
+  const std::string first = R"("nodes":[0,1)", list = R"({"camera":0,"translation":[0,0,5]})";
+  text.insert(text.find(first) + first.size(), roots);
+  text.insert(text.find(list) + list.size(), nodes);
+  CHECK_THAT(message(text), Contains("poses more than 4194304 joints and weights"));
 }
 
 TEST_CASE("pose: an animation and a scene are chosen by number or name, and a wrong choice lists what there is") {
