@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "models/reference/compare.h"
+#include "models/reference/reference.h"
 #include "pipeline/render.h"
 #include "scenes/scene.h"
 #include "scenes/shader_sources.h"
@@ -12,6 +13,13 @@ using namespace quadrille;
 namespace ref = models::reference;
 
 namespace {
+
+scenes::ArmOptions eight_joints() {
+  scenes::ArmOptions options;
+  options.second_set = true;
+  options.wide_joints = true;
+  return options;
+}
 
 constexpr std::uint32_t kSide = 160;
 
@@ -57,7 +65,8 @@ std::string mirrored_arm() {
 
 TEST_CASE("posed pictures: the vertex shader and the host pose alike, for skins, mirrored skins, morph targets and both") {
   const PlainShader plain;
-  for (const std::string& text : {scenes::arm_gltf(), mirrored_arm(), scenes::morph_gltf(4, "[0,0,0,0]")}) {
+  for (const std::string& text :
+       {scenes::arm_gltf(), scenes::arm_gltf(eight_joints()), mirrored_arm(), scenes::morph_gltf(4, "[0,0,0,0]")}) {
     const scenes::TempGltf file(text);
     const auto by_shader = picture(file.path(), 0.6);
     require_same(by_shader, picture(file.path(), 0.6, plain.path()));
@@ -86,4 +95,17 @@ TEST_CASE("posed pictures: too many targets for the shader's locations are blend
     return pipeline::render_functional_frame(scenes::load_scene(file.path(), options), {}).image.color;
   };
   require_same(at_rest(scenes::morph_gltf(12, many + "]")), at_rest(scenes::morph_gltf(12, "[0.3,0.2,0.1,0,0,0,0,0,0,0,0,0]")));
+}
+
+TEST_CASE("posed pictures: integers that a shader reads are supplied as integers, or the draw is refused") {
+  traces::CommandStream stream = scenes::load_scene("builtin:flag", {});
+  for (traces::Pipeline& pipeline : stream.pipelines) {
+    for (traces::VertexAttribute& a : pipeline.attributes) {
+      if (a.format == traces::Format::kR8G8B8A8Uint) a.format = traces::Format::kR8G8B8A8UnormVertex;
+    }
+  }
+  traces::validate(stream);
+  CHECK_THROWS_WITH(pipeline::render_functional_frame(stream, {}),
+                    Catch::Contains("location 6 as integers") && Catch::Contains("as floats"));
+  CHECK_THROWS_WITH(ref::render(stream, {}), Catch::Contains("location 6"));
 }

@@ -9,6 +9,7 @@
 
 #include "models/base/error.h"
 #include "scenes/scene.h"
+#include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
 #include "tests/scenes/scene_folder.h"
 #include "traces/whole_file.h"
@@ -18,9 +19,11 @@ using namespace quadrille::scenes;
 
 namespace {
 
-void load_or_refuse(const std::string& path) {
+void load_or_refuse(const std::string& path, std::optional<double> time = std::nullopt) {
   try {
     SceneOptions options;
+    options.time = time;
+    if (time) options.animation = "all";
     options.width = options.height = 64;
     (void)load_scene(path, options);
   } catch (const UserError& error) {
@@ -43,6 +46,7 @@ TEST_CASE("hostile files: every one loads or is refused with its name, within 10
     CAPTURE(entry.path().string());
     const auto start = std::chrono::steady_clock::now();
     load_or_refuse(entry.path().string());
+    load_or_refuse(entry.path().string(), 0.3);
     REQUIRE(std::chrono::steady_clock::now() - start < std::chrono::seconds(10));
     ++files;
   }
@@ -63,6 +67,25 @@ TEST_CASE("hostile files: random damage to a good file never crashes the loader"
     if (dice() % 4 == 0) bad.resize(dice() % bad.size());
     const std::string result = load_result(bad);
     REQUIRE(result.find('\n') == std::string::npos);
+  }
+}
+
+TEST_CASE("hostile files: random damage to skins, morph targets and animations never crashes loader, posing or recorder") {
+  std::mt19937 dice(3);
+  const TempGltf file("");
+  for (int i = 0; i < 600; ++i) {
+    std::string bad = i % 2 == 0 ? arm_gltf() : morph_gltf(4, "[0.5,0,1,0]");
+    // Half of the damage is to the numbers of the buffer, half to the JSON after it.
+    const std::size_t start = bad.find("base64,") + 7, end = bad.find('"', start);
+    for (unsigned k = 0; k < 1 + dice() % 3; ++k) {
+      if (dice() % 2 == 0) {
+        bad[start + dice() % (end - start)] = "AZaz09+/"[dice() % 8];
+      } else {
+        bad[end + dice() % (bad.size() - end)] = "0123456789[]{},"[dice() % 15];
+      }
+    }
+    traces::write_whole_file(file.path(), std::as_bytes(std::span(bad)));
+    load_or_refuse(file.path(), 0.3);
   }
 }
 

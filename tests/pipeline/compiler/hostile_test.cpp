@@ -55,7 +55,7 @@ TEST_CASE("unsupported features are refused by name and line") {
   CHECK_THAT(error_of("double d = double(a.x); color = vec4(d);"), Catch::Contains("test.frag"));
   CHECK_THAT(error_of("other = a; color = a;", "layout(location=1) out vec4 other;"), Catch::Contains("other"));
   CHECK_THAT(error_of("color = vec4(gl_PointCoord, 0, 0);"), Catch::Contains("gl_PointCoord"));
-  const auto vertex = vertex_spirv("#version 450\nlayout(location=0) in ivec2 p; void main() { gl_Position = vec4(p, 0, 1); }");
+  const auto vertex = vertex_spirv("#version 450\nlayout(location=40) in vec2 p; void main() { gl_Position = vec4(p, 0, 1); }");
   const auto fragment = fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
   CHECK_THROWS_WITH(compile_pipeline(vertex, "i.vert", fragment, "f.frag"), Catch::Contains("i.vert") && Catch::Contains("'p'"));
   CHECK_THROWS_WITH(compile_pipeline(fragment, "i.vert", fragment, "f.frag"), Catch::Contains("i.vert") && Catch::Contains("entry point"));

@@ -150,4 +150,14 @@ TEST_CASE("specialisation constants take their defaults") {
             .point(0) == Vec4{7.5f, 7, 1, 0});
 }
 
+TEST_CASE("compiler: integer vertex inputs are read as they are, and the pipeline says which locations they are") {
+  const auto vertex = vertex_spirv(
+      "#version 450\nlayout(location=0) in vec2 p; layout(location=3) in uvec4 i; void main() { gl_Position = vec4(p, float(i.y + 7u), 1); "
+      "}");
+  const auto fragment = fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
+  const CompiledPipeline p = compile_pipeline(vertex, "v", fragment, "f");
+  CHECK(p.integer_inputs == 8);
+  CHECK(std::ranges::any_of(p.vertex.vertex_inputs, [](const auto& use) { return use.location == 3 && use.component == 1; }));
+}
+
 }  // namespace quadrille::pipeline
