@@ -14,7 +14,8 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr double kAffineTolerance = 1e-3;  // [G: rounding of exporters]
-constexpr double kFarFromOne = 1024;       // sizes whose squares the shader's cross products hold with ease
+constexpr double kFarFromOne =
+    1024;  // sizes whose squares the shader's cross products hold with ease; also what is far, in sizes of the skeleton
 
 glm::dmat4 matrix_of(const Elements& e, std::size_t index) {
   glm::dmat4 m(1);
@@ -39,6 +40,15 @@ double size_of(const std::vector<glm::dmat4>& joints) {
     for (int c = 0; c < 3; ++c) size = std::max(size, glm::length(glm::dvec3(m[c])));
   }
   return size;
+}
+
+/// Where the skeleton is, if that is far away for its size; otherwise the origin. A point that floats hold.
+glm::dvec3 far_center(const std::vector<glm::dvec3>& places, double size) {
+  glm::dvec3 mean(0);
+  for (const glm::dvec3& p : places) mean += p / static_cast<double>(places.size());
+  double reach = size;
+  for (const glm::dvec3& p : places) reach = std::max(reach, glm::length(p - mean));
+  return glm::length(mean) > kFarFromOne * reach ? glm::dvec3(glm::vec3(mean)) : glm::dvec3(0);
 }
 
 }  // namespace
@@ -70,24 +80,27 @@ Skin read_skin(const GltfFile& file, int index, const std::string& place) {
 void pose_skin(const GltfFile& file, int index, const Skin& skin, const std::vector<std::optional<glm::dmat4>>& worlds, Pose& pose,
                glm::mat4& model) {
   std::vector<glm::dmat4> joints;
+  std::vector<glm::dvec3> places;
   joints.reserve(skin.joints.size());
   for (std::size_t i = 0; i < skin.joints.size(); ++i) {
     const std::optional<glm::dmat4>& world = worlds[static_cast<std::size_t>(skin.joints[i])];
     if (!world) throw user_error("{}: skins[{}].joints: node {} is not in the scene that is drawn", file.path, index, skin.joints[i]);
     joints.push_back(*world * skin.inverse_binds[i]);
+    places.emplace_back((*world)[3]);
   }
   const double size = size_of(joints);
   if (!std::isfinite(static_cast<float>(size))) throw user_error("{}: skins[{}]: a joint's matrix is not finite", file.path, index);
   const bool plain = size == 0 || (size < kFarFromOne && size * kFarFromOne > 1);
   const double unit = plain ? 1.0 : std::ldexp(1.0, std::ilogb(size));
+  const glm::dvec3 center = far_center(places, size);
   model = glm::mat4(static_cast<float>(unit));
-  model[3][3] = 1;
+  model[3] = glm::vec4(glm::vec3(center), 1);
   std::ptrdiff_t mirrored = 0;
   pose.joints.clear();
   for (const glm::dmat4& m : joints) {
     JointMatrix rows;
     for (int r = 0; r < 3; ++r)
-      rows[static_cast<std::size_t>(r)] = glm::vec4(m[0][r] / unit, m[1][r] / unit, m[2][r] / unit, m[3][r] / unit);
+      rows[static_cast<std::size_t>(r)] = glm::vec4(m[0][r] / unit, m[1][r] / unit, m[2][r] / unit, (m[3][r] - center[r]) / unit);
     if (!std::isfinite(rows[0].w + rows[1].w + rows[2].w))
       throw user_error("{}: skins[{}]: a joint's matrix is not finite", file.path, index);
     pose.joints.push_back(rows);

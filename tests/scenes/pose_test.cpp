@@ -3,6 +3,9 @@
 #include <cmath>
 #include <cstring>
 
+#include <fmt/format.h>
+#include <glm/ext/vector_double3.hpp>
+
 #include "models/base/error.h"
 #include "scenes/gltf_loader.h"
 #include "scenes/host_pose.h"
@@ -95,6 +98,27 @@ TEST_CASE("pose: without an animation the skin follows its bones at rest, and th
   const TempGltf file(arm_gltf(options));
   const SceneData scene = load_gltf(file.path());
   check_arm(scene, 0);
+}
+
+TEST_CASE("pose: a skin far from the origin, or far from the size of one, keeps its precision") {
+  for (const auto& [place, scale] : {std::pair{1e7, 1.0}, {0.0, 1e-6}, {0.0, 1e9}}) {
+    CAPTURE(place, scale);
+    std::string text = arm_gltf();
+    const std::string lower = R"({"name":"lower")";
+    text.insert(text.find(lower) + lower.size(), fmt::format(R"(,"translation":[{0},0,0],"scale":[{1},{1},{1}])", place, scale));
+    GltfScene arm = opened(text);
+    arm.pose(1);
+    const Instance& instance = arm.data().instances[0];
+    const Pose& pose = arm.data().poses[0];
+    for (const JointMatrix& joint : pose.joints) {
+      for (const glm::vec4& row : joint) CHECK(glm::length(row) < 4);
+    }
+    const auto arrays = pose_on_host(arm.data(), arm.data().primitives[0], pose, true);
+    glm::vec3 corner;
+    std::memcpy(&corner, &arrays[0].value().data[4 * sizeof(glm::vec3)], sizeof(corner));
+    const glm::dvec3 world = glm::dvec3(corner) * static_cast<double>(instance.world[0].x) + glm::dvec3(instance.world[3]);
+    check_near(glm::vec3((world - glm::dvec3(place, 0, 0)) / scale), {-1, 0.5F, 0});
+  }
 }
 
 TEST_CASE("pose: a skin's normals turn with its joints") {
