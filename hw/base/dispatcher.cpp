@@ -14,6 +14,9 @@ namespace {
 /// Rounds in one activation of the SC_METHOD; between activations SystemC's time catches up and progress is reported.
 constexpr int kRoundsPerActivation = 1 << 14;
 
+/// With a window: so many calls without a surprise lengthen a chooser's slack by a cycle. More calls: smaller errors, less gained. [M: docs/accuracy.md]
+constexpr Tick kCallsACycle = 4;
+
 Tick saturating_add(Tick a, Tick b) { return a > kNever - b ? kNever : a + b; }
 
 constexpr std::size_t kLanes = 4;  // of 64 bits in a vector register
@@ -55,7 +58,7 @@ void Dispatcher::prepare() {
     chooser_of_[i] = choosers_.size();
     chooser_marks_[i / 64] |= std::uint64_t{1} << (i % 64);
     const Reach reach = reach_of(i, neighbours);
-    choosers_.push_back({&unit, unit.touched_word(), unit.touched_bit(), reach.self, Wake(kNever)});
+    choosers_.push_back({&unit, unit.touched_word(), unit.touched_bit(), reach.self, Wake(kNever), reach, 0});
     reach_.push_back(reach.others);
   }
   times_.assign((choosers_.size() + kLanes - 1) / kLanes * kLanes, kNever);
@@ -111,7 +114,7 @@ Dispatcher::Reach Dispatcher::reach_of(std::size_t chooser, const std::vector<st
       if (!settled[n.unit]) open.emplace(saturating_add(distance, n.latency), n.unit);
     }
   }
-  return {saturating_add(reach.others, window_), saturating_add(reach.self, window_)};
+  return reach;
 }
 
 void Dispatcher::step() {
@@ -133,10 +136,20 @@ void Dispatcher::settle() {
   for (std::size_t w = 0; w < touched_.size(); ++w) {
     for (std::uint64_t marks = std::exchange(touched_[w], 0); marks != 0; marks &= marks - 1) {
       const std::size_t k = chooser_of_[w * 64 + static_cast<std::size_t>(std::countr_zero(marks))];
-      choosers_[k].wake = choosers_[k].unit->wake();
+      const Wake asked = choosers_[k].unit->next();
+      if (window_ > 0) adapt(k, asked.at());
+      choosers_[k].wake = asked.not_before(choosers_[k].unit->last_action());
       times_[k] = choosers_[k].wake.at();
     }
   }
+}
+
+void Dispatcher::adapt(std::size_t k, Tick asked) {
+  Chooser& c = choosers_[k];
+  if (asked < c.unit->last_action()) c.slack /= 2;
+  else c.slack = std::min(window_, c.slack + c.unit->clock().period() / kCallsACycle);
+  reach_[k] = saturating_add(c.exact.others, c.slack);
+  c.round_trip = saturating_add(c.exact.self, c.slack);
 }
 
 bool Dispatcher::run_marked() {

@@ -2,8 +2,11 @@
 ///
 /// Fixed-order units run until a FIFO stops them. Once all have run dry only choosers can start anything, so a chooser k may act at t only if, for every chooser
 /// j, t < time(j) + distance(j, k): the distance is the shortest sum of latencies from j to k through the machine, tokens forward and credits back, and for
-/// j = k the shortest round trip. Nothing simulated later can then become visible to it at or before t. `window` adds to that bound; with window > 0 the
-/// figures are approximate.
+/// j = k the shortest round trip. Nothing simulated later can then become visible to it at or before t.
+///
+/// `window` lets each chooser go beyond that bound, at most so far; the figures are then approximate. A token that comes in time for a tick which the chooser
+/// has left behind is served late, so each chooser learns how far it may go: its slack is halved by such a surprise and grows slowly without one
+/// [P: Chiu and Jain 1989]. Every unit's own time still never runs backwards and no token is seen before its time, so pixels and laws do not depend on the window.
 #pragma once
 
 #include "hw/base/driver.h"
@@ -12,7 +15,7 @@ namespace quadrille::hw {
 
 class Dispatcher final : public Driver {
  public:
-  /// `window`: extra look-ahead of choosers in ticks; 0 is exact.
+  /// `window`: the most that choosers may look ahead beyond the exact bound, in ticks; 0 is exact.
   explicit Dispatcher(sc_core::sc_module_name name, Tick window = 0) : Driver(name), window_(window) {}
 
  private:
@@ -27,6 +30,8 @@ class Dispatcher final : public Driver {
     std::uint64_t mark_bit = 0;
     Tick round_trip = kNever;
     Wake wake;
+    Reach exact;
+    Tick slack = 0;  ///< what it may go beyond the exact bound now, at most `window_`
   };
   void prepare() override;
   /// A unit that can surprise another, by number, and how soon.
@@ -40,6 +45,8 @@ class Dispatcher final : public Driver {
   void step();
   /// Runs marked fixed-order units until none can act, then asks marked choosers again.
   void settle();
+  /// Learns from what chooser `k` answers after something reached it: it would have acted at `asked`.
+  void adapt(std::size_t k, Tick asked);
   /// One pass over the marked fixed-order units. False when none was marked.
   bool run_marked();
   void run_ahead(Unit& unit) const;
@@ -53,7 +60,7 @@ class Dispatcher final : public Driver {
   std::vector<std::size_t> chooser_of_;       ///< unit index -> chooser index; only for choosers
   std::vector<std::uint64_t> chooser_marks_;  ///< which bits of `touched_` are choosers'
   std::vector<Tick> times_;                   ///< choosers_[i].wake.at(), contiguous for the scans; padded with kNever
-  std::vector<Tick> reach_;                   ///< by chooser: smallest distance from any other chooser
+  std::vector<Tick> reach_;                   ///< by chooser: smallest distance from any other chooser, and its slack
 };
 
 }  // namespace quadrille::hw

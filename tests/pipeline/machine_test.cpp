@@ -43,6 +43,20 @@ TEST_CASE("machine: a window of any size keeps pixels and laws, and never deadlo
   }
 }
 
+TEST_CASE("machine: the end of a frame under a window is a few per cent off, however large the window") {
+  constexpr hw::Tick kCycle = 1'000'000;
+  const traces::CommandStream stream = random_stream(7, {120, 72, 30, 20});
+  const auto exact = hw::contract::run_forked(machine_builder(stream, 0), {});
+  for (const hw::Tick window : {1, 16, 256, 4096, 1'000'000}) {
+    hw::contract::Variation variation;
+    variation.window = window * kCycle;
+    const auto ahead = hw::contract::run_forked(machine_builder(stream, 0), variation);
+    INFO("window of " << window << " cycles: " << ahead.end << " fs, exact " << exact.end << " fs");
+    REQUIRE(ahead.failure.empty());
+    CHECK(static_cast<double>(ahead.end) == Approx(static_cast<double>(exact.end)).epsilon(0.05));
+  }
+}
+
 TEST_CASE("machine: random streams give the pixels of the functional rendering on the default machine") {
   for (std::uint64_t seed = 100; seed < 130; ++seed) {
     const traces::CommandStream stream = random_stream(seed, {120, 72, 30, 20});
