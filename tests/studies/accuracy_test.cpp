@@ -153,8 +153,8 @@ TEST_CASE("accuracy: the study refuses what a run refuses") {
   machine.set("core.register_rows", "16", "test");
   AccuracyOptions options;
   options.repeat = 1;
-  CHECK_THROWS_WITH(measure_accuracy(scene_of("builtin:quad", 16, 16), machine, options),
-                    Contains("builtin:quad") || Contains("register_rows"));
+  CHECK_THROWS_WITH(measure_accuracy(scene_of("builtin:cubes", 16, 16), machine, options),
+                    Contains("builtin:cubes: exact: ") && Contains("register_rows"));
 }
 
 TEST_CASE("plots: text is quoted so that gnuplot reads none of it") {
