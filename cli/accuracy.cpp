@@ -71,6 +71,7 @@ int run_accuracy(const AccuracyArguments& a) {
   for (const std::string& scene : a.scenes) all.push_back(arguments_of(a, scene));
   pipeline::MachineConfig machine;
   a.machine.apply(machine);
+  for (const std::string& setting : a.machine.settings) machine.name += ", " + setting;  // the tables say of which machine they are
   check_outputs(a);
 
   std::vector<studies::SceneAccuracy> measured;

@@ -1,6 +1,7 @@
 #include "studies/accuracy.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -148,13 +149,11 @@ class Study {
     result.other_triangle_percent = 100.0 * static_cast<double>(std::ranges::count(other, 1)) / static_cast<double>(other.size());
   }
 
-  /// By pixel: 1 where another triangle is seen than the reference shows. Only sub-pixel bits move triangles.
-  const std::vector<std::uint8_t>& other_triangles(const models::Precision& precision) {
-    const auto [place, fresh] = other_triangles_.try_emplace(precision.subpixel_bits);
+  /// By pixel: 1 where another triangle is seen than the reference shows. Texture precisions move the edges of cut-outs, and so count too.
+  const std::vector<std::uint8_t>& other_triangles(const models::Precision& p) {
+    const auto [place, fresh] = other_triangles_.try_emplace({p.subpixel_bits, p.subtexel_bits, p.lod_bits});
     if (!fresh) return place->second;
-    models::Precision as_machine = machine_.precision();
-    as_machine.subpixel_bits = precision.subpixel_bits;
-    const Pixels seen = run_timed(*scene_.visibility, machine_, {std::nullopt, as_machine}).color;
+    const Pixels seen = run_timed(*scene_.visibility, machine_, {std::nullopt, p}).color;
     for (std::size_t i = 0; i < seen.size(); ++i) place->second.push_back(seen[i] != ideal_triangles_[i] ? 1 : 0);
     return place->second;
   }
@@ -165,7 +164,7 @@ class Study {
   SceneAccuracy out_;
   std::vector<Pixels> images_;
   Pixels ideal_, ideal_triangles_;
-  std::map<int, std::vector<std::uint8_t>> other_triangles_;  ///< by sub-pixel bits
+  std::map<std::array<int, 3>, std::vector<std::uint8_t>> other_triangles_;  ///< by the bits of the three precisions
 };
 
 }  // namespace

@@ -54,6 +54,9 @@ std::string window_data(const SceneAccuracy& scene, std::size_t number, Extent& 
   return out + "EOD\n";
 }
 
+/// A file without its folders.
+std::string short_name(const SceneAccuracy& scene) { return scene.name.substr(scene.name.rfind('/') + 1); }
+
 double drawn_rmse(double rmse) { return std::max(kLeastRmse, rmse); }
 
 /// A line a number of bits: the error of all pixels, and of those that show the same triangle.
@@ -72,14 +75,15 @@ std::string precision_data(const SceneAccuracy& scene, std::size_t number, const
 std::string accuracy_plot(std::span<const SceneAccuracy> scenes) {
   std::string out = std::string(kFrame) +
                     "set title 'Error against run time: windows of look-ahead, in cycles beyond the exact bound'\nset logscale xy\n"
-                    "set key outside right top font ',10' samplen 2\nset xtics (20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 120, 150, 200, 500)\n"
+                    "set key outside bottom center horizontal font ',10' samplen 2 maxrows 4\nset xtics (20, 30, 40, 50, 60, 70, 80, 90, "
+                    "100, 110, 120, 150, 200, 500)\n"
                     "set xlabel 'run time of the simulation, % of the exact run (median; bars: quartiles)'\n"
                     "set ylabel 'error of frame cycles, % (0.001: that or less)'\n";
   std::vector<std::string> lines;
   Extent extent;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     out += window_data(scenes[i], i, extent);
-    lines.push_back(fmt::format("$windows{} using 1:4 with lines lt {} lw 1.5 title {}", i, i + 1, quoted(scenes[i].name)));
+    lines.push_back(fmt::format("$windows{} using 1:4 with lines lt {} lw 1.5 title {}", i, i + 1, quoted(short_name(scenes[i]))));
     lines.push_back(fmt::format("$windows{} using 1:4:2:3 with xerrorbars lt {} pt 0 notitle", i, i + 1));
     lines.push_back(fmt::format("$windows{} using 1:4:5 with points lt {} pt variable ps 1 notitle", i, i + 1));
   }
@@ -87,8 +91,9 @@ std::string accuracy_plot(std::span<const SceneAccuracy> scenes) {
     const SettingResult& s = scenes[0].settings[i];
     if (s.error) lines.push_back(fmt::format("NaN with points lc rgb '#444444' pt {} ps 1 title '{}'", shape(i), s.setting.name()));
   }
-  return out + fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\nplot ", extent.left / kMargin, extent.right * kMargin,
-                           kLeastPercent / 2, extent.top * 2) +
+  return out +
+         fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\nplot ", extent.left / kMargin, extent.right * kMargin,
+                     kLeastPercent / 2, extent.top * 2) +
          joined(lines) + "\n";
 }
 
@@ -111,7 +116,7 @@ std::string precision_plot(std::span<const SceneAccuracy> scenes) {
       if (scenes[i].precision.empty()) continue;
       out += precision_data(scenes[i], i, panel.parameter);
       const std::string data = fmt::format("${}{}", panel.parameter, i);
-      lines.push_back(fmt::format("{} using 1:2 with linespoints lt {} pt 7 ps 0.5 title {}", data, i + 1, quoted(scenes[i].name)));
+      lines.push_back(fmt::format("{} using 1:2 with linespoints lt {} pt 7 ps 0.5 title {}", data, i + 1, quoted(short_name(scenes[i]))));
       lines.push_back(fmt::format("{} using 1:3 with lines lt {} dt 2 notitle", data, i + 1));
     }
     out += fmt::format("set xlabel '{}'\nset xrange [{}]\nplot {}\n", panel.label, panel.range, joined(lines));

@@ -11,7 +11,7 @@ namespace quadrille::studies {
 
 inline constexpr std::string_view kAccuracySchema = "quadrille-accuracy-1";
 
-/// The tables of one scene, lines of at most about 140 columns.
+/// The tables of one scene, lines of at most about 160 columns.
 [[nodiscard]] std::string accuracy_table(const SceneAccuracy& scene, const pipeline::MachineConfig& machine);
 /// All scenes, schema `kAccuracySchema`. What is infinite or does not exist is null.
 [[nodiscard]] std::string accuracy_json(std::span<const SceneAccuracy> scenes, const pipeline::MachineConfig& machine);

@@ -66,7 +66,8 @@ std::string precision_row(const PrecisionResult& p) {
   } else {
     row += fmt::format("{:>14}{:>14}{:>10}{:>12}", "-", "-", "-", "-");
   }
-  return row + "  " + time_columns(p.cpu_s) + "\n";
+  row += "  " + time_columns(p.cpu_s);
+  return row.erase(row.find_last_not_of(' ') + 1) + "\n";
 }
 
 std::string precision_table(const SceneAccuracy& scene) {
