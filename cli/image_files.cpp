@@ -77,6 +77,9 @@ void check_output(std::string_view flag, const std::string& path, const std::vec
   if (std::ranges::find(extensions, lower_extension(path)) == extensions.end()) {
     throw user_error("{}: {}: the name has to end in {}", flag, path, joined(extensions));
   }
+  constexpr std::size_t kMaxNameBytes = 200;  // a file system allows 255, and the name it has while it is written is longer
+  const std::size_t name_bytes = fs::path(path).filename().string().size();
+  if (name_bytes > kMaxNameBytes) throw user_error("{}: the file's name has {} bytes; legal are {}", flag, name_bytes, kMaxNameBytes);
   std::error_code failure;
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   if (!fs::is_directory(folder, failure)) throw user_error("{}: {}: there is no folder {}", flag, path, folder.string());

@@ -1,7 +1,6 @@
 /// The `quadrille` program: finds the subcommand and turns every error into one line and an exit code.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -39,8 +38,7 @@ int fail(int code, std::string message) {
 
 /// What CLI11 says of a wrong command line, as one line.
 int refuse(const CLI::App& app, const CLI::ParseError& error) {
-  std::string text = error.what();
-  std::ranges::replace(text, '\n', ' ');
+  const std::string text = one_line(error.what());
   const auto parsed = app.get_subcommands();
   return fail(kUserError, fmt::format("{}; see quadrille{} --help", text, parsed.empty() ? "" : " " + parsed.front()->get_name()));
 }
@@ -70,7 +68,7 @@ int run(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail(kUserError, "out of memory; try a smaller --size, or a machine with less gpu.memory_mib");
   } catch (const std::system_error& error) {
-    return fail(kUserError, error.what());  // standard output is full or gone
+    return fail(kUserError, one_line(error.what()));  // standard output is full or gone
   } catch (const std::exception& error) { return fail(kInternalError, fmt::format("internal error: {}", error.what())); }
 }
 

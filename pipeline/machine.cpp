@@ -247,7 +247,9 @@ void Machine::run(const hw::RunLimits& limits) {
   const hw::RunEnd reason = driver_->run(limits);
   if (!command_processor_->finished()) {
     const char* const what = reason == hw::RunEnd::kTimeLimit ? "the time limit was reached" : "the machine cannot progress";
-    throw user_error("{}: {}", what, hw::deadlock_report(driver_->units(), limits.max_time == hw::kNever ? quiet_end() : limits.max_time));
+    const hw::Tick when = limits.max_time == hw::kNever ? quiet_end() : limits.max_time;
+    throw UserError(fmt::format(
+        "{}: {}", what, hw::deadlock_report(driver_->units(), when)));  // a table of who waits for whom: the only error of many lines
   }
   for (hw::Unit* unit : driver_->units()) unit->close(end());
 }

@@ -37,13 +37,6 @@ void check_lines(std::string_view text, const std::string& file) {
   }
 }
 
-/// One line of printable text: what a parser says may quote the file.
-std::string one_line(std::string_view text) {
-  std::string out(text.substr(0, text.find('\n')));
-  for (char& c : out) c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return out;
-}
-
 std::string value_text(const toml::node& node, const std::string& where, const std::string& key) {
   if (const auto* v = node.as_integer()) return fmt::format("{}", v->get());
   if (const auto* v = node.as_floating_point()) return fmt::format("{}", v->get());
@@ -86,7 +79,7 @@ void apply_machine_text(MachineConfig& config, std::string_view text, const std:
   check_lines(text, file);
   try {
     apply(config, toml::parse(text, file), "", file);
-  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", file, e.source().begin.line, one_line(e.description())); }
+  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", file, e.source().begin.line, e.description()); }
   try {
     config.check();
   } catch (const UserError& e) { throw user_error("{}: {}", file, e.what()); }

@@ -154,7 +154,7 @@ View file_view(const SceneData& scene, const Camera& camera, const SceneOptions&
   const glm::dmat4 world(*camera.pose);
   const glm::dvec3 z(world[2]), y(world[1]);
   if (!(glm::length(z) > 0) || !(glm::length(glm::cross(y, z)) > 0))
-    throw user_error("camera '{}': its node's matrix is singular", camera.name);
+    throw user_error("{}: camera '{}': its node's matrix is singular", scene.name, camera.name);
   CameraPose pose;
   pose.eye = glm::dvec3(world[3]);
   pose.backward = glm::normalize(z);

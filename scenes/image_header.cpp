@@ -103,41 +103,6 @@ ImageHeader check_jpeg(Reader file) {
   file.fail("is truncated");
 }
 
-/// RIFF of chunks; the first one says the size: of a canvas, or of the lossy or lossless picture itself. [P: RFC 9649, 2.4 to 2.7; RFC 6386, 9.1]
-ImageHeader check_webp(Reader file) {
-  if (std::uint64_t{file.little(4)} + 8 > file.left()) file.fail("is truncated");
-  file.skip(12);
-  const std::uint32_t kind = file.big(0, 4);
-  file.skip(8);
-  switch (kind) {
-    case 0x56503858:  // VP8X
-      return file.sized(ImageFormat::kWebp, (file.little(4) & 0xffffff) + 1, (file.little(7) & 0xffffff) + 1);
-    case 0x5650384c: {  // VP8L
-      const std::uint32_t sides = file.little(1);
-      return file.sized(ImageFormat::kWebp, (sides & 0x3fff) + 1, (sides >> 14 & 0x3fff) + 1);
-    }
-    case 0x56503820:  // VP8
-      return file.sized(ImageFormat::kWebp, file.little(6) & 0x3fff, file.little(8) & 0x3fff);
-    default: file.fail("does not begin with a picture");
-  }
-}
-
-/// Magic and header, then the first level, in blocks of 4x4 pixels where a code names them, else in pixels. OpenImageIO fills a truncated one with what it has.
-/// [DDS: Microsoft, Programming Guide for DDS]
-ImageHeader check_dds(Reader file) {
-  constexpr std::size_t kHeaderBytes = 128;
-  if (file.left() < kHeaderBytes) file.fail("is truncated");
-  const ImageHeader header = file.sized(ImageFormat::kDds, file.little(16), file.little(12));
-  const std::uint32_t code = file.big(84, 4), maker = code >> 16, bits = file.little(88);
-  const bool blocks = code >> 8 == 0x445854 || code >> 8 == 0x415449 || maker == 0x4243;        // DXTn, ATIn, BCn
-  const bool small = code == 0x44585431 || code == 0x41544931 || code >> 8 == 0x424334;          // DXT1, ATI1, BC4
-  const std::uint64_t width = header.width, height = header.height;
-  if (!blocks && bits > 128) file.fail(fmt::format("has {} bits a pixel; legal are up to 128", bits));
-  const std::uint64_t data = blocks ? (width + 3) / 4 * ((height + 3) / 4) * (small ? 8 : 16) : width * height * bits / 8;
-  if (file.left() - kHeaderBytes < data) file.fail("is truncated");
-  return header;
-}
-
 struct Box {
   std::array<std::int64_t, 4> v{};
 };
@@ -167,6 +132,33 @@ ImageHeader check_exr(Reader file) {
     header = file.sized(ImageFormat::kExr, static_cast<std::uint64_t>(box->v[2] - box->v[0] + 1),
                         static_cast<std::uint64_t>(box->v[3] - box->v[1] + 1));
   }
+  return header;
+}
+
+/// RIFF, length, WEBP, then a first chunk: lossy, lossless or extended, each with the size in a place of its own. [RFC 9649]
+ImageHeader check_webp(Reader file) {
+  constexpr std::uint32_t kLossy = 0x56503820, kLossless = 0x5650384c, kExtended = 0x56503858;
+  if (file.left() < 30 || file.little(4) > file.left() - 8) file.fail("is truncated");
+  switch (file.big(12, 4)) {
+    case kLossy: return file.sized(ImageFormat::kWebp, file.little(26) & 0x3fff, file.little(28) & 0x3fff);
+    case kLossless: return file.sized(ImageFormat::kWebp, (file.little(21) & 0x3fff) + 1, (file.little(21) >> 14 & 0x3fff) + 1);
+    case kExtended: return file.sized(ImageFormat::kWebp, (file.little(24) & 0xffffff) + 1, (file.little(27) & 0xffffff) + 1);
+    default: file.fail("begins with a chunk that is none of its picture");
+  }
+}
+
+/// 128 bytes of header; the first level follows, as blocks of 4x4 or as pixels. OpenImageIO fills a truncated one with what it has. [DDS]
+ImageHeader check_dds(Reader file) {
+  constexpr std::size_t kHeaderBytes = 128;
+  if (file.left() < kHeaderBytes) file.fail("is truncated");
+  const ImageHeader header = file.sized(ImageFormat::kDds, file.little(16), file.little(12));
+  const std::uint32_t code = file.big(84, 4), bits = file.little(88), family = code >> 8;
+  const bool blocks = family == 0x445854 || family == 0x415449 || code >> 16 == 0x4243;                       // DXT., ATI., BC..
+  const std::uint64_t block_bytes = code == 0x44585431 || code == 0x41544931 || family == 0x424334 ? 8 : 16;  // DXT1, ATI1, BC4.
+  if (!blocks && bits > 128) file.fail(fmt::format("has {} bits a pixel; legal are up to 128", bits));
+  const std::uint64_t width = header.width, height = header.height;
+  const std::uint64_t data = blocks ? (width + 3) / 4 * ((height + 3) / 4) * block_bytes : width * height * bits / 8;
+  if (file.left() - kHeaderBytes < data) file.fail("is truncated");
   return header;
 }
 

@@ -64,7 +64,7 @@ void Dispatcher::prepare() {
   times_.assign((choosers_.size() + kLanes - 1) / kLanes * kLanes, kNever);
   sc_core::sc_spawn_options options;
   options.spawn_method();
-  sc_core::sc_spawn([this] { step(); }, "step", &options);
+  sc_core::sc_spawn([this] { guard([this] { step(); }); }, "step", &options);
 }
 
 /// Producers surprise by tokens, consumers by credits.

@@ -30,6 +30,7 @@ RunEnd Driver::run(const RunLimits& limits) {
   for (FifoBase* link : links_of(units_)) link->elaborate();
   prepare();
   sc_core::sc_start();
+  if (failure_) std::rethrow_exception(failure_);
   const bool more = std::any_of(units_.begin(), units_.end(), [](const Unit* unit) { return unit->next().at() != kNever; });
   return more ? RunEnd::kTimeLimit : RunEnd::kQuiescent;
 }

@@ -6,6 +6,7 @@
 
 #include "hw/base/unit.h"
 
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -31,7 +32,7 @@ class Driver : public sc_core::sc_module {
   /// Adds a unit; the order must not matter (tests shuffle it).
   void add(Unit& unit) { units_.push_back(&unit); }
   [[nodiscard]] const std::vector<Unit*>& units() const { return units_; }
-  /// Runs until nothing can act or the limit is met. Call once, instead of `sc_start`.
+  /// Runs until nothing can act or the limit is met. Call once, instead of `sc_start`. Throws what an action throws.
   RunEnd run(const RunLimits& limits);
   /// Total actions performed by all units.
   [[nodiscard]] std::uint64_t actions() const;
@@ -43,10 +44,21 @@ class Driver : public sc_core::sc_module {
  protected:
   /// Ports, links and marks are ready, every unit is marked; create processes here.
   virtual void prepare() = 0;
+  /// Does the work of a process. What it throws ends the run and leaves `run`: SystemC would make an error of its own of it, and of its kind.
+  template <class Work>
+  void guard(const Work& work) {
+    if (failure_) return;
+    try {
+      work();
+    } catch (...) { failure_ = std::current_exception(); }
+  }
 
   std::vector<Unit*> units_;
   std::vector<std::uint64_t> touched_;  ///< one bit a unit: its `next()` may have changed
   RunLimits limits_;
+
+ private:
+  std::exception_ptr failure_;  ///< once set, no unit acts any more
 };
 
 /// Every link that these units are bound to, once.

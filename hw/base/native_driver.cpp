@@ -13,7 +13,7 @@ void NativeDriver::prepare() {
     options.spawn_method();
     options.set_sensitivity(events_.back().get());
     options.dont_initialize();
-    sc_core::sc_spawn([this, i] { step(i); }, fmt::format("unit_{}", i).c_str(), &options);
+    sc_core::sc_spawn([this, i] { guard([this, i] { step(i); }); }, fmt::format("unit_{}", i).c_str(), &options);
   }
   wake_touched();
 }

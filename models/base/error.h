@@ -14,10 +14,13 @@ class UserError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Builds a `UserError` from a format string.
+/// The text with every control character replaced by '?': what a message quotes from a file cannot add lines to it or command a terminal.
+[[nodiscard]] std::string one_line(std::string text);
+
+/// Builds a `UserError` of one line from a format string.
 template <class... Args>
 [[nodiscard]] UserError user_error(fmt::format_string<Args...> text, Args&&... args) {
-  return UserError(fmt::format(text, std::forward<Args>(args)...));
+  return UserError(one_line(fmt::format(text, std::forward<Args>(args)...)));
 }
 
 /// Reports a broken invariant of this program and aborts. `place` names the unit or function, `detail` what was seen.

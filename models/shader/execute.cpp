@@ -55,6 +55,7 @@ class Execution {
       for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d) d->all_lanes(*d, context_);
     else
       for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d) d->some_lanes(*d, context_);
+    warp_.instructions += end - begin;
     charge(begin, end, cost);
   }
 
@@ -122,9 +123,11 @@ class Execution {
       --warp_.control_depth;
       return after;
     }
-    if (++warp_.back_edges > kMaxBackEdges)
-      throw user_error("shader '{}', instruction {}: a loop ran {} iterations without an end; does its condition ever become false?",
-                       warp_.program->name, warp_.pc, kMaxBackEdges);
+    if (++warp_.back_edges > kMaxBackEdges || warp_.instructions > kMaxLoopInstructions) {
+      throw user_error(
+          "shader '{}', instruction {}: a loop ran {} iterations and {} instructions without an end; does its condition ever become false?",
+          warp_.program->name, warp_.pc, warp_.back_edges - 1, warp_.instructions);
+    }
     return top().start;
   }
 
@@ -142,6 +145,7 @@ void check_interface(const Warp& warp) {
 }  // namespace
 
 ClauseResult run_clause(Warp& warp) {
+  warp.instructions += kTextureInstructions * static_cast<std::uint64_t>(warp.texture_count);
   warp.texture_count = 0;
   if (warp.launched == 0) return {};
   check_interface(warp);

@@ -22,6 +22,7 @@ void Warp::launch(const Program& p, const std::uint32_t* constant_file, LaneMask
   control_depth = 0;
   texture_count = 0;
   back_edges = 0;
+  instructions = 0;
   regs.resize(static_cast<std::size_t>(p.num_regs));
   std::fill(regs.begin(), regs.end(), RegisterRow{});
 }

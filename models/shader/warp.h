@@ -60,8 +60,9 @@ struct TextureSize {
 /// One register of a warp, aligned to a host cache line.
 struct alignas(64) RegisterRow : LaneWords {};
 
-/// Back edges one warp may take before its program counts as endless.
+/// Back edges one warp may take, and instructions it may have executed at one, before its program counts as endless. A texture request counts as many.
 inline constexpr std::uint32_t kMaxBackEdges = 1u << 20;
+inline constexpr std::uint64_t kMaxLoopInstructions = std::uint64_t{1} << 26, kTextureInstructions = 256;
 
 struct Warp {
   const Program* program = nullptr;
@@ -85,6 +86,7 @@ struct Warp {
   std::vector<RegisterRow> regs;         ///< num_regs rows; kept between launches so that no launch allocates
   const DecodedProgram* code = nullptr;  ///< the form of `program` that executes
   std::uint32_t back_edges = 0;          ///< taken so far
+  std::uint64_t instructions = 0;        ///< executed so far, by which a loop without an end is known
 
   /// Prepares a launch: lanes in `lanes` run `p` from its start. Registers are zeroed. The program must outlive the run and stay unchanged.
   /// A lane that is not launched has no defined register values. Throws what `prepare` throws.
@@ -99,7 +101,8 @@ struct ClauseResult {
 };
 
 /// Runs the warp until it must wait for the texture requests it made (`warp.textures[0 .. texture_count)`) or until the program ends.
-/// The caller writes the results with `write_texture_result` before it calls again. Throws `UserError` when a loop does not end (`kMaxBackEdges`).
+/// The caller writes the results with `write_texture_result` before it calls again. Throws `UserError` when a loop does not end (`kMaxBackEdges`,
+/// `kMaxLoopInstructions`).
 ClauseResult run_clause(Warp& warp);
 
 /// Stores a filtered result into the registers the request named, for its active lanes.

@@ -48,7 +48,7 @@ const Values& Lowering::value(Id id) {
 void Lowering::define(const spirv::Instruction& i, Values values) { values_[i.result] = std::move(values); }
 
 UserError Lowering::unsupported(const spirv::Instruction& i, std::string_view what) const {
-  return UserError(module_.at(i, fmt::format("{} is not supported by the shader compiler", what)));
+  return user_error("{}", module_.at(i, fmt::format("{} is not supported by the shader compiler", what)));
 }
 
 Id Lowering::value_type(Id id) const {

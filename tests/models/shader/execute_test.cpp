@@ -74,6 +74,14 @@ TEST_CASE("shader control: a loop without an end is the user's mistake") {
   CHECK_THROWS_WITH(f.run(p), Catch::Contains("'test'") && Catch::Contains("1048576 iterations"));
 }
 
+TEST_CASE("shader control: a loop of a long body without an end is given up after fewer rounds") {
+  WarpFixture f;
+  std::string body;
+  for (int i = 0; i < 1000; ++i) body += "  iadd r0, r0, 1\n";
+  const Program p = fragment("loop\n" + body + "endloop\n");
+  CHECK_THROWS_WITH(f.run(p), Catch::Contains("'test'") && Catch::Contains("67109000 instructions"));
+}
+
 TEST_CASE("shader control: a side that no lane takes is jumped over and not charged") {
   WarpFixture f;
   const ClauseCost cost = f.run(fragment("if 0\n  fadd r0, r0, r0\n  fadd r0, r0, r0\n  fadd r0, r0, r0\nelse\n  frcp r1, r1\nendif\n"));

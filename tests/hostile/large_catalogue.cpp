@@ -1,0 +1,74 @@
+/// Scenes of legal members in numbers that nobody draws: each is drawn in time, or refused by its size.
+#include <fmt/format.h>
+
+#include "tests/hostile/hostile_case.h"
+#include "tests/scenes/gltf_text.h"
+
+namespace quadrille::hostile {
+namespace {
+
+/// A file of one triangle mesh whose nodes are given as text.
+std::string with_nodes(const std::string& roots, const std::string& nodes) {
+  std::string text = scenes::triangle_gltf();
+  const std::string scene = R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])";
+  return text.replace(text.find(scene), scene.size(), R"("scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes + "]");
+}
+
+std::string chain(int count) {
+  std::string nodes;
+  for (int i = 0; i + 1 < count; ++i) nodes += fmt::format("{{\"children\":[{}]}},", i + 1);
+  return with_nodes("0", nodes + R"({"mesh":0})");
+}
+
+/// `count` nodes that carry `member` each, all roots.
+std::string many(int count, const std::string& member) {
+  std::string roots, nodes;
+  for (int i = 0; i < count; ++i) {
+    roots += fmt::format("{}{}", i > 0 ? "," : "", i);
+    nodes += (i > 0 ? ",{" : "{") + member + "}";
+  }
+  return with_nodes(roots, nodes);
+}
+
+std::string many_primitives(int count) {
+  std::string text = scenes::triangle_gltf();
+  const std::string one = R"({"attributes":{"POSITION":0}})";
+  std::string all = one;
+  for (int i = 1; i < count; ++i) all += "," + one;
+  return text.replace(text.find(one), one.size(), all);
+}
+
+/// Accessors without a buffer view, each read by a primitive of its own.
+std::string zeros(int accessors, std::uint64_t count) {
+  std::string primitives, list;
+  for (int i = 0; i < accessors; ++i) {
+    primitives += fmt::format("{}{{\"attributes\":{{\"POSITION\":{}}}}}", i > 0 ? "," : "", i);
+    list += fmt::format("{}{{\"componentType\":5126,\"count\":{},\"type\":\"VEC3\"}}", i > 0 ? "," : "", count);
+  }
+  return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)" + primitives +
+         R"(]}],"accessors":[)" + list + "]}";
+}
+
+}  // namespace
+
+Group large_scene_cases() {
+  Group group{"large glTF", "legal members in numbers that nobody draws", {}};
+  const auto add = [&](const std::string& what, const std::string& text, const std::string& fidelity = "functional") {
+    Case c = scene_case(what, text);
+    c.arguments = render_arguments("t.gltf", fidelity);
+    group.cases.push_back(std::move(c));
+  };
+  add("a chain of 100,000 nodes", chain(100000));
+  add("1,000,000 empty nodes", many(1000000, ""));
+  add("200,000 instances of a mesh", many(200000, R"("mesh":0)"));
+  add("1,000,000 instances of a mesh", many(1000000, R"("mesh":0)"));
+  add("20,000 primitives", many_primitives(20000));
+  add("2,000 draws, exact", many(2000, R"("mesh":0)"), "exact");
+  add("100,000 cameras on nodes", many(100000, R"("camera":0)"));
+  add("five million zeros", zeros(1, 5000000));
+  add("a hundred times five million zeros", zeros(100, 5000000));
+  add("100,000 accessors of three zeros", zeros(100000, 3));
+  return group;
+}
+
+}  // namespace quadrille::hostile

@@ -1,0 +1,206 @@
+/// glTF texts that are wrong in one way each: JSON, types, ranges, references, files.
+#include <sys/stat.h>
+
+#include <fmt/format.h>
+
+#include "tests/hostile/hostile_case.h"
+#include "tests/scenes/gltf_text.h"
+
+namespace quadrille::hostile {
+namespace {
+
+using scenes::data_uri;
+using scenes::triangle_gltf;
+
+/// The triangle with its first `from` replaced by `to`.
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = triangle_gltf(
+      R"(,"material":0)",
+      R"(,"materials":[{"pbrMetallicRoughness":{"roughnessFactor":0.5}}],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])",
+      R"(,"camera":0,"translation":[0,0,0])");
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("the triangle has no " + from);
+  return text.replace(at, from.size(), to);
+}
+
+std::string repeated(const std::string& text, std::size_t count) {
+  std::string out;
+  out.reserve(text.size() * count);
+  for (std::size_t i = 0; i < count; ++i) out += text;
+  return out;
+}
+
+void add_json(std::vector<Case>& cases) {
+  const std::string good = triangle_gltf();
+  const auto add = [&](const std::string& what, const std::string& text, Expect expect = Expect::kRefused) {
+    cases.push_back(scene_case("JSON: " + what, text, "t.gltf", expect));
+  };
+  add("the triangle itself", good, Expect::kRendered);
+  add("empty", "");
+  add("blank", "   \n");
+  add("null", "null");
+  add("a number", "5");
+  add("an empty array", "[]");
+  add("an empty object", "{}");
+  add("a string", "\"asset\"");
+  add("100,000 brackets", std::string(100000, '['));
+  add("100,000 objects", repeated("{\"a\":", 100000) + "1" + std::string(100000, '}'));
+  add("an open string", R"({"asset":{"version":"2.0)");
+  add("zero bytes", std::string(4096, '\0'));
+  add("bytes that are not UTF-8", R"({"asset":{"version":"2.0","generator":")" + std::string("\xff\xfe\x80") + "\"}}");
+  add("UTF-16", std::string("\xff\xfe{\0}\0", 6));
+  add("a byte order mark", "\xef\xbb\xbf" + good, Expect::kEither);
+  add("something behind it", good + "}");
+  add("a number beyond all", changed("[0,0,0]}", "[1e999,0,0]}"));
+  add("NaN", changed("[0,0,0]}", "[NaN,0,0]}"));
+  add("one key twice", changed(R"("scene":0)", R"("scene":0,"scene":1)"), Expect::kEither);
+  add("a megabyte of one name", changed(R"("mesh":0)", R"("mesh":0,"name":")" + std::string(1 << 20, 'n') + "\""), Expect::kRendered);
+  add("line feeds and escapes in names", changed(R"("mesh":0)", R"("mesh":7,"name":"a\nb\u001b[31m\u0000c")"));
+  for (std::size_t size = 1; size < good.size(); size += 23) add(fmt::format("cut at byte {}", size), good.substr(0, size));
+}
+
+/// The same wrong values at every place where a value stands.
+void add_values(std::vector<Case>& cases) {
+  const std::vector<std::pair<std::string, std::string>> places{{"accessor count", R"("count":3)"},
+                                                                {"componentType", R"("componentType":5126)"},
+                                                                {"accessor bufferView", R"("bufferView":0)"},
+                                                                {"accessor type", R"("type":"VEC3")"},
+                                                                {"POSITION", R"("POSITION":0)"},
+                                                                {"byteLength", R"("byteLength":36})"},
+                                                                {"buffer", R"("buffer":0)"},
+                                                                {"scene", R"("scene":0)"},
+                                                                {"node", R"("nodes":[0])"},
+                                                                {"mesh", R"("mesh":0)"},
+                                                                {"material", R"("material":0)"},
+                                                                {"camera", R"("camera":0)"},
+                                                                {"translation", R"("translation":[0,0,0])"},
+                                                                {"yfov", R"("yfov":1)"},
+                                                                {"znear", R"("znear":0.1)"},
+                                                                {"roughnessFactor", R"("roughnessFactor":0.5)"},
+                                                                {"asset", R"("asset":{"version":"2.0"})"},
+                                                                {"primitives", R"("primitives":[)"}};
+  const std::vector<std::string> values{"-1",   "99",   "2147483648", "1e300", "0.5",   "\"x\"",
+                                        "null", "true", "[]",         "{}",    "[[0]]", "18446744073709551615"};
+  for (const auto& [what, member] : places) {
+    const std::size_t colon = member.find(':');
+    const std::string key = member.substr(0, colon + 1);
+    const std::string tail = member.ends_with("})") ? "" : member.ends_with("36}") ? "}" : member.ends_with("[") ? ",\"x\":[" : "";
+    for (const std::string& value : values) cases.push_back(scene_case(what + " " + value, changed(member, key + value + tail)));
+  }
+}
+
+void add_members(std::vector<Case>& cases) {
+  const auto add = [&](const std::string& what, const std::string& from, const std::string& to, Expect expect = Expect::kRefused) {
+    cases.push_back(scene_case(what, changed(from, to), "t.gltf", expect));
+  };
+  const std::string acc = R"("count":3)", view = R"("byteLength":36})", node = R"("mesh":0)", material = R"("roughnessFactor":0.5})";
+  for (const std::string count : {"2147483647", "4294967296", "9223372036854775807", "1000000000"})
+    add("count " + count, acc, R"("count":)" + count);
+  add("zeros: a billion elements without a bufferView", R"("bufferView":0,"componentType":5126,"count":3)",
+      R"("componentType":5126,"count":1000000000)");
+  add("sparse: a billion replacements", acc,
+      acc + R"(,"sparse":{"count":1000000000,"indices":{"bufferView":0,"componentType":5125},"values":{"bufferView":0}})");
+  add("sparse: index beyond", acc,
+      acc + R"(,"sparse":{"count":1,"indices":{"bufferView":0,"byteOffset":12,"componentType":5125},"values":{"bufferView":0}})");
+  add("sparse: negative offset", acc,
+      acc + R"(,"sparse":{"count":1,"indices":{"bufferView":0,"byteOffset":-4,"componentType":5125},"values":{"bufferView":0}})");
+  add("sparse: a number", acc, acc + R"(,"sparse":7)", Expect::kEither);
+  for (const std::string stride : {"1", "3", "253", "-4", "2147483648", "1e10"})
+    add("byteStride " + stride, view, R"("byteLength":36,"byteStride":)" + stride + "}", Expect::kEither);
+  for (const std::string offset : {"1", "36", "-1", "4294967295", "9223372036854775807"})
+    add("byteOffset " + offset, view, R"("byteLength":36,"byteOffset":)" + offset + "}", Expect::kEither);
+  add("a node that is its own child", node, node + R"(,"children":[0])");
+  add("a child that is none", node, node + R"(,"children":[-1])");
+  add("children that are no array", node, node + R"(,"children":{"a":0})", Expect::kEither);
+  add("a matrix of 15", node, node + R"(,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0])", Expect::kEither);
+  add("a matrix of words", node, node + R"(,"matrix":["a","b"])", Expect::kEither);
+  add("a rotation of zeros", node, node + R"(,"rotation":[0,0,0,0])");
+  add("a scale beyond float", node, node + R"(,"scale":[1e200,1e200,1e200])");
+  add("a scale of zero", node, node + R"(,"scale":[0,0,0])", Expect::kEither);
+  add("a translation beyond float", R"([0,0,0]})", R"([1e39,0,0]})");
+  add("a tiny scale", node, node + R"(,"scale":[1e-40,1e-40,1e-40])", Expect::kEither);
+  add("a skin that is none", node, node + R"(,"skin":5)", Expect::kEither);
+  add("a light that is none", node, node + R"(,"extensions":{"KHR_lights_punctual":{"light":3}})");
+  add("a light that is a word", node, node + R"(,"extensions":{"KHR_lights_punctual":"sun"})", Expect::kEither);
+  for (const std::string mode : {"-5", "7", "99", "\"4\"", "0", "1"})
+    add("mode " + mode, R"("material":0)", R"("material":0,"mode":)" + mode, Expect::kEither);
+  add("indices that are floats", R"("material":0)", R"("material":0,"indices":0)");
+  for (const std::string factor : {"1e308", "-1", "null", "\"a\""})
+    add("baseColorFactor " + factor, material, R"("baseColorFactor":[)" + factor + ",1,1,1]}", Expect::kEither);
+  add("baseColorFactor of 3", material, R"("baseColorFactor":[1,1,1]})", Expect::kEither);
+  add("a texture that is none", material, R"("baseColorTexture":{"index":5}})");
+  add("a texture that is a word", material, R"("baseColorTexture":"x"})", Expect::kEither);
+  add("alphaMode CLIP", R"("pbrMetallicRoughness")", R"("alphaMode":"CLIP","pbrMetallicRoughness")");
+  add("alphaCutoff 1e308", R"("pbrMetallicRoughness")", R"("alphaMode":"MASK","alphaCutoff":1e308,"pbrMetallicRoughness")");
+  add("emissiveStrength 1e308", R"("pbrMetallicRoughness")",
+      R"("emissiveFactor":[1,1,1],"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":1e308}},"pbrMetallicRoughness")");
+  add("extensionsRequired", R"("scene":0)", R"("scene":0,"extensionsRequired":["EXT_of_no\nother\u001b[2J"])");
+  add("100,000 extensionsUsed", R"("scene":0)", R"("scene":0,"extensionsUsed":[)" + repeated("\"a\",", 99999) + "\"a\"]",
+      Expect::kRendered);
+  add("100,000 extensionsRequired", R"("scene":0)", R"("scene":0,"extensionsRequired":[)" + repeated("\"a\",", 99999) + "\"a\"]");
+  for (const std::string version : {"1.0", "3.0", "", "2", "-2.0", "2.0\\nx"})
+    add("version " + version, R"("version":"2.0")", R"("version":")" + version + "\"", Expect::kEither);
+  add("minVersion 2.9", R"("version":"2.0")", R"("version":"2.0","minVersion":"2.9")");
+  add("zfar before znear", R"("znear":0.1)", R"("znear":5,"zfar":1)");
+  add("near 1e-300", R"("znear":0.1)", R"("znear":1e-300)", Expect::kEither);
+  add("a camera that is a fish", R"("type":"perspective")", R"("type":"fish")", Expect::kEither);
+  add("attributes that are an array", R"("attributes":{"POSITION":0})", R"("attributes":[0])", Expect::kEither);
+}
+
+/// Positions of one value in all places, as the file's bytes.
+void add_positions(std::vector<Case>& cases) {
+  const auto text = [](float a, float b) { return scenes::data_uri_of(std::vector<float>{a, 0, 0, 1, b, 0, 0, 1, a}); };
+  const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const std::string good = scenes::data_uri_of(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+  for (const auto& [what, value] :
+       {std::pair{"infinite", infinity}, {"not numbers", nan}, {"the largest", 3.4e38F}, {"denormal", 1e-42F}, {"all zero", 0.0F}})
+    cases.push_back(scene_case(fmt::format("positions {}", what), changed(good, text(value, -value))));
+}
+
+void add_uris(std::vector<Case>& cases) {
+  const std::string good = scenes::data_uri_of(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const auto add = [&](const std::string& what, const std::string& uri, const std::function<void(const fs::path&)>& more = {}) {
+    Case c = scene_case("buffer " + what, changed(good, uri), "t.gltf", Expect::kRefused);
+    const auto write = c.prepare;
+    c.prepare = [=](const fs::path& folder) { write(folder), more ? more(folder) : void(); };
+    cases.push_back(std::move(c));
+  };
+  for (const std::string uri : {"", ".", "..", "/", "/dev/zero", "/dev/stdin", "/proc/self/mem", "http://example.com/a.bin",
+                                "file:///etc/hostname", "data:", "data:,", "data:;base64,", "data:application/octet-stream;base64,!!!!",
+                                "t.gltf", "%00.bin", "missing.bin", "a\\u0000b", "a\\nb"})
+    add("'" + uri + "'", uri);
+  add("of a long name", std::string(100000, 'n') + ".bin");
+  add("that is a folder", "b.bin", [](const fs::path& f) { fs::create_directory(f / "b.bin"); });
+  add("that is a pipe", "b.bin", [](const fs::path& f) { mkfifo((f / "b.bin").c_str(), 0600); });
+  add("that is its own link", "b.bin", [](const fs::path& f) { fs::create_symlink("b.bin", f / "b.bin"); });
+  add("that is empty", "b.bin", [](const fs::path& f) { write_file(f / "b.bin", ""); });
+  add("that is short", "b.bin", [](const fs::path& f) { write_file(f / "b.bin", "0123456789"); });
+  add("of three sparse gigabytes", "b.bin",
+      [](const fs::path& f) { write_file(f / "b.bin", ""), fs::resize_file(f / "b.bin", 3ULL << 30); });
+  add("that may not be read", "b.bin",
+      [](const fs::path& f) { write_file(f / "b.bin", ""), fs::permissions(f / "b.bin", fs::perms::none); });
+}
+
+}  // namespace
+
+Group scene_cases() {
+  Group group{"glTF", "JSON, types, ranges, references and buffers that are wrong in one way each", {}};
+  add_json(group.cases);
+  add_values(group.cases);
+  add_members(group.cases);
+  add_positions(group.cases);
+  add_uris(group.cases);
+  for (const std::string name : {"t.gltf", "t.glb"}) {
+    group.cases.push_back({name + " is a folder", render_arguments(name), name, [=](const fs::path& f) { fs::create_directory(f / name); },
+                           Expect::kRefused});
+    group.cases.push_back({name + " is a pipe", render_arguments(name), name, [=](const fs::path& f) { mkfifo((f / name).c_str(), 0600); },
+                           Expect::kRefused});
+    group.cases.push_back({name + " is a device", render_arguments(name), name,
+                           [=](const fs::path& f) { fs::create_symlink("/dev/zero", f / name); }, Expect::kRefused});
+    group.cases.push_back({name + " is a sparse gigabyte", render_arguments(name), name,
+                           [=](const fs::path& f) { write_file(f / name, ""), fs::resize_file(f / name, 1ULL << 30); }, Expect::kRefused});
+  }
+  return group;
+}
+
+}  // namespace quadrille::hostile
