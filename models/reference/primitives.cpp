@@ -16,34 +16,47 @@ struct Corner {
   double b1 = 0, b2 = 0;
 };
 
-/// Signed distances to the planes of the clip volume that cut; positive inside. `min_w` is what plane 0 keeps.
-double distance_to(int plane, const Point4& p, double min_w) { return plane == 0 ? p[3] - min_w : plane == 1 ? p[2] : p[3] - p[2]; }
+/// The planes that cut, in this order. The sides are far outside the view volume: what they cut away is not seen, and a corner stays where doubles place it.
+enum Plane : int { kEye, kLeft, kRight, kTop, kBottom, kNear, kFar, kPlanes };
+
+/// Signed distances to the planes; positive inside.
+double distance_to(int plane, const Point4& p) {
+  switch (static_cast<Plane>(plane)) {
+    case kEye: return p[3] - kMinW;
+    case kLeft: return kReach * p[3] + p[0];
+    case kRight: return kReach * p[3] - p[0];
+    case kTop: return kReach * p[3] + p[1];
+    case kBottom: return kReach * p[3] - p[1];
+    case kNear: return p[2];
+    case kFar: return p[3] - p[2];
+    case kPlanes: break;
+  }
+  return 0;
+}
 
 /// The point of the edge inside -> outside on the plane. Always computed in this direction, so that neighbours get the same point.
-Corner cut(int plane, const Corner& inside, const Corner& outside, double min_w) {
-  const double in = distance_to(plane, inside.clip, min_w), out = distance_to(plane, outside.clip, min_w);
-  const double t = in / (in - out);
+Corner cut(int plane, const Corner& inside, const Corner& outside) {
+  const double in = distance_to(plane, inside.clip), out = distance_to(plane, outside.clip);
+  const double to_outside = in / (in - out), to_inside = -out / (in - out);  // weights of both: their sum may not lose the smaller end
   Corner corner;
-  for (std::size_t c = 0; c < 4; ++c) corner.clip[c] = inside.clip[c] + t * (outside.clip[c] - inside.clip[c]);
-  if (plane == 0) corner.clip[3] = min_w;
-  corner.b1 = inside.b1 + t * (outside.b1 - inside.b1);
-  corner.b2 = inside.b2 + t * (outside.b2 - inside.b2);
+  for (std::size_t c = 0; c < 4; ++c) corner.clip[c] = inside.clip[c] * to_inside + outside.clip[c] * to_outside;
+  if (plane == kEye) corner.clip[3] = kMinW;
+  corner.b1 = inside.b1 * to_inside + outside.b1 * to_outside;
+  corner.b2 = inside.b2 * to_inside + outside.b2 * to_outside;
   return corner;
 }
 
 std::vector<Corner> clip_polygon(const std::array<Point4, 3>& corners, bool depth_clamp) {
   std::vector<Corner> polygon{{corners[0], 0, 0}, {corners[1], 1, 0}, {corners[2], 0, 1}};
-  const double min_w = kMinW * std::max({std::abs(corners[0][3]), std::abs(corners[1][3]), std::abs(corners[2][3])});
-  if (min_w == 0) return {};  // all three at the eye
-  for (int plane = 0; plane < (depth_clamp ? 1 : 3); ++plane) {
+  for (int plane = 0; plane < (depth_clamp ? kNear : kPlanes); ++plane) {
     std::vector<Corner> kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const Corner& a = polygon[i];
       const Corner& b = polygon[(i + 1) % polygon.size()];
-      const bool a_in = distance_to(plane, a.clip, min_w) >= 0, b_in = distance_to(plane, b.clip, min_w) >= 0;
+      const bool a_in = distance_to(plane, a.clip) >= 0, b_in = distance_to(plane, b.clip) >= 0;
       if (a_in) kept.push_back(a);
-      if (a_in && !b_in) kept.push_back(cut(plane, a, b, min_w));
-      if (!a_in && b_in) kept.push_back(cut(plane, b, a, min_w));
+      if (a_in && !b_in) kept.push_back(cut(plane, a, b));
+      if (!a_in && b_in) kept.push_back(cut(plane, b, a));
     }
     polygon = std::move(kept);
   }

@@ -10,15 +10,17 @@
 
 namespace quadrille::models::reference {
 
-/// Smallest clip w kept in mode *ideal*, of a triangle's largest |w|. [G: a corner cut there is up to 10^12 screens away, which doubles still place to 10^-2 pixels]
-inline constexpr double kMinW = 1e-12;
+/// Smallest clip w kept in mode *ideal*: no more than what keeps 1 / w finite, since the sides cut what is far away. [G]
+inline constexpr double kMinW = 1e-300;
+/// How far out the sides cut in mode *ideal*, in half view volumes. [G: a corner there is still placed to 10^-8 pixels]
+inline constexpr double kReach = 1e5;
 
 /// The pixels that a draw may touch: target, scissor, viewport's region of interest. Last is inclusive; empty if last < first.
 struct PixelBounds {
   int first_x = 0, first_y = 0, last_x = -1, last_y = -1;
 };
 
-/// Mode *ideal*: clips to 0 <= z <= w (unless depth is clamped) and w >= `kMinW` times its largest |w|, projects, culls. [VK1.3 #vertexpostproc-clipping]
+/// Mode *ideal*: clips to 0 <= z <= w (unless depth is clamped) and w >= `kMinW`, cuts what is `kReach` view volumes aside, projects, culls. [VK1.3 #vertexpostproc-clipping]
 [[nodiscard]] std::vector<WindowTriangle> clip_and_project(const DrawState& state, const ShadedVertices& vertices, std::uint32_t instance,
                                                            const PixelBounds& bounds);
 

@@ -43,7 +43,7 @@ traces::CommandStream w_through_zero() {
                                                                   {1, 1e-30F, -1e-30F},
                                                                   {2, 1, -0.5F},
                                                                   {0.5F, -2, 3},
-                                                                  {1, 1, 1e-40F},
+                                                                  {1, 1, 1e-35F},
                                                                   {1e-30F, 2e-30F, 3e-30F},
                                                                   {1e30F, 2e30F, -1e30F},
                                                                   {1, 1e6F, -1e-3F},
@@ -85,7 +85,7 @@ traces::CommandStream shared_edges() {
   for (int y = 0; y <= kCount; ++y) {
     for (int x = 0; x <= kCount; ++x) {
       const bool rim = x == 0 || y == 0 || x == kCount || y == kCount;
-      const double away = rim ? 0 : 0.45 * kStep;
+      const double away = rim ? 0 : 0.25 * kStep;
       points[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] =
           pixel_corner(x * kStep + chance.between(-away, away), y * kStep + chance.between(-away, away));
     }
