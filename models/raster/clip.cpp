@@ -34,15 +34,26 @@ double distance(const WorkVertex& v, Cut plane, const ClipState& s) {
   return 0.0;
 }
 
+/// Exactly on the plane, so that window positions and depth stay in range however much the sum of two far ends lost.
+void put_on(Cut plane, const ClipState& s, WorkVertex& v) {
+  switch (plane) {
+    case Cut::kWMin: v.w = static_cast<double>(kMinClipW); break;
+    case Cut::kNear: v.z = 0.0; break;
+    case Cut::kFar: v.z = v.w; break;
+    case Cut::kLeft: v.x = v.w * ((-s.guard - s.offset_x) / s.scale_x); break;
+    case Cut::kRight: v.x = v.w * ((s.guard - s.offset_x) / s.scale_x); break;
+    case Cut::kTop: v.y = v.w * ((-s.guard - s.offset_y) / s.scale_y); break;
+    case Cut::kBottom: v.y = v.w * ((s.guard - s.offset_y) / s.scale_y); break;
+  }
+}
+
 /// Where the edge from `in` (distance d_in >= 0) to `out` (d_out < 0) crosses a plane. Both ends are weighed: a step from one of them would lose the other when
 /// their magnitudes are far apart.
-WorkVertex crossing(const WorkVertex& in, double d_in, const WorkVertex& out, double d_out, Cut plane) {
+WorkVertex crossing(const WorkVertex& in, double d_in, const WorkVertex& out, double d_out, Cut plane, const ClipState& s) {
   const double length = d_in - d_out, to_in = -d_out / length, to_out = d_in / length;
   const auto mix = [=](double a, double b) { return a * to_in + b * to_out; };
   WorkVertex v{mix(in.x, out.x), mix(in.y, out.y), mix(in.z, out.z), mix(in.w, out.w), mix(in.b1, out.b1), mix(in.b2, out.b2)};
-  if (plane == Cut::kNear) v.z = 0.0;  // exactly on the plane, so that window depth stays in range
-  if (plane == Cut::kFar) v.z = v.w;
-  if (plane == Cut::kWMin) v.w = static_cast<double>(kMinClipW);
+  put_on(plane, s, v);
   return v;
 }
 
@@ -54,8 +65,8 @@ void cut(const WorkPolygon& in, Cut plane, const ClipState& state, WorkPolygon& 
     const WorkVertex& b = in.vertices[static_cast<std::size_t>(i + 1 == in.count ? 0 : i + 1)];
     const double da = distance(a, plane, state), db = distance(b, plane, state);
     if (da >= 0.0) out.add(a);
-    if (da >= 0.0 && db < 0.0) out.add(crossing(a, da, b, db, plane));
-    if (da < 0.0 && db >= 0.0) out.add(crossing(b, db, a, da, plane));
+    if (da >= 0.0 && db < 0.0) out.add(crossing(a, da, b, db, plane, state));
+    if (da < 0.0 && db >= 0.0) out.add(crossing(b, db, a, da, plane, state));
   }
 }
 

@@ -140,8 +140,8 @@ void check_slanted_junctions(const Observed& o, Findings& f) {
   std::uint64_t other = 0;
   for (std::size_t i = 0; i < given.color.size(); ++i) other += (given.color[i] & 0xffu) != (o.image().color[i] & 0xffu) ? 1 : 0;
   f.equal("pixels unlike the reference from the same snapped corners", other, 0);
-  // The snapped corner is up to half a sub-pixel step off the line each way: 184 columns, each with a chance of 1/256 to hold a sample between.
-  f.at_most("pixels not covered exactly once", static_cast<double>(not_once(o)), 6);
+  // A corner is at most half a step of the grid off the line: of 184 columns one in 32 holds a sample that near to it, and as many again by chance.
+  f.at_most("pixels not covered exactly once", static_cast<double>(not_once(o)), 12);
 }
 
 // vertices on samples --------------------------------------------------------------------------------------------------------------------------
@@ -273,13 +273,15 @@ void add_edge_cases(std::vector<Case>& cases) {
                    .build = [] { return t_junctions(100.25, 100.25); },
                    .check = check_once,
                    .picture = counted});
-  cases.push_back({.name = "t-junctions-slanted",
-                   .group = "numbers",
-                   .purpose = "the same with a slanted edge: the corner snaps beside it, as on every rasteriser with a grid",
-                   .must = "coverage is that of the snapped corners, and no more pixels go wrong than the grid explains",
-                   .build = [] { return t_junctions(61.37, 141.83); },
-                   .check = check_slanted_junctions,
-                   .picture = counted});
+  cases.push_back(
+      {.name = "t-junctions-slanted",
+       .group = "numbers",
+       .purpose = "the same with a slanted edge, on a grid of a 16th of a pixel: corners snap beside the edge, as on any rasteriser",
+       .must = "coverage is that of the snapped corners, and no more pixels go wrong than the grid explains",
+       .build = [] { return t_junctions(61.37, 141.83); },
+       .machine = [](pipeline::MachineConfig& machine) { machine.gpu.subpixel_bits.set(4); },
+       .check = check_slanted_junctions,
+       .picture = counted});
   cases.push_back({.name = "on-samples",
                    .group = "numbers",
                    .purpose = "corners and edges exactly on samples, in both directions of turning",

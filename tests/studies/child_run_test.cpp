@@ -63,5 +63,20 @@ TEST_CASE("a child that asks for more memory than it may is refused") {
 }
 #endif
 
+TEST_CASE("children run side by side, and each is reported once with its own end") {
+  const auto after = [](double seconds, const std::string& says) {
+    return [=] {
+      usleep(static_cast<useconds_t>(seconds * 1e6));
+      return says;
+    };
+  };
+  const std::vector<ChildWork> works{{after(0.4, "slow"), {}}, {after(0.0, "quick"), {}}, {after(30, "never"), {.seconds = 0.2}}};
+  std::vector<std::pair<std::size_t, std::string>> ends;
+  run_in_children(works, 2, [&](std::size_t i, const ChildRun& run) {
+    ends.emplace_back(i, run.end == ChildEnd::kDone ? run.output : child_end_name(run.end));
+  });
+  CHECK(ends == std::vector<std::pair<std::size_t, std::string>>{{1, "quick"}, {2, "timed out"}, {0, "slow"}});
+}
+
 }  // namespace
 }  // namespace quadrille::studies

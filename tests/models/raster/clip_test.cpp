@@ -86,6 +86,40 @@ TEST_CASE("clip: every vertex is inside the planes and is what its weights say")
   CHECK(vertices > 20000);
 }
 
+TEST_CASE("clip: corners of any magnitude leave corners that have a window position") {
+  // Ends of an edge that are 10^38 apart: a cut that stepped from one of them lost the other.
+  RandomSource random(44);
+  constexpr float kMagnitudes[] = {1e-45f, 1e-40f, 1e-37f, 1e-30f, 1e-6f, 1.0f, 1e6f, 1e30f, 3.4e38f};
+  const auto value = [&] {
+    const float magnitude = kMagnitudes[random.integer(0, 8)];
+    return random.integer(0, 1) == 0 ? magnitude : -magnitude;
+  };
+  int cut = 0;
+  for (int round = 0; round < 50000; ++round) {
+    glm::vec4 p[3];
+    for (glm::vec4& v : p) v = {value(), value(), value(), value()};
+    ClippedPolygon polygon;
+    const ClipOutcome outcome = clip(p[0], p[1], p[2], polygon, random.integer(0, 1) == 0);
+    if (outcome != ClipOutcome::kClipped && outcome != ClipOutcome::kInside) continue;
+    for (int i = 0; i < polygon.count; ++i, ++cut) {
+      WindowVertex w;
+      if (!to_window(polygon.vertices[static_cast<std::size_t>(i)].position, kView, 8, w)) FAIL("round " << round << " vertex " << i);
+    }
+  }
+  CHECK(cut > 10000);
+}
+
+TEST_CASE("clip: a world of 1e-30 is clipped as one of 1") {
+  ClippedPolygon small, plain;
+  const float s = 0x1p-100f;
+  const glm::vec4 a(-3, 0.5f, 0.2f, 1), b(0.5f, -0.5f, -0.2f, 0.7f), c(0.3f, 4, 0.1f, 2);
+  REQUIRE(clip(a, b, c, plain, false) == ClipOutcome::kClipped);
+  REQUIRE(clip(a * s, b * s, c * s, small, false) == ClipOutcome::kClipped);
+  REQUIRE(small.count == plain.count);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plain.count); ++i)
+    CHECK(small.vertices[i].position == plain.vertices[i].position * s);
+}
+
 TEST_CASE("clip: a floor that reaches behind the eye covers each pixel below the horizon once") {
   RandomSource random(43);
   for (int round = 0; round < 12; ++round) {

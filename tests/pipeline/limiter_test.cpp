@@ -1,0 +1,117 @@
+#include "pipeline/limiter.h"
+
+#include <catch2/catch.hpp>
+
+#include "pipeline/render.h"
+#include "scenes/scene.h"
+#include "tests/hw/contract.h"
+
+using namespace quadrille;
+using namespace quadrille::pipeline;
+
+namespace {
+
+UnitFigures unit(const std::string& path, std::int64_t busy, const std::vector<WaitFigure>& waits) {
+  UnitFigures u;
+  u.path = path;
+  u.cycles = 1000;
+  u.busy = busy;
+  u.waits = waits;
+  return u;
+}
+
+LinkFigures link(const std::string& path, const std::string& from, const std::string& to, int latency, double use = 0) {
+  return {path, "link." + path, from, to, 4, 1, latency, 1, 10, use};
+}
+
+/// command_processor <- rop <- core_0 <-> texture_0: nothing is used up.
+Figures waiting() {
+  Figures f;
+  f.links = {link("rop_to_command", "rop_0", "command_processor", 2), link("core_to_rop", "core_0", "rop_0", 2),
+             link("texture_to_core", "texture_0", "core_0", 700), link("core_to_texture", "core_0", "texture_0", 3)};
+  f.units = {unit("command_processor", 10, {{"retire_in", true, 900, "rop_to_command"}}),
+             unit("rop_0", 50, {{"done_in", true, 800, "core_to_rop"}}),
+             unit("core_0", 100, {{"texture_in", true, 850, "texture_to_core"}}),
+             unit("texture_0", 60, {{"request_in", true, 900, "core_to_texture"}})};
+  return f;
+}
+
+std::string limit_of(const char* scene, const std::vector<std::pair<std::string, std::string>>& settings) {
+  return hw::contract::in_child([&] {
+    scenes::SceneOptions options;
+    options.width = 96;
+    options.height = 64;
+    MachineConfig config;
+    for (const auto& [key, value] : settings) config.set(key, value, "test");
+    return find_limiter(render_exact(scenes::load_scene(scene, options), config).figures).name;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("limiter: a frame that was not simulated has none") { CHECK(find_limiter(Figures{}).kind == Limiter::Kind::kNothing); }
+
+TEST_CASE("limiter: a unit that is busy nearly all the time is named with its share") {
+  Figures f = waiting();
+  f.units[3].busy = 940;
+  const Limiter limiter = find_limiter(f);
+  CHECK(limiter.kind == Limiter::Kind::kUnit);
+  CHECK(limiter.name == "texture");
+  CHECK(limiter.share == Approx(0.94));
+}
+
+TEST_CASE("limiter: a link that carries all it can is named by its key") {
+  Figures f = waiting();
+  f.links[1].use = 0.9;
+  const Limiter limiter = find_limiter(f);
+  CHECK(limiter.kind == Limiter::Kind::kLink);
+  CHECK(limiter.name == "link.core_to_rop");
+}
+
+TEST_CASE("limiter: a loop of waiting is named by its longest latency, not by one on the way to it") {
+  Figures f = waiting();
+  f.links[0].latency = 5000;
+  const Limiter limiter = find_limiter(f);
+  CHECK(limiter.kind == Limiter::Kind::kLatency);
+  CHECK(limiter.name == "link.texture_to_core");
+  CHECK(limiter.walk == std::vector<std::string>{"command_processor", "rop", "core", "texture"});
+  CHECK(limiter.loop == 2);
+}
+
+TEST_CASE("limiter: the walk ends at a unit that works more than it waits") {
+  Figures f = waiting();
+  f.units[2].busy = 500;
+  f.units[2].waits[0].cycles = 400;
+  const Limiter limiter = find_limiter(f);
+  CHECK(limiter.kind == Limiter::Kind::kWork);
+  CHECK(limiter.name == "core");
+}
+
+TEST_CASE("limiter: uses come greatest first and are of the busiest of a kind") {
+  Figures f = waiting();
+  f.units.push_back(unit("core_1", 600, {}));
+  const auto uses = resource_uses(f);
+  CHECK(uses.front().name == "core");
+  CHECK(uses.front().use == Approx(0.6));
+  CHECK(std::ranges::is_sorted(uses, std::ranges::greater{}, &ResourceUse::use));
+}
+
+TEST_CASE("limiter: machines made narrow at one place are limited there") {
+  CHECK(limit_of("builtin:cubes", {{"gpu.cores", "1"}}) == "core");
+  CHECK(limit_of("builtin:overdraw", {{"memory.t_burst", "1000"}, {"rop.cache_lines", "16"}, {"l2.cache_lines", "16"}}) == "memory");
+  CHECK(limit_of("builtin:fill", {{"gpu.cores", "64"}, {"fine_raster.quads_per_clk", "1"}}) == "fine_raster");
+  CHECK(limit_of("builtin:cubes", {{"link.coarse_to_fine.latency", "100000"}}) == "link.coarse_to_fine");
+  CHECK(limit_of("builtin:overdraw", {{"link.memory_to_l2.latency", "1000000"}}) == "link.memory_to_l2");
+}
+
+TEST_CASE("limiter: no unit or link of a real frame is used more than all of the time") {
+  const double worst = std::stod(hw::contract::in_child([] {
+    scenes::SceneOptions options;
+    options.width = 96;
+    options.height = 64;
+    const MachineConfig machine;
+    return std::to_string(resource_uses(render_exact(scenes::load_scene("builtin:cubes", options), machine).figures).front().use);
+  }));
+  CHECK(worst <= 1);
+  CHECK(worst > 0.3);
+}
