@@ -103,4 +103,16 @@ scenes::Rgba8Image reduced(const scenes::Rgba8Image& image, std::uint32_t side) 
   return out;
 }
 
+scenes::Rgba8Image enlarged(const scenes::Rgba8Image& image, std::uint32_t side) {
+  const std::uint32_t longest = std::max({1u, image.width, image.height}), factor = (side + longest - 1) / longest;
+  scenes::Rgba8Image out{image.width * factor, image.height * factor, {}};
+  for (std::uint32_t y = 0; y < out.height; ++y) {
+    for (std::uint32_t x = 0; x < out.width; ++x) {
+      const auto from = image.pixels.begin() + static_cast<std::ptrdiff_t>(4 * (std::size_t{y / factor} * image.width + x / factor));
+      out.pixels.insert(out.pixels.end(), from, from + 4);
+    }
+  }
+  return out;
+}
+
 }  // namespace quadrille::studies::stability

@@ -43,5 +43,7 @@ struct Observed {
 [[nodiscard]] scenes::Rgba8Image count_picture(const pipeline::FrameImage& image, const DrawnArea& area);
 /// Box-filtered to at most `side` pixels, by whole factors.
 [[nodiscard]] scenes::Rgba8Image reduced(const scenes::Rgba8Image& image, std::uint32_t side);
+/// Each pixel repeated by a whole factor, to at least `side` pixels.
+[[nodiscard]] scenes::Rgba8Image enlarged(const scenes::Rgba8Image& image, std::uint32_t side);
 
 }  // namespace quadrille::studies::stability

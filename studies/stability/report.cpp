@@ -54,9 +54,15 @@ picture of a machine's case a bar for each kind of unit says how it spent its cy
 blocked red, idle grey.
 )";
 
+/// With a capital at its start.
+std::string sentence(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 std::string case_markdown(const CaseResult& r, const std::string& pictures) {
   const Case& c = *r.about;
-  std::string text = fmt::format("\n### {}\n\n{}. Must hold: {}.\n\n", c.name, c.purpose, c.must);
+  std::string text = fmt::format("\n### {}\n\n{}. Must hold: {}.\n\n", c.name, sentence(c.purpose), c.must);
   text += fmt::format("![{}]({}{}.png)\n\n", c.name, pictures, c.name);
   if (r.run.end != ChildEnd::kDone) return text + fmt::format("**{}**: {}\n", child_end_name(r.run.end), r.run.output);
   text += "| | measured | bound |\n|---|---|---|\n";

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t kPictureSide = 256;
+constexpr std::uint32_t kPictureSide = 256, kLeastSide = 64;
 
 template <class T>
 std::uint64_t different(const std::vector<T>& a, const std::vector<T>& b) {
@@ -132,7 +132,7 @@ std::string run_here(const Case& one) {
   Findings findings;
   check_always(o, findings);
   one.check(o, findings);
-  return packed(o, findings, reduced(one.picture(o), kPictureSide));
+  return packed(o, findings, enlarged(reduced(one.picture(o), kPictureSide), kLeastSide));
 }
 
 std::vector<CaseResult> run_cases(std::span<const Case* const> cases, int jobs, const std::function<void(const CaseResult&)>& done) {
