@@ -50,7 +50,7 @@ class Recorder {
   struct TextureKey {
     int image = 0;
     bool srgb = false;
-    auto operator<=>(const TextureKey&) const = default;
+    auto operator<=>(const TextureKey&) const = default;  // NOLINT(modernize-use-nullptr): the comparison with zero that it stands for
   };
 
   /// What one draw reads: the variant of its shaders, and its vertex streams by location.

@@ -41,7 +41,7 @@ std::string instanced(const std::vector<Stream>& streams, const std::string& mat
   const auto put = [&](const std::string& before, const std::string& what) { text.insert(text.find(before) + before.size(), what); };
   put(R"("max":[1,1,0]})", accessors);
   put(R"("byteLength":36})", views);
-  text.insert(text.find("]", text.find(R"("buffers":[)")), buffers);
+  text.insert(text.find(']', text.find(R"("buffers":[)")), buffers);
   return text;
 }
 
