@@ -48,10 +48,8 @@ std::vector<std::byte> buffer_bytes(const GltfFile& file, const BufferSource& so
     bytes = fetch_uri(file.path, *source.uri, place, room);
   } else if (index == 0 && container.binary) {
     bytes.assign(container.binary->begin(), container.binary->end());
-  } else if (source.fallback) {
-    return {};
   } else {
-    throw user_error("{}: it has no uri, and the file no BIN chunk for it", place);
+    return {};  // legal as long as nothing is read from it [glTF2.0 #buffers-and-buffer-views-overview]
   }
   if (bytes.size() < source.bytes) throw user_error("{}: byteLength {} where there are {} bytes", place, source.bytes, bytes.size());
   if (source.bytes > room) throw user_error("{}: the buffers take more than {} bytes", place, kMaxFileBytes);
@@ -116,6 +114,8 @@ std::span<const std::byte> buffer_view_bytes(const GltfFile& file, int index, co
                      file.model.buffers.size());
   }
   const std::vector<unsigned char>& data = file.model.buffers[static_cast<std::size_t>(view.buffer)].data;
+  if (data.empty())
+    throw user_error("{}: {}: bufferViews[{}]: buffer {} has no bytes (no uri, no BIN chunk)", file.path, place, index, view.buffer);
   if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
     throw user_error("{}: {}: bufferViews[{}]: bytes {}+{} reach beyond buffer {} of {} bytes", file.path, place, index, view.byteOffset,
                      view.byteLength, view.buffer, data.size());

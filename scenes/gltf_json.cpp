@@ -1,6 +1,7 @@
 #include "scenes/gltf_json.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -41,8 +42,9 @@ class Preparer {
       root_ = Json::parse(json);
     } catch (const Json::parse_error& error) {
       fail("its JSON", fmt::format("cannot be parsed at byte {}: not JSON in UTF-8", error.byte));
-    }
+    } catch (const Json::out_of_range&) { fail("its JSON", "holds a number that is too large for any type"); }
     if (!root_.is_object()) fail("its JSON", "is no object");
+    make_integers(root_);
   }
 
   PreparedJson prepare() {
@@ -51,13 +53,29 @@ class Preparer {
     for_each("images", [&](const Json& item, const std::string& place) { result.images.push_back(image(item, place)); });
     root_.erase("buffers");
     root_.erase("images");
-    if (root_.contains("bufferViews") && !root_["bufferViews"].empty()) give_views(result.viewless);
+    give_views(result.viewless);
+    if (!result.viewless.empty() && !root_.contains("bufferViews")) root_["bufferViews"] = Json::parse(R"([{"buffer":0,"byteLength":1}])");
     result.text = root_.dump();
     return result;
   }
 
  private:
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const { throw user_error("{}: {} {}", path_, place, reason); }
+
+  /// An integer may be written as 1.0 or 1e0; tinygltf takes only digits. The nesting is bounded by now.
+  static void make_integers(Json& value) {
+    constexpr double kLargestExact = 9007199254740992.0;  // 2^53
+    if (value.is_structured()) {
+      for (Json& item : value) make_integers(item);
+    } else if (value.is_number_float()) {
+      const double number = value.get<double>();
+      if (number >= 0 && number < kLargestExact && number == std::floor(number) && !std::signbit(number)) {
+        value = static_cast<std::uint64_t>(number);
+      } else if (number < 0 && number > -kLargestExact && number == std::floor(number)) {
+        value = static_cast<std::int64_t>(number);
+      }
+    }
+  }
 
   template <class Visit>
   void for_each(const char* table, const Visit& visit) const {
@@ -84,8 +102,6 @@ class Preparer {
     if (length == item.end() || !length->is_number_unsigned() || *length == 0U) fail(place, "byteLength: a positive integer is due");
     result.bytes = length->get<std::uint64_t>();
     result.uri = text(item, "uri", place);
-    const Json::json_pointer mark("/extensions/EXT_meshopt_compression/fallback");
-    result.fallback = contains(item, mark) && item[mark] == Json(true);
     return result;
   }
 
@@ -98,12 +114,6 @@ class Preparer {
     if (!view->is_number_unsigned() || view->get<std::uint64_t>() > 0x7fffffff) fail(place, "bufferView: an index is due");
     result.buffer_view = view->get<int>();
     return result;
-  }
-
-  static bool contains(const Json& item, const Json::json_pointer& pointer) {
-    try {
-      return item.contains(pointer);
-    } catch (const Json::exception&) { return false; }  // something on the way is no object
   }
 
   void give_views(std::vector<std::size_t>& viewless) {

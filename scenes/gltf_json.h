@@ -10,8 +10,7 @@ namespace quadrille::scenes {
 
 struct BufferSource {
   std::uint64_t bytes = 0;         ///< `byteLength`
-  std::optional<std::string> uri;  ///< none: the BIN chunk, or a buffer whose bytes only compressed views stand for
-  bool fallback = false;           ///< marked so by EXT_meshopt_compression: may be without bytes
+  std::optional<std::string> uri;  ///< none: the BIN chunk, or a buffer without bytes, as those are that compressed views stand for
 };
 
 struct ImageSource {

@@ -287,23 +287,23 @@ class GltfScene::Reader {
         use.image = entry->second;
       }
     }
-    check_image_budget(wanted);
+    std::vector<std::vector<std::byte>> encoded;
+    for (const std::size_t i : wanted) encoded.push_back(encoded_image(file_, i));
+    check_image_budget(wanted, encoded);
     scene_.images.resize(wanted.size());
-    parallel_for(wanted.size(),
-                 [&](std::size_t i) { scene_.images[i] = decode_image(encoded_image(file_, wanted[i]), image_place(wanted[i])); });
+    parallel_for(wanted.size(), [&](std::size_t i) { scene_.images[i] = decode_image(encoded[i], image_place(wanted[i])); });
     for (const std::size_t i : wanted) scene_.image_names.push_back(image_name(i));
   }
 
   /// A few bytes can say that they are many pixels: what a scene may unpack grows with what it brings.
-  void check_image_budget(const std::vector<std::size_t>& wanted) const {
+  void check_image_budget(const std::vector<std::size_t>& wanted, const std::vector<std::vector<std::byte>>& encoded) const {
     std::uint64_t pixels = 0, bytes = 0;
-    for (const std::size_t i : wanted) {
-      const auto encoded = encoded_image(file_, i);
-      const ImageHeader header = check_image_header(encoded, image_place(i));
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const ImageHeader header = check_image_header(encoded[k], image_place(wanted[k]));
       pixels += std::uint64_t{header.width} * header.height;
-      bytes += encoded.size();
+      bytes += encoded[k].size();
       if (pixels > kFreePixels + kPixelsAByte * bytes) {
-        fail(fmt::format("images[{}]", i),
+        fail(fmt::format("images[{}]", wanted[k]),
              fmt::format("the images up to here are {} pixels in {} bytes of files; legal are {} and {} more a byte", pixels, bytes,
                          kFreePixels, kPixelsAByte));
       }
