@@ -35,7 +35,7 @@ constexpr std::array<Entry, 8> kEntries{{
     {{"overdraw", "sixteen translucent layers over the whole screen: blending and colour bandwidth"},
      [](double) { return build_overdraw(); }},
     {{"fill", "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most units left out"},
-      [](double) { return build_fill(); }},
+     [](double) { return build_fill(); }},
     {{"materials", "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"},
      [](double) { return build_materials(); }},
     {{"flag", "a flag in the wind, two seconds that repeat: a skin of 25 joints and two morph targets, posed by the vertex shader"},
