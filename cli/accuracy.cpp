@@ -77,7 +77,7 @@ int run_accuracy(const AccuracyArguments& a) {
   std::vector<studies::SceneAccuracy> measured;
   for (const SceneArguments& one : all) {
     progress.show(fmt::format("loading {}", one.scene));
-    studies::StudyScene scene{one.scene, one.load(), std::nullopt};
+    studies::StudyScene scene{one.scene, one.load().stream, std::nullopt};
     if (options.precision && !one.is_trace()) scene.visibility = one.load_visibility();
     measured.push_back(studies::measure_accuracy(scene, machine, options));
     progress.clear();

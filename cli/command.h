@@ -17,6 +17,7 @@ void add_diff(CLI::App& app, Command& chosen);
 void add_describe(CLI::App& app, Command& chosen);
 void add_trace(CLI::App& app, Command& chosen);
 void add_accuracy(CLI::App& app, Command& chosen);
+void add_leave_out(CLI::App& app, Command& chosen);
 void add_lists(CLI::App& app, Command& chosen);
 void add_stability(CLI::App& app, Command& chosen);
 

@@ -177,6 +177,7 @@ SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments
                                          : fmt::format("{} frames around the scene", plan.frames);
   if (!quiet) fmt::print("FRAMES  {}, {}, {}\n{}", arguments.scene, over, about, head());
   SequenceResult result;
+  if (plan.frames > 1) (void)scene.record(plan.moment(0));  // unpacks here, once, the images that the frames' processes will sample
   Json all = Json::array();
   for (std::int64_t i = 0; i < plan.frames; ++i) {
     progress.show(fmt::format("frame {} of {}", i, plan.frames));

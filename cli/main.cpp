@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   add_describe(app, chosen);
   add_trace(app, chosen);
   add_accuracy(app, chosen);
+  add_leave_out(app, chosen);
   add_lists(app, chosen);
   add_stability(app, chosen);
   try {

@@ -100,6 +100,7 @@ RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) con
 }
 
 int RenderJob::run() {
+  scene.leave_out = leave_out == "auto";
   scene.check();
   frames.check();
   pipeline::MachineConfig config;
@@ -131,11 +132,12 @@ int RenderJob::run_one(const Setting& setting) const {
   const Stopwatch load;
   Progress progress;
   progress.show(fmt::format("loading {}", scene.scene));
-  const traces::CommandStream stream = scene.load();
+  const auto [stream, left_out] = scene.load();
   const double load_s = load.seconds();
   progress.clear();
   pipeline::RenderedFrame frame = draw(stream, setting, {out, depth});
   pipeline::Figures& figures = frame.figures;
+  figures.left_out.insert(figures.left_out.begin(), left_out.begin(), left_out.end());
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
   if (stats) write_text(*stats, pipeline::report_json(subject));

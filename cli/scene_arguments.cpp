@@ -1,5 +1,7 @@
 #include "cli/scene_arguments.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -110,6 +112,7 @@ scenes::SceneOptions SceneArguments::options() const {
   if (eye) options.eye = parse_point(*eye, "--eye");
   if (at) options.at = parse_point(*at, "--at");
   if (camera && (eye || at)) throw user_error("--camera: not together with --eye or --at");
+  options.leave_out = leave_out;
   options.vertex_shader = vert.value_or("");
   options.fragment_shader = frag.value_or("");
   return options;
@@ -138,6 +141,14 @@ traces::CommandStream SceneArguments::load_visibility() const {
   return scenes::load_scene(scene, visible);
 }
 
-traces::CommandStream SceneArguments::load() const { return is_trace() ? traces::read_trace(scene) : scenes::load_scene(scene, options()); }
+SceneArguments::Loaded SceneArguments::load() const {
+  if (is_trace()) return {traces::read_trace(scene), {}};
+  const scenes::SceneOptions wanted = options();
+  scenes::Scene file(scene, wanted);
+  Loaded loaded{file.record({wanted.time.value_or(0), wanted.orbit}), {}};
+  if (const std::size_t packed = file.packed_images(); packed > 0)
+    loaded.left_out.push_back({"images", "no shader of the frame samples them", fmt::format("{} images of the file stay packed", packed)});
+  return loaded;
+}
 
 }  // namespace quadrille::cli

@@ -8,7 +8,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "pipeline/frame_builder.h"
 #include "scenes/scene.h"
 
 namespace quadrille::cli {
@@ -16,6 +18,8 @@ namespace quadrille::cli {
 struct SceneArguments {
   std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, vert, frag;
+
+  bool leave_out = true;  ///< false: also load what no shader of the frame samples; set by the commands that offer it
 
   /// Adds SCENE and the options that choose the view and the shaders.
   void add_to(CLI::App& command);
@@ -25,8 +29,12 @@ struct SceneArguments {
   void add_trace_to(CLI::App& command);
   /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
   void check() const;
+  struct Loaded {
+    traces::CommandStream stream;
+    std::vector<pipeline::LeftOut> left_out;  ///< what loading did not have to do
+  };
   /// Loads the scene or trace. Throws `UserError`.
-  [[nodiscard]] traces::CommandStream load() const;
+  [[nodiscard]] Loaded load() const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;
   [[nodiscard]] bool is_trace() const;

@@ -25,7 +25,7 @@ void add_record(CLI::App& trace, Command& chosen) {
       check_output("--out", *file, {".qtrace"});
       Progress progress;
       progress.show(fmt::format("recording {}", scene->scene));
-      traces::write_trace(scene->load(), *file);
+      traces::write_trace(scene->load().stream, *file);
       return kDone;
     };
   });
@@ -43,7 +43,7 @@ void add_info(CLI::App& trace, Command& chosen) {
   command->callback([=, &chosen] {
     chosen = [=] {
       require_trace(*scene);
-      fmt::print("{}", traces::trace_info(scene->load()));
+      fmt::print("{}", traces::trace_info(scene->load().stream));
       return kDone;
     };
   });

@@ -36,11 +36,12 @@ class FrameBuilder {
     out.frame.precision = precision;
   }
 
-  void build() {
+  void build(bool leave_out) {
     reserve();
     for (const traces::Command& command : stream_.commands) {
       std::visit([this](const auto& c) { apply(c); }, command);
     }
+    if (!leave_out) upload_rest();
     note_left_out();
   }
 
@@ -283,6 +284,11 @@ class FrameBuilder {
     return *place;
   }
 
+  void upload_rest() {
+    for (Index i = 0; i < buffers_.size(); ++i) (void)placed(i);
+    for (Index i = 0; i < images_.size(); ++i) (void)view(i);
+  }
+
   void note_left_out() {
     const auto note = [this](bool unneeded, const char* what, const char* why, std::string saved) {
       if (unneeded) out_.left_out.push_back({what, why, std::move(saved)});
@@ -327,8 +333,8 @@ bool DeviceFrame::blends() const {
   return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return models::reads_destination(d.blend); });
 }
 
-void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out) {
-  FrameBuilder(stream, precision, out).build();
+void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out, bool leave_out) {
+  FrameBuilder(stream, precision, out).build(leave_out);
 }
 
 }  // namespace quadrille::pipeline

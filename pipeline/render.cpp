@@ -84,7 +84,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
-  build_frame(stream, config.precision(), frame);
+  build_frame(stream, config.precision(), frame, options.leave_out);
   Machine machine(config, frame, options);
   const double build_s = seconds_since(start);
   const auto simulate = Clock::now();

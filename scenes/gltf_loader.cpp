@@ -21,7 +21,6 @@
 #include "scenes/gltf_view.h"
 #include "scenes/image_header.h"
 #include "scenes/named_choice.h"
-#include "scenes/parallel.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -49,7 +48,7 @@ class GltfScene::Reader {
     for (const Animation& animation : animations_) length_ = std::max(length_, animation.length);
     for (std::size_t i = 0; i < file_.model.cameras.size(); ++i) scene_.cameras.push_back(read_camera(file_, i));
     visit_nodes();
-    decode_images();
+    read_images();
     if (!animations_.empty()) {
       hold_extent();
       pose(0);
@@ -69,6 +68,7 @@ class GltfScene::Reader {
   [[nodiscard]] SceneData& scene() { return scene_; }
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool animated() const { return !animations_.empty(); }
+  [[nodiscard]] std::size_t image_count() const { return file_.model.images.size(); }
 
  private:
   struct Visit {
@@ -275,8 +275,9 @@ class GltfScene::Reader {
 
   // ---- images ----
 
-  /// Decodes only what materials in use refer to, and renumbers their references.
-  void decode_images() {
+  /// Fetches what materials in use refer to, and renumbers their references; the recorder unpacks what is sampled. With everything asked for, the file's other
+  /// images follow.
+  void read_images() {
     std::map<int, int> numbers;  // the file's to the scene's
     std::vector<std::size_t> wanted;
     for (Material& material : scene_.materials) {
@@ -287,12 +288,15 @@ class GltfScene::Reader {
         use.image = entry->second;
       }
     }
+    for (std::size_t i = 0; !choice_.leave_out && i < file_.model.images.size(); ++i) {
+      if (!numbers.contains(static_cast<int>(i))) wanted.push_back(i);
+    }
     std::vector<std::vector<std::byte>> encoded;
     for (const std::size_t i : wanted) encoded.push_back(encoded_image(file_, i));
     check_image_budget(wanted, encoded);
-    scene_.images.resize(wanted.size());
-    parallel_for(wanted.size(), [&](std::size_t i) { scene_.images[i] = decode_image(encoded[i], image_place(wanted[i])); });
-    for (const std::size_t i : wanted) scene_.image_names.push_back(image_name(i));
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      scene_.images.emplace_back(image_name(wanted[k]),
+                                 [bytes = std::move(encoded[k]), place = image_place(wanted[k])] { return decode_image(bytes, place); });
   }
 
   /// A few bytes can say that they are many pixels: what a scene may unpack grows with what it brings.
@@ -341,6 +345,7 @@ GltfScene& GltfScene::operator=(GltfScene&&) noexcept = default;
 SceneData& GltfScene::data() { return reader_->scene(); }
 double GltfScene::length() const { return reader_->length(); }
 bool GltfScene::animated() const { return reader_->animated(); }
+std::size_t GltfScene::image_count() const { return reader_->image_count(); }
 
 void GltfScene::pose(double time) {
   if (reader_->animated()) reader_->pose(time);

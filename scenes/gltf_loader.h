@@ -13,6 +13,7 @@ struct GltfChoice {
   std::string scene;      ///< empty: the file's own
   bool animated = false;  ///< pose the scene by an animation; otherwise nodes stay as the file places them
   std::string animation;  ///< also `all`; empty: the first, if there is one
+  bool leave_out = true;  ///< false: also read the images that no material in use refers to
 };
 
 /// A file that is read once, to be posed at any number of moments.
@@ -29,6 +30,8 @@ class GltfScene {
   /// Seconds to the last key; 0 without an animation.
   [[nodiscard]] double length() const;
   [[nodiscard]] bool animated() const;
+  /// Images that the file has, whether used or not.
+  [[nodiscard]] std::size_t image_count() const;
   /// Moves nodes, skins, morph targets, cameras and lights to `time` in seconds. Throws `UserError`. Without an animation it does nothing.
   void pose(double time);
 

@@ -120,8 +120,7 @@ void place(SceneData& scene, std::uint32_t primitive, const glm::mat4& world) {
 }
 
 int add_image(SceneData& scene, const std::string& name, Rgba8Image image) {
-  scene.image_names.push_back(name);
-  scene.images.push_back(std::move(image));
+  scene.images.emplace_back(name, std::move(image));
   return static_cast<int>(scene.images.size() - 1);
 }
 

@@ -13,6 +13,7 @@
 #include "scenes/host_pose.h"
 #include "scenes/mip_chain.h"
 #include "scenes/parallel.h"
+#include "scenes/spirv_bindings.h"
 #include "traces/trace_file.h"
 
 namespace quadrille::scenes {
@@ -231,8 +232,39 @@ const Variant& Recorder::variant(const Primitive& primitive) {
   std::array<bool, kSemantics> available{};
   for (std::size_t i = 0; i < kSemantics; ++i) available[i] = primitive.attributes[i] >= 0;
   const auto [entry, added] = variants_.try_emplace({primitive.material, available});
-  if (added) entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive, shaders_.set());
+  if (added) {
+    entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive, shaders_.set());
+    if (shaders_.set() == ShaderSet::kUser && options_.leave_out) leave_out_unread(entry->second);
+  }
   return entry->second;
+}
+
+/// A shader of the user's is offered every texture of a material; most look at few.
+void Recorder::leave_out_unread(Variant& v) {
+  std::set<std::uint32_t> read;
+  for (const traces::Index shader : {shaders_.vertex(v), shaders_.fragment(v)})
+    read.merge(mentioned_bindings(stream_.shaders[shader].spirv, kMaterialSet));
+  for (std::size_t slot = 0; slot < kTextureSlots; ++slot)
+    v.textures[slot] = v.textures[slot] && read.contains(static_cast<std::uint32_t>(1 + slot));
+}
+
+void Recorder::add_textures(const std::vector<TextureKey>& keys) {
+  std::set<int> sources;
+  for (const TextureKey& key : keys) sources.insert(key.image);
+  const std::vector<int> packed(sources.begin(), sources.end());
+  parallel_for(packed.size(), [&](std::size_t i) { (void)scene_.images[static_cast<std::size_t>(packed[i])].pixels(); });
+  const std::size_t first = stream_.images.size();
+  stream_.images.resize(first + keys.size());
+  parallel_for(keys.size(), [&](std::size_t i) {
+    const SceneImage& source = scene_.images[static_cast<std::size_t>(keys[i].image)];
+    const Rgba8Image& image = source.pixels();
+    stream_.images[first + i] = {source.name(),
+                                 keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm,
+                                 image.width,
+                                 image.height,
+                                 full_chain_levels(image.width, image.height),
+                                 build_mip_chain(image, keys[i].srgb)};
+  });
 }
 
 void Recorder::record_textures() {
@@ -246,18 +278,14 @@ void Recorder::record_textures() {
     }
   }
   const std::vector<TextureKey> keys(used.begin(), used.end());
-  stream_.images.resize(keys.size());
-  parallel_for(keys.size(), [&](std::size_t i) {
-    const auto source = static_cast<std::size_t>(keys[i].image);
-    const Rgba8Image& image = scene_.images[source];
-    stream_.images[i] = {scene_.image_names[source],
-                         keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm,
-                         image.width,
-                         image.height,
-                         full_chain_levels(image.width, image.height),
-                         build_mip_chain(image, keys[i].srgb)};
-  });
+  add_textures(keys);
   for (std::size_t i = 0; i < keys.size(); ++i) textures_[keys[i]] = static_cast<traces::Index>(i);
+  if (options_.leave_out) return;
+  std::vector<TextureKey> unread;
+  for (int i = 0; i < static_cast<int>(scene_.images.size()); ++i) {
+    if (!used.contains({i, false}) && !used.contains({i, true})) unread.push_back({i, false});
+  }
+  add_textures(unread);
 }
 
 void Recorder::record_frame_set() {

@@ -66,6 +66,9 @@ class Recorder {
   [[nodiscard]] std::vector<std::size_t> draw_order() const;
   void record_arrays();
   void record_textures();
+  /// Unpacks images and makes their mip chains, on all cores; they follow what the stream holds.
+  void add_textures(const std::vector<TextureKey>& keys);
+  void leave_out_unread(Variant& variant);
   void record_frame_set();
   void record_instance(const Instance& instance);
   /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their triangles apart or is not ours.

@@ -1,6 +1,7 @@
 /// From the name of a scene to a validated stream.
 #include "scenes/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/base/error.h"
@@ -54,7 +55,7 @@ Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options) : 
                        parts_->length > 0 ? "0" : "none");
     return;
   }
-  parts_->file.emplace(file_or_builtin, GltfChoice{options.scene, animated, options.animation});
+  parts_->file.emplace(file_or_builtin, GltfChoice{options.scene, animated, options.animation, options.leave_out});
   parts_->animated = parts_->file->animated();
   parts_->length = parts_->file->length();
 }
@@ -64,6 +65,13 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 bool Scene::animated() const { return parts_->animated; }
 double Scene::length() const { return parts_->length; }
+
+std::size_t Scene::packed_images() const {
+  if (!parts_->file) return 0;
+  const std::vector<SceneImage>& images = parts_->file->data().images;
+  return parts_->file->image_count() -
+         static_cast<std::size_t>(std::ranges::count_if(images, [](const SceneImage& i) { return !i.packed(); }));
+}
 
 traces::CommandStream Scene::record(const Moment& moment) {
   SceneOptions options = parts_->options;

@@ -29,6 +29,7 @@ struct SceneOptions {
   std::string animation;                       ///< number, name or `all`; empty: the first
   std::optional<double> orbit;                 ///< part of a turn by which the camera is carried around the scene's centre
   bool visibility = false;                     ///< draw triangle ids instead of colours (see `triangle_id_color`)
+  bool leave_out = true;                       ///< false: also unpack and record the textures that no shader of the frame samples
   std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
 };
 
@@ -53,6 +54,8 @@ class Scene {
   [[nodiscard]] double length() const;
   /// One frame, validated. Throws `UserError`.
   [[nodiscard]] traces::CommandStream record(const Moment& moment);
+  /// Images of the file that no frame recorded so far had to unpack.
+  [[nodiscard]] std::size_t packed_images() const;
 
  private:
   struct Parts;

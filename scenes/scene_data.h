@@ -7,9 +7,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/mat4x4.hpp>
@@ -89,6 +91,29 @@ enum class TextureSlot : std::uint8_t {
   kThickness        ///< g
 };
 inline constexpr std::size_t kBaseTextureSlots = 5, kTextureSlots = 14;
+
+/// A picture that is unpacked when it is first looked at: what no shader of a frame samples stays packed.
+class SceneImage {
+ public:
+  SceneImage(std::string name, Rgba8Image pixels) : name_(std::move(name)), pixels_(std::move(pixels)) {}
+  /// `unpack` throws `UserError`.
+  SceneImage(std::string name, std::function<Rgba8Image()> unpack) : name_(std::move(name)), unpack_(std::move(unpack)) {}
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] bool packed() const { return unpack_ != nullptr; }
+  /// Not for two threads at a time.
+  [[nodiscard]] const Rgba8Image& pixels() const {
+    if (unpack_) {
+      pixels_ = unpack_();
+      unpack_ = nullptr;
+    }
+    return pixels_;
+  }
+
+ private:
+  std::string name_;
+  mutable Rgba8Image pixels_;
+  mutable std::function<Rgba8Image()> unpack_;
+};
 
 struct TextureUse {
   int image = -1;  ///< into `SceneData::images`; -1: none
@@ -178,8 +203,7 @@ struct Environment {
 
 struct SceneData {
   std::string name;
-  std::vector<Rgba8Image> images;
-  std::vector<std::string> image_names;
+  std::vector<SceneImage> images;
   std::vector<Array> arrays;
   std::vector<Material> materials;
   std::vector<Primitive> primitives;
