@@ -88,7 +88,9 @@ Group machine_cases() {
   special("a device", [](const fs::path& p) { fs::create_symlink("/dev/zero", p); });
   special("a sparse gigabyte", [](const fs::path& p) { write_file(p, ""), fs::resize_file(p, 1ULL << 30); });
   special("its own link", [](const fs::path& p) { fs::create_symlink("m.toml", p); });
-  for (const std::string name : {"", ".", "..", "/", "default/../default", "../configs/default", std::string(5000, 'x').c_str(), "a\nb"})
+  const std::string long_name(5000, 'x');
+  for (const std::string& name :
+       std::initializer_list<std::string>{"", ".", "..", "/", "default/../default", "../configs/default", long_name, "a\nb"})
     group.cases.push_back(
         {"machine '" + name.substr(0, 30) + "'", triangle({"--size", "16x16", "--machine", name}), "", {}, Expect::kEither});
   for (const std::string& value : kNumbers)
