@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <span>
 
 #include "cli/command.h"
 #include "cli/image_files.h"
@@ -13,7 +12,6 @@
 #include "models/base/error.h"
 #include "studies/accuracy_report.h"
 #include "studies/plot.h"
-#include "traces/whole_file.h"
 
 namespace quadrille::cli {
 namespace {
@@ -84,10 +82,7 @@ int run_accuracy(const AccuracyArguments& a) {
     fmt::print("{}{}", measured.size() > 1 ? "\n" : "", studies::accuracy_table(measured.back(), machine));
     std::fflush(stdout);
   }
-  if (a.json) {
-    const std::string json = studies::accuracy_json(measured, machine);
-    traces::write_whole_file(*a.json, std::as_bytes(std::span(json.data(), json.size())));
-  }
+  if (a.json) { write_text(*a.json, studies::accuracy_json(measured, machine)); }
   if (a.plot) studies::draw_plot(*a.plot, studies::accuracy_plot(measured));
   if (a.precision_plot) studies::draw_plot(*a.precision_plot, studies::precision_plot(measured));
   return kDone;

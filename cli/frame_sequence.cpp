@@ -109,18 +109,6 @@ std::string broken_laws(std::int64_t number, const Json& figures) {
   return text;
 }
 
-/// What one frame's process came to: its figures, or an error that names the frame.
-Json figures_of(const studies::ChildRun& run, std::int64_t number) {
-  switch (run.end) {
-    case studies::ChildEnd::kDone: return Json::parse(run.output);
-    case studies::ChildEnd::kRefused: throw user_error("frame {}: {}", number, run.output);
-    case studies::ChildEnd::kFailed:
-    case studies::ChildEnd::kCrashed:
-    case studies::ChildEnd::kTimedOut: break;
-  }
-  throw std::runtime_error(fmt::format("frame {} {}: {}", number, studies::child_end_name(run.end), run.output));
-}
-
 }  // namespace
 
 void FrameArguments::add_to(CLI::App& command) {
@@ -182,7 +170,8 @@ SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments
   for (std::int64_t i = 0; i < plan.frames; ++i) {
     progress.show(fmt::format("frame {} of {}", i, plan.frames));
     const scenes::Moment moment = plan.moment(i);
-    Json figures = figures_of(studies::run_in_child([&] { return draw(scene.record(moment), i); }, {kNoLimit, 0}), i);
+    const studies::ChildRun run = studies::run_in_child([&] { return draw(scene.record(moment), i); }, {kNoLimit, 0});
+    Json figures = Json::parse(studies::output_of(run, fmt::format("frame {}", i)));
     progress.clear();
     if (!quiet) fmt::print("{}", row(i, plan, figures));
     std::fflush(stdout);

@@ -10,6 +10,7 @@
 #include "models/base/error.h"
 #include "models/rop/srgb.h"
 #include "scenes/image_io.h"
+#include "traces/whole_file.h"
 
 namespace quadrille::cli {
 namespace {
@@ -97,6 +98,10 @@ void check_distinct(const std::vector<std::pair<std::string_view, std::optional<
       throw user_error("{} and {}: both name {}", outputs[j].first, outputs[i].first, *outputs[i].second);
     }
   }
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  traces::write_whole_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
 void write_color(const std::string& path, const pipeline::FrameImage& image, bool srgb, bool keep_alpha) {

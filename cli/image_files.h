@@ -1,4 +1,4 @@
-/// Pictures that the program writes and reads: which files are legal, and how stored colours become those of a file.
+/// Files that the program writes, and pictures that it reads: which are legal, and how stored colours become those of a file.
 #pragma once
 
 #include <optional>
@@ -16,6 +16,8 @@ void check_output(std::string_view flag, const std::string& path, const std::vec
 /// Refuses two outputs with one name. Paths that were not given are empty.
 void check_distinct(const std::vector<std::pair<std::string_view, std::optional<std::string>>>& outputs);
 
+/// Writes a text, whole or not at all.
+void write_text(const std::string& path, const std::string& text);
 /// Writes the colours: a .png holds the stored codes, an .exr linear values. Alpha is written as 1 unless `keep_alpha`. `srgb` says how the target encodes.
 void write_color(const std::string& path, const pipeline::FrameImage& image, bool srgb, bool keep_alpha);
 /// Writes the depths: an .exr holds them as they are, a .png shows them as grey, the nearest white, the farthest black.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <span>
 
 #include "cli/command.h"
 #include "cli/image_files.h"
@@ -11,7 +10,6 @@
 #include "cli/process.h"
 #include "cli/scene_arguments.h"
 #include "studies/leave_out.h"
-#include "traces/whole_file.h"
 
 namespace quadrille::cli {
 namespace {
@@ -53,10 +51,7 @@ int run_leave_out(const LeaveOutArguments& a) {
   }
   progress.clear();
   fmt::print("{}", studies::leave_out_table(results, machine));
-  if (a.json) {
-    const std::string json = studies::leave_out_json(results, machine);
-    traces::write_whole_file(*a.json, std::as_bytes(std::span(json.data(), json.size())));
-  }
+  if (a.json) { write_text(*a.json, studies::leave_out_json(results, machine)); }
   return std::ranges::all_of(results, [](const studies::LeaveOutResult& r) { return r.contradiction.empty(); }) ? kDone : kFailed;
 }
 

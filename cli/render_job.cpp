@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <span>
-
 #include "cli/command.h"
 #include "cli/image_files.h"
 #include "cli/process.h"
 #include "models/base/error.h"
 #include "pipeline/report.h"
-#include "traces/whole_file.h"
 
 namespace quadrille::cli {
 namespace {
@@ -30,10 +27,6 @@ void note_host(pipeline::Figures& figures, double load_s) {
   figures.host.load_s = load_s;
   figures.host.wall_s = wall_seconds();
   figures.host.peak_rss_mib = peak_rss_mib();
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  traces::write_whole_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
 }  // namespace
@@ -159,7 +152,8 @@ int RenderJob::run_frames(const Setting& setting) const {
     return pipeline::report_json({frame.figures, setting.config, frame.image.width, frame.image.height});
   };
   const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();
-  const std::string about = fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.name, fidelity);
+  const std::string how = setting.window > 0 ? fmt::format("approximate (window of {} cycles)", window_cycles()) : fidelity;
+  const std::string about = fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.name, how);
   const SequenceResult result = draw_frames(scene, frames, about, quiet, draw_one);
   if (stats) write_text(*stats, result.json);
   return result.exit_code;

@@ -13,7 +13,6 @@
 #include "models/base/error.h"
 #include "studies/stability/report.h"
 #include "studies/stability/stability.h"
-#include "traces/whole_file.h"
 
 namespace quadrille::cli {
 namespace {
@@ -35,10 +34,6 @@ void make_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) throw user_error("--out: {}: cannot be made a folder", folder);
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  traces::write_whole_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
 /// The folder of the pictures as seen from the page, with its slash.

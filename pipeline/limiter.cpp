@@ -144,12 +144,14 @@ std::vector<ResourceUse> resource_uses(const Figures& figures) {
 Limiter find_limiter(const Figures& figures) {
   if (figures.units.empty()) return {};
   const std::vector<ResourceUse> uses = resource_uses(figures);
+  if (uses.empty()) return {};
   if (uses.front().use < kUsedUp) return walk(Graph(figures));
   Limiter limiter;
   limiter.kind = uses.front().name.starts_with("link.") ? Limiter::Kind::kLink : Limiter::Kind::kUnit;
   limiter.name = uses.front().name;
   limiter.share = uses.front().use;
-  limiter.text = fmt::format("{}: {}; next {}: {}", limiter.name, uses.front().detail, uses[1].name, uses[1].detail);
+  limiter.text = fmt::format("{}: {}", limiter.name, uses.front().detail);
+  if (uses.size() > 1) limiter.text += fmt::format("; next {}: {}", uses[1].name, uses[1].detail);
   return limiter;
 }
 

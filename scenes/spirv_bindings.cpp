@@ -6,7 +6,7 @@
 namespace quadrille::scenes {
 namespace {
 
-// [SPIR-V #instructions, #decoration]
+// [SPV #instructions, #decoration]
 constexpr std::uint32_t kDecorate = 71, kFunction = 54, kBinding = 33, kDescriptorSet = 34;
 constexpr std::size_t kHeaderWords = 5;
 

@@ -30,7 +30,7 @@ cpp_files() {
       if [ -f "$file" ]; then echo "$file"; fi
     done
   else
-    find models hw pipeline traces scenes cli tests -name '*.h' -o -name '*.cpp' | sort
+    find models hw pipeline traces scenes studies cli tests -name '*.h' -o -name '*.cpp' | sort
   fi
 }
 

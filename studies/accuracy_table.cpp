@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/unit_facets.h"
 #include "studies/accuracy_report.h"
 #include "studies/statistics.h"
 
@@ -10,13 +11,6 @@ namespace quadrille::studies {
 namespace {
 
 constexpr double kMilli = 1e3;
-
-/// 1234567 as 1,234,567.
-std::string grouped(std::int64_t value) {
-  std::string text = fmt::format("{}", value);
-  for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) text.insert(static_cast<std::size_t>(at), ",");
-  return text;
-}
 
 std::string percent(double value) { return value == 0 ? "0" : fmt::format("{:+.3f}", value); }
 std::string points(double value) { return value == 0 ? "0" : fmt::format("{:.3f}", value); }
@@ -30,11 +24,11 @@ std::string time_columns(const std::vector<double>& cpu_s) {
 std::string setting_row(const SettingResult& s) {
   std::string row = fmt::format("  {:<12}{}{:>6.2f}", s.setting.name(), time_columns(s.cpu_s), s.speed_up);
   if (s.cost && s.error) {
-    row += fmt::format("{:>14}{:>10}{:>8}{:>8}  {:<18}{:>9.2f}{:>9}{:>9}  {:<13}", grouped(s.cost->cycles),
-                       percent(s.error->cycles_percent), points(s.error->busy_mean_points), points(s.error->busy_max_points),
-                       s.error->worst_unit.empty() ? "-" : s.error->worst_unit, static_cast<double>(s.cost->memory_bytes) * 1e-6,
-                       percent(s.error->memory_percent), points(s.error->client_max_percent),
-                       s.error->worst_client.empty() ? "-" : s.error->worst_client);
+    row += fmt::format(
+        "{:>14}{:>10}{:>8}{:>8}  {:<18}{:>9.2f}{:>9}{:>9}  {:<13}", pipeline::grouped(static_cast<std::uint64_t>(s.cost->cycles)),
+        percent(s.error->cycles_percent), points(s.error->busy_mean_points), points(s.error->busy_max_points),
+        s.error->worst_unit.empty() ? "-" : s.error->worst_unit, static_cast<double>(s.cost->memory_bytes) * 1e-6,
+        percent(s.error->memory_percent), points(s.error->client_max_percent), s.error->worst_client.empty() ? "-" : s.error->worst_client);
   } else {
     row += fmt::format("{:>14}{:>10}{:>8}{:>8}  {:<18}{:>9}{:>9}{:>9}  {:<13}", "-", "-", "-", "-", "-", "-", "-", "-", "-");
   }

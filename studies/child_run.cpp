@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
@@ -165,6 +166,17 @@ const char* child_end_name(ChildEnd end) {
   return "";
 }
 
+std::string output_of(const ChildRun& run, const std::string& about) {
+  switch (run.end) {
+    case ChildEnd::kDone: return run.output;
+    case ChildEnd::kRefused:
+    case ChildEnd::kTimedOut: throw UserError(fmt::format("{}: {}", about, run.output));
+    case ChildEnd::kFailed:
+    case ChildEnd::kCrashed: break;
+  }
+  throw std::runtime_error(fmt::format("{}: {}: {}", about, child_end_name(run.end), run.output));
+}
+
 ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
   const ChildWork one{work, limits};
   ChildRun run;
@@ -173,7 +185,15 @@ ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimit
 }
 
 void run_in_children(std::span<const ChildWork> works, int jobs, const std::function<void(std::size_t, const ChildRun&)>& done) {
-  std::vector<Child> children;
+  /// Children that still run when an exception passes are ended.
+  struct Running : std::vector<Child> {
+    Running() = default;
+    Running(const Running&) = delete;
+    Running& operator=(const Running&) = delete;
+    ~Running() {
+      for (const Child& child : *this) (void)finish_child(child, false);
+    }
+  } children;
   std::vector<pollfd> ready;
   std::size_t next = 0;
   while (next < works.size() || !children.empty()) {

@@ -36,6 +36,10 @@ struct ChildRun {
 /// Runs `work` in a forked child. Call it with no other thread running. Throws `UserError` when the host cannot fork.
 [[nodiscard]] ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimits& limits = {});
 
+/// What the work returned. Throws `UserError` when it was refused or ran out of time, `std::runtime_error` when it failed or crashed. `about` leads the message,
+/// which keeps its lines: a machine that cannot progress says who waits for whom in a table.
+[[nodiscard]] std::string output_of(const ChildRun& run, const std::string& about);
+
 /// A piece of work for `run_in_children`.
 struct ChildWork {
   std::function<std::string()> work;

@@ -56,8 +56,8 @@ std::string run_once(const LeaveOutScene& scene, const pipeline::MachineConfig& 
       .dump();
 }
 
-LeaveOutRun parsed(const ChildRun& child) {
-  const Json json = Json::parse(child.output);
+LeaveOutRun parsed(const std::string& output, const ChildRun& child) {
+  const Json json = Json::parse(output);
   LeaveOutRun run;
   run.load_s = json.at("load_s").get<double>();
   run.build_s = json.at("build_s").get<double>();
@@ -74,14 +74,7 @@ LeaveOutRun parsed(const ChildRun& child) {
 
 LeaveOutRun run_in_process(const LeaveOutScene& scene, const pipeline::MachineConfig& machine, bool leave_out) {
   const ChildRun child = run_in_child([&] { return run_once(scene, machine, leave_out); }, {.seconds = kLongestRunSeconds});
-  switch (child.end) {
-    case ChildEnd::kDone: return parsed(child);
-    case ChildEnd::kRefused: throw user_error("{}", child.output);
-    case ChildEnd::kTimedOut: throw user_error("{}: {}; try a smaller --size", scene.name, child.output);
-    case ChildEnd::kFailed:
-    case ChildEnd::kCrashed: break;
-  }
-  throw std::runtime_error(fmt::format("{}: {}", scene.name, child.output));
+  return parsed(output_of(child, scene.name), child);
 }
 
 std::uint64_t work_of(const Json& unit) {

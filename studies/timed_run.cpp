@@ -90,14 +90,7 @@ MachineCost machine_cost(const pipeline::Figures& figures) {
 
 TimedRun run_timed(const traces::CommandStream& stream, const pipeline::MachineConfig& machine, const RunSetting& setting) {
   const ChildRun child = run_in_child([&] { return rendered(stream, machine, setting); }, {.seconds = kLongestRunSeconds});
-  switch (child.end) {
-    case ChildEnd::kDone: return parsed(child.output);
-    case ChildEnd::kRefused: throw user_error("{}: {}: {}", stream.name, setting.name(), child.output);
-    case ChildEnd::kTimedOut: throw user_error("{}: {}: {}; try a smaller --size", stream.name, setting.name(), child.output);
-    case ChildEnd::kFailed:
-    case ChildEnd::kCrashed: break;
-  }
-  throw std::runtime_error(fmt::format("{}: {}: {}", stream.name, setting.name(), child.output));
+  return parsed(output_of(child, fmt::format("{}: {}", stream.name, setting.name())));
 }
 
 }  // namespace quadrille::studies

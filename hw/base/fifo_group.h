@@ -29,8 +29,10 @@ class FifoInGroup {
   [[nodiscard]] std::size_t size() const { return ports_.size(); }
   [[nodiscard]] FifoIn<T>& operator[](std::size_t i) const { return *ports_[i]; }
 
-  /// The earliest of actions that need `own` and any one input; the first input wins ties. Never, for want of the first input, while none holds a token.
+  /// The earliest of actions that need `own` and any one input; the first input wins ties. Never, for want of the first input, while none holds a
+  /// token; never, for want of nothing, of an empty group.
   [[nodiscard]] Wake earliest(const Wake& own = Wake()) const {
+    if (ports_.empty()) return Wake(kNever);
     Wake first = Wake::never(*ports_[0]);
     visit_holding(0, [&](std::size_t, FifoIn<T>& in) {
       first = Wake::sooner(first, Wake(own).input(in));

@@ -104,7 +104,7 @@ Wake DepthUnit::next() const {
   wake = Wake::sooner(wake, late_test_wake());
   wake = Wake::sooner(wake, late_take_wake());
   wake = Wake::sooner(wake, flush_wake());
-  if (port_.slices() > 0) wake = Wake::sooner(wake, port_.receive_wake());
+  wake = Wake::sooner(wake, port_.receive_wake());
   if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
   return wake;
 }

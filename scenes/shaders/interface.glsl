@@ -23,5 +23,5 @@ layout(push_constant) uniform PerDraw {
   mat3 normal_matrix;    // byte 64: inverse transpose of the model matrix
   uint draw_id;          // byte 112: number of the draw
   uint first_triangle;   // byte 116: triangles of all draws before it
-  float handedness;      // byte 120: -1 where the model matrix mirrors, else 1
+  float handedness;      // byte 120: -1 where the model matrix, or the skin, mirrors, else 1
 } draw;

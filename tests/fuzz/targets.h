@@ -1,6 +1,6 @@
 /// What is fuzzed: each target takes any bytes the way a user's file takes, and either does its work or is refused in one line.
 ///
-/// The same functions serve two programs: libFuzzer's (one a target, the `fuzz` preset, scripts/fuzz) and the replay of the committed corpus, which needs no
+/// The same functions serve two programs: libFuzzer's (one a target, the `asan` preset, scripts/fuzz) and the replay of the committed corpus, which needs no
 /// Clang and runs with every other test (tests/fuzz/corpus_test.cpp).
 #pragma once
 

@@ -38,6 +38,22 @@ TEST_CASE("each way in which a child can end is told apart") {
   CHECK_THAT(left.output, Contains("exit code 7"));
 }
 
+TEST_CASE("what a child came to is its output, a user's mistake, or our fault, and keeps its lines") {
+  CHECK(output_of(run_in_child([] { return std::string("all"); }), "frame 3") == "all");
+  CHECK_THROWS_WITH(output_of(run_in_child([]() -> std::string { throw UserError("stuck:\n  a waits for b"); }), "frame 3"),
+                    "frame 3: stuck:\n  a waits for b");
+  CHECK_THROWS_AS(output_of(run_in_child([]() -> std::string { throw std::logic_error("ours"); }), "frame 3"), std::runtime_error);
+}
+
+TEST_CASE("children are ended when what takes their results fails") {
+  const std::vector<ChildWork> works{{[] { return std::string("first"); }, {}},
+                                     {[]() -> std::string {
+                                        while (true) pause();
+                                      },
+                                      {}}};
+  CHECK_THROWS_WITH(run_in_children(works, 2, [](std::size_t, const ChildRun&) { throw std::runtime_error("no use"); }), "no use");
+}
+
 TEST_CASE("a child that does not end is ended at its limit") {
   const ChildRun run = run_in_child(
       []() -> std::string {
