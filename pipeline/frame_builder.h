@@ -33,8 +33,8 @@ struct DeviceFrame {
   [[nodiscard]] bool blends() const;
 };
 
-/// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all else, so that no address depends on it. Throws `UserError` for a shader that does not compile, a stage interface that does not match, or memory that does
-/// not fit.
+/// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all else, so that no address depends on it.
+/// Throws `UserError` for a shader that does not compile, a stage interface that does not match, or memory that does not fit.
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out, bool leave_out = true);
 
 }  // namespace quadrille::pipeline

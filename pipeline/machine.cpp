@@ -246,10 +246,12 @@ void Machine::wire_memory() {
 void Machine::run(const hw::RunLimits& limits) {
   const hw::RunEnd reason = driver_->run(limits);
   if (!command_processor_->finished()) {
-    const char* const what = reason == hw::RunEnd::kTimeLimit ? "the time limit was reached" : "the machine cannot progress";
-    const hw::Tick when = limits.max_time == hw::kNever ? quiet_end() : limits.max_time;
-    throw UserError(fmt::format(
-        "{}: {}", what, hw::deadlock_report(driver_->units(), when)));  // a table of who waits for whom: the only error of many lines
+    if (reason == hw::RunEnd::kTimeLimit) {
+      throw UserError(fmt::format("the limit of {} cycles was reached before the frame was done; {}", clock_.edges_before(limits.max_time),
+                                  hw::waiting_report(driver_->units(), limits.max_time)));
+    }
+    // Tables of who waits for whom are the only errors of many lines.
+    throw UserError("the machine cannot progress: " + hw::deadlock_report(driver_->units(), quiet_end()));
   }
   for (hw::Unit* unit : driver_->units()) unit->close(end());
 }

@@ -112,9 +112,15 @@ std::string leftover_text(const std::vector<Unit*>& units) {
 
 }  // namespace
 
-std::string deadlock_report(const std::vector<Unit*>& units, Tick now) {
-  std::string text = fmt::format("nothing can act after {} fs; {} tokens lie in links; who waits for whom:\n", now, tokens_in_links(units));
+std::string waiting_report(const std::vector<Unit*>& units, Tick now) {
+  std::string text = "who waits for whom:\n";
   for (const Unit* unit : units) text += waiting_line(*unit, now);
+  return text;
+}
+
+std::string deadlock_report(const std::vector<Unit*>& units, Tick now) {
+  std::string text =
+      fmt::format("nothing can act after {} fs; {} tokens lie in links; ", now, tokens_in_links(units)) + waiting_report(units, now);
   const auto cycle = blamed_cycle(units);
   return text + (cycle.empty() ? leftover_text(units) : cycle_text(cycle));
 }

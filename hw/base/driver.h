@@ -67,6 +67,8 @@ class Driver : public sc_core::sc_module {
 /// Tokens that lie in the links of these units. Not 0 after a quiescent run: somebody waits for what will never come.
 [[nodiscard]] std::int64_t tokens_in_links(const std::vector<Unit*>& units);
 
+/// Who waits for whom at tick `now`: one line a waiting unit.
+[[nodiscard]] std::string waiting_report(const std::vector<Unit*>& units, Tick now);
 /// Who waits for whom when nothing can act: one line a waiting unit, the shortest cycle of waiting, and the FIFO to blame; without a cycle, the tokens that
 /// nobody takes and what their consumers wait for. `now` is the tick of the latest action.
 [[nodiscard]] std::string deadlock_report(const std::vector<Unit*>& units, Tick now);

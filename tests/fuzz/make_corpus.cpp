@@ -71,7 +71,7 @@ class BufferText {
   int count_ = 0;
 };
 
-constexpr int kByte = 5120, kUbyte = 5121, kUshort = 5123, kFloat = 5126;
+constexpr int kUbyte = 5121, kUshort = 5123, kFloat = 5126;
 
 /// A square of two triangles with every attribute, skin, morph target and animation; `material` and `more` are put in as they are.
 std::string rich_scene(const Corpus& corpus, bool with_uri, Buffer* data) {
