@@ -82,17 +82,16 @@ CameraPose upright(const glm::dvec3& eye, const glm::dvec3& backward) {
 }
 
 template <class Visit>
-void for_each_corner(const SceneData& scene, const Visit& visit) {
-  for (const Bounds& box : scene.boxes()) {
-    if (box.empty()) continue;
-    for (int c = 0; c < 8; ++c)
+void for_each_corner(const PlacedScene& scene, const Visit& visit) {
+  scene.visit_boxes([&](const Bounds& box) {
+    for (int c = 0; !box.empty() && c < 8; ++c)
       visit(
           glm::dvec3((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y, (c & 4) != 0 ? box.high.z : box.low.z));
-  }
+  });
 }
 
 /// Near and far planes that hold the scene as seen from `pose`.
-std::pair<double, double> depth_range(const SceneData& scene, const CameraPose& pose) {
+std::pair<double, double> depth_range(const PlacedScene& scene, const CameraPose& pose) {
   double nearest = INFINITY, farthest = 0;
   for_each_corner(scene, [&](const glm::dvec3& corner) {
     const double depth = glm::dot(pose.eye - corner, pose.backward);
@@ -113,7 +112,7 @@ CameraPose turned(const CameraPose& pose, const glm::dvec3& center, double turns
 }
 
 /// How far before the centre a camera with the axes of `pose` has to stand to hold the scene.
-double framing_distance(const SceneData& scene, const CameraPose& pose, const glm::dvec3& center, double aspect) {
+double framing_distance(const PlacedScene& scene, const CameraPose& pose, const glm::dvec3& center, double aspect) {
   const double tangent_y = std::tan(kFramingFov / 2) / kMargin, tangent_x = tangent_y * aspect;
   double distance = 0;
   for_each_corner(scene, [&](const glm::dvec3& corner) {
@@ -124,7 +123,7 @@ double framing_distance(const SceneData& scene, const CameraPose& pose, const gl
   return distance;
 }
 
-CameraPose framing_pose(const SceneData& scene, double aspect, bool orbiting) {
+CameraPose framing_pose(const PlacedScene& scene, double aspect, bool orbiting) {
   const Bounds box = scene.bounds();
   const glm::dvec3 center = box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
   const CameraPose pose = upright(center, {0.55, 0.42, 1});
@@ -138,7 +137,7 @@ CameraPose framing_pose(const SceneData& scene, double aspect, bool orbiting) {
   return placed;
 }
 
-View user_view(const SceneData& scene, const SceneOptions& options, double aspect) {
+View user_view(const PlacedScene& scene, const SceneOptions& options, double aspect) {
   const Bounds box = scene.bounds();
   const glm::dvec3 at = options.at ? glm::dvec3(*options.at) : box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
   const glm::dvec3 eye = options.eye ? glm::dvec3(*options.eye) : framing_pose(scene, aspect, options.orbit.has_value()).eye;
@@ -150,39 +149,43 @@ View user_view(const SceneData& scene, const SceneOptions& options, double aspec
 }
 
 /// The node's pose without its scale, which glTF gives no meaning for a camera. [glTF2.0 #cameras]
-View file_view(const SceneData& scene, const Camera& camera, const SceneOptions& options, double aspect) {
-  const glm::dmat4 world(*camera.pose);
+View file_view(const PlacedScene& scene, const Camera& camera, const SceneOptions& options, double aspect) {
+  const glm::dmat4 world{glm::mat4(*camera.pose)};
   const glm::dvec3 z(world[2]), y(world[1]);
   if (!(glm::length(z) > 0) || !(glm::length(glm::cross(y, z)) > 0))
-    throw user_error("{}: camera '{}': its node's matrix is singular", scene.name, camera.name);
+    throw user_error("{}: camera '{}': its node's matrix is singular", scene.data.name, camera.name);
   CameraPose pose;
   pose.eye = glm::dvec3(world[3]);
   pose.backward = glm::normalize(z);
   pose.right = glm::normalize(glm::cross(y, z));
   pose.up = glm::cross(pose.backward, pose.right);
-  if (options.orbit) pose = turned(pose, glm::dvec3(scene.bounds().empty() ? glm::vec3(0) : scene.bounds().center()), *options.orbit);
+  if (options.orbit) {
+    const Bounds box = scene.bounds();
+    pose = turned(pose, box.empty() ? glm::dvec3(0) : glm::dvec3(box.center()), *options.orbit);
+  }
   if (camera.perspective) return finish(pose, perspective(camera.yfov, aspect, camera.near, camera.far), false);
   return finish(pose, orthographic(camera.half_height, aspect, camera.near, camera.far.value_or(camera.near + 1)), true);
 }
 
-const Camera* chosen_camera(const SceneData& scene, const SceneOptions& options) {
+const Camera* chosen_camera(const PlacedScene& scene, const SceneOptions& options) {
   if (options.camera < 0 && options.camera_name.empty()) {
-    const auto placed = std::ranges::find_if(scene.cameras, [](const Camera& c) { return c.pose.has_value(); });
-    return placed == scene.cameras.end() ? nullptr : &*placed;
+    const auto placed = std::ranges::find_if(scene.at.cameras, [](const Camera& c) { return c.pose.has_value(); });
+    return placed == scene.at.cameras.end() ? nullptr : &*placed;
   }
   std::vector<std::string> names;
-  for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+  for (const Camera& camera : scene.at.cameras) names.push_back(camera.name);
   const std::string wanted = options.camera < 0 ? options.camera_name : std::to_string(options.camera);
   const std::optional<std::size_t> index = find_choice(names, wanted);
-  if (!index) throw user_error("{}: camera '{}' does not exist; cameras: {}", scene.name, wanted.substr(0, 60), list_of_choices(names));
-  if (!scene.cameras[*index].pose)
-    throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.name, *index, names[*index].substr(0, 60));
-  return &scene.cameras[*index];
+  if (!index)
+    throw user_error("{}: camera '{}' does not exist; cameras: {}", scene.data.name, wanted.substr(0, 60), list_of_choices(names));
+  if (!scene.at.cameras[*index].pose)
+    throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.data.name, *index, names[*index].substr(0, 60));
+  return &scene.at.cameras[*index];
 }
 
 }  // namespace
 
-View framing_view(const SceneData& scene, double aspect, std::optional<double> orbit) {
+View framing_view(const PlacedScene& scene, double aspect, std::optional<double> orbit) {
   const Bounds box = scene.bounds();
   const glm::dvec3 center = box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
   const CameraPose pose = turned(framing_pose(scene, aspect, orbit.has_value()), center, orbit.value_or(0));
@@ -190,7 +193,7 @@ View framing_view(const SceneData& scene, double aspect, std::optional<double> o
   return finish(pose, perspective(kFramingFov, aspect, near, far), false);
 }
 
-View make_view(const SceneData& scene, const SceneOptions& options) {
+View make_view(const PlacedScene& scene, const SceneOptions& options) {
   const double aspect = static_cast<double>(options.width) / options.height;
   if (options.eye || options.at) return user_view(scene, options, aspect);
   const Camera* camera = chosen_camera(scene, options);

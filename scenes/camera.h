@@ -23,10 +23,10 @@ struct View {
 
 /// The camera that `options` asks for. The vertical extent is the camera's, the horizontal one follows the output's aspect ratio.
 /// Throws `UserError` when the scene has no such camera, or eye and point looked at coincide.
-[[nodiscard]] View make_view(const SceneData& scene, const SceneOptions& options);
+[[nodiscard]] View make_view(const PlacedScene& scene, const SceneOptions& options);
 
 /// A perspective camera, 45 degrees high, right of, above and before the scene, as near as keeps every instance's box inside with a margin of 4 %.
 /// `orbit`: carried around the scene's centre by this part of a turn, as far away as all parts of the turn need.
-[[nodiscard]] View framing_view(const SceneData& scene, double aspect, std::optional<double> orbit = std::nullopt);
+[[nodiscard]] View framing_view(const PlacedScene& scene, double aspect, std::optional<double> orbit = std::nullopt);
 
 }  // namespace quadrille::scenes

@@ -41,7 +41,7 @@ Light key_light(const View& view) {
 
 LightBlock light_block(const Light& light, const View& view) {
   LightBlock block;
-  block.position = glm::vec4(light.position - view.eye, light.range > 0 ? 1 / light.range : 0.0F);
+  block.position = glm::vec4(glm::vec3(light.position) - view.eye, light.range > 0 ? 1 / light.range : 0.0F);
   block.direction = glm::vec4(-light.direction, 0);
   block.color = glm::vec4(light.color * std::numbers::inv_pi_v<float>, 0);
   if (light.kind == Light::Kind::kSpot) {
@@ -59,11 +59,11 @@ std::size_t count(const std::vector<Light>& lights, Light::Kind kind) {
 
 }  // namespace
 
-std::vector<Light> frame_lights(const SceneData& scene, const View& view) {
-  if (scene.lights.empty()) return {key_light(view)};
-  if (scene.lights.size() > kMaxLights)
-    throw user_error("{}: {} lights; at most {} are supported", scene.name, scene.lights.size(), kMaxLights);
-  std::vector<Light> lights = scene.lights;
+std::vector<Light> frame_lights(const PlacedScene& scene, const View& view) {
+  if (scene.at.lights.empty()) return {key_light(view)};
+  if (scene.at.lights.size() > kMaxLights)
+    throw user_error("{}: {} lights; at most {} are supported", scene.data.name, scene.at.lights.size(), kMaxLights);
+  std::vector<Light> lights = scene.at.lights;
   std::ranges::stable_sort(lights, {}, &Light::kind);
   return lights;
 }

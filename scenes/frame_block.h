@@ -12,7 +12,7 @@ namespace quadrille::scenes {
 
 /// The lights of the scene in the shader's order (directional, point, spot), or the default key light when there are none. At most 256.
 /// Throws `UserError` beyond that.
-[[nodiscard]] std::vector<Light> frame_lights(const SceneData& scene, const View& view);
+[[nodiscard]] std::vector<Light> frame_lights(const PlacedScene& scene, const View& view);
 /// The block's bytes, std140.
 [[nodiscard]] std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights);
 /// What the fragment shader is compiled for: numbers of lights by kind, loop unrolling, projection.

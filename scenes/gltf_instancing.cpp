@@ -102,18 +102,18 @@ std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Val
 
 void place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place, const glm::dmat4& world,
                   std::size_t first, SceneData& scene) {
-  std::array<std::vector<glm::mat4>, 2> sides;
+  std::array<std::vector<glm::dmat4>, 2> sides;
   for (const glm::dmat4& matrix : read_instances(file, extension, place)) {
     const glm::dmat4 placed = world * matrix;
     if (!all_finite(glm::mat4(placed))) throw user_error("{}: {}: the matrix of one of its instances is not finite", file.path, place);
-    sides[glm::determinant(glm::dmat3(placed)) < 0 ? 1 : 0].emplace_back(placed);
+    sides[glm::determinant(glm::dmat3(placed)) < 0 ? 1 : 0].push_back(placed);
   }
   std::size_t total = sides[0].size() + sides[1].size();
   for (const auto& copies : scene.copies) total += copies.size();
   if (total > kMaxInstances) throw user_error("{}: {}: the scene has more than {} instances", file.path, place, kMaxInstances);
   const std::vector<Instance> originals(scene.instances.begin() + static_cast<std::ptrdiff_t>(first), scene.instances.end());
   scene.instances.resize(first);
-  for (std::vector<glm::mat4>& side : sides) {
+  for (std::vector<glm::dmat4>& side : sides) {
     if (side.empty()) continue;
     for (Instance instance : originals) {
       instance.copies = static_cast<int>(scene.copies.size());

@@ -197,7 +197,7 @@ class GltfScene::Reader {
       const auto camera = static_cast<std::size_t>(node.camera);
       if (camera >= scene_.cameras.size())
         fail(place, fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
-      if (!scene_.cameras[camera].pose) scene_.cameras[camera].pose = glm::mat4(world);
+      if (!scene_.cameras[camera].pose) scene_.cameras[camera].pose = world;
     }
     if (const auto found = node.extensions.find("KHR_lights_punctual"); found != node.extensions.end())
       place_light(found->second, world, place);
@@ -225,7 +225,7 @@ class GltfScene::Reader {
     const std::size_t first = scene_.instances.size();
     for (const std::uint32_t primitive : primitives) {
       const std::string& name = scene_.primitives[primitive].name;
-      scene_.instances.push_back({primitive, glm::mat4(world), node.name.empty() ? name : node.name + "/" + name, -1, number});
+      scene_.instances.push_back({primitive, world, node.name.empty() ? name : node.name + "/" + name, -1, number});
     }
     // A skin places its mesh by joints alone, so that instances of it would all lie in one place.
     if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end() && node.skin < 0)
@@ -253,7 +253,7 @@ class GltfScene::Reader {
   }
 
   void pose_skinned(const SkinnedNode& s) {
-    glm::mat4 model(1);
+    glm::dmat4 model(1);
     pose_skin(file_, s.skin, skins_.at(s.skin), worlds_, scene_.poses[s.pose], model);
     for (std::size_t i = 0; i < s.instances; ++i) scene_.instances[s.first_instance + i].world = model;
   }
@@ -268,7 +268,7 @@ class GltfScene::Reader {
     Light light = read_light(file_, static_cast<std::size_t>(index));
     const glm::dvec3 backward(world[2]);
     if (!(glm::length(backward) > 0)) fail(place, "a light on a node whose matrix is singular");
-    light.position = glm::vec3(world[3]);
+    light.position = glm::dvec3(world[3]);
     light.direction = glm::vec3(-glm::normalize(backward));
     scene_.lights.push_back(light);
   }

@@ -78,7 +78,7 @@ Skin read_skin(const GltfFile& file, int index, const std::string& place) {
 }
 
 void pose_skin(const GltfFile& file, int index, const Skin& skin, const std::vector<std::optional<glm::dmat4>>& worlds, Pose& pose,
-               glm::mat4& model) {
+               glm::dmat4& model) {
   std::vector<glm::dmat4> joints;
   std::vector<glm::dvec3> places;
   joints.reserve(skin.joints.size());
@@ -93,8 +93,8 @@ void pose_skin(const GltfFile& file, int index, const Skin& skin, const std::vec
   const bool plain = size == 0 || (size < kFarFromOne && size * kFarFromOne > 1);
   const double unit = plain ? 1.0 : std::ldexp(1.0, std::ilogb(size));
   const glm::dvec3 center = far_center(places, size);
-  model = glm::mat4(static_cast<float>(unit));
-  model[3] = glm::vec4(glm::vec3(center), 1);
+  model = glm::dmat4(unit);
+  model[3] = glm::dvec4(center, 1);
   std::ptrdiff_t mirrored = 0;
   pose.joints.clear();
   for (const glm::dmat4& m : joints) {

@@ -25,6 +25,6 @@ struct Skin {
 /// place that is far away for the skeleton's size, so that the shader's floats keep what differs between vertices.
 /// Throws `UserError` when a joint is not in the scene or a matrix is not finite.
 void pose_skin(const GltfFile& file, int index, const Skin& skin, const std::vector<std::optional<glm::dmat4>>& worlds, Pose& pose,
-               glm::mat4& model);
+               glm::dmat4& model);
 
 }  // namespace quadrille::scenes

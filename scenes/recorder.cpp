@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <set>
 
 #include <glm/ext/vector_double3.hpp>
 #include <glm/geometric.hpp>
@@ -11,9 +10,6 @@
 
 #include "models/base/error.h"
 #include "scenes/host_pose.h"
-#include "scenes/mip_chain.h"
-#include "scenes/parallel.h"
-#include "scenes/spirv_bindings.h"
 #include "traces/trace_file.h"
 
 namespace quadrille::scenes {
@@ -21,56 +17,6 @@ namespace {
 
 constexpr std::size_t kMaxPosedBytes = std::size_t{3} << 28;  // 768 MiB
 static_assert(offsetof(DrawConstants, draw_id) == 112 && offsetof(DrawConstants, handedness) + 4 == kDrawConstantBytes);
-
-/// `Material` of scenes/shaders/material.glsl, std140.
-struct MaterialBlock {
-  glm::vec4 base_color, emissive, factors;
-  std::array<glm::vec4, 2 * kBaseTextureSlots> uv_rows;
-};
-
-/// What follows it where the material has layers.
-struct LayerBlock {
-  glm::vec4 specular, clearcoat, sheen, transmission;
-  std::array<glm::vec4, 2 * (kTextureSlots - kBaseTextureSlots)> uv_rows;
-};
-
-MaterialBlock material_values(const Material& m) {
-  MaterialBlock block{
-      m.base_color, glm::vec4(m.emissive, m.alpha_cutoff), {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength}, {}};
-  for (std::size_t slot = 0; slot < kBaseTextureSlots; ++slot) {
-    block.uv_rows[2 * slot] = glm::vec4(m.textures[slot].u_row, 0);
-    block.uv_rows[2 * slot + 1] = glm::vec4(m.textures[slot].v_row, 0);
-  }
-  return block;
-}
-
-LayerBlock layer_values(const Material& m) {
-  const MaterialLayers& l = m.layers;
-  LayerBlock block{glm::vec4(l.specular_color, l.specular_weight),
-                   glm::vec4(l.clearcoat, l.clearcoat_roughness, l.clearcoat_normal_scale, 0),
-                   glm::vec4(l.sheen_color, l.sheen_roughness),
-                   glm::vec4(l.absorption, l.transmission),
-                   {}};
-  for (std::size_t slot = kBaseTextureSlots; slot < kTextureSlots; ++slot) {
-    const std::size_t row = 2 * (slot - kBaseTextureSlots);
-    block.uv_rows[row] = glm::vec4(m.textures[slot].u_row, 0);
-    block.uv_rows[row + 1] = glm::vec4(m.textures[slot].v_row, 0);
-  }
-  return block;
-}
-
-template <class T>
-std::vector<std::byte> bytes_of(const T& value, std::size_t size = sizeof(T)) {
-  std::vector<std::byte> bytes(size);
-  std::memcpy(bytes.data(), &value, size);
-  return bytes;
-}
-
-bool is_srgb(std::size_t slot) {
-  const auto role = static_cast<TextureSlot>(slot);
-  return role == TextureSlot::kBaseColor || role == TextureSlot::kEmissive || role == TextureSlot::kSpecularColor ||
-         role == TextureSlot::kSheenColor;
-}
 
 const traces::BlendState kOver{true,
                                traces::BlendFactor::kSrcAlpha,
@@ -106,12 +52,13 @@ std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored) {
 }
 
 Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
-    : range_(needed_range(scene, options)),
+    : scene_(scene),
+      range_(needed_range(scene, options)),
       moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
-      scene_(moved_ ? *moved_ : scene),
+      placed_(scene, moved_ ? *moved_ : static_cast<const Placements&>(scene)),
       options_(range_ ? moved(options, *range_) : options),
-      view_(make_view(scene_, options_)),
-      lights_(frame_lights(scene_, view_)),
+      view_(make_view(placed_, options_)),
+      lights_(frame_lights(placed_, view_)),
       shaders_(options, frame_defines(view_, lights_), stream_.shaders),
       bound_(kVertexSlot + kLocations, traces::EndPass{}) {}
 
@@ -129,7 +76,7 @@ traces::CommandStream Recorder::record() {
   stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width), static_cast<float>(options_.height), 0, 1});
   stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
   record_frame_set();
-  for (const std::size_t i : draw_order()) record_instance(scene_.instances[i]);
+  for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
   stream_.commands.emplace_back(traces::EndPass{});
   return std::move(stream_);
 }
@@ -137,13 +84,13 @@ traces::CommandStream Recorder::record() {
 std::vector<std::size_t> Recorder::draw_order() const {
   std::vector<std::size_t> order;
   std::vector<std::pair<float, std::size_t>> blended;  // distance along the view direction, instance
-  for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
-    const Primitive& primitive = scene_.primitives[scene_.instances[i].primitive];
+  for (std::size_t i = 0; i < placed_.at.instances.size(); ++i) {
+    const Primitive& primitive = scene_.primitives[placed_.at.instances[i].primitive];
     if (!scene_.materials[static_cast<std::size_t>(primitive.material)].see_through()) {
       order.push_back(i);
       continue;
     }
-    const Bounds box = scene_.box(scene_.instances[i]);
+    const Bounds box = placed_.box(placed_.at.instances[i]);
     blended.emplace_back(box.empty() ? 0.0F : glm::dot(view_.eye - box.center(), view_.toward_viewer), i);
   }
   std::ranges::stable_sort(blended, std::ranges::greater{}, &std::pair<float, std::size_t>::first);
@@ -194,7 +141,8 @@ Recorder::Geometry Recorder::geometry(const Instance& instance) {
   const Primitive& primitive = scene_.primitives[instance.primitive];
   Geometry g;
   g.variant = variant(primitive);
-  g.mirrored = mirrors(instance.copies < 0 ? instance.world : scene_.copies[static_cast<std::size_t>(instance.copies)].front());
+  g.mirrored =
+      mirrors(glm::mat4(instance.copies < 0 ? instance.world : placed_.at.copies[static_cast<std::size_t>(instance.copies)].front()));
   for (std::uint32_t i = 0; i < kSemantics; ++i) {
     if (!g.variant.attributes[i]) continue;
     add_stream(g, i, scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])], array_buffer(primitive.attributes[i]));
@@ -215,77 +163,31 @@ void Recorder::pose(const Instance& instance, Geometry& g) {
     add_stream(g, s.location, scene_.arrays[static_cast<std::size_t>(s.array)], array_buffer(s.array));
   if (!plan.block.empty()) g.pose_set = pose_set(plan.block);
   if (!plan.morph_on_host && !plan.skin_on_host) return;
-  const auto posed = pose_on_host(scene_, primitive, pose, plan.skin_on_host);
+  const PosedStreams& posed = posed_streams(instance, plan.skin_on_host);
   for (std::size_t i = 0; i < g.streams.size(); ++i) {
     const std::uint32_t location = g.streams[i].first;
-    if (location >= kSemantics || !posed[location]) continue;
-    g.streams[i].second = static_cast<traces::Index>(stream_.buffers.size());
-    g.formats[i] = posed[location]->format;
-    posed_bytes_ += posed[location]->data.size();
+    if (location >= kSemantics || posed[location].second == traces::kNone) continue;
+    g.formats[i] = posed[location].first;
+    g.streams[i].second = posed[location].second;
+  }
+}
+
+const Recorder::PosedStreams& Recorder::posed_streams(const Instance& instance, bool skinned) {
+  const auto [entry, added] = posed_streams_.try_emplace({instance.primitive, instance.pose, skinned});
+  if (!added) return entry->second;
+  const auto arrays =
+      pose_on_host(scene_, scene_.primitives[instance.primitive], scene_.poses[static_cast<std::size_t>(instance.pose)], skinned);
+  const Variant& read = variant(scene_.primitives[instance.primitive]);
+  for (std::size_t i = 0; i < kSemantics; ++i) {
+    entry->second[i].second = traces::kNone;
+    if (!read.attributes[i] || !arrays[i]) continue;
+    posed_bytes_ += arrays[i]->data.size();
     if (posed_bytes_ > kMaxPosedBytes)
       throw user_error("{}: vertices posed by the host take more than {} bytes", scene_.name, kMaxPosedBytes);
-    stream_.buffers.push_back({posed[location]->name, posed[location]->data});
-  }
-}
-
-const Variant& Recorder::variant(const Primitive& primitive) {
-  std::array<bool, kSemantics> available{};
-  for (std::size_t i = 0; i < kSemantics; ++i) available[i] = primitive.attributes[i] >= 0;
-  const auto [entry, added] = variants_.try_emplace({primitive.material, available});
-  if (added) {
-    entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive, shaders_.set());
-    if (shaders_.set() == ShaderSet::kUser && options_.leave_out) leave_out_unread(entry->second);
+    entry->second[i] = {arrays[i]->format, static_cast<traces::Index>(stream_.buffers.size())};
+    stream_.buffers.push_back({arrays[i]->name, arrays[i]->data});
   }
   return entry->second;
-}
-
-/// A shader of the user's is offered every texture of a material; most look at few.
-void Recorder::leave_out_unread(Variant& v) {
-  std::set<std::uint32_t> read;
-  for (const traces::Index shader : {shaders_.vertex(v), shaders_.fragment(v)})
-    read.merge(mentioned_bindings(stream_.shaders[shader].spirv, kMaterialSet));
-  for (std::size_t slot = 0; slot < kTextureSlots; ++slot)
-    v.textures[slot] = v.textures[slot] && read.contains(static_cast<std::uint32_t>(1 + slot));
-}
-
-void Recorder::add_textures(const std::vector<TextureKey>& keys) {
-  std::set<int> sources;
-  for (const TextureKey& key : keys) sources.insert(key.image);
-  const std::vector<int> packed(sources.begin(), sources.end());
-  parallel_for(packed.size(), [&](std::size_t i) { (void)scene_.images[static_cast<std::size_t>(packed[i])].pixels(); });
-  const std::size_t first = stream_.images.size();
-  stream_.images.resize(first + keys.size());
-  parallel_for(keys.size(), [&](std::size_t i) {
-    const SceneImage& source = scene_.images[static_cast<std::size_t>(keys[i].image)];
-    const Rgba8Image& image = source.pixels();
-    stream_.images[first + i] = {source.name(),
-                                 keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm,
-                                 image.width,
-                                 image.height,
-                                 full_chain_levels(image.width, image.height),
-                                 build_mip_chain(image, keys[i].srgb)};
-  });
-}
-
-void Recorder::record_textures() {
-  std::set<TextureKey> used;
-  for (const Instance& instance : scene_.instances) {
-    const Primitive& primitive = scene_.primitives[instance.primitive];
-    const Variant& v = variant(primitive);
-    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
-      if (v.textures[slot])
-        used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image, is_srgb(slot)});
-    }
-  }
-  const std::vector<TextureKey> keys(used.begin(), used.end());
-  add_textures(keys);
-  for (std::size_t i = 0; i < keys.size(); ++i) textures_[keys[i]] = static_cast<traces::Index>(i);
-  if (options_.leave_out) return;
-  std::vector<TextureKey> unread;
-  for (int i = 0; i < static_cast<int>(scene_.images.size()); ++i) {
-    if (!used.contains({i, false}) && !used.contains({i, true})) unread.push_back({i, false});
-  }
-  add_textures(unread);
 }
 
 void Recorder::record_frame_set() {
@@ -294,42 +196,6 @@ void Recorder::record_frame_set() {
   const auto set = static_cast<traces::Index>(stream_.descriptor_sets.size());
   stream_.descriptor_sets.push_back({{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
   stream_.commands.emplace_back(traces::BindDescriptorSet{kFrameSet, set});
-}
-
-traces::Index Recorder::sampler(const traces::Sampler& wanted) {
-  const auto found = std::ranges::find(stream_.samplers, wanted);
-  if (found == stream_.samplers.end()) {
-    stream_.samplers.push_back(wanted);
-    return static_cast<traces::Index>(stream_.samplers.size() - 1);
-  }
-  return static_cast<traces::Index>(found - stream_.samplers.begin());
-}
-
-traces::Index Recorder::material_block(int material) {
-  const auto [entry, added] = material_blocks_.try_emplace(material, static_cast<traces::Index>(stream_.buffers.size()));
-  if (added) {
-    const Material& m = scene_.materials[static_cast<std::size_t>(material)];
-    std::vector<std::byte> block = bytes_of(material_values(m));
-    const std::vector<std::byte> layers = m.layers.any() ? bytes_of(layer_values(m)) : std::vector<std::byte>();
-    block.insert(block.end(), layers.begin(), layers.end());
-    stream_.buffers.push_back({"material " + m.name, std::move(block)});
-  }
-  return entry->second;
-}
-
-traces::Index Recorder::material_set(int material, const Variant& v) {
-  const auto [entry, added] =
-      material_sets_.try_emplace({material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
-  if (!added) return entry->second;
-  const traces::Index block = material_block(material);
-  traces::DescriptorSet set{{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers[block].data.size())}}, {}};
-  for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
-    if (!v.textures[slot]) continue;
-    const TextureUse& use = scene_.materials[static_cast<std::size_t>(material)].textures[slot];
-    set.textures.push_back({static_cast<std::uint32_t>(1 + slot), textures_.at({use.image, is_srgb(slot)}), sampler(use.sampler)});
-  }
-  stream_.descriptor_sets.push_back(std::move(set));
-  return entry->second;
 }
 
 namespace {
@@ -379,22 +245,33 @@ void Recorder::bind_geometry(const Primitive& primitive, const Geometry& g) {
   if (primitive.indices >= 0) bind_once(traces::BindIndexBuffer{array_buffer(primitive.indices), 0, primitive.index_type}, kIndexSlot);
 }
 
-void Recorder::push_constants(const Instance& instance, bool mirrored) {
-  const DrawConstants constants{instance.world, normal_matrix(instance.world, mirrored), draws_, triangles_, mirrored ? -1.0F : 1.0F};
-  stream_.commands.emplace_back(traces::PushConstants{0, bytes_of(constants, kDrawConstantBytes)});
+void Recorder::push_constants(const glm::mat4& world, bool mirrored) {
+  const DrawConstants constants{world, normal_matrix(world, mirrored), draws_, triangles_, mirrored ? -1.0F : 1.0F};
+  std::vector<std::byte> bytes(kDrawConstantBytes);
+  std::memcpy(bytes.data(), &constants, bytes.size());
+  stream_.commands.emplace_back(traces::PushConstants{0, std::move(bytes)});
 }
 
 void Recorder::record_instance(const Instance& instance) {
-  if (instance.copies >= 0) return record_copies(instance);
-  const Primitive& primitive = scene_.primitives[instance.primitive];
   const Geometry g = geometry(instance);
+  if (instance.copies >= 0) return record_copies(instance, g);
+  bind(instance, g);
+  record_draw(instance, g, glm::mat4(instance.world), 1);
+}
+
+void Recorder::bind(const Instance& instance, const Geometry& g) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
   bind_once(traces::BindPipeline{pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], g)}, kPipelineSlot);
   bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, g.variant)}, kSetSlot);
   bind_geometry(primitive, g);
-  push_constants(instance, g.mirrored);
-  stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, 1, 0, instance.label});
+}
+
+void Recorder::record_draw(const Instance& instance, const Geometry& g, const glm::mat4& world, std::uint32_t copies) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  push_constants(world, g.mirrored);
+  stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, copies, 0, instance.label});
   ++draws_;
-  triangles_ += traces::triangle_count(primitive.topology, primitive.count);
+  triangles_ += traces::triangle_count(primitive.topology, primitive.count) * copies;
 }
 
 }  // namespace quadrille::scenes

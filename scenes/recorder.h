@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -62,7 +63,10 @@ class Recorder {
     bool mirrored = false;
   };
 
-  /// Indices into `scene.instances`: opaque and masked ones in scene order, then blended ones back to front.
+  /// What the host has posed: format and buffer by semantic; kNone: the mesh's own.
+  using PosedStreams = std::array<std::pair<traces::Format, traces::Index>, kSemantics>;
+
+  /// Indices into the scene's instances: opaque and masked ones in scene order, then blended ones back to front.
   [[nodiscard]] std::vector<std::size_t> draw_order() const;
   void record_arrays();
   void record_textures();
@@ -72,17 +76,20 @@ class Recorder {
   void record_frame_set();
   void record_instance(const Instance& instance);
   /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their triangles apart or is not ours.
-  void record_copies(const Instance& instance);
+  void record_copies(const Instance& instance, Geometry geometry);
+  void record_draw(const Instance& instance, const Geometry& geometry, const glm::mat4& world, std::uint32_t copies);
   /// The matrices of its copies, from back to front where `sorted`.
   [[nodiscard]] std::vector<glm::mat4> ordered_copies(const Instance& instance, bool sorted) const;
   [[nodiscard]] traces::Index copies_buffer(const Instance& instance, bool sorted, bool mirrored);
   [[nodiscard]] Geometry geometry(const Instance& instance);
   void pose(const Instance& instance, Geometry& geometry);
+  [[nodiscard]] const PosedStreams& posed_streams(const Instance& instance, bool skinned);
   void add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer);
   [[nodiscard]] traces::Index array_buffer(int array);
   [[nodiscard]] traces::Index pose_set(const std::vector<std::byte>& block);
+  void bind(const Instance& instance, const Geometry& geometry);
   void bind_geometry(const Primitive& primitive, const Geometry& geometry);
-  void push_constants(const Instance& instance, bool mirrored);
+  void push_constants(const glm::mat4& world, bool mirrored);
   void bind_once(const traces::Command& command, std::size_t slot);
   [[nodiscard]] traces::Index pipeline(const Primitive& primitive, const Material& material, const Geometry& geometry);
   [[nodiscard]] traces::Index material_set(int material, const Variant& variant);
@@ -90,9 +97,10 @@ class Recorder {
   [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
   [[nodiscard]] const Variant& variant(const Primitive& primitive);
 
-  std::optional<WorldRange> range_;  ///< how the world was moved, if it had to be
-  std::optional<SceneData> moved_;   ///< and the scene in that world
   const SceneData& scene_;
+  std::optional<WorldRange> range_;  ///< how the world was moved, if it had to be
+  std::optional<Placements> moved_;  ///< and what moved with it
+  PlacedScene placed_;
   SceneOptions options_;
   View view_;
   std::vector<Light> lights_;
@@ -102,11 +110,12 @@ class Recorder {
   std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;  ///< by material and available attributes
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
-  std::map<int, traces::Index> copies_buffers_;     ///< by `Instance::copies`, where their order is the scene's
-  std::vector<traces::Index> array_buffers_;        ///< by array of the scene; kNone: not recorded
-  std::map<std::string, traces::Index> pose_sets_;  ///< by the block's bytes
-  std::vector<traces::Command> bound_;              ///< what each slot holds, to leave out repeated binds
-  std::size_t posed_bytes_ = 0;                     ///< by the host
+  std::map<int, traces::Index> copies_buffers_;                                 ///< by `Instance::copies`, where their order is the scene's
+  std::vector<traces::Index> array_buffers_;                                    ///< by array of the scene; kNone: not recorded
+  std::map<std::string, traces::Index> pose_sets_;                              ///< by the block's bytes
+  std::map<std::tuple<std::uint32_t, int, bool>, PosedStreams> posed_streams_;  ///< by primitive, pose, and whether the host skins too
+  std::vector<traces::Command> bound_;                                          ///< what each slot holds, to leave out repeated binds
+  std::size_t posed_bytes_ = 0;                                                 ///< by the host
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

@@ -25,9 +25,10 @@ CopyStreams copy_streams(const glm::mat4& world, bool mirrored) {
 }  // namespace
 
 std::vector<glm::mat4> Recorder::ordered_copies(const Instance& instance, bool sorted) const {
-  std::vector<glm::mat4> copies = scene_.copies[static_cast<std::size_t>(instance.copies)];
+  std::vector<glm::mat4> copies;
+  for (const glm::dmat4& copy : placed_.at.copies[static_cast<std::size_t>(instance.copies)]) copies.emplace_back(copy);
   if (!sorted) return copies;
-  const glm::vec4 center(scene_.primitives[instance.primitive].bounds.center(), 1);
+  const glm::vec4 center(scene_.model_box(instance).center(), 1);
   const auto distance = [&](const glm::mat4& m) { return glm::dot(view_.eye - glm::vec3(m * center), view_.toward_viewer); };
   std::ranges::stable_sort(copies, std::ranges::greater{}, distance);
   return copies;
@@ -47,27 +48,18 @@ traces::Index Recorder::copies_buffer(const Instance& instance, bool sorted, boo
   return buffer;
 }
 
-void Recorder::record_copies(const Instance& instance) {
-  const Primitive& primitive = scene_.primitives[instance.primitive];
-  const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
+void Recorder::record_copies(const Instance& instance, Geometry g) {
+  const bool sorted = scene_.materials[static_cast<std::size_t>(scene_.primitives[instance.primitive].material)].see_through();
   if (options_.visibility || !options_.vertex_shader.empty()) {
-    for (const glm::mat4& copy : ordered_copies(instance, material.see_through()))
-      record_instance({instance.primitive, copy, instance.label, -1, instance.pose});
+    bind(instance, g);
+    for (const glm::mat4& copy : ordered_copies(instance, sorted)) record_draw(instance, g, copy, 1);
     return;
   }
-  const std::vector<glm::mat4>& copies = scene_.copies[static_cast<std::size_t>(instance.copies)];
-  Geometry g = geometry(instance);
   g.variant.instanced = true;
-  bind_once(traces::BindPipeline{pipeline(primitive, material, g)}, kPipelineSlot);
-  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, g.variant)}, kSetSlot);
-  bind_geometry(primitive, g);
-  bind_once(traces::BindVertexBuffer{kCopiesBinding, copies_buffer(instance, material.see_through(), g.mirrored), 0},
-            kVertexSlot + kCopiesBinding);
-  push_constants({instance.primitive, copies.front(), instance.label}, g.mirrored);
-  const auto count = static_cast<std::uint32_t>(copies.size());
-  stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, count, 0, instance.label});
-  ++draws_;
-  triangles_ += traces::triangle_count(primitive.topology, primitive.count) * count;
+  bind(instance, g);
+  bind_once(traces::BindVertexBuffer{kCopiesBinding, copies_buffer(instance, sorted, g.mirrored), 0}, kVertexSlot + kCopiesBinding);
+  const std::vector<glm::dmat4>& copies = placed_.at.copies[static_cast<std::size_t>(instance.copies)];
+  record_draw(instance, g, glm::mat4(copies.front()), static_cast<std::uint32_t>(copies.size()));
 }
 
 }  // namespace quadrille::scenes

@@ -62,31 +62,31 @@ Bounds SceneData::model_box(const Instance& instance) const {
   return instance.pose < 0 ? primitive.bounds : posed(primitive, poses[static_cast<std::size_t>(instance.pose)]);
 }
 
-Bounds SceneData::box(const Instance& instance) const {
-  const Bounds model = model_box(instance);
-  if (instance.copies < 0) return model.transformed(instance.world);
+Bounds SceneData::box(const Instance& instance) const { return PlacedScene(*this).box(instance); }
+
+Bounds SceneData::bounds() const { return PlacedScene(*this).bounds(); }
+
+void PlacedScene::visit_boxes(const Instance& instance, const VisitBox& visit) const {
+  const Bounds model = data.model_box(instance);
+  if (instance.copies < 0) return visit(model.transformed(glm::mat4(instance.world)));
+  for (const glm::dmat4& copy : at.copies[static_cast<std::size_t>(instance.copies)]) visit(model.transformed(glm::mat4(copy)));
+}
+
+void PlacedScene::visit_boxes(const VisitBox& visit) const {
+  for (const Bounds& box : at.extent) visit(box);
+  if (!at.extent.empty()) return;
+  for (const Instance& instance : at.instances) visit_boxes(instance, visit);
+}
+
+Bounds PlacedScene::box(const Instance& instance) const {
   Bounds all;
-  for (const glm::mat4& copy : copies[static_cast<std::size_t>(instance.copies)]) all.add(model.transformed(copy));
+  visit_boxes(instance, [&](const Bounds& one) { all.add(one); });
   return all;
 }
 
-std::vector<Bounds> SceneData::boxes() const {
-  if (!extent.empty()) return extent;
-  std::vector<Bounds> all;
-  for (const Instance& instance : instances) {
-    if (instance.copies < 0) {
-      all.push_back(box(instance));
-      continue;
-    }
-    const Bounds model = model_box(instance);
-    for (const glm::mat4& copy : copies[static_cast<std::size_t>(instance.copies)]) all.push_back(model.transformed(copy));
-  }
-  return all;
-}
-
-Bounds SceneData::bounds() const {
+Bounds PlacedScene::bounds() const {
   Bounds all;
-  for (const Bounds& one : boxes()) all.add(one);
+  visit_boxes([&](const Bounds& one) { all.add(one); });
   return all;
 }
 

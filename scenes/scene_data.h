@@ -1,7 +1,8 @@
 /// A scene in memory, between the file it came from and the commands it becomes.
 ///
 /// glTF's conventions: right-handed world, y up, metres; texture coordinates start at the upper left; a front face is counter-clockwise; matrices are
-/// column-major and act on column vectors. Colours are linear.
+/// column-major and act on column vectors. Colours are linear. Where things are is kept in double: what is far from the origin may have to be moved before it is
+/// rounded (scenes/world_range.h).
 #pragma once
 
 #include <array>
@@ -14,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include <glm/ext/matrix_double4x4.hpp>
+#include <glm/ext/vector_double3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -170,7 +173,7 @@ struct Pose {
 
 struct Instance {
   std::uint32_t primitive = 0;
-  glm::mat4 world{1};
+  glm::dmat4 world{1};
   std::string label;
   int copies = -1;  ///< into `SceneData::copies`: drawn once with each of these matrices instead of `world`; -1: drawn once
   int pose = -1;    ///< into `SceneData::poses`; -1: as the arrays have it
@@ -180,7 +183,7 @@ struct Light {
   enum class Kind : std::uint8_t { kDirectional, kPoint, kSpot };
   Kind kind = Kind::kDirectional;
   glm::vec3 color{1};  ///< times intensity: lux (directional) or candela
-  glm::vec3 position{0};
+  glm::dvec3 position{0};
   glm::vec3 direction{0, 0, -1};                  ///< the way light travels, unit length
   float range = 0;                                ///< metres; 0: unlimited
   float inner_cone = 0, outer_cone = 0.7853982F;  ///< radians, spot
@@ -193,7 +196,7 @@ struct Camera {
   double half_height = 1;            ///< orthographic
   double near = 0.1;
   std::optional<double> far = 100;  ///< none: infinite (perspective)
-  std::optional<glm::mat4> pose;    ///< the node's world matrix; none: no node carries it
+  std::optional<glm::dmat4> pose;   ///< the node's world matrix; none: no node carries it
 };
 
 /// Light from everywhere, as the material shader knows it: radiance from straight above and from straight below.
@@ -201,29 +204,48 @@ struct Environment {
   glm::vec3 sky{0.50F, 0.57F, 0.68F}, ground{0.20F, 0.18F, 0.16F};
 };
 
-struct SceneData {
+/// Where things are: what of a scene moves with its world.
+struct Placements {
+  std::vector<Instance> instances;
+  std::vector<std::vector<glm::dmat4>> copies;  ///< world matrices of one draw, all of them mirror or none does; never empty
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+  /// What a camera that frames the scene has to hold, world space, where that is more than this moment: the boxes of all of an animation's moments.
+  std::vector<Bounds> extent;
+};
+
+struct SceneData : Placements {
   std::string name;
   std::vector<SceneImage> images;
   std::vector<Array> arrays;
   std::vector<Material> materials;
   std::vector<Primitive> primitives;
-  std::vector<Instance> instances;
-  std::vector<std::vector<glm::mat4>> copies;  ///< world matrices of one draw, all of them mirror or none does; never empty
   std::vector<Pose> poses;
-  std::vector<Light> lights;
-  std::vector<Camera> cameras;
   Environment environment;
   glm::vec3 background{0.30F, 0.42F, 0.58F};
   bool depth = true;  ///< false: draw without depth test and depth attachment
-  /// What a camera that frames the scene has to hold, world space, where that is more than this moment: the boxes of all of an animation's moments.
-  std::vector<Bounds> extent;
   /// A box that holds an instance as it is posed, model space.
   [[nodiscard]] Bounds model_box(const Instance& instance) const;
   /// A box that holds an instance with all its copies, world space.
   [[nodiscard]] Bounds box(const Instance& instance) const;
-  /// The boxes that a camera has to hold: the extent, or those of all instances, each copy's by itself.
-  [[nodiscard]] std::vector<Bounds> boxes() const;
-  /// The box around all of `boxes`.
+  /// The box around what a camera has to hold.
+  [[nodiscard]] Bounds bounds() const;
+};
+
+/// A scene where its own placements, or others of the same things, put it. Refers to both.
+struct PlacedScene {
+  using VisitBox = std::function<void(const Bounds&)>;
+  PlacedScene(const SceneData& scene) : data(scene), at(scene) {}  // NOLINT(google-explicit-constructor): a scene is placed as it is
+  PlacedScene(const SceneData& scene, const Placements& placements) : data(scene), at(placements) {}
+  const SceneData& data;
+  const Placements& at;
+  /// The boxes of an instance, world space: each copy's by itself.
+  void visit_boxes(const Instance& instance, const VisitBox& visit) const;
+  /// The boxes that a camera has to hold: the extent, or those of all instances.
+  void visit_boxes(const VisitBox& visit) const;
+  /// The box around an instance with all its copies.
+  [[nodiscard]] Bounds box(const Instance& instance) const;
+  /// The box around all that a camera has to hold.
   [[nodiscard]] Bounds bounds() const;
 };
 

@@ -18,28 +18,29 @@ constexpr double kFarFromOrigin = 1024;
 /// Half the diagonal, in double: the squares of float32 may overflow.
 double radius(const Bounds& box) { return 0.5 * glm::length(glm::dvec3(box.high) - glm::dvec3(box.low)); }
 
-/// About how far away the nearest thing is that the eye may look at: over instances, the distance of its middle and its own size.
-double nearest_reach(const SceneData& scene, const glm::dvec3& eye) {
+/// About how far away the nearest thing is that the eye may look at: over instances and their copies, the distance of its middle and its own size.
+double nearest_reach(const PlacedScene& scene, const glm::dvec3& eye) {
   double reach = INFINITY;
-  for (const Instance& instance : scene.instances) {
-    const Bounds box = scene.box(instance);
-    if (!box.empty()) reach = std::min(reach, glm::length(glm::dvec3(box.center()) - eye) + radius(box));
+  for (const Instance& instance : scene.at.instances) {
+    scene.visit_boxes(instance, [&](const Bounds& box) {
+      if (!box.empty()) reach = std::min(reach, glm::length(glm::dvec3(box.center()) - eye) + radius(box));
+    });
   }
   return reach;
 }
 
-glm::vec3 moved_point(const glm::dvec3& p, const WorldRange& range) { return glm::vec3((p - glm::dvec3(range.origin)) * range.scale); }
+glm::dvec3 moved_point(const glm::dvec3& p, const WorldRange& range) { return (p - glm::dvec3(range.origin)) * range.scale; }
 
-glm::mat4 moved_matrix(const glm::mat4& matrix, const WorldRange& range, double axes) {
-  glm::mat4 out = matrix;
-  for (int c = 0; c < 3; ++c) out[c] = glm::vec4(glm::vec3(glm::dvec3(matrix[c]) * axes), matrix[c].w);
-  out[3] = glm::vec4(moved_point(glm::dvec3(matrix[3]), range), matrix[3].w);
+glm::dmat4 moved_matrix(const glm::dmat4& matrix, const WorldRange& range, double axes) {
+  glm::dmat4 out = matrix;
+  for (int c = 0; c < 3; ++c) out[c] = glm::dvec4(glm::dvec3(matrix[c]) * axes, matrix[c].w);
+  out[3] = glm::dvec4(moved_point(glm::dvec3(matrix[3]), range), matrix[3].w);
   return out;
 }
 
 }  // namespace
 
-std::optional<WorldRange> needed_range(const SceneData& scene, const SceneOptions& options) {
+std::optional<WorldRange> needed_range(const PlacedScene& scene, const SceneOptions& options) {
   const Bounds box = scene.bounds();
   if (box.empty()) return std::nullopt;
   const double size = radius(box);
@@ -54,32 +55,32 @@ std::optional<WorldRange> needed_range(const SceneData& scene, const SceneOption
   return range;
 }
 
-SceneData moved(SceneData scene, const WorldRange& range) {
-  for (Instance& instance : scene.instances) instance.world = moved_matrix(instance.world, range, range.scale);
-  for (std::vector<glm::mat4>& copies : scene.copies) {
-    for (glm::mat4& copy : copies) copy = moved_matrix(copy, range, range.scale);
+Placements moved(Placements placements, const WorldRange& range) {
+  for (Instance& instance : placements.instances) instance.world = moved_matrix(instance.world, range, range.scale);
+  for (std::vector<glm::dmat4>& copies : placements.copies) {
+    for (glm::dmat4& copy : copies) copy = moved_matrix(copy, range, range.scale);
   }
-  for (Bounds& box : scene.extent) {
-    if (!box.empty()) box = {moved_point(glm::dvec3(box.low), range), moved_point(glm::dvec3(box.high), range)};
+  for (Bounds& box : placements.extent) {
+    if (!box.empty()) box = {glm::vec3(moved_point(glm::dvec3(box.low), range)), glm::vec3(moved_point(glm::dvec3(box.high), range))};
   }
-  for (Light& light : scene.lights) {
+  for (Light& light : placements.lights) {
     if (light.kind == Light::Kind::kDirectional) continue;
-    light.position = moved_point(glm::dvec3(light.position), range);
+    light.position = moved_point(light.position, range);
     light.range = static_cast<float>(static_cast<double>(light.range) * range.scale);
     light.color = glm::vec3(glm::dvec3(light.color) * (range.scale * range.scale));  // it falls with the square of the distance
   }
-  for (Camera& camera : scene.cameras) {
+  for (Camera& camera : placements.cameras) {
     if (camera.pose) camera.pose = moved_matrix(*camera.pose, range, 1);
     camera.near *= range.scale;
     if (camera.far) *camera.far *= range.scale;
     camera.half_height *= range.scale;
   }
-  return scene;
+  return placements;
 }
 
 SceneOptions moved(SceneOptions options, const WorldRange& range) {
-  if (options.eye) options.eye = moved_point(glm::dvec3(*options.eye), range);
-  if (options.at) options.at = moved_point(glm::dvec3(*options.at), range);
+  if (options.eye) options.eye = glm::vec3(moved_point(glm::dvec3(*options.eye), range));
+  if (options.at) options.at = glm::vec3(moved_point(glm::dvec3(*options.at), range));
   return options;
 }
 

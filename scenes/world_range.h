@@ -2,7 +2,7 @@
 ///
 /// A vertex shader multiplies in float32. In a world of 10^30 metres the squares of its lengths overflow, in one of 10^-30 they vanish, and 10^7 metres from
 /// the origin a position is good to a metre. A driver cannot help, but the program that records the frame can: it moves the origin to the eye and scales the
-/// world by a power of two, in double and rounded once. Pictures of worlds within range do not change, since those are left alone.
+/// world by a power of two, in double, before anything is rounded. Pictures of worlds within range do not change, since those are left alone.
 #pragma once
 
 #include <optional>
@@ -20,9 +20,9 @@ struct WorldRange {
 
 /// How the world has to be moved for this view; nothing when it is within range: the half diagonal of its box in 2^-20 .. 2^40 metres, and its origin no more
 /// than 1024 times as far from the eye as what the eye sees nearest (0.06 pixels of jitter at 1000 pixels). Throws as `make_view` does.
-[[nodiscard]] std::optional<WorldRange> needed_range(const SceneData& scene, const SceneOptions& options);
-/// The scene in the new world: instances, lights (with the intensity that keeps their light the same) and cameras.
-[[nodiscard]] SceneData moved(SceneData scene, const WorldRange& range);
+[[nodiscard]] std::optional<WorldRange> needed_range(const PlacedScene& scene, const SceneOptions& options);
+/// A scene's placements in the new world: instances, lights (with the intensity that keeps their light the same) and cameras.
+[[nodiscard]] Placements moved(Placements placements, const WorldRange& range);
 /// The camera that options ask for, in the new world.
 [[nodiscard]] SceneOptions moved(SceneOptions options, const WorldRange& range);
 
