@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -228,8 +229,11 @@ class GltfScene::Reader {
       scene_.instances.push_back({primitive, world, node.name.empty() ? name : node.name + "/" + name, -1, number});
     }
     // A skin places its mesh by joints alone, so that instances of it would all lie in one place.
-    if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end() && node.skin < 0)
-      place_copies(file_, found->second, place, world, first, scene_);
+    const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
+    if (found == node.extensions.end()) return;
+    if (node.skin < 0) return place_copies(file_, found->second, place, world, first, scene_);
+    if (!std::exchange(warned_of_copies_, true))
+      fmt::print(stderr, "{}: {}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once\n", file_.path, place);
   }
 
   /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]
@@ -336,6 +340,7 @@ class GltfScene::Reader {
   std::vector<std::optional<glm::dmat4>> worlds_;  ///< by node; none: not visited
   std::vector<SkinnedNode> skinned_;
   std::size_t pose_values_ = 0;
+  bool warned_of_copies_ = false;
 };
 
 GltfScene::GltfScene(const std::string& path, const GltfChoice& choice) : reader_(std::make_unique<Reader>(path, choice)) {}

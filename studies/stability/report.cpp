@@ -41,7 +41,7 @@ written by `scripts/pages stability`.
 
 Each case runs in a process of its own, functionally and on the machine. Whatever the case is about,
 
-- it **ends**, within its limits of time and memory;
+- it **ends** within its limit of time, and has then taken no more memory than it may;
 - it **conserves**: every law between the units' counts holds, and each unit's busy, starved, blocked and idle cycles add up to its cycles;
 - it **keeps the image**: colours and depths are those of the functional run, bit for bit, and nothing outside the scissor is touched;
 - no unit or link is used more than all of the time: what each must at least have needed is a lower bound on the frame's time, and the frame kept to it.

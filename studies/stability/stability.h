@@ -1,8 +1,8 @@
 /// The catalogue of stiff and extreme cases: `quadrille stability`.
 ///
-/// Each case is a frame at the edge of what numbers or a machine can be, with what must hold of it. It runs in a process of its own under limits of time and
-/// memory, functionally and on the machine; whatever the case, the run has to end, every law and every unit's account has to hold, and image and depth have to
-/// be those of the functional run. What else must hold is the case's own.
+/// Each case is a frame at the edge of what numbers or a machine can be, with what must hold of it. It runs in a process of its own under a limit of time,
+/// functionally and on the machine; whatever the case, the run has to end, every law and every unit's account has to hold, and image and depth have to
+/// be those of the functional run, and the process must not have taken more memory than the case allows. What else must hold is the case's own.
 #pragma once
 
 #include "studies/child_run.h"

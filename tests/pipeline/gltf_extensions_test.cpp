@@ -5,6 +5,7 @@
 
 #include "pipeline/compiler/compile.h"
 #include "pipeline/render.h"
+#include "pipeline/report.h"
 #include "scenes/mesh_builder.h"
 #include "scenes/recorder.h"
 #include "scenes/scene.h"
@@ -15,8 +16,8 @@ using namespace quadrille::scenes;
 
 namespace {
 
-/// Boxes turned, stretched and mirrored; as copies of instanced draws or one by one.
-SceneData boxes(bool instanced, bool blended) {
+/// Boxes turned, stretched and, some of them, mirrored; as copies of instanced draws or one by one.
+SceneData boxes(bool instanced, bool blended, bool mirrors = true) {
   SceneData scene;
   scene.name = "boxes";
   Material m;
@@ -30,20 +31,21 @@ SceneData boxes(bool instanced, bool blended) {
   Camera camera;
   camera.pose = glm::translate(glm::mat4(1), glm::vec3(2, 2, 6));
   scene.cameras.push_back(camera);
-  std::array<std::vector<glm::mat4>, 2> sides;
+  std::array<std::vector<glm::dmat4>, 2> sides;
   for (int i = 0; i < 12; ++i) {
     const glm::mat4 at = glm::translate(
         glm::mat4(1), glm::vec3(1.5F * static_cast<float>(i % 4), 1.5F * static_cast<float>(i / 4), -0.3F * static_cast<float>(i)));
     const glm::mat4 turned = glm::rotate(at, 0.4F * static_cast<float>(i), glm::vec3(0.6F, 0.8F, 0));
-    const bool mirrored = i % 3 == 0;
-    sides[mirrored ? 1 : 0].push_back(glm::scale(turned, glm::vec3(mirrored ? -1.0F : 1.0F, 0.4F + 0.1F * static_cast<float>(i), 1)));
+    const bool mirrored = mirrors && i % 3 == 0;
+    sides[mirrored ? 1 : 0].emplace_back(glm::scale(turned, glm::vec3(mirrored ? -1.0F : 1.0F, 0.4F + 0.1F * static_cast<float>(i), 1)));
   }
   for (const auto& side : sides) {
+    if (side.empty()) continue;
     if (instanced) {
       scene.instances.push_back({box, glm::mat4(1), "boxes", static_cast<int>(scene.copies.size())});
       scene.copies.push_back(side);
     } else {
-      for (const glm::mat4& world : side) place(scene, box, world);
+      for (const glm::dmat4& world : side) place(scene, box, glm::mat4(world));
     }
   }
   return scene;
@@ -71,6 +73,7 @@ std::string exact_differs(const traces::CommandStream& stream, const std::string
     pipeline::load_machine(config, machine);
     const pipeline::RenderedFrame frame = pipeline::render_exact(stream, config);
     if (frame.image.color != expected) return "another picture";
+    if (!frame.figures.checks_hold()) return pipeline::failed_checks(frame.figures);
     return "";
   });
 }
@@ -87,6 +90,18 @@ TEST_CASE("instanced draws: the picture is that of the copies one by one, mirror
   SceneOptions ids = options;
   ids.visibility = true;
   CHECK(differing(functional(Recorder(together, ids).record()).color, functional(Recorder(apart, ids).record()).color) == 0);
+}
+
+TEST_CASE("instanced draws: blended copies are drawn as the copies one by one, from back to front") {
+  const SceneOptions options = small(160, 120);
+  const traces::CommandStream stream = Recorder(boxes(true, true, false), options).record();
+  const pipeline::FrameImage image = functional(stream);
+  CHECK(differing(image.color, functional(Recorder(boxes(false, true, false), options).record()).color) == 0);
+  CHECK(differing(image.color, functional(Recorder(boxes(true, false, false), options).record()).color) > 0);
+  CHECK(exact_differs(stream, "default", image.color) == "");
+  // Those that mirror are a draw of their own, behind the others or before them.
+  const traces::CommandStream sides = Recorder(boxes(true, true), options).record();
+  CHECK(exact_differs(sides, "small", functional(sides).color) == "");
 }
 
 namespace {

@@ -1,9 +1,13 @@
 /// Posed pictures: by the vertex shader and by the host, on the machine and in the reference.
 #include <catch2/catch.hpp>
 
+#include <glm/ext/matrix_transform.hpp>
+
 #include "models/reference/compare.h"
 #include "models/reference/reference.h"
 #include "pipeline/render.h"
+#include "scenes/gltf_loader.h"
+#include "scenes/recorder.h"
 #include "scenes/scene.h"
 #include "scenes/shader_sources.h"
 #include "tests/scenes/gltf_builder.h"
@@ -80,6 +84,57 @@ TEST_CASE("posed pictures: a mirrored skin shows its front faces, and is lit fro
   const scenes::TempGltf mirrored(mirrored_arm()), plain(scenes::arm_gltf());
   const auto a = picture(mirrored.path(), 0), b = picture(plain.path(), 0);  // a rectangle is its own mirror image
   require_same(a, b);
+}
+
+TEST_CASE("posed pictures: a skin ten thousand kilometres away, between whole metres, is drawn as at the origin") {
+  std::string text = scenes::arm_gltf();
+  const scenes::TempGltf near(text);
+  const std::string lower = R"({"name":"lower")";
+  text.insert(text.find(lower) + lower.size(), R"(,"translation":[10000000.3,-10000000.4,10000000.6])");
+  const scenes::TempGltf far(text);
+  for (const double time : {0.1, 0.6}) require_same(picture(near.path(), time), picture(far.path(), time));
+}
+
+namespace {
+
+/// The square of a morph target, posed, three times in one instanced draw.
+scenes::SceneData posed_copies() {
+  const scenes::TempGltf file(scenes::morph_gltf(3, "[0.3,0.2,0.1]"));
+  scenes::SceneData scene = scenes::load_gltf(file.path());
+  scene.materials[static_cast<std::size_t>(scene.primitives[0].material)].double_sided = true;
+  scene.instances[0].copies = 0;
+  scene.copies.emplace_back();
+  for (int i = 0; i < 3; ++i) {
+    const glm::dmat4 at = glm::translate(glm::dmat4(1), glm::dvec3(1.3 * i - 1.9, 0.3 * i - 0.9, -0.7 * i));
+    scene.copies[0].push_back(glm::rotate(at, 0.3 * i, glm::dvec3(0.6, 0.8, 0)));
+  }
+  scene.cameras.resize(1);
+  scene.cameras[0].pose = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 4));
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("posed pictures: instanced and posed, colours and ids cover the same pixels, with a vertex shader of the user's too") {
+  const PlainShader plain;
+  const scenes::SceneData scene = posed_copies();
+  const auto drawn = [&](bool visibility, const std::string& shader) {
+    scenes::SceneOptions options;
+    options.width = options.height = kSide;
+    options.visibility = visibility;
+    options.vertex_shader = shader;
+    return pipeline::render_functional_frame(scenes::Recorder(scene, options).record(), {}).image.color;
+  };
+  const auto colors = drawn(false, ""), ids = drawn(true, "");
+  CHECK(colors == drawn(false, plain.path()));
+  CHECK(ids == drawn(true, plain.path()));
+  std::size_t covered = 0, unlike = 0;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    covered += ids[i] != 0 ? 1 : 0;
+    unlike += (ids[i] != 0) != (colors[i] != colors[0]) ? 1 : 0;
+  }
+  CHECK(covered > 1000);
+  CHECK(unlike == 0);
 }
 
 TEST_CASE("posed pictures: too many targets for the shader's locations are blended by the host, to the same picture") {

@@ -10,6 +10,8 @@
 
 #include "scenes/gltf_loader.h"
 #include "scenes/recorder.h"
+#include "scenes/shader_sources.h"
+#include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
 #include "traces/trace_file.h"
 
@@ -82,8 +84,8 @@ TEST_CASE("instancing: matrices are scale, then rotation, then translation, unde
   std::string text =
       instanced({{"TRANSLATION", "VEC3", {1, 2, 3}}, {"ROTATION", "VEC4", {0, 0, half, half}}, {"SCALE", "VEC3", {2, 3, 4}}});
   text.insert(text.find(R"("mesh":0)"), R"("translation":[10,0,0],)");
-  const glm::mat4 m = load(text).copies[0][0];
-  const glm::vec4 x = m * glm::vec4(1, 0, 0, 1), y = m * glm::vec4(0, 1, 0, 1);
+  const glm::dmat4 m = load(text).copies[0][0];
+  const glm::vec4 x = m * glm::dvec4(1, 0, 0, 1), y = m * glm::dvec4(0, 1, 0, 1);
   REQUIRE(glm::length(x - glm::vec4(11, 4, 3, 1)) < 1e-5F);
   REQUIRE(glm::length(y - glm::vec4(8, 2, 3, 1)) < 1e-5F);
 }
@@ -113,6 +115,64 @@ TEST_CASE("instancing: in visibility mode each copy is a draw, so that its trian
   const traces::StreamTotals totals = traces::stream_totals(Recorder(scene, options).record());
   REQUIRE(totals.draws == 3);
   REQUIRE(totals.triangles == 3);
+}
+
+namespace {
+
+/// A square that is posed by morphing along x, and drawn with each of these matrices.
+SceneData posed_copies(const std::string& weight, std::vector<glm::dmat4> copies) {
+  SceneData scene = load(morph_gltf(1, weight));
+  scene.instances[0].copies = 0;
+  scene.copies.push_back(std::move(copies));
+  scene.cameras.resize(1);
+  scene.cameras[0].pose = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 30));
+  return scene;
+}
+
+/// What the host has posed, in the order of recording.
+std::vector<std::vector<std::byte>> posed_buffers(const SceneData& scene, const SceneOptions& options, const std::string& semantic) {
+  std::vector<std::vector<std::byte>> found;
+  for (const traces::Buffer& buffer : Recorder(scene, options).record().buffers) {
+    if (buffer.name.ends_with(semantic + " posed")) found.push_back(buffer.data);
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("instancing: posed copies share one posed mesh, the same one in colours, in ids, and under a vertex shader of the user's") {
+  SceneData scene = posed_copies("[0.3]", {glm::dmat4(1), glm::translate(glm::dmat4(1), glm::dvec3(2, 0, 0))});
+  Instance mirrored = scene.instances[0];
+  mirrored.copies = 1;
+  scene.instances.push_back(mirrored);
+  scene.copies.push_back({glm::scale(glm::dmat4(1), glm::dvec3(-1, 1, 1))});
+  const std::vector<std::vector<std::byte>> colors = posed_buffers(scene, {}, "POSITION");
+  REQUIRE(colors.size() == 1);
+  const TempGltf plain(std::string(kInterfaceGlsl) + std::string(kMaterialVert), "plain.vert");
+  for (const bool visibility : {false, true}) {
+    for (const std::string& shader : {std::string(), plain.path()}) {
+      CAPTURE(visibility, shader);
+      SceneOptions options;
+      options.visibility = visibility;
+      options.vertex_shader = shader;
+      CHECK(posed_buffers(scene, options, "POSITION") == colors);
+      CHECK(posed_buffers(scene, options, "NORMAL").size() <= 1);
+      CHECK(traces::stream_totals(Recorder(scene, options).record()).triangles == 6);
+    }
+  }
+}
+
+TEST_CASE("instancing: blended copies are sorted by where their pose has put them") {
+  // At rest the turned copy is nearer by one; posed, ten along its own x takes it ten back.
+  const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 1)), 1.5707963267948966, glm::dvec3(0, 1, 0));
+  SceneData scene = posed_copies("[10]", {glm::dmat4(1), turned});
+  for (Material& material : scene.materials) material.alpha = AlphaMode::kBlend;
+  const traces::CommandStream stream = Recorder(scene, {}).record();
+  const auto found = std::ranges::find_if(stream.buffers, [](const traces::Buffer& b) { return b.name.ends_with(" instances"); });
+  REQUIRE(found != stream.buffers.end());
+  float first = 0;
+  std::memcpy(&first, &found->data[44], sizeof(first));  // of the first copy: third row, last column
+  CHECK(first == 1);
 }
 
 TEST_CASE("instancing: unequal counts, other types and values that are not finite are refused with their place") {

@@ -93,7 +93,7 @@ TEST_CASE("gltf: lights take place, direction and colour from node and extension
                     R"(,"translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":0}})"));
   REQUIRE(scene.lights.size() == 1);
   REQUIRE(scene.lights[0].kind == Light::Kind::kPoint);
-  REQUIRE(scene.lights[0].position == glm::vec3(1, 2, 3));
+  REQUIRE(scene.lights[0].position == glm::dvec3(1, 2, 3));
   REQUIRE(scene.lights[0].color == glm::vec3(8, 4, 0));
   REQUIRE(scene.lights[0].direction == glm::vec3(0, 0, -1));
 }

@@ -32,7 +32,7 @@ std::vector<glm::vec3> posed(const SceneData& scene, std::size_t instance = 0, S
   std::vector<glm::vec3> values(array.count);
   for (std::size_t v = 0; v < values.size(); ++v) {
     std::memcpy(&values[v], &array.data[v * sizeof(glm::vec3)], sizeof(glm::vec3));
-    if (semantic == Semantic::kPosition) values[v] = glm::vec3(i.world * glm::vec4(values[v], 1));
+    if (semantic == Semantic::kPosition) values[v] = glm::vec3(i.world * glm::dvec4(values[v], 1));
   }
   return values;
 }
@@ -116,7 +116,7 @@ TEST_CASE("pose: a skin far from the origin, or far from the size of one, keeps 
     const auto arrays = pose_on_host(arm.data(), arm.data().primitives[0], pose, true);
     glm::vec3 corner;
     std::memcpy(&corner, &arrays[0].value().data[4 * sizeof(glm::vec3)], sizeof(corner));
-    const glm::dvec3 world = glm::dvec3(corner) * static_cast<double>(instance.world[0].x) + glm::dvec3(instance.world[3]);
+    const glm::dvec3 world = glm::dvec3(corner) * instance.world[0].x + glm::dvec3(instance.world[3]);
     check_near(glm::vec3((world - glm::dvec3(place, 0, 0)) / scale), {-1, 0.5F, 0});
   }
 }
@@ -142,7 +142,7 @@ TEST_CASE("pose: a camera that frames an animated scene stands still, and one on
   GltfScene arm = opened(arm_gltf());
   arm.pose(0);
   const Bounds first = arm.data().bounds();
-  const glm::mat4 start = arm.data().cameras[0].pose.value();
+  const glm::dmat4 start = arm.data().cameras[0].pose.value();
   arm.pose(1);
   CHECK(arm.data().bounds().low == first.low);
   CHECK(arm.data().bounds().high == first.high);
