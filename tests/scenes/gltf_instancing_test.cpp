@@ -175,6 +175,15 @@ TEST_CASE("instancing: blended copies are sorted by where their pose has put the
   CHECK(first == 1);
 }
 
+TEST_CASE("instancing: a node with a skin is drawn once, where its joints place it") {
+  ArmOptions options;
+  options.node_of_mesh = R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}})";
+  const SceneData scene = load(arm_gltf(options));
+  REQUIRE(scene.instances.size() == 1);
+  CHECK(scene.instances[0].copies == -1);
+  CHECK(scene.copies.empty());
+}
+
 TEST_CASE("instancing: unequal counts, other types and values that are not finite are refused with their place") {
   REQUIRE_THAT(load_result(instanced({kThree, {"SCALE", "VEC3", {1, 1, 1}}})),
                Contains("nodes[0].EXT_mesh_gpu_instancing.attributes.SCALE: 1 elements where another attribute has 3"));

@@ -121,6 +121,15 @@ TEST_CASE("pose: a skin far from the origin, or far from the size of one, keeps 
   }
 }
 
+TEST_CASE("pose: a skin faces as most of its joints do") {
+  for (const auto& [bone, mirrored] : {std::pair{"upper", false}, {"lower", true}}) {  // of two joints, one is mirrored, or both are
+    std::string text = arm_gltf();
+    const std::string name = fmt::format(R"({{"name":"{}")", bone);
+    text.insert(text.find(name) + name.size(), R"(,"scale":[-1,1,1])");
+    CHECK(opened(text).data().poses[0].mirrored == mirrored);
+  }
+}
+
 TEST_CASE("pose: a skin's normals turn with its joints") {
   GltfScene arm = opened(arm_gltf());
   arm.pose(1);
