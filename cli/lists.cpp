@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "models/base/error.h"
 #include "pipeline/machine_config.h"
 #include "scenes/contents.h"
 #include "scenes/scene.h"
@@ -19,8 +20,8 @@ int list_scenes() {
 /// Scenes, cameras and animations of a file, numbered as --scene, --camera and --animation take them.
 int list_contents(const std::string& file) {
   const scenes::SceneContents contents = scenes::scene_contents(file);
-  const auto named = [](const std::string& name) { return name.empty() ? std::string("(no name)") : fmt::format("'{}'", name); };
-  fmt::print("{}: scenes {}, cameras {}, animations {}\n", file, contents.scenes.size(), contents.cameras.size(),
+  const auto named = [](const std::string& name) { return name.empty() ? std::string("(no name)") : fmt::format("'{}'", one_line(name)); };
+  fmt::print("{}: scenes {}, cameras {}, animations {}\n", one_line(file), contents.scenes.size(), contents.cameras.size(),
              contents.animations.size());
   for (std::size_t i = 0; i < contents.scenes.size(); ++i)
     fmt::print("  scene     {:>3}  {}{}\n", i, named(contents.scenes[i]), i == contents.own_scene ? ", drawn by default" : "");

@@ -38,6 +38,11 @@ struct Elements {
 /// for a type that glTF does not allow there, or values that are not finite.
 [[nodiscard]] Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic semantic, const std::string& place);
 
+/// Bytes of the stream that `to_vertex_array` makes.
+[[nodiscard]] std::uint64_t vertex_array_bytes(const Elements& elements, Semantic semantic);
+/// Bytes of the elements as floats.
+[[nodiscard]] std::uint64_t float_bytes(const Elements& elements);
+
 /// Elements of `components` each as a stream of floats: what a morph target adds. Throws as `to_vertex_array`.
 [[nodiscard]] Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components, const std::string& place);
 

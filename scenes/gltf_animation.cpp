@@ -170,7 +170,7 @@ std::vector<Animation> choose_animations(const GltfFile& file, const std::string
   std::vector<std::string> names;
   for (const tinygltf::Animation& animation : file.model.animations) names.push_back(animation.name);
   if (std::ranges::find(file.model.extensionsUsed, "KHR_animation_pointer") != file.model.extensionsUsed.end())
-    fmt::print(stderr, "{}: KHR_animation_pointer is not supported; its channels are left out\n", file.path);
+    fmt::print(stderr, "{}: KHR_animation_pointer is not supported; its channels are left out\n", one_line(file.path));
   std::vector<Animation> chosen;
   if (choice == kAll) {
     for (std::size_t i = 0; i < names.size(); ++i) chosen.push_back(read_animation(file, i));

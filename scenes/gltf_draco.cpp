@@ -20,6 +20,7 @@ constexpr const char* kName = "KHR_draco_mesh_compression";
 constexpr std::uint64_t kMaxTriangles = std::uint64_t{1} << 23;  // of a primitive; Draco takes about 100 bytes for each [G: half of 2 GiB]
 constexpr std::uint64_t kMaxWork = std::uint64_t{1} << 24;  // triangles times connectivity tables, of which each attribute may have its own
 constexpr std::uint64_t kMaxAttributeBytes = std::uint64_t{1} << 29;  // of a primitive
+constexpr std::size_t kMaxComponents = 4;                             // no vertex attribute has more [glTF2.0 #meshes-overview]
 constexpr std::uint64_t kMaxDecodedBytes = std::uint64_t{1} << 30;    // of a file
 
 /// A decoder of Draco's that stops before its two allocations by counts which the data claims: connectivity and attributes.
@@ -90,7 +91,7 @@ void decode_mesh(const GltfObject& object, std::span<const std::byte> bytes, dra
 
 template <class T>
 bool convert(const draco::PointAttribute& source, draco::AttributeValueIndex index, std::size_t components, std::byte* out) {
-  std::array<T, 4> value{};
+  std::array<T, kMaxComponents> value{};
   if (!source.ConvertValue<T>(index, static_cast<std::int8_t>(components), value.data())) return false;
   std::memcpy(out, value.data(), components * sizeof(T));
   return true;
@@ -114,6 +115,8 @@ Elements attribute_elements(const GltfObject& object, const draco::Mesh& mesh, s
   if (source == nullptr) object.fail(name, fmt::format("Draco's data has no attribute {}", id));
   if (static_cast<std::size_t>(source->num_components()) != form.components)
     object.fail(name, fmt::format("{} components in Draco's data, {} in the accessor", source->num_components(), form.components));
+  if (form.components > kMaxComponents)
+    object.fail(name, fmt::format("{} components; Draco's attributes are read with at most {}", form.components, kMaxComponents));
   const std::size_t size = form.components * component_bytes(form.component);
   form.count = mesh.num_points();
   form.data.resize(form.count * size);

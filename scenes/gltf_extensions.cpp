@@ -67,7 +67,7 @@ void check_extensions(const std::string& path, const tinygltf::Model& model) {
   if (!lacking.empty())
     throw user_error("{}: extensionsRequired: {} not supported; supported are {}", path, lacking, fmt::join(kSupported, ", "));
   const std::string ignored = listed(model.extensionsUsed, true);
-  if (!ignored.empty()) fmt::print(stderr, "{}: extensionsUsed: {} not supported; drawn without\n", path, ignored);
+  if (!ignored.empty()) fmt::print(stderr, "{}: extensionsUsed: {} not supported; drawn without\n", one_line(path), ignored);
 }
 
 }  // namespace quadrille::scenes

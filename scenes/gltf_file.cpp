@@ -123,15 +123,4 @@ std::span<const std::byte> buffer_view_bytes(const GltfFile& file, int index, co
   return std::as_bytes(std::span(data)).subspan(view.byteOffset, view.byteLength);
 }
 
-std::vector<std::byte> encoded_image(const GltfFile& file, std::size_t index) {
-  const tinygltf::Image& image = file.model.images[index];
-  const std::string place = fmt::format("images[{}]", index);
-  if (image.bufferView >= 0) {
-    const std::span<const std::byte> bytes = buffer_view_bytes(file, image.bufferView, place);
-    return {bytes.begin(), bytes.end()};
-  }
-  if (!file.image_uris[index]) throw user_error("{}: {}: it has neither uri nor bufferView", file.path, place);
-  return fetch_uri(file.path, *file.image_uris[index], file.path + ": " + place, kMaxFileBytes);
-}
-
 }  // namespace quadrille::scenes

@@ -30,7 +30,4 @@ struct GltfFile {
 /// The bytes of buffer view `index`. Throws `UserError` with `place` when it or its range does not exist.
 [[nodiscard]] std::span<const std::byte> buffer_view_bytes(const GltfFile& file, int index, const std::string& place);
 
-/// The encoded bytes of image `index`, from wherever it keeps them. Throws `UserError` when it has none.
-[[nodiscard]] std::vector<std::byte> encoded_image(const GltfFile& file, std::size_t index);
-
 }  // namespace quadrille::scenes

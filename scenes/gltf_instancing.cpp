@@ -1,5 +1,6 @@
 #include "scenes/gltf_instancing.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -101,16 +102,18 @@ std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Val
 }
 
 void place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place, const glm::dmat4& world,
-                  std::size_t first, SceneData& scene) {
+                  std::size_t first, SceneData& scene, PlacedCopies& placed_copies) {
+  const auto [entry, added] = placed_copies.matrices.try_emplace(&extension);
+  if (added) entry->second = read_instances(file, extension, place);
+  placed_copies.drawn += entry->second.size() * std::max<std::size_t>(1, scene.instances.size() - first);
+  if (placed_copies.drawn > kMaxInstances)
+    throw user_error("{}: {}: the scene has more than {} instances of primitives", file.path, place, kMaxInstances);
   std::array<std::vector<glm::dmat4>, 2> sides;
-  for (const glm::dmat4& matrix : read_instances(file, extension, place)) {
+  for (const glm::dmat4& matrix : entry->second) {
     const glm::dmat4 placed = world * matrix;
     if (!all_finite(glm::mat4(placed))) throw user_error("{}: {}: the matrix of one of its instances is not finite", file.path, place);
     sides[glm::determinant(glm::dmat3(placed)) < 0 ? 1 : 0].push_back(placed);
   }
-  std::size_t total = sides[0].size() + sides[1].size();
-  for (const auto& copies : scene.copies) total += copies.size();
-  if (total > kMaxInstances) throw user_error("{}: {}: the scene has more than {} instances", file.path, place, kMaxInstances);
   const std::vector<Instance> originals(scene.instances.begin() + static_cast<std::ptrdiff_t>(first), scene.instances.end());
   scene.instances.resize(first);
   for (std::vector<glm::dmat4>& side : sides) {

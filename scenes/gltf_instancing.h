@@ -1,6 +1,8 @@
 /// EXT_mesh_gpu_instancing: a node that draws its mesh many times.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,9 +17,15 @@ namespace quadrille::scenes {
 /// Throws `UserError` for accessors of other types, of unequal counts, or with values that are not finite. [EXT_mesh_gpu_instancing]
 [[nodiscard]] std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Value& extension, const std::string& place);
 
+/// What one visit of all nodes has placed, and what the visits share.
+struct PlacedCopies {
+  std::uint64_t drawn = 0;                                                  ///< copies times primitives; the visitor puts it to zero
+  std::map<const tinygltf::Value*, std::vector<glm::dmat4>> matrices = {};  ///< by the node's extension: read once
+};
+
 /// Turns the instances of `scene` from `first` on, which a node with the matrix `world` placed, into instanced draws: one of the copies that mirror and one of
-/// those that do not, since they face the other way. At most 2^20 copies a scene. Throws `UserError` for a matrix that is not finite.
+/// those that do not, since they face the other way. At most 2^20 copies of primitives a scene. Throws `UserError` for a matrix that is not finite.
 void place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place, const glm::dmat4& world,
-                  std::size_t first, SceneData& scene);
+                  std::size_t first, SceneData& scene, PlacedCopies& placed);
 
 }  // namespace quadrille::scenes

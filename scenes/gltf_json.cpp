@@ -44,7 +44,7 @@ class Preparer {
       fail("its JSON", fmt::format("cannot be parsed at byte {}: not JSON in UTF-8", error.byte));
     } catch (const Json::out_of_range&) { fail("its JSON", "holds a number that is too large for any type"); }
     if (!root_.is_object()) fail("its JSON", "is no object");
-    make_integers(root_);
+    make_integers(root_, false);
   }
 
   PreparedJson prepare() {
@@ -62,18 +62,23 @@ class Preparer {
  private:
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const { throw user_error("{}: {} {}", path_, place, reason); }
 
-  /// An integer may be written as 1.0 or 1e0; tinygltf takes only digits. The nesting is bounded by now.
-  static void make_integers(Json& value) {
-    constexpr double kLargestExact = 9007199254740992.0;  // 2^53
-    if (value.is_structured()) {
-      for (Json& item : value) make_integers(item);
+  /// An integer may be written as 1.0 or 1e0; tinygltf takes only digits. Members of extensions, though, it keeps as `int`, which wraps: there the large ones
+  /// become fractions, which it keeps as double. The nesting is bounded by now.
+  static void make_integers(Json& value, bool in_extension) {
+    constexpr double kLargestExact = 9007199254740992.0, kInt = 2147483648.0;  // 2^53, 2^31
+    if (value.is_object()) {
+      for (auto& [name, item] : value.items()) make_integers(item, in_extension || name == "extensions");
+    } else if (value.is_array()) {
+      for (Json& item : value) make_integers(item, in_extension);
     } else if (value.is_number_float()) {
-      const double number = value.get<double>();
-      if (number >= 0 && number < kLargestExact && number == std::floor(number) && !std::signbit(number)) {
+      const double number = value.get<double>(), limit = in_extension ? kInt : kLargestExact;
+      if (number >= 0 && number < limit && number == std::floor(number) && !std::signbit(number)) {
         value = static_cast<std::uint64_t>(number);
-      } else if (number < 0 && number > -kLargestExact && number == std::floor(number)) {
+      } else if (number < 0 && number > -limit && number == std::floor(number)) {
         value = static_cast<std::int64_t>(number);
       }
+    } else if (value.is_number() && in_extension && !(std::abs(value.get<double>()) < kInt)) {
+      value = value.get<double>();
     }
   }
 

@@ -16,21 +16,22 @@
 #include "models/base/error.h"
 #include "scenes/gltf_animation.h"
 #include "scenes/gltf_file.h"
+#include "scenes/gltf_images.h"
 #include "scenes/gltf_instancing.h"
 #include "scenes/gltf_mesh.h"
 #include "scenes/gltf_skin.h"
+#include "scenes/gltf_value.h"
 #include "scenes/gltf_view.h"
-#include "scenes/image_header.h"
 #include "scenes/named_choice.h"
 
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
-                        kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
-constexpr int kExtentMoments = 32;
+constexpr int kExtentMoments = 32, kFewestMoments = 4;
+constexpr std::size_t kExtentVisits = std::size_t{1} << 22;      // nodes and copies of all moments [G: seconds]
+constexpr std::uint64_t kMaxMorphWork = std::uint64_t{1} << 28;  // vertices times attributes that targets of weight move
 constexpr std::size_t kMaxPoseValues = std::size_t{1}
-                                       << 22;  // joints and weights of all posed nodes: a file may show one skin any number of times
+                                       << 22;  // joints and weights of all posed primitives: a file may show one skin any number of times
 
 bool all_finite(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i) {
@@ -77,6 +78,10 @@ class GltfScene::Reader {
     glm::dmat4 parent{1};
   };
 
+  /// Made when it is needed: a file may have a million nodes, each visited at many moments.
+  static std::string place_of(int node) { return fmt::format("nodes[{}]", node); }
+
+  [[noreturn]] void fail(int node, const std::string& reason) const { fail(place_of(node), reason); }
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const {
     throw user_error("{}: {}: {}", file_.path, place, reason);
   }
@@ -87,11 +92,20 @@ class GltfScene::Reader {
     std::size_t pose = 0, first_instance = 0, instances = 0;
   };
 
+  /// Fewer for a scene that takes long to visit.
+  int extent_moments() const {
+    std::size_t visits = file_.model.nodes.size() + scene_.instances.size();
+    for (const auto& copies : scene_.copies) visits += copies.size();
+    return std::max(kFewestMoments,
+                    static_cast<int>(std::min<std::size_t>(kExtentMoments, kExtentVisits / std::max<std::size_t>(1, visits))));
+  }
+
   /// The boxes of all instances at moments all over the animation, so that a camera that frames the scene stands still.
   void hold_extent() {
     std::vector<Bounds> extent(scene_.instances.size());
-    for (int i = 0; i <= kExtentMoments; ++i) {
-      pose(length_ * i / kExtentMoments);
+    const int moments = extent_moments();
+    for (int i = 0; i <= moments; ++i) {
+      pose(length_ * i / moments);
       extent.resize(std::max(extent.size(), scene_.instances.size()));
       for (std::size_t k = 0; k < scene_.instances.size(); ++k) extent[k].add(scene_.box(scene_.instances[k]));
     }
@@ -100,9 +114,9 @@ class GltfScene::Reader {
 
   // ---- nodes ----
 
-  glm::dmat4 local_matrix(const tinygltf::Node& node, const NodeMotion& motion, const std::string& place) const {
+  glm::dmat4 local_matrix(const tinygltf::Node& node, const NodeMotion& motion, int number) const {
     const auto sized = [&](const std::vector<double>& values, std::size_t size, const char* member) {
-      if (!values.empty() && values.size() != size) fail(place, fmt::format("{}: {} numbers instead of {}", member, values.size(), size));
+      if (!values.empty() && values.size() != size) fail(number, fmt::format("{}: {} numbers instead of {}", member, values.size(), size));
       return !values.empty();
     };
     glm::dmat4 m(1);
@@ -115,7 +129,7 @@ class GltfScene::Reader {
     } else if (sized(node.rotation, 4, "rotation")) {
       const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
       const double length = glm::length(q);
-      if (!(length > 0) || !std::isfinite(length)) fail(place, "rotation: not a quaternion");
+      if (!(length > 0) || !std::isfinite(length)) fail(number, "rotation: not a quaternion");
       m = glm::mat4_cast(q / length);
     }
     if (motion.scale) {
@@ -164,9 +178,12 @@ class GltfScene::Reader {
 
   /// Depth first, children in order, without recursion. A node seen twice would make the graph no tree, or a loop.
   void visit_nodes() {
+    static const NodeMotion kStill;
     worlds_.assign(file_.model.nodes.size(), std::nullopt);
     skinned_.clear();
     pose_values_ = 0;
+    morph_work_ = 0;
+    copies_.drawn = 0;
     std::vector<Visit> open;
     const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
       for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent});
@@ -178,48 +195,48 @@ class GltfScene::Reader {
       const auto index = static_cast<std::size_t>(visit.node);
       if (visit.node < 0 || index >= worlds_.size())
         fail("nodes", fmt::format("node {} does not exist (the file has {})", visit.node, worlds_.size()));
-      const std::string place = fmt::format("nodes[{}]", visit.node);
-      if (worlds_[index]) fail(place, "it is reached twice; nodes form a tree");
+      if (worlds_[index]) fail(visit.node, "it is reached twice; nodes form a tree");
       const tinygltf::Node& node = file_.model.nodes[index];
       const auto moved = motions_.find(visit.node);
-      const NodeMotion motion = moved == motions_.end() ? NodeMotion{} : moved->second;
-      const glm::dmat4 world = visit.parent * local_matrix(node, motion, place);
-      if (!all_finite(world)) fail(place, "its world matrix is not finite");
+      const NodeMotion& motion = moved == motions_.end() ? kStill : moved->second;
+      const glm::dmat4 world = visit.parent * local_matrix(node, motion, visit.node);
+      if (!all_finite(world)) fail(visit.node, "its world matrix is not finite");
       worlds_[index] = world;
-      place_node(node, motion, world, place);
+      place_node(node, motion, world, visit.node);
       push(node.children, world);
     }
     for (const SkinnedNode& s : skinned_) pose_skinned(s);
   }
 
-  void place_node(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, const std::string& place) {
-    if (node.mesh >= 0) place_mesh(node, motion, world, place);
+  void place_node(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, int number) {
+    if (node.mesh >= 0) place_mesh(node, motion, world, number);
     if (node.camera >= 0) {
       const auto camera = static_cast<std::size_t>(node.camera);
       if (camera >= scene_.cameras.size())
-        fail(place, fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
+        fail(number, fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
       if (!scene_.cameras[camera].pose) scene_.cameras[camera].pose = world;
     }
     if (const auto found = node.extensions.find("KHR_lights_punctual"); found != node.extensions.end())
-      place_light(found->second, world, place);
+      place_light(found->second, world, place_of(number));
   }
 
-  void place_mesh(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, const std::string& place) {
+  void place_mesh(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, int at) {
     const auto mesh = static_cast<std::size_t>(node.mesh);
     if (mesh >= file_.model.meshes.size())
-      fail(place, fmt::format("mesh {} does not exist (the file has {})", node.mesh, file_.model.meshes.size()));
+      fail(at, fmt::format("mesh {} does not exist (the file has {})", node.mesh, file_.model.meshes.size()));
     const std::vector<std::uint32_t>& primitives = meshes_.primitives(node.mesh);
-    Pose pose{morph_weights(node, file_.model.meshes[mesh], motion, place), {}, false};
+    Pose pose{morph_weights(node, file_.model.meshes[mesh], motion, at), {}, false};
     const bool posed = node.skin >= 0 || std::ranges::any_of(pose.weights, [](float w) { return w != 0; });
     const int number = posed ? static_cast<int>(scene_.poses.size()) : -1;
     if (posed) {
-      charge_pose(pose.weights.size(), place);
+      charge_pose(pose.weights.size() * primitives.size(), at);
+      charge_morph(primitives, pose.weights, at);
       scene_.poses.push_back(std::move(pose));
     }
     if (node.skin >= 0) {
       const auto [skin, added] = skins_.try_emplace(node.skin);
-      if (added) skin->second = read_skin(file_, node.skin, place);
-      charge_pose(skin->second.joints.size(), place);
+      if (added) skin->second = read_skin(file_, node.skin, place_of(at));
+      charge_pose(skin->second.joints.size() * primitives.size(), at);
       meshes_.read_skinning(node.mesh, skin->second.joints.size(), node.skin);
       skinned_.push_back({node.skin, static_cast<std::size_t>(number), scene_.instances.size(), primitives.size()});
     }
@@ -231,29 +248,44 @@ class GltfScene::Reader {
     // A skin places its mesh by joints alone, so that instances of it would all lie in one place.
     const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
     if (found == node.extensions.end()) return;
-    if (node.skin < 0) return place_copies(file_, found->second, place, world, first, scene_);
+    if (node.skin < 0) return place_copies(file_, found->second, place_of(at), world, first, scene_, copies_);
     if (!std::exchange(warned_of_copies_, true))
-      fmt::print(stderr, "{}: {}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once\n", file_.path, place);
+      fmt::print(stderr, "{}\n",
+                 one_line(fmt::format("{}: {}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once", file_.path,
+                                      place_of(at))));
   }
 
   /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]
-  std::vector<float> morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh, const NodeMotion& motion,
-                                   const std::string& place) const {
+  std::vector<float> morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh, const NodeMotion& motion, int at) const {
     const std::size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
     const std::vector<double>& weights = motion.weights ? *motion.weights : node.weights.empty() ? mesh.weights : node.weights;
     if (!weights.empty() && weights.size() != targets)
-      fail(place, fmt::format("{} weights for a mesh of {} morph targets", weights.size(), targets));
+      fail(at, fmt::format("{} weights for a mesh of {} morph targets", weights.size(), targets));
     std::vector<float> result;
     for (const double weight : weights) {
       result.push_back(static_cast<float>(weight));
-      if (!std::isfinite(result.back())) fail(place, "a morph target's weight is not finite");
+      if (!std::isfinite(result.back())) fail(at, "a morph target's weight is not finite");
     }
     return result;
   }
 
-  void charge_pose(std::size_t values, const std::string& place) {
+  void charge_pose(std::size_t values, int at) {
     pose_values_ += values;
-    if (pose_values_ > kMaxPoseValues) fail(place, fmt::format("the scene poses more than {} joints and weights", kMaxPoseValues));
+    if (pose_values_ > kMaxPoseValues) fail(at, fmt::format("the scene poses more than {} joints and weights", kMaxPoseValues));
+  }
+
+  /// What the host would have to add; many targets may be of one accessor.
+  void charge_morph(const std::vector<std::uint32_t>& primitives, const std::vector<float>& weights, int at) {
+    for (const std::uint32_t number : primitives) {
+      const Primitive& primitive = scene_.primitives[number];
+      const std::uint64_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
+      for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
+        const auto moved = std::ranges::count_if(primitive.targets[t].deltas, [](int delta) { return delta >= 0; });
+        if (weights[t] != 0) morph_work_ += vertices * static_cast<std::uint64_t>(moved);
+      }
+      if (morph_work_ > kMaxMorphWork)
+        fail(at, fmt::format("the scene's morph targets move more than {} attributes of vertices", kMaxMorphWork));
+    }
   }
 
   void pose_skinned(const SkinnedNode& s) {
@@ -265,10 +297,8 @@ class GltfScene::Reader {
   // ---- lights ----
 
   void place_light(const tinygltf::Value& extension, const glm::dmat4& world, const std::string& place) {
-    const int index = extension.Has("light") ? extension.Get("light").GetNumberAsInt() : -1;
-    const auto& lights = file_.model.lights;
-    if (index < 0 || static_cast<std::size_t>(index) >= lights.size())
-      fail(place, fmt::format("light {} does not exist (the file has {})", index, lights.size()));
+    const GltfObject object(file_.path, place + ".KHR_lights_punctual", extension);
+    const int index = object.index("light", file_.model.lights.size());
     Light light = read_light(file_, static_cast<std::size_t>(index));
     const glm::dvec3 backward(world[2]);
     if (!(glm::length(backward) > 0)) fail(place, "a light on a node whose matrix is singular");
@@ -295,38 +325,8 @@ class GltfScene::Reader {
     for (std::size_t i = 0; !choice_.leave_out && i < file_.model.images.size(); ++i) {
       if (!numbers.contains(static_cast<int>(i))) wanted.push_back(i);
     }
-    std::vector<std::vector<std::byte>> encoded;
-    for (const std::size_t i : wanted) encoded.push_back(encoded_image(file_, i));
-    check_image_budget(wanted, encoded);
-    for (std::size_t k = 0; k < wanted.size(); ++k)
-      scene_.images.emplace_back(image_name(wanted[k]),
-                                 [bytes = std::move(encoded[k]), place = image_place(wanted[k])] { return decode_image(bytes, place); });
-  }
-
-  /// A few bytes can say that they are many pixels: what a scene may unpack grows with what it brings.
-  void check_image_budget(const std::vector<std::size_t>& wanted, const std::vector<std::vector<std::byte>>& encoded) const {
-    std::uint64_t pixels = 0, bytes = 0;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      const ImageHeader header = check_image_header(encoded[k], image_place(wanted[k]));
-      pixels += std::uint64_t{header.width} * header.height;
-      bytes += encoded[k].size();
-      if (pixels > kFreePixels + kPixelsAByte * bytes) {
-        fail(fmt::format("images[{}]", wanted[k]),
-             fmt::format("the images up to here are {} pixels in {} bytes of files; legal are {} and {} more a byte", pixels, bytes,
-                         kFreePixels, kPixelsAByte));
-      }
-    }
-  }
-
-  std::string image_name(std::size_t index) const {
-    const tinygltf::Image& image = file_.model.images[index];
-    if (!image.name.empty()) return image.name;
-    return image.uri.empty() ? fmt::format("images[{}]", index) : image.uri;
-  }
-
-  std::string image_place(std::size_t index) const {
-    const std::string& uri = file_.model.images[index].uri;
-    return fmt::format("{}: images[{}]{}", file_.path, index, uri.empty() ? "" : " '" + uri.substr(0, 200) + "'");
+    ImageReader images(file_);
+    for (const std::size_t i : wanted) scene_.images.push_back(images.read(i));
   }
 
   GltfFile file_;
@@ -341,6 +341,8 @@ class GltfScene::Reader {
   std::vector<SkinnedNode> skinned_;
   std::size_t pose_values_ = 0;
   bool warned_of_copies_ = false;
+  std::uint64_t morph_work_ = 0;
+  PlacedCopies copies_;
 };
 
 GltfScene::GltfScene(const std::string& path, const GltfChoice& choice) : reader_(std::make_unique<Reader>(path, choice)) {}

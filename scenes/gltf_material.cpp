@@ -5,6 +5,7 @@
 #include "models/base/error.h"
 #include "scenes/gltf_layers.h"
 #include "scenes/gltf_texture.h"
+#include "scenes/gltf_value.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -70,8 +71,8 @@ class MaterialReader {
 
   float emissive_strength() const {
     const auto found = source_.extensions.find("KHR_materials_emissive_strength");
-    if (found == source_.extensions.end() || !found->second.Has("emissiveStrength")) return 1;
-    return number(found->second.Get("emissiveStrength").GetNumberAsDouble(), "emissiveStrength");
+    if (found == source_.extensions.end()) return 1;
+    return GltfObject(file_.path, place_ + ".KHR_materials_emissive_strength", found->second).number("emissiveStrength", 1);
   }
 
   template <class Info>

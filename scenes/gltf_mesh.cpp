@@ -96,20 +96,25 @@ void MeshReader::read_indices(const tinygltf::Primitive& source, const std::stri
 
 int MeshReader::add_array(Array array, const std::string& place) {
   array.name = place;
+  require_room(array.data.size(), place);
   total_bytes_ += array.data.size();
+  scene_.arrays.push_back(std::move(array));
+  return static_cast<int>(scene_.arrays.size() - 1);
+}
+
+void MeshReader::require_room(std::uint64_t bytes, const std::string& place) const {
   std::uint64_t limit = kFreeGeometryBytes;
   for (const tinygltf::Buffer& buffer : file_.model.buffers) limit += 4 * std::uint64_t{buffer.data.size()};
   limit = std::min(limit, kMaxGeometryBytes);
-  if (total_bytes_ > limit) throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, limit);
-  scene_.arrays.push_back(std::move(array));
-  return static_cast<int>(scene_.arrays.size() - 1);
+  if (total_bytes_ + bytes > limit) throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, limit);
 }
 
 int MeshReader::vertex_array(int accessor, Semantic semantic, const std::string& place) {
   const auto found = vertex_arrays_.find({accessor, semantic});
   if (found != vertex_arrays_.end()) return found->second;
-  const int array = add_array(
-      to_vertex_array(file_, read_accessor(file_, accessor, place), semantic, fmt::format("{}: accessor {}", place, accessor)), place);
+  const Elements elements = read_accessor(file_, accessor, place);
+  require_room(vertex_array_bytes(elements, semantic), place);
+  const int array = add_array(to_vertex_array(file_, elements, semantic, fmt::format("{}: accessor {}", place, accessor)), place);
   return vertex_arrays_[{accessor, semantic}] = array;
 }
 

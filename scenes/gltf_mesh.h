@@ -27,13 +27,16 @@ class MeshReader {
   [[nodiscard]] bool read_primitive(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
   void read_attributes(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
   void read_targets(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
-  void read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  void read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive, std::size_t joints, int skin);
+  [[nodiscard]] const std::vector<Bounds>& joint_boxes(int positions, const JointSet& set, const std::string& place);
   [[nodiscard]] int delta_array(int accessor, std::size_t components, const std::string& place);
   void read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
   [[nodiscard]] int vertex_array(int accessor, Semantic semantic, const std::string& place);
   [[nodiscard]] int index_array(int accessor, const std::string& place);
   [[nodiscard]] int material(int index, const std::string& place);
   [[nodiscard]] int add_array(Array array, const std::string& place);
+  /// Refuses `bytes` more of streams, before anything is allocated for them, when they are too many.
+  void require_room(std::uint64_t bytes, const std::string& place) const;
   [[nodiscard]] Bounds position_bounds(const Array& positions) const;
 
   const GltfFile& file_;
@@ -45,10 +48,12 @@ class MeshReader {
   std::map<std::pair<int, int>, std::array<int, 2>> joint_arrays_;
   std::map<std::pair<int, Semantic>, int> vertex_arrays_;
   std::map<int, std::pair<int, traces::IndexType>> index_arrays_;
-  std::map<int, std::uint32_t> largest_index_;  ///< by index array
-  std::map<int, int> materials_;                ///< the file's number (-1: the default material) to the scene's
-  std::map<int, Bounds> bounds_;                ///< by position array
+  std::map<int, std::uint32_t> largest_index_;                     ///< by index array
+  std::map<int, int> materials_;                                   ///< the file's number (-1: the default material) to the scene's
+  std::map<int, Bounds> bounds_;                                   ///< by position array
+  std::map<std::array<int, 3>, std::vector<Bounds>> joint_boxes_;  ///< by arrays of positions, joints and weights
   std::uint64_t total_bytes_ = 0;
+  std::size_t jointed_vertices_ = 0, joint_box_count_ = 0;
 };
 
 }  // namespace quadrille::scenes

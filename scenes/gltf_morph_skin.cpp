@@ -11,6 +11,8 @@
 namespace quadrille::scenes {
 namespace {
 
+constexpr std::size_t kMaxJointedVertices = std::size_t{1} << 27;  // of all distinct streams of joints [G: a second]
+constexpr std::size_t kMaxJointBoxes = std::size_t{1} << 22;       // of all primitives: 100 MB
 constexpr std::array<const char*, kSemantics> kTargetNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
 
 std::uint32_t joint_at(const Array& joints, std::size_t component) {
@@ -44,7 +46,9 @@ glm::vec3 point_at(const Array& positions, std::size_t vertex) {
 int MeshReader::delta_array(int accessor, std::size_t components, const std::string& place) {
   const auto [entry, added] = delta_arrays_.try_emplace({accessor, components}, -1);
   if (!added) return entry->second;
-  Array array = to_delta_array(file_, read_accessor(file_, accessor, place), components, fmt::format("{}: accessor {}", place, accessor));
+  const Elements elements = read_accessor(file_, accessor, place);
+  require_room(float_bytes(elements), place);
+  Array array = to_delta_array(file_, elements, components, fmt::format("{}: accessor {}", place, accessor));
   return entry->second = add_array(std::move(array), place);
 }
 
@@ -71,9 +75,9 @@ void MeshReader::read_targets(const tinygltf::Primitive& source, const std::stri
   }
 }
 
-void MeshReader::read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
-  const Array& positions = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])];
-  const std::size_t vertices = positions.count;
+void MeshReader::read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive, std::size_t joint_count,
+                             int skin) {
+  const std::size_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
   for (std::size_t set = 0; set < primitive.joint_sets.size(); ++set) {
     const auto joints = source.attributes.find(fmt::format("JOINTS_{}", set)),
                weights = source.attributes.find(fmt::format("WEIGHTS_{}", set));
@@ -84,21 +88,43 @@ void MeshReader::read_joints(const tinygltf::Primitive& source, const std::strin
     const std::string at = fmt::format("{}.attributes.JOINTS_{}", place, set);
     const auto [entry, added] = joint_arrays_.try_emplace({joints->second, weights->second});
     if (added) {
-      auto [numbers, fractions] =
-          to_joint_arrays(file_, read_accessor(file_, joints->second, at), read_accessor(file_, weights->second, at), at);
+      const Elements joint_elements = read_accessor(file_, joints->second, at), weight_elements = read_accessor(file_, weights->second, at);
+      require_room(joint_elements.data.size() + weight_elements.data.size(), at);
+      auto [numbers, fractions] = to_joint_arrays(file_, joint_elements, weight_elements, at);
       entry->second = {add_array(std::move(numbers), at), add_array(std::move(fractions), at)};
     }
     primitive.joint_sets[set] = {entry->second[0], entry->second[1]};
     const Array& numbers = scene_.arrays[static_cast<std::size_t>(entry->second[0])];
-    const Array& fractions = scene_.arrays[static_cast<std::size_t>(entry->second[1])];
     if (numbers.count != vertices) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, at, numbers.count, vertices);
-    for (std::size_t i = 0; i < 4 * vertices; ++i) {
-      if (!has_weight(fractions, i)) continue;
-      const std::uint32_t joint = joint_at(numbers, i);
-      if (primitive.joint_boxes.size() <= joint) primitive.joint_boxes.resize(joint + 1);
-      primitive.joint_boxes[joint].add(point_at(scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])], i / 4));
-    }
+    const std::vector<Bounds>& boxes = joint_boxes(primitive.attributes[0], primitive.joint_sets[set], at);
+    if (boxes.size() > joint_count)
+      throw user_error("{}: {}: JOINTS name joint {}; skins[{}] has {} joints", file_.path, place, boxes.size() - 1, skin, joint_count);
+    if (primitive.joint_boxes.size() < boxes.size()) primitive.joint_boxes.resize(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) primitive.joint_boxes[i].add(boxes[i]);
   }
+  joint_box_count_ += primitive.joint_boxes.size();
+  if (joint_box_count_ > kMaxJointBoxes)
+    throw user_error("{}: {}: the scene's primitives hang on more than {} joints", file_.path, place, kMaxJointBoxes);
+}
+
+/// What each joint moves, by scanning the vertices once for all primitives that share these arrays.
+const std::vector<Bounds>& MeshReader::joint_boxes(int positions, const JointSet& set, const std::string& place) {
+  const auto [entry, added] = joint_boxes_.try_emplace({positions, set.joints, set.weights});
+  std::vector<Bounds>& boxes = entry->second;
+  if (!added) return boxes;
+  const Array& points = scene_.arrays[static_cast<std::size_t>(positions)];
+  const Array& numbers = scene_.arrays[static_cast<std::size_t>(set.joints)];
+  const Array& fractions = scene_.arrays[static_cast<std::size_t>(set.weights)];
+  jointed_vertices_ += points.count;
+  if (jointed_vertices_ > kMaxJointedVertices)
+    throw user_error("{}: {}: the scene's skins move more than {} vertices", file_.path, place, kMaxJointedVertices);
+  for (std::size_t i = 0; i < std::size_t{4} * points.count; ++i) {
+    if (!has_weight(fractions, i)) continue;
+    const std::uint32_t joint = joint_at(numbers, i);
+    if (boxes.size() <= joint) boxes.resize(joint + 1);
+    boxes[joint].add(point_at(points, i / 4));
+  }
+  return boxes;
 }
 
 void MeshReader::read_skinning(int index, std::size_t joints, int skin) {
@@ -108,7 +134,7 @@ void MeshReader::read_skinning(int index, std::size_t joints, int skin) {
     const tinygltf::Primitive& source = *sources_[number];
     const auto offset = &source - file_.model.meshes[static_cast<std::size_t>(index)].primitives.data();
     const std::string place = fmt::format("meshes[{}].primitives[{}]", index, offset);
-    if (first) read_joints(source, place, scene_.primitives[number]);
+    if (first) read_joints(source, place, scene_.primitives[number], joints, skin);
     const Primitive& primitive = scene_.primitives[number];
     if (primitive.joint_sets[0].joints < 0)
       throw user_error("{}: {}: it is drawn with skins[{}], and has no JOINTS_0 and WEIGHTS_0", file_.path, place, skin);

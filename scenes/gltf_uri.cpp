@@ -5,6 +5,7 @@
 #include <cctype>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "models/base/error.h"
 #include "traces/whole_file.h"
@@ -82,6 +83,23 @@ bool has_scheme(std::string_view uri) {
                              [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.'; });
 }
 
+/// Is it, links followed, neither in the folder of the scene file nor in the one that the scene file itself is a link into? What cannot be followed is not
+/// there to be read.
+bool follows_out(const std::filesystem::path& scene, const std::filesystem::path& file) {
+  std::error_code lost;
+  const std::filesystem::path target = std::filesystem::weakly_canonical(file, lost);
+  if (lost) return false;
+  const auto holds = [&](const std::filesystem::path& folder) {
+    const std::filesystem::path inner = target.lexically_relative(folder);
+    return !inner.empty() && *inner.begin() != "..";
+  };
+  const std::filesystem::path beside = scene.has_parent_path() ? scene.parent_path() : std::filesystem::path(".");
+  const std::filesystem::path named = std::filesystem::weakly_canonical(beside, lost);
+  if (!lost && holds(named)) return false;
+  const std::filesystem::path own = std::filesystem::weakly_canonical(scene, lost);
+  return lost || !holds(own.parent_path());
+}
+
 /// At most 100 characters for an error line, without control characters.
 std::string printable(std::string_view text) {
   std::string result(text.substr(0, 100));
@@ -104,7 +122,9 @@ std::string uri_file(const std::string& scene, std::string_view uri, const std::
   if (relative.is_absolute() || name.front() == '\\')
     throw user_error("{}: '{}': an absolute path; files lie beside the scene", place, shown);
   if (*relative.begin() == "..") throw user_error("{}: '{}': leads out of the scene's folder", place, shown);
-  return (std::filesystem::path(scene).parent_path() / relative).string();
+  const std::filesystem::path file = std::filesystem::path(scene).parent_path() / relative;
+  if (follows_out(scene, file)) throw user_error("{}: '{}': a link that leads out of the scene's folder", place, shown);
+  return file.string();
 }
 
 std::vector<std::byte> fetch_uri(const std::string& scene, std::string_view uri, const std::string& place, std::uint64_t max_bytes) {

@@ -129,6 +129,14 @@ Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic s
   return {semantic_name(semantic), native, elements.count, elements.components == 3 ? padded(elements) : elements.data};
 }
 
+std::uint64_t float_bytes(const Elements& elements) { return std::uint64_t{4} * elements.count * elements.components; }
+
+std::uint64_t vertex_array_bytes(const Elements& elements, Semantic semantic) {
+  if (native_format(elements, semantic) == Format::kUndefined) return float_bytes(elements);
+  const std::size_t components = elements.components == 3 ? 4 : elements.components;
+  return std::uint64_t{component_bytes(elements.component)} * elements.count * components;
+}
+
 Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components, const std::string& place) {
   const bool small = elements.component != Component::kUint32;
   if (elements.components != components || !small)

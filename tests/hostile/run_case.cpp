@@ -9,13 +9,16 @@
 #include <chrono>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "models/base/error.h"
+#include "scenes/image_io.h"
 #include "tests/cli/program.h"
 #include "tests/hostile/hostile_case.h"
+#include "traces/trace_file.h"
 
 #ifdef __has_feature
 #if __has_feature(address_sanitizer)
@@ -77,6 +80,14 @@ void judge_refusal(const Case& c, const std::string& out, Outcome& outcome) {
   if (c.expect == Expect::kRendered) problem("refused, but legal");
 }
 
+template <class Read>
+bool reads(const Read& read, const fs::path& path) {
+  try {
+    (void)read(path.string());
+    return true;
+  } catch (const UserError&) { return false; }
+}
+
 /// Every file but those that were there before: an output, whole, and only after success.
 void judge_folder(const fs::path& folder, const std::vector<fs::path>& before, Outcome& outcome) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -84,7 +95,9 @@ void judge_folder(const fs::path& folder, const std::vector<fs::path>& before, O
     if (std::ranges::find(before, path) != before.end()) continue;
     const std::string name = path.filename().string(), text = contents(path);
     const bool whole = (name.ends_with(".png") && text.size() > 12 && text.substr(text.size() - 8, 4) == "IEND") ||
-                       (name.ends_with(".json") && text.ends_with("}\n")) || name.ends_with(".exr") || name.ends_with(".qtrace");
+                       (name.ends_with(".json") && text.ends_with("}\n")) ||
+                       (name.ends_with(".exr") && reads(scenes::load_float_image, path)) ||
+                       (name.ends_with(".qtrace") && reads(traces::read_trace, path));
     if (outcome.exit_code != 0 || !whole) outcome.problems.push_back(fmt::format("{} is left behind, {} bytes", name, text.size()));
   }
 }
@@ -102,6 +115,7 @@ Outcome run_case(const Case& c) {
   if (c.prepare) c.prepare(folder.path());
   const std::vector<fs::path> before = files_in(folder.path());
   const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("no process can be started");
   if (child == 0) become_program(c, folder.path(), streams.path());
   Outcome outcome;
   const int status = wait_for(child, outcome);

@@ -31,8 +31,8 @@ int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, int co
   return id;
 }
 
-/// Positions (id 0), normals (1) and texture coordinates (2), by the encoding method.
-std::vector<std::byte> packed(const Grid& grid, int method, int bits) {
+/// Positions (id 0), normals (1) and texture coordinates (2), by the encoding method; then (3) an attribute of `generic` components.
+std::vector<std::byte> packed(const Grid& grid, int method, int bits, int generic = 0) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(grid.vertices()));
   for (std::size_t i = 0; i + 2 < grid.indices.size(); i += 3)
@@ -40,6 +40,9 @@ std::vector<std::byte> packed(const Grid& grid, int method, int bits) {
   add_attribute(mesh, draco::GeometryAttribute::POSITION, 3, grid.positions);
   add_attribute(mesh, draco::GeometryAttribute::NORMAL, 3, grid.normals);
   add_attribute(mesh, draco::GeometryAttribute::TEX_COORD, 2, grid.uvs);
+  if (generic > 0)
+    add_attribute(mesh, draco::GeometryAttribute::GENERIC, generic,
+                  std::vector<float>(grid.vertices() * static_cast<std::size_t>(generic), 1));
   draco::Encoder encoder;
   encoder.SetEncodingMethod(method);
   for (const auto type : {draco::GeometryAttribute::POSITION, draco::GeometryAttribute::NORMAL, draco::GeometryAttribute::TEX_COORD})
@@ -151,4 +154,16 @@ TEST_CASE("draco: random damage to the packed bytes is decoded or refused") {
     refused += result == "loaded" ? 0 : 1;
   }
   REQUIRE(refused > 100);
+}
+
+TEST_CASE("draco: an attribute of more components than a vertex attribute has is refused before it is converted") {
+  const Grid grid = wavy_grid(4);
+  const auto bytes = packed(grid, draco::MESH_SEQUENTIAL_ENCODING, 10, 16);
+  REQUIRE(load_result(draco_gltf(grid, bytes, kIds)) == "loaded");
+  std::string text = draco_gltf(grid, bytes, kIds + R"(,"_MATRIX":3)");
+  const std::string uvs = R"("TEXCOORD_0":2},"indices")", accessors = R"(}],"bufferViews")";
+  text.replace(text.find(uvs), uvs.size(), R"("TEXCOORD_0":2,"_MATRIX":4},"indices")");
+  text.insert(text.find(accessors) + 1, fmt::format(R"(,{{"componentType":5126,"count":{},"type":"MAT4"}})", grid.vertices()));
+  REQUIRE_THAT(load_result(text),
+               Contains("KHR_draco_mesh_compression.attributes._MATRIX: 16 components; Draco's attributes are read with at most 4"));
 }

@@ -10,7 +10,9 @@
 #include "scenes/gltf_file.h"
 #include "scenes/gltf_loader.h"
 #include "scenes/gltf_uri.h"
+#include "scenes/image_io.h"
 #include "tests/scenes/gltf_text.h"
+#include "traces/whole_file.h"
 
 using namespace quadrille;
 using namespace quadrille::scenes;
@@ -189,4 +191,98 @@ TEST_CASE("gltf: the layers of a material are read from its extensions, wrong va
                Contains("sheenColorFactor: three numbers are due"));
   REQUIRE_THAT(load_result(material(R"("KHR_materials_transmission":{"transmissionTexture":{"index":4}})")),
                Contains("materials[0].KHR_materials_transmission.transmissionTexture: texture 4 does not exist"));
+}
+
+TEST_CASE("gltf: numbers of an extension beyond 32 bits are read as they are written") {
+  const auto material = [](const std::string& distance) {
+    return triangle_gltf(R"(,"material":0)",
+                         R"(,"materials":[{"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_volume":)"
+                         R"({"thicknessFactor":1e10,"attenuationColor":[0.5,0.5,0.5],"attenuationDistance":)" +
+                             distance + "}}}]");
+  };
+  const auto absorption = [&](const std::string& distance) {
+    const TempGltf file(material(distance));
+    return load_gltf(file.path()).materials[0].layers.absorption.x;
+  };
+  REQUIRE(absorption("10000000000") == -1);
+  REQUIRE(absorption("1e10") == -1);
+  REQUIRE(absorption("10000000000.0") == -1);
+  REQUIRE(absorption("4294967296") == Approx(-1e10 / 4294967296.0));
+  REQUIRE(absorption("3e9") == Approx(-10 / 3.0));
+  REQUIRE(absorption("2147483648") == Approx(-1e10 / 2147483648.0));
+  REQUIRE(absorption("2147483647") == Approx(-1e10 / 2147483647.0));
+  REQUIRE_THAT(load_result(material("-3000000000")), Contains("attenuationDistance: -3000000000 is not positive"));
+  REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":{"light":4294967296}})")),
+               Contains("nodes[0].KHR_lights_punctual.light: 4294967296 does not exist (the file has 0)"));
+}
+
+TEST_CASE("gltf: numbers of an extension that are words or beyond all indices are refused, not taken for zero") {
+  const std::string lights = R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}})";
+  for (const std::string light : {"\"x\"", "1e300", "0.5", "-1", "null"}) {
+    CAPTURE(light);
+    REQUIRE_THAT(load_result(triangle_gltf("", lights, R"(,"extensions":{"KHR_lights_punctual":{"light":)" + light + "}}")),
+                 Contains("nodes[0].KHR_lights_punctual.light: "));
+  }
+  REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":0)",
+                                         R"(,"materials":[{"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":"x"}}}])")),
+               Contains("materials[0].KHR_materials_emissive_strength.emissiveStrength: a finite number is due"));
+}
+
+TEST_CASE("uris: a link that leads out of the folder is refused, a scene file that is a link itself is read") {
+  namespace fs = std::filesystem;
+  const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const TempGltf inner(triangle_from("a.bin")), outer(triangle_from("a.bin"));
+  const fs::path folder = fs::path(inner.path()).parent_path(), other = fs::path(outer.path()).parent_path();
+  const auto result = [](const fs::path& path) {
+    try {
+      (void)load_gltf(path.string());
+    } catch (const UserError& error) { return std::string(error.what()); }
+    return std::string("loaded");
+  };
+  traces::write_whole_file((other / "real.bin").string(), std::as_bytes(std::span(corners)));
+  traces::write_whole_file((folder / "real.bin").string(), std::as_bytes(std::span(corners)));
+  fs::create_symlink(other / "real.bin", folder / "a.bin");
+  REQUIRE_THAT(result(inner.path()), Contains("buffers[0]: 'a.bin': a link that leads out of the scene's folder"));
+  fs::remove(folder / "a.bin");
+  fs::create_symlink("real.bin", folder / "a.bin");
+  REQUIRE(result(inner.path()) == "loaded");
+  // A folder of links into a store of files, and a folder that is a link as a whole.
+  fs::create_directory(folder / "links");
+  fs::create_symlink(folder / "t.gltf", folder / "links" / "scene.gltf");
+  fs::create_symlink(folder / "real.bin", folder / "links" / "a.bin");
+  REQUIRE(result(folder / "links" / "scene.gltf") == "loaded");
+  fs::create_directory_symlink(folder, other / "door");
+  REQUIRE(result(other / "door" / "t.gltf") == "loaded");
+}
+
+TEST_CASE("gltf: images of one buffer view share its bytes, and their pixels are charged against them once") {
+  const Rgba8Image picture{2, 2, std::vector<std::uint8_t>(16, 200)};
+  const TempGltf scratch("");
+  const std::string png = scratch.path() + ".png";
+  save_png(png, picture);
+  std::vector<std::byte> bytes = traces::read_whole_file(png, 1 << 20);
+  const auto load = [&](const std::string& images, SceneData& data) -> std::string {
+    std::string all = triangle_gltf("", R"(,"images":[)" + images + "]");
+    all.insert(all.find(R"("byteLength":36})") + 16, fmt::format(R"(,{{"buffer":1,"byteLength":{}}})", bytes.size()));
+    all.insert(all.find(']', all.find(R"("buffers":[)")), fmt::format(R"(,{{"byteLength":{},"uri":"{}"}})", bytes.size(), data_uri(bytes)));
+    const TempGltf file(all);
+    GltfChoice choice;
+    choice.leave_out = false;
+    try {
+      data = std::move(GltfScene(file.path(), choice).data());
+    } catch (const UserError& error) { return error.what(); }
+    return "loaded";
+  };
+  const std::string one = R"({"bufferView":1,"mimeType":"image/png"})";
+  SceneData data;
+  REQUIRE(load(one + "," + one, data) == "loaded");
+  REQUIRE(data.images.size() == 2);
+  REQUIRE(data.images[0].pixels().pixels == picture.pixels);
+  REQUIRE(data.images[1].pixels().pixels == picture.pixels);
+  // Its header says 8192x8192; 1.5 million bytes bring one of these about, and not two.
+  bytes[18] = bytes[22] = std::byte{0x20};
+  bytes[19] = bytes[23] = std::byte{0};
+  bytes.resize(1500000);
+  REQUIRE(load(one, data) == "loaded");
+  REQUIRE_THAT(load(one + "," + one, data), Contains("images[1]: the images up to here are 134217728 pixels in 1500000 bytes of files"));
 }

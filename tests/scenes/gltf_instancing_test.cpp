@@ -193,3 +193,14 @@ TEST_CASE("instancing: unequal counts, other types and values that are not finit
   REQUIRE_THAT(load_result(instanced({{"SCALE", "VEC3", {1e38F, 1e38F, 1e38F}}, {"TRANSLATION", "VEC3", {3e38F, 3e38F, 3e38F}}})),
                Catch::Equals("loaded"));
 }
+
+TEST_CASE("instancing: copies count once for each primitive of their mesh, over all nodes") {
+  std::string text = instanced({{"TRANSLATION", "VEC3", std::vector<float>(3 * 1024, 0)}});
+  const std::string one = R"({"attributes":{"POSITION":0}})";
+  std::string more;
+  for (int i = 1; i < 1024; ++i) more += "," + one;
+  text.insert(text.find(one) + one.size(), more);
+  REQUIRE(load_result(text) == "loaded");  // 2^20
+  text.insert(text.find(one) + one.size(), "," + one);
+  REQUIRE_THAT(load_result(text), Contains("nodes[0]: the scene has more than 1048576 instances of primitives"));
+}

@@ -67,7 +67,7 @@ TEST_CASE("gltf: loops and shared children are not trees, numbers of things that
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"camera":2)")), Contains("nodes[0]: camera 2 does not exist"));
   REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":4)")), Contains("material 4 does not exist"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":{"light":3}})")),
-               Contains("light 3 does not exist"));
+               Contains("nodes[0].KHR_lights_punctual.light: 3 does not exist (the file has 0)"));
   REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":0)", R"(,"materials":[{"normalTexture":{"index":5}}])")),
                Contains("materials[0].normalTexture: texture 5 does not exist"));
 }

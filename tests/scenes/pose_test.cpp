@@ -1,5 +1,6 @@
 /// Skins, morph targets and moving nodes, against closed forms.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -303,4 +304,64 @@ TEST_CASE("pose: morph targets that do not match their mesh are refused") {
   std::string text = morph_gltf(1, "[1]");
   text.replace(text.find(R"("targets":[{"POSITION":4)"), 24, R"("targets":[{"POSITION":3)");
   CHECK_THAT(message(text), Contains("meshes[0].primitives[0].targets[0].POSITION"));
+}
+
+TEST_CASE("pose: many primitives over the same joints are scanned once") {
+  // 300 primitives of 200,000 vertices that hang on joints 0 and 1; before, each of them was scanned anew.
+  constexpr std::size_t kVertices = 200000;
+  GltfBuilder b;
+  const int positions = b.accessor(std::vector<std::int8_t>(3 * kVertices, 1), "VEC3");
+  const int joints = b.accessor(std::vector<std::uint8_t>(4 * kVertices, 1), "VEC4");
+  const int weights = b.accessor(std::vector<std::uint8_t>(4 * kVertices, 64), "VEC4", true);
+  const std::string one = fmt::format(R"({{"attributes":{{"POSITION":{},"JOINTS_0":{},"WEIGHTS_0":{}}}}})", positions, joints, weights);
+  std::string all = one;
+  for (int i = 1; i < 300; ++i) all += "," + one;
+  const auto text = [&](const std::string& bones) {
+    return b.text(R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{}],"extensionsUsed":["KHR_mesh_quantization"],)"
+                  R"("skins":[{"joints":)" +
+                  bones + R"(}],"meshes":[{"primitives":[)" + all + "]}]");
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const TempGltf file(text("[1,1]"));
+  const SceneData scene = load_gltf(file.path());
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(2));
+  REQUIRE(scene.primitives.size() == 300);
+  for (const Primitive& p : scene.primitives) {
+    REQUIRE(p.joint_boxes.size() == 2);
+    REQUIRE(p.joint_boxes[0].empty());
+    REQUIRE(p.joint_boxes[1].low == glm::vec3(1));
+  }
+  CHECK_THAT(load_result(text("[1]")), Contains("JOINTS name joint 1; skins[0] has 1 joints"));
+}
+
+TEST_CASE("pose: primitives that hang on more joints than memory is meant for are refused") {
+  GltfBuilder b;
+  const int positions = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const int joints = b.accessor<std::uint16_t>({9999, 0, 0, 0, 9999, 0, 0, 0, 9999, 0, 0, 0}, "VEC4");
+  const int weights = b.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+  const std::string one = fmt::format(R"({{"attributes":{{"POSITION":{},"JOINTS_0":{},"WEIGHTS_0":{}}}}})", positions, joints, weights);
+  std::string all = one, bones = "1";
+  for (int i = 1; i < 2000; ++i) all += "," + one;
+  for (int i = 1; i < 10000; ++i) bones += ",1";
+  CHECK_THAT(load_result(b.text(R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{}],"skins":[{"joints":[)" + bones +
+                                R"(]}],"meshes":[{"primitives":[)" + all + "]}]")),
+             Contains("joints") && Contains("more than 4194304"));
+}
+
+TEST_CASE("pose: more morph targets of weight than can be added are refused before they are") {
+  constexpr int kTargets = 10000;
+  GltfBuilder b;
+  const int positions = b.accessor(std::vector<std::int8_t>(3 * 40000, 1), "VEC3");
+  std::string list, weights;
+  for (int t = 0; t < kTargets; ++t) {
+    list += fmt::format(R"({}{{"POSITION":{}}})", t == 0 ? "" : ",", positions);
+    weights += t == 0 ? "1" : ",1";
+  }
+  const auto text = [&](const std::string& members) {
+    return b.text(R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{)" + members +
+                  fmt::format(R"("primitives":[{{"attributes":{{"POSITION":{}}},"targets":[{}]}}]}}])", positions, list));
+  };
+  CHECK(load_result(text("")) == "loaded");  // none has weight
+  CHECK_THAT(load_result(text("\"weights\":[" + weights + "],")),
+             Contains("nodes[0]: the scene's morph targets move more than 268435456 attributes of vertices"));
 }
