@@ -251,8 +251,8 @@ class GltfScene::Reader {
     if (node.skin < 0) return place_copies(file_, found->second, place_of(at), world, first, scene_, copies_);
     if (!std::exchange(warned_of_copies_, true))
       fmt::print(stderr, "{}\n",
-                 one_line(fmt::format("{}: {}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once", file_.path,
-                                      place_of(at))));
+                 one_line(fmt::format("{}: {}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once",
+                                      file_.path, place_of(at))));
   }
 
   /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]
