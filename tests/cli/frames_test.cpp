@@ -1,4 +1,6 @@
 /// Several frames of a scene: moments, files, rows and the JSON.
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/quadrille.h"
@@ -116,4 +118,19 @@ TEST_CASE("the scenes, cameras and animations of a file are listed with their nu
   for (const char* words : {"scenes 1, cameras 1, animations 1", "'below', perspective", "2 s"})
     CHECK_THAT(run.out, Catch::Contains(words));
   require_refused(run_quadrille(folder, {"scenes", "missing.gltf"}), {"missing.gltf"});
+}
+
+TEST_CASE("scenes: names of a file, and its warnings, are printed in one line whatever they hold") {
+  const ScratchFolder folder;
+  const std::string name = "a\nb.gltf", evil = R"("name":"x\n\u001b[2J")";
+  folder.write(name, R"({"asset":{"version":"2.0"},"extensionsUsed":["X_y"],"scenes":[{)" + evil + R"(}],"cameras":[{)" + evil +
+                         R"(,"type":"perspective","perspective":{"yfov":1,"znear":1}}],"animations":[{)" + evil +
+                         R"(,"channels":[],"samplers":[]}]})");
+  const ProgramRun run = run_quadrille(folder, {"scenes", name});
+  CAPTURE(run.out, run.err);
+  CHECK(run.exit_code == 0);
+  CHECK(std::ranges::count(run.out, '\n') == 4);
+  CHECK(std::ranges::count(run.err, '\n') == 1);
+  CHECK((run.out + run.err).find('\x1b') == std::string::npos);
+  CHECK(run.out.find("a?b.gltf: scenes 1, cameras 1, animations 1") == 0);
 }

@@ -38,6 +38,22 @@ std::string many_primitives(int count) {
   return text.replace(text.find(one), one.size(), all);
 }
 
+/// A million nodes of which the first moves.
+std::string moving_nodes() {
+  std::string text = many(1000000, R"("translation":[1,2,3])");
+  const std::vector<float> keys{0, 1, 0, 0, 0, 1, 1, 1};
+  const std::string tables =
+      R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":1,"byteLength":8},{"buffer":1,"byteOffset":8,"byteLength":24}],)"
+      R"("animations":[{"samplers":[{"input":1,"output":2}],"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}],)";
+  const auto put = [&](const std::string& before, const std::string& what) { text.insert(text.find(before) + before.size(), what); };
+  const std::string views = R"("bufferViews":[{"buffer":0,"byteLength":36}],)";
+  text.replace(text.find(views), views.size(), tables);
+  put(R"("max":[1,1,0]})",
+      R"(,{"bufferView":1,"componentType":5126,"count":2,"type":"SCALAR"},{"bufferView":2,"componentType":5126,"count":2,"type":"VEC3"})");
+  text.insert(text.find(']', text.find(R"("buffers":[)")), R"(,{"byteLength":32,"uri":")" + scenes::data_uri_of(keys) + "\"}");
+  return text;
+}
+
 /// Accessors without a buffer view, each read by a primitive of its own.
 std::string zeros(int accessors, std::uint64_t count) {
   std::string primitives, list;
@@ -68,6 +84,10 @@ Group large_scene_cases() {
   add("five million zeros", zeros(1, 5000000));
   add("a hundred times five million zeros", zeros(100, 5000000));
   add("100,000 accessors of three zeros", zeros(100000, 3));
+  Case moving = scene_case("1,000,000 nodes and an animation", moving_nodes(), "t.gltf", Expect::kRendered);
+  moving.arguments = render_arguments("t.gltf", "functional");
+  moving.arguments.insert(moving.arguments.end(), {"--animation", "0", "--time", "0.5"});
+  group.cases.push_back(std::move(moving));
   return group;
 }
 

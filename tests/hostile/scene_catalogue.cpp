@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "scenes/image_io.h"
+#include "tests/cli/program.h"
 #include "tests/hostile/hostile_case.h"
 #include "tests/scenes/gltf_text.h"
 
@@ -181,6 +183,72 @@ void add_uris(std::vector<Case>& cases) {
       [](const fs::path& f) { write_file(f / "b.bin", ""), fs::permissions(f / "b.bin", fs::perms::none); });
 }
 
+/// `one`, `count` times, with commas.
+std::string listed(const std::string& one, std::size_t count) { return one + repeated("," + one, count - 1); }
+
+/// Much that is made of one thing: a file is small, and what it asks for is not. The buffer's bytes are those of `data`, then `rest` of `fill`.
+void add_shared(std::vector<Case>& cases) {
+  struct Buffer {
+    std::string data;
+    std::size_t rest;
+    char fill;
+  };
+  const auto add = [&](const std::string& what, const Buffer& buffer, const std::string& tables, const std::string& culprit, Expect expect,
+                       const std::vector<std::string>& flags = {}) {
+    Case c = scene_case("shared: " + what, "", "t.gltf", expect);
+    c.culprit = culprit;
+    c.arguments = render_arguments("t.gltf", "functional");
+    c.arguments.insert(c.arguments.end(), flags.begin(), flags.end());
+    const std::size_t bytes = buffer.data.size() + buffer.rest;
+    const std::string text = fmt::format(
+        R"({{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":{0},"uri":"b.bin"}}],"bufferViews":[{{"buffer":0,"byteLength":{0}}}],{1}}})",
+        bytes, tables);
+    c.prepare = [=](const fs::path& folder) {
+      write_file(folder / "t.gltf", text);
+      write_file(folder / "b.bin", buffer.data + (buffer.fill == 0 ? "" : std::string(buffer.rest, buffer.fill)));
+      fs::resize_file(folder / "b.bin", bytes);
+    };
+    cases.push_back(std::move(c));
+  };
+  const auto accessor = [](int component, std::size_t count, const std::string& type, const std::string& more = "") {
+    return fmt::format(R"({{"bufferView":0,"componentType":{},"count":{},"type":"{}"{}}})", component, count, type, more);
+  };
+  const std::string scene = R"("scenes":[{"nodes":[0]}],)", mesh = scene + R"("nodes":[{"mesh":0}],)";
+  const auto meshes = [](const std::string& primitives) { return R"("meshes":[{"primitives":[)" + primitives + "]}],"; };
+  const auto accessors = [](const std::string& list) { return R"("accessors":[)" + list + "]"; };
+
+  const tests::ScratchFolder folder;
+  scenes::save_png((folder.path() / "a.png").string(), {4, 4, std::vector<std::uint8_t>(64, 99)});
+  add("a thousand images of one view of 20 MB", {folder.read("a.png"), 20000000, 0},
+      mesh + meshes(R"({"attributes":{"POSITION":0}})") + R"("images":[)" + listed(R"({"bufferView":0,"mimeType":"image/png"})", 1000) +
+          "]," + accessors(accessor(5120, 3, "VEC3")),
+      "t.gltf", Expect::kEither, {"--leave-out", "none"});
+  add("a million copies of 20,000 primitives", {"", 3 << 22, 0},
+      scene + R"("nodes":[{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}],)" +
+          meshes(listed(R"({"attributes":{"POSITION":1}})", 20000)) +
+          accessors(accessor(5126, 1 << 20, "VEC3") + "," + accessor(5126, 3, "VEC3")),
+      "instances of primitives", Expect::kRefused);
+  const std::string skinned = R"({"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2},"indices":3})",
+                    bones = scene + R"("nodes":[{"mesh":0,"skin":0,"children":[1]},{}],)";
+  add("2,000 primitives of a million skinned vertices", {"", 12000000, 1},
+      bones + R"("skins":[{"joints":[1,1]}],)" + meshes(listed(skinned, 2000)) +
+          accessors(accessor(5126, 1000000, "VEC3") + "," + accessor(5121, 1000000, "VEC4") + "," +
+                    accessor(5121, 1000000, "VEC4", R"(,"normalized":true)") + "," + accessor(5121, 3, "SCALAR")),
+      "t.gltf", Expect::kRendered);
+  add("2,000 primitives of 65,536 joints", {std::string(36, '\xff') + std::string(36, '\x01'), 0, 0},
+      bones + R"("skins":[{"joints":[)" + listed("1", 65536) + "]}]," + meshes(listed(skinned, 2000)) +
+          accessors(accessor(5126, 3, "VEC3", R"(,"byteOffset":36)") + "," + accessor(5123, 3, "VEC4") + "," +
+                    accessor(5121, 3, "VEC4", R"(,"normalized":true)") + "," + accessor(5121, 3, "SCALAR", R"(,"byteOffset":69)")),
+      "t.gltf", Expect::kRefused);
+  add("10,000 morph targets of one accessor", {"", 1200000, 1},
+      mesh + R"("meshes":[{"weights":[)" + listed("1", 10000) + R"(],"primitives":[{"attributes":{"POSITION":0},"targets":[)" +
+          listed(R"({"POSITION":0})", 10000) + "]}]}]," + accessors(accessor(5126, 100000, "VEC3")),
+      "morph targets move more than", Expect::kRefused);
+  add("400 MB that are four times as large as floats", {"", 405000000, 0},
+      mesh + meshes(R"({"attributes":{"POSITION":0}})") + accessors(accessor(5121, 135000000, "VEC3")), "geometry takes more than",
+      Expect::kRefused);
+}
+
 }  // namespace
 
 Group scene_cases() {
@@ -190,6 +258,7 @@ Group scene_cases() {
   add_members(group.cases);
   add_positions(group.cases);
   add_uris(group.cases);
+  add_shared(group.cases);
   for (const std::string name : {"t.gltf", "t.glb"}) {
     group.cases.push_back({name + " is a folder", render_arguments(name), name, [=](const fs::path& f) { fs::create_directory(f / name); },
                            Expect::kRefused});
