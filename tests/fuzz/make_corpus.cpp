@@ -11,6 +11,7 @@
 #include "scenes/image_io.h"
 #include "scenes/scene.h"
 #include "tests/fuzz/targets.h"
+#include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
 #include "tests/traces/sample_stream.h"
 #include "traces/trace_file.h"
@@ -142,6 +143,12 @@ void write_scenes(const Corpus& corpus) {
   corpus.write("scene/scale.gltf", scenes::triangle_gltf("", "", R"(,"scale":[1e30,1e-30,0])"));
   corpus.write("scene/empty.gltf", R"({"asset":{"version":"2.0"}})");
   corpus.write("scene/loop.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]})");
+  scenes::ArmOptions two_sets;
+  two_sets.second_set = two_sets.wide_joints = true;
+  two_sets.weight_bits = 16;
+  corpus.write("scene/skin.gltf", scenes::arm_gltf());
+  corpus.write("scene/skin_two_sets.gltf", scenes::arm_gltf(two_sets));
+  corpus.write("scene/morph.gltf", scenes::morph_gltf(4, "[0.5,0,1,0]"));
   corpus.write("scene/rich.gltf", rich_scene(corpus, true, nullptr));
   Buffer data;
   const std::string text = rich_scene(corpus, false, &data);
