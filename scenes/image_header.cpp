@@ -103,6 +103,44 @@ ImageHeader check_jpeg(Reader file) {
   file.fail("is truncated");
 }
 
+/// Types of EXR attributes whose values have one size; a decoder reads that many bytes, whatever the attribute says. [OpenEXR file layout, #predefined-types]
+struct FixedType {
+  std::string_view name;
+  std::uint32_t bytes;
+};
+constexpr std::array kFixedTypes{FixedType{"box2i", 16},      FixedType{"box2f", 16},   FixedType{"chromaticities", 32},
+                                 FixedType{"compression", 1}, FixedType{"double", 8},   FixedType{"envmap", 1},
+                                 FixedType{"float", 4},       FixedType{"int", 4},      FixedType{"keycode", 28},
+                                 FixedType{"lineOrder", 1},   FixedType{"m33f", 36},    FixedType{"m44f", 64},
+                                 FixedType{"m33d", 72},       FixedType{"m44d", 128},   FixedType{"rational", 8},
+                                 FixedType{"tiledesc", 9},    FixedType{"timecode", 8}, FixedType{"v2i", 8},
+                                 FixedType{"v2f", 8},         FixedType{"v2d", 16},     FixedType{"v3i", 12},
+                                 FixedType{"v3f", 12},        FixedType{"v3d", 24},     FixedType{"deepImageState", 1}};
+
+/// Does the value of `length` bytes that the file is at hold what its type says? Types that nobody knows are read as bytes.
+bool holds_its_type(Reader value, std::string_view type, std::uint32_t length) {
+  for (const FixedType& fixed : kFixedTypes) {
+    if (fixed.name == type) return fixed.bytes == length;
+  }
+  if (type == "preview") return length >= 8 && 8 + std::uint64_t{4} * value.little(0) * value.little(4) == length;
+  if (type == "chlist") {  // names with 16 bytes each, and a zero byte
+    const std::size_t end = value.left() - length;
+    while (value.left() > end && value.byte(0) != 0) {
+      (void)value.text();
+      if (value.left() < end + 17) return false;
+      value.skip(16);
+    }
+    return value.left() == end + 1;
+  }
+  if (type != "stringvector") return true;
+  for (std::uint64_t at = 0; at < length; at += 4) {
+    if (at + 4 > length) return false;
+    at += value.little(static_cast<std::size_t>(at));
+    if (at + 4 > length) return false;
+  }
+  return true;
+}
+
 struct Box {
   std::array<std::int64_t, 4> v{};
 };
@@ -114,10 +152,12 @@ ImageHeader check_exr(Reader file) {
   for (std::size_t i = 0; file.byte(0) != 0; ++i) {
     if (i == kMaxExrAttributes) file.fail(fmt::format("has more than {} attributes", kMaxExrAttributes));
     const std::string_view name = file.text();
-    (void)file.text();
+    const std::string_view type = file.text();
     const std::uint32_t length = file.little(0);
     file.skip(4);
     if (length > file.left()) file.fail("is truncated");
+    if (!holds_its_type(file, type, length))
+      file.fail(fmt::format("has an attribute '{}' that does not hold a {} in its {} bytes", name, type, length));
     if (name == "dataWindow" || name == "displayWindow") {
       Box box;
       for (std::size_t k = 0; k < 4; ++k) box.v[k] = static_cast<std::int32_t>(file.little(4 * k));
