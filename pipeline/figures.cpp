@@ -226,6 +226,19 @@ class Laws {
 
 bool Figures::checks_hold() const { return std::ranges::all_of(checks, &Check::holds); }
 
+namespace {
+
+/// A core is busy while any of its SIMD units is held; what it can do is that of all of them.
+void note_core_capacity(const Machine& m, Figures& f) {
+  for (const Machine::Core& core : m.cores()) {
+    const auto figures = std::ranges::find(f.units, std::string(core.core->name()), &UnitFigures::path);
+    const double slots = static_cast<double>(figures->cycles) * m.config().core.simds.value();
+    figures->capacity_used = slots > 0 ? static_cast<double>(value(*core.core, "simd_busy")) / slots : 0;
+  }
+}
+
+}  // namespace
+
 Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
   Figures f;
   const Sums sum(m);
@@ -241,6 +254,7 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
   f.frame.fragment_warps = sum.core("fragment_warps");
   f.frame.fragments_written = sum.rop("written");
   for (const hw::Unit* unit : m.units()) f.units.push_back(figures_of(*unit));
+  note_core_capacity(m, f);
   for (std::size_t i = 0; i < m.links().size(); ++i) f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));
   f.bandwidth = bandwidth(m);
   f.checks = Laws(m, frame, f.bandwidth).all();

@@ -4,6 +4,7 @@
 #include "pipeline/machine.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,8 @@ struct LinkFigures {
 struct UnitFigures {
   std::string path;
   std::int64_t cycles = 0, busy = 0, starved = 0, blocked = 0, idle = 0;  ///< of the unit's clock; the last four add up to the first
-  std::vector<WaitFigure> waits;                                          ///< longest first, ports that cost nothing left out
+  std::optional<double> capacity_used;  ///< 0..1, of a unit that does several things at once; others: busy
+  std::vector<WaitFigure> waits;        ///< longest first, ports that cost nothing left out
   std::vector<CounterFigure> counters;
 };
 

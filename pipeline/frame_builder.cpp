@@ -75,6 +75,7 @@ class FrameBuilder {
   }
   void apply(const traces::EndPass&) {
     hw::PassState& pass = out_.frame.passes.back();
+    out_.shown_has_depth = target_has_depth_;
     pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw;
     const auto first = out_.frame.draws.begin() + pass.first_draw;
     const bool tests = std::any_of(first, out_.frame.draws.end(), [](const hw::DrawState& d) { return d.depth_test; });

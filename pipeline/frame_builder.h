@@ -27,6 +27,7 @@ struct DeviceFrame {
   std::deque<CompiledPipeline> programs;
   hw::Frame frame;
   std::vector<LeftOut> left_out;
+  bool shown_has_depth = false;  ///< the target of the last pass has a depth attachment, whether it is tested or not
   std::uint64_t buffer_bytes = 0, texture_bytes = 0, surface_bytes = 0;
   [[nodiscard]] bool reads_textures() const;
   [[nodiscard]] bool tests_depth() const;

@@ -27,7 +27,8 @@ struct KindWait {
 /// Units of a kind: what they did with their cycles, and whom they waited for (by class of link and direction).
 struct Kind {
   std::int64_t cycles = 0, busy = 0;
-  double busiest = 0;
+  double busiest = 0;                                             ///< of its units: capacity used, or busy
+  bool parallel = false;                                          ///< its units do several things at once
   std::map<std::pair<std::string, std::string>, KindWait> waits;  ///< by key of the link and kind of the other end
 };
 
@@ -40,7 +41,8 @@ class Graph {
       Kind& kind = kinds_[kind_of(unit.path)];
       kind.cycles += unit.cycles;
       kind.busy += unit.busy;
-      kind.busiest = std::max(kind.busiest, share(unit.busy, unit.cycles));
+      kind.parallel = kind.parallel || unit.capacity_used.has_value();
+      kind.busiest = std::max(kind.busiest, unit.capacity_used.value_or(share(unit.busy, unit.cycles)));
       for (const WaitFigure& wait : unit.waits) {
         const auto found = links.find(wait.link);
         if (found == links.end()) continue;
@@ -129,7 +131,8 @@ const char* limiter_kind_name(Limiter::Kind kind) {
 std::vector<ResourceUse> resource_uses(const Figures& figures) {
   std::vector<ResourceUse> uses;
   const Graph graph(figures);
-  for (const auto& [name, kind] : graph.kinds()) uses.push_back({name, kind.busiest, fmt::format("busy {:.1f} %", 100 * kind.busiest)});
+  for (const auto& [name, kind] : graph.kinds())
+    uses.push_back({name, kind.busiest, fmt::format("{} {:.1f} %", kind.parallel ? "capacity used" : "busy", 100 * kind.busiest)});
   std::map<std::string, const LinkFigures*> most;
   for (const LinkFigures& link : figures.links) {
     const LinkFigures*& best = most[link.key];

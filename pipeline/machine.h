@@ -63,6 +63,7 @@ class Machine {
   [[nodiscard]] const std::vector<std::unique_ptr<hw::MemoryChannel>>& channels() const { return channels_; }
   [[nodiscard]] const hw::Driver& driver() const { return *driver_; }
   [[nodiscard]] const hw::Clock& clock() const { return clock_; }
+  [[nodiscard]] const MachineConfig& config() const { return config_; }
   [[nodiscard]] const std::vector<LeftOut>& left_out() const { return left_out_; }
   /// Tick at which the last image was read: the end of the frame.
   [[nodiscard]] hw::Tick end() const { return command_processor_->end(); }

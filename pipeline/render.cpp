@@ -38,6 +38,8 @@ FrameImage read_image(const DeviceFrame& frame) {
     const std::vector<std::uint32_t> bits = models::detile(frame.memory, pass.depth);
     image.depth.reserve(bits.size());
     for (const std::uint32_t b : bits) image.depth.push_back(std::bit_cast<float>(b));
+  } else if (frame.shown_has_depth) {
+    image.depth.assign(image.color.size(), pass.clear_depth);  // nothing tested or wrote it
   }
   return image;
 }

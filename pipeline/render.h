@@ -14,7 +14,7 @@ namespace quadrille::pipeline {
 struct FrameImage {
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint32_t> color;  ///< RGBA8 as stored, red in the low byte; rows top to bottom
-  std::vector<float> depth;          ///< rows top to bottom; empty when the pass tests no depth
+  std::vector<float> depth;          ///< rows top to bottom; empty when the target has no depth
 };
 
 struct RenderedFrame {

@@ -14,7 +14,7 @@ class UserError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The text with every control character replaced by '?': what a message quotes from a file cannot add lines to it or command a terminal.
+/// The text with every control character, and every byte that is not UTF-8, replaced by '?': what a message quotes from a file cannot add lines to it or command a terminal.
 [[nodiscard]] std::string one_line(std::string text);
 
 /// Builds a `UserError` of one line from a format string.

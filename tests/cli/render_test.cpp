@@ -1,4 +1,5 @@
 /// A frame from the command line to picture, table and JSON.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "scenes/image_io.h"
@@ -44,6 +45,18 @@ TEST_CASE("exact and functional runs give one picture, whatever the driver and w
     render(folder, scene, {"--driver", "native", "--leave-out", "none", "--machine", "small", "--out", "other.png", "-q"});
     require_equal_pictures(folder, "exact.png", "functional.png");
     require_equal_pictures(folder, "exact.png", "other.png");
+  }
+}
+
+TEST_CASE("depths of a frame in which nothing tests them are those it was cleared to") {
+  const ScratchFolder folder;
+  folder.write("empty.gltf", R"({"asset":{"version":"2.0"}})");
+  for (const std::string fidelity : {"exact", "functional"}) {
+    render(folder, "empty.gltf", {"--depth", "d.exr", "--quiet", "--fidelity", fidelity});
+    render(folder, "empty.gltf", {"--depth", "d.png", "--quiet", "--fidelity", fidelity});
+    const auto depths = quadrille::scenes::load_float_image((folder.path() / "d.exr").string());
+    REQUIRE(depths.pixels.size() == std::size_t{96} * 64);
+    CHECK(std::ranges::all_of(depths.pixels, [](float d) { return d == 1; }));
   }
 }
 
