@@ -79,7 +79,9 @@ void list_images(GltfFile& file, const PreparedJson& json) {
 
 void check_version(const GltfFile& file) {
   const tinygltf::Asset& asset = file.model.asset;
-  if (!asset.version.starts_with("2.")) throw user_error("{}: asset.version '{}'; glTF 2.x is read", file.path, asset.version);
+  const bool two =
+      asset.version.size() > 2 && asset.version.starts_with("2.") && asset.version.find_first_not_of("0123456789", 2) == std::string::npos;
+  if (!two) throw user_error("{}: asset.version '{}'; glTF 2.x is read", file.path, asset.version);
   if (!asset.minVersion.empty() && asset.minVersion != "2.0")
     throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", file.path, asset.minVersion);
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "models/base/error.h"
+#include "scenes/gltf_types.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -45,6 +46,7 @@ class Preparer {
     } catch (const Json::out_of_range&) { fail("its JSON", "holds a number that is too large for any type"); }
     if (!root_.is_object()) fail("its JSON", "is no object");
     make_integers(root_, false);
+    check_types(path, root_);
   }
 
   PreparedJson prepare() {

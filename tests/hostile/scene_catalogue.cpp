@@ -106,32 +106,33 @@ void add_members(std::vector<Case>& cases) {
       acc + R"(,"sparse":{"count":1,"indices":{"bufferView":0,"byteOffset":12,"componentType":5125},"values":{"bufferView":0}})");
   add("sparse: negative offset", acc,
       acc + R"(,"sparse":{"count":1,"indices":{"bufferView":0,"byteOffset":-4,"componentType":5125},"values":{"bufferView":0}})");
-  add("sparse: a number", acc, acc + R"(,"sparse":7)", Expect::kEither);
+  add("sparse: a number", acc, acc + R"(,"sparse":7)");
   for (const std::string stride : {"1", "3", "253", "-4", "2147483648", "1e10"})
-    add("byteStride " + stride, view, R"("byteLength":36,"byteStride":)" + stride + "}", Expect::kEither);
+    add("byteStride " + stride, view, R"("byteLength":36,"byteStride":)" + stride + "}");
   for (const std::string offset : {"1", "36", "-1", "4294967295", "9223372036854775807"})
-    add("byteOffset " + offset, view, R"("byteLength":36,"byteOffset":)" + offset + "}", Expect::kEither);
+    add("byteOffset " + offset, view, R"("byteLength":36,"byteOffset":)" + offset + "}");
   add("a node that is its own child", node, node + R"(,"children":[0])");
   add("a child that is none", node, node + R"(,"children":[-1])");
-  add("children that are no array", node, node + R"(,"children":{"a":0})", Expect::kEither);
-  add("a matrix of 15", node, node + R"(,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0])", Expect::kEither);
-  add("a matrix of words", node, node + R"(,"matrix":["a","b"])", Expect::kEither);
+  add("children that are no array", node, node + R"(,"children":{"a":0})");
+  add("a matrix of 15", node, node + R"(,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0])");
+  add("a matrix of words", node, node + R"(,"matrix":["a","b"])");
   add("a rotation of zeros", node, node + R"(,"rotation":[0,0,0,0])");
   add("a scale beyond float", node, node + R"(,"scale":[1e200,1e200,1e200])");
   add("a scale of zero", node, node + R"(,"scale":[0,0,0])", Expect::kEither);
   add("a translation beyond float", R"([0,0,0]})", R"([1e39,0,0]})");
   add("a tiny scale", node, node + R"(,"scale":[1e-40,1e-40,1e-40])", Expect::kEither);
-  add("a skin that is none", node, node + R"(,"skin":5)", Expect::kEither);
+  add("a skin that is none", node, node + R"(,"skin":5)");
   add("a light that is none", node, node + R"(,"extensions":{"KHR_lights_punctual":{"light":3}})");
-  add("a light that is a word", node, node + R"(,"extensions":{"KHR_lights_punctual":"sun"})", Expect::kEither);
+  add("a light that is a word", node, node + R"(,"extensions":{"KHR_lights_punctual":"sun"})");
   for (const std::string mode : {"-5", "7", "99", "\"4\"", "0", "1"})
-    add("mode " + mode, R"("material":0)", R"("material":0,"mode":)" + mode, Expect::kEither);
+    add("mode " + mode, R"("material":0)", R"("material":0,"mode":)" + mode);
   add("indices that are floats", R"("material":0)", R"("material":0,"indices":0)");
-  for (const std::string factor : {"1e308", "-1", "null", "\"a\""})
-    add("baseColorFactor " + factor, material, R"("baseColorFactor":[)" + factor + ",1,1,1]}", Expect::kEither);
-  add("baseColorFactor of 3", material, R"("baseColorFactor":[1,1,1]})", Expect::kEither);
+  add("baseColorFactor -1", material, R"("baseColorFactor":[-1,1,1,1]})", Expect::kEither);
+  for (const std::string factor : {"1e308", "null", "\"a\""})
+    add("baseColorFactor " + factor, material, R"("baseColorFactor":[)" + factor + ",1,1,1]}");
+  add("baseColorFactor of 3", material, R"("baseColorFactor":[1,1,1]})");
   add("a texture that is none", material, R"("baseColorTexture":{"index":5}})");
-  add("a texture that is a word", material, R"("baseColorTexture":"x"})", Expect::kEither);
+  add("a texture that is a word", material, R"("baseColorTexture":"x"})");
   add("alphaMode CLIP", R"("pbrMetallicRoughness")", R"("alphaMode":"CLIP","pbrMetallicRoughness")");
   add("alphaCutoff 1e308", R"("pbrMetallicRoughness")", R"("alphaMode":"MASK","alphaCutoff":1e308,"pbrMetallicRoughness")");
   add("emissiveStrength 1e308", R"("pbrMetallicRoughness")",
@@ -141,12 +142,12 @@ void add_members(std::vector<Case>& cases) {
       Expect::kRendered);
   add("100,000 extensionsRequired", R"("scene":0)", R"("scene":0,"extensionsRequired":[)" + repeated("\"a\",", 99999) + "\"a\"]");
   for (const std::string version : {"1.0", "3.0", "", "2", "-2.0", "2.0\\nx"})
-    add("version " + version, R"("version":"2.0")", R"("version":")" + version + "\"", Expect::kEither);
+    add("version " + version, R"("version":"2.0")", R"("version":")" + version + "\"");
   add("minVersion 2.9", R"("version":"2.0")", R"("version":"2.0","minVersion":"2.9")");
   add("zfar before znear", R"("znear":0.1)", R"("znear":5,"zfar":1)");
   add("near 1e-300", R"("znear":0.1)", R"("znear":1e-300)", Expect::kEither);
-  add("a camera that is a fish", R"("type":"perspective")", R"("type":"fish")", Expect::kEither);
-  add("attributes that are an array", R"("attributes":{"POSITION":0})", R"("attributes":[0])", Expect::kEither);
+  add("a camera that is a fish", R"("type":"perspective")", R"("type":"fish")");
+  add("attributes that are an array", R"("attributes":{"POSITION":0})", R"("attributes":[0])");
 }
 
 /// Positions of one value in all places, as the file's bytes.
