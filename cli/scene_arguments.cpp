@@ -148,6 +148,9 @@ SceneArguments::Loaded SceneArguments::load() const {
   Loaded loaded{file.record({wanted.time.value_or(0), wanted.orbit}), {}};
   if (const std::size_t packed = file.packed_images(); packed > 0)
     loaded.left_out.push_back({"images", "no shader of the frame samples them", fmt::format("{} images of the file stay packed", packed)});
+  if (wanted.leave_out && file.compiled_shaders() == 0)
+    loaded.left_out.push_back({"GLSL compiler", "all shaders of the frame are at hand as SPIR-V",
+                               fmt::format("compiling {} shaders", loaded.stream.shaders.size())});
   return loaded;
 }
 

@@ -1,18 +1,13 @@
 #include "scenes/material_variant.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstring>
-#include <filesystem>
+#include <iterator>
 
 #include <glm/common.hpp>
 
-#include "models/base/error.h"
-#include "scenes/glsl.h"
 #include "scenes/shader_sources.h"
-#include "traces/whole_file.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -21,7 +16,6 @@ constexpr std::array<const char*, kTextureSlots> kSlotNames{
     "BASE_COLOR", "METALLIC_ROUGHNESS",  "NORMAL",           "OCCLUSION",   "EMISSIVE",        "SPECULAR",     "SPECULAR_COLOR",
     "CLEARCOAT",  "CLEARCOAT_ROUGHNESS", "CLEARCOAT_NORMAL", "SHEEN_COLOR", "SHEEN_ROUGHNESS", "TRANSMISSION", "THICKNESS"};
 constexpr std::array<const char*, kSemantics> kAttributeDefines{"", "HAS_NORMAL", "HAS_TANGENT", "HAS_UV0", "HAS_UV1", "HAS_COLOR"};
-constexpr std::uint64_t kMaxShaderBytes = 1 << 24;
 
 constexpr std::size_t at(Semantic semantic) { return static_cast<std::size_t>(semantic); }
 constexpr std::size_t at(TextureSlot slot) { return static_cast<std::size_t>(slot); }
@@ -128,14 +122,6 @@ void choose_modes(Variant& v, const Material& m, ShaderSet set) {
   }
 }
 
-std::vector<std::uint32_t> spirv_words(const std::vector<std::byte>& bytes, const std::string& path) {
-  if (bytes.size() < 20 || bytes.size() % 4 != 0) throw user_error("{}: not SPIR-V ({} bytes)", path, bytes.size());
-  std::vector<std::uint32_t> words(bytes.size() / 4);
-  std::memcpy(words.data(), bytes.data(), bytes.size());
-  if (words[0] != 0x07230203) throw user_error("{}: not SPIR-V (its first word is {:#010x})", path, words[0]);
-  return words;
-}
-
 }  // namespace
 
 Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set) {
@@ -149,47 +135,29 @@ Variant choose_variant(const Material& material, const Primitive& primitive, Sha
   return v;
 }
 
-ShaderLibrary::Source ShaderLibrary::read_source(const std::string& path) {
-  const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxShaderBytes);
-  if (std::filesystem::path(path).extension() == ".spv") return {path, {}, spirv_words(bytes, path), {}};
-  return {path, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), {}, {}};
+std::string_view material_shader_name(traces::ShaderStage stage) {
+  return stage == traces::ShaderStage::kVertex ? "material.vert" : "material.frag";
 }
 
-ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines, std::vector<traces::Shader>& shaders)
-    : shaders_(shaders) {
-  const bool user = !options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility);
-  set_ = user ? ShaderSet::kUser : options.visibility ? ShaderSet::kVisibility : ShaderSet::kMaterial;
+std::string material_shader_glsl(traces::ShaderStage stage) {
   const std::string interface(kInterfaceGlsl);
-  vertex_ = options.vertex_shader.empty() ? Source{"material.vert", interface + std::string(kPoseGlsl) + std::string(kMaterialVert), {}, {}}
-                                          : read_source(options.vertex_shader);
-  const std::string inputs = interface + std::string(kMaterialGlsl);
-  if (options.visibility) {
-    fragment_ = {"visibility.frag", inputs + std::string(kVisibilityFrag), {}, {}};
-  } else {
-    fragment_ = options.fragment_shader.empty()
-                    ? Source{"material.frag", inputs + std::string(kLayersGlsl) + std::string(kMaterialFrag), {}, {}}
-                    : read_source(options.fragment_shader);
-  }
-  // The materials' vertex shader does not depend on the lights beyond the size of their array.
-  vertex_.frame_defines = options.vertex_shader.empty() ? std::vector<std::string>{frame_defines.front()} : frame_defines;
-  fragment_.frame_defines = std::move(frame_defines);
+  if (stage == traces::ShaderStage::kVertex) return interface + std::string(kPoseGlsl) + std::string(kMaterialVert);
+  return interface + std::string(kMaterialGlsl) + std::string(kLayersGlsl) + std::string(kMaterialFrag);
 }
 
-traces::Index ShaderLibrary::shader(traces::ShaderStage stage, const Variant& variant) {
-  const Source& source = stage == traces::ShaderStage::kVertex ? vertex_ : fragment_;
-  std::vector<std::string> defines = source.frame_defines;
-  for (const std::string& define : variant.defines) {
-    // The materials' vertex shader looks at streams only, so that it is shared among more materials.
-    const bool stream = define.starts_with("HAS_") || define == "NEEDS_POSITION";
-    if (stream || source.name != "material.vert") defines.push_back(define);
+std::vector<std::string> material_shader_defines(traces::ShaderStage stage, const Variant& variant,
+                                                 const std::vector<std::string>& frame_defines) {
+  if (stage == traces::ShaderStage::kFragment) {
+    std::vector<std::string> defines = frame_defines;
+    defines.insert(defines.end(), variant.defines.begin(), variant.defines.end());
+    return defines;
   }
-  if (variant.instanced && stage == traces::ShaderStage::kVertex) defines.emplace_back("INSTANCED");
-  if (source.name == "material.vert") defines.insert(defines.end(), variant.pose_defines.begin(), variant.pose_defines.end());
-  const std::string key = source.spirv.empty() ? fmt::format("{}", fmt::join(defines, ";")) : std::string();
-  const auto [entry, added] = compiled_.try_emplace({stage, key}, static_cast<traces::Index>(shaders_.size()));
-  if (added)
-    shaders_.push_back({source.name, stage, source.spirv.empty() ? compile_glsl(source.glsl, stage, source.name, defines) : source.spirv});
-  return entry->second;
+  std::vector<std::string> defines{frame_defines.front()};
+  std::ranges::copy_if(variant.defines, std::back_inserter(defines),
+                       [](const std::string& define) { return define.starts_with("HAS_") || define == "NEEDS_POSITION"; });
+  if (variant.instanced) defines.emplace_back("INSTANCED");
+  defines.insert(defines.end(), variant.pose_defines.begin(), variant.pose_defines.end());
+  return defines;
 }
 
 }  // namespace quadrille::scenes

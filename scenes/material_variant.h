@@ -6,13 +6,12 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "scenes/frame_block.h"
-#include "scenes/scene.h"
 #include "scenes/scene_data.h"
+#include "traces/command_stream.h"
 
 namespace quadrille::scenes {
 
@@ -31,29 +30,13 @@ enum class ShaderSet : std::uint8_t { kMaterial, kVisibility, kUser };
 /// The variant for a material on a primitive. For `kUser` everything that the two offer is read.
 [[nodiscard]] Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set);
 
-/// Compiles variants into the shader table of a stream, each once.
-class ShaderLibrary {
- public:
-  /// Reads the user's shaders, if any. Throws `UserError` when a file cannot be read.
-  ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines, std::vector<traces::Shader>& shaders);
-  [[nodiscard]] ShaderSet set() const { return set_; }
-  /// Index into the shader table. Throws `UserError` with the compiler's first error.
-  [[nodiscard]] traces::Index vertex(const Variant& variant) { return shader(traces::ShaderStage::kVertex, variant); }
-  [[nodiscard]] traces::Index fragment(const Variant& variant) { return shader(traces::ShaderStage::kFragment, variant); }
-
- private:
-  struct Source {
-    std::string name, glsl;
-    std::vector<std::uint32_t> spirv;  ///< instead of GLSL
-    std::vector<std::string> frame_defines;
-  };
-  [[nodiscard]] traces::Index shader(traces::ShaderStage stage, const Variant& variant);
-  [[nodiscard]] static Source read_source(const std::string& path);
-
-  ShaderSet set_ = ShaderSet::kMaterial;
-  Source vertex_, fragment_;
-  std::vector<traces::Shader>& shaders_;
-  std::map<std::pair<traces::ShaderStage, std::string>, traces::Index> compiled_;
-};
+/// What a stage of the materials' shaders is called in messages and in streams.
+[[nodiscard]] std::string_view material_shader_name(traces::ShaderStage stage);
+/// Its GLSL, the same for all variants.
+[[nodiscard]] std::string material_shader_glsl(traces::ShaderStage stage);
+/// The defines that make a variant of it, in order. The vertex shader looks at streams only, and of the frame (`frame_defines` of scenes/frame_block.h) at the
+/// size of the array of lights, so that it is shared among more materials.
+[[nodiscard]] std::vector<std::string> material_shader_defines(traces::ShaderStage stage, const Variant& variant,
+                                                               const std::vector<std::string>& frame_defines);
 
 }  // namespace quadrille::scenes

@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "models/base/error.h"
+#include "scenes/frame_block.h"
 #include "scenes/host_pose.h"
 #include "traces/trace_file.h"
 

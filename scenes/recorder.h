@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "scenes/camera.h"
-#include "scenes/material_variant.h"
 #include "scenes/pose_streams.h"
 #include "scenes/scene.h"
 #include "scenes/scene_data.h"
+#include "scenes/shader_library.h"
 #include "scenes/world_range.h"
 #include "traces/command_stream.h"
 
@@ -46,6 +46,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   [[nodiscard]] traces::CommandStream record();
+  [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled(); }
 
  private:
   struct TextureKey {

@@ -38,6 +38,7 @@ struct Scene::Parts {
   bool animated = false;
   double length = 0;
   std::optional<GltfScene> file;
+  std::size_t compiled_shaders = 0;
 };
 
 Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options) : parts_(std::make_unique<Parts>()) {
@@ -73,6 +74,8 @@ std::size_t Scene::packed_images() const {
          static_cast<std::size_t>(std::ranges::count_if(images, [](const SceneImage& i) { return !i.packed(); }));
 }
 
+std::size_t Scene::compiled_shaders() const { return parts_->compiled_shaders; }
+
 traces::CommandStream Scene::record(const Moment& moment) {
   SceneOptions options = parts_->options;
   options.orbit = moment.orbit;
@@ -84,7 +87,9 @@ traces::CommandStream Scene::record(const Moment& moment) {
   }
   SceneData& scene = parts_->file ? parts_->file->data() : made;
   scene.name = parts_->name;
-  traces::CommandStream stream = Recorder(scene, options).record();
+  Recorder recorder(scene, options);
+  traces::CommandStream stream = recorder.record();
+  parts_->compiled_shaders += recorder.compiled_shaders();
   traces::validate(stream);
   return stream;
 }

@@ -23,13 +23,13 @@ struct SceneOptions {
   int camera = -1;  ///< index into the file's cameras; -1: the first one a node carries, else one that frames the scene
   std::optional<glm::vec3> eye,
       at;  ///< world space; either one makes an own camera (60 degrees high); the other defaults to the centre / the framing eye
-  std::string camera_name;                     ///< used where `camera` is -1: a camera's name
-  std::string scene;                           ///< which scene of the file, by number or name; empty: the file's own
-  std::optional<double> time;                  ///< seconds into the animation; none: at rest, unless an animation is named
-  std::string animation;                       ///< number, name or `all`; empty: the first
-  std::optional<double> orbit;                 ///< part of a turn by which the camera is carried around the scene's centre
-  bool visibility = false;                     ///< draw triangle ids instead of colours (see `triangle_id_color`)
-  bool leave_out = true;                       ///< false: also unpack and record the textures that no shader of the frame samples
+  std::string camera_name;      ///< used where `camera` is -1: a camera's name
+  std::string scene;            ///< which scene of the file, by number or name; empty: the file's own
+  std::optional<double> time;   ///< seconds into the animation; none: at rest, unless an animation is named
+  std::string animation;        ///< number, name or `all`; empty: the first
+  std::optional<double> orbit;  ///< part of a turn by which the camera is carried around the scene's centre
+  bool visibility = false;      ///< draw triangle ids instead of colours (see `triangle_id_color`)
+  bool leave_out = true;        ///< false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
   std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
 };
 
@@ -56,6 +56,8 @@ class Scene {
   [[nodiscard]] traces::CommandStream record(const Moment& moment);
   /// Images of the file that no frame recorded so far had to unpack.
   [[nodiscard]] std::size_t packed_images() const;
+  /// Shaders that were compiled from GLSL for the frames recorded so far; the others came with the program (scenes/shader_pack.h), or as SPIR-V.
+  [[nodiscard]] std::size_t compiled_shaders() const;
 
  private:
   struct Parts;

@@ -7,6 +7,7 @@
 
 #include "models/base/error.h"
 #include "scenes/frame_block.h"
+#include "scenes/shader_library.h"
 #include "tests/scenes/gltf_text.h"
 
 using namespace quadrille;
