@@ -1,12 +1,12 @@
 #include "pipeline/frame_builder.h"
 
 #include "models/base/error.h"
+#include "pipeline/device_resources.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <map>
-#include <optional>
 
 namespace quadrille::pipeline {
 
@@ -32,33 +32,21 @@ static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) == static_cas
 class FrameBuilder {
  public:
   FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out)
-      : stream_(stream), out_(out), buffers_(stream.buffers.size(), kUnplaced), images_(stream.images.size()) {
+      : stream_(stream), out_(out), resources_(stream, out.memory) {
     out.frame.precision = precision;
   }
 
   void build(bool leave_out) {
-    reserve();
     for (const traces::Command& command : stream_.commands) {
       std::visit([this](const auto& c) { apply(c); }, command);
     }
-    if (!leave_out) upload_rest();
+    if (!leave_out) resources_.place_rest();
+    out_.buffer_bytes = resources_.buffer_bytes();
+    out_.texture_bytes = resources_.texture_bytes();
     note_left_out();
   }
 
  private:
-  static constexpr std::uint64_t kUnplaced = ~std::uint64_t{0};
-
-  /// Takes the memory in one piece, so that growing never copies it.
-  void reserve() {
-    std::uint64_t bytes = 0;
-    const auto add = [&bytes](std::uint64_t size) { bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes; };
-    for (const traces::Buffer& b : stream_.buffers) add(std::max<std::size_t>(1, b.data.size()));
-    for (const traces::Image& i : stream_.images) add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
-    for (const traces::RenderTarget& t : stream_.targets)
-      add(std::uint64_t{2} * models::kTileBytes * ((t.width + 7) / 8) * ((t.height + 7) / 8));
-    out_.memory.reserve(bytes);
-  }
-
   void apply(const traces::BeginPass& c) {
     const traces::RenderTarget& target = stream_.targets[c.target];
     hw::PassState pass;
@@ -130,16 +118,6 @@ class FrameBuilder {
     return out_.programs.back();
   }
 
-  std::uint64_t placed(Index buffer) {
-    if (buffers_[buffer] == kUnplaced) {
-      const std::vector<std::byte>& data = stream_.buffers[buffer].data;
-      buffers_[buffer] = out_.memory.allocate(std::max<std::size_t>(1, data.size()));
-      if (!data.empty()) std::memcpy(out_.memory.write(buffers_[buffer], data.size()).data(), data.data(), data.size());
-      out_.buffer_bytes += data.size();
-    }
-    return buffers_[buffer];
-  }
-
   void geometry(const traces::Draw& c, const traces::Pipeline& pipeline, hw::DrawState& draw) {
     draw.topology = static_cast<models::Topology>(pipeline.topology);
     draw.indexed = c.indexed;
@@ -150,7 +128,7 @@ class FrameBuilder {
     draw.first_vertex = c.first;
     if (c.indexed) {
       draw.index_bytes = 1u << static_cast<int>(index_buffer_.type);
-      draw.index_address = placed(index_buffer_.buffer) + index_buffer_.offset + std::uint64_t{c.first} * draw.index_bytes;
+      draw.index_address = resources_.buffer(index_buffer_.buffer) + index_buffer_.offset + std::uint64_t{c.first} * draw.index_bytes;
     }
   }
 
@@ -175,7 +153,7 @@ class FrameBuilder {
       }
       const auto binding = std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
       const traces::BindVertexBuffer& bound = vertex_buffers_.at(attribute.binding);
-      fetch.address = placed(bound.buffer) + bound.offset + attribute.offset;
+      fetch.address = resources_.buffer(bound.buffer) + bound.offset + attribute.offset;
       fetch.stride = binding->stride;
       fetch.per_instance = binding->per_instance;
       fetch.format = static_cast<models::AttributeFormat>(attribute.format);
@@ -258,7 +236,7 @@ class FrameBuilder {
       const traces::TextureDescriptor& bound = texture(program, use.set, use.binding);
       const traces::Sampler& s = stream_.samplers[bound.sampler];
       const traces::Image& image = stream_.images[bound.image];
-      states.push_back({view(bound.image),
+      states.push_back({resources_.texture(bound.image),
                         {static_cast<models::Filter>(s.mag), static_cast<models::Filter>(s.min), static_cast<models::Filter>(s.mip),
                          static_cast<models::Wrap>(s.wrap_u), static_cast<models::Wrap>(s.wrap_v), s.lod_bias, s.min_lod, s.max_lod}});
       sizes.push_back({image.width, image.height, image.levels});
@@ -274,32 +252,11 @@ class FrameBuilder {
     throw user_error("{}: no texture is bound at set {}, binding {}", program.name, set, binding);
   }
 
-  const models::TextureView& view(Index index) {
-    std::optional<models::TextureView>& place = images_[index];
-    if (!place) {
-      const traces::Image& image = stream_.images[index];
-      place = models::upload_texture(out_.memory, static_cast<models::TexelFormat>(image.format), image.width, image.height, image.levels,
-                                     image.texels);
-      out_.texture_bytes += place->layout.bytes;
-    }
-    return *place;
-  }
-
-  void upload_rest() {
-    for (Index i = 0; i < buffers_.size(); ++i) (void)placed(i);
-    for (Index i = 0; i < images_.size(); ++i) (void)view(i);
-  }
-
   void note_left_out() {
     const auto note = [this](bool unneeded, const char* what, const char* why, std::string saved) {
       if (unneeded) out_.left_out.push_back({what, why, std::move(saved)});
     };
-    std::size_t image_bytes = 0, images = 0;
-    for (std::size_t i = 0; i < images_.size(); ++i) {
-      if (images_[i]) continue;
-      ++images;
-      image_bytes += stream_.images[i].texels.size();
-    }
+    const auto [images, image_bytes] = resources_.unplaced_images();
     note(images > 0, "textures", "no program of a draw reads them", fmt::format("{} textures, {} bytes", images, image_bytes));
     note(unread_attributes_ > 0, "vertex attributes", "the vertex program does not read them",
          fmt::format("{} attributes of draws", unread_attributes_));
@@ -307,8 +264,7 @@ class FrameBuilder {
 
   const traces::CommandStream& stream_;
   DeviceFrame& out_;
-  std::vector<std::uint64_t> buffers_;
-  std::vector<std::optional<models::TextureView>> images_;
+  DeviceResources resources_;
   std::map<std::pair<Index, Index>, const CompiledPipeline*> programs_;
   std::map<std::uint32_t, Index> sets_;
   std::map<std::uint32_t, traces::BindVertexBuffer> vertex_buffers_;

@@ -43,7 +43,7 @@ Module open_module() {
   std::string reasons;
   for (const std::filesystem::path& place : module_places()) {
     if (!std::filesystem::exists(place)) continue;
-    if (void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+    if (void* library = dlopen(place.c_str(), RTLD_LAZY | RTLD_LOCAL)) {
       Module module;
       find_symbol(library, "quadrille_images_decode", module.decode);
       find_symbol(library, "quadrille_images_encode", module.encode);

@@ -1,0 +1,40 @@
+/// Buffers and images of a command stream in device memory: each is placed when it is first asked for, so that what nothing reads takes no memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "models/memory/device_memory.h"
+#include "models/texture/layout.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::pipeline {
+
+class DeviceResources {
+ public:
+  /// Takes room for everything in the stream, its render targets too, so that growing never copies what is there.
+  DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory);
+  /// Address of a buffer's first byte; it is aligned to a line.
+  [[nodiscard]] std::uint64_t buffer(traces::Index index);
+  [[nodiscard]] const models::TextureView& texture(traces::Index image);
+  /// Places what nobody asked for, behind all else, so that no address depends on it.
+  void place_rest();
+
+  [[nodiscard]] std::uint64_t buffer_bytes() const { return buffer_bytes_; }
+  [[nodiscard]] std::uint64_t texture_bytes() const { return texture_bytes_; }
+  struct Unplaced {
+    std::size_t images = 0, bytes = 0;
+  };
+  [[nodiscard]] Unplaced unplaced_images() const;
+
+ private:
+  const traces::CommandStream& stream_;
+  models::DeviceMemory& memory_;
+  std::vector<std::optional<std::uint64_t>> buffers_;
+  std::vector<std::optional<models::TextureView>> textures_;
+  std::uint64_t buffer_bytes_ = 0, texture_bytes_ = 0;
+};
+
+}  // namespace quadrille::pipeline
