@@ -137,8 +137,8 @@ SceneData build_cubes() {
     cubes[i] = mesh.finish(scene, fmt::format("cube {}", i), static_cast<int>(i), {});
   }
   for (int i = 0; i < 125; ++i) {
-    const glm::vec3 at(1.7F * static_cast<float>(i % 5 - 2), 1.7F * static_cast<float>(i / 5 % 5 - 2),
-                       1.7F * static_cast<float>(i / 25 - 2));
+    const glm::ivec3 cell(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
+    const glm::vec3 at = 1.7F * glm::vec3(cell);
     const glm::mat4 turned = glm::translate(glm::mat4(1), at) *
                              rotation(6.2831853F * lattice_random(i, 0, 3), glm::normalize(glm::vec3(1, 2, lattice_random(i, 1, 3))));
     place(scene, cubes[static_cast<std::size_t>(i) % kColors.size()], turned);
@@ -175,6 +175,7 @@ SceneData build_fill() {
 const std::vector<BuiltinScene>& builtin_scenes() {
   static const std::vector<BuiltinScene> kScenes = [] {
     std::vector<BuiltinScene> scenes;
+    scenes.reserve(std::size(kEntries));
     for (const Entry& entry : kEntries) scenes.push_back(entry.scene);
     return scenes;
   }();

@@ -73,6 +73,7 @@ std::vector<std::byte> frame_block(const SceneData& scene, const View& view, con
   const FrameHead head{view.view_projection, glm::vec4(view.eye, 0), glm::vec4(view.toward_viewer, 0),
                        glm::vec4(scene.environment.sky * share, 0), glm::vec4(scene.environment.ground * share, 0)};
   std::vector<LightBlock> blocks;
+  blocks.reserve(lights.size());
   for (const Light& light : lights) blocks.push_back(light_block(light, view));
   std::vector<std::byte> bytes(sizeof(head) + blocks.size() * sizeof(LightBlock));
   std::memcpy(bytes.data(), &head, sizeof(head));

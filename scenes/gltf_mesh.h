@@ -27,7 +27,7 @@ class MeshReader {
   [[nodiscard]] bool read_primitive(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
   void read_attributes(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
   void read_targets(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
-  void read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive, std::size_t joints, int skin);
+  void read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive, std::size_t joint_count, int skin);
   [[nodiscard]] const std::vector<Bounds>& joint_boxes(int positions, const JointSet& set, const std::string& place);
   [[nodiscard]] int delta_array(int accessor, std::size_t components, const std::string& place);
   void read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);

@@ -40,7 +40,7 @@ class Reader {
   std::string_view text() {
     const std::string_view rest(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
     const std::size_t end = rest.find('\0');
-    if (end == std::string_view::npos || end > 255) fail("is truncated, or has a name of more than 255 bytes");
+    if (end > 255) fail("is truncated, or has a name of more than 255 bytes");
     skip(end + 1);
     return rest.substr(0, end);
   }

@@ -44,7 +44,10 @@ const Tables& tables() {
   return instance;
 }
 
-std::uint8_t encode_plain(float value) { return static_cast<std::uint8_t>(value * 255.0F + 0.5F); }
+std::uint8_t encode_plain(float value) {
+  const float scaled = value * 255.0F + 0.5F;
+  return static_cast<std::uint8_t>(scaled);
+}
 
 struct FloatLevel {
   std::uint32_t width = 0, height = 0;

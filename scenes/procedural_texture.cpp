@@ -15,7 +15,13 @@ namespace {
 
 int wrapped(int x, int period) { return ((x % period) + period) % period; }
 
-std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0F, 1.0F) * 255.0F + 0.5F); }
+/// The nearest of the steps 0 .. `last` into which 0 .. 1 is divided.
+std::size_t nearest_step(float value, float last) {
+  const float scaled = std::clamp(value, 0.0F, 1.0F) * last + 0.5F;
+  return static_cast<std::size_t>(scaled);
+}
+
+std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(nearest_step(value, 255)); }
 
 float noise_octave(glm::vec2 p, int period, std::uint32_t seed) {
   const glm::vec2 cell = glm::floor(p);
@@ -34,7 +40,7 @@ std::uint8_t encode(float linear) {
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = to_byte(static_cast<float>(linear_to_srgb(static_cast<double>(i) / 4095)));
     return table;
   }();
-  return kTable[static_cast<std::size_t>(std::clamp(linear, 0.0F, 1.0F) * 4095.0F + 0.5F)];
+  return kTable[nearest_step(linear, 4095)];
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
     : scene_(scene),
       range_(needed_range(scene, options)),
       moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
-      placed_(scene, moved_ ? *moved_ : static_cast<const Placements&>(scene)),
+      placed_(moved_ ? PlacedScene(scene, *moved_) : PlacedScene(scene)),
       options_(range_ ? moved(options, *range_) : options),
       view_(make_view(placed_, options_)),
       lights_(frame_lights(placed_, view_)),

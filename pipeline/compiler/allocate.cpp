@@ -266,6 +266,7 @@ class Allocator {
       const auto found = wide.find(root);
       const std::vector<std::uint32_t> members = found == wide.end() ? std::vector<std::uint32_t>{root} : found->second;
       std::vector<std::bitset<kColours + 4>> used;
+      used.reserve(members.size());
       for (const std::uint32_t member : members) used.push_back(taken(member));
       int base = 0;
       const auto fits = [&] {

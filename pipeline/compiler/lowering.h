@@ -79,7 +79,7 @@ class Lowering {
   void define(const spirv::Instruction& i, Values values);
   void instruction(const spirv::Instruction& i);
   [[nodiscard]] UserError unsupported(const spirv::Instruction& i, std::string_view what) const;
-  [[nodiscard]] Id value_type(Id value) const;
+  [[nodiscard]] Id value_type(Id id) const;
   [[nodiscard]] const spirv::Type& type_of(Id value) const { return module_.type(value_type(value)); }
   void check_size(const spirv::Instruction& i);
 

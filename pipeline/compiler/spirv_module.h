@@ -89,7 +89,7 @@ class Module {
   Id bound = 0;
 
  private:
-  void add(const Instruction& instruction);
+  void add(const Instruction& given);
   void add_type(const Instruction& instruction);
   void add_constant(const Instruction& instruction);
   void add_decoration(Decorations& target, spv::Decoration decoration, std::span<const std::uint32_t> arguments);
