@@ -44,18 +44,20 @@ void RenderJob::add_to(CLI::App& command) {
                   "auto: units that the frame does not need are not built; none: all are. Same picture, same cycles")
       ->check(CLI::IsMember({"auto", "none"}))
       ->capture_default_str();
-  command.add_option("--driver", driver, "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
-      ->check(CLI::IsMember({"dispatcher", "native"}))
-      ->capture_default_str();
-  command
-      .add_option("--window", window,
-                  "how many cycles units may be simulated ahead of the exact bound: 0 is exact, more is faster and approximate")
-      ->type_name("W");
-  command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")
-      ->type_name("N");
-  command.add_option("--units", units, "rows of the table: folded by kind, or all units")
-      ->check(CLI::IsMember({"folded", "all"}))
-      ->capture_default_str();
+  units_option_ = command.add_option("--units", units, "rows of the table: folded by kind, or all units")
+                      ->check(CLI::IsMember({"folded", "all"}))
+                      ->capture_default_str();
+  machine_options_ = {
+      command.add_option("--driver", driver, "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
+          ->check(CLI::IsMember({"dispatcher", "native"}))
+          ->capture_default_str(),
+      command
+          .add_option("--window", window,
+                      "how many cycles units may be simulated ahead of the exact bound: 0 is exact, more is faster and approximate")
+          ->type_name("W"),
+      command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")
+          ->type_name("N"),
+      units_option_};
   command.add_flag("--alpha", alpha, "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
   command.add_flag("-q,--quiet", quiet, "prints no table");
 }
@@ -72,11 +74,18 @@ void RenderJob::check_outputs() const {
   check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}});
 }
 
+void RenderJob::check_options_meant() const {
+  for (const CLI::Option* option : machine_options_) {
+    if (fidelity == "functional" && option->count() > 0)
+      throw user_error("{0}: a functional run has no units and no cycles; leave --fidelity functional or {0} out", option->get_name());
+  }
+  if (frames.wanted() && units_option_->count() > 0)
+    throw user_error("--units: with --frames each frame is one row; --stats has the figures of every unit");
+}
+
 std::int64_t RenderJob::window_cycles() const {
   if (!window) return 0;
   const std::int64_t cycles = parse_whole(*window, "--window", 0, kMaxWindow);
-  if (fidelity == "functional")
-    throw user_error("--window: a functional run has no cycles to look ahead; leave --fidelity or --window out");
   if (driver == "native" && cycles > 0)
     throw user_error("--window: the native driver is always exact; --window {} is for the dispatcher", cycles);
   return cycles;
@@ -96,6 +105,7 @@ int RenderJob::run() {
   scene.leave_out = leave_out == "auto";
   scene.check();
   frames.check();
+  check_options_meant();
   pipeline::MachineConfig config;
   machine.apply(config);
   check_outputs();

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/frame_sequence.h"
 #include "cli/machine_arguments.h"
@@ -39,6 +40,8 @@ struct RenderJob {
   };
 
   void check_outputs() const;
+  /// Throws `UserError` for an option that would change nothing.
+  void check_options_meant() const;
   /// The window in cycles; 0 for an exact run. Throws `UserError` when it does not go with the other arguments.
   [[nodiscard]] std::int64_t window_cycles() const;
   [[nodiscard]] Setting setting(const pipeline::MachineConfig& config) const;
@@ -46,6 +49,9 @@ struct RenderJob {
   [[nodiscard]] pipeline::RenderedFrame draw(const traces::CommandStream& stream, const Setting& setting, const Outputs& outputs) const;
   [[nodiscard]] int run_one(const Setting& setting) const;
   [[nodiscard]] int run_frames(const Setting& setting) const;
+
+  const CLI::Option* units_option_ = nullptr;
+  std::vector<const CLI::Option*> machine_options_;  ///< of the machine's units and cycles, which a functional run has none of
 };
 
 }  // namespace quadrille::cli

@@ -101,6 +101,17 @@ TEST_CASE("a choice is one of its words") {
   for (const std::string cycles : {"0", "-5", "many", "1.5"}) render_refused({"--max-cycles", cycles}, {"--max-cycles"});
 }
 
+TEST_CASE("an option that would change nothing is refused") {
+  const std::vector<std::vector<std::string>> of_machines{
+      {"--window", "0"}, {"--max-cycles", "10"}, {"--driver", "native"}, {"--driver", "dispatcher"}, {"--units", "all"}};
+  for (std::vector<std::string> option : of_machines) {
+    const std::string name = option.front();
+    option.insert(option.end(), {"--fidelity", "functional"});
+    render_refused(option, {name, "functional"});
+  }
+  render_refused({"--frames", "2", "--units", "all"}, {"--units", "--frames"});
+}
+
 TEST_CASE("an output that cannot be written is refused before anything runs") {
   render_refused({"--out", "picture"}, {"--out", ".png", ".exr"});
   render_refused({"--out", "picture.jpg"}, {"--out", "picture.jpg", ".png"});
