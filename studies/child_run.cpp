@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -36,6 +37,12 @@ void send(int pipe, std::string_view bytes) {
     if (sent <= 0) return;  // the parent is gone
     bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
+}
+
+/// In the child: whatever ends `parent`, a signal included, ends this process too.
+void end_with(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(0);  // it ended before the call
 }
 
 [[noreturn]] void work_and_exit(int pipe, const std::function<std::string()>& work, const ChildLimits& limits) {
@@ -84,7 +91,7 @@ Child start_child(const ChildWork& work, std::size_t number) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw user_error("cannot start a run: {}", std::strerror(errno));
   std::fflush(nullptr);  // what is buffered would be written twice
   const auto start = Clock::now();
-  const pid_t pid = fork();
+  const pid_t parent = getpid(), pid = fork();
   if (pid < 0) {
     const int reason = errno;
     close(ends[0]);
@@ -92,6 +99,7 @@ Child start_child(const ChildWork& work, std::size_t number) {
     throw user_error("cannot start a run: {}", std::strerror(reason));
   }
   if (pid == 0) {
+    end_with(parent);
     close(ends[0]);
     work_and_exit(ends[1], work.work, work.limits);
   }

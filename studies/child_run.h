@@ -1,7 +1,8 @@
 /// A piece of work in a process of its own: what every study runs its frames with.
 ///
 /// SystemC elaborates once in a process, a hostile file may take all memory, and host times mean something only when runs do not share a heap. The child is
-/// forked, works under limits, and hands back a string; its end is one of a few known ways, never the parent's end.
+/// forked, works under limits, and hands back a string; its end is one of a few known ways, never the parent's end. The parent's end, however, is the child's: none
+/// outlives a program that was interrupted.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,10 @@
 #include "studies/child_run.h"
 
+#include <poll.h>
 #include <unistd.h>
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <csignal>
 #include <stdexcept>
 #include <vector>
@@ -63,6 +65,19 @@ TEST_CASE("a child that does not end is ended at its limit") {
   CHECK(run.end == ChildEnd::kTimedOut);
   CHECK(run.wall_s >= 0.2);
   CHECK(run.wall_s < 10);
+}
+
+TEST_CASE("a child ends with its parent, however that ends") {
+  std::array<int, 2> alive{};  // its far end is open as long as the innermost process lives
+  REQUIRE(pipe(alive.data()) == 0);
+  const auto for_ever = []() -> std::string {
+    while (true) pause();
+  };
+  CHECK(run_in_child([&] { return run_in_child(for_ever).output; }, {.seconds = 0.3}).end == ChildEnd::kTimedOut);
+  close(alive[1]);
+  pollfd ended{alive[0], POLLIN, 0};
+  CHECK(poll(&ended, 1, 10'000) == 1);
+  close(alive[0]);
 }
 
 #ifdef __has_feature
