@@ -130,12 +130,16 @@ bool decode(const void* bytes, std::size_t size, const char* format, bool as_flo
   return as_float ? read_floats(*input, result) : read_bytes(*input, result);
 }
 
+/// A picture's bytes are its own: OpenImageIO writes today's date into an .exr file that names none.
+constexpr const char* kNoDate = "1970:01:01 00:00:00";
+
 OIIO::ImageSpec output_spec(std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float) {
   OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels),
                        as_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   if (as_float && channels == 1) spec.channelnames = {"Z"};
   if (as_float) {
     spec.attribute("compression", "zip");
+    spec.attribute("DateTime", kNoDate);
   } else {
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("oiio:ColorSpace", "sRGB");

@@ -1,7 +1,9 @@
 #include "scenes/image_io.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <ctime>
 
 #include "models/base/error.h"
 #include "tests/scenes/gltf_text.h"
@@ -42,6 +44,33 @@ TEST_CASE("image_io: EXR keeps floats exactly, infinities included") {
     const FloatImage back = load_float_image(folder.path());
     REQUIRE(back.channels == channels);
     REQUIRE(back.pixels == image.pixels);
+  }
+}
+
+TEST_CASE("image_io: a file holds its picture and no date, so that writing it again gives the same bytes") {
+  const auto today = [] {
+    const std::time_t now = std::time(nullptr);
+    std::array<char, 16> text{};
+    std::strftime(text.data(), text.size(), "%Y:%m:%d", std::localtime(&now));
+    return std::string(text.data());
+  };
+  for (const char* name : {"a.png", "a.exr"}) {
+    const TempGltf folder("", name);
+    const auto written = [&] {
+      if (folder.path().ends_with("exr")) {
+        save_exr(folder.path(), {2, 2, 1, {1, 2, 3, 4}});
+      } else {
+        save_png(folder.path(), gradient(2, 2));
+      }
+      const std::vector<std::byte> bytes = traces::read_whole_file(folder.path(), 1 << 20);
+      return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    const std::string before = today(), file = written(), after = today();
+    CAPTURE(name);
+    CHECK(file == written());
+    CHECK(file.find(before) == std::string::npos);
+    CHECK(file.find(after) == std::string::npos);
+    CHECK(file.find("tIME") == std::string::npos);  // a PNG's date is seven binary bytes behind this
   }
 }
 
