@@ -1,7 +1,9 @@
 #include "pipeline/compiler/spirv_optimise.h"
 
 #include "models/base/error.h"
+#include "pipeline/compiler/spirv_loops.h"
 #include "pipeline/compiler/spirv_module.h"
+#include "pipeline/compiler/spirv_words.h"
 
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
@@ -11,7 +13,6 @@
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
-#include <utility>
 
 namespace quadrille::pipeline {
 namespace {
@@ -34,21 +35,6 @@ void validate(std::span<const std::uint32_t> words, std::string_view shader) {
   spvtools::ValidatorOptions options;
   if (!tools.Validate(words.data(), words.size(), options)) throw user_error("{}: not valid SPIR-V: {}", shader, message);
 }
-
-/// A module as a list of instructions, (first word, words), in order.
-using Layout = std::vector<std::pair<std::size_t, std::size_t>>;
-
-Layout layout_of(std::span<const std::uint32_t> words) {
-  Layout result;
-  for (std::size_t i = 5; i < words.size();) {
-    const std::size_t count = std::max<std::size_t>(1, words[i] >> 16);
-    result.emplace_back(i, std::min(count, words.size() - i));
-    i += count;
-  }
-  return result;
-}
-
-spv::Op opcode(std::span<const std::uint32_t> words, std::size_t at) { return static_cast<spv::Op>(words[at] & 0xffffu); }
 
 /// Instructions of a function with every call expanded, saturating. The validator has refused recursion.
 class ExpandedSize {
@@ -157,6 +143,7 @@ void register_passes(spvtools::Optimizer& optimizer) {
 
 std::vector<std::uint32_t> optimise_spirv(std::span<const std::uint32_t> words, std::string_view shader) {
   validate(words, shader);
+  refuse_endless_loops(words, shader);
   if (ExpandedSize(words).largest() > kMaxInlinedInstructions)
     throw user_error("{}: more than {} instructions once every call is expanded in place", shader, kMaxInlinedInstructions);
   const std::vector<std::uint32_t> input = forbid_float_rewrites(words);

@@ -61,6 +61,29 @@ TEST_CASE("unsupported features are refused by name and line") {
   CHECK_THROWS_WITH(compile_pipeline(fragment, "i.vert", fragment, "f.frag"), Catch::Contains("i.vert") && Catch::Contains("entry point"));
 }
 
+TEST_CASE("a loop that nothing leads out of is refused with its line, whatever it computes") {
+  const auto endless = Catch::Contains("a loop without an end");
+  for (const char* body :
+       {"for (;;) {}", "while (true) { color.x += 1.0; }", "while (1 < 2) { color.x += 1.0; if (color.x > 5.0) continue; }",
+        "do { ++r; } while (true);", "if (a.x > 0.0) for (;;) {}", "while (true) { while (true) { if (++r > 3) break; } }",
+        "while (a.x > 0.0) { for (;;) {} }", "switch (i.x) { case 0: for (;;) {} default: ++r; }"}) {
+    CAPTURE(body);
+    CHECK_THAT(error_of("color = a; int r = i.x;\n" + std::string(body)), Catch::StartsWith("test.frag:") && endless);
+  }
+  CHECK_THAT(error_of("color = f(a);", "vec4 g(vec4 x) { while (true) x += b; return x; }\nvec4 f(vec4 x) { return g(x) + x; }"), endless);
+}
+
+TEST_CASE("a loop that a break, a return or a discard can end, or that is never reached, is none without an end") {
+  for (const char* body : {"while (true) { if (++r > 3) break; }", "for (;;) { color.x += 1.0; if (color.x > 5.0) return; }",
+                           "while (true) { if (color.x > 0.5) discard; color.x += 1.0; }", "if (false) for (;;) {}",
+                           "while (true) { switch (r) { case 3: color.x = f(a.x); return; default: ++r; } }"}) {
+    CAPTURE(body);
+    CHECK(error_of("color = a; int r = 0;\n" + std::string(body),
+                   "float unused(float x) { for (;;) x += 1.0; return x; }\nfloat f(float x) { while (true) { x += 1.0; if (x > 9.0) "
+                   "return x; } }") == "compiles");
+  }
+}
+
 TEST_CASE("limits are refused with the number that was needed") {
   std::string body = "float s = 0.0;";
   for (int k = 0; k < 300; ++k) body += " float v" + std::to_string(k) + " = exp2(a.x * " + std::to_string(k) + ".5);";
