@@ -115,6 +115,31 @@ Limiter walk(const Graph& graph) {
   return limiter;
 }
 
+/// The part of the frame's time that comes after the last pass was flushed: nothing but scan-out works then.
+double scan_part(const FrameFigures& frame) { return share(frame.cycles - frame.render_cycles, frame.cycles); }
+
+/// The walk where most of the frame is scan-out. It ends there: what units that serve others too waited for was mostly for those.
+Limiter scanning(const Graph& graph, double part) {
+  Limiter limiter;
+  limiter.kind = Limiter::Kind::kWork;
+  limiter.name = "scan_out";
+  limiter.share = part;
+  limiter.walk = {"command_processor", "scan_out"};
+  limiter.loop = limiter.walk.size();
+  limiter.text = fmt::format("scan-out: {:.1f} % of the frame, after all passes were flushed", 100 * part);
+  const Kind* const unit = graph.find("scan_out");
+  if (unit == nullptr) return limiter;
+  limiter.text += fmt::format("; busy {:.1f} %", 100 * share(unit->busy, unit->cycles));
+  std::map<std::string, std::int64_t> waits;
+  for (const auto& [end, wait] : unit->waits) {
+    if (end.second != "command_processor") waits[end.second] += wait.cycles;  // that one was waited for while the passes were drawn
+  }
+  const auto longest = std::ranges::max_element(waits, {}, [](const auto& w) { return w.second; });
+  if (longest != waits.end())
+    limiter.text += fmt::format(", waits for {} {:.1f} %", longest->first, 100 * share(longest->second, unit->cycles));
+  return limiter;
+}
+
 }  // namespace
 
 const char* limiter_kind_name(Limiter::Kind kind) {
@@ -148,7 +173,10 @@ Limiter find_limiter(const Figures& figures) {
   if (figures.units.empty()) return {};
   const std::vector<ResourceUse> uses = resource_uses(figures);
   if (uses.empty()) return {};
-  if (uses.front().use < kUsedUp) return walk(Graph(figures));
+  if (uses.front().use < kUsedUp) {
+    const double part = scan_part(figures.frame);
+    return part > 0.5 ? scanning(Graph(figures), part) : walk(Graph(figures));
+  }
   Limiter limiter;
   limiter.kind = uses.front().name.starts_with("link.") ? Limiter::Kind::kLink : Limiter::Kind::kUnit;
   limiter.name = uses.front().name;

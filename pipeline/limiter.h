@@ -3,7 +3,8 @@
 /// Every unit and link has a *use*: the part of the frame's time for which it cannot have been doing anything else (busy cycles; for a link, the least time in
 /// which its tokens can pass). A use is a lower bound on the frame's time, so a resource that is used nearly all the time holds the frame up. When none is, the
 /// frame waits: starting at the command processor, which waits for the frame's end, each unit's longest wait leads to the unit that it waited for, until a unit
-/// is mostly busy (its work, done by nobody else meanwhile) or the walk comes back to where it was: then the time goes to the latencies around that loop.
+/// is mostly busy (its work, done by nobody else meanwhile) or the walk comes back to where it was: then the time goes to the latencies around that loop. A frame
+/// of which scan-out takes more than half, after all passes, is scan-out's.
 #pragma once
 
 #include "pipeline/figures.h"
@@ -30,7 +31,8 @@ struct Limiter {
   };
   Kind kind = Kind::kNothing;
   std::string name;  ///< the kind of unit, or the key of the link: for `kLatency` that with the longest latency of the loop
-  double share = 0;  ///< its use; for `kWork` and `kLatency` the share of its cycles that the last unit of the walk was busy or waited so
+  double share =
+      0;  ///< its use; for `kWork` and `kLatency` the share of its cycles that the last unit of the walk was busy or waited so; scan-out's of the frame
   std::vector<std::string> walk;  ///< kinds of units, from the command processor on: each waited most for the next
   std::size_t loop = 0;           ///< `walk[loop]` is where a loop begins and, behind the last, comes back to; walk.size() if there is none
   std::string text;               ///< one line for a person

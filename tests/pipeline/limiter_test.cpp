@@ -87,6 +87,29 @@ TEST_CASE("limiter: the walk ends at a unit that works more than it waits") {
   CHECK(limiter.name == "core");
 }
 
+TEST_CASE("limiter: a frame that is mostly scan-out says so, with what scan-out waited for after the passes") {
+  Figures f = waiting();
+  f.links.push_back(link("command_to_scan", "command_processor", "scan_out", 2));
+  f.links.push_back(link("scan_to_command", "scan_out", "command_processor", 2));
+  f.links.push_back(link("l2_0_to_scan_out", "l2_0", "scan_out", 4));
+  f.links.push_back(link("l2_1_to_scan_out", "l2_1", "scan_out", 4));
+  f.units[0].waits = {{"scan_done_in", true, 550, "scan_to_command"}, {"retire_in", true, 440, "rop_to_command"}};
+  f.units.push_back(unit("scan_out", 120,
+                         {{"scan_in", true, 450, "command_to_scan"},
+                          {"memory_in_0", true, 230, "l2_0_to_scan_out"},
+                          {"memory_in_1", true, 200, "l2_1_to_scan_out"}}));
+  f.frame.cycles = 1000;
+  f.frame.render_cycles = 450;
+  const Limiter limiter = find_limiter(f);
+  CHECK(limiter.kind == Limiter::Kind::kWork);
+  CHECK(limiter.name == "scan_out");
+  CHECK(limiter.share == Approx(0.55));
+  CHECK(limiter.text == "scan-out: 55.0 % of the frame, after all passes were flushed; busy 12.0 %, waits for l2 43.0 %");
+  f.frame.render_cycles = 500;
+  f.units[0].waits = {{"retire_in", true, 500, "rop_to_command"}, {"scan_done_in", true, 490, "scan_to_command"}};
+  CHECK(find_limiter(f).name == "link.texture_to_core");
+}
+
 TEST_CASE("limiter: uses come greatest first and are of the busiest of a kind") {
   Figures f = waiting();
   f.units.push_back(unit("core_1", 600, {}));
@@ -102,6 +125,7 @@ TEST_CASE("limiter: machines made narrow at one place are limited there") {
   CHECK(limit_of("builtin:fill", {{"gpu.cores", "64"}, {"fine_raster.quads_per_clk", "1"}}) == "fine_raster");
   CHECK(limit_of("builtin:cubes", {{"link.coarse_to_fine.latency", "100000"}}) == "link.coarse_to_fine");
   CHECK(limit_of("builtin:overdraw", {{"link.memory_to_l2.latency", "1000000"}}) == "link.memory_to_l2");
+  CHECK(limit_of("builtin:triangle", {{"scan_out.lines_in_flight", "1"}}) == "scan_out");
 }
 
 TEST_CASE("limiter: no unit or link of a real frame is used more than all of the time") {
