@@ -99,6 +99,12 @@ std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
   return out + fmt::format("{:>11.3f}  {} {:.1f}\n", static_cast<double>(memory_bytes(figures["units"])) * 1e-6, unit, 100 * share);
 }
 
+std::string note_rows(const Json& figures) {
+  std::string text;
+  for (const Json& note : figures["notes"]) text += fmt::format("          note: {}\n", note.get<std::string>());
+  return text;
+}
+
 /// The laws that a frame's figures break, a line each.
 std::string broken_laws(std::int64_t number, const Json& figures) {
   std::string text;
@@ -173,7 +179,7 @@ SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments
     const studies::ChildRun run = studies::run_in_child([&] { return draw(scene.record(moment), i); }, {kNoLimit, 0});
     Json figures = Json::parse(studies::output_of(run, fmt::format("frame {}", i)));
     progress.clear();
-    if (!quiet) fmt::print("{}", row(i, plan, figures));
+    if (!quiet) fmt::print("{}{}", row(i, plan, figures), note_rows(figures));
     std::fflush(stdout);
     if (const std::string broken = broken_laws(i, figures); !broken.empty()) {
       fmt::print(stderr, "{}", broken);

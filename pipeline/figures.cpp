@@ -237,6 +237,20 @@ void note_core_capacity(const Machine& m, Figures& f) {
   }
 }
 
+Fates fates_of(const Machine& m) {
+  const Sums sum(m);
+  const hw::Unit &clipper = m.clipper(), &setup = m.setup();
+  return {.off_screen = value(clipper, "rejected") + value(setup, "offscreen"),
+          .not_finite = value(clipper, "not_finite"),
+          .culled = value(setup, "culled"),
+          .no_area = value(setup, "zero_area"),
+          .no_sample = value(setup, "no_sample"),
+          .rasterised = value(setup, "kept"),
+          .tiles_hidden = value(m.coarse(), "tiles_hidden"),
+          .hidden = sum.depth("early_killed") + sum.depth("late_killed"),
+          .discarded = sum.rop("discarded")};
+}
+
 }  // namespace
 
 Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
@@ -253,6 +267,7 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
   f.frame.helper_lanes = sum.core("helper_lanes");
   f.frame.fragment_warps = sum.core("fragment_warps");
   f.frame.fragments_written = sum.rop("written");
+  f.frame.fates = fates_of(m);
   for (const hw::Unit* unit : m.units()) f.units.push_back(figures_of(*unit));
   note_core_capacity(m, f);
   for (std::size_t i = 0; i < m.links().size(); ++i) f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));

@@ -1,6 +1,7 @@
 /// The figures of one frame: what each unit did and where its time went, who moved how many bytes, and the laws they must obey.
 #pragma once
 
+#include "pipeline/fates.h"
 #include "pipeline/machine.h"
 
 #include <cstdint>
@@ -62,6 +63,7 @@ struct FrameFigures {
   std::uint64_t fragments_covered = 0;  ///< before any depth test; what Hi-Z dropped is not among them
   std::uint64_t fragments_shaded = 0;   ///< live lanes
   std::uint64_t helper_lanes = 0, fragment_warps = 0, fragments_written = 0;
+  Fates fates;
 };
 
 struct HostFigures {

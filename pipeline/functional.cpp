@@ -128,7 +128,12 @@ class FunctionalRenderer {
     }
     models::ClippedPolygon polygon;
     const models::ClipOutcome outcome = models::clip_triangle(position, draw_->clip, polygon);
-    if (outcome != models::ClipOutcome::kInside && outcome != models::ClipOutcome::kClipped) return;
+    switch (outcome) {
+      case models::ClipOutcome::kRejected: ++counts_.fates.off_screen; return;
+      case models::ClipOutcome::kNotFinite: ++counts_.fates.not_finite; return;
+      case models::ClipOutcome::kInside:
+      case models::ClipOutcome::kClipped: break;
+    }
     for (int i = 1; i + 1 < polygon.count; ++i) piece(triangle, polygon, i);
   }
 
@@ -144,9 +149,14 @@ class FunctionalRenderer {
     // Quads that wait in the warp still need their triangles' slots.
     if (warp_.quads > 0 && sequence_ - warp_.quad[0].triangle >= kTriangles) shade();
     hw::TriangleSlot& slot = triangles_[sequence_];
-    if (models::setup_triangle(window.vertices, window.weights, draw_->setup, slot.setup) != models::SetupOutcome::kKept) return;
+    switch (models::setup_triangle(window.vertices, window.weights, draw_->setup, slot.setup)) {
+      case models::SetupOutcome::kCulledFace: ++counts_.fates.culled; return;
+      case models::SetupOutcome::kZeroArea: ++counts_.fates.no_area; return;
+      case models::SetupOutcome::kOffscreen: ++counts_.fates.off_screen; return;
+      case models::SetupOutcome::kNoSample: ++counts_.fates.no_sample; return;
+      case models::SetupOutcome::kKept: ++counts_.fates.rasterised; break;
+    }
     if (observer_) observer_(window);
-    ++counts_.triangles_rasterized;
     slot.draw = warp_.draw;
     slot.primitive = triangle.primitive;
     hw::gather_varyings(batch_, {triangle.lane[0], triangle.lane[1], triangle.lane[2]}, draw_->varyings(), slot.varyings);
@@ -177,6 +187,7 @@ class FunctionalRenderer {
     float* const stored = depths(tile.tile_x, tile.tile_y);
     const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, coverage);
     if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
+    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(coverage & ~survivors));
     return survivors;
   }
 
@@ -203,6 +214,7 @@ class FunctionalRenderer {
     engine_.launch(*draw_->fragment_program, draw_->fragment_constants.data(), lanes);
     run_warp(engine_, draw_->fragment_textures, frame_.precision, memory_, plan_);
     warp_.alive = warp_.covered & ~engine_.killed;
+    counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & engine_.killed));
     for (int q = 0; q < warp_.quads; ++q) write_quad(q);
     warp_.quads = 0;
     warp_.covered = 0;
@@ -234,7 +246,9 @@ class FunctionalRenderer {
     float* const stored = depths(quad.x / 8, quad.y / 8);
     const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, std::uint64_t{lanes} << (4 * place));
     if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
-    return static_cast<std::uint32_t>(survivors >> (4 * place)) & 0xf;
+    const std::uint32_t left = static_cast<std::uint32_t>(survivors >> (4 * place)) & 0xf;
+    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(lanes & ~left));
+    return left;
   }
 
   const hw::Frame& frame_;

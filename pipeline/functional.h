@@ -4,6 +4,7 @@
 
 #include "hw/frame/frame.h"
 #include "models/memory/device_memory.h"
+#include "pipeline/fates.h"
 
 #include <cstdint>
 #include <functional>
@@ -11,8 +12,9 @@
 namespace quadrille::pipeline {
 
 struct FunctionalCounts {
-  std::uint64_t vertices = 0, triangles = 0, triangles_rasterized = 0;
+  std::uint64_t vertices = 0, triangles = 0;
   std::uint64_t fragments_covered = 0, fragments_shaded = 0, fragments_written = 0, helper_lanes = 0;
+  Fates fates;
 };
 
 /// A window-space triangle as it was rasterised, for the reference renderer.

@@ -76,6 +76,7 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   f.fragments_shaded = counts.fragments_shaded;
   f.helper_lanes = counts.helper_lanes;
   f.fragments_written = counts.fragments_written;
+  f.fates = counts.fates;
   finish_host(out.figures.host, f);
   out.image = read_image(frame);
   return out;

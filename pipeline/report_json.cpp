@@ -1,5 +1,6 @@
 /// The figures as JSON. Keys keep the order in which they are written here, so that two runs compare as text.
 #include "pipeline/limiter.h"
+#include "pipeline/notes.h"
 #include "pipeline/report.h"
 
 #include <nlohmann/json.hpp>
@@ -120,6 +121,7 @@ std::string report_json(const ReportSubject& s) {
                          {"window_cycles", f.window_cycles},
                          {"machine", machine_json(f, s.machine)},
                          {"frame", frame_json(s)},
+                         {"notes", notes_on(f)},
                          {"units", std::move(units)},
                          {"counter_definitions", definitions_json(f)},
                          {"limit", limit_json(f)},

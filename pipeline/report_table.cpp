@@ -1,5 +1,6 @@
 /// The table: what a person reads first. Every share says of what, every rate its unit and what the best would be.
 #include "pipeline/limiter.h"
+#include "pipeline/notes.h"
 #include "pipeline/report.h"
 #include "pipeline/unit_facets.h"
 
@@ -121,6 +122,12 @@ std::string limit_text(const Figures& f) {
   return limiter.kind == Limiter::Kind::kNothing ? "" : fmt::format("\nLIMIT  {}\n", limiter.text);
 }
 
+std::string notes_text(const Figures& f) {
+  std::string out;
+  for (const std::string& note : notes_on(f)) out += fmt::format("\nNOTE  {}\n", note);
+  return out;
+}
+
 std::string bandwidth_row(std::string_view name, std::uint64_t read, std::uint64_t written, std::int64_t cycles, double peak) {
   const double rate = ratio(static_cast<double>(read + written), static_cast<double>(cycles));
   return fmt::format("  {:<19}{:>12.3f}{:>13.3f}{:>12.3f}{:>11.1f}\n", name, megabytes(read), megabytes(written), rate,
@@ -201,8 +208,8 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
-  return frame_text(subject) + units_text(subject, rows) + limit_text(subject.figures) + bandwidth_text(subject) +
-         checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
+  return frame_text(subject) + notes_text(subject.figures) + units_text(subject, rows) + limit_text(subject.figures) +
+         bandwidth_text(subject) + checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

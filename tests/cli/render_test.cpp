@@ -37,6 +37,26 @@ json stats(const ScratchFolder& folder, const std::string& scene, std::vector<st
 
 }  // namespace
 
+TEST_CASE("a picture in which nothing was drawn says why, in table, JSON and rows of frames") {
+  const ScratchFolder folder;
+  folder.write("empty.gltf", R"({"asset":{"version":"2.0"}})");
+  folder.write("gone.frag",
+               "#version 450\nlayout(location=0) out vec4 c;\nvoid main() { c = vec4(1); if (gl_FragCoord.x > -1.0) discard; }\n");
+  const auto says = [&](const std::string& scene, std::vector<std::string> more, const std::string& words) {
+    for (const std::string fidelity : {"exact", "functional"}) {
+      std::vector<std::string> arguments{"--fidelity", fidelity, "--stats", "s.json"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      CHECK_THAT(render(folder, scene, arguments).out, Catch::Contains("\nNOTE  nothing was drawn: " + words));
+      CHECK_THAT(json::parse(folder.read("s.json")).at("notes").at(0).get<std::string>(), Catch::Contains(words));
+    }
+  };
+  says("empty.gltf", {}, "the frame has no draws");
+  says("builtin:cubes", {"--eye", "0,100,0", "--at", "0,200,0"}, "no triangle covers a pixel: 1,500 off screen");
+  says("builtin:triangle", {"--frag", "gone.frag"}, "no fragment passed: ");
+  CHECK_THAT(render(folder, "empty.gltf", {"--frames", "1"}).out, Catch::Contains("note: nothing was drawn"));
+  CHECK_THAT(render(folder, "builtin:triangle", {}).out, !Catch::Contains("NOTE"));
+}
+
 TEST_CASE("exact and functional runs give one picture, whatever the driver and what is left out") {
   for (const std::string scene : {"builtin:triangle", "builtin:quad", "builtin:flag"}) {
     const ScratchFolder folder;
