@@ -49,6 +49,16 @@ Plan make_plan(const FrameArguments& arguments, const scenes::SceneOptions& opti
   return plan;
 }
 
+/// What to say of frames after the animation's end; nothing if there are none.
+std::vector<std::string> plan_notes(const Plan& plan, const scenes::Scene& scene) {
+  if (!plan.animated || scene.repeats()) return {};
+  std::int64_t late = 0;
+  while (late < plan.frames && plan.moment(plan.frames - 1 - late).time > scene.length()) ++late;
+  if (late == 0) return {};
+  return {fmt::format("the last {} of {} frames are after the animation's end at {:g} s and show its last pose", late, plan.frames,
+                      scene.length())};
+}
+
 /// The kind of unit whose units are busy for the largest share of their cycles, and that share.
 std::pair<std::string, double> busiest(const Json& units) {
   std::map<std::string, std::pair<double, double>> kinds;  // busy, cycles
@@ -99,9 +109,9 @@ std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
   return out + fmt::format("{:>11.3f}  {} {:.1f}\n", static_cast<double>(memory_bytes(figures["units"])) * 1e-6, unit, 100 * share);
 }
 
-std::string note_rows(const Json& figures) {
+std::string note_rows(const std::vector<std::string>& notes) {
   std::string text;
-  for (const Json& note : figures["notes"]) text += fmt::format("          note: {}\n", note.get<std::string>());
+  for (const std::string& note : notes) text += fmt::format("          note: {}\n", note);
   return text;
 }
 
@@ -169,7 +179,8 @@ SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments
   progress.clear();
   const std::string over = plan.animated ? fmt::format("{} frames over {:g} s", plan.frames, plan.step * static_cast<double>(plan.frames))
                                          : fmt::format("{} frames around the scene", plan.frames);
-  if (!quiet) fmt::print("FRAMES  {}, {}, {}\n{}", arguments.scene, over, about, head());
+  const std::vector<std::string> notes = plan_notes(plan, scene);
+  if (!quiet) fmt::print("FRAMES  {}, {}, {}\n{}{}", arguments.scene, over, about, note_rows(notes), head());
   SequenceResult result;
   if (plan.frames > 1) (void)scene.record(plan.moment(0));  // unpacks here, once, the images that the frames' processes will sample
   Json all = Json::array();
@@ -179,7 +190,7 @@ SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments
     const studies::ChildRun run = studies::run_in_child([&] { return draw(scene.record(moment), i); }, {kNoLimit, 0});
     Json figures = Json::parse(studies::output_of(run, fmt::format("frame {}", i)));
     progress.clear();
-    if (!quiet) fmt::print("{}{}", row(i, plan, figures), note_rows(figures));
+    if (!quiet) fmt::print("{}{}", row(i, plan, figures), note_rows(figures["notes"]));
     std::fflush(stdout);
     if (const std::string broken = broken_laws(i, figures); !broken.empty()) {
       fmt::print(stderr, "{}", broken);
@@ -193,6 +204,7 @@ SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments
   const Json document = {{"schema", kFramesSchema},
                          {"scene", arguments.scene},
                          {"animation_s", plan.animated ? Json(scene.length()) : Json(nullptr)},
+                         {"notes", notes},
                          {"frames", std::move(all)}};
   result.json = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   return result;

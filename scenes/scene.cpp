@@ -66,6 +66,7 @@ Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 bool Scene::animated() const { return parts_->animated; }
 double Scene::length() const { return parts_->length; }
+bool Scene::repeats() const { return parts_->animated && !parts_->file; }
 
 std::size_t Scene::packed_images() const {
   if (!parts_->file) return 0;

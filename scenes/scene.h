@@ -52,6 +52,8 @@ class Scene {
   [[nodiscard]] bool animated() const;
   /// Seconds to the animation's last key; 0 without one.
   [[nodiscard]] double length() const;
+  /// Does the animation of a built-in scene go on after its length, as from its start? A file's holds its last pose.
+  [[nodiscard]] bool repeats() const;
   /// One frame, validated. Throws `UserError`.
   [[nodiscard]] traces::CommandStream record(const Moment& moment);
   /// Images of the file that no frame recorded so far had to unpack.

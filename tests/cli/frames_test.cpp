@@ -15,6 +15,17 @@ ProgramRun frames(const ScratchFolder& folder, const std::string& scene, std::ve
   return run_quadrille(folder, more);
 }
 
+/// A triangle that moves by its own width in two seconds.
+const char* const kMovingTriangle =
+    R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"buffers":[{"byteLength":68,"uri":"data:application/octet-stream;base64,)"
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAA="
+    R"("}],"bufferViews":[{"buffer":0,"byteLength":68}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":0,"byteOffset":36,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[2]},
+{"bufferView":0,"byteOffset":44,"componentType":5126,"count":2,"type":"VEC3"}],
+"animations":[{"samplers":[{"input":1,"output":2}],"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}]})";
+
 void require_equal(const ScratchFolder& folder, const std::string& a, const std::string& b, bool equal = true) {
   CAPTURE(a, b);
   CHECK((run_quadrille(folder, {"diff", a, b, "--max-lsb", "0"}).exit_code == 0) == equal);
@@ -47,7 +58,7 @@ TEST_CASE("frames of an animation are those that --time draws, one file and one 
   require_equal(folder, "f_02.png", "one.png", false);
 }
 
-TEST_CASE("frames a second step through the animation from --time on, and stay at its end") {
+TEST_CASE("frames a second step through the animation from --time on") {
   const ScratchFolder folder;
   const ProgramRun run =
       frames(folder, "builtin:flag", {"--frames", "2", "--fps", "4", "--time", "0.5", "--fidelity", "functional", "--out", "f#.png", "-q"});
@@ -55,6 +66,27 @@ TEST_CASE("frames a second step through the animation from --time on, and stay a
   CHECK(run.out.empty());
   CHECK(frames(folder, "builtin:flag", {"--time", "0.75", "--fidelity", "functional", "--out", "one.png", "-q"}).exit_code == 0);
   require_equal(folder, "f1.png", "one.png");
+}
+
+TEST_CASE("frames after the end of a file's animation show its last pose, which a note says") {
+  const ScratchFolder folder;
+  folder.write("move.gltf", kMovingTriangle);
+  const auto run = [&](const std::string& scene, const std::string& count, std::vector<std::string> more) {
+    more.insert(more.end(), {"--frames", count, "--fps", "1", "--fidelity", "functional", "--stats", "s.json"});
+    const ProgramRun done = frames(folder, scene, more);
+    CAPTURE(done.err);
+    REQUIRE(done.exit_code == 0);
+    return done.out;
+  };
+  CHECK_THAT(run("move.gltf", "3", {}), !Catch::Contains("note"));  // the third is at the end
+  CHECK(json::parse(folder.read("s.json"))["notes"].empty());
+  CHECK_THAT(run("move.gltf", "4", {"--out", "f#.png"}),
+             Catch::Contains("note: the last 1 of 4 frames are after the animation's end at 2 s and show its last pose\n"));
+  CHECK(json::parse(folder.read("s.json"))["notes"].size() == 1);
+  require_equal(folder, "f2.png", "f3.png");
+  require_equal(folder, "f1.png", "f2.png", false);
+  CHECK_THAT(run("move.gltf", "3", {"--time", "1.5"}), Catch::Contains("note: the last 2 of 3 frames"));
+  CHECK_THAT(run("builtin:flag", "4", {}), !Catch::Contains("note"));  // which repeats
 }
 
 TEST_CASE("frames of a scene without an animation, or with --orbit, go around it") {
