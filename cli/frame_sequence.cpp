@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/process.h"
 #include "models/base/error.h"
-#include "pipeline/report.h"
 #include "studies/child_run.h"
 
 namespace quadrille::cli {
@@ -59,34 +57,17 @@ std::vector<std::string> plan_notes(const Plan& plan, const scenes::Scene& scene
                       scene.length())};
 }
 
-/// The kind of unit whose units are busy for the largest share of their cycles, and that share.
-std::pair<std::string, double> busiest(const Json& units) {
-  std::map<std::string, std::pair<double, double>> kinds;  // busy, cycles
-  for (const auto& [path, unit] : units.items()) {
-    auto& [busy, cycles] = kinds[std::string(pipeline::without_number(path))];
-    busy += unit["busy"].get<double>();
-    cycles += unit["cycles"].get<double>();
-  }
-  std::pair<std::string, double> best{"-", 0};
-  for (const auto& [kind, sums] : kinds) {
-    const double share = sums.second > 0 ? sums.first / sums.second : 0;
-    if (share > best.second) best = {kind, share};
-  }
-  return best;
-}
-
-std::uint64_t memory_bytes(const Json& units) {
-  std::uint64_t bytes = 0;
-  for (const auto& [path, unit] : units.items()) {
-    if (pipeline::without_number(path) == "memory")
-      bytes += unit["counters"]["read_bytes"].get<std::uint64_t>() + unit["counters"]["write_bytes"].get<std::uint64_t>();
-  }
-  return bytes;
+/// What the limiter names, and its share.
+std::string limit_text(const Json& limit) {
+  if (limit.is_null()) return "-";
+  const std::string kind = limit["kind"];
+  return fmt::format("{}{} {:.1f}", kind == "work" || kind == "latency" ? kind + " of " : "", limit["name"].get<std::string>(),
+                     100 * limit["share"].get<double>());
 }
 
 std::string head() {
   return fmt::format("  {:>6}{:>10}{:>8}{:>13}{:>10}{:>8}{:>12}{:>13}{:>11}  {}\n", "frame", "time s", "turn", "cycles", "ms", "draws",
-                     "triangles", "fragments", "memory MB", "busiest unit, % of its cycles");
+                     "triangles", "fragments", "memory MB", "what limits it, %");
 }
 
 std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
@@ -105,8 +86,7 @@ std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
   out += fmt::format("{:>8}{:>12}{:>13}", f["draws"].get<std::uint64_t>(), f["triangles"].get<std::uint64_t>(),
                      f["fragments_shaded"].get<std::uint64_t>());
   if (!timed) return out + fmt::format("{:>11}  -\n", "-");
-  const auto [unit, share] = busiest(figures["units"]);
-  return out + fmt::format("{:>11.3f}  {} {:.1f}\n", static_cast<double>(memory_bytes(figures["units"])) * 1e-6, unit, 100 * share);
+  return out + fmt::format("{:>11.3f}  {}\n", f["memory_bytes"].get<double>() * 1e-6, limit_text(figures["limit"]));
 }
 
 std::string note_rows(const std::vector<std::string>& notes) {

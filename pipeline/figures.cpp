@@ -1,5 +1,7 @@
 #include "pipeline/figures.h"
 
+#include "pipeline/report.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -225,6 +227,15 @@ class Laws {
 }  // namespace
 
 bool Figures::checks_hold() const { return std::ranges::all_of(checks, &Check::holds); }
+
+std::uint64_t memory_bytes(const Figures& figures) {
+  std::uint64_t bytes = 0;
+  for (const UnitFigures& unit : figures.units) {
+    if (without_number(unit.path) != "memory") continue;
+    for (const CounterFigure& c : unit.counters) bytes += c.name == "read_bytes" || c.name == "write_bytes" ? c.value : 0;
+  }
+  return bytes;
+}
 
 namespace {
 

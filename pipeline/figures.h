@@ -86,6 +86,9 @@ struct Figures {
   [[nodiscard]] bool checks_hold() const;
 };
 
+/// Bytes that the memory channels moved, read and written. 0 when not simulated.
+[[nodiscard]] std::uint64_t memory_bytes(const Figures& figures);
+
 /// Reads the figures of a machine that has run. `host` is left to the caller.
 [[nodiscard]] Figures collect_figures(const Machine& machine, const DeviceFrame& frame);
 

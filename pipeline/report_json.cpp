@@ -21,15 +21,18 @@ Json machine_json(const Figures& f, const MachineConfig& machine) {
   return {{"name", f.machine.empty() ? machine.name : f.machine}, {"parameters", std::move(parameters)}};
 }
 
-/// A frame that was not timed has no cycles: null, not zero.
-Json cycles_json(const Figures& f, std::int64_t cycles) { return f.units.empty() ? Json(nullptr) : Json(cycles); }
+/// A frame that was not timed has no cycles, warps or traffic: null, not zero.
+template <class Count>
+Json if_timed(const Figures& f, Count count) {
+  return f.units.empty() ? Json(nullptr) : Json(count);
+}
 
 Json frame_json(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
   return {{"width", s.width},
           {"height", s.height},
-          {"cycles", cycles_json(s.figures, f.cycles)},
-          {"render_cycles", cycles_json(s.figures, f.render_cycles)},
+          {"cycles", if_timed(s.figures, f.cycles)},
+          {"render_cycles", if_timed(s.figures, f.render_cycles)},
           {"clock_mhz", s.machine.gpu.clock_mhz.value()},
           {"draws", f.draws},
           {"triangles", f.triangles},
@@ -38,8 +41,9 @@ Json frame_json(const ReportSubject& s) {
           {"fragments_shaded", f.fragments_shaded},
           {"helper_lanes", f.helper_lanes},
           {"executed_lanes", f.fragments_shaded + f.helper_lanes},
-          {"fragment_warps", cycles_json(s.figures, static_cast<std::int64_t>(f.fragment_warps))},
-          {"fragments_written", f.fragments_written}};
+          {"fragment_warps", if_timed(s.figures, f.fragment_warps)},
+          {"fragments_written", f.fragments_written},
+          {"memory_bytes", if_timed(s.figures, memory_bytes(s.figures))}};
 }
 
 Json unit_json(const UnitFigures& u) {
@@ -102,7 +106,7 @@ Json host_json(const Figures& f) {
           {"simulate_cpu_s", h.simulate_cpu_s},
           {"wall_s", h.wall_s},
           {"fragments_per_s", h.fragments_per_s},
-          {"cycles_per_s", f.units.empty() ? Json(nullptr) : Json(h.cycles_per_s)},
+          {"cycles_per_s", if_timed(f, h.cycles_per_s)},
           {"peak_rss_mib", h.peak_rss_mib},
           {"actions", h.actions}};
 }

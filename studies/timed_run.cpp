@@ -77,12 +77,9 @@ std::string RunSetting::name() const {
 MachineCost machine_cost(const pipeline::Figures& figures) {
   MachineCost cost;
   cost.cycles = figures.frame.cycles;
+  cost.memory_bytes = pipeline::memory_bytes(figures);
   for (const pipeline::UnitFigures& u : figures.units) {
     cost.units.push_back({u.path, u.cycles > 0 ? 100.0 * static_cast<double>(u.busy) / static_cast<double>(u.cycles) : 0.0});
-    if (pipeline::without_number(u.path) != "memory") continue;
-    for (const pipeline::CounterFigure& c : u.counters) {
-      if (c.name == "read_bytes" || c.name == "write_bytes") cost.memory_bytes += c.value;
-    }
   }
   for (const pipeline::ClientFigures& c : figures.bandwidth) cost.clients.push_back({c.name, c.read_bytes + c.write_bytes});
   return cost;

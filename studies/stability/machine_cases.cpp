@@ -1,5 +1,6 @@
 /// Cases of machines at their edges: links of one place, latencies of a million cycles, clocks a thousand to one, caches of one line, one core and 64.
 #include "pipeline/limiter.h"
+#include "pipeline/report.h"
 #include "studies/stability/machine_picture.h"
 #include "studies/stability/stability.h"
 
@@ -50,16 +51,7 @@ Settings joined(Settings a, const Settings& b) {
 
 /// The least cycles in which the memory channels can move what they moved.
 double memory_bound(const Observed& o) {
-  double bytes = 0;
-  for (const pipeline::UnitFigures& unit : o.exact.figures.units) {
-    if (!unit.path.starts_with("memory_")) continue;
-    for (const pipeline::CounterFigure& c : unit.counters)
-      bytes += c.name == "read_bytes" || c.name == "write_bytes" ? static_cast<double>(c.value) : 0;
-  }
-  constexpr double kSectorBytes = 32;
-  const double rate =
-      o.machine->gpu.channels * kSectorBytes / o.machine->memory.t_burst * o.machine->gpu.memory_mhz / o.machine->gpu.clock_mhz;
-  return bytes / rate;
+  return static_cast<double>(pipeline::memory_bytes(o.exact.figures)) / pipeline::peak_memory_bytes_per_cycle(*o.machine);
 }
 
 /// The least cycles in which the links of a class can pass what they passed: a slot is free again after the round trip. None: the machine has no such link.

@@ -1,4 +1,6 @@
 /// Several frames of a scene: moments, files, rows and the JSON.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
@@ -51,6 +53,9 @@ TEST_CASE("frames of an animation are those that --time draws, one file and one 
     CHECK(frame["turn"].is_null());
     CHECK(frame["figures"]["schema"] == "quadrille-figures-1");
     CHECK(frame["figures"]["frame"]["cycles"] > 0);
+    const json& limit = frame["figures"]["limit"];
+    CHECK_THAT(run.out,
+               Catch::Contains(fmt::format("  {} {:.1f}\n", limit["name"].get<std::string>(), 100 * limit["share"].get<double>())));
   }
   // Exact frames here, a functional picture of one moment there.
   CHECK(frames(folder, "builtin:flag", {"--time", "1.5", "--fidelity", "functional", "--out", "one.png", "-q"}).exit_code == 0);

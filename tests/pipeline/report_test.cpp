@@ -77,6 +77,15 @@ TEST_CASE("report: units of a kind share a row of means with the spread of busy"
   CHECK_THAT(report_table({f, machine, 10, 10}, UnitRows::kAll), Contains("memory_1             30.0") && !Contains("x2"));
 }
 
+TEST_CASE("report: bytes of memory are those of its channels, in JSON too") {
+  Figures f = two_channels();
+  CHECK(memory_bytes(f) == 2560);
+  f.units[1].path = "rop_0";
+  CHECK(memory_bytes(f) == 1280);
+  const MachineConfig machine;
+  CHECK(nlohmann::json::parse(report_json({f, machine, 10, 10})).at("frame").at("memory_bytes") == 1280);
+}
+
 TEST_CASE("report: bandwidth is a rate in GPU cycles and a share of what all channels can move") {
   MachineConfig machine;
   CHECK(peak_memory_bytes_per_cycle(machine) == 64.0);                                        // two channels of 32 bytes a cycle, one clock
@@ -106,6 +115,7 @@ TEST_CASE("report: what only time can give is null when nothing was timed") {
   const MachineConfig machine;
   const auto document = nlohmann::json::parse(report_json({f, machine, 10, 10}));
   CHECK(document.at("frame").at("cycles").is_null());
+  CHECK(document.at("frame").at("memory_bytes").is_null());
   CHECK(document.at("host").at("cycles_per_s").is_null());
   CHECK(document.at("frame").at("executed_lanes") == 100);
   CHECK_THAT(report_table({f, machine, 10, 10}), Contains("not simulated") && !Contains("UNITS"));
