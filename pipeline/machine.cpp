@@ -69,7 +69,13 @@ void Machine::create_units(const MachineOptions& options) {
                          fmt::format("{} links, and their places in the arbiters of {} L2 slices", 2 * partitions * channels, channels)});
   }
   if (!frame_.blends()) left_out_.push_back({"blending", "no draw combines with the old colour", "reading colours back"});
-  clients_ = 1 + (textured ? cores : 0) + (depth_memory ? 2 : 1) * partitions + 1;
+  clients_ = {"vertex_fetch"};
+  for (int c = 0; textured && c < cores; ++c) clients_.push_back(fmt::format("texture_{}", c));
+  for (int p = 0; p < partitions; ++p) {
+    if (depth_memory) clients_.push_back(fmt::format("depth_{}", p));
+    clients_.push_back(fmt::format("rop_{}", p));
+  }
+  clients_.push_back("scan_out");
   partitions_.resize(static_cast<std::size_t>(partitions));
   cores_.resize(static_cast<std::size_t>(cores));
   slices_.resize(static_cast<std::size_t>(channels));
@@ -216,7 +222,9 @@ void Machine::wire_core(std::size_t c) {
 }
 
 void Machine::attach_client(const hw::Unit& client_unit, hw::MemoryPort& port) {
-  const auto client = static_cast<std::size_t>(next_client_++);
+  const auto found = std::ranges::find(clients_, std::string_view(client_unit.name()));
+  QUADRILLE_CHECK(found != clients_.end(), "{} is no client of the L2 cache", client_unit.name());
+  const auto client = static_cast<std::size_t>(found - clients_.begin());
   for (std::size_t i = 0; i < slices_.size(); ++i) {
     connect<hw::MemoryRequest>(*port.request_out[i], slices_[i]->request_in[client], config_.link.client_to_l2,
                                fmt::format("{}_to_l2_{}", client_unit.name(), i));

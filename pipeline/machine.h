@@ -87,8 +87,7 @@ class Machine {
   hw::Clock clock_, memory_clock_;
   hw::QuietLog quiet_;
   std::vector<LeftOut> left_out_;
-  int clients_ = 0;
-  int next_client_ = 0;
+  std::vector<std::string> clients_;  ///< of the L2 slices: names of units, in the order of their ports
   std::unique_ptr<hw::Driver> own_driver_;
   hw::Driver* driver_ = nullptr;
   std::unique_ptr<hw::Store<hw::BatchSlot>> batches_;

@@ -9,20 +9,26 @@ namespace quadrille::hw {
 
 namespace {
 std::uint64_t bytes_of(std::uint8_t sectors) { return models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors)); }
+/// `texture_3` has the ports `texture_in_3` and `texture_out_3`: the number stays last, as in all ports of a kind.
+std::string port_name(const std::string& client, std::string_view side) {
+  const std::size_t number = client.find_last_not_of("0123456789") + 1;
+  if (number == client.size()) return fmt::format("{}_{}", client, side);
+  return fmt::format("{}{}_{}", client.substr(0, number), side, client.substr(number));
+}
 std::uint32_t whole_sets(int lines, int ways) { return static_cast<std::uint32_t>(std::max(1, lines / ways) * ways); }
 }  // namespace
 
-L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, int clients)
+L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<std::string>& clients)
     : Unit(name, Kind::kChooser, clock),
       params_(params),
       tags_(whole_sets(params.cache_lines, params.cache_ways), static_cast<std::uint32_t>(params.cache_ways.value())),
       misses_(static_cast<std::size_t>(params.cache_misses.value())),
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
-      answers_(static_cast<std::size_t>(clients)),
-      answering_((static_cast<std::size_t>(clients) + 63) / 64, 0) {
-  for (int i = 0; i < clients; ++i) {
-    request_in.add(*this, fmt::format("request_in_{}", i).c_str());
-    response_out.push_back(std::make_unique<FifoOut<MemoryResponse>>(*this, fmt::format("response_out_{}", i).c_str(), LinkRole::kReply));
+      answers_(clients.size()),
+      answering_((clients.size() + 63) / 64, 0) {
+  for (const std::string& client : clients) {
+    request_in.add(*this, port_name(client, "in").c_str());
+    response_out.push_back(std::make_unique<FifoOut<MemoryResponse>>(*this, port_name(client, "out").c_str(), LinkRole::kReply));
   }
   for (std::size_t i = misses_.size(); i-- > 0;) free_misses_.push_back(static_cast<std::uint32_t>(i));
 }

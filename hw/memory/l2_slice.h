@@ -2,6 +2,7 @@
 ///
 /// In    request_in[c]   sectors of a line, from client c      fill_in   a line's sectors from the channel
 /// Out   response_out[c] answers to reads and fences           memory_out  misses and write-backs
+///       Ports are named for their client: those of texture_3 are texture_in_3 and texture_out_3.
 /// Time  one request a cycle, clients take turns; an answer leaves when its sectors are there; a line that is under way serves all who ask for it
 #pragma once
 
@@ -35,7 +36,7 @@ class L2Slice final : public Unit {
     Counter fill_bytes{*this, "fill_bytes", "byte", "Bytes read from the memory channel"};
     Counter writeback_bytes{*this, "writeback_bytes", "byte", "Bytes written back to the memory channel"};
   };
-  L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, int clients);
+  L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<std::string>& clients);
 
   FifoInGroup<MemoryRequest> request_in;
   std::vector<std::unique_ptr<FifoOut<MemoryResponse>>> response_out;

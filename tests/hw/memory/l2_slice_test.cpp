@@ -24,7 +24,7 @@ struct L2Bench final : Bench {
     params.cache_ways.set(s.ways);
     params.cache_misses.set(s.misses);
     params.hit_clk.set(s.hit_clk);
-    unit = std::make_unique<L2Slice>("unit", params, clock, 2);
+    unit = std::make_unique<L2Slice>("unit", params, clock, std::vector<std::string>{"one", "many_7"});
     add(*unit);
     feed(unit->request_in[0], s.client_0);
     feed(unit->request_in[1], s.client_1);
@@ -52,6 +52,18 @@ TEST_CASE("l2_slice: a miss takes the memory's time and three links, a hit exact
     const auto text = run<L2Bench>(s, [](const L2Bench& b) { return fmt::format("{} memory {}", b.sinks[0]->text(), b.memory->text()); });
     CHECK(text == fmt::format("{}:1 {}:2 memory 2:r7/f", 1 + 1 + kMemory + 1 + 1, 200 + 1 + hit + 1));
   }
+}
+
+TEST_CASE("l2_slice: ports are named for their clients, with a number last") {
+  const auto names = [](const L2Bench& b) {
+    std::string text;
+    for (std::size_t c = 0; c < 2; ++c) {
+      const PortBase &in = b.unit->request_in[c], &out = *b.unit->response_out[c];
+      text += fmt::format("{} {} ", in.name(), out.name());
+    }
+    return text;
+  };
+  CHECK(run<L2Bench>(L2Bench::Setup{}, names) == "one_in one_out many_in_7 many_out_7 ");
 }
 
 TEST_CASE("l2_slice: a line under way serves all who ask for it") {
