@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
@@ -16,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFramesSchema = "quadrille-frames-1";
-constexpr std::int64_t kMaxFrames = 100'000;
+constexpr std::int64_t kMaxFrames = 100'000, kMaxJobs = 64;
 constexpr double kMaxFps = 1e6, kNoLimit = 1e9;  // seconds: a frame takes as long as it takes
 
 /// Which moments are drawn.
@@ -105,6 +106,46 @@ std::string broken_laws(std::int64_t number, const Json& figures) {
   return text;
 }
 
+/// Frames as their processes end, in any order; rows are printed, and laws checked, in the frames' order.
+class Sequence {
+ public:
+  Sequence(const Plan& plan, bool quiet) : plan_(plan), quiet_(quiet) {}
+
+  void add(std::int64_t number, Json figures) {
+    waiting_.emplace(number, std::move(figures));
+    while (!waiting_.empty() && waiting_.begin()->first == size()) {
+      append(std::move(waiting_.begin()->second));
+      waiting_.erase(waiting_.begin());
+    }
+  }
+  /// Frames in order so far.
+  [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(frames_.size()); }
+  [[nodiscard]] Json take() { return std::move(frames_); }
+  [[nodiscard]] int exit_code() const { return exit_code_; }
+
+ private:
+  void append(Json figures) {
+    const std::int64_t number = size();
+    if (!quiet_) fmt::print("{}{}", row(number, plan_, figures), note_rows(figures["notes"]));
+    std::fflush(stdout);
+    if (const std::string broken = broken_laws(number, figures); !broken.empty()) {
+      fmt::print(stderr, "{}", broken);
+      exit_code_ = kFailed;
+    }
+    const scenes::Moment moment = plan_.moment(number);
+    frames_.push_back({{"frame", number},
+                       {"time_s", plan_.animated ? Json(moment.time) : Json(nullptr)},
+                       {"turn", moment.orbit ? Json(*moment.orbit) : Json(nullptr)},
+                       {"figures", std::move(figures)}});
+  }
+
+  const Plan& plan_;
+  bool quiet_;
+  std::map<std::int64_t, Json> waiting_;
+  Json frames_ = Json::array();
+  int exit_code_ = kDone;
+};
+
 }  // namespace
 
 void FrameArguments::add_to(CLI::App& command) {
@@ -118,16 +159,21 @@ void FrameArguments::add_to(CLI::App& command) {
       ->type_name("F");
   command.add_flag("--orbit", orbit,
                    "with --frames: carries the camera once around the scene (the scene moves too if --time or --animation is given)");
+  command.add_option("--jobs", jobs, "with --frames: frames at a time, each in a process of its own (default 1)")->type_name("N");
 }
+
+int FrameArguments::job_count() const { return jobs ? static_cast<int>(parse_whole(*jobs, "--jobs", 1, kMaxJobs)) : 1; }
 
 void FrameArguments::check() const {
   if (frames) {
     (void)parse_whole(*frames, "--frames", 1, kMaxFrames);
+    (void)job_count();
     if (fps) (void)parse_number(*fps, "--fps", 1 / kMaxFps, kMaxFps);
     return;
   }
   if (fps) throw user_error("--fps: goes with --frames");
   if (orbit) throw user_error("--orbit: goes with --frames");
+  if (jobs) throw user_error("--jobs: goes with --frames");
 }
 
 void check_pattern(std::string_view flag, const std::string& pattern) {
@@ -146,48 +192,40 @@ std::string numbered(const std::string& pattern, std::int64_t frame) {
   return (path.parent_path() / name).string();
 }
 
-SequenceResult draw_frames(const SceneArguments& arguments, const FrameArguments& frames, const std::string& about, bool quiet,
+SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about, bool quiet,
                            const DrawFrame& draw) {
-  if (arguments.is_trace()) throw user_error("--frames: {} is a trace, which holds one frame", arguments.scene);
-  scenes::SceneOptions options = arguments.options();
+  if (scene.is_trace()) throw user_error("--frames: {} is a trace, which holds one frame", scene.scene);
+  scenes::SceneOptions options = scene.options();
   const bool moves = !frames.orbit || frames.fps || options.time || !options.animation.empty();
   if (moves && !options.time) options.time = 0;
   Progress progress;
-  progress.show(fmt::format("loading {}", arguments.scene));
-  scenes::Scene scene(arguments.scene, options);
-  const Plan plan = make_plan(frames, options, scene);
+  progress.show(fmt::format("loading {}", scene.scene));
+  scenes::Scene file(scene.scene, options);
+  const Plan plan = make_plan(frames, options, file);
   progress.clear();
   const std::string over = plan.animated ? fmt::format("{} frames over {:g} s", plan.frames, plan.step * static_cast<double>(plan.frames))
                                          : fmt::format("{} frames around the scene", plan.frames);
-  const std::vector<std::string> notes = plan_notes(plan, scene);
-  if (!quiet) fmt::print("FRAMES  {}, {}, {}\n{}{}", arguments.scene, over, about, note_rows(notes), head());
-  SequenceResult result;
-  if (plan.frames > 1) (void)scene.record(plan.moment(0));  // unpacks here, once, the images that the frames' processes will sample
-  Json all = Json::array();
-  for (std::int64_t i = 0; i < plan.frames; ++i) {
-    progress.show(fmt::format("frame {} of {}", i, plan.frames));
-    const scenes::Moment moment = plan.moment(i);
-    const studies::ChildRun run = studies::run_in_child([&] { return draw(scene.record(moment), i); }, {kNoLimit, 0});
+  const std::vector<std::string> notes = plan_notes(plan, file);
+  if (!quiet) fmt::print("FRAMES  {}, {}, {}\n{}{}", scene.scene, over, about, note_rows(notes), head());
+  if (plan.frames > 1) (void)file.record(plan.moment(0));  // unpacks here, once, the images that the frames' processes will sample
+  Sequence sequence(plan, quiet);
+  std::vector<studies::ChildWork> works;
+  works.reserve(static_cast<std::size_t>(plan.frames));
+  for (std::int64_t i = 0; i < plan.frames; ++i) works.push_back({[&, i] { return draw(file.record(plan.moment(i)), i); }, {kNoLimit, 0}});
+  progress.show(fmt::format("frame 0 of {}", plan.frames));
+  studies::run_in_children(works, frames.job_count(), [&](std::size_t i, const studies::ChildRun& run) {
     Json figures = Json::parse(studies::output_of(run, fmt::format("frame {}", i)));
     progress.clear();
-    if (!quiet) fmt::print("{}{}", row(i, plan, figures), note_rows(figures["notes"]));
-    std::fflush(stdout);
-    if (const std::string broken = broken_laws(i, figures); !broken.empty()) {
-      fmt::print(stderr, "{}", broken);
-      result.exit_code = kFailed;
-    }
-    all.push_back({{"frame", i},
-                   {"time_s", plan.animated ? Json(moment.time) : Json(nullptr)},
-                   {"turn", moment.orbit ? Json(*moment.orbit) : Json(nullptr)},
-                   {"figures", std::move(figures)}});
-  }
+    sequence.add(static_cast<std::int64_t>(i), std::move(figures));
+    if (sequence.size() < plan.frames) progress.show(fmt::format("frame {} of {}", sequence.size(), plan.frames));
+  });
+  progress.clear();
   const Json document = {{"schema", kFramesSchema},
-                         {"scene", arguments.scene},
-                         {"animation_s", plan.animated ? Json(scene.length()) : Json(nullptr)},
+                         {"scene", scene.scene},
+                         {"animation_s", plan.animated ? Json(file.length()) : Json(nullptr)},
                          {"notes", notes},
-                         {"frames", std::move(all)}};
-  result.json = document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  return result;
+                         {"frames", sequence.take()}};
+  return {sequence.exit_code(), document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"};
 }
 
 }  // namespace quadrille::cli

@@ -13,12 +13,14 @@
 namespace quadrille::cli {
 
 struct FrameArguments {
-  std::optional<std::string> frames, fps;
+  std::optional<std::string> frames, fps, jobs;
   bool orbit = false;
 
   void add_to(CLI::App& command);
   /// Throws `UserError` for options that go with `--frames` alone.
   void check() const;
+  /// Processes at a time.
+  [[nodiscard]] int job_count() const;
   [[nodiscard]] bool wanted() const { return frames.has_value(); }
 };
 
@@ -35,7 +37,7 @@ struct SequenceResult {
   std::string json;  ///< all frames' figures, schema `quadrille-frames-1`
 };
 
-/// Draws all frames, one after another, printing a row for each unless `quiet`. Throws `UserError` that names the frame.
+/// Draws all frames, printing a row for each unless `quiet`; the rows come in order, however many processes draw. Throws `UserError` that names the frame.
 [[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about, bool quiet,
                                          const DrawFrame& draw);
 

@@ -85,6 +85,8 @@ void encode(const std::string& path, const void* pixels, std::uint32_t width, st
 
 }  // namespace
 
+void open_image_module() { (void)module(); }
+
 Rgba8Image decode_image(std::span<const std::byte> bytes, const std::string& name) {
   const QuadrilleImage raw = decode(bytes, name, false);
   const Held held(raw.data);

@@ -26,6 +26,9 @@ struct FloatImage {
   std::vector<float> pixels;  ///< channels * width * height
 };
 
+/// Loads the module now, for processes to be forked that would each load it. Throws `UserError` when it is not found.
+void open_image_module();
+
 /// Decodes a PNG, JPEG, WebP, DDS or EXR file held in memory. Grey becomes r=g=b, missing alpha 255; 16-bit and float files are rounded to 8 bits.
 /// Throws `UserError` that starts with `name` when the data is damaged, truncated, or has more than 16384 pixels a side or `kMaxImagePixels` in all.
 [[nodiscard]] Rgba8Image decode_image(std::span<const std::byte> bytes, const std::string& name);

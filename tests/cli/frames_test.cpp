@@ -111,6 +111,25 @@ TEST_CASE("frames of a scene without an animation, or with --orbit, go around it
   require_equal(folder, "o1.png", "still.png", false);
 }
 
+TEST_CASE("frames drawn at the same time are those drawn in turn, and their rows come in order") {
+  const ScratchFolder folder;
+  const auto draw = [&](const std::string& jobs, const std::string& name) {
+    const ProgramRun run =
+        frames(folder, "builtin:flag", {"--frames", "7", "--jobs", jobs, "--out", name + "#.png", "--stats", name + ".json"});
+    REQUIRE(run.exit_code == 0);
+    json all = json::parse(folder.read(name + ".json"));
+    for (json& frame : all["frames"]) frame["figures"].erase("host");
+    return std::pair{run.out, all};
+  };
+  const auto turns = draw("1", "a"), together = draw("3", "b");
+  CHECK(turns.first == together.first);
+  CHECK(turns.second == together.second);
+  for (const char* number : {"0", "3", "6"})
+    CHECK(folder.read(std::string("a") + number + ".png") == folder.read(std::string("b") + number + ".png"));
+  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--jobs", "0"}), {"--jobs", "1..64"});
+  require_refused(frames(folder, "builtin:flag", {"--jobs", "2"}), {"--jobs", "--frames"});
+}
+
 TEST_CASE("a frame that fails names its number, and those before it stay") {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.path() / "f_1.png");  // the second frame cannot be written
