@@ -138,16 +138,16 @@ LeaveOutResult measure_leave_out(const LeaveOutScene& scene, const pipeline::Mac
     for (const std::size_t side : round_order(2, static_cast<std::size_t>(round), static_cast<std::size_t>(repeat))) {
       if (progress)
         progress(fmt::format("{}: run {} of {}, {}", scene.name, round + 1, repeat, side == 0 ? "everything" : "what is needed"));
-      (side == 0 ? result.with : result.without).push_back(run_in_process(scene, machine, side == 1));
+      (side == 0 ? result.everything : result.needed).push_back(run_in_process(scene, machine, side == 1));
     }
-    if (result.contradiction.empty()) result.contradiction = disagreement(result.with.back(), result.without.back());
+    if (result.contradiction.empty()) result.contradiction = disagreement(result.everything.back(), result.needed.back());
   }
-  result.with_s = spread_over(result.with, &LeaveOutRun::total_s);
-  result.without_s = spread_over(result.without, &LeaveOutRun::total_s);
-  result.with_simulate_s = spread_over(result.with, &LeaveOutRun::simulate_s);
-  result.without_simulate_s = spread_over(result.without, &LeaveOutRun::simulate_s);
-  result.with_mib = spread_over(result.with, &LeaveOutRun::peak_rss_mib);
-  result.without_mib = spread_over(result.without, &LeaveOutRun::peak_rss_mib);
+  result.everything_s = spread_over(result.everything, &LeaveOutRun::total_s);
+  result.needed_s = spread_over(result.needed, &LeaveOutRun::total_s);
+  result.everything_simulate_s = spread_over(result.everything, &LeaveOutRun::simulate_s);
+  result.needed_simulate_s = spread_over(result.needed, &LeaveOutRun::simulate_s);
+  result.everything_mib = spread_over(result.everything, &LeaveOutRun::peak_rss_mib);
+  result.needed_mib = spread_over(result.needed, &LeaveOutRun::peak_rss_mib);
   return result;
 }
 
@@ -155,18 +155,18 @@ std::string leave_out_table(const std::vector<LeaveOutResult>& results, const pi
   std::string out = fmt::format(
       "LEAVE OUT  machine {}, {} runs of each side; processor time of the whole process, medians and half the distance between "
       "quartiles\n\n",
-      machine.name, results.front().with.size());
+      machine.name, results.front().everything.size());
   out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>9} {:>7} {:>7} {:>8}  {}\n", "scene", "cycles", "everything s", "needed s",
                      "speed-up", "in run", "MiB", "needed", "same picture, cycles and counts");
   for (const LeaveOutResult& r : results) {
     const auto seconds = [](const Spread& s) {
       return fmt::format("{:.3f} +-{:.3f}", s.median, 0.5 * (s.upper_quartile - s.lower_quartile));
     };
-    out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>8.2f}x {:>6.2f}x {:>7.0f} {:>8.0f}  {}{}\n", r.name, r.without.front().cycles,
-                       seconds(r.with_s), seconds(r.without_s), r.speed_up(), r.with_simulate_s.median / r.without_simulate_s.median,
-                       r.with_mib.median, r.without_mib.median, r.contradiction.empty() ? "yes" : "NO: " + r.contradiction,
+    out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>8.2f}x {:>6.2f}x {:>7.0f} {:>8.0f}  {}{}\n", r.name, r.needed.front().cycles,
+                       seconds(r.everything_s), seconds(r.needed_s), r.speed_up(), r.everything_simulate_s.median / r.needed_simulate_s.median,
+                       r.everything_mib.median, r.needed_mib.median, r.contradiction.empty() ? "yes" : "NO: " + r.contradiction,
                        r.slower() ? ", SLOWER" : "");
-    for (const pipeline::LeftOut& l : r.without.front().left_out) out += fmt::format("      {}: {} ({})\n", l.what, l.why, l.saved);
+    for (const pipeline::LeftOut& l : r.needed.front().left_out) out += fmt::format("      {}: {} ({})\n", l.what, l.why, l.saved);
   }
   return out + "\n  in run: the same ratio for the simulation alone, without loading, compiling and elaborating\n";
 }
@@ -186,15 +186,15 @@ std::string leave_out_json(const std::vector<LeaveOutResult>& results, const pip
   Json scenes = Json::array();
   for (const LeaveOutResult& r : results) {
     Json left_out = Json::array();
-    for (const pipeline::LeftOut& l : r.without.front().left_out)
+    for (const pipeline::LeftOut& l : r.needed.front().left_out)
       left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
     scenes.push_back({{"scene", r.name},
-                      {"cycles", r.without.front().cycles},
+                      {"cycles", r.needed.front().cycles},
                       {"agrees", r.contradiction.empty()},
                       {"contradiction", r.contradiction},
                       {"speed_up", r.speed_up()},
-                      {"everything", runs_json(r.with)},
-                      {"needed", runs_json(r.without)},
+                      {"everything", runs_json(r.everything)},
+                      {"needed", runs_json(r.needed)},
                       {"left_out", std::move(left_out)}});
   }
   const Json document{{"schema", kLeaveOutSchema}, {"machine", machine.name}, {"scenes", std::move(scenes)}};

@@ -42,13 +42,13 @@ struct LeaveOutRun {
 
 struct LeaveOutResult {
   std::string name;
-  std::vector<LeaveOutRun> with, without;  ///< everything built; what is not needed left out
+  std::vector<LeaveOutRun> everything, needed;  ///< all units built and images read; only what the frame needs
   std::string contradiction;               ///< one line on how two runs disagree; empty when every claim holds
   /// Over the runs of each side, in seconds and MiB.
-  Spread with_s, without_s, with_simulate_s, without_simulate_s, with_mib, without_mib;
-  [[nodiscard]] double speed_up() const { return with_s.median / without_s.median; }
+  Spread everything_s, needed_s, everything_simulate_s, needed_simulate_s, everything_mib, needed_mib;
+  [[nodiscard]] double speed_up() const { return everything_s.median / needed_s.median; }
   /// Slower beyond doubt: what disturbs a run makes it longer, so the fastest runs are compared, with a twentieth for what is left.
-  [[nodiscard]] bool slower() const { return without_s.least > 1.05 * with_s.least; }
+  [[nodiscard]] bool slower() const { return needed_s.least > 1.05 * everything_s.least; }
 };
 
 /// How two runs of a frame disagree, in one line; empty when they do not. `complete` may have units and clients that `reduced` lacks, if they did nothing.
