@@ -163,9 +163,9 @@ std::string leave_out_table(const std::vector<LeaveOutResult>& results, const pi
       return fmt::format("{:.3f} +-{:.3f}", s.median, 0.5 * (s.upper_quartile - s.lower_quartile));
     };
     out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>8.2f}x {:>6.2f}x {:>7.0f} {:>8.0f}  {}{}\n", r.name, r.needed.front().cycles,
-                       seconds(r.everything_s), seconds(r.needed_s), r.speed_up(), r.everything_simulate_s.median / r.needed_simulate_s.median,
-                       r.everything_mib.median, r.needed_mib.median, r.contradiction.empty() ? "yes" : "NO: " + r.contradiction,
-                       r.slower() ? ", SLOWER" : "");
+                       seconds(r.everything_s), seconds(r.needed_s), r.speed_up(),
+                       r.everything_simulate_s.median / r.needed_simulate_s.median, r.everything_mib.median, r.needed_mib.median,
+                       r.contradiction.empty() ? "yes" : "NO: " + r.contradiction, r.slower() ? ", SLOWER" : "");
     for (const pipeline::LeftOut& l : r.needed.front().left_out) out += fmt::format("      {}: {} ({})\n", l.what, l.why, l.saved);
   }
   return out + "\n  in run: the same ratio for the simulation alone, without loading, compiling and elaborating\n";
@@ -186,8 +186,7 @@ std::string leave_out_json(const std::vector<LeaveOutResult>& results, const pip
   Json scenes = Json::array();
   for (const LeaveOutResult& r : results) {
     Json left_out = Json::array();
-    for (const pipeline::LeftOut& l : r.needed.front().left_out)
-      left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
+    for (const pipeline::LeftOut& l : r.needed.front().left_out) left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
     scenes.push_back({{"scene", r.name},
                       {"cycles", r.needed.front().cycles},
                       {"agrees", r.contradiction.empty()},

@@ -43,7 +43,7 @@ struct LeaveOutRun {
 struct LeaveOutResult {
   std::string name;
   std::vector<LeaveOutRun> everything, needed;  ///< all units built and images read; only what the frame needs
-  std::string contradiction;               ///< one line on how two runs disagree; empty when every claim holds
+  std::string contradiction;                    ///< one line on how two runs disagree; empty when every claim holds
   /// Over the runs of each side, in seconds and MiB.
   Spread everything_s, needed_s, everything_simulate_s, needed_simulate_s, everything_mib, needed_mib;
   [[nodiscard]] double speed_up() const { return everything_s.median / needed_s.median; }

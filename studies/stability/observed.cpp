@@ -3,25 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "studies/given_reference.h"
+
 namespace quadrille::studies::stability {
 
 namespace ref = models::reference;
-
-namespace {
-
-ref::GivenTriangle given(const pipeline::RasterizedTriangle& t) {
-  ref::GivenTriangle g{t.draw, t.instance, t.primitive, {}, {}, {}, {}, {}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    g.x[i] = t.vertices[i].x;
-    g.y[i] = t.vertices[i].y;
-    g.z[i] = static_cast<double>(t.vertices[i].z);
-    g.inv_w[i] = static_cast<double>(t.vertices[i].inv_w);
-    g.barycentric[i] = {static_cast<double>(t.weights[i].x), static_cast<double>(t.weights[i].y)};
-  }
-  return g;
-}
-
-}  // namespace
 
 DrawnArea drawn_area(const traces::CommandStream& stream) {
   std::uint32_t width = 0, height = 0;
@@ -50,14 +36,7 @@ Observed observe(traces::CommandStream stream, std::unique_ptr<pipeline::Machine
   return o;
 }
 
-ref::Result given_reference(const Observed& o) {
-  ref::Options options;
-  options.mode = ref::Mode::kGiven;
-  options.precision = {o.machine->gpu.subpixel_bits, o.machine->gpu.subtexel_bits, o.machine->gpu.lod_bits};
-  static_cast<void>(pipeline::render_functional_frame(o.stream, o.machine->precision(),
-                                                      [&](const pipeline::RasterizedTriangle& t) { options.given.push_back(given(t)); }));
-  return ref::render(o.stream, options);
-}
+ref::Result given_reference(const Observed& o) { return render_with_reference(o.stream, o.machine->precision()).reference; }
 
 ref::Result ideal_reference(const Observed& o) { return ref::render(o.stream, {}); }
 

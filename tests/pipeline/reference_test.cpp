@@ -1,8 +1,7 @@
 /// The machine against the double-precision reference in *given* mode: the same snapped triangles and precisions, none of the same code.
-#include "models/reference/reference.h"
 #include "models/reference/compare.h"
-#include "pipeline/render.h"
 #include "scenes/scene.h"
+#include "studies/given_reference.h"
 #include "tests/scenes/scene_folder.h"
 
 #include <catch2/catch.hpp>
@@ -16,44 +15,18 @@ namespace {
 
 constexpr std::uint32_t kWidth = 400, kHeight = 225;
 
-struct Pair {
-  pipeline::FrameImage machine;
-  ref::Result reference;
-};
-
-/// Renders a stream on the machine (functions only; timing never changes pixels) and on the reference, from the machine's own triangles.
-Pair render_both(const traces::CommandStream& stream) {
-  ref::Options options;
-  options.mode = ref::Mode::kGiven;
-  const auto observe = [&](const pipeline::RasterizedTriangle& t) {
-    ref::GivenTriangle g{t.draw, t.instance, t.primitive, {}, {}, {}, {}, {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-      g.x[i] = t.vertices[i].x;
-      g.y[i] = t.vertices[i].y;
-      g.z[i] = static_cast<double>(t.vertices[i].z);
-      g.inv_w[i] = static_cast<double>(t.vertices[i].inv_w);
-      g.barycentric[i] = {static_cast<double>(t.weights[i].x), static_cast<double>(t.weights[i].y)};
-    }
-    options.given.push_back(g);
-  };
-  Pair pair;
-  pair.machine = pipeline::render_functional_frame(stream, {}, observe).image;
-  pair.reference = ref::render(stream, options);
-  return pair;
-}
-
 void check_scene(const std::string& scene) {
   INFO(scene);
   scenes::SceneOptions options;
   options.width = kWidth;
   options.height = kHeight;
-  const Pair color = render_both(scenes::load_scene(scene, options));
+  const auto color = studies::render_with_reference(scenes::load_scene(scene, options), {});
   const auto difference = ref::compare_images({kWidth, kHeight, color.machine.color}, {kWidth, kHeight, color.reference.color});
   CHECK(difference.fraction_within(2) >= 0.999);
   CHECK(difference.bad_blocks == 0);
 
   options.visibility = true;
-  const Pair ids = render_both(scenes::load_scene(scene, options));
+  const auto ids = studies::render_with_reference(scenes::load_scene(scene, options), {});
   std::size_t other_coverage = 0, alpha_ties = 0;
   for (std::size_t i = 0; i < ids.machine.color.size(); ++i) {
     if ((ids.machine.color[i] == 0) == (ids.reference.color[i] == 0)) continue;
