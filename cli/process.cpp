@@ -1,7 +1,6 @@
 #include "cli/process.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 namespace quadrille::cli {
@@ -15,12 +14,6 @@ constexpr double kRefreshSeconds = 0.1;
 void note_start() { process_watch.emplace(); }
 
 double wall_seconds() { return process_watch ? process_watch->seconds() : 0; }
-
-double peak_rss_mib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 Progress::Progress() : enabled_(isatty(STDERR_FILENO) == 1) {}
 

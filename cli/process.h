@@ -12,8 +12,6 @@ namespace quadrille::cli {
 void note_start();
 /// Seconds since then.
 [[nodiscard]] double wall_seconds();
-/// The most memory that the process held at a time, in MiB.
-[[nodiscard]] double peak_rss_mib();
 
 /// Seconds that a piece of work takes.
 class Stopwatch {

@@ -6,6 +6,7 @@
 #include "cli/image_files.h"
 #include "cli/process.h"
 #include "models/base/error.h"
+#include "pipeline/host_cost.h"
 #include "pipeline/report.h"
 #include "scenes/image_io.h"
 
@@ -27,7 +28,7 @@ traces::RenderTarget shown_target(const traces::CommandStream& stream) {
 void note_host(pipeline::Figures& figures, double load_s) {
   figures.host.load_s = load_s;
   figures.host.wall_s = wall_seconds();
-  figures.host.peak_rss_mib = peak_rss_mib();
+  figures.host.peak_rss_mib = pipeline::peak_rss_mib();
 }
 
 }  // namespace

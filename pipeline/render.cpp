@@ -1,10 +1,9 @@
 #include "pipeline/render.h"
 
-#include <sys/resource.h>
-
 #include <bit>
 #include <chrono>
-#include <ctime>
+
+#include "pipeline/host_cost.h"
 
 namespace quadrille::pipeline {
 
@@ -12,19 +11,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-double peak_rss_mib() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 FrameImage read_image(const DeviceFrame& frame) {
   FrameImage image;

@@ -2,13 +2,13 @@
 
 #include <xxhash.h>
 
-#include <ctime>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "models/base/error.h"
+#include "pipeline/host_cost.h"
 #include "pipeline/render.h"
 #include "pipeline/report.h"
 #include "studies/child_run.h"
@@ -20,12 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLongestRunSeconds = 3600;
 
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 std::string image_hash(const pipeline::FrameImage& image) {
   const std::uint64_t color = XXH3_64bits(image.color.data(), image.color.size() * sizeof(image.color[0]));
   const std::uint64_t depth = XXH3_64bits(image.depth.data(), image.depth.size() * sizeof(image.depth[0]));
@@ -34,11 +28,11 @@ std::string image_hash(const pipeline::FrameImage& image) {
 
 /// In the child: the whole way from the file to the figures, as one line of JSON.
 std::string run_once(const LeaveOutScene& scene, const pipeline::MachineConfig& machine, bool leave_out) {
-  const double start = cpu_seconds();
+  const double start = pipeline::cpu_seconds();
   const LoadedScene scene_read = scene.load(leave_out);
-  const double loaded = cpu_seconds();
+  const double loaded = pipeline::cpu_seconds();
   const pipeline::RenderedFrame frame = pipeline::render_exact(scene_read.stream, machine, {.leave_out = leave_out});
-  const double end = cpu_seconds();
+  const double end = pipeline::cpu_seconds();
   if (!frame.figures.checks_hold()) throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(frame.figures));
   Json figures = Json::parse(pipeline::report_json({frame.figures, machine, frame.image.width, frame.image.height}));
   Json left_out = Json::array();

@@ -10,14 +10,6 @@ using nlohmann::json;
 
 namespace {
 
-/// Runs in a fresh folder and requires that the refusal left it empty.
-void refused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
-  const ScratchFolder folder;
-  CAPTURE(arguments);
-  require_refused(run_quadrille(folder, arguments), words);
-  CHECK(folder.empty());
-}
-
 void accuracy_refused(std::vector<std::string> more, const std::vector<std::string>& words) {
   std::vector<std::string> arguments{"accuracy", "builtin:triangle"};
   arguments.insert(arguments.end(), more.begin(), more.end());

@@ -23,4 +23,12 @@ inline void require_refused(const ProgramRun& run, const std::vector<std::string
   for (const std::string& word : words) CHECK_THAT(run.err, Catch::Contains(word));
 }
 
+/// Runs in a fresh folder and requires that the refusal left it empty.
+inline void refused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
+  const ScratchFolder folder;
+  CAPTURE(arguments);
+  require_refused(run_quadrille(folder, arguments), words);
+  CHECK(folder.empty());
+}
+
 }  // namespace quadrille::tests

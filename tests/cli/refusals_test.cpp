@@ -5,14 +5,6 @@ using namespace quadrille::tests;
 
 namespace {
 
-/// Runs in a fresh folder and requires that the refusal left it empty.
-void refused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) {
-  const ScratchFolder folder;
-  CAPTURE(arguments);
-  require_refused(run_quadrille(folder, arguments), words);
-  CHECK(folder.empty());
-}
-
 /// A render of the smallest scene, with these arguments too.
 void render_refused(std::vector<std::string> more, const std::vector<std::string>& words) {
   std::vector<std::string> arguments{"render", "builtin:triangle", "--size", "16x16"};

@@ -55,6 +55,13 @@ struct Group {
 [[nodiscard]] Group outside_cases();
 [[nodiscard]] std::vector<Group> all_groups();
 
+[[nodiscard]] inline std::string repeated(const std::string& text, std::size_t count) {
+  std::string out;
+  out.reserve(text.size() * count);
+  for (std::size_t i = 0; i < count; ++i) out += text;
+  return out;
+}
+
 /// Puts text or bytes into a file.
 void write_file(const fs::path& path, std::string_view text);
 /// A case that renders the scene file `name`, made of `text`, at 64x64.

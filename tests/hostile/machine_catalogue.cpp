@@ -18,12 +18,6 @@ const std::vector<std::string> kNumbers{
     "",      " ",   "-1",       "0",    "1e308", "-1e308", "1e999", "nan", "inf",    "-inf",  "99999999999999999999", "0x10", "1,5",
     "1.5.2", "one", "\xff\xfe", "1\n2", "--",    "=",      "\"1\"", "+1",  "1e-320", "NaN(1)"};
 
-std::string repeated(const std::string& text, int count) {
-  std::string out;
-  for (int i = 0; i < count; ++i) out += text;
-  return out;
-}
-
 }  // namespace
 
 Group machine_cases() {

@@ -25,13 +25,6 @@ std::string changed(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-std::string repeated(const std::string& text, std::size_t count) {
-  std::string out;
-  out.reserve(text.size() * count);
-  for (std::size_t i = 0; i < count; ++i) out += text;
-  return out;
-}
-
 void add_json(std::vector<Case>& cases) {
   const std::string good = triangle_gltf();
   const auto add = [&](const std::string& what, const std::string& text, Expect expect = Expect::kRefused) {

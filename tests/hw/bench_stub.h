@@ -210,6 +210,14 @@ class Bench : public contract::Specimen {
 };
 
 /// A counter of a unit by name.
+/// The cache of any unit that has one: its lines, ways and misses under way.
+template <class Params>
+void set_cache(Params& params, int lines, int ways, int misses) {
+  params.cache_lines.set(lines);
+  params.cache_ways.set(ways);
+  params.cache_misses.set(misses);
+}
+
 [[nodiscard]] inline std::uint64_t counter(const Unit& unit, std::string_view name) {
   for (const Counter* c : unit.stats()->counters()) {
     if (c->name() == name) return c->value();

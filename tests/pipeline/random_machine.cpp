@@ -1,24 +1,13 @@
 #include "tests/pipeline/random_machine.h"
+#include "tests/pipeline/random_source.h"
 
 #include <algorithm>
-#include <random>
 
 namespace quadrille::pipeline::test {
 
 namespace {
 
-class Source {
- public:
-  explicit Source(std::uint64_t seed) : engine_(seed) {}
-  int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
-  int pick(std::initializer_list<int> values) { return *(values.begin() + integer(0, static_cast<int>(values.size()) - 1)); }
-  bool chance(double p) { return std::bernoulli_distribution(p)(engine_); }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-void randomize_link(LinkParams& link, Source& random, bool depth_one) {
+void randomize_link(LinkParams& link, RandomSource& random, bool depth_one) {
   link.depth.set(depth_one ? 1 : random.pick({1, 1, 2, 3, 5, 17}));
   link.width.set(random.integer(1, 2));
   link.credit_latency.set(random.pick({1, 2, 9}));
@@ -28,7 +17,7 @@ void randomize_link(LinkParams& link, Source& random, bool depth_one) {
 }  // namespace
 
 void randomize(MachineConfig& config, std::uint64_t seed) {
-  Source random(seed);
+  RandomSource random(seed);
   config.gpu.cores.set(random.integer(1, 8));
   config.gpu.partitions.set(random.integer(1, 8));
   config.gpu.channels.set(random.integer(1, 8));

@@ -1,10 +1,10 @@
 #include "tests/pipeline/random_stream.h"
+#include "tests/pipeline/random_source.h"
 
 #include "scenes/glsl.h"
 
 #include <array>
 #include <cstring>
-#include <random>
 
 namespace quadrille::pipeline::test {
 
@@ -47,16 +47,6 @@ struct Vertex {
   std::array<float, 2> uv;
 };
 
-class Source {
- public:
-  explicit Source(std::uint64_t seed) : engine_(seed) {}
-  int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
-  float real(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
-
- private:
-  std::mt19937_64 engine_;
-};
-
 std::vector<std::byte> bytes_of(const void* data, std::size_t size) {
   std::vector<std::byte> bytes(size);
   std::memcpy(bytes.data(), data, size);
@@ -64,7 +54,7 @@ std::vector<std::byte> bytes_of(const void* data, std::size_t size) {
 }
 
 /// A triangle of clip-space vertices: mostly on screen, some crossing the near plane, some tiny, some huge.
-void add_triangle(Source& random, std::vector<Vertex>& out) {
+void add_triangle(RandomSource& random, std::vector<Vertex>& out) {
   const float size = random.integer(0, 3) == 0 ? 0.05f : random.integer(0, 5) == 0 ? 40.0f : 0.9f;
   const float cx = random.real(-1, 1), cy = random.real(-1, 1), cz = random.real(0.05f, 0.95f);
   for (int i = 0; i < 3; ++i) {
@@ -76,7 +66,7 @@ void add_triangle(Source& random, std::vector<Vertex>& out) {
   }
 }
 
-traces::Pipeline random_pipeline(Source& random, traces::Index fragment) {
+traces::Pipeline random_pipeline(RandomSource& random, traces::Index fragment) {
   traces::Pipeline p;
   p.name = "random";
   p.vertex_shader = 0;
@@ -101,7 +91,7 @@ traces::Pipeline random_pipeline(Source& random, traces::Index fragment) {
   return p;
 }
 
-void add_texture(Source& random, traces::CommandStream& stream) {
+void add_texture(RandomSource& random, traces::CommandStream& stream) {
   traces::Image image{"noise", traces::Format::kR8G8B8A8Srgb, 32, 16, 6, {}};
   std::size_t texels = 0;
   for (std::uint32_t l = 0; l < image.levels; ++l) texels += std::size_t{std::max(1u, image.width >> l)} * std::max(1u, image.height >> l);
@@ -127,7 +117,7 @@ const std::vector<traces::Shader>& shaders() {
 }  // namespace
 
 traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape) {
-  Source random(seed);
+  RandomSource random(seed);
   traces::CommandStream stream;
   stream.name = "random";
   stream.shaders = shaders();

@@ -20,9 +20,7 @@ struct L2Bench final : Bench {
     LinkSpec out{.depth = 64};
   };
   L2Bench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
-    params.cache_lines.set(s.lines);
-    params.cache_ways.set(s.ways);
-    params.cache_misses.set(s.misses);
+    set_cache(params, s.lines, s.ways, s.misses);
     params.hit_clk.set(s.hit_clk);
     unit = std::make_unique<L2Slice>("unit", params, clock, std::vector<std::string>{"one", "many_7"});
     add(*unit);

@@ -36,9 +36,7 @@ struct DepthBench final : Bench {
       triangles[i] = flat_triangle({glm::ivec2{0, 0}, {0, 40}, {40, 0}}, static_cast<float>(i) / 8);
       if (i < 4) fill(warps[i], static_cast<float>(i + 1) / 8);
     }
-    params.cache_lines.set(s.lines);
-    params.cache_ways.set(s.ways);
-    params.cache_misses.set(s.misses);
+    set_cache(params, s.lines, s.ways, s.misses);
     unit = std::make_unique<DepthUnit>("unit", params, clock, frame, device, 1, triangles, warps, 0, 1, 1);
     add(*unit);
     feed(unit->coverage_in, s.coverage);

@@ -30,9 +30,7 @@ struct RopBench final : Bench {
     draw.blend.dst_color = models::BlendFactor::kOneMinusSrcAlpha;
     frame.draws = {draw};
     for (std::uint32_t i = 0; i < 4; ++i) fill(warps[i], i, s);
-    params.cache_lines.set(s.lines);
-    params.cache_ways.set(s.ways);
-    params.cache_misses.set(s.misses);
+    set_cache(params, s.lines, s.ways, s.misses);
     unit = std::make_unique<Rop>("unit", params, clock, frame, device, 1, warps, 0, 1, 1, 1);
     add(*unit);
     feed(unit->order_in, s.order);

@@ -38,9 +38,7 @@ struct TextureBench final : Bench {
       request.lod.fill(0);
     }
     params.groups_in_flight.set(s.groups);
-    params.cache_lines.set(s.lines);
-    params.cache_ways.set(s.ways);
-    params.cache_misses.set(s.misses);
+    set_cache(params, s.lines, s.ways, s.misses);
     params.filter_clk.set(s.filter_clk);
     unit = std::make_unique<TextureUnit>("unit", params, clock, frame, device, slots, 1);
     add(*unit);

@@ -1,8 +1,6 @@
 #include "models/raster/clip.h"
 
-#include "models/raster/coarse.h"
-#include "models/raster/fine.h"
-#include "tests/models/raster/brute_force.h"
+#include "tests/models/raster/cover_count.h"
 
 #include <catch2/catch.hpp>
 
@@ -131,7 +129,7 @@ TEST_CASE("clip: a floor that reaches behind the eye covers each pixel below the
       const float z = reach * (2.0f * static_cast<float>(j) / static_cast<float>(cells) - 1.0f) + 0.37f;
       return glm::vec4(x, 1.0f, (z - near) * (far / (far - near)), z);
     };
-    std::vector<int> count(256 * 256);
+    CoverCount count(256, 8);
     const auto draw = [&](const glm::vec4& a, const glm::vec4& b, const glm::vec4& c) {
       ClippedPolygon polygon;
       const ClipOutcome outcome = clip(a, b, c, polygon);
@@ -139,17 +137,7 @@ TEST_CASE("clip: a floor that reaches behind the eye covers each pixel below the
       std::array<WindowVertex, kMaxClipVertices> w;
       for (std::size_t i = 0; i < static_cast<std::size_t>(polygon.count); ++i)
         REQUIRE(to_window(polygon.vertices[i].position, kView, 8, w[i]));
-      for (std::size_t i = 1; i + 1 < static_cast<std::size_t>(polygon.count); ++i) {
-        TriangleSetup t;
-        if (setup_in_square({w[0], w[i], w[i + 1]}, 256, 8, t) != SetupOutcome::kKept) continue;
-        TileWalk walk(t);
-        for (TileHit hit; walk.next(hit);) {
-          for (std::uint64_t mask = tile_coverage(t, hit.tile_x, hit.tile_y); mask != 0; mask &= mask - 1) {
-            const int entry = std::countr_zero(mask);
-            ++count[static_cast<std::size_t>((8 * hit.tile_y + entry_y(entry)) * 256 + 8 * hit.tile_x + entry_x(entry))];
-          }
-        }
-      }
+      for (std::size_t i = 1; i + 1 < static_cast<std::size_t>(polygon.count); ++i) count.add(w[0], w[i], w[i + 1]);
     };
     for (int j = 0; j < cells; ++j) {
       for (int i = 0; i < cells; ++i) {
@@ -161,9 +149,7 @@ TEST_CASE("clip: a floor that reaches behind the eye covers each pixel below the
       for (int x = 0; x < 256; ++x) {
         const int expected = y < 128 ? 0 : 1;
         if (y >= 124 && y <= 132) continue;  // where the floor ends, near the horizon
-        if (count[static_cast<std::size_t>(y * 256 + x)] != expected) {
-          FAIL("round " << round << " pixel " << x << "," << y << " covered " << count[static_cast<std::size_t>(y * 256 + x)] << " times");
-        }
+        if (count.at(x, y) != expected) FAIL("round " << round << " pixel " << x << "," << y << " covered " << count.at(x, y) << " times");
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include "models/raster/coarse.h"
 #include "tests/models/raster/brute_force.h"
+#include "tests/models/raster/cover_count.h"
 
 #include <catch2/catch.hpp>
 
@@ -14,29 +15,6 @@ using namespace quadrille::models;
 namespace {
 
 constexpr int kSize = 64;
-
-/// How often each pixel of a square is covered by a set of triangles, through set-up, walk and coverage.
-class CoverCount {
- public:
-  explicit CoverCount(int subpixel_bits) : bits_(subpixel_bits), count_(kSize * kSize) {}
-
-  void add(WindowVertex a, WindowVertex b, WindowVertex c) {
-    TriangleSetup t;
-    if (setup_in_square({a, b, c}, kSize, bits_, t) != SetupOutcome::kKept) return;
-    TileWalk walk(t);
-    for (TileHit hit; walk.next(hit);) {
-      for (std::uint64_t mask = tile_coverage(t, hit.tile_x, hit.tile_y); mask != 0; mask &= mask - 1) {
-        const int entry = std::countr_zero(mask);
-        ++count_[static_cast<std::size_t>((8 * hit.tile_y + entry_y(entry)) * kSize + 8 * hit.tile_x + entry_x(entry))];
-      }
-    }
-  }
-  [[nodiscard]] int at(int x, int y) const { return count_[static_cast<std::size_t>(y * kSize + x)]; }
-
- private:
-  int bits_;
-  std::vector<int> count_;
-};
 
 WindowVertex at(std::int32_t x, std::int32_t y) { return {x, y, 0.5f, 1.0f}; }
 
@@ -104,7 +82,7 @@ TEST_CASE("fine: a mesh covers each sample inside it exactly once") {
         grid[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = at(x, y);
       }
     }
-    CoverCount count(bits);
+    CoverCount count(kSize, bits);
     for (std::size_t j = 0; j < static_cast<std::size_t>(cells); ++j) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(cells); ++i) {
         WindowVertex a = grid[j][i], b = grid[j][i + 1], c = grid[j + 1][i], d = grid[j + 1][i + 1];
@@ -144,7 +122,7 @@ TEST_CASE("fine: a fan around a sample point covers it once") {
       return at(low, high - along);
     };
     const WindowVertex centre = at(random.integer(20, 40) * 256 + 128, random.integer(20, 40) * 256 + 128);
-    CoverCount count(8);
+    CoverCount count(kSize, 8);
     for (std::size_t i = 0; i < ring.size(); ++i) count.add(centre, on_square(ring[i].first), on_square(ring[(i + 1) % ring.size()].first));
     for (int y = 0; y < kSize; ++y) {
       for (int x = 0; x < kSize; ++x) {

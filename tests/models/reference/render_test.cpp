@@ -10,18 +10,6 @@ using namespace quadrille;
 using namespace quadrille::models::reference;
 using namespace quadrille::models::reference::test;
 
-namespace {
-
-std::size_t count_covered(const Result& r) {
-  return static_cast<std::size_t>(
-      std::count_if(r.triangle_id.begin(), r.triangle_id.end(), [](std::uint64_t id) { return id != kNoTriangle; }));
-}
-
-/// A vertex at a window position of a 16 x 16 target.
-Vertex at(float x, float y, std::array<float, 4> value = {1, 1, 1, 1}, float z = 0.5f) { return {{x / 8 - 1, y / 8 - 1, z, 1}, value}; }
-
-}  // namespace
-
 TEST_CASE("render: a full-screen quad covers every pixel once, half by each triangle") {
   TestFrame frame(16, 16);
   frame.pipeline();

@@ -4,6 +4,7 @@
 #include "models/reference/reference.h"
 #include "tests/models/reference/lane_shader.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace quadrille::models::reference::test {
@@ -71,6 +72,15 @@ class TestFrame {
 inline std::vector<Vertex> full_screen(std::array<float, 4> value, float z = 0.5f) {
   const Vertex a{{-1, -1, z, 1}, value}, b{{1, -1, z, 1}, value}, c{{1, 1, z, 1}, value}, d{{-1, 1, z, 1}, value};
   return {a, b, c, a, c, d};
+}
+
+/// A vertex at a window position of a 16 x 16 target.
+inline Vertex at(float x, float y, std::array<float, 4> value = {1, 1, 1, 1}, float z = 0.5f) {
+  return {{x / 8 - 1, y / 8 - 1, z, 1}, value};
+}
+
+inline std::size_t count_covered(const Result& r) {
+  return static_cast<std::size_t>(std::ranges::count_if(r.triangle_id, [](std::uint64_t id) { return id != kNoTriangle; }));
 }
 
 inline int channel(std::uint32_t rgba, int c) { return static_cast<int>((rgba >> (8 * c)) & 0xffu); }
