@@ -9,7 +9,6 @@
 #include <limits>
 #include <set>
 #include <tuple>
-#include <vector>
 
 using namespace quadrille::models;
 
