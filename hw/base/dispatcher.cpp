@@ -95,26 +95,25 @@ std::vector<std::vector<Dispatcher::Neighbour>> Dispatcher::surprisers() const {
 /// Dijkstra's algorithm against the flow of surprises, until the nearest other chooser and the shortest way back are known. A fixed-order unit adds no time of
 /// its own: it may act in the very tick that enables it.
 Dispatcher::Reach Dispatcher::reach_of(std::size_t chooser, const std::vector<std::vector<Neighbour>>& surprisers) const {
-  Reach reach;
-  std::vector<bool> settled(units_.size());
+  Tick others = kNever;
+  std::vector<Tick> nearest(units_.size(), kNever);  // the shortest way known to each unit; to the chooser itself a round trip
   using Entry = std::pair<Tick, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  for (const Neighbour& n : surprisers[chooser]) open.emplace(n.latency, n.unit);
-  while (!open.empty() && (reach.self == kNever || reach.others == kNever)) {
+  open.emplace(0, chooser);
+  while (!open.empty()) {
     const auto [distance, unit] = open.top();
     open.pop();
-    if (settled[unit]) continue;
-    settled[unit] = true;
-    if (unit == chooser) {
-      reach.self = distance;
-      continue;
-    }
-    if (units_[unit]->unit_kind() == Unit::Kind::kChooser) reach.others = std::min(reach.others, distance);
+    if (distance >= std::max(nearest[chooser], others)) break;
+    if (distance > nearest[unit]) continue;
     for (const Neighbour& n : surprisers[unit]) {
-      if (!settled[n.unit]) open.emplace(saturating_add(distance, n.latency), n.unit);
+      const Tick there = saturating_add(distance, n.latency);
+      if (there >= nearest[n.unit]) continue;
+      nearest[n.unit] = there;
+      if (n.unit != chooser && units_[n.unit]->unit_kind() == Unit::Kind::kChooser) others = std::min(others, there);
+      open.emplace(there, n.unit);
     }
   }
-  return reach;
+  return {others, nearest[chooser]};
 }
 
 void Dispatcher::step() {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <set>
+#include <unordered_map>
+#include <utility>
 
 namespace quadrille::hw {
 
@@ -36,43 +38,13 @@ void Unit::charge_wait(Tick until, const PortBase* cause) {
   (cause->direction() == PortBase::Direction::kIn ? starved_ : blocked_) += waited;
 }
 
-namespace {
-
-/// Latest tick at which a token of a draw moved on any flow that leads into `port`'s FIFO. Walks the flow graph upstream, each FIFO once.
-Tick upstream_activity(const FifoBase& fifo, std::set<const FifoBase*>& seen) {
-  if (!seen.insert(&fifo).second) return 0;
-  Tick last = std::max(fifo.last_push(), fifo.last_pop());
-  const Unit& producer = *fifo.producer();
-  int stream = 0;
-  for (const PortBase* p : producer.ports())
-    if (&p->fifo() == &fifo) stream = p->stream();
-  for (const PortBase* p : producer.ports()) {
-    if (p->direction() != PortBase::Direction::kIn || p->role() != LinkRole::kFlow) continue;
-    if (stream != 0 && p->stream() != 0 && p->stream() != stream) continue;
-    last = std::max(last, upstream_activity(p->fifo(), seen));
-  }
-  return last;
-}
-
-}  // namespace
-
-Tick Unit::reachable_until() const {
-  std::set<const FifoBase*> seen;
-  Tick last = 0;
-  for (const PortBase* p : ports_) {
-    if (p->direction() == PortBase::Direction::kIn && p->role() == LinkRole::kFlow)
-      last = std::max(last, upstream_activity(p->fifo(), seen));
-  }
-  return last;
-}
-
-void Unit::close(Tick end) {
+void Unit::close(Tick end, Tick reachable_until) {
   const Tick last_edge = clock_.align(end);
   if (accounted_ > last_edge) {  // the last occupation outlives the frame: the frame's cycles are what is reported
     busy_ -= span(last_edge, accounted_);
     accounted_ = last_edge;
   }
-  const Tick reach = std::clamp(clock_.align(reachable_until()), accounted_, last_edge);
+  const Tick reach = std::clamp(clock_.align(reachable_until), accounted_, last_edge);
   if (reach > accounted_) {
     const Wake wake = next();
     charge_wait(reach, wake.cause());
@@ -83,6 +55,59 @@ void Unit::close(Tick end) {
   const std::int64_t busy = busy_cycles(), starved = starved_cycles(), blocked = blocked_cycles(), idle = idle_cycles();
   QUADRILLE_CHECK(busy + starved + blocked + idle == total_, "{}: busy {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy,
                   starved, blocked, idle, total_);
+}
+
+namespace {
+
+/// For each unit the latest tick at which a token moved on any flow that leads to it. Links are followed downstream in order of their latest move, the latest
+/// first, each only to where no earlier one came: every flow through a unit is walked once.
+class FlowActivity {
+ public:
+  explicit FlowActivity(const std::vector<Unit*>& units) {
+    std::vector<std::pair<Tick, const PortBase*>> moves;
+    for (const Unit* unit : units) {
+      for (const PortBase* port : unit->ports()) {
+        if (port->direction() != PortBase::Direction::kIn || port->role() != LinkRole::kFlow) continue;
+        input_of_.emplace(&port->fifo(), port);
+        moves.emplace_back(std::max(port->fifo().last_push(), port->fifo().last_pop()), port);
+      }
+    }
+    std::sort(moves.begin(), moves.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (const auto& [moved, input] : moves) follow(*input, moved);
+  }
+  /// 0 if none leads there.
+  [[nodiscard]] Tick reaching(const Unit& unit) const {
+    const auto found = latest_.find(&unit);
+    return found == latest_.end() ? 0 : found->second;
+  }
+
+ private:
+  void follow(const PortBase& from, Tick moved) {
+    std::vector<const PortBase*> open{&from};
+    while (!open.empty()) {
+      const PortBase& input = *open.back();
+      open.pop_back();
+      const Unit& unit = input.owner();
+      if (!entered_.emplace(&unit, input.stream()).second) continue;
+      latest_.emplace(&unit, moved);
+      for (const PortBase* output : unit.ports()) {
+        if (output->direction() != PortBase::Direction::kOut) continue;
+        if (output->stream() != 0 && input.stream() != 0 && output->stream() != input.stream()) continue;
+        if (const auto next = input_of_.find(&output->fifo()); next != input_of_.end()) open.push_back(next->second);
+      }
+    }
+  }
+
+  std::unordered_map<const FifoBase*, const PortBase*> input_of_;  ///< inputs that carry a flow, by their link
+  std::set<std::pair<const Unit*, int>> entered_;                  ///< units, and the stream by which they were entered
+  std::unordered_map<const Unit*, Tick> latest_;
+};
+
+}  // namespace
+
+void close_accounts(const std::vector<Unit*>& units, Tick end) {
+  const FlowActivity activity(units);
+  for (Unit* unit : units) unit->close(end, activity.reaching(*unit));
 }
 
 }  // namespace quadrille::hw

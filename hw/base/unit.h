@@ -111,8 +111,8 @@ class Unit : public sc_core::sc_module {
     ++actions_;
     act(now);
   }
-  /// Charges what is left up to `end` (see idle) and closes the accounts.
-  void close(Tick end);
+  /// Charges what is left up to `end` and closes the accounts; for `close_accounts`. After `reachable_until` no token of a draw was on its way to this unit.
+  void close(Tick end, Tick reachable_until);
 
   [[nodiscard]] Kind unit_kind() const { return kind_; }
   [[nodiscard]] const Clock& clock() const { return clock_; }
@@ -164,8 +164,6 @@ class Unit : public sc_core::sc_module {
   void charge_wait(Tick until, const PortBase* cause);
   /// Span within [from, to) in which no draw was in flight.
   [[nodiscard]] std::int64_t quiet_span(Tick from, Tick to) const;
-  /// Last tick at which a token of a draw could still have been on its way to this unit.
-  [[nodiscard]] Tick reachable_until() const;
 
   Tick accounted_ = 0;  ///< every cycle before this tick is charged
   Tick last_action_ = -1;
@@ -180,5 +178,9 @@ class Unit : public sc_core::sc_module {
   Kind kind_;
   std::vector<PortBase*> ports_;
 };
+
+/// Closes the accounts of all units of a machine: a unit waits until the last tick at which a token of a draw moved on any flow that leads to it, and is idle
+/// from there to `end`.
+void close_accounts(const std::vector<Unit*>& units, Tick end);
 
 }  // namespace quadrille::hw

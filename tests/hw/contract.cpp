@@ -84,7 +84,7 @@ std::string run_here(const Builder& build, const Variation& v) {
   const std::vector<Unit*>& units = driver->units();
   if (!specimen->finished()) return "failed: did not finish; " + deadlock_report(units, std::max<Tick>(0, driver->last_action()));
   const Tick end = specimen->end() == kNever ? default_end(units) : specimen->end();
-  for (Unit* unit : units) unit->close(end);
+  close_accounts(units, end);
   if (const std::string text = attribution_failures(units, end); !text.empty()) return "failed: " + text;
   std::map<std::string, std::int64_t> figures;
   for (const Unit* unit : units) add_unit_figures(*unit, figures);

@@ -123,10 +123,10 @@ TEST_CASE("attribution: intervals in which no draw is in flight are idle for eve
     World world(w, driver);
     for (int i = 0; i < 3; ++i) world.unit(i).set_quiet_log(quiet);
     driver.run({});
+    close_accounts(driver.units(), 60 * kCycle);
     std::string all;
     for (int i = 0; i < 3; ++i) {
-      Unit& u = world.unit(i);
-      u.close(60 * kCycle);
+      const Unit& u = world.unit(i);
       all += fmt::format("{} {} {} {};", u.busy_cycles(), u.starved_cycles(), u.blocked_cycles(), u.idle_cycles());
     }
     return all;
