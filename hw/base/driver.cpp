@@ -55,10 +55,11 @@ void Driver::shuffle(std::uint64_t seed) {
 std::vector<FifoBase*> links_of(const std::vector<Unit*>& units) {
   std::vector<FifoBase*> links;
   for (const Unit* unit : units) {
-    for (const PortBase* port : unit->ports()) links.push_back(&port->fifo());
+    for (const PortBase* port : unit->ports()) {
+      FifoBase& link = port->fifo();
+      if (port->direction() == PortBase::Direction::kIn || link.consumer() == nullptr) links.push_back(&link);
+    }
   }
-  std::sort(links.begin(), links.end(), std::less<>());
-  links.erase(std::unique(links.begin(), links.end()), links.end());
   return links;
 }
 

@@ -61,7 +61,7 @@ class Driver : public sc_core::sc_module {
   std::exception_ptr failure_;  ///< once set, no unit acts any more
 };
 
-/// Every link that these units are bound to, once.
+/// Every link of a machine's units, once: by consumer.
 [[nodiscard]] std::vector<FifoBase*> links_of(const std::vector<Unit*>& units);
 
 /// Tokens that lie in the links of these units. Not 0 after a quiescent run: somebody waits for what will never come.
