@@ -69,6 +69,7 @@ Tick FifoBase::crossed_pop(Tick now) const {
 Tick FifoBase::crossed_cycle(Tick now) const { return producer_->clock().after(now, 1); }
 
 int FifoBase::free_slots(Tick now) const {
+  if (credit_step_ != 0 && last_pop_ + credit_step_ <= now) return depth_ - count_;
   int n = 0;
   for (std::uint32_t i = tail_; n < depth_ - count_ && stamps()[i] <= now; i = wrap(i)) ++n;
   return n;

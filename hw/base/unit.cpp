@@ -26,7 +26,7 @@ std::int64_t Unit::quiet_span(Tick from, Tick to) const {
 
 void Unit::charge_wait(Tick until, const PortBase* cause) {
   const std::int64_t all = span(accounted_, until);
-  const std::int64_t quiet = quiet_ == nullptr ? 0 : quiet_span(accounted_, until);
+  const std::int64_t quiet = quiet_ != nullptr && quiet_->any_after(accounted_) ? quiet_span(accounted_, until) : 0;
   idle_ += quiet;
   const std::int64_t waited = all - quiet;
   accounted_ = until;

@@ -80,6 +80,7 @@ class QuietLog {
     if (to > from) intervals_.push_back({from, to});
   }
   [[nodiscard]] const std::vector<Interval>& intervals() const { return intervals_; }
+  [[nodiscard]] bool any_after(Tick t) const { return !intervals_.empty() && intervals_.back().to > t; }
 
  private:
   std::vector<Interval> intervals_;

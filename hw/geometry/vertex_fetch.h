@@ -8,12 +8,11 @@
 #pragma once
 
 #include "hw/base/param.h"
+#include "hw/base/queue.h"
 #include "hw/frame/stores.h"
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 #include "models/geometry/post_transform.h"
-
-#include <deque>
 
 namespace quadrille::hw {
 
@@ -88,7 +87,7 @@ class VertexFetch final : public Unit {
   bool drawing_ = false;
   std::uint32_t draw_ = 0, instance_ = 0, triangle_ = 0;  ///< next triangle to take
   std::vector<std::uint32_t> free_slots_;
-  std::deque<Pending> pending_;
+  Queue<Pending> pending_;
   std::uint32_t first_pending_ = 0;  ///< number of pending_.front(); waiters are named by number
   std::vector<Line> lines_;          ///< look-ups of the newest batch
   std::size_t next_line_ = 0;        ///< the first of them not done

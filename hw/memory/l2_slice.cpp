@@ -48,18 +48,14 @@ Wake L2Slice::next() const {
   Wake wake = look_up_wake();
   wake = Wake::sooner(wake, Wake().input(fill_in));
   if (!to_memory_.empty()) wake = Wake::sooner(wake, Wake().output(memory_out));
-  visit_answering([&](std::size_t c) { wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c])); });
+  if (answer_due_ < wake.at())
+    visit_answering([&](std::size_t c) { wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c])); });
   return wake;
 }
 
 void L2Slice::act(Tick now) {
   while (fill_in.ready_at(now)) take_fill(now);
-  visit_answering([&](std::size_t c) {
-    if (answers_[c].front().at > now || !response_out[c]->room_at(now)) return;
-    response_out[c]->push(now, answers_[c].front().token);
-    answers_[c].pop_front();
-    if (answers_[c].empty()) answering_[c / 64] ^= std::uint64_t{1} << (c % 64);
-  });
+  if (answer_due_ <= now) send_answers(now);
   if (can_look_up() && free_ <= now) {
     request_in.visit_holding(turn_, [&](std::size_t c, const FifoIn<MemoryRequest>& in) {
       if (!in.ready_at(now)) return false;
@@ -71,6 +67,19 @@ void L2Slice::act(Tick now) {
     memory_out.push(now, to_memory_.front());
     to_memory_.pop_front();
   }
+}
+
+void L2Slice::send_answers(Tick now) {
+  answer_due_ = kNever;
+  visit_answering([&](std::size_t c) {
+    Queue<Answer>& queue = answers_[c];
+    if (queue.front().at <= now && response_out[c]->room_at(now)) {
+      response_out[c]->push(now, queue.front().token);
+      queue.pop_front();
+    }
+    if (queue.empty()) answering_[c / 64] ^= std::uint64_t{1} << (c % 64);
+    else answer_due_ = std::min(answer_due_, queue.front().at);
+  });
 }
 
 void L2Slice::look_up(Tick now, std::uint32_t client) {
@@ -159,12 +168,12 @@ void L2Slice::take_fill(Tick now) {
 
 void L2Slice::answer(Tick at, std::uint32_t client, const MemoryResponse& token) {
   stats_.read_bytes += bytes_of(token.sectors);
-  auto& queue = answers_[client];
+  Queue<Answer>& queue = answers_[client];
+  queue.push_back({at, token});
   // Misses overtake hits that were looked up later but answer after a fixed latency: keep the queue in order of time.
-  auto place = queue.end();
-  while (place != queue.begin() && std::prev(place)->at > at) --place;
-  queue.insert(place, {at, token});
+  for (std::size_t i = queue.size() - 1; i > 0 && queue[i - 1].at > at; --i) std::swap(queue[i - 1], queue[i]);
   answering_[client / 64] |= std::uint64_t{1} << (client % 64);
+  answer_due_ = std::min(answer_due_, at);
 }
 
 }  // namespace quadrille::hw

@@ -8,11 +8,11 @@
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
+#include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
 #include "models/cache/tag_array.h"
 
 #include <bit>
-#include <deque>
 #include <memory>
 
 namespace quadrille::hw {
@@ -64,6 +64,7 @@ class L2Slice final : public Unit {
   };
   [[nodiscard]] Wake look_up_wake() const;
   [[nodiscard]] bool can_look_up() const;
+  void send_answers(Tick now);
   void look_up(Tick now, std::uint32_t client);
   /// False when the line has no place now; nothing was changed.
   bool read(Tick now, std::uint32_t client, const MemoryRequest& request);
@@ -86,9 +87,10 @@ class L2Slice final : public Unit {
   std::vector<Miss> misses_;
   std::vector<std::uint32_t> free_misses_;
   std::vector<int> miss_of_slot_;
-  std::vector<std::deque<Answer>> answers_;  ///< by client, in order of time
-  std::vector<std::uint64_t> answering_;     ///< a bit a client: it has answers
-  std::deque<MemoryRequest> to_memory_;
+  std::vector<Queue<Answer>> answers_;    ///< by client, in order of time
+  std::vector<std::uint64_t> answering_;  ///< a bit a client: it has answers
+  Tick answer_due_ = kNever;              ///< no client has an answer due before
+  Queue<MemoryRequest> to_memory_;
   std::size_t turn_ = 0;
   bool stalled_ = false;  ///< the line in turn had no place; a fill will make one
   Tick free_ = 0;

@@ -6,11 +6,10 @@
 #pragma once
 
 #include "hw/base/param.h"
+#include "hw/base/queue.h"
 #include "hw/base/unit.h"
 #include "hw/frame/tokens.h"
 #include "models/memory/dram.h"
-
-#include <deque>
 
 namespace quadrille::hw {
 
@@ -60,7 +59,7 @@ class MemoryChannel final : public Unit {
   const std::uint32_t channels_;
   Stats stats_;
   models::DramChannel dram_;
-  std::deque<Access> under_way_;  ///< in order of completion
+  Queue<Access> under_way_;  ///< in order of completion
   Tick free_ = 0;
 };
 

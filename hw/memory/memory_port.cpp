@@ -16,34 +16,27 @@ MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices) : stats_(stats
 void MemoryPort::read(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag) {
   ++stats_.reads;
   stats_.read_bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(sectors));
-  queue_.push_back({line, tag, sectors, MemoryRequest::Kind::kRead});
+  queue({line, tag, sectors, MemoryRequest::Kind::kRead});
 }
 
 void MemoryPort::write(std::uint32_t line, std::uint8_t sectors) {
   ++stats_.writes;
   stats_.write_bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(sectors));
-  queue_.push_back({line, 0, sectors, MemoryRequest::Kind::kWrite});
+  queue({line, 0, sectors, MemoryRequest::Kind::kWrite});
 }
 
 void MemoryPort::fence(std::uint32_t tag) {
   // Any line of each slice will do: consecutive lines of a group visit every slice once.
-  for (int i = 0; i < slices(); ++i) queue_.push_back({static_cast<std::uint32_t>(i), tag, 0, MemoryRequest::Kind::kFence});
-}
-
-Wake MemoryPort::send_wake() const {
-  const std::uint32_t slice = slice_of(queue_.front().line, static_cast<std::uint32_t>(slices()));
-  return Wake().output(*request_out[slice]);
+  for (int i = 0; i < slices(); ++i) queue({static_cast<std::uint32_t>(i), tag, 0, MemoryRequest::Kind::kFence});
 }
 
 void MemoryPort::send(Tick now) {
   while (!queue_.empty()) {
-    FifoOut<MemoryRequest>& out = *request_out[slice_of(queue_.front().line, static_cast<std::uint32_t>(slices()))];
+    FifoOut<MemoryRequest>& out = *request_out[queue_.front().slice];
     if (!out.room_at(now)) return;
-    out.push(now, queue_.front());
+    out.push(now, queue_.front().request);
     queue_.pop_front();
   }
 }
-
-Wake MemoryPort::receive_wake() const { return response_in.earliest(); }
 
 }  // namespace quadrille::hw

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "hw/base/fifo_group.h"
+#include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
 
-#include <deque>
 #include <memory>
 
 namespace quadrille::hw {
@@ -38,11 +38,11 @@ class MemoryPort {
   [[nodiscard]] bool queue_empty() const { return queue_.empty(); }
   [[nodiscard]] std::size_t queued() const { return queue_.size(); }
   /// When the oldest queued request could leave.
-  [[nodiscard]] Wake send_wake() const;
+  [[nodiscard]] Wake send_wake() const { return Wake().output(*request_out[queue_.front().slice]); }
   /// Sends what has room at `now`, in order.
   void send(Tick now);
   /// When the next answer is there.
-  [[nodiscard]] Wake receive_wake() const;
+  [[nodiscard]] Wake receive_wake() const { return response_in.earliest(); }
   /// Calls `take(answer)` for every answer that is there at `now`, slice by slice.
   template <class Take>
   void receive(Tick now, Take&& take) {
@@ -54,8 +54,14 @@ class MemoryPort {
   FifoInGroup<MemoryResponse> response_in;
 
  private:
+  struct Queued {
+    MemoryRequest request;
+    std::uint32_t slice = 0;
+  };
+  void queue(const MemoryRequest& request) { queue_.push_back({request, slice_of(request.line, static_cast<std::uint32_t>(slices()))}); }
+
   MemoryPortStats stats_;
-  std::deque<MemoryRequest> queue_;
+  Queue<Queued> queue_;
 };
 
 }  // namespace quadrille::hw

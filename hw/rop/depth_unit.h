@@ -11,10 +11,9 @@
 #pragma once
 
 #include "hw/base/param.h"
+#include "hw/base/queue.h"
 #include "hw/frame/stores.h"
 #include "hw/rop/surface_cache.h"
-
-#include <deque>
 
 namespace quadrille::hw {
 
@@ -112,8 +111,8 @@ class DepthUnit final : public Unit {
   MemoryPort port_;
   SurfaceCache cache_;
   std::uint32_t pass_ = 0;
-  std::deque<EarlyEntry> early_;
-  std::deque<LateEntry> late_;
+  Queue<EarlyEntry> early_;
+  Queue<LateEntry> late_;
   std::uint32_t first_early_ = 0, first_late_ = 0;  ///< numbers of the fronts; waiters are named by number and port
   bool stalled_ = false;                            ///< the cache had no place; a fill will make one
   bool lowering_ = true;                            ///< no draw of the pass so far can raise a depth

@@ -9,10 +9,9 @@
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
+#include "hw/base/queue.h"
 #include "hw/frame/stores.h"
 #include "hw/rop/surface_cache.h"
-
-#include <deque>
 
 namespace quadrille::hw {
 
@@ -89,7 +88,7 @@ class Rop final : public Unit {
   MemoryPort port_;
   SurfaceCache cache_;
   std::uint32_t pass_ = 0;
-  std::deque<Entry> entries_;
+  Queue<Entry> entries_;
   std::uint32_t first_entry_ = 0;          ///< number of entries_.front()
   std::size_t tested_ = 0, acquired_ = 0;  ///< entries from the front that are past these stages (tested: test sent or not needed)
   std::size_t awaiting_ = 0;               ///< entries from the front whose late answer is in or not needed

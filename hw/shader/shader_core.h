@@ -9,11 +9,10 @@
 #pragma once
 
 #include "hw/base/param.h"
+#include "hw/base/queue.h"
 #include "hw/base/unit.h"
 #include "hw/frame/tokens.h"
 #include "hw/shader/core_slots.h"
-
-#include <deque>
 
 namespace quadrille::hw {
 
@@ -93,7 +92,7 @@ class ShaderCore final : public Unit {
   std::vector<std::uint32_t> free_slots_;
   int free_rows_;
   std::vector<Tick> simd_free_;
-  std::deque<Ready> ready_;
+  Queue<Ready> ready_;
   std::vector<Completion> completions_;
   Tick accept_free_ = 0;
 };

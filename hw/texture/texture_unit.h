@@ -9,12 +9,11 @@
 #pragma once
 
 #include "hw/base/param.h"
+#include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 #include "hw/shader/core_slots.h"
-
-#include <deque>
 
 namespace quadrille::hw {
 
@@ -73,7 +72,7 @@ class TextureUnit final : public Unit {
   MemoryPort port_;
   L1Cache cache_;
   models::TexturePlan plan_;
-  std::deque<Group> groups_;
+  Queue<Group> groups_;
   std::uint32_t first_group_ = 0;           ///< number of groups_.front(); waiters are named by number
   std::vector<models::TextureLine> lines_;  ///< look-ups of the newest group
   std::size_t next_line_ = 0;
