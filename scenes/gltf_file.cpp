@@ -77,15 +77,6 @@ void list_images(GltfFile& file, const PreparedJson& json) {
   }
 }
 
-void check_version(const GltfFile& file) {
-  const tinygltf::Asset& asset = file.model.asset;
-  const bool two =
-      asset.version.size() > 2 && asset.version.starts_with("2.") && asset.version.find_first_not_of("0123456789", 2) == std::string::npos;
-  if (!two) throw user_error("{}: asset.version '{}'; glTF 2.x is read", file.path, asset.version);
-  if (!asset.minVersion.empty() && asset.minVersion != "2.0")
-    throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", file.path, asset.minVersion);
-}
-
 }  // namespace
 
 GltfFile read_gltf_file(const std::string& path) {
@@ -95,7 +86,6 @@ GltfFile read_gltf_file(const std::string& path) {
   const GltfContainer container = split_gltf(path, bytes);
   const PreparedJson json = prepare_json(path, container.json);
   parse(file, json);
-  check_version(file);
   check_extensions(path, file.model);
   read_buffers(file, json, container);
   list_images(file, json);

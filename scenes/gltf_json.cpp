@@ -45,6 +45,7 @@ class Preparer {
       fail("its JSON", fmt::format("cannot be parsed at byte {}: not JSON in UTF-8", error.byte));
     } catch (const Json::out_of_range&) { fail("its JSON", "holds a number that is too large for any type"); }
     if (!root_.is_object()) fail("its JSON", "is no object");
+    check_version();
     make_integers(root_, false);
     check_types(path, root_);
   }
@@ -63,6 +64,18 @@ class Preparer {
 
  private:
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const { throw user_error("{}: {} {}", path_, place, reason); }
+
+  /// Before all else: a glTF 1.0 file has objects where 2.0 has arrays.
+  void check_version() const {
+    Json only = Json::object();
+    if (root_.contains("asset")) only["asset"] = root_["asset"];
+    check_types(path_, only);
+    const Json& asset = only["asset"];
+    const std::string version = asset["version"].get<std::string>(), least = asset.value("minVersion", "2.0");
+    const bool two = version.size() > 2 && version.starts_with("2.") && version.find_first_not_of("0123456789", 2) == std::string::npos;
+    if (!two) throw user_error("{}: asset.version '{}'; glTF 2.x is read", path_, version.substr(0, 40));
+    if (least != "2.0") throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", path_, least.substr(0, 40));
+  }
 
   /// An integer may be written as 1.0 or 1e0; tinygltf takes only digits. Members of extensions, though, it keeps as `int`, which wraps: there the large ones
   /// become fractions, which it keeps as double. The nesting is bounded by now.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string_view>
@@ -16,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-enum class Type : std::uint8_t { kAny, kObject, kArray, kIndex, kNumber, kString, kBool, kThree, kFour, kSixteen };
+enum class Type : std::uint8_t { kAny, kObject, kArray, kIndex, kNumber, kString, kBool, kTwo, kThree, kFour, kSixteen };
 
 const char* due(Type type) {
   switch (type) {
@@ -27,6 +28,7 @@ const char* due(Type type) {
     case Type::kNumber: return "a number";
     case Type::kString: return "a string";
     case Type::kBool: return "true or false";
+    case Type::kTwo: return "an array of 2 numbers";
     case Type::kThree: return "an array of 3 numbers";
     case Type::kFour: return "an array of 4 numbers";
     case Type::kSixteen: return "an array of 16 numbers";
@@ -38,15 +40,23 @@ bool numbers(const Json& value, std::size_t count) {
   return value.is_array() && value.size() == count && std::ranges::all_of(value, [](const Json& v) { return v.is_number(); });
 }
 
+/// Members of extensions beyond 31 bits have been made fractions (gltf_json.cpp).
+bool is_large_integer(const Json& value) {
+  if (!value.is_number_float()) return false;
+  const double number = value.get<double>();
+  return number >= 0 && number < 9007199254740992.0 && number == std::floor(number);
+}
+
 bool is(const Json& value, Type type) {
   switch (type) {
     case Type::kAny: return true;
     case Type::kObject: return value.is_object();
     case Type::kArray: return value.is_array();
-    case Type::kIndex: return value.is_number_unsigned();
+    case Type::kIndex: return value.is_number_unsigned() || is_large_integer(value);
     case Type::kNumber: return value.is_number();
     case Type::kString: return value.is_string();
     case Type::kBool: return value.is_boolean();
+    case Type::kTwo: return numbers(value, 2);
     case Type::kThree: return numbers(value, 3);
     case Type::kFour: return numbers(value, 4);
     case Type::kSixteen: return numbers(value, 16);
@@ -55,70 +65,120 @@ bool is(const Json& value, Type type) {
 }
 
 /// Members of one type: names by path from the document's root; "[]" is each element of an array, "*" each member of an object. What leads to a member is by
-/// that an object, or an array. One with "!" may not be missing where the object around it stands.
+/// that an object, or an array. One with "!" may not be missing where the object around it stands. An index ends in ">" and the table that it leads into: one
+/// of the root, or with a dot before it one of the animation around it.
 struct Rule {
   Type type;
-  std::string_view paths;  ///< with a blank between two
+  std::string_view paths;       ///< with a blank between two
+  std::string_view legal = {};  ///< the only values, with a blank between two; empty: any of the type
 };
 
 constexpr std::array kRules{
     Rule{Type::kIndex,
-         "scene scenes[].nodes[] nodes[].mesh nodes[].camera nodes[].skin nodes[].children[] meshes[].primitives[].attributes.* "
-         "meshes[].primitives[].indices meshes[].primitives[].material meshes[].primitives[].mode meshes[].primitives[].targets[].* "
-         "accessors[].bufferView accessors[].byteOffset accessors[].componentType! accessors[].count! accessors[].sparse.count! "
-         "accessors[].sparse.indices.bufferView! accessors[].sparse.indices.byteOffset accessors[].sparse.indices.componentType! "
-         "accessors[].sparse.values.bufferView! accessors[].sparse.values.byteOffset bufferViews[].buffer! bufferViews[].byteOffset "
-         "bufferViews[].byteLength! bufferViews[].byteStride bufferViews[].target textures[].sampler textures[].source "
-         "samplers[].magFilter samplers[].minFilter samplers[].wrapS samplers[].wrapT "
-         "materials[].pbrMetallicRoughness.baseColorTexture.index! materials[].pbrMetallicRoughness.baseColorTexture.texCoord "
-         "materials[].pbrMetallicRoughness.metallicRoughnessTexture.index! "
-         "materials[].pbrMetallicRoughness.metallicRoughnessTexture.texCoord materials[].normalTexture.index! "
-         "materials[].normalTexture.texCoord materials[].occlusionTexture.index! materials[].occlusionTexture.texCoord "
-         "materials[].emissiveTexture.index! materials[].emissiveTexture.texCoord skins[].joints[] skins[].skeleton "
-         "skins[].inverseBindMatrices animations[].channels[].sampler! animations[].channels[].target.node animations[].samplers[].input! "
-         "animations[].samplers[].output!"},
+         "scene>scenes scenes[].nodes[]>nodes nodes[].mesh>meshes nodes[].camera>cameras nodes[].skin>skins nodes[].children[]>nodes "
+         "nodes[].extensions.KHR_lights_punctual.light!>extensions.KHR_lights_punctual.lights "
+         "nodes[].extensions.EXT_mesh_gpu_instancing.attributes.*>accessors meshes[].primitives[].attributes.*>accessors "
+         "meshes[].primitives[].indices>accessors meshes[].primitives[].material>materials meshes[].primitives[].mode "
+         "meshes[].primitives[].targets[].*>accessors accessors[].bufferView>bufferViews accessors[].byteOffset accessors[].count! "
+         "accessors[].sparse.count! accessors[].sparse.indices.bufferView!>bufferViews accessors[].sparse.indices.byteOffset "
+         "accessors[].sparse.values.bufferView!>bufferViews accessors[].sparse.values.byteOffset bufferViews[].buffer!>buffers "
+         "bufferViews[].byteOffset bufferViews[].byteLength! bufferViews[].byteStride bufferViews[].target images[].bufferView>bufferViews "
+         "textures[].sampler>samplers textures[].source>images textures[].extensions.EXT_texture_webp.source>images "
+         "textures[].extensions.MSFT_texture_dds.source>images samplers[].magFilter samplers[].minFilter samplers[].wrapS samplers[].wrapT "
+         "skins[].joints[]>nodes skins[].skeleton>nodes skins[].inverseBindMatrices>accessors animations[].channels[].sampler!>.samplers "
+         "animations[].channels[].target.node>nodes animations[].samplers[].input!>accessors animations[].samplers[].output!>accessors"},
+    Rule{Type::kIndex, "accessors[].componentType!", "5120 5121 5122 5123 5125 5126"},
+    Rule{Type::kIndex, "accessors[].sparse.indices.componentType!", "5121 5123 5125"},
     Rule{Type::kNumber,
          "nodes[].weights[] meshes[].weights[] accessors[].min[] accessors[].max[] materials[].pbrMetallicRoughness.metallicFactor "
          "materials[].pbrMetallicRoughness.roughnessFactor materials[].normalTexture.scale materials[].occlusionTexture.strength "
-         "materials[].alphaCutoff cameras[].perspective.yfov! cameras[].perspective.aspectRatio cameras[].perspective.znear! "
-         "cameras[].perspective.zfar cameras[].orthographic.xmag! cameras[].orthographic.ymag! cameras[].orthographic.znear! "
-         "cameras[].orthographic.zfar!"},
-    Rule{Type::kThree, "nodes[].translation nodes[].scale materials[].emissiveFactor"},
-    Rule{Type::kFour, "nodes[].rotation materials[].pbrMetallicRoughness.baseColorFactor"},
+         "materials[].alphaCutoff materials[].extensions.KHR_materials_clearcoat.clearcoatFactor "
+         "materials[].extensions.KHR_materials_clearcoat.clearcoatRoughnessFactor "
+         "materials[].extensions.KHR_materials_clearcoat.clearcoatNormalTexture.scale "
+         "materials[].extensions.KHR_materials_emissive_strength.emissiveStrength materials[].extensions.KHR_materials_ior.ior "
+         "materials[].extensions.KHR_materials_pbrSpecularGlossiness.glossinessFactor "
+         "materials[].extensions.KHR_materials_sheen.sheenRoughnessFactor materials[].extensions.KHR_materials_specular.specularFactor "
+         "materials[].extensions.KHR_materials_transmission.transmissionFactor materials[].extensions.KHR_materials_volume.thicknessFactor "
+         "cameras[].perspective.yfov! cameras[].perspective.aspectRatio cameras[].perspective.znear! cameras[].perspective.zfar "
+         "cameras[].orthographic.xmag! cameras[].orthographic.ymag! cameras[].orthographic.znear! cameras[].orthographic.zfar! "
+         "extensions.KHR_lights_punctual.lights[].intensity extensions.KHR_lights_punctual.lights[].range "
+         "extensions.KHR_lights_punctual.lights[].spot.innerConeAngle extensions.KHR_lights_punctual.lights[].spot.outerConeAngle"},
+    Rule{Type::kThree,
+         "nodes[].translation nodes[].scale materials[].emissiveFactor "
+         "materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularFactor "
+         "materials[].extensions.KHR_materials_sheen.sheenColorFactor materials[].extensions.KHR_materials_specular.specularColorFactor "
+         "materials[].extensions.KHR_materials_volume.attenuationColor extensions.KHR_lights_punctual.lights[].color"},
+    Rule{Type::kFour,
+         "nodes[].rotation materials[].pbrMetallicRoughness.baseColorFactor "
+         "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor"},
     Rule{Type::kSixteen, "nodes[].matrix"},
     Rule{Type::kString,
-         "asset.version! asset.minVersion scenes[].name nodes[].name meshes[].name materials[].name materials[].alphaMode "
-         "accessors[].type! cameras[].name "
-         "cameras[].type! skins[].name animations[].name animations[].channels[].target.path! animations[].samplers[].interpolation "
-         "extensionsUsed[] extensionsRequired[]"},
+         "asset.version! asset.minVersion scenes[].name nodes[].name meshes[].name materials[].name materials[].alphaMode cameras[].name "
+         "skins[].name animations[].name animations[].channels[].target.path! animations[].samplers[].interpolation extensionsUsed[] "
+         "extensionsRequired[] buffers[].uri images[].uri images[].name"},
+    Rule{Type::kString, "accessors[].type!", "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4"},
+    Rule{Type::kString, "cameras[].type!", "perspective orthographic"},
+    Rule{Type::kString, "extensions.KHR_lights_punctual.lights[].type!", "directional point spot"},
     Rule{Type::kBool, "accessors[].normalized materials[].doubleSided"},
     Rule{Type::kArray, "meshes[].primitives! skins[].joints! animations[].channels! animations[].samplers!"},
-    Rule{Type::kObject,
-         "asset! meshes[].primitives[].attributes! accessors[].sparse.indices! accessors[].sparse.values! animations[].channels[].target! "
-         "nodes[].extensions.* meshes[].primitives[].extensions.* materials[].extensions.* textures[].extensions.* extensions.*"}};
+    Rule{
+        Type::kObject,
+        "asset! meshes[].primitives[].attributes! accessors[].sparse.indices! accessors[].sparse.values! animations[].channels[].target!"}};
+
+/// Where a material mentions a texture. `attenuationDistance` of the volume is not among the numbers above: exporters write an infinite one as null.
+constexpr std::string_view kTextureInfos =
+    "pbrMetallicRoughness.baseColorTexture pbrMetallicRoughness.metallicRoughnessTexture normalTexture occlusionTexture emissiveTexture "
+    "extensions.KHR_materials_clearcoat.clearcoatTexture extensions.KHR_materials_clearcoat.clearcoatRoughnessTexture "
+    "extensions.KHR_materials_clearcoat.clearcoatNormalTexture extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture "
+    "extensions.KHR_materials_pbrSpecularGlossiness.specularGlossinessTexture extensions.KHR_materials_sheen.sheenColorTexture "
+    "extensions.KHR_materials_sheen.sheenRoughnessTexture extensions.KHR_materials_specular.specularTexture "
+    "extensions.KHR_materials_specular.specularColorTexture extensions.KHR_materials_transmission.transmissionTexture "
+    "extensions.KHR_materials_volume.thicknessTexture";
+constexpr std::array kTextureInfoRules{Rule{Type::kIndex, "index!>textures texCoord extensions.KHR_texture_transform.texCoord"},
+                                       Rule{Type::kNumber, "extensions.KHR_texture_transform.rotation"},
+                                       Rule{Type::kTwo, "extensions.KHR_texture_transform.offset extensions.KHR_texture_transform.scale"}};
+
+/// Visits the words of a text with a blank between two.
+template <class Visit>
+void for_each_word(std::string_view text, const Visit& visit) {
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t to = std::min(text.find(' ', from), text.size());
+    visit(text.substr(from, to - from));
+    from = to + 1;
+  }
+}
 
 /// What is due at a place of the document, and below it.
 struct Due {
   Type type = Type::kAny;
+  std::string_view legal, table;            ///< as in a rule
   std::map<std::string_view, Due> members;  ///< of an object
   std::vector<std::string_view> required;   ///< of these
   std::unique_ptr<Due> each;                ///< of an array's elements, or of all members of an object
 
-  void add(std::string_view path, Type leaf) {
-    if (path.empty()) {
-      type = leaf;
-      return;
-    }
+  void add(const Rule& rule) {
+    for_each_word(rule.paths, [&](std::string_view path) {
+      const std::size_t arrow = std::min(path.find('>'), path.size());
+      Due& due = at(path.substr(0, arrow));
+      due.type = rule.type;
+      due.legal = rule.legal;
+      due.table = path.substr(std::min(arrow + 1, path.size()));
+    });
+  }
+
+  /// What is due at this path, which begins here.
+  Due& at(std::string_view path) {
+    if (path.empty()) return *this;
     if (path.starts_with("[]")) {
       type = Type::kArray;
-      return below().add(path.substr(path.starts_with("[].") ? 3 : 2), leaf);
+      return below().at(path.substr(path.starts_with("[].") ? 3 : 2));
     }
     type = Type::kObject;
-    if (path == "*") return below().add("", leaf);
+    if (path == "*") return below();
     const std::size_t end = std::min(path.find_first_of(".[!"), path.size());
     const std::string_view name = path.substr(0, end), rest = path.substr(end);
     if (rest == "!") required.push_back(name);
-    members[name].add(rest == "!" ? "" : rest.substr(rest.starts_with('.') ? 1 : 0), leaf);
+    return members[name].at(rest == "!" ? "" : rest.substr(rest.starts_with('.') ? 1 : 0));
   }
 
  private:
@@ -130,14 +190,19 @@ struct Due {
 
 Due due_of_rules() {
   Due root;
-  for (const Rule& rule : kRules) {
-    for (std::size_t from = 0; from < rule.paths.size();) {
-      const std::size_t to = std::min(rule.paths.find(' ', from), rule.paths.size());
-      root.add(rule.paths.substr(from, to - from), rule.type);
-      from = to + 1;
-    }
-  }
+  for (const Rule& rule : kRules) root.add(rule);
+  Due& material = root.at("materials[]");
+  for_each_word(kTextureInfos, [&](std::string_view info) {
+    for (const Rule& rule : kTextureInfoRules) material.at(info).add(rule);
+  });
   return root;
+}
+
+/// Of the `extensions` of any object: all are objects. [glTF2.0 #specifying-extensions]
+Due due_of_extensions() {
+  Due due;
+  due.at("*").type = Type::kObject;
+  return due;
 }
 
 /// Where the walk is; spelled only when something is wrong there.
@@ -154,42 +219,110 @@ struct Place {
   }
 };
 
+/// "mesh" for "meshes", "light" for "extensions.KHR_lights_punctual.lights".
+std::string_view noun(std::string_view table) {
+  table.remove_prefix(table.rfind('.') + 1);
+  table.remove_suffix(table == "meshes" ? 2 : 1);
+  return table;
+}
+
 class Check {
  public:
-  explicit Check(const std::string& path) : path_(path) {}
+  Check(const std::string& path, const Json& root) : path_(path), root_(root) {}
 
   void value(const Json& value, const Due& wanted, const Place& place) const {
-    if (!is(value, wanted.type)) fail(place, wanted.type);
+    if (!is(value, wanted.type)) fail(place, wanted);
+    if (!wanted.legal.empty() && !among(value, wanted.legal)) fail(place, wanted);
+    if (!wanted.table.empty()) index(value, wanted.table, place);
     if (value.is_array() && wanted.each) {
       for (std::size_t i = 0; i < value.size(); ++i) this->value(value[i], *wanted.each, {&place, {}, i});
     }
     if (value.is_object()) members(value, wanted, place);
   }
 
- private:
-  void members(const Json& object, const Due& wanted, const Place& place) const {
-    for (auto item = object.begin(); item != object.end(); ++item) {
-      const auto known = wanted.members.find(item.key());
-      if (known != wanted.members.end()) value(*item, known->second, {&place, item.key(), 0});
-      else if (wanted.each) value(*item, *wanted.each, {&place, item.key(), 0});
-    }
-    for (const std::string_view name : wanted.required) {
-      if (!object.contains(name)) fail({&place, name, 0}, wanted.members.at(name).type, "is missing; ");
+  /// A camera has the part that its type names; a spot light has its cone.
+  void parts() const {
+    const Json* const lights = below(&root_, "extensions.KHR_lights_punctual.lights");
+    for (const Json* table : {below(&root_, "cameras"), lights}) {
+      for (std::size_t i = 0; table != nullptr && i < table->size(); ++i) {
+        const Json& item = (*table)[i];
+        const std::string part = item.at("type").get<std::string>();
+        if ((table != lights || part == "spot") && !item.contains(part))
+          throw user_error("{}: {}[{}].{}: is missing; an object is due", path_,
+                           table == lights ? "extensions.KHR_lights_punctual.lights" : "cameras", i, part);
+      }
     }
   }
 
-  [[noreturn]] void fail(const Place& place, Type type, const char* missing = "") const {
-    throw user_error("{}: {}: {}{} is due", path_, place.text(), missing, due(type));
+ private:
+  void members(const Json& object, const Due& wanted, const Place& place) const {
+    static const Due kExtensions = due_of_extensions();
+    for (auto item = object.begin(); item != object.end(); ++item) {
+      const auto known = wanted.members.find(item.key());
+      const Place here{&place, item.key(), 0};
+      if (item.key() == "extensions" && !wanted.members.empty()) value(*item, kExtensions, here);
+      if (known != wanted.members.end()) value(*item, known->second, here);
+      else if (wanted.each) value(*item, *wanted.each, here);
+    }
+    for (const std::string_view name : wanted.required) {
+      if (!object.contains(name)) fail({&place, name, 0}, wanted.members.at(name), "is missing; ");
+    }
+  }
+
+  static bool among(const Json& value, std::string_view legal) {
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    bool found = false;
+    for_each_word(legal, [&](std::string_view word) { found = found || word == text; });
+    return found;
+  }
+
+  /// The member of an object at a path of names with dots; null where one is missing.
+  static const Json* below(const Json* object, std::string_view path) {
+    while (object != nullptr) {
+      const std::size_t dot = path.find('.');
+      const auto found = object->find(path.substr(0, dot));
+      object = found == object->end() ? nullptr : &*found;
+      if (dot == std::string_view::npos) break;
+      path.remove_prefix(dot + 1);
+    }
+    return object;
+  }
+
+  /// The element of a table of the root in which the place lies.
+  const Json& item_around(const Place& place) const {
+    const Place* item = &place;
+    while (item->above->above->above != nullptr) item = item->above;
+    return root_.at(item->above->member)[item->index];
+  }
+
+  void index(const Json& value, std::string_view table, const Place& place) const {
+    const bool own = table.starts_with('.');
+    const Json* const into = own ? below(&item_around(place), table.substr(1)) : below(&root_, table);
+    if (into == nullptr ? own : !into->is_array()) return;  // which is refused where it stands
+    const std::size_t size = into == nullptr ? 0 : into->size();
+    if (value.get<std::uint64_t>() >= size)
+      throw user_error("{}: {}: {} {} does not exist (the {} has {})", path_, place.text(), noun(table), value.get<std::uint64_t>(),
+                       own ? "animation" : "file", size);
+  }
+
+  [[noreturn]] void fail(const Place& place, const Due& wanted, const char* missing = "") const {
+    if (wanted.legal.empty()) throw user_error("{}: {}: {}{} is due", path_, place.text(), missing, due(wanted.type));
+    std::string legal;
+    for_each_word(wanted.legal, [&](std::string_view word) { legal += (legal.empty() ? "" : ", ") + std::string(word); });
+    throw user_error("{}: {}: {}one of {} is due", path_, place.text(), missing, legal);
   }
 
   const std::string& path_;
+  const Json& root_;
 };
 
 }  // namespace
 
 void check_types(const std::string& path, const nlohmann::json& root) {
   static const Due kDue = due_of_rules();
-  Check(path).value(root, kDue, {});
+  const Check check(path, root);
+  check.value(root, kDue, {});
+  check.parts();
 }
 
 }  // namespace quadrille::scenes

@@ -17,10 +17,12 @@ namespace {
 /// A document with a member of every kind that the loader reads.
 Json everything() {
   return Json::parse(R"({
-    "asset": {"version": "2.0"}, "scene": 0, "extensionsUsed": ["KHR_x"], "extensions": {"KHR_x": {}},
+    "asset": {"version": "2.0"}, "scene": 0, "extensionsUsed": ["KHR_x"],
+    "extensions": {"KHR_x": {}, "KHR_lights_punctual": {"lights": [{"type": "spot", "color": [1, 1, 1], "intensity": 2, "range": 9,
+                   "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.5}}]}},
     "scenes": [{"name": "s", "nodes": [0]}],
     "nodes": [{"name": "n", "mesh": 0, "camera": 0, "skin": 0, "children": [1], "translation": [0, 0, 0], "rotation": [0, 0, 0, 1], "scale": [1, 1, 1],
-               "weights": [0.5], "extensions": {"KHR_x": {}}},
+               "weights": [0.5], "extensions": {"KHR_x": {}, "KHR_lights_punctual": {"light": 0}}},
               {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}],
     "meshes": [{"name": "m", "weights": [0], "primitives": [{"attributes": {"POSITION": 0}, "indices": 0, "material": 0, "mode": 4,
                 "targets": [{"POSITION": 0}], "extensions": {"KHR_x": {}}}]}],
@@ -28,8 +30,12 @@ Json everything() {
                    "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 1,
                      "baseColorTexture": {"index": 0, "texCoord": 0}, "metallicRoughnessTexture": {"index": 0, "texCoord": 0}},
                    "normalTexture": {"index": 0, "texCoord": 0, "scale": 1}, "occlusionTexture": {"index": 0, "texCoord": 0, "strength": 1},
-                   "emissiveTexture": {"index": 0, "texCoord": 0}, "extensions": {"KHR_x": {}}}],
-    "textures": [{"sampler": 0, "source": 0, "extensions": {"KHR_x": {}}}],
+                   "emissiveTexture": {"index": 0, "texCoord": 0, "extensions": {"KHR_x": {}, "KHR_texture_transform":
+                     {"offset": [0, 0], "scale": [1, 1], "rotation": 0, "texCoord": 1}}},
+                   "extensions": {"KHR_x": {}, "KHR_materials_ior": {"ior": 1.5}, "KHR_materials_sheen": {"sheenColorFactor": [0, 0, 0]},
+                     "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0, "scale": 1}}}}],
+    "textures": [{"sampler": 0, "source": 0, "extensions": {"KHR_x": {}, "EXT_texture_webp": {"source": 0}}}],
+    "images": [{"name": "i", "uri": "a.png", "bufferView": 0}], "buffers": [{"uri": "a.bin", "extensions": {"KHR_x": {}}}],
     "samplers": [{"magFilter": 9729, "minFilter": 9729, "wrapS": 10497, "wrapT": 10497}],
     "cameras": [{"name": "c", "type": "perspective", "perspective": {"yfov": 1, "aspectRatio": 1, "znear": 0.1, "zfar": 10}},
                 {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 1}}],
@@ -156,6 +162,66 @@ TEST_CASE("gltf types: what must be there is named when it is missing") {
   document["nodes"][0] = Json::object();
   document["textures"][0] = Json::object();
   REQUIRE(result(document) == "passed");
+}
+
+TEST_CASE("gltf types: every index leads to something, also where nothing is drawn of it") {
+  int indices = 0;
+  const Json flat = everything().flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    const std::string member = pointer.substr(pointer.rfind('/') + 1), around = pointer.substr(0, pointer.rfind('/'));
+    const bool index = std::string(
+                           " scene mesh camera skin light index source sampler material indices bufferView buffer node input output "
+                           "skeleton inverseBindMatrices ")
+                           .find(" " + member + " ") != std::string::npos;
+    const bool in_list = around.ends_with("/nodes") || around.ends_with("children") || around.ends_with("joints") ||
+                         around.ends_with("attributes") || around.find("/targets/") != std::string::npos;
+    if (!value.is_number() || (!index && !in_list)) continue;
+    Json document = everything();
+    document[Json::json_pointer(pointer)] = 2U;  // one table has two elements, the others one
+    CAPTURE(pointer);
+    REQUIRE_THAT(result(document), Contains("f.gltf: " + spelled(pointer) + ": ") && Contains(" 2 does not exist (the "));
+    ++indices;
+  }
+  REQUIRE(indices == 32);
+}
+
+TEST_CASE("gltf types: words and component types are those of glTF, and a type brings its part") {
+  const auto changed = [](const std::string& at, const Json& value) {
+    Json document = everything();
+    document[Json::json_pointer(at)] = value;
+    return result(document);
+  };
+  REQUIRE(changed("/cameras/0/type", "fisheye\n") == "f.gltf: cameras[0].type: one of perspective, orthographic is due");
+  REQUIRE(changed("/accessors/0/type", "VEC5") == "f.gltf: accessors[0].type: one of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4 is due");
+  REQUIRE(changed("/accessors/0/componentType", 5124) ==
+          "f.gltf: accessors[0].componentType: one of 5120, 5121, 5122, 5123, 5125, 5126 is due");
+  REQUIRE(changed("/extensions/KHR_lights_punctual/lights/0/type", "") ==
+          "f.gltf: extensions.KHR_lights_punctual.lights[0].type: one of directional, point, spot is due");
+  REQUIRE(changed("/cameras/1/type", "perspective") == "f.gltf: cameras[1].perspective: is missing; an object is due");
+  Json document = everything();
+  document["extensions"]["KHR_lights_punctual"]["lights"][0].erase("spot");
+  REQUIRE(result(document) == "f.gltf: extensions.KHR_lights_punctual.lights[0].spot: is missing; an object is due");
+  document["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "point";
+  REQUIRE(result(document) == "passed");
+}
+
+TEST_CASE("gltf types: extensions are objects wherever they stand and what an unknown one holds is its own") {
+  Json document = everything();
+  document["accessors"][0]["extensions"] = Json::object({{"EXT_y", 1}});
+  REQUIRE(result(document) == "f.gltf: accessors[0].extensions.EXT_y: an object is due");
+  document["accessors"][0]["extensions"] = Json::array();
+  REQUIRE(result(document) == "f.gltf: accessors[0].extensions: an object is due");
+  document["accessors"][0]["extensions"] = Json::object({{"EXT_y", {{"index", -1}, {"extensions", 5}}}});
+  document["accessors"][0]["extras"] = Json::object({{"extensions", 5}});
+  REQUIRE(result(document) == "passed");
+}
+
+TEST_CASE("gltf types: a file of glTF 1.0 is refused by its version, not by what else differs") {
+  for (const std::string version : {"1.0", "1.1", "3.0", "2", "", "two"})
+    REQUIRE_THAT(load_result(R"({"accessors":{},"asset":{"version":")" + version + R"("},"scene":"main"})"),
+                 Contains(": asset.version '" + version + "'; glTF 2.x is read"));
+  REQUIRE_THAT(load_result(R"({"accessors":{},"asset":{}})"), Contains(": asset.version: is missing; a string is due"));
+  REQUIRE_THAT(load_result(R"({"asset":{"version":"2.0"},"scene":0})"), Contains(": scene: scene 0 does not exist (the file has 0)"));
 }
 
 TEST_CASE("gltf types: a whole file is refused before anything of it is drawn") {

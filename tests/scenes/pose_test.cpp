@@ -216,7 +216,7 @@ TEST_CASE("pose: malformed skins are refused with their place") {
   CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].inverseBindMatrices: 1 matrices for 2 joints"));
   options = {};
   options.joints = "[1,9]";
-  CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].joints: node 9 does not exist (the file has 4)"));
+  CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].joints[1]: node 9 does not exist (the file has 4)"));
   options.joints = "[]";
   CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].joints"));
   options = {};
@@ -224,7 +224,7 @@ TEST_CASE("pose: malformed skins are refused with their place") {
   CHECK_THAT(message(arm_gltf(options)), Contains("JOINTS_0: vertex 0 has the weight -1"));
   std::string text = arm_gltf();
   text.replace(text.find(R"("skin":0)"), 8, R"("skin":5)");
-  CHECK_THAT(message(text), Contains("nodes[0]: skin 5 does not exist (the file has 1)"));
+  CHECK_THAT(message(text), Contains("nodes[0].skin: skin 5 does not exist (the file has 1)"));
   text = arm_gltf();
   text.replace(text.find("\"WEIGHTS_0\""), 11, "\"WEIGHTS_9\"");
   CHECK_THAT(message(text), Contains("JOINTS_0 and WEIGHTS_0 come together"));
