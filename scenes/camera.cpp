@@ -148,8 +148,17 @@ View user_view(const PlacedScene& scene, const SceneOptions& options, double asp
   return finish(pose, perspective(kUserFov, aspect, near, far), false);
 }
 
+/// A file may hold a camera of pi and more, but should not. [glTF2.0 #reference-camera-perspective: yfov]
+void require_field_of_view(const PlacedScene& scene, const Camera& camera) {
+  if (camera.perspective && !(camera.yfov < std::numbers::pi)) {
+    throw user_error("{}: cameras[{}]: yfov {} is outside 0..pi; --camera or --eye takes another", scene.data.name,
+                     &camera - scene.at.cameras.data(), camera.yfov);
+  }
+}
+
 /// The node's pose without its scale, which glTF gives no meaning for a camera. [glTF2.0 #cameras]
 View file_view(const PlacedScene& scene, const Camera& camera, const SceneOptions& options, double aspect) {
+  require_field_of_view(scene, camera);
   const glm::dmat4 world{glm::mat4(*camera.pose)};
   const glm::dvec3 z(world[2]), y(world[1]);
   if (!(glm::length(z) > 0) || !(glm::length(glm::cross(y, z)) > 0))

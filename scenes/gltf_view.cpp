@@ -1,7 +1,6 @@
 #include "scenes/gltf_view.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -15,7 +14,7 @@ namespace {
 }
 
 void read_perspective(const GltfFile& file, const tinygltf::PerspectiveCamera& source, const std::string& place, Camera& camera) {
-  if (!(source.yfov > 0 && source.yfov < std::numbers::pi)) fail(file, place, fmt::format("yfov {} is outside 0..pi", source.yfov));
+  if (!(source.yfov > 0) || !std::isfinite(source.yfov)) fail(file, place, fmt::format("yfov {} is not positive", source.yfov));
   if (!(source.znear > 0) || !std::isfinite(source.znear)) fail(file, place, fmt::format("znear {} is not positive", source.znear));
   if (source.zfar != 0 && !(source.zfar > source.znear))
     fail(file, place, fmt::format("zfar {} is not beyond znear {}", source.zfar, source.znear));

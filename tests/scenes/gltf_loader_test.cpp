@@ -1,4 +1,5 @@
 #include "scenes/gltf_loader.h"
+#include "scenes/scene.h"
 
 #include <catch2/catch.hpp>
 
@@ -64,12 +65,12 @@ TEST_CASE("gltf: a required extension that is lacking is named") {
 TEST_CASE("gltf: loops and shared children are not trees, numbers of things that do not exist are named") {
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"children":[0])")), Contains("nodes[0]: it is reached twice"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"children":[7])")), Contains("node 7 does not exist"));
-  REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"camera":2)")), Contains("nodes[0]: camera 2 does not exist"));
+  REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"camera":2)")), Contains("nodes[0].camera: camera 2 does not exist (the file has 0)"));
   REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":4)")), Contains("material 4 does not exist"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":{"light":3}})")),
-               Contains("nodes[0].KHR_lights_punctual.light: 3 does not exist (the file has 0)"));
+               Contains("nodes[0].extensions.KHR_lights_punctual.light: light 3 does not exist (the file has 0)"));
   REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":0)", R"(,"materials":[{"normalTexture":{"index":5}}])")),
-               Contains("materials[0].normalTexture: texture 5 does not exist"));
+               Contains("materials[0].normalTexture.index: texture 5 does not exist"));
 }
 
 TEST_CASE("gltf: a deep tree of nodes and deeply nested JSON neither overflow the stack") {
@@ -124,4 +125,20 @@ TEST_CASE("gltf: what is no glTF is the user's error") {
   REQUIRE_THAT(load_result("glTF"), Contains("t.gltf: "));
   REQUIRE_THAT(load_result(R"({"asset":{"version":"1.0"}})"), Contains("asset.version '1.0'"));
   REQUIRE_THROWS_AS(load_gltf("/nonexistent/x.gltf"), UserError);
+}
+
+TEST_CASE("gltf: a camera of pi and more may be in a file; only a picture through it is refused") {
+  const auto drawn = [](const std::string& node, const SceneOptions& options) {
+    const TempGltf file(triangle_gltf("", R"(,"cameras":[{"type":"perspective","perspective":{"yfov":4,"znear":0.1}}])", node));
+    try {
+      (void)load_scene(file.path(), options);
+    } catch (const UserError& error) { return std::string(error.what()); }
+    return std::string("drawn");
+  };
+  SceneOptions options;
+  options.width = options.height = 16;
+  REQUIRE(drawn("", options) == "drawn");
+  REQUIRE_THAT(drawn(R"(,"camera":0)", options), Contains("cameras[0]: yfov 4 is outside 0..pi"));
+  options.eye = glm::vec3(0, 0, 5);
+  REQUIRE(drawn(R"(,"camera":0)", options) == "drawn");
 }
