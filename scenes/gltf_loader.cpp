@@ -76,6 +76,7 @@ class GltfScene::Reader {
   struct Visit {
     int node = 0;
     glm::dmat4 parent{1};
+    bool visible = true;  ///< what is above it
   };
 
   /// Made when it is needed: a file may have a million nodes, each visited at many moments.
@@ -185,10 +186,10 @@ class GltfScene::Reader {
     morph_work_ = 0;
     copies_.drawn = 0;
     std::vector<Visit> open;
-    const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent) {
-      for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent});
+    const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent, bool visible) {
+      for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent, visible});
     };
-    push(roots(), glm::dmat4(1));
+    push(roots(), glm::dmat4(1), true);
     while (!open.empty()) {
       const Visit visit = open.back();
       open.pop_back();
@@ -202,21 +203,31 @@ class GltfScene::Reader {
       const glm::dmat4 world = visit.parent * local_matrix(node, motion, visit.node);
       if (!all_finite(world)) fail(visit.node, "its world matrix is not finite");
       worlds_[index] = world;
-      place_node(node, motion, world, visit.node);
-      push(node.children, world);
+      const bool visible = visit.visible && is_visible(node);
+      place_node(node, motion, world, visit.node, visible);
+      push(node.children, world, visible);
     }
     for (const SkinnedNode& s : skinned_) pose_skinned(s);
   }
 
-  void place_node(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, int number) {
-    if (node.mesh >= 0) place_mesh(node, motion, world, number);
+  /// By the node itself. [KHR_node_visibility]
+  static bool is_visible(const tinygltf::Node& node) {
+    const auto found = node.extensions.find("KHR_node_visibility");
+    if (found == node.extensions.end() || !found->second.Has("visible")) return true;
+    const tinygltf::Value& visible = found->second.Get("visible");
+    return !visible.IsBool() || visible.Get<bool>();
+  }
+
+  /// What is hidden shows neither mesh nor light; a camera there takes pictures.
+  void place_node(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, int number, bool visible) {
+    if (node.mesh >= 0 && visible) place_mesh(node, motion, world, number);
     if (node.camera >= 0) {
       const auto camera = static_cast<std::size_t>(node.camera);
       if (camera >= scene_.cameras.size())
         fail(number, fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
       if (!scene_.cameras[camera].pose) scene_.cameras[camera].pose = world;
     }
-    if (const auto found = node.extensions.find("KHR_lights_punctual"); found != node.extensions.end())
+    if (const auto found = node.extensions.find("KHR_lights_punctual"); visible && found != node.extensions.end())
       place_light(found->second, world, place_of(number));
   }
 

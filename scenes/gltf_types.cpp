@@ -119,7 +119,7 @@ constexpr std::array kRules{
     Rule{Type::kString, "accessors[].type!", "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4"},
     Rule{Type::kString, "cameras[].type!", "perspective orthographic"},
     Rule{Type::kString, "extensions.KHR_lights_punctual.lights[].type!", "directional point spot"},
-    Rule{Type::kBool, "accessors[].normalized materials[].doubleSided"},
+    Rule{Type::kBool, "accessors[].normalized materials[].doubleSided nodes[].extensions.KHR_node_visibility.visible"},
     Rule{Type::kArray, "meshes[].primitives! skins[].joints! animations[].channels! animations[].samplers!"},
     Rule{
         Type::kObject,

@@ -127,7 +127,7 @@ TEST_CASE("gltf: what is no glTF is the user's error") {
   REQUIRE_THROWS_AS(load_gltf("/nonexistent/x.gltf"), UserError);
 }
 
-TEST_CASE("gltf: a camera of pi and more may be in a file; only a picture through it is refused") {
+TEST_CASE("gltf: a camera of pi and more may be in a file, only a picture through it is refused") {
   const auto drawn = [](const std::string& node, const SceneOptions& options) {
     const TempGltf file(triangle_gltf("", R"(,"cameras":[{"type":"perspective","perspective":{"yfov":4,"znear":0.1}}])", node));
     try {
@@ -141,4 +141,30 @@ TEST_CASE("gltf: a camera of pi and more may be in a file; only a picture throug
   REQUIRE_THAT(drawn(R"(,"camera":0)", options), Contains("cameras[0]: yfov 4 is outside 0..pi"));
   options.eye = glm::vec3(0, 0, 5);
   REQUIRE(drawn(R"(,"camera":0)", options) == "drawn");
+}
+
+TEST_CASE("gltf: a node that is not visible hides meshes and lights of itself and below, not cameras") {
+  const auto nodes = [](const std::string& first, const std::string& second) {
+    return load(triangle_gltf(
+        "",
+        R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],"extensionsRequired":["KHR_node_visibility"],)"
+        R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}})",
+        R"(,"children":[1],"extensions":{"KHR_node_visibility":)" + first +
+            R"(}},{"mesh":0,"camera":0,"extensions":{"KHR_lights_punctual":{"light":0},"KHR_node_visibility":)" + second + "}"));
+  };
+  for (const std::string shown : {"{}", R"({"visible":true})"}) {
+    const SceneData all = nodes(shown, shown);
+    REQUIRE(all.instances.size() == 2);
+    REQUIRE(all.lights.size() == 1);
+    const SceneData first = nodes(shown, R"({"visible":false})");
+    REQUIRE(first.instances.size() == 1);
+    REQUIRE(first.lights.empty());
+    REQUIRE(first.cameras[0].pose.has_value());
+    const SceneData none = nodes(R"({"visible":false})", shown);
+    REQUIRE(none.instances.empty());
+    REQUIRE(none.lights.empty());
+    REQUIRE(none.cameras[0].pose.has_value());
+  }
+  REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_node_visibility":{"visible":0}})")),
+               Contains("nodes[0].extensions.KHR_node_visibility.visible: true or false is due"));
 }
