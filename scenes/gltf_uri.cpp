@@ -69,10 +69,12 @@ std::vector<std::byte> data_of(std::string_view uri, const std::string& place) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) throw user_error("{}: its data URI has no comma before the data", place);
   const std::string_view head = uri.substr(0, comma);
-  if (head.ends_with(";base64")) return base64_decoded(uri.substr(comma + 1), place);
-  const std::string plain = percent_decoded(uri.substr(comma + 1));
-  const auto* bytes = reinterpret_cast<const std::byte*>(plain.data());
-  return {bytes, bytes + plain.size()};
+  std::string_view text = uri.substr(comma + 1);
+  std::string plain;
+  if (text.find('%') != std::string_view::npos) text = plain = percent_decoded(text);
+  if (head.ends_with(";base64")) return base64_decoded(text, place);
+  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+  return {bytes, bytes + text.size()};
 }
 
 /// "http:", "file:", "c:": letters, digits, plus, minus and dots before a colon. [RFC 3986 section 3.1]
@@ -116,11 +118,11 @@ std::string uri_file(const std::string& scene, std::string_view uri, const std::
   const std::string shown = printable(uri);
   if (uri.empty()) throw user_error("{}: its uri is empty", place);
   if (has_scheme(uri)) throw user_error("{}: '{}': only data URIs and files beside the scene are read", place, shown);
-  const std::string name = percent_decoded(uri);
+  std::string name = percent_decoded(uri);
+  std::ranges::replace(name, '\\', '/');  // as browsers read them, and exporters of another system write them
   if (name.find('\0') != std::string::npos) throw user_error("{}: '{}': a name of a file has no zero byte", place, shown);
   const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
-  if (relative.is_absolute() || name.front() == '\\')
-    throw user_error("{}: '{}': an absolute path; files lie beside the scene", place, shown);
+  if (relative.is_absolute()) throw user_error("{}: '{}': an absolute path; files lie beside the scene", place, shown);
   if (*relative.begin() == "..") throw user_error("{}: '{}': leads out of the scene's folder", place, shown);
   const std::filesystem::path file = std::filesystem::path(scene).parent_path() / relative;
   if (follows_out(scene, file)) throw user_error("{}: '{}': a link that leads out of the scene's folder", place, shown);

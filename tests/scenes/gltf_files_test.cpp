@@ -101,6 +101,7 @@ TEST_CASE("uris: files beside the scene or below it, plain or percent-encoded") 
   REQUIRE(load_beside("sub/./a%20b.bin", "sub/a b.bin") == "loaded");
   REQUIRE(load_beside("sub/../a%C3%A9.bin", "a\xc3\xa9.bin") == "loaded");
   REQUIRE(load_beside("100%.bin", "100%.bin") == "loaded");
+  REQUIRE(load_beside(R"(sub\\a b.bin)", "sub/a b.bin") == "loaded");
   REQUIRE_THAT(load_beside("b.bin", "a.bin"), Contains("buffers[0]: ") && Contains("b.bin"));
 }
 
@@ -111,6 +112,8 @@ TEST_CASE("uris: absolute paths, other schemes and ways out of the folder are re
   REQUIRE_THAT(load_result(triangle_from("file:///a.bin")), Contains("only data URIs and files beside the scene are read"));
   REQUIRE_THAT(load_result(triangle_from("https://a.b/c.bin")), Contains("only data URIs"));
   REQUIRE_THAT(load_result(triangle_from("C:\\\\a.bin")), Contains("only data URIs"));
+  REQUIRE_THAT(load_result(triangle_from(R"(\\\\host\\a.bin)")), Contains("an absolute path"));
+  REQUIRE_THAT(load_result(triangle_from(R"(a\\..\\..\\b.bin)")), Contains("leads out of the scene's folder"));
   REQUIRE_THAT(load_result(triangle_from("a%00b.bin")), Contains("no zero byte"));
   REQUIRE_THAT(load_result(triangle_from(".")), Contains("buffers[0]: "));
 }
@@ -127,6 +130,9 @@ TEST_CASE("uris: data with and without base64 and padding, and what is no base64
   REQUIRE(fetched("data:text/plain;base64,YWJjZA") == "abcd");
   REQUIRE(fetched("data:,a%20b") == "a b");
   REQUIRE(fetched("data:;base64,").empty());
+  REQUIRE(fetched("data:;base64,YWJjZA%3D%3D") == "abcd");
+  REQUIRE(fetched("data:;base64,Pz8%2FPj4%2B") == "\?\?\?>>>");
+  REQUIRE(fetched("data:,plain") == "plain");
   for (const char* bad :
        {"data:;base64,YWJjZA=", "data:;base64,Y", "data:;base64,YW*j", "data:;base64,Y=Wj", "data:;base64,YW-_", "data:base64"}) {
     CAPTURE(bad);
