@@ -29,10 +29,11 @@ class Flow {
  public:
   explicit Flow(std::span<const std::uint32_t> words) : words_(words) {
     for (const auto& [at, count] : layout_of(words)) add(at, count);
-    for (auto& [id, function] : functions) {
-      for (auto& [label, block] : function.blocks) {
-        std::erase_if(block.successors, [&](Id to) { return !function.blocks.contains(to); });  // parts of a wide literal
-        for (const Id to : block.successors) function.blocks.at(to).predecessors.push_back(label);
+    for (auto& entry : functions) {
+      std::unordered_map<Id, Block>& blocks = entry.second.blocks;
+      for (auto& [label, block] : blocks) {
+        std::erase_if(block.successors, [&](Id to) { return !blocks.contains(to); });  // parts of a wide literal
+        for (const Id to : block.successors) blocks.at(to).predecessors.push_back(label);
       }
     }
   }
