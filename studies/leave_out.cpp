@@ -109,6 +109,7 @@ std::string bandwidth_disagreement(const Json& complete, const Json& reduced) {
 
 Spread spread_over(const std::vector<LeaveOutRun>& runs, double LeaveOutRun::*member) {
   std::vector<double> sample;
+  sample.reserve(runs.size());
   for (const LeaveOutRun& run : runs) sample.push_back(run.*member);
   return spread_of(sample);
 }

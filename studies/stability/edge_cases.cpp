@@ -109,8 +109,9 @@ traces::CommandStream fan() {
   const Corner middle = pixel_corner(99.3, 101.7);
   const auto rim = [](int i) {
     // A square as rim, walked by whole steps: no transcendental function.
-    const int side = i % kBlades / (kBlades / 4), step = i % (kBlades / 4);
-    const double t = static_cast<double>(step) / (kBlades / 4) * kSide;
+    constexpr int kQuarter = kBlades / 4;
+    const int side = i % kBlades / kQuarter, step = i % kQuarter;
+    const double t = static_cast<double>(step) / static_cast<double>(kQuarter) * kSide;
     const std::array<std::array<double, 2>, 4> at{{{t, 0}, {kSide, t}, {kSide - t, kSide}, {0, kSide - t}}};
     return pixel_corner(at[static_cast<std::size_t>(side)][0], at[static_cast<std::size_t>(side)][1]);
   };

@@ -1,6 +1,7 @@
 #include "studies/stability/machine_picture.h"
 
 #include <array>
+#include <cmath>
 
 #include "pipeline/unit_facets.h"
 
@@ -23,7 +24,8 @@ void draw_bar(scenes::Rgba8Image& out, std::uint32_t top, const pipeline::UnitGr
   double from = 0;
   for (const Share& share : kShares) {
     const double part = static_cast<double>(group.sum(share.member)) / static_cast<double>(std::max<std::int64_t>(1, group.cycles()));
-    const auto left = static_cast<std::uint32_t>(from * out.width), right = static_cast<std::uint32_t>((from + part) * out.width + 0.5);
+    const auto left = static_cast<std::uint32_t>(from * out.width),
+               right = static_cast<std::uint32_t>(std::lround((from + part) * out.width));
     for (std::uint32_t y = top; y < top + kBar; ++y) {
       for (std::uint32_t x = left; x < std::min(right, out.width); ++x)
         std::copy(share.color.begin(), share.color.end(),

@@ -150,7 +150,7 @@ void measure(benchmark::State& state, const std::function<Timing()>& body) {
 int main(int argc, char** argv) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
   const WorldSpec short_links = benchmark_world(20000), long_links = benchmark_world(20000, {.depth = 16, .latency = 4, .credit = 4});
-  const auto add = [](const char* name, std::function<Timing()> body) {
+  const auto add = [](const char* name, const std::function<Timing()>& body) {
     benchmark::RegisterBenchmark(name, [body](benchmark::State& state) { measure(state, body); })
         ->UseManualTime()
         ->Unit(benchmark::kMillisecond)

@@ -11,7 +11,6 @@
 namespace quadrille::hostile {
 namespace {
 
-using scenes::data_uri;
 using scenes::triangle_gltf;
 
 /// The triangle with its first `from` replaced by `to`.
