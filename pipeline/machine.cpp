@@ -48,7 +48,7 @@ Machine::~Machine() {
   const auto destroy_last_first = [](auto& made) {
     while (!made.empty()) made.pop_back();
   };
-  if (links_.size() > 2) std::ranges::rotate(links_, links_.begin() + 2);
+  if (links_.size() > 2) std::rotate(links_.begin(), links_.begin() + 2, links_.end());
   destroy_last_first(links_);
   destroy_last_first(channels_);
   destroy_last_first(slices_);
