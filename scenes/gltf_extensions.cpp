@@ -44,7 +44,7 @@ std::string printable(std::string_view name) {
   std::string result(name.substr(0, 60));
   std::ranges::replace_if(
       result, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
-  return result;
+  return result.empty() ? "''" : result;
 }
 
 /// Each once, at most sixteen of them.

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-enum class Type : std::uint8_t { kAny, kObject, kArray, kIndex, kNumber, kString, kBool, kTwo, kThree, kFour, kSixteen };
+enum class Type : std::uint8_t { kAny, kObject, kArray, kIndex, kInt, kNumber, kString, kBool, kTwo, kThree, kFour, kSixteen };
 
 const char* due(Type type) {
   switch (type) {
@@ -25,6 +25,7 @@ const char* due(Type type) {
     case Type::kObject: return "an object";
     case Type::kArray: return "an array";
     case Type::kIndex: return "an integer of 0 or more";
+    case Type::kInt: return "an integer of 0 to 2147483647";
     case Type::kNumber: return "a number";
     case Type::kString: return "a string";
     case Type::kBool: return "true or false";
@@ -53,6 +54,7 @@ bool is(const Json& value, Type type) {
     case Type::kObject: return value.is_object();
     case Type::kArray: return value.is_array();
     case Type::kIndex: return value.is_number_unsigned() || is_large_integer(value);
+    case Type::kInt: return value.is_number_unsigned() && value.get<std::uint64_t>() <= 0x7fffffff;  // tinygltf keeps it as an int
     case Type::kNumber: return value.is_number();
     case Type::kString: return value.is_string();
     case Type::kBool: return value.is_boolean();
@@ -78,15 +80,18 @@ constexpr std::array kRules{
          "scene>scenes scenes[].nodes[]>nodes nodes[].mesh>meshes nodes[].camera>cameras nodes[].skin>skins nodes[].children[]>nodes "
          "nodes[].extensions.KHR_lights_punctual.light!>extensions.KHR_lights_punctual.lights "
          "nodes[].extensions.EXT_mesh_gpu_instancing.attributes.*>accessors meshes[].primitives[].attributes.*>accessors "
-         "meshes[].primitives[].indices>accessors meshes[].primitives[].material>materials meshes[].primitives[].mode "
+         "meshes[].primitives[].indices>accessors meshes[].primitives[].material>materials "
          "meshes[].primitives[].targets[].*>accessors accessors[].bufferView>bufferViews accessors[].byteOffset accessors[].count! "
-         "accessors[].sparse.count! accessors[].sparse.indices.bufferView!>bufferViews accessors[].sparse.indices.byteOffset "
-         "accessors[].sparse.values.bufferView!>bufferViews accessors[].sparse.values.byteOffset bufferViews[].buffer!>buffers "
-         "bufferViews[].byteOffset bufferViews[].byteLength! bufferViews[].byteStride bufferViews[].target images[].bufferView>bufferViews "
+         "accessors[].sparse.indices.bufferView!>bufferViews "
+         "accessors[].sparse.values.bufferView!>bufferViews bufferViews[].buffer!>buffers "
+         "bufferViews[].byteOffset bufferViews[].byteLength! bufferViews[].byteStride images[].bufferView>bufferViews "
          "textures[].sampler>samplers textures[].source>images textures[].extensions.EXT_texture_webp.source>images "
-         "textures[].extensions.MSFT_texture_dds.source>images samplers[].magFilter samplers[].minFilter samplers[].wrapS samplers[].wrapT "
+         "textures[].extensions.MSFT_texture_dds.source>images "
          "skins[].joints[]>nodes skins[].skeleton>nodes skins[].inverseBindMatrices>accessors animations[].channels[].sampler!>.samplers "
          "animations[].channels[].target.node>nodes animations[].samplers[].input!>accessors animations[].samplers[].output!>accessors"},
+    Rule{Type::kInt,
+         "meshes[].primitives[].mode accessors[].sparse.count! accessors[].sparse.indices.byteOffset accessors[].sparse.values.byteOffset "
+         "bufferViews[].target samplers[].magFilter samplers[].minFilter samplers[].wrapS samplers[].wrapT"},
     Rule{Type::kIndex, "accessors[].componentType!", "5120 5121 5122 5123 5125 5126"},
     Rule{Type::kIndex, "accessors[].sparse.indices.componentType!", "5121 5123 5125"},
     Rule{Type::kNumber,

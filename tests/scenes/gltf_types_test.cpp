@@ -117,6 +117,18 @@ TEST_CASE("gltf types: indices, counts and offsets are integers of 0 or more") {
   }
 }
 
+TEST_CASE("gltf types: what is kept in 31 bits is refused beyond them, not wrapped") {
+  for (const std::string at :
+       {"/accessors/0/sparse/count", "/accessors/0/sparse/indices/byteOffset", "/accessors/0/sparse/values/byteOffset",
+        "/bufferViews/0/target", "/meshes/0/primitives/0/mode", "/samplers/0/wrapS", "/samplers/0/magFilter"}) {
+    for (const std::uint64_t bad : {std::uint64_t{1} << 31, (std::uint64_t{1} << 32) + 4, std::uint64_t{1} << 53}) {
+      Json document = everything();
+      document[Json::json_pointer(at)] = bad;
+      REQUIRE(result(document) == "f.gltf: " + spelled(at) + ": an integer of 0 to 2147483647 is due");
+    }
+  }
+}
+
 TEST_CASE("gltf types: vectors and matrices have their number of numbers") {
   for (const auto& [at, count] : {std::pair<std::string, std::size_t>{"/nodes/0/translation", 3},
                                   {"/nodes/0/rotation", 4},
@@ -225,7 +237,8 @@ TEST_CASE("gltf types: a file of glTF 1.0 is refused by its version, not by what
 }
 
 TEST_CASE("gltf types: a whole file is refused before anything of it is drawn") {
-  REQUIRE_THAT(load_result(triangle_gltf(R"(,"mode":"4")")), Contains("meshes[0].primitives[0].mode: an integer of 0 or more is due"));
+  REQUIRE_THAT(load_result(triangle_gltf(R"(,"mode":"4")")),
+               Contains("meshes[0].primitives[0].mode: an integer of 0 to 2147483647 is due"));
   REQUIRE_THAT(load_result(triangle_gltf("", R"(,"materials":{})")), Contains(": materials: an array is due"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":"sun"})")),
                Contains("nodes[0].extensions.KHR_lights_punctual: an object is due"));
