@@ -122,6 +122,7 @@ class Preparer {
     if (length == item.end() || !length->is_number_unsigned() || *length == 0U) fail(place, "byteLength: a positive integer is due");
     result.bytes = length->get<std::uint64_t>();
     result.uri = text(item, "uri", place);
+    if (result.uri && result.uri->empty()) result.uri.reset();  // so write some what has no name
     return result;
   }
 

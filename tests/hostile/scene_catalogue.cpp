@@ -142,6 +142,57 @@ void add_members(std::vector<Case>& cases) {
   add("attributes that are an array", R"("attributes":{"POSITION":0})", R"("attributes":[0])");
 }
 
+/// {"a":{"b":value}} for a.b
+std::string nested(const std::string& path, const std::string& value) {
+  const std::size_t dot = path.find('.');
+  return "{\"" + path.substr(0, dot) + "\":" + (dot == std::string::npos ? value : nested(path.substr(dot + 1), value)) + "}";
+}
+
+/// Wrong parts that nothing draws, extensions among them: refused by their place, as the drawn ones are.
+void add_parts(std::vector<Case>& cases) {
+  const auto add = [&](const std::string& from, const std::string& to, const std::string& place) {
+    Case c = scene_case("part: " + to.substr(0, 100), changed(from, to), "t.gltf", Expect::kRefused);
+    c.culprit = place;
+    cases.push_back(std::move(c));
+  };
+  const std::string scene = R"("scene":0)", rough = R"("roughnessFactor":0.5})", count = R"("count":3)";
+  const std::string lights = R"("extensions":{"KHR_lights_punctual":{"lights":)";
+  for (const auto& [part, place] : std::vector<std::pair<std::string, std::string>>{
+           {R"("textures":[{"source":7}])", "textures[0].source: image 7 does not exist"},
+           {R"("textures":[{},{"sampler":1}])", "textures[1].sampler: sampler 1 does not exist"},
+           {R"("textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}])", "textures[0].extensions.EXT_texture_webp.source: "},
+           {R"("images":[{"bufferView":9}])", "images[0].bufferView: bufferView 9 does not exist"},
+           {R"("skins":[{"joints":[0,9]}])", "skins[0].joints[1]: node 9 does not exist"},
+           {R"("skins":[{"joints":[0],"skeleton":3}])", "skins[0].skeleton: node 3 does not exist"},
+           {R"("skins":[{"joints":[0],"inverseBindMatrices":4}])", "skins[0].inverseBindMatrices: accessor 4 does not exist"},
+           {R"("animations":[{"samplers":[],"channels":[{"sampler":0,"target":{"path":"scale"}}]}])",
+            "animations[0].channels[0].sampler: sampler 0 does not exist (the animation has 0)"},
+           {R"("animations":[{"samplers":[{"input":0,"output":8}],"channels":[]}])", "animations[0].samplers[0].output: accessor 8 "},
+           {R"("extensionsUsed":["A",7])", "extensionsUsed[1]: a string is due"},
+           {R"("extensions":[])", "extensions: an object is due"},
+           {R"("extensions":{"EXT_any":true})", "extensions.EXT_any: an object is due"},
+           {lights + "7}}", "extensions.KHR_lights_punctual.lights: an array is due"},
+           {lights + R"([{"type":"sun"}]}})", "extensions.KHR_lights_punctual.lights[0].type: one of directional, point, spot is due"},
+           {lights + R"([{"type":"spot"}]}})", "extensions.KHR_lights_punctual.lights[0].spot: is missing"},
+           {lights + R"([{"type":"point","color":[1,1]}]}})", "extensions.KHR_lights_punctual.lights[0].color: "},
+           {lights + R"([{"type":"point","range":null}]}})", "extensions.KHR_lights_punctual.lights[0].range: a number is due"}})
+    add(scene, scene + "," + part, place);
+  const std::string base = R"("baseColorTexture":{"index":0,"extensions":)", to = "materials[0].pbrMetallicRoughness.baseColorTexture";
+  add(rough, base + R"({"KHR_texture_transform":"x"}}})", to + ".extensions.KHR_texture_transform: an object is due");
+  add(rough, base + R"({"KHR_texture_transform":{"offset":[1]}}}})", to + ".extensions.KHR_texture_transform.offset: ");
+  add(rough, base + R"({"KHR_texture_transform":{"rotation":[]}}}})", to + ".extensions.KHR_texture_transform.rotation: ");
+  for (const std::string member :
+       {"KHR_materials_clearcoat.clearcoatFactor", "KHR_materials_sheen.sheenColorFactor", "KHR_materials_ior.ior",
+        "KHR_materials_transmission.transmissionTexture", "KHR_materials_volume.thicknessTexture.index"})
+    add(rough, rough + ",\"extensions\":" + nested(member, "null"), "materials[0].extensions." + member + ": ");
+  const std::string sparse = count + R"(,"sparse":{"values":{"bufferView":0},"indices":{"bufferView":0,"componentType":5125)";
+  add(count, sparse + R"(},"count":4294967297})", "accessors[0].sparse.count: an integer of 0 to 2147483647 is due");
+  add(count, sparse + R"(,"byteOffset":4294967296},"count":1})",
+      "accessors[0].sparse.indices.byteOffset: an integer of 0 to 2147483647 is due");
+  add(R"("type":"perspective")", R"("type":"orthographic")", "cameras[0].orthographic: is missing");
+  add(R"("asset":{"version":"2.0"})", R"("asset":{"version":"1.1"},"animations":{},"programs":{})", "asset.version '1.1'");
+}
+
 /// Positions of one value in all places, as the file's bytes.
 void add_positions(std::vector<Case>& cases) {
   const auto text = [](float a, float b) { return scenes::data_uri_of(std::vector<float>{a, 0, 0, 1, b, 0, 0, 1, a}); };
@@ -249,6 +300,7 @@ Group scene_cases() {
   add_json(group.cases);
   add_values(group.cases);
   add_members(group.cases);
+  add_parts(group.cases);
   add_positions(group.cases);
   add_uris(group.cases);
   add_shared(group.cases);

@@ -121,6 +121,11 @@ TEST_CASE("uris: absolute paths, other schemes and ways out of the folder are re
 TEST_CASE("uris: data with and without base64 and padding, and what is no base64") {
   const std::string good = data_uri_of(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0});
   REQUIRE(load_result(triangle_from(good)) == "loaded");
+  REQUIRE(load_result(triangle_gltf("", R"(,"images":[{"uri":""}])")) == "loaded");
+  std::string more = triangle_gltf();
+  more.replace(more.find(R"("buffers":[)"), 11, R"("buffers":[{"byteLength":9,"uri":""},)")
+      .replace(more.find(R"("buffer":0)"), 10, R"("buffer":1)");
+  REQUIRE(load_result(more) == "loaded");                     // a buffer without a name is none; nothing is read from it
   REQUIRE(load_result(triangle_from(good, 35)) != "loaded");  // the view reaches beyond
   const auto fetched = [](const std::string& uri) {
     const std::vector<std::byte> bytes = fetch_uri("t.gltf", uri, "t.gltf: here", 1000);
