@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <webp/decode.h>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -90,6 +91,31 @@ bool read_floats(OIIO::ImageInput& input, QuadrilleImage& result) {
   return input.read_image(0, 0, 0, static_cast<int>(result.channels), OIIO::TypeDesc::FLOAT, result.data) || fail(result, input.geterror());
 }
 
+/// Is it a still WebP image with alpha? OpenImageIO's reader multiplies the colours of such a one by its alpha, whatever it is asked for.
+bool is_webp_with_alpha(const void* bytes, std::size_t size, const char* format) {
+  WebPBitstreamFeatures features;
+  return std::strcmp(format, "webp") == 0 && WebPGetFeatures(static_cast<const std::uint8_t*>(bytes), size, &features) == VP8_STATUS_OK &&
+         features.has_alpha != 0 && features.has_animation == 0;
+}
+
+bool decode_webp(const void* bytes, std::size_t size, std::uint64_t max_bytes, QuadrilleImage& result) {
+  const auto* data = static_cast<const std::uint8_t*>(bytes);
+  int width = 0, height = 0;
+  if (WebPGetInfo(data, size, &width, &height) == 0) return fail(result, "it is not a picture");
+  const std::uint64_t out_bytes = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  if (out_bytes > max_bytes) return fail(result, "its pixels take more than " + std::to_string(max_bytes) + " bytes");
+  if (!allocate(result, out_bytes)) return false;
+  if (WebPDecodeRGBAInto(data, size, static_cast<std::uint8_t*>(result.data), out_bytes, 4 * width) == nullptr) {
+    std::free(result.data);
+    result.data = nullptr;
+    return fail(result, "it is damaged");
+  }
+  result.width = static_cast<std::uint32_t>(width);
+  result.height = static_cast<std::uint32_t>(height);
+  result.channels = 4;
+  return true;
+}
+
 /// OpenImageIO tries a file's first bytes before it opens it, and its DDS reader then does not go back: that one is named instead.
 std::unique_ptr<OIIO::ImageInput> open_input(const std::string& format, const OIIO::ImageSpec& config, OIIO::Filesystem::IOProxy* proxy,
                                              std::string& error) {
@@ -108,6 +134,7 @@ std::unique_ptr<OIIO::ImageInput> open_input(const std::string& format, const OI
 bool decode(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint64_t max_bytes, QuadrilleImage& result) {
   configure();
   const QuietErrors quiet;
+  if (!as_float && is_webp_with_alpha(bytes, size, format)) return decode_webp(bytes, size, max_bytes, result);
   OIIO::Filesystem::IOMemReader memory(const_cast<void*>(bytes), size);
   OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config;

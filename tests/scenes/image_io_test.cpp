@@ -108,6 +108,20 @@ TEST_CASE("image_io: a WebP image is decoded, a truncated one is refused") {
     REQUIRE_THROWS_WITH(decode_image(bytes.first(size), "a.webp"), Catch::StartsWith("a.webp: "));
 }
 
+TEST_CASE("image_io: the colours of a WebP image with alpha are as they were written, not multiplied by it") {
+  // 2 x 2 texels of (200, 100, 50, 60), lossless, written by libwebp.
+  std::vector<unsigned char> file{82, 73, 70, 70, 30, 0,  0, 0,  87,  69, 66, 80,  86, 80,  56,  76,  17,  0, 0,
+                                  0,  47, 1,  64, 0,  16, 7, 80, 178, 34, 87, 166, 60, 129, 136, 232, 127, 0, 0};
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
+  const Rgba8Image image = decode_image(bytes, "a.webp");
+  REQUIRE(image.width == 2);
+  REQUIRE(image.height == 2);
+  for (std::size_t i = 0; i < 4; ++i)
+    REQUIRE(std::vector<std::uint8_t>(&image.pixels[4 * i], &image.pixels[4 * i] + 4) == std::vector<std::uint8_t>{200, 100, 50, 60});
+  for (std::size_t i = 25; i < 32; ++i) file[i] = 0;
+  REQUIRE_THROWS_WITH(decode_image(bytes, "a.webp"), Catch::StartsWith("a.webp: cannot be decoded as webp: "));
+}
+
 TEST_CASE("image_io: a DDS image of one DXT1 block is decoded, a truncated one is refused") {
   std::vector<std::uint32_t> file(32 + 2, 0);
   file[0] = 0x20534444;  // "DDS "
