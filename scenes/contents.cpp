@@ -24,7 +24,7 @@ SceneContents builtin_contents(const std::string& name) {
 SceneContents scene_contents(const std::string& file_or_builtin) {
   constexpr std::string_view kBuiltin = "builtin:";
   if (file_or_builtin.starts_with(kBuiltin)) return builtin_contents(file_or_builtin.substr(kBuiltin.size()));
-  const GltfFile file = read_gltf_file(file_or_builtin);
+  GltfFile file = read_gltf_file(file_or_builtin);
   SceneContents contents;
   for (const tinygltf::Scene& scene : file.model.scenes) contents.scenes.push_back(scene.name);
   contents.own_scene = static_cast<std::size_t>(std::max(0, file.model.defaultScene));
@@ -36,6 +36,7 @@ SceneContents scene_contents(const std::string& file_or_builtin) {
     const Animation animation = read_animation(file, i);
     contents.animations.push_back({animation.name, animation.length, animation.tracks.size()});
   }
+  print_notes(file);
   return contents;
 }
 

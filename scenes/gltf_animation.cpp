@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <fmt/format.h>
 
@@ -166,11 +165,11 @@ void apply(NodeMotion& motion, TrackTarget target, const std::vector<double>& v)
 
 Animation read_animation(const GltfFile& file, std::size_t index) { return Reader(file, index).read(); }
 
-std::vector<Animation> choose_animations(const GltfFile& file, const std::string& choice) {
+std::vector<Animation> choose_animations(GltfFile& file, const std::string& choice) {
   std::vector<std::string> names;
   for (const tinygltf::Animation& animation : file.model.animations) names.push_back(animation.name);
   if (std::ranges::find(file.model.extensionsUsed, "KHR_animation_pointer") != file.model.extensionsUsed.end())
-    fmt::print(stderr, "{}: KHR_animation_pointer is not supported; its channels are left out\n", one_line(file.path));
+    file.notes.emplace_back("KHR_animation_pointer is not supported; its channels are left out");
   std::vector<Animation> chosen;
   if (choice == kAll) {
     for (std::size_t i = 0; i < names.size(); ++i) chosen.push_back(read_animation(file, i));

@@ -26,9 +26,9 @@ using NodeMotions = std::map<int, NodeMotion>;  ///< by node number
 [[nodiscard]] Animation read_animation(const GltfFile& file, std::size_t index);
 
 /// The animations that `choice` names: a number, a name, `all`, or empty for the first; none when the file has none and nothing is named.
-/// Warns on standard error of a file that uses KHR_animation_pointer.
+/// Notes a file that uses KHR_animation_pointer.
 /// Throws `UserError` that lists the file's animations when there is no such one.
-[[nodiscard]] std::vector<Animation> choose_animations(const GltfFile& file, const std::string& choice);
+[[nodiscard]] std::vector<Animation> choose_animations(GltfFile& file, const std::string& choice);
 
 /// Where the animations put the nodes at `time`, in seconds; of two that move the same, the later one counts.
 [[nodiscard]] NodeMotions motions_at(const std::vector<Animation>& animations, double time);

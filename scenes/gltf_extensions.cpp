@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 #include <string_view>
 
 #include <fmt/ranges.h>
@@ -63,12 +62,12 @@ std::string listed(const std::vector<std::string>& names, bool basis_is_known) {
 
 }  // namespace
 
-void check_extensions(const std::string& path, const tinygltf::Model& model) {
-  const std::string lacking = listed(model.extensionsRequired, false);
+void check_extensions(GltfFile& file) {
+  const std::string lacking = listed(file.model.extensionsRequired, false);
   if (!lacking.empty())
-    throw user_error("{}: extensionsRequired: {} not supported; supported are {}", path, lacking, fmt::join(kSupported, ", "));
-  const std::string ignored = listed(model.extensionsUsed, true);
-  if (!ignored.empty()) fmt::print(stderr, "{}: extensionsUsed: {} not supported; drawn without\n", one_line(path), ignored);
+    throw user_error("{}: extensionsRequired: {} not supported; supported are {}", file.path, lacking, fmt::join(kSupported, ", "));
+  const std::string ignored = listed(file.model.extensionsUsed, true);
+  if (!ignored.empty()) file.notes.push_back(fmt::format("extensionsUsed: {} not supported; drawn without", ignored));
 }
 
 }  // namespace quadrille::scenes

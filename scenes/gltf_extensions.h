@@ -1,14 +1,12 @@
 /// Which extensions of glTF are known, and what happens to the others.
 #pragma once
 
-#include <string>
-
-#include "scenes/tiny_gltf.h"
+#include "scenes/gltf_file.h"
 
 namespace quadrille::scenes {
 
-/// Throws `UserError` naming every extension in `extensionsRequired` that is not supported, and those that are. Warns on stderr, in one line for the file, of
+/// Throws `UserError` naming every extension in `extensionsRequired` that is not supported, and those that are. Notes, in one line for the file,
 /// those in `extensionsUsed` that are not drawn.
-void check_extensions(const std::string& path, const tinygltf::Model& model);
+void check_extensions(GltfFile& file);
 
 }  // namespace quadrille::scenes

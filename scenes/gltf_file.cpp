@@ -1,5 +1,6 @@
 #include "scenes/gltf_file.h"
 
+#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -79,6 +80,11 @@ void list_images(GltfFile& file, const PreparedJson& json) {
 
 }  // namespace
 
+void print_notes(GltfFile& file) {
+  for (const std::string& note : file.notes) fmt::print(stderr, "{}\n", one_line(fmt::format("{}: {}", file.path, note)));
+  file.notes.clear();
+}
+
 GltfFile read_gltf_file(const std::string& path) {
   GltfFile file;
   file.path = path;
@@ -86,7 +92,7 @@ GltfFile read_gltf_file(const std::string& path) {
   const GltfContainer container = split_gltf(path, bytes);
   const PreparedJson json = prepare_json(path, container.json);
   parse(file, json);
-  check_extensions(path, file.model);
+  check_extensions(file);
   read_buffers(file, json, container);
   list_images(file, json);
   decode_meshopt_views(file);

@@ -21,8 +21,12 @@ struct GltfFile {
   std::vector<std::optional<std::string>> image_uris;   ///< as the file has them
   std::map<int, std::vector<std::byte>> decoded_views;  ///< buffer views that were compressed, by number [EXT_meshopt_compression]
   std::map<int, std::shared_ptr<const Elements>>
-      decoded_accessors;  ///< accessors that were compressed, by number [KHR_draco_mesh_compression]
+      decoded_accessors;           ///< accessors that were compressed, by number [KHR_draco_mesh_compression]
+  std::vector<std::string> notes;  ///< what is drawn otherwise than the file says, a line each
 };
+
+/// Prints the notes to standard error and forgets them; for when nothing can be refused any more, since a refusal is one line.
+void print_notes(GltfFile& file);
 
 /// Reads and parses the file and the buffers it names, expands what is compressed, and checks what it requires. Throws `UserError` whatever goes wrong.
 [[nodiscard]] GltfFile read_gltf_file(const std::string& path);

@@ -71,6 +71,7 @@ class GltfScene::Reader {
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool animated() const { return !animations_.empty(); }
   [[nodiscard]] std::size_t image_count() const { return file_.model.images.size(); }
+  void print_notes() { scenes::print_notes(file_); }
 
  private:
   struct Visit {
@@ -261,9 +262,8 @@ class GltfScene::Reader {
     if (found == node.extensions.end()) return;
     if (node.skin < 0) return place_copies(file_, found->second, place_of(at), world, first, scene_, copies_);
     if (!std::exchange(warned_of_copies_, true))
-      fmt::print(stderr, "{}\n",
-                 one_line(fmt::format("{}: {}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once",
-                                      file_.path, place_of(at))));
+      file_.notes.push_back(
+          fmt::format("{}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once", place_of(at)));
   }
 
   /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]
@@ -364,6 +364,8 @@ SceneData& GltfScene::data() { return reader_->scene(); }
 double GltfScene::length() const { return reader_->length(); }
 bool GltfScene::animated() const { return reader_->animated(); }
 std::size_t GltfScene::image_count() const { return reader_->image_count(); }
+
+void GltfScene::print_notes() { reader_->print_notes(); }
 
 void GltfScene::pose(double time) {
   if (reader_->animated()) reader_->pose(time);

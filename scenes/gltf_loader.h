@@ -34,6 +34,8 @@ class GltfScene {
   [[nodiscard]] std::size_t image_count() const;
   /// Moves nodes, skins, morph targets, cameras and lights to `time` in seconds. Throws `UserError`. Without an animation it does nothing.
   void pose(double time);
+  /// Prints to standard error, once, what is drawn otherwise than the file says; for when the scene is not refused.
+  void print_notes();
 
  private:
   class Reader;

@@ -92,6 +92,7 @@ traces::CommandStream Scene::record(const Moment& moment) {
   traces::CommandStream stream = recorder.record();
   parts_->compiled_shaders += recorder.compiled_shaders();
   traces::validate(stream);
+  if (parts_->file) parts_->file->print_notes();
   return stream;
 }
 

@@ -189,6 +189,10 @@ void add_parts(std::vector<Case>& cases) {
   add(count, sparse + R"(},"count":4294967297})", "accessors[0].sparse.count: an integer of 0 to 2147483647 is due");
   add(count, sparse + R"(,"byteOffset":4294967296},"count":1})",
       "accessors[0].sparse.indices.byteOffset: an integer of 0 to 2147483647 is due");
+  // What is left out is said of what is drawn: a refusal stays one line.
+  cases.push_back(scene_case("part: an extension to be left out, and positions beyond the buffer",
+                             R"({"extensionsUsed":["EXT_unheard_of"],)" + changed(count, R"("count":300)").substr(1), "t.gltf",
+                             Expect::kRefused));
   add(R"("type":"perspective")", R"("type":"orthographic")", "cameras[0].orthographic: is missing");
   add(R"("asset":{"version":"2.0"})", R"("asset":{"version":"1.1"},"animations":{},"programs":{})", "asset.version '1.1'");
 }
