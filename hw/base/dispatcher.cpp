@@ -1,5 +1,7 @@
 #include "hw/base/dispatcher.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -46,6 +48,20 @@ Earliest earliest_of(const std::vector<Tick>& times) {
   return e;
 }
 
+/// Which of up to 64 choosers may act: bit i where times[i] is less than reach[i] after `first`, and not after `limit`. `n` is a multiple of `kLanes`. In vectors
+/// and without branches: who is among them is as good as random.
+std::uint64_t able_among(const Tick* times, const Tick* reach, std::size_t n, Tick first, Tick limit) {
+  std::uint64_t able = 0;
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    const __m256i time = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(times + i));
+    const __m256i bound = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(reach + i));
+    const __m256i near = _mm256_cmpgt_epi64(bound, _mm256_sub_epi64(time, _mm256_set1_epi64x(first)));
+    const __m256i late = _mm256_cmpgt_epi64(time, _mm256_set1_epi64x(limit));
+    able |= static_cast<std::uint64_t>(_mm256_movemask_pd(_mm256_castsi256_pd(_mm256_andnot_si256(late, near)))) << i;
+  }
+  return able;
+}
+
 }  // namespace
 
 void Dispatcher::prepare() {
@@ -62,6 +78,7 @@ void Dispatcher::prepare() {
     reach_.push_back(reach.others);
   }
   times_.assign((choosers_.size() + kLanes - 1) / kLanes * kLanes, kNever);
+  reach_.resize(times_.size());
   sc_core::sc_spawn_options options;
   options.spawn_method();
   sc_core::sc_spawn([this] { guard([this] { step(); }); }, "step", &options);
@@ -170,14 +187,9 @@ void Dispatcher::run_ahead(Unit& unit) const {
 bool Dispatcher::round() {
   const Earliest earliest = earliest_of(times_);  // before anyone acts: what they do from here on is never earlier than these
   if (earliest.first > limits_.max_time) return false;
-  const Tick limit = limits_.max_time;
-  for (std::size_t base = 0; base < reach_.size(); base += 64) {
-    const std::size_t n = std::min<std::size_t>(64, reach_.size() - base);
-    std::uint64_t able = 0;  // gathered without branches: who is among them is as good as random
-    for (std::size_t i = 0; i < n; ++i) {
-      const Tick time = times_[base + i];
-      able |= static_cast<std::uint64_t>((time - earliest.first < reach_[base + i]) & (time <= limit)) << i;
-    }
+  for (std::size_t base = 0; base < times_.size(); base += 64) {
+    const std::size_t n = std::min<std::size_t>(64, times_.size() - base);
+    std::uint64_t able = able_among(&times_[base], &reach_[base], n, earliest.first, limits_.max_time);
     for (; able != 0; able &= able - 1) {
       const std::size_t k = base + static_cast<std::size_t>(std::countr_zero(able));
       const Tick time = times_[k];

@@ -60,7 +60,7 @@ class Dispatcher final : public Driver {
   std::vector<std::size_t> chooser_of_;       ///< unit index -> chooser index; only for choosers
   std::vector<std::uint64_t> chooser_marks_;  ///< which bits of `touched_` are choosers'
   std::vector<Tick> times_;                   ///< choosers_[i].wake.at(), contiguous for the scans; padded with kNever
-  std::vector<Tick> reach_;                   ///< by chooser: smallest distance from any other chooser, and its slack
+  std::vector<Tick> reach_;                   ///< by chooser: smallest distance from any other chooser, and its slack; padded
 };
 
 }  // namespace quadrille::hw
