@@ -95,12 +95,21 @@ std::uint32_t VertexFetch::vertex_number(std::uint32_t position) {
 
 void VertexFetch::touch_bytes(std::uint64_t address, std::uint32_t bytes) {
   for (std::uint64_t a = address / models::kSectorBytes; a <= (address + bytes - 1) / models::kSectorBytes; ++a) {
-    const auto line = static_cast<std::uint32_t>(a / models::kLineSectors);
     const auto sector = static_cast<std::uint8_t>(1u << (a % models::kLineSectors));
-    auto held = std::find_if(lines_.rbegin(), lines_.rend(), [&](const Line& l) { return l.line == line; });
-    if (held == lines_.rend()) lines_.push_back({line, sector});
-    else held->sectors |= sector;
+    lines_[touched_line(static_cast<std::uint32_t>(a / models::kLineSectors))].sectors |= sector;
   }
+}
+
+/// Vertices lie one after the other, and their next attribute in the same lines in the same order: so most often it is the line touched last, or the next one.
+std::size_t VertexFetch::touched_line(std::uint32_t line) {
+  const auto is_it = [line](const Line& l) { return l.line == line; };
+  const auto found_here = [&] { return last_touched_ < lines_.size() && is_it(lines_[last_touched_]); };
+  if (found_here()) return last_touched_;
+  ++last_touched_;
+  if (found_here()) return last_touched_;
+  last_touched_ = static_cast<std::size_t>(std::ranges::find_if(lines_, is_it) - lines_.begin());
+  if (last_touched_ == lines_.size()) lines_.push_back({line, 0});
+  return last_touched_;
 }
 
 void VertexFetch::fetch_attributes(BatchSlot& batch) {
@@ -132,7 +141,7 @@ void VertexFetch::form_batch(Tick now) {
   batch.attributes.resize(draw.vertex_program->vertex_inputs.size());
   batch.outputs.resize(static_cast<std::size_t>(models::kFirstVaryingOutput + draw.varyings()));
   lines_.clear();
-  next_line_ = 0;
+  next_line_ = last_touched_ = 0;
   fetches_ = 0;
   indices_ = 0;
   reuse_.reset();

@@ -74,6 +74,8 @@ class VertexFetch final : public Unit {
   [[nodiscard]] std::uint32_t vertex_number(std::uint32_t position);
   void fetch_attributes(BatchSlot& batch);
   void touch_bytes(std::uint64_t address, std::uint32_t bytes);
+  /// Number of a line among the look-ups of this batch; adds it if it is new.
+  [[nodiscard]] std::size_t touched_line(std::uint32_t line);
 
   const Params& params_;
   const Frame& frame_;
@@ -91,6 +93,7 @@ class VertexFetch final : public Unit {
   std::uint32_t first_pending_ = 0;  ///< number of pending_.front(); waiters are named by number
   std::vector<Line> lines_;          ///< look-ups of the newest batch
   std::size_t next_line_ = 0;        ///< the first of them not done
+  std::size_t last_touched_ = 0;     ///< the one of them that was needed last
   bool stalled_ = false;             ///< the cache had no place for it
   std::uint32_t fetches_ = 0, indices_ = 0;
   Tick free_ = 0;
