@@ -61,9 +61,10 @@ std::vector<std::string> plan_notes(const Plan& plan, const scenes::Scene& scene
 /// What the limiter names, and its share.
 std::string limit_text(const Json& limit) {
   if (limit.is_null()) return "-";
-  const std::string kind = limit["kind"];
-  return fmt::format("{}{} {:.1f}", kind == "work" || kind == "latency" ? kind + " of " : "", limit["name"].get<std::string>(),
-                     100 * limit["share"].get<double>());
+  const std::string kind = limit["kind"], name = limit["name"];
+  const bool part_of_time =
+      name != "scan_out" && (kind == "work" || kind == "latency");  // scan-out's share is the part of the frame after all else
+  return fmt::format("{}{} {:.1f}", part_of_time ? kind + " of " : "", name, 100 * limit["share"].get<double>());
 }
 
 std::string head() {
@@ -76,11 +77,11 @@ std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
   const scenes::Moment moment = plan.moment(number);
   const bool timed = !f["cycles"].is_null();
   const auto number_or_dash = [](bool given, const std::string& text) { return given ? text : std::string("-"); };
-  std::string out = fmt::format("  {:>6}{:>10}{:>8}", number, number_or_dash(plan.animated, fmt::format("{:.3f}", moment.time)),
+  std::string out = fmt::format("  {:>6} {:>9}{:>8}", number, number_or_dash(plan.animated, fmt::format("{:.3f}", moment.time)),
                                 number_or_dash(moment.orbit.has_value(), fmt::format("{:.3f}", moment.orbit.value_or(0))));
   if (timed) {
     const double cycles = f["cycles"].get<double>();
-    out += fmt::format("{:>13}{:>10.3f}", f["cycles"].get<std::int64_t>(), cycles / f["clock_mhz"].get<double>() * 1e-3);
+    out += fmt::format("{:>13} {:>9.3f}", f["cycles"].get<std::int64_t>(), cycles / f["clock_mhz"].get<double>() * 1e-3);
   } else {
     out += fmt::format("{:>13}{:>10}", "-", "-");
   }
@@ -211,7 +212,8 @@ SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& fr
   Sequence sequence(plan, quiet);
   std::vector<studies::ChildWork> works;
   works.reserve(static_cast<std::size_t>(plan.frames));
-  for (std::int64_t i = 0; i < plan.frames; ++i) works.push_back({[&, i] { return draw(file.record(plan.moment(i)), i); }, {kNoLimit, 0}});
+  for (std::int64_t i = 0; i < plan.frames; ++i)
+    works.push_back({[&, i] { return draw(scene.record(file, plan.moment(i)), i); }, {kNoLimit, 0}});
   progress.show(fmt::format("frame 0 of {}", plan.frames));
   studies::run_in_children(works, frames.job_count(), [&](std::size_t i, const studies::ChildRun& run) {
     Json figures = Json::parse(studies::output_of(run, fmt::format("frame {}", i)));

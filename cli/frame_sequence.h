@@ -30,7 +30,7 @@ struct FrameArguments {
 void check_pattern(std::string_view flag, const std::string& pattern);
 
 /// Draws frame `number` from its commands, writes its files, and returns its figures as JSON. Runs in the frame's own process.
-using DrawFrame = std::function<std::string(const traces::CommandStream& stream, std::int64_t number)>;
+using DrawFrame = std::function<std::string(const SceneArguments::Loaded& frame, std::int64_t number)>;
 
 struct SequenceResult {
   int exit_code = 0;

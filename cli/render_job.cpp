@@ -115,7 +115,8 @@ int RenderJob::run() {
   return frames.wanted() ? run_frames(chosen) : run_one(chosen);
 }
 
-pipeline::RenderedFrame RenderJob::draw(const traces::CommandStream& stream, const Setting& setting, const Outputs& outputs) const {
+pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, const Setting& setting, const Outputs& outputs) const {
+  const traces::CommandStream& stream = loaded.stream;
   const traces::RenderTarget target = shown_target(stream);
   if (depth && target.depth == traces::Format::kUndefined) throw user_error("--depth: {} has no depth attachment", scene.scene);
   Progress progress;
@@ -127,6 +128,8 @@ pipeline::RenderedFrame RenderJob::draw(const traces::CommandStream& stream, con
                                          .leave_out = leave_out == "auto"};
   pipeline::RenderedFrame frame = fidelity == "functional" ? pipeline::render_functional_frame(stream, setting.config.precision())
                                                            : pipeline::render_exact(stream, setting.config, options, limits);
+  std::vector<pipeline::LeftOut>& left_out_of_all = frame.figures.left_out;
+  left_out_of_all.insert(left_out_of_all.begin(), loaded.left_out.begin(), loaded.left_out.end());
   progress.show("writing");
   if (outputs.out) write_color(*outputs.out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
   if (outputs.depth) write_depth(*outputs.depth, frame.image);
@@ -137,12 +140,11 @@ int RenderJob::run_one(const Setting& setting) const {
   const Stopwatch load;
   Progress progress;
   progress.show(fmt::format("loading {}", scene.scene));
-  const auto [stream, left_out] = scene.load();
+  const SceneArguments::Loaded loaded = scene.load();
   const double load_s = load.seconds();
   progress.clear();
-  pipeline::RenderedFrame frame = draw(stream, setting, {out, depth});
+  pipeline::RenderedFrame frame = draw(loaded, setting, {out, depth});
   pipeline::Figures& figures = frame.figures;
-  figures.left_out.insert(figures.left_out.begin(), left_out.begin(), left_out.end());
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
   if (stats) write_text(*stats, pipeline::report_json(subject));
@@ -156,9 +158,9 @@ int RenderJob::run_frames(const Setting& setting) const {
   const auto file = [](const std::optional<std::string>& pattern, std::int64_t number) {
     return pattern ? std::optional(numbered(*pattern, number)) : std::nullopt;
   };
-  const auto draw_one = [&](const traces::CommandStream& stream, std::int64_t number) {
+  const auto draw_one = [&](const SceneArguments::Loaded& loaded, std::int64_t number) {
     const Stopwatch whole;
-    pipeline::RenderedFrame frame = draw(stream, setting, {file(out, number), file(depth, number)});
+    pipeline::RenderedFrame frame = draw(loaded, setting, {file(out, number), file(depth, number)});
     note_host(frame.figures, 0);
     frame.figures.host.wall_s = whole.seconds();
     return pipeline::report_json({frame.figures, setting.config, frame.image.width, frame.image.height});

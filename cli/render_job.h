@@ -46,7 +46,7 @@ struct RenderJob {
   [[nodiscard]] std::int64_t window_cycles() const;
   [[nodiscard]] Setting setting(const pipeline::MachineConfig& config) const;
   /// Draws a frame and writes its pictures.
-  [[nodiscard]] pipeline::RenderedFrame draw(const traces::CommandStream& stream, const Setting& setting, const Outputs& outputs) const;
+  [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting, const Outputs& outputs) const;
   [[nodiscard]] int run_one(const Setting& setting) const;
   [[nodiscard]] int run_frames(const Setting& setting) const;
 

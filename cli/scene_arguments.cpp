@@ -141,17 +141,22 @@ traces::CommandStream SceneArguments::load_visibility() const {
   return scenes::load_scene(scene, visible);
 }
 
+SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes::Moment& moment) const {
+  Loaded loaded{file.record(moment), {}};
+  if (const std::size_t packed = file.packed_images(); packed > 0)
+    loaded.left_out.push_back({"images", "no shader of the frame samples them", fmt::format("{} images of the file stay packed", packed)});
+  const std::size_t shaders = loaded.stream.shaders.size();
+  if (leave_out && shaders > 0 && file.compiled_shaders() == 0)
+    loaded.left_out.push_back(
+        {"GLSL compiler", "all shaders of the frame are at hand as SPIR-V", fmt::format("compiling {} shaders", shaders)});
+  return loaded;
+}
+
 SceneArguments::Loaded SceneArguments::load() const {
   if (is_trace()) return {traces::read_trace(scene), {}};
   const scenes::SceneOptions wanted = options();
   scenes::Scene file(scene, wanted);
-  Loaded loaded{file.record({wanted.time.value_or(0), wanted.orbit}), {}};
-  if (const std::size_t packed = file.packed_images(); packed > 0)
-    loaded.left_out.push_back({"images", "no shader of the frame samples them", fmt::format("{} images of the file stay packed", packed)});
-  if (wanted.leave_out && file.compiled_shaders() == 0)
-    loaded.left_out.push_back({"GLSL compiler", "all shaders of the frame are at hand as SPIR-V",
-                               fmt::format("compiling {} shaders", loaded.stream.shaders.size())});
-  return loaded;
+  return record(file, {wanted.time.value_or(0), wanted.orbit});
 }
 
 }  // namespace quadrille::cli

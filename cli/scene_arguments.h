@@ -33,6 +33,8 @@ struct SceneArguments {
     traces::CommandStream stream;
     std::vector<pipeline::LeftOut> left_out;  ///< what loading did not have to do
   };
+  /// One frame of a scene that is open, with what did not have to be done for it.
+  [[nodiscard]] Loaded record(scenes::Scene& file, const scenes::Moment& moment) const;
   /// Loads the scene or trace. Throws `UserError`.
   [[nodiscard]] Loaded load() const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.

@@ -77,48 +77,10 @@ std::string arrows(const std::vector<std::string>& names) {
   return text;
 }
 
-/// The walk of longest waits from the command processor.
-Limiter walk(const Graph& graph) {
-  Limiter limiter;
-  std::vector<const KindWait*> steps;  // steps[i] leads from walk[i] to the next
-  std::string at = "command_processor";
-  while (true) {
-    const Kind* const kind = graph.find(at);
-    if (kind == nullptr) break;
-    limiter.walk.push_back(at);
-    const auto longest = std::ranges::max_element(kind->waits, {}, [](const auto& w) { return w.second.cycles; });
-    if (longest == kind->waits.end() || longest->second.cycles <= kind->busy) {
-      limiter.kind = Limiter::Kind::kWork;
-      limiter.name = at;
-      limiter.share = share(kind->busy, kind->cycles);
-      limiter.loop = limiter.walk.size();
-      limiter.text = fmt::format("work of {}, one at a time: busy {:.1f} %; waits {}", at, 100 * limiter.share, arrows(limiter.walk));
-      return limiter;
-    }
-    limiter.share = share(longest->second.cycles, kind->cycles);
-    steps.push_back(&longest->second);
-    at = longest->first.second;
-    const auto seen = std::ranges::find(limiter.walk, at);
-    if (seen == limiter.walk.end()) continue;
-    limiter.loop = static_cast<std::size_t>(seen - limiter.walk.begin());
-    break;
-  }
-  if (steps.empty()) return limiter;
-  limiter.kind = Limiter::Kind::kLatency;
-  const auto delay = [](const KindWait* step) { return step->input ? step->link->latency : step->link->credit_latency; };
-  const auto slowest = *std::ranges::max_element(steps.begin() + static_cast<std::ptrdiff_t>(std::min(limiter.loop, steps.size() - 1)),
-                                                 steps.end(), {}, delay);
-  limiter.name = slowest->link->key;
-  const std::vector<std::string> around(limiter.walk.begin() + static_cast<std::ptrdiff_t>(limiter.loop), limiter.walk.end());
-  limiter.text = fmt::format("latency around {} <- {}: the longest link of the loop is {}, {} clk; waits {}", arrows(around), at,
-                             slowest->link->key, delay(slowest), arrows(limiter.walk));
-  return limiter;
-}
-
 /// The part of the frame's time that comes after the last pass was flushed: nothing but scan-out works then.
 double scan_part(const FrameFigures& frame) { return share(frame.cycles - frame.render_cycles, frame.cycles); }
 
-/// The walk where most of the frame is scan-out. It ends there: what units that serve others too waited for was mostly for those.
+/// The walk where the command processor waited longer for scan-out than for anything else. It ends there: what units that serve others too waited for was mostly for those.
 Limiter scanning(const Graph& graph, double part) {
   Limiter limiter;
   limiter.kind = Limiter::Kind::kWork;
@@ -137,6 +99,47 @@ Limiter scanning(const Graph& graph, double part) {
   const auto longest = std::ranges::max_element(waits, {}, [](const auto& w) { return w.second; });
   if (longest != waits.end())
     limiter.text += fmt::format(", waits for {} {:.1f} %", longest->first, 100 * share(longest->second, unit->cycles));
+  return limiter;
+}
+
+/// The walk of longest waits from the command processor.
+Limiter walk(const Graph& graph, double scan_part) {
+  Limiter limiter;
+  std::vector<const KindWait*> steps;  // steps[i] leads from walk[i] to the next
+  std::string at = "command_processor";
+  while (true) {
+    const Kind* const kind = graph.find(at);
+    if (kind == nullptr) break;
+    limiter.walk.push_back(at);
+    // Scan-out works once all passes are flushed: nothing but the command processor has waited for it.
+    const auto weight = [&](const auto& w) { return w.first.second == "scan_out" && at != "command_processor" ? 0 : w.second.cycles; };
+    const auto longest = std::ranges::max_element(kind->waits, {}, weight);
+    if (longest == kind->waits.end() || weight(*longest) <= kind->busy) {
+      limiter.kind = Limiter::Kind::kWork;
+      limiter.name = at;
+      limiter.share = share(kind->busy, kind->cycles);
+      limiter.loop = limiter.walk.size();
+      limiter.text = fmt::format("work of {}, one at a time: busy {:.1f} %; waits {}", at, 100 * limiter.share, arrows(limiter.walk));
+      return limiter;
+    }
+    if (longest->first.second == "scan_out") return scanning(graph, scan_part);
+    limiter.share = share(longest->second.cycles, kind->cycles);
+    steps.push_back(&longest->second);
+    at = longest->first.second;
+    const auto seen = std::ranges::find(limiter.walk, at);
+    if (seen == limiter.walk.end()) continue;
+    limiter.loop = static_cast<std::size_t>(seen - limiter.walk.begin());
+    break;
+  }
+  if (steps.empty()) return limiter;
+  limiter.kind = Limiter::Kind::kLatency;
+  const auto delay = [](const KindWait* step) { return step->input ? step->link->latency : step->link->credit_latency; };
+  const auto slowest = *std::ranges::max_element(steps.begin() + static_cast<std::ptrdiff_t>(std::min(limiter.loop, steps.size() - 1)),
+                                                 steps.end(), {}, delay);
+  limiter.name = slowest->link->key;
+  const std::vector<std::string> around(limiter.walk.begin() + static_cast<std::ptrdiff_t>(limiter.loop), limiter.walk.end());
+  limiter.text = fmt::format("latency around {} <- {}: the longest link of the loop is {}, {} clk; waits {}", arrows(around), at,
+                             slowest->link->key, delay(slowest), arrows(limiter.walk));
   return limiter;
 }
 
@@ -173,10 +176,7 @@ Limiter find_limiter(const Figures& figures) {
   if (figures.units.empty()) return {};
   const std::vector<ResourceUse> uses = resource_uses(figures);
   if (uses.empty()) return {};
-  if (uses.front().use < kUsedUp) {
-    const double part = scan_part(figures.frame);
-    return part > 0.5 ? scanning(Graph(figures), part) : walk(Graph(figures));
-  }
+  if (uses.front().use < kUsedUp) return walk(Graph(figures), scan_part(figures.frame));
   Limiter limiter;
   limiter.kind = uses.front().name.starts_with("link.") ? Limiter::Kind::kLink : Limiter::Kind::kUnit;
   limiter.name = uses.front().name;

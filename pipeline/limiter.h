@@ -3,8 +3,8 @@
 /// Every unit and link has a *use*: the part of the frame's time for which it cannot have been doing anything else (busy cycles; for a link, the least time in
 /// which its tokens can pass). A use is a lower bound on the frame's time, so a resource that is used nearly all the time holds the frame up. When none is, the
 /// frame waits: starting at the command processor, which waits for the frame's end, each unit's longest wait leads to the unit that it waited for, until a unit
-/// is mostly busy (its work, done by nobody else meanwhile) or the walk comes back to where it was: then the time goes to the latencies around that loop. A frame
-/// of which scan-out takes more than half, after all passes, is scan-out's.
+/// is mostly busy (its work, done by nobody else meanwhile) or the walk comes back to where it was: then the time goes to the latencies around that loop. Where
+/// the command processor waited longer for scan-out, which comes after all passes, than for the passes, the frame is scan-out's.
 #pragma once
 
 #include "pipeline/figures.h"

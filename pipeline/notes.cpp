@@ -19,7 +19,7 @@ std::string counted(const std::vector<std::pair<std::uint64_t, const char*>>& co
 
 std::string why_nothing(const FrameFigures& f) {
   const Fates& fates = f.fates;
-  if (f.draws == 0) return "the frame has no draws; does the scene have a mesh?";
+  if (f.draws == 0) return "the frame has no draws; has the scene a mesh with positions, and is it shown?";
   if (f.triangles == 0) return fmt::format("the {} draws of the frame have no triangles", grouped(f.draws));
   if (f.fragments_shaded > 0) {
     return "no fragment passed: " + counted({{fates.discarded, "discarded by their shader"}, {fates.hidden, "killed by the depth test"}});

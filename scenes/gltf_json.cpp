@@ -14,10 +14,19 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kMaxJsonDepth = 128;  // tinygltf's walk over unknown members is recursive
+// tinygltf keeps half a kilobyte of a node, one of an accessor, two of a material, whatever they hold.
+constexpr std::size_t kMaxJsonValues = std::size_t{1} << 23, kMaxJsonObjects = std::size_t{5} << 18, kMaxMaterials = std::size_t{1} << 18;
 
-/// The deepest nesting of brackets outside strings, whether or not the text is JSON.
-int nesting_depth(std::string_view text) {
-  int depth = 0, deepest = 0;
+/// How much a text asks of who parses it, whether or not it is JSON.
+struct Extent {
+  int depth = 0;           ///< deepest nesting of brackets outside strings
+  std::size_t values = 1;  ///< commas and opened brackets: at least as many as there are values
+  std::size_t objects = 0;
+};
+
+Extent extent_of(std::string_view text) {
+  Extent extent;
+  int depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -27,18 +36,26 @@ int nesting_depth(std::string_view text) {
     } else if (c == '"') {
       in_string = true;
     } else if (c == '{' || c == '[') {
-      deepest = std::max(deepest, ++depth);
+      extent.depth = std::max(extent.depth, ++depth);
+      ++extent.values;
+      extent.objects += c == '{' ? 1 : 0;
     } else if (c == '}' || c == ']') {
       --depth;
+    } else if (c == ',') {
+      ++extent.values;
     }
   }
-  return deepest;
+  return extent;
 }
 
 class Preparer {
  public:
   Preparer(const std::string& path, std::string_view json) : path_(path) {
-    if (nesting_depth(json) > kMaxJsonDepth) fail("its JSON", fmt::format("is nested deeper than {}", kMaxJsonDepth));
+    const Extent extent = extent_of(json);
+    if (extent.depth > kMaxJsonDepth) fail("its JSON", fmt::format("is nested deeper than {}", kMaxJsonDepth));
+    if (extent.values > kMaxJsonValues) fail("its JSON", fmt::format("has {} values; at most {} are read", extent.values, kMaxJsonValues));
+    if (extent.objects > kMaxJsonObjects)
+      fail("its JSON", fmt::format("has {} objects; at most {} are read", extent.objects, kMaxJsonObjects));
     try {
       root_ = Json::parse(json);
     } catch (const Json::parse_error& error) {
@@ -48,6 +65,9 @@ class Preparer {
     check_version();
     make_integers(root_, false);
     check_types(path, root_);
+    const auto materials = root_.find("materials");
+    if (materials != root_.end() && materials->size() > kMaxMaterials)
+      fail("materials:", fmt::format("there are {}; at most {} are read", materials->size(), kMaxMaterials));
   }
 
   PreparedJson prepare() {
@@ -78,10 +98,11 @@ class Preparer {
   }
 
   /// An integer may be written as 1.0 or 1e0; tinygltf takes only digits. Members of extensions, though, it keeps as `int`, which wraps: there the large ones
-  /// become fractions, which it keeps as double. The nesting is bounded by now.
+  /// become fractions, which it keeps as double. `extras`, which nobody here reads, go. The nesting is bounded by now.
   static void make_integers(Json& value, bool in_extension) {
     constexpr double kLargestExact = 9007199254740992.0, kInt = 2147483648.0;  // 2^53, 2^31
     if (value.is_object()) {
+      value.erase("extras");
       for (auto& [name, item] : value.items()) make_integers(item, in_extension || name == "extensions");
     } else if (value.is_array()) {
       for (Json& item : value) make_integers(item, in_extension);

@@ -8,7 +8,22 @@
 
 namespace quadrille::scenes::schema {
 
-enum class Type : std::uint8_t { kAny, kObject, kArray, kIndex, kInt, kNumber, kString, kBool, kTwo, kThree, kFour, kSixteen };
+enum class Type : std::uint8_t {
+  kAny,
+  kObject,
+  kArray,
+  kIndex,
+  kInt,
+  kNumber,
+  kNumberOrNull,
+  kStride,
+  kString,
+  kBool,
+  kTwo,
+  kThree,
+  kFour,
+  kSixteen
+};
 
 /// Members of one type: names by path from the document's root; "[]" is each element of an array, "*" each member of an object. What leads to a member is by
 /// that an object, or an array. One with "!" may not be missing where the object around it stands. An index ends in ">" and the table that it leads into: one
@@ -28,7 +43,7 @@ inline constexpr std::array kRules{
          "meshes[].primitives[].targets[].*>accessors accessors[].bufferView>bufferViews accessors[].byteOffset accessors[].count! "
          "accessors[].sparse.indices.bufferView!>bufferViews "
          "accessors[].sparse.values.bufferView!>bufferViews bufferViews[].buffer!>buffers "
-         "bufferViews[].byteOffset bufferViews[].byteLength! bufferViews[].byteStride images[].bufferView>bufferViews "
+         "bufferViews[].byteOffset bufferViews[].byteLength! images[].bufferView>bufferViews "
          "textures[].sampler>samplers textures[].source>images textures[].extensions.EXT_texture_webp.source>images "
          "textures[].extensions.MSFT_texture_dds.source>images "
          "skins[].joints[]>nodes skins[].skeleton>nodes skins[].inverseBindMatrices>accessors animations[].channels[].sampler!>.samplers "
@@ -52,6 +67,9 @@ inline constexpr std::array kRules{
          "cameras[].orthographic.xmag! cameras[].orthographic.ymag! cameras[].orthographic.znear! cameras[].orthographic.zfar! "
          "extensions.KHR_lights_punctual.lights[].intensity extensions.KHR_lights_punctual.lights[].range "
          "extensions.KHR_lights_punctual.lights[].spot.innerConeAngle extensions.KHR_lights_punctual.lights[].spot.outerConeAngle"},
+    Rule{Type::kStride, "bufferViews[].byteStride"},
+    Rule{Type::kNumberOrNull,
+         "materials[].extensions.KHR_materials_volume.attenuationDistance"},  // exporters write an infinite one as null
     Rule{Type::kThree,
          "nodes[].translation nodes[].scale materials[].emissiveFactor "
          "materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularFactor "
@@ -74,7 +92,7 @@ inline constexpr std::array kRules{
         Type::kObject,
         "asset! meshes[].primitives[].attributes! accessors[].sparse.indices! accessors[].sparse.values! animations[].channels[].target!"}};
 
-/// Where a material mentions a texture. `attenuationDistance` of the volume is not among the numbers above: exporters write an infinite one as null.
+/// Where a material mentions a texture.
 inline constexpr std::string_view kTextureInfos =
     "pbrMetallicRoughness.baseColorTexture pbrMetallicRoughness.metallicRoughnessTexture normalTexture occlusionTexture emissiveTexture "
     "extensions.KHR_materials_clearcoat.clearcoatTexture extensions.KHR_materials_clearcoat.clearcoatRoughnessTexture "

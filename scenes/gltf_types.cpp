@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,8 @@ const char* due(Type type) {
     case Type::kIndex: return "an integer of 0 or more";
     case Type::kInt: return "an integer of 0 to 2147483647";
     case Type::kNumber: return "a number";
+    case Type::kNumberOrNull: return "a number";
+    case Type::kStride: return "a multiple of 4 from 4 to 252";
     case Type::kString: return "a string";
     case Type::kBool: return "true or false";
     case Type::kTwo: return "an array of 2 numbers";
@@ -56,6 +59,10 @@ bool is(const Json& value, Type type) {
     case Type::kIndex: return value.is_number_unsigned() || is_large_integer(value);
     case Type::kInt: return value.is_number_unsigned() && value.get<std::uint64_t>() <= 0x7fffffff;  // tinygltf keeps it as an int
     case Type::kNumber: return value.is_number();
+    case Type::kNumberOrNull: return value.is_number() || value.is_null();
+    case Type::kStride:
+      return value.is_number_unsigned() && value.get<std::uint64_t>() <= 252 &&
+             value.get<std::uint64_t>() % 4 == 0;  // 0 is written for none
     case Type::kString: return value.is_string();
     case Type::kBool: return value.is_boolean();
     case Type::kTwo: return numbers(value, 2);
@@ -133,17 +140,19 @@ Due due_of_extensions() {
   return due;
 }
 
+constexpr std::size_t kMaxShownName = 60;
+
 /// Where the walk is; spelled only when something is wrong there.
 struct Place {
   const Place* above = nullptr;
   std::string_view member;
-  std::size_t index = 0;
+  std::optional<std::size_t> index = {};  ///< of an array's element, instead of the name
 
   [[nodiscard]] std::string text() const {
     if (above == nullptr) return "";
     const std::string before = above->text();
-    if (member.empty()) return fmt::format("{}[{}]", before, index);
-    return before.empty() ? std::string(member) : fmt::format("{}.{}", before, member);
+    if (index) return fmt::format("{}[{}]", before, *index);
+    return fmt::format("{}{}{}", before, before.empty() ? "" : ".", member.substr(0, kMaxShownName));
   }
 };
 
@@ -187,13 +196,13 @@ class Check {
     static const Due kExtensions = due_of_extensions();
     for (auto item = object.begin(); item != object.end(); ++item) {
       const auto known = wanted.members.find(item.key());
-      const Place here{&place, item.key(), 0};
+      const Place here{&place, item.key()};
       if (item.key() == "extensions" && !wanted.members.empty()) value(*item, kExtensions, here);
       if (known != wanted.members.end()) value(*item, known->second, here);
       else if (wanted.each) value(*item, *wanted.each, here);
     }
     for (const std::string_view name : wanted.required) {
-      if (!object.contains(name)) fail({&place, name, 0}, wanted.members.at(name), "is missing; ");
+      if (!object.contains(name)) fail({&place, name}, wanted.members.at(name), "is missing; ");
     }
   }
 
@@ -220,7 +229,7 @@ class Check {
   const Json& item_around(const Place& place) const {
     const Place* item = &place;
     while (item->above->above->above != nullptr) item = item->above;
-    return root_.at(item->above->member)[item->index];
+    return root_.at(item->above->member)[item->index.value_or(0)];
   }
 
   void index(const Json& value, std::string_view table, const Place& place) const {

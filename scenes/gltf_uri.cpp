@@ -89,16 +89,20 @@ bool has_scheme(std::string_view uri) {
 /// there to be read.
 bool follows_out(const std::filesystem::path& scene, const std::filesystem::path& file) {
   std::error_code lost;
-  const std::filesystem::path target = std::filesystem::weakly_canonical(file, lost);
+  // Absolute first: of a relative path nothing of which exists, the canonical one stays relative.
+  const auto canonical = [&lost](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path), lost);
+  };
+  const std::filesystem::path target = canonical(file);
   if (lost) return false;
   const auto holds = [&](const std::filesystem::path& folder) {
     const std::filesystem::path inner = target.lexically_relative(folder);
     return !inner.empty() && *inner.begin() != "..";
   };
   const std::filesystem::path beside = scene.has_parent_path() ? scene.parent_path() : std::filesystem::path(".");
-  const std::filesystem::path named = std::filesystem::weakly_canonical(beside, lost);
+  const std::filesystem::path named = canonical(beside);
   if (!lost && holds(named)) return false;
-  const std::filesystem::path own = std::filesystem::weakly_canonical(scene, lost);
+  const std::filesystem::path own = canonical(scene);
   return lost || !holds(own.parent_path());
 }
 

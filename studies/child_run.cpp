@@ -178,7 +178,7 @@ std::string output_of(const ChildRun& run, const std::string& about) {
   switch (run.end) {
     case ChildEnd::kDone: return run.output;
     case ChildEnd::kRefused:
-    case ChildEnd::kTimedOut: throw UserError(fmt::format("{}: {}", about, run.output));
+    case ChildEnd::kTimedOut: throw UserError(run.output.starts_with(about + ":") ? run.output : fmt::format("{}: {}", about, run.output));
     case ChildEnd::kFailed:
     case ChildEnd::kCrashed: break;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace quadrille::hw {
@@ -21,7 +22,7 @@ class Queue {
   [[nodiscard]] const T& back() const { return (*this)[size_ - 1]; }
   void push_back(T entry) {
     if (size_ == places_.size()) grow();
-    places_[place(size_)] = entry;
+    places_[place(size_)] = std::move(entry);
     ++size_;
   }
   void pop_front() {
@@ -34,7 +35,7 @@ class Queue {
   [[nodiscard]] std::size_t place(std::size_t i) const { return (first_ + i) & (places_.size() - 1); }
   void grow() {
     std::vector<T> more(places_.empty() ? 4 : 2 * places_.size());
-    for (std::size_t i = 0; i < size_; ++i) more[i] = (*this)[i];
+    for (std::size_t i = 0; i < size_; ++i) more[i] = std::move((*this)[i]);
     places_.swap(more);
     first_ = 0;
   }

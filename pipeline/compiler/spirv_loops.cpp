@@ -3,6 +3,7 @@
 #include "models/base/error.h"
 #include "pipeline/compiler/spirv_words.h"
 
+#include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -15,6 +16,7 @@ using Id = std::uint32_t;
 struct Block {
   std::vector<Id> successors, predecessors, calls;
   bool ends = false;       ///< the function, or the invocation
+  bool kills = false;      ///< the invocation
   bool loop = false;       ///< a loop's header
   std::uint32_t line = 0;  ///< of the source where the loop begins, 0: unknown
 };
@@ -36,11 +38,30 @@ class Flow {
         for (const Id to : block.successors) blocks.at(to).predecessors.push_back(label);
       }
     }
+    while (spread_kills()) {}
   }
   std::vector<Id> entry_points;
   std::unordered_map<Id, Function> functions;
 
  private:
+  /// A call may end the invocation when the function called may. Returns whether that was news of any block.
+  bool spread_kills() {
+    std::unordered_set<Id> killers;
+    for (const auto& [id, function] : functions) {
+      for (const auto& entry : function.blocks) {
+        if (entry.second.kills) killers.insert(id);
+      }
+    }
+    bool news = false;
+    for (auto& function : functions) {
+      for (auto& entry : function.second.blocks) {
+        Block& block = entry.second;
+        if (block.kills || std::ranges::none_of(block.calls, [&](Id callee) { return killers.contains(callee); })) continue;
+        news = block.kills = block.ends = true;
+      }
+    }
+    return news;
+  }
   void add(std::size_t at, std::size_t count) {
     const std::uint32_t* const operands = words_.data() + at + 1;
     switch (static_cast<std::uint32_t>(opcode(words_, at))) {
@@ -79,10 +100,10 @@ class Flow {
       case spv::OpSwitch:  // a default, then pairs of literal and label; wider selectors than 32 bits are refused later
         for (std::size_t target = 1; target + 1 < count; target += 2) leads_to(target);
         break;
+      case spv::OpKill:
+      case spv::OpTerminateInvocation: block_->kills = block_->ends = true; break;
       case spv::OpReturn:
       case spv::OpReturnValue:
-      case spv::OpKill:
-      case spv::OpTerminateInvocation:
       case spv::OpUnreachable: block_->ends = true; break;
       default: break;
     }

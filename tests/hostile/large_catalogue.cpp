@@ -76,6 +76,19 @@ Group large_scene_cases() {
   };
   add("a chain of 100,000 nodes", chain(100000));
   add("1,000,000 empty nodes", many(1000000, ""));
+  add("2,000,000 empty nodes", many(2000000, ""));
+  for (const char* table : {"materials", "textures", "samplers", "scenes"}) {
+    for (const int count : {250000, 1300000, 2000000})
+      add(fmt::format("{} empty {}", count, table),
+          fmt::format(R"({{"asset":{{"version":"2.0"}},"{}":[{{}}{}]}})", table, repeated(",{}", static_cast<std::size_t>(count - 1))));
+  }
+  const std::string accessor = R"({"componentType":5126,"count":1,"type":"SCALAR"})";
+  add("1,300,000 accessors", R"({"asset":{"version":"2.0"},"accessors":[)" + accessor + repeated("," + accessor, 1299999) + "]}");
+  add("8,000,000 numbers in an extension", R"({"asset":{"version":"2.0"},"extensions":{"X":{"a":[0)" + repeated(",0", 8000000) + "]}}}");
+  add("1,200,000 objects in an extension",
+      R"({"asset":{"version":"2.0"},"extensions":{"X":{"a":[{})" + repeated(R"(,{"":0})", 1200000) + "]}}}");
+  add("30,000,000 numbers in extras", R"({"asset":{"version":"2.0","extras":[0)" + repeated(",0", 30000000) + "]}}");
+  add("8,000,000 numbers in extras", R"({"asset":{"version":"2.0","extras":[0)" + repeated(",0", 8000000) + "]}}");
   add("200,000 instances of a mesh", many(200000, R"("mesh":0)"));
   add("1,000,000 instances of a mesh", many(1000000, R"("mesh":0)"));
   add("20,000 primitives", many_primitives(20000));

@@ -209,7 +209,6 @@ class Bench : public contract::Specimen {
   int names_ = 0;
 };
 
-/// A counter of a unit by name.
 /// The cache of any unit that has one: its lines, ways and misses under way.
 template <class Params>
 void set_cache(Params& params, int lines, int ways, int misses) {
@@ -218,6 +217,7 @@ void set_cache(Params& params, int lines, int ways, int misses) {
   params.cache_misses.set(misses);
 }
 
+/// A counter of a unit by name.
 [[nodiscard]] inline std::uint64_t counter(const Unit& unit, std::string_view name) {
   for (const Counter* c : unit.stats()->counters()) {
     if (c->name() == name) return c->value();

@@ -108,6 +108,16 @@ TEST_CASE("limiter: a frame that is mostly scan-out says so, with what scan-out 
   f.frame.render_cycles = 500;
   f.units[0].waits = {{"retire_in", true, 500, "rop_to_command"}, {"scan_done_in", true, 490, "scan_to_command"}};
   CHECK(find_limiter(f).name == "link.texture_to_core");
+  // The longest wait decides, not the half; and nobody else waits for scan-out, whatever its own ports say.
+  f.units[0].waits = {{"scan_done_in", true, 480, "scan_to_command"}, {"retire_in", true, 440, "rop_to_command"}};
+  f.frame.render_cycles = 520;
+  CHECK(find_limiter(f).text.starts_with("scan-out: 48.0 % of the frame"));
+  f.units[0].waits = {{"retire_in", true, 500, "rop_to_command"}, {"scan_done_in", true, 490, "scan_to_command"}};
+  f.links.push_back(link("scan_to_core", "scan_out", "core_0", 9000));
+  for (UnitFigures& u : f.units) {
+    if (u.path == "core_0") u.waits.push_back({"request_in", true, 990, "scan_to_core"});
+  }
+  CHECK(find_limiter(f).name == "link.texture_to_core");
 }
 
 TEST_CASE("limiter: uses come greatest first and are of the busiest of a kind") {

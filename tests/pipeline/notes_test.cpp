@@ -37,7 +37,7 @@ TEST_CASE("notes: a frame in which a fragment was written has none") {
 
 TEST_CASE("notes: a frame without a written fragment says what became of its triangles and fragments") {
   FrameFigures frame;
-  CHECK(note_on(frame) == "nothing was drawn: the frame has no draws; does the scene have a mesh?");
+  CHECK(note_on(frame) == "nothing was drawn: the frame has no draws; has the scene a mesh with positions, and is it shown?");
   frame.draws = 2;
   CHECK(note_on(frame) == "nothing was drawn: the 2 draws of the frame have no triangles");
   frame.triangles = 5000;

@@ -240,6 +240,18 @@ TEST_CASE("gltf: numbers of an extension that are words or beyond all indices ar
                Contains("materials[0].extensions.KHR_materials_emissive_strength.emissiveStrength: a number is due"));
 }
 
+TEST_CASE("uris: a scene named without its folder lacks a file as any other does") {
+  const TempGltf file(triangle_from("missing.bin"));
+  const std::filesystem::path before = std::filesystem::current_path(), path(file.path());
+  std::filesystem::current_path(path.parent_path());
+  std::string said;
+  try {
+    (void)load_gltf(path.filename().string());
+  } catch (const UserError& error) { said = error.what(); }
+  std::filesystem::current_path(before);
+  CHECK_THAT(said, Contains("missing.bin") && Contains("no such file"));
+}
+
 TEST_CASE("uris: a link that leads out of the folder is refused, a scene file that is a link itself is read") {
   namespace fs = std::filesystem;
   const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};

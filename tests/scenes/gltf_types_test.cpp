@@ -107,7 +107,7 @@ TEST_CASE("gltf types: every member of every depth is refused by its place when 
 
 TEST_CASE("gltf types: indices, counts and offsets are integers of 0 or more") {
   for (const std::string at :
-       {"/scene", "/nodes/0/mesh", "/nodes/0/children/0", "/accessors/0/count", "/accessors/0/byteOffset", "/bufferViews/0/byteStride",
+       {"/scene", "/nodes/0/mesh", "/nodes/0/children/0", "/accessors/0/count", "/accessors/0/byteOffset", "/bufferViews/0/byteLength",
         "/meshes/0/primitives/0/attributes/POSITION", "/skins/0/joints/0", "/animations/0/channels/0/target/node"}) {
     for (const double bad : {-1.0, 0.5}) {
       Json document = everything();
@@ -242,4 +242,21 @@ TEST_CASE("gltf types: a whole file is refused before anything of it is drawn") 
   REQUIRE_THAT(load_result(triangle_gltf("", R"(,"materials":{})")), Contains(": materials: an array is due"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":"sun"})")),
                Contains("nodes[0].extensions.KHR_lights_punctual: an object is due"));
+}
+
+TEST_CASE("gltf types: a place is spelled with names of bounded length, and an empty name is a name") {
+  Json document = everything();
+  document["nodes"][0]["extensions"][std::string(3000000, 'X')] = 1;
+  REQUIRE(result(document).size() < 200);
+  document = everything();
+  document["meshes"][0]["primitives"][0]["attributes"][""] = "x";
+  REQUIRE_THAT(result(document), Contains("primitives[0].attributes.: "));
+}
+
+TEST_CASE("gltf types: a stride is a multiple of 4 that glTF allows") {
+  for (const std::int64_t bad : {std::int64_t{3}, std::int64_t{256}, std::int64_t{-4}, std::int64_t{1} << 40}) {
+    Json document = everything();
+    document["bufferViews"][0]["byteStride"] = bad;
+    REQUIRE(result(document) == "f.gltf: bufferViews[0].byteStride: a multiple of 4 from 4 to 252 is due");
+  }
 }

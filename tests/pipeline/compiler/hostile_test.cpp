@@ -76,9 +76,11 @@ TEST_CASE("a loop that nothing leads out of is refused with its line, whatever i
 TEST_CASE("a loop that a break, a return or a discard can end, or that is never reached, is none without an end") {
   for (const char* body : {"while (true) { if (++r > 3) break; }", "for (;;) { color.x += 1.0; if (color.x > 5.0) return; }",
                            "while (true) { if (color.x > 0.5) discard; color.x += 1.0; }", "if (false) for (;;) {}",
+                           "while (true) { color.x += 1.0; h(color.x); }", "while (true) { k(color.x += 1.0); }",
                            "while (true) { switch (r) { case 3: color.x = f(a.x); return; default: ++r; } }"}) {
     CAPTURE(body);
     CHECK(error_of("color = a; int r = 0;\n" + std::string(body),
+                   "void h(float x) { if (x > 5.0) discard; }\nvoid k(float x) { if (x > 3.0) h(x); }\n"
                    "float unused(float x) { for (;;) x += 1.0; return x; }\nfloat f(float x) { while (true) { x += 1.0; if (x > 9.0) "
                    "return x; } }") == "compiles");
   }
