@@ -44,6 +44,7 @@ SceneArguments arguments_of(const AccuracyArguments& a, const std::string& scene
   SceneArguments one = a.view;
   one.scene = scene;
   one.check();
+  one.check_there();
   if (!one.is_trace() && !one.size) one.size = kDefaultSize;
   return one;
 }

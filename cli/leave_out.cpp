@@ -32,6 +32,7 @@ int run_leave_out(const LeaveOutArguments& a) {
     SceneArguments& one = all.emplace_back(a.view);
     one.scene = scene;
     one.check();
+    one.check_there();
     if (!one.is_trace() && !one.size) one.size = kDefaultSize;
   }
   pipeline::MachineConfig machine;

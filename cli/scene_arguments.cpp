@@ -135,6 +135,12 @@ void SceneArguments::check() const {
   throw user_error("{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the names)", scene);
 }
 
+void SceneArguments::check_there() const {
+  std::error_code unknown;
+  if (scene.starts_with("builtin:")) (void)scenes::Scene(scene, options());
+  else if (!std::filesystem::exists(scene, unknown)) throw user_error("{}: no such file", scene);
+}
+
 traces::CommandStream SceneArguments::load_visibility() const {
   scenes::SceneOptions visible = options();
   visible.visibility = true;

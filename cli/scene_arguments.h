@@ -29,6 +29,8 @@ struct SceneArguments {
   void add_trace_to(CLI::App& command);
   /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
   void check() const;
+  /// Checks that the file, or the built-in scene, is there: for a command that measures several, before it measures the first. Throws `UserError`.
+  void check_there() const;
   struct Loaded {
     traces::CommandStream stream;
     std::vector<pipeline::LeftOut> left_out;  ///< what loading did not have to do

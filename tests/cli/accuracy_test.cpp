@@ -71,6 +71,17 @@ TEST_CASE("a study that cannot be is refused before anything runs") {
   accuracy_refused({"--no-precision", "--precision-plot", "x.svg"}, {"--precision-plot", "--no-precision"});
 }
 
+TEST_CASE("a scene that is not there is refused before any other is measured") {
+  const ScratchFolder folder;
+  for (const char* command : {"accuracy", "leave-out"}) {
+    for (const char* missing : {"builtin:nope", "nope.glb", "nope.qtrace"}) {
+      const ProgramRun run = run_quadrille(folder, {command, "builtin:triangle", missing, "--repeat", "1"});
+      require_refused(run, {missing});
+      CHECK(run.out.empty());
+    }
+  }
+}
+
 TEST_CASE("plots without gnuplot are refused before anything runs") {
   const ScratchFolder nothing;
   const PathOf empty(nothing.path().string());
