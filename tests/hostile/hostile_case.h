@@ -53,7 +53,8 @@ struct Group {
 [[nodiscard]] Group output_cases();
 /// Files that this project did not write; empty where they are absent. Twice each: functional and exact.
 [[nodiscard]] Group outside_cases();
-[[nodiscard]] std::vector<Group> all_groups();
+/// All of the above, to be made one after another: a run inherits the pages of the process that starts it, so the texts of a group should go before the next.
+[[nodiscard]] std::vector<Group (*)()> all_groups();
 
 [[nodiscard]] inline std::string repeated(const std::string& text, std::size_t count) {
   std::string out;

@@ -145,10 +145,9 @@ Case scene_case(const std::string& what, const std::string& text, const std::str
   return {what, render_arguments(name), name, [=](const fs::path& folder) { write_file(folder / name, text); }, expect};
 }
 
-std::vector<Group> all_groups() {
-  std::vector<Group> groups{scene_cases(),   binary_scene_cases(), large_scene_cases(), image_cases(),  trace_cases(),
-                            machine_cases(), flag_cases(),         shader_cases(),      output_cases(), outside_cases()};
-  return groups;
+std::vector<Group (*)()> all_groups() {
+  return {scene_cases,   binary_scene_cases, large_scene_cases, image_cases,  trace_cases,
+          machine_cases, flag_cases,         shader_cases,      output_cases, outside_cases};
 }
 
 }  // namespace quadrille::hostile
