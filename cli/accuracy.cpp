@@ -83,7 +83,7 @@ int run_accuracy(const AccuracyArguments& a) {
     fmt::print("{}{}", measured.size() > 1 ? "\n" : "", studies::accuracy_table(measured.back(), machine));
     std::fflush(stdout);
   }
-  if (a.json) { write_text(*a.json, studies::accuracy_json(measured, machine)); }
+  if (a.json) write_text(*a.json, studies::accuracy_json(measured, machine));
   if (a.plot) studies::draw_plot(*a.plot, studies::accuracy_plot(measured));
   if (a.precision_plot) studies::draw_plot(*a.precision_plot, studies::precision_plot(measured));
   return kDone;

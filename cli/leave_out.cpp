@@ -52,7 +52,7 @@ int run_leave_out(const LeaveOutArguments& a) {
   }
   progress.clear();
   fmt::print("{}", studies::leave_out_table(results, machine));
-  if (a.json) { write_text(*a.json, studies::leave_out_json(results, machine)); }
+  if (a.json) write_text(*a.json, studies::leave_out_json(results, machine));
   return std::ranges::all_of(results, [](const studies::LeaveOutResult& r) { return r.contradiction.empty(); }) ? kDone : kFailed;
 }
 

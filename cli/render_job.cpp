@@ -128,8 +128,8 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
                                          .leave_out = leave_out == "auto"};
   pipeline::RenderedFrame frame = fidelity == "functional" ? pipeline::render_functional_frame(stream, setting.config.precision())
                                                            : pipeline::render_exact(stream, setting.config, options, limits);
-  std::vector<pipeline::LeftOut>& left_out_of_all = frame.figures.left_out;
-  left_out_of_all.insert(left_out_of_all.begin(), loaded.left_out.begin(), loaded.left_out.end());
+  std::vector<pipeline::LeftOut>& left_out_of_frame = frame.figures.left_out;
+  left_out_of_frame.insert(left_out_of_frame.begin(), loaded.left_out.begin(), loaded.left_out.end());
   progress.show("writing");
   if (outputs.out) write_color(*outputs.out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
   if (outputs.depth) write_depth(*outputs.depth, frame.image);

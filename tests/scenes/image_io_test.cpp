@@ -22,6 +22,14 @@ Rgba8Image gradient(std::uint32_t width, std::uint32_t height) {
   return image;
 }
 
+/// The image has this size, and this colour everywhere.
+void require_plain(const Rgba8Image& image, std::uint32_t width, std::uint32_t height, const std::array<std::uint8_t, 4>& color) {
+  REQUIRE(image.width == width);
+  REQUIRE(image.height == height);
+  REQUIRE(image.pixels.size() == std::size_t{4} * width * height);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) REQUIRE(image.pixels[i] == color[i % 4]);
+}
+
 }  // namespace
 
 TEST_CASE("image_io: a PNG comes back bit for bit, colours under zero alpha included") {
@@ -99,11 +107,7 @@ TEST_CASE("image_io: a WebP image is decoded, a truncated one is refused") {
                                         0x50, 0x38, 0x4c, 0x11, 0x00, 0x00, 0x00, 0x2f, 0x02, 0x40, 0x00, 0x00, 0x07,
                                         0x50, 0xb2, 0x22, 0x57, 0xa6, 0xff, 0x81, 0x88, 0xe8, 0x7f, 0x00, 0x00};
   const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
-  const Rgba8Image image = decode_image(bytes, "a.webp");
-  REQUIRE(image.width == 3);
-  REQUIRE(image.height == 2);
-  for (std::size_t i = 0; i < 6; ++i)
-    REQUIRE(std::vector<std::uint8_t>(&image.pixels[4 * i], &image.pixels[4 * i] + 4) == std::vector<std::uint8_t>{200, 100, 50, 255});
+  require_plain(decode_image(bytes, "a.webp"), 3, 2, {200, 100, 50, 255});
   for (std::size_t size = 12; size < bytes.size() - 4; size += 3)
     REQUIRE_THROWS_WITH(decode_image(bytes.first(size), "a.webp"), Catch::StartsWith("a.webp: "));
 }
@@ -113,11 +117,7 @@ TEST_CASE("image_io: the colours of a WebP image with alpha are as they were wri
   std::vector<unsigned char> file{82, 73, 70, 70, 30, 0,  0, 0,  87,  69, 66, 80,  86, 80,  56,  76,  17,  0, 0,
                                   0,  47, 1,  64, 0,  16, 7, 80, 178, 34, 87, 166, 60, 129, 136, 232, 127, 0, 0};
   const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
-  const Rgba8Image image = decode_image(bytes, "a.webp");
-  REQUIRE(image.width == 2);
-  REQUIRE(image.height == 2);
-  for (std::size_t i = 0; i < 4; ++i)
-    REQUIRE(std::vector<std::uint8_t>(&image.pixels[4 * i], &image.pixels[4 * i] + 4) == std::vector<std::uint8_t>{200, 100, 50, 60});
+  require_plain(decode_image(bytes, "a.webp"), 2, 2, {200, 100, 50, 60});
   for (std::size_t i = 25; i < 32; ++i) file[i] = 0;
   REQUIRE_THROWS_WITH(decode_image(bytes, "a.webp"), Catch::StartsWith("a.webp: cannot be decoded as webp: "));
 }
