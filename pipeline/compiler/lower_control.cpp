@@ -249,6 +249,7 @@ bool Lowering::breaks_directly(Id to, Id& from) const {
 void Lowering::conditional_exit(Value condition, Id from, Id to, const Stop& stop) {
   Id source = from;
   if (breaks_directly(to, source)) {
+    if (loops_.back().unrolled) throw StartAgain{&Attempts::rolled_loops, loops_.back().header};  // there is no LOOP to break
     copy_phis(source, loops_.back().merge);
     build_.effect(Op::kBreakIf, condition);
     return;
@@ -272,6 +273,7 @@ Id Lowering::conditional(const spirv::Block& block, const Stop& stop) {
     const Id taken = condition.bits != 0 ? yes : no;
     if (block.merge_kind != spv::OpSelectionMerge) return edge(block.label, taken, stop);
     side(block.label, taken, {block.merge, nullptr});
+    if (const LoopFrame* loop = real_loop(); loop != nullptr && loop->finished) return 0;  // the side left the loop that is written out
     return follow(block.merge, stop);
   }
   if (const LoopFrame* loop = real_loop(); loop != nullptr && loop->unrolled && (is_exit(yes, stop) || is_exit(no, stop)))
