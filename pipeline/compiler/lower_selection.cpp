@@ -85,13 +85,34 @@ bool Lowering::flatten(const spirv::Block& block, Value condition, Id yes, Id no
   return true;
 }
 
+/// The case that the default falls into, or 0. The blocks of the default end at the switch's merge, at another case and where they leave the loop around it.
+Id Lowering::default_falls_into(const Cases& cases, Id otherwise, Id merge) const {
+  std::unordered_set<Id> seen{merge};
+  if (const LoopFrame* loop = real_loop(); loop != nullptr) seen.insert({loop->merge, loop->continue_target, loop->header});
+  std::vector<Id> open{otherwise};
+  while (!open.empty()) {
+    const Id label = open.back();
+    open.pop_back();
+    if (!seen.insert(label).second) continue;
+    if (std::ranges::find(cases, label, &Cases::value_type::first) != cases.end()) return label;
+    for (const Id to : spirv::successors(module_.block(label))) open.push_back(to);
+  }
+  return 0;
+}
+
+/// The others stand in an order in which each falls into a later one, if into any [SPV #StructuredControlFlow]; the default has no place in that list.
+void Lowering::add_default(Cases& cases, Id otherwise, Value mask, Id merge) const {
+  const Id next = otherwise == merge ? 0 : default_falls_into(cases, otherwise, merge);
+  cases.emplace(std::ranges::find(cases, next, &Cases::value_type::first), otherwise, mask);
+}
+
 /// Cases are exclusive, so they follow each other as IFs, each with the mask of its lanes; a case that falls into a later one sets that one's flag.
 Id Lowering::lower_switch(const spirv::Block& block, const Stop& stop) {
   const auto operands = block.terminator.operands;
   const Value selector = scalar(operands[0]);
   const Id otherwise = operands[1], merge = block.merge;
   if (block.merge_kind != spv::OpSelectionMerge) throw unsupported(block.terminator, "a switch without a merge block");
-  std::vector<std::pair<Id, Value>> cases;
+  Cases cases;
   Value matched = literal(0u);
   for (std::size_t k = 2; k + 1 < operands.size(); k += 2) {
     const Id label = operands[k + 1];
@@ -102,7 +123,7 @@ Id Lowering::lower_switch(const spirv::Block& block, const Stop& stop) {
     if (known == cases.end()) cases.emplace_back(label, equal);
     else known->second = build_.emit(Op::kOr, known->second, equal);
   }
-  cases.emplace_back(otherwise, build_.invert(matched));
+  add_default(cases, otherwise, build_.invert(matched), merge);
   std::erase_if(cases, [&](const auto& entry) { return entry.first == merge; });
   const bool looped = attempts_.looped_switches.contains(block.label);
   copy_phis(block.label, merge);

@@ -56,6 +56,7 @@ class Lowering {
     std::uint16_t imm = 0;
     models::Interpolation interpolation = models::Interpolation::kPerspective;
   };
+  using Cases = std::vector<std::pair<Id, Value>>;  ///< of a switch: label, mask of the lanes that enter there
   /// Where a region of blocks ends.
   struct Stop {
     Id merge = 0;
@@ -110,6 +111,8 @@ class Lowering {
   // lower_selection.cpp
   Id selection(const spirv::Block& block, Value condition, Id yes, Id no, Id merge, const Stop& stop);
   Id lower_switch(const spirv::Block& block, const Stop& stop);
+  [[nodiscard]] Id default_falls_into(const Cases& cases, Id otherwise, Id merge) const;
+  void add_default(Cases& cases, Id otherwise, Value mask, Id merge) const;
   bool flatten(const spirv::Block& block, Value condition, Id yes, Id no);
   [[nodiscard]] int flat_cost(Id label, Id merge) const;
   [[nodiscard]] int flat_cost(const spirv::Instruction& i) const;

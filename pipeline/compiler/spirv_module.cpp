@@ -28,6 +28,19 @@ bool harmless_capability(std::uint32_t capability) {
 
 }  // namespace
 
+std::vector<Id> successors(const Block& block) {
+  const std::span<const std::uint32_t> operands = block.terminator.operands;
+  switch (static_cast<std::uint32_t>(block.terminator.op)) {
+    case spv::OpBranch: return {operands[0]};
+    case spv::OpBranchConditional: return {operands[1], operands[2]};
+    case spv::OpSwitch: break;
+    default: return {};
+  }
+  std::vector<Id> result;  // the default, then pairs of literal and label
+  for (std::size_t k = 1; k < operands.size(); k += 2) result.push_back(operands[k]);
+  return result;
+}
+
 std::string opcode_name(spv::Op op) {
   // The assembler's own table is not public; a disassembled one-instruction module would be needed for the text. Number and common names suffice.
   switch (static_cast<std::uint32_t>(op)) {

@@ -53,6 +53,9 @@ struct Block {
   std::uint32_t loop_control = 0;  ///< spv::LoopControlMask
 };
 
+/// Labels that the block's end leads to.
+[[nodiscard]] std::vector<Id> successors(const Block& block);
+
 struct Variable {
   Id id = 0, type = 0;  ///< `type` is the pointee
   spv::StorageClass storage = spv::StorageClassFunction;
