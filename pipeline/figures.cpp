@@ -156,6 +156,10 @@ class Laws {
         sum_.depth("fragments_in"));
     law("fragments to test = killed + passed", "depth.fragments_in", sum_.depth("fragments_in"), "depth.early_killed + fragments_out",
         sum_.depth("early_killed") + sum_.depth("fragments_out"));
+    law("fragments covered = tested early + deferred + untested", "fine_raster.fragments", value(m_.fine(), "fragments"),
+        "depth.early_tested + deferred + untested", sum_.depth("early_tested") + sum_.depth("deferred") + sum_.depth("untested"));
+    law("fragments deferred = tested late + discarded before that", "depth.deferred", sum_.depth("deferred"),
+        "depth.late_tested + rop.late_discarded", sum_.depth("late_tested") + sum_.rop("late_discarded"));
     law("fragments passed = fragments packed", "depth.fragments_out", sum_.depth("fragments_out"), "warp_packer.fragments",
         sum_.packer("fragments"));
     law("fragments packed = fragments shaded", "warp_packer.fragments", sum_.packer("fragments"), "core.fragments", sum_.core("fragments"));

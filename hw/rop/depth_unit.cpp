@@ -264,9 +264,11 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
     models::depth_write(stored, incoming, token.coverage);
     send_hiz(now, token.tile_x, token.tile_y);
   }
-  stats_.early_killed += static_cast<std::uint64_t>(std::popcount(covered & ~token.coverage));
+  const auto killed = static_cast<std::uint64_t>(std::popcount(covered & ~token.coverage));
+  stats_.early_killed += killed;
   if (token.late) {
     in_flight += static_cast<std::uint32_t>(quads_in(token.coverage));
+    stats_.early_tested += killed;  // of a late tile, those alone are settled
     stats_.deferred += static_cast<std::uint64_t>(std::popcount(token.coverage));
   } else {
     stats_.early_tested += static_cast<std::uint64_t>(std::popcount(covered));

@@ -30,11 +30,14 @@ class DepthUnit final : public Unit {
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in by the early port"};
     Counter fragments_in{*this, "fragments_in", "fragment", "Fragments taken in by the early port"};
-    Counter early_tested{*this, "early_tested", "fragment", "Fragments tested (and written) before shading"};
-    Counter early_killed{*this, "early_killed", "fragment", "Fragments killed before shading"};
+    Counter early_tested{*this, "early_tested", "fragment",
+                         "Fragments whose depth test was settled before shading: killed, or passed and written"};
+    Counter early_killed{*this, "early_killed", "fragment",
+                         "Fragments of those that were killed, also of tiles whose survivors are tested late"};
     Counter fragments_out{*this, "fragments_out", "fragment", "Fragments handed to the warp packer"};
     Counter untested{*this, "untested", "fragment", "Fragments of draws without depth test, passed on"};
-    Counter deferred{*this, "deferred", "fragment", "Fragments handed on to be tested late"};
+    Counter deferred{*this, "deferred", "fragment",
+                     "Fragments handed on to be tested late. What is taken in is tested early, deferred or untested"};
     Counter late_tested{*this, "late_tested", "fragment", "Fragments tested after shading"};
     Counter late_killed{*this, "late_killed", "fragment", "Fragments killed after shading"};
     Counter hiz_sent{*this, "hiz_sent", "update", "Hi-Z updates sent"};

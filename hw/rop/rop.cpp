@@ -220,7 +220,9 @@ void Rop::retire(Tick now) {
     const int live = std::popcount(warp.alive);
     ++stats_.warps;
     stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(warp.covered));
-    stats_.discarded += static_cast<std::uint64_t>(std::popcount(warp.covered) - entry.shaded);
+    const auto discarded = static_cast<std::uint64_t>(std::popcount(warp.covered) - entry.shaded);
+    stats_.discarded += discarded;
+    if (warp.late) stats_.late_discarded += discarded;
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
     stats_.written += static_cast<std::uint64_t>(live);
     cycles = write_colors(warp);

@@ -29,6 +29,7 @@ class Rop final : public Unit {
     Counter warps{*this, "warps", "warp", "Warps retired"};
     Counter fragments_in{*this, "fragments_in", "fragment", "Live fragments of those warps when they were packed"};
     Counter discarded{*this, "discarded", "fragment", "Fragments that their program discarded"};
+    Counter late_discarded{*this, "late_discarded", "fragment", "Fragments of those that would have been tested late"};
     Counter late_killed{*this, "late_killed", "fragment", "Fragments that failed the late depth test"};
     Counter written{*this, "written", "fragment", "Fragments written to the target"};
     Counter blended{*this, "blended", "fragment", "Fragments of those that were combined with the old colour"};

@@ -51,6 +51,14 @@ TEST_CASE("conservation: a lost fragment is noticed") {
     });
   });
   CHECK(broken.find("fragments covered = fragments to test") != std::string::npos);
+  CHECK(broken.find("fragments covered = tested early + deferred + untested") != std::string::npos);
+}
+
+TEST_CASE("conservation: fragments that miss their late test are noticed") {
+  const std::string broken = broken_laws([](const Machine& machine) {
+    link<hw::CoverageToken>(machine, "depth_to_packer_0").inject_fault([](hw::CoverageToken& t) { t.late = false; });
+  });
+  CHECK(broken.find("fragments deferred = tested late + discarded before that") != std::string::npos);
 }
 
 TEST_CASE("conservation: a fragment lost between test and packing is noticed") {

@@ -109,6 +109,16 @@ TEST_CASE("depth_unit: a draw without depth test passes untouched") {
         }) == "3:903 13:4 17:6 untested 64");
 }
 
+TEST_CASE("depth_unit: every fragment is counted where it went, also those of a late tile that are killed early") {
+  const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4, 0, kUpperHalf)}, {10, tile(6, 1)}, {10, tile(6, 2, 0xf)}}};
+  const auto text = run<DepthBench>(s, [](const DepthBench& b) {
+    const Unit& u = *b.unit;
+    return fmt::format("in {} = tested {} + deferred {} + untested {}, killed {}", counter(u, "fragments_in"), counter(u, "early_tested"),
+                       counter(u, "deferred"), counter(u, "untested"), counter(u, "early_killed"));
+  });
+  CHECK(text == "in 100 = tested 64 + deferred 32 + untested 4, killed 32");
+}
+
 TEST_CASE("depth_unit: an early draw goes late while late fragments of its tile are in flight, and is early again after them") {
   const DepthBench::Setup s{.coverage = {{0, kBegin},
                                          {10, tile(4, 1, kUpperHalf)},

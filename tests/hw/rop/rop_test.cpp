@@ -108,10 +108,21 @@ TEST_CASE("rop: fragments that were discarded are counted and not written") {
   const auto text = run<RopBench>(s, [](const RopBench& b) {
     int changed = 0;
     for (const std::uint32_t pixel : models::detile(b.device, b.frame.passes[0].color)) changed += static_cast<int>(pixel != 0x80402010);
-    return fmt::format("in {} discarded {} written {} pixels {}", counter(*b.unit, "fragments_in"), counter(*b.unit, "discarded"),
-                       counter(*b.unit, "written"), changed);
+    return fmt::format("in {} discarded {}, late {}, written {} pixels {}", counter(*b.unit, "fragments_in"), counter(*b.unit, "discarded"),
+                       counter(*b.unit, "late_discarded"), counter(*b.unit, "written"), changed);
   });
-  CHECK(text == "in 32 discarded 23 written 9 pixels 9");
+  CHECK(text == "in 32 discarded 23, late 0, written 9 pixels 9");
+}
+
+TEST_CASE("rop: what a program discards of a warp that is tested late is counted by itself") {
+  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}},
+                          .done = {{10, {0}}},
+                          .late = {{50, {TokenKind::kWork, 0}}},
+                          .late_warps = true,
+                          .alive = 0x0000ff01};
+  CHECK(run<RopBench>(s, [](const RopBench& b) {
+          return fmt::format("discarded {}, late {}", counter(*b.unit, "discarded"), counter(*b.unit, "late_discarded"));
+        }) == "discarded 23, late 23");
 }
 
 TEST_CASE("rop: a late-tested warp is sent when it is shaded and retires when its answer is there") {
