@@ -50,7 +50,7 @@ SceneArguments arguments_of(const AccuracyArguments& a, const std::string& scene
 }
 
 void check_outputs(const AccuracyArguments& a) {
-  if (a.json) check_output("--json", *a.json, {".json"});
+  if (a.json) check_json_output("--json", *a.json);
   if (a.plot) check_output("--plot", *a.plot, {".svg", ".png"});
   if (a.precision_plot) check_output("--precision-plot", *a.precision_plot, {".svg", ".png"});
   check_distinct({{"--json", a.json}, {"--plot", a.plot}, {"--precision-plot", a.precision_plot}});
@@ -70,9 +70,9 @@ int run_accuracy(const AccuracyArguments& a) {
   for (const std::string& scene : a.scenes) all.push_back(arguments_of(a, scene));
   pipeline::MachineConfig machine;
   a.machine.apply(machine);
-  for (const std::string& setting : a.machine.settings) machine.name += ", " + setting;  // the tables say of which machine they are
   check_outputs(a);
 
+  const Tables tables(true, a.json);
   std::vector<studies::SceneAccuracy> measured;
   for (const SceneArguments& one : all) {
     progress.show(fmt::format("loading {}", one.scene));
@@ -80,8 +80,7 @@ int run_accuracy(const AccuracyArguments& a) {
     if (options.precision && !one.is_trace()) scene.visibility = one.load_visibility();
     measured.push_back(studies::measure_accuracy(scene, machine, options));
     progress.clear();
-    fmt::print("{}{}", measured.size() > 1 ? "\n" : "", studies::accuracy_table(measured.back(), machine));
-    std::fflush(stdout);
+    tables.print((measured.size() > 1 ? "\n" : "") + studies::accuracy_table(measured.back(), machine));
   }
   if (a.json) write_text(*a.json, studies::accuracy_json(measured, machine));
   if (a.plot) studies::draw_plot(*a.plot, studies::accuracy_plot(measured));
@@ -102,7 +101,8 @@ void add_accuracy(CLI::App& app, Command& chosen) {
       ->capture_default_str();
   command->add_option("--repeat", a->repeat, "runs of each setting; they take turns")->type_name("N")->capture_default_str();
   command->add_flag("--no-precision", a->no_precision, "leaves out the table of sub-pixel, sub-texel and level-of-detail bits");
-  command->add_option("--json", a->json, "writes all that was measured as JSON (docs/accuracy.md)")->type_name("F.json");
+  command->add_option("--json", a->json, "writes all that was measured as JSON (docs/accuracy.md); - is standard output")
+      ->type_name("F.json|-");
   command->add_option("--plot", a->plot, "draws error against run time, a line a scene (needs gnuplot)")->type_name("F.svg|F.png");
   command->add_option("--precision-plot", a->precision_plot, "draws the picture's error against bits (needs gnuplot)")
       ->type_name("F.svg|F.png");

@@ -11,6 +11,7 @@
 #include "cli/image_files.h"
 #include "cli/scene_arguments.h"
 #include "models/base/error.h"
+#include "models/base/say.h"
 #include "models/reference/compare.h"
 #include "scenes/image_io.h"
 
@@ -66,10 +67,23 @@ void write_heat(const std::string& path, reference::ImageView a, reference::Imag
   scenes::save_png(path, image);
 }
 
+/// Refuses what this program writes or reads but is no picture, by what it is.
+void check_picture(const std::string& path) {
+  constexpr std::array<std::pair<const char*, const char*>, 5> kOthers{
+      {{".json", "figures"}, {".qtrace", "a trace"}, {".gltf", "a scene"}, {".glb", "a scene"}, {".toml", "a machine"}}};
+  for (const auto& [extension, what] : kOthers) {
+    if (!path.ends_with(extension)) continue;
+    throw user_error("{}: {}, by its name; diff compares two pictures (PNG, JPEG, WebP, DDS or EXR), as --out of render writes them", path,
+                     what);
+  }
+}
+
 int run_diff(const DiffArguments& arguments) {
   std::optional<std::int64_t> limit;
   if (arguments.max_lsb) limit = parse_whole(*arguments.max_lsb, "--max-lsb", 0, 255);
   if (arguments.heat) check_output("--heat", *arguments.heat, {".png"});
+  check_picture(arguments.a);
+  check_picture(arguments.b);
   const CodedImage a = read_coded(arguments.a), b = read_coded(arguments.b);
   if (a.width != b.width || a.height != b.height) {
     throw user_error("{} is {}x{}, {} is {}x{}: only pictures of one size compare", arguments.a, a.width, a.height, arguments.b, b.width,
@@ -80,14 +94,14 @@ int run_diff(const DiffArguments& arguments) {
   fmt::print("{}", difference_text(difference));
   if (arguments.heat) write_heat(*arguments.heat, view_a, view_b);
   if (!limit || difference.max_lsb <= *limit) return kDone;
-  fmt::print(stderr, "quadrille: the pictures differ by {} of 255; --max-lsb allows {}\n", difference.max_lsb, *limit);
+  say(fmt::format("quadrille: the pictures differ by {} of 255; --max-lsb allows {}\n", difference.max_lsb, *limit));
   return kFailed;
 }
 
 }  // namespace
 
 void add_diff(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand("diff", "Says how far apart two pictures are (PNG, JPEG or EXR, of one size).");
+  CLI::App* command = app.add_subcommand("diff", "Says how far apart two pictures are (PNG, JPEG, WebP, DDS or EXR, of one size).");
   const auto arguments = std::make_shared<DiffArguments>();
   command->add_option("A", arguments->a, "a picture")->required();
   command->add_option("B", arguments->b, "another")->required();

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/process.h"
 #include "models/base/error.h"
+#include "models/base/say.h"
 #include "studies/child_run.h"
 
 namespace quadrille::cli {
@@ -68,8 +69,8 @@ std::string limit_text(const Json& limit) {
 }
 
 std::string head() {
-  return fmt::format("  {:>6}{:>10}{:>8}{:>13}{:>10}{:>8}{:>12}{:>13}{:>11}  {}\n", "frame", "time s", "turn", "cycles", "ms", "draws",
-                     "triangles", "fragments", "memory MB", "what limits it, %");
+  return fmt::format("  {:>6}{:>10}{:>8}{:>13}{:>10}{:>12}{:>8}{:>12}{:>13}{:>11}  {}\n", "frame", "time s", "turn", "cycles", "ms",
+                     "scan-out ms", "draws", "triangles", "fragments", "memory MB", "what limits it, %");
 }
 
 std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
@@ -81,9 +82,11 @@ std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
                                 number_or_dash(moment.orbit.has_value(), fmt::format("{:.3f}", moment.orbit.value_or(0))));
   if (timed) {
     const double cycles = f["cycles"].get<double>();
-    out += fmt::format("{:>13} {:>9.3f}", f["cycles"].get<std::int64_t>(), cycles / f["clock_mhz"].get<double>() * 1e-3);
+    const double per_ms = f["clock_mhz"].get<double>() * 1e3;
+    out += fmt::format("{:>13} {:>9.3f} {:>11.3f}", f["cycles"].get<std::int64_t>(), cycles / per_ms,
+                       f["scan_out_cycles"].get<double>() / per_ms);
   } else {
-    out += fmt::format("{:>13}{:>10}", "-", "-");
+    out += fmt::format("{:>13}{:>10}{:>12}", "-", "-", "-");
   }
   out += fmt::format("{:>8}{:>12}{:>13}", f["draws"].get<std::uint64_t>(), f["triangles"].get<std::uint64_t>(),
                      f["fragments_shaded"].get<std::uint64_t>());
@@ -107,10 +110,47 @@ std::string broken_laws(std::int64_t number, const Json& figures) {
   return text;
 }
 
+/// What a row of frames takes: one after another, and where the scan-out of each overlaps the drawing of the next. Two targets take turns: a frame is drawn when the
+/// one before it is drawn and the target that it draws into, which the one before that is shown from, is free. Neither slows the other in memory.
+class DisplayQueue {
+ public:
+  /// When the next frame is drawn and shown, in cycles since the first began to be drawn; null when it was not timed.
+  Json add(const Json& frame) {
+    if (frame["cycles"].is_null()) return nullptr;
+    const std::int64_t cycles = frame["cycles"], drawing = frame["render_cycles"];
+    const std::int64_t from = std::max(drawn_, shown_before_);
+    shown_before_ = shown_;
+    drawn_ = from + drawing;
+    shown_ = std::max(drawn_, shown_) + (cycles - drawing);
+    one_after_another_ += cycles;
+    clock_mhz_ = frame["clock_mhz"];
+    ++frames_;
+    return {{"drawn_from", from}, {"drawn_at", drawn_}, {"shown_at", shown_}};
+  }
+  /// The last line of the table; empty when no frame was timed.
+  [[nodiscard]] std::string text() const {
+    if (frames_ == 0) return "";
+    const auto rate = [this](std::int64_t cycles) {
+      return fmt::format("{} cycles, {:.1f} frames/s", cycles, 1e6 * clock_mhz_ * frames_ / static_cast<double>(cycles));
+    };
+    return fmt::format("  all: {} one after another; {} where the scan-out of each overlaps the drawing of the next\n",
+                       rate(one_after_another_), rate(shown_));
+  }
+  [[nodiscard]] Json json() const {
+    if (frames_ == 0) return nullptr;
+    return {{"one_after_another", one_after_another_}, {"overlapped", shown_}, {"clock_mhz", clock_mhz_}};
+  }
+
+ private:
+  std::int64_t drawn_ = 0, shown_ = 0, shown_before_ = 0, one_after_another_ = 0;
+  double clock_mhz_ = 0;
+  int frames_ = 0;
+};
+
 /// Frames as their processes end, in any order; rows are printed, and laws checked, in the frames' order.
 class Sequence {
  public:
-  Sequence(const Plan& plan, bool quiet) : plan_(plan), quiet_(quiet) {}
+  Sequence(const Plan& plan, const Tables& tables) : plan_(plan), tables_(tables) {}
 
   void add(std::int64_t number, Json figures) {
     waiting_.emplace(number, std::move(figures));
@@ -122,26 +162,29 @@ class Sequence {
   /// Frames in order so far.
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(frames_.size()); }
   [[nodiscard]] Json take() { return std::move(frames_); }
+  [[nodiscard]] const DisplayQueue& queue() const { return queue_; }
   [[nodiscard]] int exit_code() const { return exit_code_; }
 
  private:
   void append(Json figures) {
     const std::int64_t number = size();
-    if (!quiet_) fmt::print("{}{}", row(number, plan_, figures), note_rows(figures["notes"]));
-    std::fflush(stdout);
+    tables_.print(row(number, plan_, figures) + note_rows(figures["notes"]));
     if (const std::string broken = broken_laws(number, figures); !broken.empty()) {
-      fmt::print(stderr, "{}", broken);
+      say(broken);
       exit_code_ = kFailed;
     }
     const scenes::Moment moment = plan_.moment(number);
+    Json overlapped = queue_.add(figures["frame"]);
     frames_.push_back({{"frame", number},
                        {"time_s", plan_.animated ? Json(moment.time) : Json(nullptr)},
                        {"turn", moment.orbit ? Json(*moment.orbit) : Json(nullptr)},
+                       {"overlapped", std::move(overlapped)},
                        {"figures", std::move(figures)}});
   }
 
   const Plan& plan_;
-  bool quiet_;
+  const Tables& tables_;
+  DisplayQueue queue_;
   std::map<std::int64_t, Json> waiting_;
   Json frames_ = Json::array();
   int exit_code_ = kDone;
@@ -193,7 +236,7 @@ std::string numbered(const std::string& pattern, std::int64_t frame) {
   return (path.parent_path() / name).string();
 }
 
-SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about, bool quiet,
+SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about, const Tables& tables,
                            const DrawFrame& draw) {
   if (scene.is_trace()) throw user_error("--frames: {} is a trace, which holds one frame", scene.scene);
   scenes::SceneOptions options = scene.options();
@@ -207,9 +250,9 @@ SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& fr
   const std::string over = plan.animated ? fmt::format("{} frames over {:g} s", plan.frames, plan.step * static_cast<double>(plan.frames))
                                          : fmt::format("{} frames around the scene", plan.frames);
   const std::vector<std::string> notes = plan_notes(plan, file);
-  if (!quiet) fmt::print("FRAMES  {}, {}, {}\n{}{}", scene.scene, over, about, note_rows(notes), head());
+  tables.print(fmt::format("FRAMES  {}, {}, {}\n{}{}", scene.scene, over, about, note_rows(notes), head()));
   if (plan.frames > 1) (void)file.record(plan.moment(0));  // unpacks here, once, the images that the frames' processes will sample
-  Sequence sequence(plan, quiet);
+  Sequence sequence(plan, tables);
   std::vector<studies::ChildWork> works;
   works.reserve(static_cast<std::size_t>(plan.frames));
   for (std::int64_t i = 0; i < plan.frames; ++i)
@@ -222,8 +265,10 @@ SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& fr
     if (sequence.size() < plan.frames) progress.show(fmt::format("frame {} of {}", sequence.size(), plan.frames));
   });
   progress.clear();
+  tables.print(sequence.queue().text());
   const Json document = {{"schema", kFramesSchema},
                          {"scene", scene.scene},
+                         {"cycles", sequence.queue().json()},
                          {"animation_s", plan.animated ? Json(file.length()) : Json(nullptr)},
                          {"notes", notes},
                          {"frames", sequence.take()}};

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/process.h"
 #include "cli/scene_arguments.h"
 #include "pipeline/machine_config.h"
 
@@ -37,8 +38,8 @@ struct SequenceResult {
   std::string json;  ///< all frames' figures, schema `quadrille-frames-1`
 };
 
-/// Draws all frames, printing a row for each unless `quiet`; the rows come in order, however many processes draw. Throws `UserError` that names the frame.
-[[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about, bool quiet,
-                                         const DrawFrame& draw);
+/// Draws all frames, printing a row for each; the rows come in order, however many processes draw. Throws `UserError` that names the frame.
+[[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about,
+                                         const Tables& tables, const DrawFrame& draw);
 
 }  // namespace quadrille::cli

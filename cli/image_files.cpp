@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
+#include "cli/process.h"
 #include "models/base/error.h"
 #include "models/rop/srgb.h"
 #include "scenes/image_io.h"
@@ -90,6 +92,14 @@ void check_output(std::string_view flag, const std::string& path, const std::vec
   if (access(path.c_str(), W_OK) != 0) throw user_error("{}: {}: exists and is write-protected", flag, path);
 }
 
+bool is_standard_output(const std::string& path) { return path == "-"; }
+
+void check_json_output(std::string_view flag, const std::string& path) {
+  if (is_standard_output(path)) return;
+  if (lower_extension(path) != ".json") throw user_error("{}: {}: the name has to end in .json, or be - for standard output", flag, path);
+  check_output(flag, path, {".json"});
+}
+
 void check_distinct(const std::vector<std::pair<std::string_view, std::optional<std::string>>>& outputs) {
   const auto place = [](const std::string& path) { return fs::weakly_canonical(fs::absolute(path)); };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -101,6 +111,10 @@ void check_distinct(const std::vector<std::pair<std::string_view, std::optional<
 }
 
 void write_text(const std::string& path, const std::string& text) {
+  if (is_standard_output(path)) {
+    (void)std::fwrite(text.data(), 1, text.size(), stdout);
+    return flush_output();
+  }
   traces::write_whole_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 

@@ -13,10 +13,14 @@ namespace quadrille::cli {
 /// Refuses a path that could not be written at the end of a long run: a wrong extension, no such folder, no permission, not a plain file. Creates nothing.
 /// Throws `UserError` that starts with `flag`.
 void check_output(std::string_view flag, const std::string& path, const std::vector<std::string>& extensions);
+/// Whether a document's name is "-".
+[[nodiscard]] bool is_standard_output(const std::string& path);
+/// The same for a JSON document, which may go to standard output.
+void check_json_output(std::string_view flag, const std::string& path);
 /// Refuses two outputs with one name. Paths that were not given are empty.
 void check_distinct(const std::vector<std::pair<std::string_view, std::optional<std::string>>>& outputs);
 
-/// Writes a text, whole or not at all.
+/// Writes a text, whole or not at all; "-" is standard output. Throws `UserError`, or `std::system_error` when standard output cannot be written.
 void write_text(const std::string& path, const std::string& text);
 /// Writes the colours: a .png holds the stored codes, an .exr linear values. Alpha is written as 1 unless `keep_alpha`. `srgb` says how the target encodes.
 void write_color(const std::string& path, const pipeline::FrameImage& image, bool srgb, bool keep_alpha);

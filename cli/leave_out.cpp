@@ -37,7 +37,7 @@ int run_leave_out(const LeaveOutArguments& a) {
   }
   pipeline::MachineConfig machine;
   a.machine.apply(machine);
-  if (a.json) check_output("--json", *a.json, {".json"});
+  if (a.json) check_json_output("--json", *a.json);
   Progress progress;
   std::vector<studies::LeaveOutResult> results;
   for (const SceneArguments& one : all) {
@@ -51,7 +51,7 @@ int run_leave_out(const LeaveOutArguments& a) {
         studies::measure_leave_out({one.scene, load}, machine, repeat, [&](const std::string& what) { progress.show(what); }));
   }
   progress.clear();
-  fmt::print("{}", studies::leave_out_table(results, machine));
+  Tables(true, a.json).print(studies::leave_out_table(results, machine));
   if (a.json) write_text(*a.json, studies::leave_out_json(results, machine));
   return std::ranges::all_of(results, [](const studies::LeaveOutResult& r) { return r.contradiction.empty(); }) ? kDone : kFailed;
 }
@@ -65,7 +65,8 @@ void add_leave_out(CLI::App& app, Command& chosen) {
   a->view.add_view_to(*command, kDefaultSize);
   a->machine.add_to(*command);
   command->add_option("--repeat", a->repeat, "runs of each side; they take turns")->type_name("N")->capture_default_str();
-  command->add_option("--json", a->json, "writes all that was measured as JSON (docs/leave_out.md)")->type_name("F.json");
+  command->add_option("--json", a->json, "writes all that was measured as JSON (docs/leave_out.md); - is standard output")
+      ->type_name("F.json|-");
   command->footer(
       R"(Every run is a process of its own, from the file to the picture: --leave-out none beside --leave-out auto. Ends with 1 when they disagree.
 Examples:

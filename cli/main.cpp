@@ -1,14 +1,20 @@
 /// The `quadrille` program: finds the subcommand and turns every error into one line and an exit code.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <optional>
+#include <span>
 #include <system_error>
 
 #include "cli/command.h"
 #include "cli/process.h"
 #include "models/base/error.h"
+#include "models/base/near_name.h"
+#include "models/base/say.h"
 
 /// SystemC's library refers to it; the machine is elaborated and run by the pipeline instead.
 extern "C" int sc_main(int /*argc*/, char** /*argv*/) { return quadrille::cli::kDone; }
@@ -31,16 +37,69 @@ constexpr const char* kExamples = R"(Examples:
 Each subcommand has its own --help.
 Exit code: 0 done, 1 a check failed or pictures differ, 2 something given was wrong.)";
 
-int fail(int code, std::string message) {
-  fmt::print(stderr, "quadrille: {}\n", message);
+int fail(int code, const std::string& message) {
+  say(fmt::format("quadrille: {}\n", message));
   return code;
 }
 
-/// What CLI11 says of a wrong command line, as one line.
-int refuse(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string text = one_line(error.what());
+/// The innermost subcommand that was recognised, or the program.
+const CLI::App& recognised(const CLI::App& app) {
   const auto parsed = app.get_subcommands();
-  return fail(kUserError, fmt::format("{}; see quadrille{} --help", text, parsed.empty() ? "" : " " + parsed.front()->get_name()));
+  return parsed.empty() ? app : recognised(*parsed.front());
+}
+
+/// "quadrille trace record"
+std::string command_line_of(const CLI::App& app, const CLI::App& command) {
+  return &app == &command ? app.get_name() : command_line_of(app, *command.get_parent()) + " " + command.get_name();
+}
+
+std::vector<std::string> subcommands_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; })) names.push_back(sub->get_name());
+  return names;
+}
+
+std::vector<std::string> flags_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// The first word of the command line that nothing takes, in the order in which they were typed; none when all are taken.
+std::optional<std::string> first_unknown(const CLI::App& app, std::span<char* const> words) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  for (const char* word : words) {
+    if (std::ranges::find(unknown, word) != unknown.end()) return word;
+  }
+  return std::nullopt;
+}
+
+/// What is wrong with a word that nothing takes, and what it may have been meant to be.
+std::string unknown_text(const CLI::App& command, const std::string& word) {
+  if (word.starts_with('-') && word.size() > 1)
+    return fmt::format("unknown option '{}'{}", word, did_you_mean(word.substr(0, word.find('=')), flags_of(command)));
+  const std::vector<std::string> subs = subcommands_of(command);
+  if (subs.empty()) return fmt::format("unexpected argument '{}'", word);
+  const std::string meant = did_you_mean(word, subs);
+  return fmt::format("unknown subcommand '{}'{}", word, meant.empty() ? fmt::format("; there are {}", fmt::join(subs, ", ")) : meant);
+}
+
+/// What is wrong with a command line, as one line. A word that nothing takes is named before what is missing: it is often the reason.
+int refuse(const CLI::App& app, std::span<char* const> words, const CLI::ParseError& error) {
+  const CLI::App& command = recognised(app);
+  const std::optional<std::string> unknown = first_unknown(app, words);
+  const std::string text = one_line(unknown ? unknown_text(command, *unknown) : error.what());
+  return fail(kUserError, fmt::format("{}; see {} --help", text, command_line_of(app, command)));
+}
+
+/// Standard output is full, closed or gone.
+int output_lost(const std::system_error& error) {
+  if (error.code().value() == EPIPE) end_by_pipe();
+  if (std::ferror(stdout) == 0) return fail(kUserError, one_line(error.what()));
+  return fail(kUserError, fmt::format("standard output cannot be written: {}", error.code().message()));
 }
 
 int run(int argc, char** argv) {
@@ -58,26 +117,29 @@ int run(int argc, char** argv) {
   add_lists(app, chosen);
   add_stability(app, chosen);
   try {
-    app.parse(argc, argv);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::Success& answered) {
+      chosen = [&app, answered] { return app.exit(answered); };
+    }  // --help and --version
     if (!chosen) return fail(kUserError, "a subcommand is missing; see quadrille --help");
     const int code = chosen();
-    return std::fflush(stdout) == 0 ? code : fail(kUserError, "standard output cannot be written");
-  } catch (const CLI::Success& answered) {
-    return app.exit(answered);  // --help and --version
-  } catch (const CLI::ParseError& error) { return refuse(app, error); } catch (const UserError& error) {
+    flush_output();
+    return code;
+  } catch (const CLI::ParseError& error) { return refuse(app, {argv + 1, argv + argc}, error); } catch (const UserError& error) {
     return fail(kUserError, error.what());
   } catch (const std::bad_alloc&) {
     return fail(kUserError, "out of memory; try a smaller --size, or a machine with less gpu.memory_mib");
-  } catch (const std::system_error& error) {
-    return fail(kUserError, one_line(error.what()));  // standard output is full or gone
-  } catch (const std::exception& error) { return fail(kInternalError, fmt::format("internal error: {}", error.what())); }
+  } catch (const std::system_error& error) { return output_lost(error); } catch (const std::exception& error) {
+    return fail(kInternalError, fmt::format("internal error: {}", error.what()));
+  }
 }
 
 }  // namespace
 }  // namespace quadrille::cli
 
 int main(int argc, char** argv) {
-  quadrille::cli::note_start();
+  quadrille::cli::start_process();
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);  // its banner would be the first line of every report
   return quadrille::cli::run(argc, argv);
 }

@@ -1,4 +1,4 @@
-/// What this process has cost so far, and the line that says on a terminal what it is doing.
+/// What this process has cost so far, what it does at its borders (standard streams, signals), and the line that says on a terminal what it is doing.
 #pragma once
 
 #include <chrono>
@@ -8,10 +8,28 @@
 
 namespace quadrille::cli {
 
-/// Remembers when the process started; first statement of the program.
-void note_start();
+/// First statement of the program. Remembers when it started. A standard stream that is closed is taken, so that no file is opened in its place; a write to it fails.
+/// A limit of a file's size, or a pipe that nobody reads, fails the write instead of ending the process; other signals that end it remove unfinished files.
+void start_process();
+/// Sends on what was printed. Throws `std::system_error` when standard output cannot be written.
+void flush_output();
+/// Ends the program for an output that nobody reads any more as other programs end: by SIGPIPE, unless that was ignored when it started.
+void end_by_pipe();
 /// Seconds since then.
 [[nodiscard]] double wall_seconds();
+
+/// Where a command's tables go: to standard output; to standard error where a JSON document takes that; nowhere when they are not wanted.
+class Tables {
+ public:
+  enum class Place : std::uint8_t { kOutput, kError, kNowhere };
+  /// `json` is the name given for the document, if any.
+  Tables(bool wanted, const std::optional<std::string>& json);
+  /// Prints at once. Throws `std::system_error` when standard output cannot be written.
+  void print(const std::string& text) const;
+
+ private:
+  Place place_;
+};
 
 /// Seconds that a piece of work takes.
 class Stopwatch {

@@ -26,6 +26,8 @@ void add_render(CLI::App& app, Command& chosen) {
       24 frames over the animation: a picture and a row of figures each
   quadrille render city.gltf --machine small --set l2.cache_lines=4096 --set link.client_to_l2.latency=20
       another machine, two of its parameters changed
+  quadrille render city.gltf -q --stats - | jq .frame.cycles
+      figures to another program
   quadrille render cube.gltf --frag toon.frag --out toon.png
       with a fragment shader of your own
 Files are checked before the simulation starts, and appear whole or not at all.)");

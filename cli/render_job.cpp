@@ -6,6 +6,7 @@
 #include "cli/image_files.h"
 #include "cli/process.h"
 #include "models/base/error.h"
+#include "models/base/say.h"
 #include "pipeline/host_cost.h"
 #include "pipeline/report.h"
 #include "scenes/image_io.h"
@@ -37,7 +38,10 @@ void RenderJob::add_to(CLI::App& command) {
   machine.add_to(command);
   command.add_option("--out", out, "writes the picture: .png as stored, .exr as linear floats")->type_name("F.png|F.exr");
   command.add_option("--depth", depth, "writes the depths: .exr as they are, .png as grey, nearest white")->type_name("F.exr|F.png");
-  command.add_option("--stats", stats, "writes all figures as JSON (docs/figures.md)")->type_name("F.json");
+  command
+      .add_option("--stats", stats,
+                  "writes all figures as JSON (docs/figures.md); - is standard output, and the table then goes to standard error")
+      ->type_name("F.json|-");
   command.add_option("--fidelity", fidelity, "exact: the machine, cycle by cycle; functional: the same picture without time")
       ->check(CLI::IsMember({"exact", "functional"}))
       ->capture_default_str();
@@ -72,7 +76,7 @@ void RenderJob::check_outputs() const {
   };
   check("--out", out, {".png", ".exr"});
   check("--depth", depth, {".exr", ".png"});
-  if (stats) check_output("--stats", *stats, {".json"});
+  if (stats) check_json_output("--stats", *stats);
   check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}});
 }
 
@@ -148,9 +152,9 @@ int RenderJob::run_one(const Setting& setting) const {
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
   if (stats) write_text(*stats, pipeline::report_json(subject));
-  if (!quiet) fmt::print("{}", pipeline::report_table(subject, units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
+  Tables(!quiet, stats).print(pipeline::report_table(subject, units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
   if (figures.checks_hold()) return kDone;
-  fmt::print(stderr, "quadrille: the figures contradict each other\n{}", pipeline::failed_checks(figures));
+  say("quadrille: the figures contradict each other\n" + pipeline::failed_checks(figures));
   return kFailed;
 }
 
@@ -168,8 +172,8 @@ int RenderJob::run_frames(const Setting& setting) const {
   if (out || depth) scenes::open_image_module();
   const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();
   const std::string how = setting.window > 0 ? fmt::format("approximate (window of {} cycles)", window_cycles()) : fidelity;
-  const std::string about = fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.name, how);
-  const SequenceResult result = draw_frames(scene, frames, about, quiet, draw_one);
+  const std::string about = fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.title(), how);
+  const SequenceResult result = draw_frames(scene, frames, about, Tables(!quiet, stats), draw_one);
   if (stats) write_text(*stats, result.json);
   return result.exit_code;
 }

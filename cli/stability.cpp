@@ -56,20 +56,19 @@ int run_stability(const StabilityArguments& arguments) {
     return kDone;
   }
   const std::int64_t jobs = arguments.jobs ? parse_whole(*arguments.jobs, "--jobs", 1, 64) : 2;
-  if (arguments.json) check_output("--json", *arguments.json, {".json"});
+  if (arguments.json) check_json_output("--json", *arguments.json);
   if (arguments.page) check_output("--page", *arguments.page, {".md"});
   if (arguments.page && !arguments.out) throw user_error("--page: it shows the pictures of --out, which is missing");
   if (arguments.out) make_folder(*arguments.out);
 
+  const Tables tables(true, arguments.json);
   const Stopwatch watch;
-  const std::vector<stability::CaseResult> results = stability::run_cases(cases, static_cast<int>(jobs), [&](const auto& result) {
-    fmt::print("{}", stability::case_text(result, arguments.all));
-    std::fflush(stdout);
-  });
+  const std::vector<stability::CaseResult> results = stability::run_cases(
+      cases, static_cast<int>(jobs), [&](const auto& result) { tables.print(stability::case_text(result, arguments.all)); });
   if (arguments.out) write_pictures(arguments, results);
   if (arguments.json) write_text(*arguments.json, stability::results_json(results));
   if (arguments.page) write_text(*arguments.page, stability::results_markdown(results, seen_from(*arguments.page, *arguments.out)));
-  fmt::print("{}{:.0f} s\n", stability::verdict_text(results), watch.seconds());
+  tables.print(fmt::format("{}{:.0f} s\n", stability::verdict_text(results), watch.seconds()));
   const bool hold = std::ranges::all_of(results, [](const stability::CaseResult& r) { return r.holds(); });
   return hold ? kDone : kFailed;
 }
@@ -85,7 +84,7 @@ void add_stability(CLI::App& app, Command& chosen) {
   command->add_flag("--quick", arguments->quick, "leaves out the cases that take more than a few seconds");
   command->add_flag("--all", arguments->all, "prints what every case must hold to as well, even where it holds");
   command->add_option("--out", arguments->out, "writes each case's picture there, and contact.html to look at them")->type_name("DIR");
-  command->add_option("--json", arguments->json, "writes all results as JSON")->type_name("F.json");
+  command->add_option("--json", arguments->json, "writes all results as JSON; - is standard output")->type_name("F.json|-");
   command->add_option("--page", arguments->page, "writes them as a page of documentation, with the pictures of --out")->type_name("F.md");
   command->add_option("--jobs", arguments->jobs, "processes at a time (default 2)")->type_name("N");
   command->footer(R"(Exit code 1 when anything does not hold.

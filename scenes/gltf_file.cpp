@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "models/base/error.h"
+#include "models/base/say.h"
 #include "scenes/gltf_container.h"
 #include "scenes/gltf_draco.h"
 #include "scenes/gltf_extensions.h"
@@ -81,7 +82,7 @@ void list_images(GltfFile& file, const PreparedJson& json) {
 }  // namespace
 
 void print_notes(GltfFile& file) {
-  for (const std::string& note : file.notes) fmt::print(stderr, "{}\n", one_line(fmt::format("{}: {}", file.path, note)));
+  for (const std::string& note : file.notes) say(one_line(fmt::format("{}: {}", file.path, note)) + "\n");
   file.notes.clear();
 }
 

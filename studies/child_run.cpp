@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 
 #include "models/base/error.h"
+#include "traces/unfinished.h"
 
 namespace quadrille::studies {
 namespace {
@@ -39,15 +40,16 @@ void send(int pipe, std::string_view bytes) {
   }
 }
 
-/// In the child: whatever ends `parent`, a signal included, ends this process too.
+/// In the child: whatever ends `parent`, a signal included, ends this process too, by a signal that it can use to remove what it was writing.
 void end_with(pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (const int number : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGTERM, SIGINT})
+    signal(number, SIG_DFL);  // handlers are the parent's
+  traces::remove_unfinished_at_signals();
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(0);  // it ended before the call
 }
 
 [[noreturn]] void work_and_exit(int pipe, const std::function<std::string()>& work, const ChildLimits& limits) {
-  for (const int number : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGTERM, SIGINT})
-    signal(number, SIG_DFL);  // handlers are the parent's
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
   char said = kSaidDone;
   std::string output;
@@ -124,10 +126,10 @@ ChildEnd end_of(char said) {
   return said == kSaidRefused ? ChildEnd::kRefused : ChildEnd::kFailed;
 }
 
-/// Reaps a child that has closed its end or has run out of time.
-ChildRun finish_child(const Child& child, bool in_time) {
+/// Reaps a child that has closed its end or has run out of time; the latter is ended by `signal`.
+ChildRun finish_child(const Child& child, bool in_time, int signal = SIGKILL) {
   close(child.pipe);
-  if (!in_time) kill(child.pid, SIGKILL);
+  if (!in_time) kill(child.pid, signal);
   int status = 0;
   rusage usage{};
   while (wait4(child.pid, &status, 0, &usage) < 0 && errno == EINTR) {}
@@ -199,7 +201,7 @@ void run_in_children(std::span<const ChildWork> works, int jobs, const std::func
     Running(const Running&) = delete;
     Running& operator=(const Running&) = delete;
     ~Running() {
-      for (const Child& child : *this) (void)finish_child(child, false);
+      for (const Child& child : *this) (void)finish_child(child, false, SIGTERM);  // which leaves it time to remove what it was writing
     }
   } children;
   std::vector<pollfd> ready;

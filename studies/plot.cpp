@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "models/base/error.h"
+#include "traces/unfinished.h"
 #include "traces/whole_file.h"
 
 namespace quadrille::studies {
@@ -75,6 +76,8 @@ void require_gnuplot(const std::string& flag) {
 void draw_plot(const std::string& path, const std::string& commands) {
   const ScratchFolder folder;
   const fs::path drawn = folder.path() / "plot";
+  const traces::Unfinished listed_folder(folder.path().string()), listed_plot(drawn.string()),
+      listed_words((folder.path() / "said").string());
   const std::string all =
       terminal_for(path) + fmt::format("set output '{}'\nset encoding utf8\n", drawn.string()) + commands + "\nunset output\n";
   if (!run_gnuplot(folder.path(), all) || !fs::exists(drawn) || fs::file_size(drawn) == 0) {

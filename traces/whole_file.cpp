@@ -1,11 +1,16 @@
 #include "traces/whole_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "models/base/error.h"
+#include "traces/unfinished.h"
 
 namespace quadrille::traces {
 
@@ -22,19 +27,37 @@ std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t li
   return bytes;
 }
 
+namespace {
+
+/// Writes all, or says why not: a value of errno.
+int write_all(int file, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : ENOSPC;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+/// The same for a new file.
+int write_new(const std::string& path, std::span<const std::byte> bytes) {
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) return errno;
+  const int failure = write_all(file, bytes);
+  return close(file) != 0 && failure == 0 ? errno : failure;
+}
+
+}  // namespace
+
 void write_whole_file(const std::string& path, std::span<const std::byte> bytes) {
   const std::string part = fmt::format("{}.{}.part", path, getpid());
-  std::ofstream file(part, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  std::error_code failure;
-  if (file) std::filesystem::rename(part, path, failure);
-  if (!file || failure) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);
-    throw user_error("{}: cannot be written: {}", path,
-                     failure ? failure.message() : std::string("no such folder, no permission or no space"));
-  }
+  const Unfinished listed(part);
+  int failure = write_new(part, bytes);
+  if (failure == 0 && rename(part.c_str(), path.c_str()) != 0) failure = errno;
+  if (failure == 0) return;
+  unlink(part.c_str());
+  throw user_error("{}: cannot be written: {}", path, std::generic_category().message(failure));
 }
 
 }  // namespace quadrille::traces

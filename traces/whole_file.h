@@ -11,7 +11,7 @@ namespace quadrille::traces {
 
 /// All bytes of a regular file of at most `limit` bytes. Throws `UserError` that starts with the path.
 [[nodiscard]] std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t limit);
-/// Writes a file by way of a temporary one beside it and a rename. Throws `UserError` that starts with the path.
+/// Writes a file by way of a temporary one beside it and a rename; the temporary one is removed on every way out that can be caught (unfinished.h). Throws `UserError` that starts with the path.
 void write_whole_file(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace quadrille::traces

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,12 +10,13 @@ namespace quadrille::tests {
 
 struct ProgramRun {
   int exit_code = -1;  ///< -1: it was ended by a signal
+  int signal = 0;      ///< that one
   std::string out, err;
 };
 
-/// Runs `program` with these arguments, in `folder`, its outputs in files.
+/// Runs `program` with these arguments, in `folder`, its outputs in files. `prepare` is called in its process before it starts, to close streams or set limits.
 [[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
-                                     const std::filesystem::path& folder);
+                                     const std::filesystem::path& folder, const std::function<void()>& prepare = {});
 
 /// A new empty folder, removed with all it holds.
 class ScratchFolder {

@@ -9,8 +9,9 @@
 
 namespace quadrille::tests {
 
-inline ProgramRun run_quadrille(const ScratchFolder& folder, const std::vector<std::string>& arguments) {
-  return run_program(QUADRILLE_PROGRAM, arguments, folder.path());
+inline ProgramRun run_quadrille(const ScratchFolder& folder, const std::vector<std::string>& arguments,
+                                const std::function<void()>& prepare = {}) {
+  return run_program(QUADRILLE_PROGRAM, arguments, folder.path(), prepare);
 }
 
 /// A refusal: exit code 2, nothing on standard output, and one line that holds each of these words.
