@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,72 +12,113 @@
 #include "cli/counter_catalogue.h"
 #include "cli/machine_arguments.h"
 #include "models/base/error.h"
+#include "models/base/near_name.h"
 
 namespace quadrille::cli {
 namespace {
 
 struct DescribeArguments {
-  std::optional<std::string> group;
-  bool markdown = false, json = false;
+  std::optional<std::string> what, name;
+  bool markdown = false, json = false, toml = false;
   std::string only = "all";
   MachineArguments machine;
 };
 
-/// A group of parameters and a unit's counters share a name, except where only one of them exists.
+constexpr std::string_view kMachine = "machine";  // as WHAT: every parameter of the machine that NAME is
+
+/// Counters of a kind of unit.
+using DescribedUnit = std::pair<std::string, std::vector<const hw::Counter*>>;
+
+/// What was asked for. A group of parameters and a unit's counters share a name, except where only one of them exists.
 class Description {
  public:
-  explicit Description(const DescribeArguments& arguments) : arguments_(arguments), units_(counter_catalogue()) {
-    arguments.machine.apply(config_);
-    if (!arguments.group) return;
-    std::set<std::string> legal;
-    for (const auto& [path, group] : config_.groups()) legal.insert(path.starts_with("link.") ? "link" : path);
-    for (const UnitCounters& u : units_) legal.insert(std::string(u.kind));
-    const bool link = std::ranges::any_of(config_.groups(), [&](const auto& g) { return g.first == *arguments.group; });
-    if (!link && !legal.contains(*arguments.group))
-      throw user_error("describe: unknown group '{}'; groups: {}", *arguments.group, fmt::join(legal, ", "));
+  explicit Description(const DescribeArguments& arguments) : units_(counter_catalogue()) {
+    MachineArguments machine = arguments.machine;
+    const bool whole_machine = arguments.what == kMachine;
+    if (arguments.name && !whole_machine)
+      throw user_error("describe: '{}' after '{}': a name goes with 'describe machine'", *arguments.name, *arguments.what);
+    if (arguments.name) machine.machine = *arguments.name;
+    machine.apply(config_);
+    const bool parameters = arguments.only != "counters", counters = arguments.only != "parameters" && !whole_machine && !arguments.toml;
+    select(whole_machine || !arguments.what ? "" : *arguments.what, parameters, counters);
   }
 
-  /// Calls `visit(path of the group, group)` for what was asked for.
-  template <class Visit>
-  void each_parameter_group(const Visit& visit) const {
-    if (arguments_.only == "counters") return;
-    for (const auto& [path, group] : config_.groups()) {
-      if (wanted(path) && !group->params().empty()) visit(path, *group);
-    }
-  }
-  /// Calls `visit(kind, counters)` for what was asked for.
-  template <class Visit>
-  void each_unit(const Visit& visit) const {
-    if (arguments_.only == "parameters") return;
-    for (const UnitCounters& u : units_) {
-      if (wanted(u.kind)) visit(u.kind, *u.stats);
-    }
-  }
-  [[nodiscard]] const std::string& machine_name() const { return config_.name; }
+  [[nodiscard]] const std::vector<pipeline::DescribedGroup>& groups() const { return groups_; }
+  [[nodiscard]] const std::vector<DescribedUnit>& units() const { return described_units_; }
+  [[nodiscard]] const pipeline::MachineConfig& machine() const { return config_; }
 
  private:
-  [[nodiscard]] bool wanted(std::string_view path) const {
-    return !arguments_.group || path == *arguments_.group ||
-           (path.starts_with(*arguments_.group) && path.substr(arguments_.group->size()).starts_with('.'));
+  /// Whether `what` asks for an entry of a group; a way to ask is tried only when those before it find nothing.
+  using Asks = bool (*)(std::string_view what, std::string_view group, std::string_view entry);
+  static constexpr std::array<Asks, 4> kWays{
+      [](std::string_view what, std::string_view group, std::string_view) {
+        return what.empty() || group == what || (group.starts_with(what) && group.substr(what.size()).starts_with('.'));
+      },
+      [](std::string_view what, std::string_view group, std::string_view) { return what.starts_with("link.") && group.starts_with(what); },
+      [](std::string_view what, std::string_view group, std::string_view entry) {
+        return what.size() == group.size() + 1 + entry.size() && what.starts_with(group) && what[group.size()] == '.' &&
+               what.ends_with(entry);
+      },
+      [](std::string_view what, std::string_view, std::string_view entry) { return what == entry; }};
+
+  void select(std::string_view what, bool parameters, bool counters) {
+    bool exists = false;
+    for (const Asks asks : kWays) {
+      for (const auto& [path, group] : config_.groups()) exists |= take(group->params(), path, what, asks, parameters ? &groups_ : nullptr);
+      for (const UnitCounters& u : units_)
+        exists |= take(u.stats->counters(), std::string(u.kind), what, asks, counters ? &described_units_ : nullptr);
+      if (exists) return;
+    }
+    throw unknown(what);
   }
-  const DescribeArguments& arguments_;
+
+  /// Puts what is asked for of a group `into` the list, if there is one; whether there was any.
+  template <class Entry, class Into>
+  static bool take(const std::vector<Entry*>& entries, const std::string& path, std::string_view what, Asks asks, Into* into) {
+    typename Into::value_type found{path, {}};
+    for (const Entry* entry : entries) {
+      if (asks(what, path, entry->name())) found.second.push_back(entry);
+    }
+    const bool any = !found.second.empty();
+    if (any && into != nullptr) into->push_back(std::move(found));
+    return any;
+  }
+
+  [[nodiscard]] UserError unknown(std::string_view what) const {
+    std::set<std::string> legal;
+    std::vector<std::string> names = config_.paths();
+    for (const auto& [path, group] : config_.groups()) {
+      legal.insert(path.starts_with("link.") ? "link" : path);
+      names.push_back(path);
+    }
+    for (const UnitCounters& u : units_) {
+      legal.insert(std::string(u.kind));
+      names.emplace_back(u.kind);
+      for (const hw::Counter* c : u.stats->counters()) names.push_back(fmt::format("{}.{}", u.kind, c->name()));
+    }
+    return user_error("describe: no group, parameter or counter '{}'; groups: {}{}", what, fmt::join(legal, ", "),
+                      did_you_mean(what, names));
+  }
+
   pipeline::MachineConfig config_;
   std::vector<UnitCounters> units_;
+  std::vector<pipeline::DescribedGroup> groups_;
+  std::vector<DescribedUnit> described_units_;
 };
 
 std::string plain(const Description& d) {
   std::string text;
-  d.each_parameter_group([&](const std::string& path, const hw::ParamGroup& group) {
+  for (const auto& [path, params] : d.groups()) {
     text += fmt::format("{}\n", path);
-    for (const hw::ParamBase* p : group.params()) {
+    for (const hw::ParamBase* p : params) {
       const std::string changed = p->value_text() == p->default_text() ? "" : fmt::format(" (default {})", p->default_text());
       text += fmt::format("  {:<24} = {}{} {}   [{}]  {}\n", p->name(), p->value_text(), changed, p->unit(), p->legal_text(), p->reason());
     }
-  });
-  d.each_unit([&](std::string_view kind, const hw::StatGroup& stats) {
+  }
+  for (const auto& [kind, counters] : d.units()) {
     text += fmt::format("{} counts\n", kind);
-    for (const hw::Counter* c : stats.counters()) text += fmt::format("  {:<24} {:<12} {}\n", c->name(), c->unit(), c->definition());
-  });
+    for (const hw::Counter* c : counters) text += fmt::format("  {:<24} {:<12} {}\n", c->name(), c->unit(), c->definition());
+  }
   return text;
 }
 
@@ -89,23 +131,25 @@ std::string cell(std::string_view text) {
 
 std::string markdown(const Description& d) {
   std::string parameters, counters;
-  d.each_parameter_group([&](const std::string& path, const hw::ParamGroup& group) {
+  for (const auto& [path, params] : d.groups()) {
     parameters += fmt::format("\n## {}\n\n| parameter | default | unit | legal | what and why |\n|---|---|---|---|---|\n", path);
-    for (const hw::ParamBase* p : group.params()) {
+    for (const hw::ParamBase* p : params) {
       parameters += fmt::format("| `{}` | {} | {} | {} | {} |\n", p->name(), p->default_text(), cell(p->unit()), cell(p->legal_text()),
                                 cell(p->reason()));
     }
-  });
-  d.each_unit([&](std::string_view kind, const hw::StatGroup& stats) {
+  }
+  for (const auto& [kind, counted] : d.units()) {
     counters += fmt::format("\n## {}\n\n| counter | unit | definition |\n|---|---|---|\n", kind);
-    for (const hw::Counter* c : stats.counters())
-      counters += fmt::format("| `{}` | {} | {} |\n", c->name(), cell(c->unit()), cell(c->definition()));
-  });
+    for (const hw::Counter* c : counted) counters += fmt::format("| `{}` | {} | {} |\n", c->name(), cell(c->unit()), cell(c->definition()));
+  }
   std::string text;
   if (!parameters.empty()) {
     text +=
         "# Parameters\n\nEvery parameter of a machine: a TOML file sets `[group]` `parameter = value`, the command line `--set "
         "group.parameter=value`.\n"
+        "A file may begin with `base = \"large\"`, or the path of another file: it then says only what differs. `quadrille describe "
+        "machine NAME "
+        "--toml` writes a machine out whole.\n"
         "A tag in brackets is the source of the default ([sources](sources.md)); `[G]` is a guess.\n" +
         parameters;
   }
@@ -120,29 +164,34 @@ std::string markdown(const Description& d) {
 }
 
 std::string json(const Description& d) {
-  nlohmann::ordered_json document = {{"schema", "quadrille-description-1"}, {"machine", d.machine_name()}};
+  nlohmann::ordered_json document = {{"schema", "quadrille-description-1"}, {"machine", d.machine().name}, {"base", d.machine().base()}};
   nlohmann::ordered_json parameters = nlohmann::ordered_json::object(), counters = nlohmann::ordered_json::object();
-  d.each_parameter_group([&](const std::string& path, const hw::ParamGroup& group) {
-    for (const hw::ParamBase* p : group.params()) {
+  for (const auto& [path, params] : d.groups()) {
+    for (const hw::ParamBase* p : params) {
       parameters[path + "." + std::string(p->name())] = {{"value", nlohmann::ordered_json::parse(p->value_text())},
                                                          {"default", nlohmann::ordered_json::parse(p->default_text())},
                                                          {"unit", p->unit()},
                                                          {"legal", p->legal_text()},
                                                          {"reason", p->reason()}};
     }
-  });
-  d.each_unit([&](std::string_view kind, const hw::StatGroup& stats) {
-    nlohmann::ordered_json& unit = counters[std::string(kind)] = nlohmann::ordered_json::object();
-    for (const hw::Counter* c : stats.counters()) unit[std::string(c->name())] = {{"unit", c->unit()}, {"definition", c->definition()}};
-  });
+  }
+  for (const auto& [kind, counted] : d.units()) {
+    nlohmann::ordered_json& unit = counters[kind] = nlohmann::ordered_json::object();
+    for (const hw::Counter* c : counted) unit[std::string(c->name())] = {{"unit", c->unit()}, {"definition", c->definition()}};
+  }
   document["parameters"] = std::move(parameters);
   document["counters"] = std::move(counters);
   return document.dump(2) + "\n";
 }
 
+/// A machine file that stands by itself: it names no base.
+std::string toml(const Description& d) {
+  return fmt::format("# {}\n\n", one_line(d.machine().title())) + pipeline::machine_toml(d.groups());
+}
+
 int run_describe(const DescribeArguments& arguments) {
   const Description description(arguments);
-  const auto format = arguments.markdown ? markdown : arguments.json ? json : plain;
+  const auto format = arguments.markdown ? markdown : arguments.json ? json : arguments.toml ? toml : plain;
   fmt::print("{}", format(description));
   return kDone;
 }
@@ -153,15 +202,25 @@ void add_describe(CLI::App& app, Command& chosen) {
   CLI::App* command =
       app.add_subcommand("describe", "Lists parameters (value, default, unit, legal values, reason) and counters (unit, definition).");
   const auto arguments = std::make_shared<DescribeArguments>();
-  command->add_option("GROUP", arguments->group, "a unit, gpu, link or one link such as link.core_to_texture (default: all)");
+  command->add_option("WHAT", arguments->what,
+                      "a unit, gpu, link or one link such as link.core_to_texture; one parameter or counter, with its group or without; "
+                      "machine: all parameters of the machine NAME (default: all)");
+  command->add_option("NAME", arguments->name, "with machine: which one, as --machine takes it");
   command->add_option("--only", arguments->only, "one half of it")
       ->check(CLI::IsMember({"all", "parameters", "counters"}))
       ->capture_default_str();
   CLI::Option* markdown_flag = command->add_flag("--markdown", arguments->markdown, "as a page of documentation");
-  command->add_flag("--json", arguments->json, "as JSON")->excludes(markdown_flag);
+  CLI::Option* json_flag = command->add_flag("--json", arguments->json, "as JSON")->excludes(markdown_flag);
+  command->add_flag("--toml", arguments->toml, "the parameters as a machine file that --machine reads")
+      ->excludes(markdown_flag)
+      ->excludes(json_flag);
   arguments->machine.add_to(*command);
   command->footer(R"(Examples:
   quadrille describe texture
+  quadrille describe texture.cache_lines
+  quadrille describe link.core           the links whose names begin so
+  quadrille describe machine large --set gpu.cores=8 --toml
+      a whole machine, to write into a file of your own
   quadrille describe gpu --machine large
   quadrille describe --only parameters --markdown)");
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_describe(*arguments); }; });

@@ -132,7 +132,8 @@ void SceneArguments::check() const {
   (void)options();
   const std::string extension = extension_of(scene);
   if (scene.starts_with("builtin:") || extension == ".gltf" || extension == ".glb") return;
-  throw user_error("{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the names)", scene);
+  throw user_error("{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the names){}", scene,
+                   scenes::meant_builtin(scene.substr(scene.rfind(':') + 1)));
 }
 
 void SceneArguments::check_there() const {

@@ -4,6 +4,7 @@
 #include "pipeline/fates.h"
 #include "pipeline/machine.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -64,6 +65,10 @@ struct FrameFigures {
   std::uint64_t fragments_shaded = 0;   ///< live lanes
   std::uint64_t helper_lanes = 0, fragment_warps = 0, fragments_written = 0;
   Fates fates;
+  /// Of `cycles`, those after the last pass was flushed: scan-out alone.
+  [[nodiscard]] std::int64_t scan_out_cycles() const { return cycles - render_cycles; }
+  /// Cycles from one frame to the next of an endless row of this frame where scan-out of each overlaps the drawing of the next.
+  [[nodiscard]] std::int64_t period_cycles() const { return std::max(render_cycles, scan_out_cycles()); }
 };
 
 struct HostFigures {
@@ -74,7 +79,7 @@ struct HostFigures {
 };
 
 struct Figures {
-  std::string scene, machine, fidelity = "exact";
+  std::string scene, fidelity = "exact";
   std::int64_t window_cycles = 0;  ///< how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
   FrameFigures frame;
   std::vector<UnitFigures> units;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/base/near_name.h"
+
 namespace quadrille::pipeline {
 
 MachineConfig::MachineConfig() {
@@ -49,25 +51,79 @@ MachineConfig::MachineConfig() {
              {"link.memory_to_l2", &link.memory_to_l2},
              {"link.command_to_scan", &link.command_to_scan},
              {"link.scan_to_command", &link.scan_to_command}};
+  base_values_ = values();
+}
+
+std::vector<std::string> MachineConfig::values() const {
+  std::vector<std::string> all;
+  for (const auto& [path, group] : groups_) {
+    for (const hw::ParamBase* p : group->params()) all.push_back(p->value_text());
+  }
+  return all;
+}
+
+void MachineConfig::become_base(const std::string& name_of_base) {
+  name = base_ = name_of_base;
+  base_values_ = values();
+}
+
+std::vector<MachineConfig::Change> MachineConfig::changes() const {
+  std::vector<Change> all;
+  std::size_t i = 0;
+  for (const auto& [path, group] : groups_) {
+    for (const hw::ParamBase* p : group->params()) {
+      const std::string value = p->value_text(), &before = base_values_[i++];
+      if (value != before) all.push_back({fmt::format("{}.{}", path, p->name()), value, before});
+    }
+  }
+  return all;
+}
+
+std::string MachineConfig::title() const {
+  constexpr std::size_t kMaxListed = 6;
+  std::string text = name == base_ ? name : fmt::format("{}: {}", one_line(name), base_);
+  const std::vector<Change> changed = changes();
+  for (std::size_t i = 0; i < std::min(changed.size(), kMaxListed); ++i)
+    text += fmt::format("{}{}={} ({})", i == 0 ? " with " : ", ", changed[i].path, changed[i].value, changed[i].base_value);
+  return changed.size() > kMaxListed ? fmt::format("{} and {} more", text, changed.size() - kMaxListed) : text;
+}
+
+namespace {
+
+/// Groups by their names; the links, which are many, as "link.*".
+std::string legal_groups(const std::vector<std::pair<std::string, hw::ParamGroup*>>& groups) {
+  std::string legal;
+  for (const auto& [path, group] : groups) {
+    if (!path.starts_with("link.")) legal += path + ", ";
+  }
+  return legal + "link.*";
+}
+
+std::string legal_parameters(const hw::ParamGroup& group) {
+  std::string legal;
+  for (const hw::ParamBase* p : group.params()) legal += fmt::format("{}{}", legal.empty() ? "" : ", ", p->name());
+  return legal;
+}
+
+}  // namespace
+
+std::vector<std::string> MachineConfig::paths() const {
+  std::vector<std::string> all;
+  for (const auto& [path, group] : groups_) {
+    for (const hw::ParamBase* p : group->params()) all.push_back(fmt::format("{}.{}", path, p->name()));
+  }
+  return all;
 }
 
 void MachineConfig::set(std::string_view key, std::string_view value, std::string_view where) {
   const std::size_t dot = key.rfind('.');
   const std::string_view group_name = dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
   const auto group = std::ranges::find_if(groups_, [&](const auto& g) { return g.first == group_name; });
-  if (group == groups_.end()) {
-    std::string legal;
-    for (const auto& g : groups_) {
-      if (g.first.starts_with("link.") && group_name.substr(0, 4) != "link") continue;
-      legal += (legal.empty() ? "" : ", ") + g.first;
-    }
-    throw user_error("{}: unknown key '{}'; groups: {}{}", where, key, legal, legal.find("link.") == std::string::npos ? ", link.*" : "");
-  }
-  hw::ParamBase* const param = group->second->find(key.substr(dot + 1));
+  hw::ParamBase* const param = group == groups_.end() ? nullptr : group->second->find(key.substr(dot + 1));
   if (param == nullptr) {
-    std::string legal;
-    for (const hw::ParamBase* p : group->second->params()) legal += fmt::format("{}{}", legal.empty() ? "" : ", ", p->name());
-    throw user_error("{}: unknown key '{}'; parameters of {}: {}", where, key, group_name, legal);
+    const bool known = group != groups_.end();
+    throw user_error("{}: unknown key '{}'; {}: {}{}", where, key, known ? fmt::format("parameters of {}", group_name) : "groups",
+                     known ? legal_parameters(*group->second) : legal_groups(groups_), did_you_mean(key, paths()));
   }
   try {
     param->parse(value);
@@ -76,7 +132,10 @@ void MachineConfig::set(std::string_view key, std::string_view value, std::strin
 
 void MachineConfig::check() const {
   const auto cache = [](std::string_view path, int lines, int ways) {
-    if (lines < ways) throw user_error("machine: {0}.cache_lines ({1}) is smaller than {0}.cache_ways ({2})", path, lines, ways);
+    if (lines % ways == 0) return;  // whole sets
+    const int fewer = lines - lines % ways, more = fewer + ways;
+    throw user_error("machine: {0}.cache_lines ({1}) is not a multiple of {0}.cache_ways ({2}): it can be {3}, or give it other ways", path,
+                     lines, ways, fewer > 0 ? fmt::format("{} or {}", fewer, more) : fmt::format("{}", more));
   };
   cache("vertex_fetch", vertex_fetch.cache_lines, vertex_fetch.cache_ways);
   cache("texture", texture.cache_lines, texture.cache_ways);

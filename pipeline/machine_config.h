@@ -2,6 +2,9 @@
 ///
 /// Paths are `group.parameter`: `gpu.cores`, `coarse_raster.tests_per_clk`, `link.coarse_to_fine.depth`. An unknown key or an illegal value is an error that
 /// names the file, the line, the key and the legal values.
+///
+/// Machines come in layers: a file may name another machine as its `base` and say only what differs, and `--set` is a layer more. A machine therefore knows the
+/// one it was made from, the last that came with the program, and what was changed since.
 #pragma once
 
 #include "hw/command/command_processor.h"
@@ -112,10 +115,25 @@ class MachineConfig {
   hw::ScanOut::Params scan_out;
   Links link;
 
-  std::string name = "default";
+  std::string name = "default";  ///< what reports call it: the name of the machine that comes with the program, or of its file
+
+  /// A parameter whose value differs from that of the base.
+  struct Change {
+    std::string path, value, base_value;
+  };
+  /// The machine this one was made from: one that comes with the program; "default" where no file names another.
+  [[nodiscard]] const std::string& base() const { return base_; }
+  /// What was changed since, in the order of `groups()`.
+  [[nodiscard]] std::vector<Change> changes() const;
+  /// From here on, this is the base called `name`.
+  void become_base(const std::string& name);
+  /// In a line: "large", "large with gpu.cores=8 (16)", "mine.toml: large with gpu.cores=8 (16) and 12 more". In brackets is what the base has.
+  [[nodiscard]] std::string title() const;
 
   /// Every group with its path, in the order of the pipeline.
   [[nodiscard]] const std::vector<std::pair<std::string, hw::ParamGroup*>>& groups() const { return groups_; }
+  /// `group.parameter` of every parameter.
+  [[nodiscard]] std::vector<std::string> paths() const;
   /// Sets `group.parameter` from text. Throws `UserError` naming the key and what is legal; `where` (a file and line, or a flag) leads the message.
   void set(std::string_view key, std::string_view value, std::string_view where);
   /// Checks that hold between parameters.
@@ -123,14 +141,23 @@ class MachineConfig {
   [[nodiscard]] models::Precision precision() const { return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2}; }
 
  private:
+  [[nodiscard]] std::vector<std::string> values() const;
+
   std::vector<std::pair<std::string, hw::ParamGroup*>> groups_;
+  std::string base_ = "default";
+  std::vector<std::string> base_values_;  ///< of every parameter, in the order of `groups_`
 };
 
-/// Applies a machine file: a path ending in .toml, or the name of a machine in configs/. Throws `UserError`.
+/// Applies a machine: a path ending in .toml, or the name of one in configs/. Its base, and the base of that, are applied before it. Throws `UserError`.
 void load_machine(MachineConfig& config, const std::string& name_or_path);
-/// Applies the text of a machine file (TOML); `file` is its name in errors. Throws `UserError` with file and line.
+/// Applies the text of a machine file (TOML); `file` is its name in errors, and a base that is a path is looked for beside it. Throws `UserError` with file and line.
 void apply_machine_text(MachineConfig& config, std::string_view text, const std::string& file);
 /// Names of the machines that come with the program.
 [[nodiscard]] std::vector<std::string> machine_names();
+
+/// Parameters of a group, by its path.
+using DescribedGroup = std::pair<std::string, std::vector<const hw::ParamBase*>>;
+/// Them as the text of a machine file: each with its value, and a comment with unit, legal values and reason. Read back, they give the same values.
+[[nodiscard]] std::string machine_toml(const std::vector<DescribedGroup>& groups);
 
 }  // namespace quadrille::pipeline

@@ -84,7 +84,6 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   const double simulate_cpu_s = cpu_seconds() - cpu;
   out.figures = collect_figures(machine, frame);
   out.figures.scene = stream.name;
-  out.figures.machine = config.name;
   if (options.window > 0) {
     out.figures.fidelity = "approximate";
     out.figures.window_cycles = machine.clock().edges_before(options.window);

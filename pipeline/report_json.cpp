@@ -13,14 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json machine_json(const Figures& f, const MachineConfig& machine) {
-  Json parameters = Json::object();
-  for (const auto& [path, group] : machine.groups()) {
-    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->value_text());
-  }
-  return {{"name", f.machine.empty() ? machine.name : f.machine}, {"parameters", std::move(parameters)}};
-}
-
 /// A frame that was not timed has no cycles, warps or traffic: null, not zero.
 template <class Count>
 Json if_timed(const Figures& f, Count count) {
@@ -33,6 +25,8 @@ Json frame_json(const ReportSubject& s) {
           {"height", s.height},
           {"cycles", if_timed(s.figures, f.cycles)},
           {"render_cycles", if_timed(s.figures, f.render_cycles)},
+          {"scan_out_cycles", if_timed(s.figures, f.scan_out_cycles())},
+          {"period_cycles", if_timed(s.figures, f.period_cycles())},
           {"clock_mhz", s.machine.gpu.clock_mhz.value()},
           {"draws", f.draws},
           {"triangles", f.triangles},
@@ -113,6 +107,18 @@ Json host_json(const Figures& f) {
 
 }  // namespace
 
+std::string machine_json(const MachineConfig& machine) {
+  Json parameters = Json::object(), changed = Json::object();
+  for (const auto& [path, group] : machine.groups()) {
+    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->value_text());
+  }
+  for (const MachineConfig::Change& c : machine.changes())
+    changed[c.path] = {{"value", Json::parse(c.value)}, {"base", Json::parse(c.base_value)}};
+  const Json all = {
+      {"name", machine.name}, {"base", machine.base()}, {"changed", std::move(changed)}, {"parameters", std::move(parameters)}};
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string report_json(const ReportSubject& s) {
   const Figures& f = s.figures;
   Json units = Json::object(), bandwidth = Json::object(), left_out = Json::array();
@@ -123,7 +129,7 @@ std::string report_json(const ReportSubject& s) {
                          {"scene", f.scene},
                          {"fidelity", f.fidelity},
                          {"window_cycles", f.window_cycles},
-                         {"machine", machine_json(f, s.machine)},
+                         {"machine", Json::parse(machine_json(s.machine))},
                          {"frame", frame_json(s)},
                          {"notes", notes_on(f)},
                          {"units", std::move(units)},

@@ -44,11 +44,15 @@ std::string row(std::string_view title, const std::vector<std::string>& facets) 
 std::string time_row(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
   if (s.figures.units.empty()) return row("time", {"not simulated (functional: the picture and its counts only)"});
-  const double ms = static_cast<double>(f.cycles) / s.machine.gpu.clock_mhz * 1e-3;
-  return row("time",
-             {fmt::format("{}{} cycles", s.figures.window_cycles > 0 ? "approximate: " : "", grouped(static_cast<std::uint64_t>(f.cycles))),
-              fmt::format("{:.3f} ms at {:g} MHz", ms, s.machine.gpu.clock_mhz.value()), fmt::format("{:.1f} frames/s", 1000.0 / ms),
-              fmt::format("all passes flushed at cycle {}, then scan-out", grouped(static_cast<std::uint64_t>(f.render_cycles)))});
+  const auto text = [](std::int64_t cycles) { return grouped(static_cast<std::uint64_t>(cycles)); };
+  const double mhz = s.machine.gpu.clock_mhz;
+  const auto rate = [mhz](std::int64_t cycles) { return 1e6 * ratio(mhz, static_cast<double>(cycles)); };
+  return row("time", {fmt::format("{}{} cycles: {} until all passes are flushed, {} of scan-out after that",
+                                  s.figures.window_cycles > 0 ? "approximate: " : "", text(f.cycles), text(f.render_cycles),
+                                  text(f.scan_out_cycles())),
+                      fmt::format("{:.3f} ms at {:g} MHz", ratio(static_cast<double>(f.cycles), mhz) * 1e-3, mhz),
+                      fmt::format("{:.1f} frames/s one after another", rate(f.cycles)),
+                      fmt::format("{:.1f} frames/s where scan-out overlaps the next frame", rate(f.period_cycles()))});
 }
 
 /// Empty for an exact run.
@@ -61,7 +65,7 @@ std::string frame_text(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
   const std::uint64_t pixels = std::uint64_t{s.width} * s.height;
   const std::uint64_t executed = f.fragments_shaded + f.helper_lanes;
-  std::string out = fmt::format("FRAME  {}, {}x{}, machine {}, {}{}\n", s.figures.scene, s.width, s.height, s.machine.name,
+  std::string out = fmt::format("FRAME  {}, {}x{}, machine {}, {}{}\n", s.figures.scene, s.width, s.height, s.machine.title(),
                                 s.figures.fidelity, window_text(s.figures));
   out += time_row(s);
   out += row("geometry", {fmt::format("{} draws", grouped(f.draws)), fmt::format("{} triangles", grouped(f.triangles)),

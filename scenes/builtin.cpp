@@ -10,6 +10,7 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include "models/base/error.h"
+#include "models/base/near_name.h"
 #include "scenes/mesh_builder.h"
 #include "scenes/procedural_texture.h"
 #include "scenes/rounded_math.h"
@@ -172,6 +173,14 @@ SceneData build_fill() {
   return scene;
 }
 
+std::string meant_builtin(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Entry& entry : kEntries) names.emplace_back(entry.scene.name);
+  std::vector<std::string> near = near_names(name, names);
+  for (std::string& one : near) one.insert(0, "builtin:");
+  return near.empty() ? "" : fmt::format("; did you mean '{}'?", fmt::join(near, "' or '"));
+}
+
 const std::vector<BuiltinScene>& builtin_scenes() {
   static const std::vector<BuiltinScene> kScenes = [] {
     std::vector<BuiltinScene> scenes;
@@ -187,9 +196,9 @@ namespace {
 const Entry& entry_of(const std::string& name) {
   const auto found = std::ranges::find(kEntries, name, [](const Entry& entry) { return entry.scene.name; });
   if (found != kEntries.end()) return *found;
-  std::string names;
-  for (const Entry& entry : kEntries) names += fmt::format("{}builtin:{}", names.empty() ? "" : ", ", entry.scene.name);
-  throw user_error("builtin:{}: no such built-in scene; there are {}", name.substr(0, 60), names);
+  std::vector<std::string> names;
+  for (const Entry& entry : kEntries) names.push_back(fmt::format("builtin:{}", entry.scene.name));
+  throw user_error("builtin:{}: no such built-in scene; there are {}{}", name.substr(0, 60), fmt::join(names, ", "), meant_builtin(name));
 }
 
 }  // namespace

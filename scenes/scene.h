@@ -74,6 +74,8 @@ struct BuiltinScene {
   std::string_view description;  ///< one line
 };
 [[nodiscard]] const std::vector<BuiltinScene>& builtin_scenes();
+/// "; did you mean 'builtin:quad'?" for a name that is none, to go on with after what is wrong; empty when none is near.
+[[nodiscard]] std::string meant_builtin(std::string_view name);
 
 /// The 32-bit colour (red in the low byte) that a visibility frame shows for triangle `number` (0-based over all draws in recording order):
 /// (number + 1) * 2654435761 mod 2^32, a bijection; the background is 0.

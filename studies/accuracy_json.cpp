@@ -1,6 +1,7 @@
 /// The JSON: everything that the tables show, and the single times behind their medians.
 #include <nlohmann/json.hpp>
 
+#include "pipeline/report.h"
 #include "studies/accuracy_report.h"
 #include "studies/statistics.h"
 
@@ -79,12 +80,9 @@ Json scene_json(const SceneAccuracy& scene) {
 }  // namespace
 
 std::string accuracy_json(std::span<const SceneAccuracy> scenes, const pipeline::MachineConfig& machine) {
-  Json parameters = Json::object(), all = Json::array();
-  for (const auto& [path, group] : machine.groups()) {
-    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->value_text());
-  }
+  Json all = Json::array();
   for (const SceneAccuracy& scene : scenes) all.push_back(scene_json(scene));
-  const Json document = {{"schema", kAccuracySchema}, {"machine", {{"name", machine.name}, {"parameters", parameters}}}, {"scenes", all}};
+  const Json document = {{"schema", kAccuracySchema}, {"machine", Json::parse(pipeline::machine_json(machine))}, {"scenes", all}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

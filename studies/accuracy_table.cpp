@@ -85,7 +85,7 @@ std::string accuracy_table(const SceneAccuracy& scene, const pipeline::MachineCo
       "ACCURACY  {}, {}x{}, machine {}; each setting {} times in turn; run time is the simulation's processor time, its median; windows "
       "are "
       "approximate\n",
-      scene.name, scene.width, scene.height, machine.name, scene.settings.front().cpu_s.size());
+      scene.name, scene.width, scene.height, machine.title(), scene.settings.front().cpu_s.size());
   out += settings_table(scene) +
          "\nPICTURE  against the ideal reference (double precision, nothing snapped or quantised before the last store)\n";
   for (std::size_t i = 0; i < scene.images.size(); ++i) out += image_row(i, scene.images[i]);

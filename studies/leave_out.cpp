@@ -150,7 +150,7 @@ std::string leave_out_table(const std::vector<LeaveOutResult>& results, const pi
   std::string out = fmt::format(
       "LEAVE OUT  machine {}, {} runs of each side; processor time of the whole process, medians and half the distance between "
       "quartiles\n\n",
-      machine.name, results.front().everything.size());
+      machine.title(), results.front().everything.size());
   out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>9} {:>7} {:>7} {:>8}  {}\n", "scene", "cycles", "everything s", "needed s",
                      "speed-up", "in run", "MiB", "needed", "same picture, cycles and counts");
   for (const LeaveOutResult& r : results) {
@@ -191,7 +191,8 @@ std::string leave_out_json(const std::vector<LeaveOutResult>& results, const pip
                       {"needed", runs_json(r.needed)},
                       {"left_out", std::move(left_out)}});
   }
-  const Json document{{"schema", kLeaveOutSchema}, {"machine", machine.name}, {"scenes", std::move(scenes)}};
+  const Json document{
+      {"schema", kLeaveOutSchema}, {"machine", Json::parse(pipeline::machine_json(machine))}, {"scenes", std::move(scenes)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -17,7 +17,7 @@
 
 namespace quadrille::studies {
 
-inline constexpr std::string_view kLeaveOutSchema = "quadrille-leave-out-1";
+inline constexpr std::string_view kLeaveOutSchema = "quadrille-leave-out-2";
 
 struct LoadedScene {
   traces::CommandStream stream;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "models/base/error.h"
+#include "models/base/near_name.h"
 #include "pipeline/limiter.h"
 
 namespace quadrille::studies::stability {
@@ -121,7 +122,10 @@ std::vector<const Case*> select(std::span<const std::string> patterns) {
   }
   for (const std::string& pattern : patterns) {
     const auto matches = [&](const Case* one) { return fnmatch(pattern.c_str(), one->name.c_str(), 0) == 0; };
-    if (std::ranges::none_of(chosen, matches)) throw user_error("stability: no case matches '{}'; --list prints their names", pattern);
+    if (std::ranges::any_of(chosen, matches)) continue;
+    std::vector<std::string> names;
+    for (const Case& one : catalogue()) names.push_back(one.name);
+    throw user_error("stability: no case matches '{}'; --list prints their names{}", pattern, did_you_mean(pattern, names));
   }
   return chosen;
 }

@@ -26,7 +26,7 @@ struct Case {
   std::function<void(pipeline::MachineConfig&)> machine = [](pipeline::MachineConfig&) {};
   std::function<void(const Observed&, Findings&)> check = [](const Observed&, Findings&) {};
   std::function<scenes::Rgba8Image(const Observed&)> picture = [](const Observed& o) { return as_picture(o.image()); };
-  double seconds = 60;       ///< it ends within
+  double seconds = 600;      ///< of wall time, against a hang: the host may be slow and busy
   double memory_mib = 1024;  ///< and takes at most
   bool slow = false;         ///< takes more than a few seconds
 };

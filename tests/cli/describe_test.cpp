@@ -72,6 +72,16 @@ TEST_CASE("describe takes a group, a machine and a form") {
   CHECK_THAT(texture, Catch::Contains("filter_quads_per_clk") && Catch::Contains("cache_hits") && !Catch::Contains("warp_packer"));
   CHECK_THAT(output({"describe", "link.core_to_rop"}), Catch::Contains("credit_latency") && !Catch::Contains("rop_to_depth"));
   CHECK_THAT(output({"describe", "gpu", "--machine", "large"}), Catch::Contains("(default 4)"));
+  const std::string one = output({"describe", "texture.cache_lines"});
+  CHECK(std::ranges::count(one, '\n') == 2);
+  CHECK_THAT(one, Catch::StartsWith("texture\n  cache_lines "));
+  CHECK_THAT(output({"describe", "texture.cache_hits"}), Catch::StartsWith("texture counts\n  cache_hits "));
+  const std::string everywhere = output({"describe", "cache_lines"});
+  CHECK(std::ranges::count(everywhere, '\n') == 10);
+  CHECK_THAT(everywhere, Catch::Contains("l2\n  cache_lines ") && !Catch::Contains("cache_ways"));
+  const std::string links = output({"describe", "link.core"});
+  CHECK_THAT(links, Catch::Contains("link.core_to_rop\n") && Catch::Contains("link.core_to_texture\n") && !Catch::Contains("link.rop"));
+  CHECK(json::parse(output({"describe", "gpu.cores", "--json"})).at("parameters").size() == 1);
   const std::string page = output({"describe", "--markdown"});
   CHECK_THAT(page, Catch::StartsWith("# Parameters") && Catch::Contains("# Counters") && Catch::Contains("| `tests_per_clk` |"));
   CHECK_THAT(output({"describe", "--only", "counters"}), !Catch::Contains("tests_per_clk") && Catch::Contains("tiles_tested"));

@@ -130,6 +130,30 @@ TEST_CASE("frames drawn at the same time are those drawn in turn, and their rows
   require_refused(frames(folder, "builtin:flag", {"--jobs", "2"}), {"--jobs", "--frames"});
 }
 
+TEST_CASE("frames: the scan-out of each overlaps the drawing of the next, as far as two targets allow") {
+  const ScratchFolder folder;
+  const ProgramRun run = frames(folder, "builtin:flag", {"--frames", "5", "--stats", "s.json"});
+  REQUIRE(run.exit_code == 0);
+  const json all = json::parse(folder.read("s.json"));
+  std::vector<std::int64_t> drawn, shown;
+  std::int64_t one_after_another = 0, all_drawing = 0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    const json& frame = all["frames"][i]["figures"]["frame"];
+    const std::int64_t drawing = frame["render_cycles"], scan_out = frame["scan_out_cycles"];
+    const std::int64_t from = std::max(i > 0 ? drawn[i - 1] : 0, i > 1 ? shown[i - 2] : 0);
+    drawn.push_back(from + drawing);
+    shown.push_back(std::max(drawn[i], i > 0 ? shown[i - 1] : 0) + scan_out);
+    one_after_another += drawing + scan_out;
+    all_drawing += drawing;
+    CHECK(all["frames"][i]["overlapped"] == json{{"drawn_from", from}, {"drawn_at", drawn[i]}, {"shown_at", shown[i]}});
+  }
+  CHECK(all["cycles"]["one_after_another"] == one_after_another);
+  CHECK(all["cycles"]["overlapped"] == shown.back());
+  CHECK(shown.back() < one_after_another);
+  CHECK(shown.back() > all_drawing);
+  CHECK_THAT(run.out, Catch::Contains("one after another") && Catch::Contains("overlaps the drawing of the next"));
+}
+
 TEST_CASE("a frame that fails names its number, and those before it stay") {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.path() / "f_1.png");  // the second frame cannot be written

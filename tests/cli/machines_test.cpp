@@ -21,8 +21,9 @@ json described(const ScratchFolder& folder, const std::string& machine) {
   const ProgramRun run = run_quadrille(folder, {"describe", "--only", "parameters", "--json", "--machine", machine});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
+  const json all = json::parse(run.out);
   json values;
-  for (const auto& [path, p] : json::parse(run.out).at("parameters").items()) values[path] = p.at("value");
+  for (const auto& [path, p] : all.at("parameters").items()) values[path] = p.at("value");
   return values;
 }
 
@@ -33,16 +34,19 @@ TEST_CASE("a report says what was changed from what") {
   CHECK_THAT(render(folder, {}).out, Catch::Contains("machine default, exact"));
   CHECK_THAT(render(folder, {"--set", "gpu.cores=8", "--set", "gpu.channels=2"}).out,
              Catch::Contains("machine default with gpu.cores=8 (4), exact"));  // a value that it had is no change
-  CHECK_THAT(render(folder, {"--machine", "large", "--set", "gpu.cores=8"}).out, Catch::Contains("machine large with gpu.cores=8 (16), exact"));
+  CHECK_THAT(render(folder, {"--machine", "large", "--set", "gpu.cores=8"}).out,
+             Catch::Contains("machine large with gpu.cores=8 (16), exact"));
   folder.write("mine.toml", "[gpu]\ncores = 8\n");
   CHECK_THAT(render(folder, {"--machine", "mine.toml"}).out, Catch::Contains("machine mine.toml: default with gpu.cores=8 (4), exact"));
   folder.write("named.toml", "name = \"mine\"\n[gpu]\ncores = 8\n");
   CHECK_THAT(render(folder, {"--machine", "named.toml"}).out, Catch::Contains("machine mine: default with gpu.cores=8 (4), exact"));
   std::vector<std::string> many{"--frames", "1"};
   for (const char* parameter : {"depth", "width", "latency", "credit_latency"}) {
-    for (const char* link : {"core_to_rop", "rop_to_depth"}) many.insert(many.end(), {"--set", std::string("link.") + link + "." + parameter + "=5"});
+    for (const char* link : {"core_to_rop", "rop_to_depth"})
+      many.insert(many.end(), {"--set", std::string("link.") + link + "." + parameter + "=5"});
   }
-  CHECK_THAT(render(folder, many).out, Catch::Contains("machine default with link.core_to_rop.depth=5 (8), ") && Catch::Contains(" and 2 more, exact"));
+  CHECK_THAT(render(folder, many).out,
+             Catch::Contains("machine default with link.core_to_rop.depth=5 (8), ") && Catch::Contains(" and 2 more, exact"));
 }
 
 TEST_CASE("the JSON holds the whole machine, its base and what was changed") {
@@ -80,6 +84,10 @@ TEST_CASE("a base that is none, or goes in a circle, is refused with its place")
   };
   folder.write("typo.toml", "\nbase = \"larg\"\n");
   refuse("typo.toml", {"typo.toml:2: base", "larg", "did you mean 'large'?"});
+  folder.write("key.toml", "bse = \"large\"\n");
+  refuse("key.toml", {"key.toml:1: unknown key 'bse'", "did you mean 'base'?"});
+  folder.write("bare.toml", "cores = 3\n");
+  refuse("bare.toml", {"bare.toml:1: unknown key 'cores'", "did you mean 'gpu.cores'?"});
   folder.write("number.toml", "base = 3\n");
   refuse("number.toml", {"number.toml:1: base", "name of a machine"});
   folder.write("table.toml", "[base]\ncores = 3\n");
@@ -116,7 +124,8 @@ TEST_CASE("a cache is whole sets: other numbers of lines are refused with the ne
     refused(with(8, 16), {cache + ".cache_lines (8)", cache + ".cache_ways (16)", "can be 16"});
     refused(with(15, 16), {"can be 16"});
     const ScratchFolder folder;
-    for (const auto& [lines, ways] : {std::pair{16, 16}, {12, 4}, {1, 1}, {15, 5}}) CHECK(run_quadrille(folder, with(lines, ways)).exit_code == 0);
+    for (const auto& [lines, ways] : {std::pair{16, 16}, {12, 4}, {1, 1}, {15, 5}})
+      CHECK(run_quadrille(folder, with(lines, ways)).exit_code == 0);
   }
 }
 

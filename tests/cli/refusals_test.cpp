@@ -25,6 +25,31 @@ TEST_CASE("a wrong command line is refused in one line") {
   refused({"diff", "a.png"}, {"B"});
 }
 
+TEST_CASE("a name that is nearly one is refused with the one that may be meant") {
+  refused({"rende", "builtin:triangle"}, {"quadrille: unknown subcommand 'rende'; did you mean 'render'?; see quadrille --help"});
+  refused({"builtin:triangle", "rende"}, {"unknown subcommand 'builtin:triangle'; there are render, diff, "});
+  refused({"trace", "recrod", "builtin:triangle"}, {"unknown subcommand 'recrod'; did you mean 'record'?; see quadrille trace --help"});
+  render_refused({"--sizes", "3x3"}, {"unknown option '--sizes'; did you mean '--size'?; see quadrille render --help"});
+  render_refused({"--stat=x.json"}, {"'--stat=x.json'; did you mean '--stats'"});
+  refused({"render", "--siz", "3x3"}, {"unknown option '--siz'; did you mean '--size'?"});  // not that SCENE were missing
+  refused({"trace", "record", "builtin:triangle", "--ou", "x.qtrace"},
+          {"'--ou'; did you mean '--out'?; see quadrille trace record --help"});
+  render_refused({"second.gltf", "third.gltf"}, {"unexpected argument 'second.gltf'"});
+  refused({"render", "builtin:tirangle"}, {"did you mean 'builtin:triangle'?"});
+  refused({"render", "courtyard"}, {"did you mean 'builtin:courtyard'?"});
+  refused({"render", "buildin:quad"}, {"did you mean 'builtin:quad'?"});
+  refused({"scenes", "builtin:quads"}, {"did you mean 'builtin:quad'?"});
+  render_refused({"--machine", "smal"}, {"did you mean 'small'?"});
+  render_refused({"--set", "gpu.croes=3"}, {"did you mean 'gpu.cores'?"});
+  render_refused({"--set", "cores=3"}, {"did you mean 'gpu.cores'?"});
+  render_refused({"--set", "link.core_to_rops.depth=3"}, {"did you mean 'link.core_to_rop.depth'?"});
+  refused({"describe", "texure"}, {"did you mean 'texture'?"});
+  refused({"describe", "texture.cache_linse"}, {"did you mean 'texture.cache_lines'?"});
+  refused({"describe", "cache_hit"}, {"did you mean "});
+  refused({"stability", "empty-pas"}, {"stability: no case matches 'empty-pas'", "did you mean 'empty-pass'?"});
+  refused({"describe", "bicycle"}, {"bicycle", "groups: "});
+}
+
 TEST_CASE("a scene that is none is refused with what is legal") {
   refused({"render", "courtyard"}, {"courtyard", ".gltf", ".qtrace", "builtin:"});
   refused({"render", "scene.obj"}, {"scene.obj", ".gltf"});
@@ -108,7 +133,8 @@ TEST_CASE("an output that cannot be written is refused before anything runs") {
   render_refused({"--out", "picture"}, {"--out", ".png", ".exr"});
   render_refused({"--out", "picture.jpg"}, {"--out", "picture.jpg", ".png"});
   render_refused({"--depth", "depth.tiff"}, {"--depth", ".exr"});
-  render_refused({"--stats", "stats.txt"}, {"--stats", ".json"});
+  render_refused({"--stats", "stats.txt"}, {"--stats", ".json", "-"});
+  render_refused({"--out", "-"}, {"--out", ".png"});
   render_refused({"--out", "no/such/folder/x.png"}, {"--out", "no/such/folder"});
   render_refused({"--out", "x.exr", "--depth", "./x.exr"}, {"--out", "--depth"});
   refused({"trace", "record", "builtin:triangle", "-o", "x.trace"}, {"--out", ".qtrace"});
@@ -138,6 +164,8 @@ TEST_CASE("a frame that takes longer than it may is given up with who waits for 
 
 TEST_CASE("pictures that do not compare are refused") {
   refused({"diff", "a.png", "b.png"}, {"a.png"});
+  refused({"diff", "a.json", "b.json"}, {"a.json: figures", "diff compares two pictures", "--out of render"});
+  refused({"diff", "a.png", "b.qtrace"}, {"b.qtrace: a trace", "diff compares two pictures"});
   const ScratchFolder folder;
   folder.write("a.png", "no picture");
   require_refused(run_quadrille(folder, {"diff", "a.png", "a.png"}), {"a.png"});

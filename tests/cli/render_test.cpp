@@ -204,3 +204,38 @@ TEST_CASE("diff tells pictures apart, by how much, and where") {
   CHECK(quadrille::scenes::load_image((folder.path() / "heat.png").string()).width == 96);
   CHECK(run_quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "255"}).exit_code == 0);
 }
+
+TEST_CASE("--stats - writes the JSON alone to standard output, and the table to standard error") {
+  const ScratchFolder folder;
+  const std::vector<std::string> draw{"render", "builtin:triangle", "--size", "16x16", "--stats", "-"};
+  const ProgramRun run = run_quadrille(folder, draw);
+  CHECK(run.exit_code == 0);
+  CHECK(json::parse(run.out).at("schema") == "quadrille-figures-1");
+  CHECK_THAT(run.err, Catch::StartsWith("FRAME  builtin:triangle"));
+  std::vector<std::string> quiet = draw;
+  quiet.emplace_back("-q");
+  CHECK(run_quadrille(folder, quiet).err.empty());
+  const ProgramRun frames =
+      run_quadrille(folder, {"render", "builtin:flag", "--size", "16x16", "--frames", "2", "--fidelity", "functional", "--stats", "-"});
+  CHECK(json::parse(frames.out).at("frames").size() == 2);
+  CHECK_THAT(frames.err, Catch::StartsWith("FRAMES  builtin:flag"));
+  const ProgramRun leave_out = run_quadrille(folder, {"leave-out", "builtin:triangle", "--size", "16x16", "--repeat", "1", "--json", "-"});
+  CHECK(json::parse(leave_out.out).at("machine").at("name") == "default");
+  CHECK_THAT(leave_out.err, Catch::StartsWith("LEAVE OUT"));
+  const ProgramRun stability = run_quadrille(folder, {"stability", "empty-pass", "--json", "-"});
+  CHECK(json::accept(stability.out));
+  CHECK_FALSE(stability.err.empty());
+  CHECK(folder.empty());
+}
+
+TEST_CASE("a frame's time is given with scan-out and where that overlaps the next frame") {
+  const ScratchFolder folder;
+  const ProgramRun run = run_quadrille(folder, {"render", "builtin:triangle", "--size", "64x64", "--stats", "s.json"});
+  const json frame = json::parse(folder.read("s.json")).at("frame");
+  const std::int64_t cycles = frame.at("cycles"), drawing = frame.at("render_cycles"), scan_out = frame.at("scan_out_cycles");
+  CHECK(drawing + scan_out == cycles);
+  CHECK(drawing > 0);
+  CHECK(scan_out > 0);
+  CHECK(frame.at("period_cycles") == std::max(drawing, scan_out));
+  CHECK_THAT(run.out, Catch::Contains("frames/s one after another") && Catch::Contains("frames/s where scan-out overlaps the next frame"));
+}
