@@ -44,7 +44,7 @@ inline std::uint64_t fixed_work() {
 
 /// Processor time of the work here, over what it is on the computer that the bounds of tests were set on; at least 1.
 inline double host_slowness() {
-  constexpr double kSecondsThere = 0.30;
+  constexpr double kSecondsThere = 0.60;
   static volatile std::uint64_t sink = 0;
   double most = 0;
   for (int i = 0; i < 3; ++i) {

@@ -1,7 +1,8 @@
 /// Hostile input through the program: what is tried, under which limits, and what must hold afterwards.
 ///
 /// A case prepares files in a folder of its own and gives the program's arguments. Whatever it is, the program ends by itself with exit code 0 or 2 within
-/// 10 s and 2 GiB; a refusal is one line that names the culprit; an output file is whole or absent, and nothing else is left behind.
+/// 2 GiB and 10 s of processor time (on a slower or busy host as much more as a fixed piece of work takes longer there: tests/host_speed.h); a refusal is one
+/// line that names the culprit; an output file is whole or absent, and nothing else is left behind.
 #pragma once
 
 #include <filesystem>

@@ -62,17 +62,17 @@ struct Options {
   int creations = 1;                ///< random orders of creating modules
   bool depth_one = true;            ///< also with all links one deep, in both drivers
   bool digest_at_depth_one = true;  ///< the digest at depth one equals the plain one
-  unsigned timeout_s = 120;         ///< of one run, in seconds of the host
+  unsigned timeout_s = 600;         ///< of one run, in seconds of the host, against a hang
 };
 
 /// Runs one variation in a forked process.
-[[nodiscard]] Outcome run_forked(const Builder& build, const Variation& variation, unsigned timeout_s = 120);
+[[nodiscard]] Outcome run_forked(const Builder& build, const Variation& variation, unsigned timeout_s = 600);
 /// Runs all variations. One line a violation (at most a few a variation); empty when the contract is kept.
 [[nodiscard]] std::vector<std::string> violations(const Builder& build, const Options& options = {});
 /// The differences between two outcomes, at most `limit` of them.
 [[nodiscard]] std::vector<std::string> differences(const Outcome& a, const Outcome& b, std::size_t limit = 5);
 
 /// Runs `body` in a forked process and returns what it returned; text that starts with "failed:" when it threw, aborted or ran out of time.
-[[nodiscard]] std::string in_child(const std::function<std::string()>& body, unsigned timeout_s = 120);
+[[nodiscard]] std::string in_child(const std::function<std::string()>& body, unsigned timeout_s = 600);
 
 }  // namespace quadrille::hw::contract
