@@ -93,15 +93,21 @@ Child start_child(const ChildWork& work, std::size_t number) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw user_error("cannot start a run: {}", std::strerror(errno));
   std::fflush(nullptr);  // what is buffered would be written twice
   const auto start = Clock::now();
+  // Until the child has put its own ways of ending in the place of its parent's, the signal that ends it waits.
+  sigset_t ending, before;
+  sigemptyset(&ending);
+  sigaddset(&ending, SIGTERM);
+  sigprocmask(SIG_BLOCK, &ending, &before);
   const pid_t parent = getpid(), pid = fork();
+  if (pid == 0) end_with(parent);
+  const int reason = errno;
+  sigprocmask(SIG_SETMASK, &before, nullptr);
   if (pid < 0) {
-    const int reason = errno;
     close(ends[0]);
     close(ends[1]);
     throw user_error("cannot start a run: {}", std::strerror(reason));
   }
   if (pid == 0) {
-    end_with(parent);
     close(ends[0]);
     work_and_exit(ends[1], work.work, work.limits);
   }

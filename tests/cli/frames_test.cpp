@@ -41,7 +41,7 @@ TEST_CASE("frames of an animation are those that --time draws, one file and one 
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
   CHECK(run.err.empty());
-  CHECK(std::ranges::count(run.out, '\n') == 6);
+  CHECK(std::ranges::count(run.out, '\n') == 7);
   const json all = json::parse(folder.read("f.json"));
   CHECK(all["schema"] == "quadrille-frames-1");
   CHECK(all["animation_s"] == 2.0);
