@@ -8,7 +8,7 @@
 
 namespace quadrille {
 
-/// Letters to insert, delete, replace or swap with their neighbour until `a` is `b`. Capitals count as their small letters. [P: optimal string alignment]
+/// Letters to insert, delete, replace or swap with their neighbour until `a` is `b`. Capitals count as their small letters. [P: Damerau 1964]
 [[nodiscard]] std::size_t letters_apart(std::string_view a, std::string_view b);
 
 /// The names nearest to the typed one, if they are near: a third of the letters may be wrong. Names that differ in nothing but what they leave out at a dot

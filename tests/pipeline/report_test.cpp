@@ -34,7 +34,6 @@ UnitFigures memory_unit(const std::string& path, std::int64_t busy, std::int64_t
 Figures two_channels() {
   Figures f;
   f.scene = "hand-made";
-  f.machine = "default";
   f.frame.cycles = 1000;
   f.frame.fragments_shaded = 75;
   f.frame.helper_lanes = 25;
