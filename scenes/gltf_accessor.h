@@ -35,8 +35,11 @@ struct Elements {
 [[nodiscard]] float component_value(const Elements& elements, std::size_t element, std::size_t component);
 
 /// Elements as a vertex stream for `semantic`, keeping 8- and 16-bit normalized components where a vertex format has them. Throws `UserError` with `place`
-/// for a type that glTF does not allow there, or values that are not finite.
-[[nodiscard]] Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic semantic, const std::string& place);
+/// for a type that glTF does not allow there, or values that are not finite. Not so for normals and tangents, which are directions: those that have none (of
+/// length zero, not finite, or for a tangent without a side) become zero and are counted in `without_direction`; floats of lengths whose squares
+/// leave the range of floats are brought to length one.
+[[nodiscard]] Array to_vertex_array(const GltfFile& file, Elements elements, Semantic semantic, const std::string& place,
+                                    std::uint32_t* without_direction = nullptr);
 
 /// Bytes of the stream that `to_vertex_array` makes.
 [[nodiscard]] std::uint64_t vertex_array_bytes(const Elements& elements, Semantic semantic);
@@ -45,10 +48,5 @@ struct Elements {
 
 /// Elements of `components` each as a stream of floats: what a morph target adds. Throws as `to_vertex_array`.
 [[nodiscard]] Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components, const std::string& place);
-
-/// JOINTS_n and WEIGHTS_n as vertex streams of the same number of elements; joints of no weight become joint 0. Throws as `to_vertex_array`, and for
-/// a weight below zero.
-[[nodiscard]] std::pair<Array, Array> to_joint_arrays(const GltfFile& file, const Elements& joints, const Elements& weights,
-                                                      const std::string& place);
 
 }  // namespace quadrille::scenes

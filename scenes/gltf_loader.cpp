@@ -71,7 +71,10 @@ class GltfScene::Reader {
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] bool animated() const { return !animations_.empty(); }
   [[nodiscard]] std::size_t image_count() const { return file_.model.images.size(); }
-  void print_notes() { scenes::print_notes(file_); }
+  void print_notes() {
+    for (std::string& note : meshes_.take_notes()) file_.notes.push_back(std::move(note));
+    scenes::print_notes(file_);
+  }
 
  private:
   struct Visit {

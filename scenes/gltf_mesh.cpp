@@ -78,10 +78,52 @@ void MeshReader::read_attributes(const tinygltf::Primitive& source, const std::s
     if (found == source.attributes.end()) continue;
     const std::string at = fmt::format("{}.attributes.{}", place, kAttributeNames[i]);
     primitive.attributes[i] = vertex_array(found->second, static_cast<Semantic>(i), at);
-    const std::uint32_t count = scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])].count;
-    const std::uint32_t positions = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
-    if (count != positions) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, at, count, positions);
+    require_vertices(scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])].count,
+                     scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count, at);
   }
+  check_directions(place, primitive);
+}
+
+/// Normals that point nowhere give way to those of their faces; a normal map's frame with such tangents, to the one that texture coordinates span: each as
+/// where the file has none.
+void MeshReader::check_directions(const std::string& place, Primitive& primitive) {
+  const std::size_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
+  const auto lacking = [&](Semantic semantic) {
+    const auto found = without_direction_.find(primitive.attributes[static_cast<std::size_t>(semantic)]);
+    return found == without_direction_.end() ? 0U : found->second;
+  };
+  mended_normals_.add(place, lacking(Semantic::kNormal), vertices);
+  primitive.partial_normals = lacking(Semantic::kNormal) > 0;
+  if (lacking(Semantic::kTangent) == 0) return;
+  dropped_tangents_.add(place, lacking(Semantic::kTangent), vertices);
+  primitive.attributes[static_cast<std::size_t>(Semantic::kTangent)] = -1;
+}
+
+void MeshReader::require_vertices(std::size_t count, std::size_t vertices, const std::string& place) const {
+  if (count != vertices) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, place, count, vertices);
+}
+
+void MeshReader::Mended::add(const std::string& place, std::size_t mended, std::size_t vertices) {
+  if (mended == 0) return;
+  if (places++ == 0) first_place = place;
+  count += mended;
+  of += vertices;
+}
+
+std::string MeshReader::Mended::text() const {
+  return fmt::format("{}{}: {} of {} vertices", first_place, places > 1 ? fmt::format(" and {} more", places - 1) : "", count, of);
+}
+
+std::vector<std::string> MeshReader::take_notes() {
+  std::vector<std::string> notes;
+  const auto take = [&](Mended& mended, const char* what) {
+    if (mended.places > 0) notes.push_back(std::exchange(mended, {}).text() + what);
+  };
+  take(mended_normals_, " have a normal without a direction; faces of such vertices are drawn with their own");
+  take(dropped_tangents_, " have a tangent without a direction; normal maps there follow the texture coordinates");
+  take(mended_weights_,
+       " have joint weights that do not sum to 1; they are divided by their sum, and without any weight the first joint moves the vertex");
+  return notes;
 }
 
 void MeshReader::read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
@@ -112,9 +154,11 @@ void MeshReader::require_room(std::uint64_t bytes, const std::string& place) con
 int MeshReader::vertex_array(int accessor, Semantic semantic, const std::string& place) {
   const auto found = vertex_arrays_.find({accessor, semantic});
   if (found != vertex_arrays_.end()) return found->second;
-  const Elements elements = read_accessor(file_, accessor, place);
+  Elements elements = read_accessor(file_, accessor, place);
   require_room(vertex_array_bytes(elements, semantic), place);
-  const int array = add_array(to_vertex_array(file_, elements, semantic, fmt::format("{}: accessor {}", place, accessor)), place);
+  std::uint32_t lacking = 0;
+  const int array = add_array(to_vertex_array(file_, elements, semantic, fmt::format("{}: accessor {}", place, accessor), &lacking), place);
+  if (lacking > 0) without_direction_[array] = lacking;
   return vertex_arrays_[{accessor, semantic}] = array;
 }
 

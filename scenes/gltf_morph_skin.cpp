@@ -7,6 +7,7 @@
 
 #include "models/base/error.h"
 #include "scenes/gltf_accessor.h"
+#include "scenes/gltf_joint_streams.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -63,9 +64,8 @@ void MeshReader::read_targets(const tinygltf::Primitive& source, const std::stri
       const auto given = static_cast<std::size_t>(traces::format_components(base.format));
       const bool alpha = static_cast<Semantic>(i) == Semantic::kColor && is_vec4(file_, found->second);
       target.deltas[i] = delta_array(found->second, alpha ? 4 : std::min<std::size_t>(3, given), at);
-      const std::uint32_t count = scene_.arrays[static_cast<std::size_t>(target.deltas[i])].count;
-      const std::uint32_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
-      if (count != vertices) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, at, count, vertices);
+      require_vertices(scene_.arrays[static_cast<std::size_t>(target.deltas[i])].count,
+                       scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count, at);
     }
     if (target.deltas[0] >= 0) {
       const auto [box, added] = bounds_.try_emplace(target.deltas[0]);
@@ -75,27 +75,46 @@ void MeshReader::read_targets(const tinygltf::Primitive& source, const std::stri
   }
 }
 
+/// The streams of all sets that the primitive has; primitives of the same accessors share them.
+const std::array<JointSet, 2>& MeshReader::joint_sets(const tinygltf::Primitive& source, const std::string& place, std::size_t vertices) {
+  std::array<int, 4> accessors{-1, -1, -1, -1};
+  std::size_t sets = 0;
+  for (; sets < 2; ++sets) {
+    const auto joints = source.attributes.find(fmt::format("JOINTS_{}", sets)),
+               weights = source.attributes.find(fmt::format("WEIGHTS_{}", sets));
+    const bool has_joints = joints != source.attributes.end(), has_weights = weights != source.attributes.end();
+    if (has_joints != has_weights)
+      throw user_error("{}: {}: JOINTS_{} and WEIGHTS_{} come together; one is missing", file_.path, place, sets, sets);
+    if (!has_joints) break;
+    accessors[2 * sets] = joints->second;
+    accessors[2 * sets + 1] = weights->second;
+  }
+  const auto [entry, added] = joint_arrays_.try_emplace(accessors);
+  if (!added) return entry->second;
+  std::vector<JointElements> elements;
+  const auto at = [&](std::size_t set) { return fmt::format("{}.attributes.JOINTS_{}", place, set); };
+  for (std::size_t set = 0; set < sets; ++set) {
+    elements.push_back({read_accessor(file_, accessors[2 * set], at(set)), read_accessor(file_, accessors[2 * set + 1], at(set))});
+    check_joints(file_, elements.back(), at(set));
+    require_room(elements.back().joints.data.size() + float_bytes(elements.back().weights), at(set));
+    require_vertices(elements.back().joints.count, vertices, at(set));
+  }
+  mended_weights_.add(place, mend_weights(elements), vertices);
+  for (std::size_t set = 0; set < sets; ++set) {
+    auto [numbers, fractions] = to_joint_arrays(std::move(elements[set]));
+    entry->second[set] = {add_array(std::move(numbers), at(set)), add_array(std::move(fractions), at(set))};
+  }
+  return entry->second;
+}
+
 void MeshReader::read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive, std::size_t joint_count,
                              int skin) {
   const std::size_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
+  primitive.joint_sets = joint_sets(source, place, vertices);
   for (std::size_t set = 0; set < primitive.joint_sets.size(); ++set) {
-    const auto joints = source.attributes.find(fmt::format("JOINTS_{}", set)),
-               weights = source.attributes.find(fmt::format("WEIGHTS_{}", set));
-    const bool has_joints = joints != source.attributes.end(), has_weights = weights != source.attributes.end();
-    if (has_joints != has_weights)
-      throw user_error("{}: {}: JOINTS_{} and WEIGHTS_{} come together; one is missing", file_.path, place, set, set);
-    if (!has_joints) break;
+    if (primitive.joint_sets[set].joints < 0) break;
     const std::string at = fmt::format("{}.attributes.JOINTS_{}", place, set);
-    const auto [entry, added] = joint_arrays_.try_emplace({joints->second, weights->second});
-    if (added) {
-      const Elements joint_elements = read_accessor(file_, joints->second, at), weight_elements = read_accessor(file_, weights->second, at);
-      require_room(joint_elements.data.size() + weight_elements.data.size(), at);
-      auto [numbers, fractions] = to_joint_arrays(file_, joint_elements, weight_elements, at);
-      entry->second = {add_array(std::move(numbers), at), add_array(std::move(fractions), at)};
-    }
-    primitive.joint_sets[set] = {entry->second[0], entry->second[1]};
-    const Array& numbers = scene_.arrays[static_cast<std::size_t>(entry->second[0])];
-    if (numbers.count != vertices) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, at, numbers.count, vertices);
+    require_vertices(scene_.arrays[static_cast<std::size_t>(primitive.joint_sets[set].joints)].count, vertices, at);
     const std::vector<Bounds>& boxes = joint_boxes(primitive.attributes[0], primitive.joint_sets[set], at);
     if (boxes.size() > joint_count)
       throw user_error("{}: {}: JOINTS name joint {}; skins[{}] has {} joints", file_.path, place, boxes.size() - 1, skin, joint_count);

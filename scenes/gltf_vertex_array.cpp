@@ -110,6 +110,31 @@ void require_finite(const GltfFile& file, const Elements& e, const std::string& 
   }
 }
 
+constexpr double kShortest = 1e-12, kLongest = 1e12;  // lengths whose squares the shader holds with ease
+
+/// Zeros in the place of what is no direction; lengths far from one become one. Returns how many are no direction.
+std::uint32_t mend_directions(Elements& e) {
+  const bool is_float = e.component == Component::kFloat;
+  std::uint32_t lacking = 0;
+  for (std::size_t i = 0; i < e.count; ++i) {
+    double squares = 0;
+    for (std::size_t c = 0; c < 3; ++c) squares += std::pow(static_cast<double>(component_value(e, i, c)), 2);
+    const double length = std::sqrt(squares);
+    const float side = e.components == 4 ? component_value(e, i, 3) : 1.0F;
+    if (!(length > 0) || !std::isfinite(length) || side == 0 || !std::isfinite(side)) {
+      const std::size_t size = component_bytes(e.component) * e.components;
+      std::memset(&e.data[i * size], 0, size);
+      ++lacking;
+    } else if (is_float && (length < kShortest || length > kLongest)) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto value = static_cast<float>(static_cast<double>(component_value(e, i, c)) / length);
+        std::memcpy(&e.data[4 * (i * e.components + c)], &value, 4);
+      }
+    }
+  }
+  return lacking;
+}
+
 }  // namespace
 
 float component_value(const Elements& elements, std::size_t element, std::size_t component) {
@@ -117,10 +142,15 @@ float component_value(const Elements& elements, std::size_t element, std::size_t
   return integer_value(&elements.data[at], elements.component, elements.normalized);
 }
 
-Array to_vertex_array(const GltfFile& file, const Elements& elements, Semantic semantic, const std::string& place) {
+Array to_vertex_array(const GltfFile& file, Elements elements, Semantic semantic, const std::string& place,
+                      std::uint32_t* without_direction) {
   if (!allowed_type(elements, semantic)) {
     throw user_error("{}: {}: {} components of this type are not allowed for {}", file.path, place, elements.components,
                      semantic_name(semantic));
+  }
+  if (semantic == Semantic::kNormal || semantic == Semantic::kTangent) {
+    const std::uint32_t lacking = mend_directions(elements);
+    if (without_direction != nullptr) *without_direction = lacking;
   }
   require_finite(file, elements, place);
   const Format native = native_format(elements, semantic);
@@ -144,29 +174,6 @@ Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t
                      elements.components, components);
   require_finite(file, elements, place);
   return {"morph target", float_format(components), elements.count, as_floats(elements)};
-}
-
-std::pair<Array, Array> to_joint_arrays(const GltfFile& file, const Elements& joints, const Elements& weights, const std::string& place) {
-  const bool wide = joints.component == Component::kUint16;
-  if (joints.components != 4 || joints.normalized || (!wide && joints.component != Component::kUint8))
-    throw user_error("{}: {}: JOINTS are four unsigned integers of 8 or 16 bits", file.path, place);
-  const bool fraction = weights.normalized && (weights.component == Component::kUint8 || weights.component == Component::kUint16);
-  if (weights.components != 4 || (!fraction && weights.component != Component::kFloat))
-    throw user_error("{}: {}: WEIGHTS are four floats or normalized unsigned integers of 8 or 16 bits", file.path, place);
-  if (joints.count != weights.count)
-    throw user_error("{}: {}: {} JOINTS where WEIGHTS has {}", file.path, place, joints.count, weights.count);
-  require_finite(file, weights, place);
-  Array numbers{"JOINTS", wide ? Format::kR16G16B16A16Uint : Format::kR8G8B8A8Uint, joints.count, joints.data};
-  const std::size_t size = component_bytes(joints.component);
-  for (std::size_t i = 0; i < std::size_t{4} * weights.count; ++i) {
-    const float weight = component_value(weights, i / 4, i % 4);
-    if (weight < 0) throw user_error("{}: {}: vertex {} has the weight {}", file.path, place, i / 4, weight);
-    if (weight == 0) std::memset(&numbers.data[i * size], 0, size);
-  }
-  const Format format = !fraction                                ? Format::kR32G32B32A32Float
-                        : weights.component == Component::kUint8 ? Format::kR8G8B8A8UnormVertex
-                                                                 : Format::kR16G16B16A16Unorm;
-  return {std::move(numbers), Array{"WEIGHTS", format, weights.count, weights.data}};
 }
 
 }  // namespace quadrille::scenes

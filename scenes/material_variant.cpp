@@ -132,6 +132,8 @@ Variant choose_variant(const Material& material, const Primitive& primitive, Sha
   for (std::size_t i = 1; i < kSemantics; ++i) {
     if (v.attributes[i]) v.defines.emplace_back(kAttributeDefines[i]);
   }
+  if (set == ShaderSet::kMaterial && primitive.partial_normals && v.attributes[at(Semantic::kNormal)])
+    v.defines.emplace_back("PARTIAL_NORMALS");
   return v;
 }
 

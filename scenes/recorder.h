@@ -108,7 +108,7 @@ class Recorder {
   traces::CommandStream stream_;
   ShaderLibrary shaders_;
   std::map<TextureKey, traces::Index> textures_;
-  std::map<std::pair<int, std::array<bool, kSemantics>>, Variant> variants_;  ///< by material and available attributes
+  std::map<std::tuple<int, std::array<bool, kSemantics>, bool>, Variant> variants_;  ///< by material, available attributes, partial normals
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
   std::map<int, traces::Index> copies_buffers_;                                 ///< by `Instance::copies`, where their order is the scene's

@@ -66,7 +66,7 @@ bool is_srgb(std::size_t slot) {
 const Variant& Recorder::variant(const Primitive& primitive) {
   std::array<bool, kSemantics> available{};
   for (std::size_t i = 0; i < kSemantics; ++i) available[i] = primitive.attributes[i] >= 0;
-  const auto [entry, added] = variants_.try_emplace({primitive.material, available});
+  const auto [entry, added] = variants_.try_emplace({primitive.material, available, primitive.partial_normals});
   if (added) {
     entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive, shaders_.set());
     if (shaders_.set() == ShaderSet::kUser && options_.leave_out) leave_out_unread(entry->second);

@@ -68,7 +68,8 @@ struct Primitive {
   std::array<int, kSemantics> attributes{-1, -1, -1, -1, -1, -1};  ///< into `SceneData::arrays`; -1: absent
   int indices = -1;                                                ///< into `SceneData::arrays`; -1: none
   traces::IndexType index_type = traces::IndexType::kUint16;
-  std::uint32_t count = 0;  ///< indices, or vertices without them
+  std::uint32_t count = 0;       ///< indices, or vertices without them
+  bool partial_normals = false;  ///< some of its normals are zero: the faces of those vertices are drawn with their own
   int material = 0;
   Bounds bounds;  ///< model space
   std::vector<MorphTarget> targets;

@@ -23,16 +23,29 @@ vec3 perturb(vec3 n, vec3 m, vec2 uv) {
   vec3 t = across_y * tx.x + across_x * ty.x;
   vec3 b = across_y * tx.y + across_x * ty.y;
   float scale = inversesqrt(max(max(dot(t, t), dot(b, b)), 1e-30));
+#ifdef DOUBLE_SIDED
+  // Seen from behind, the normal points away (or, without one in the file, has been turned towards the viewer with the whole frame): t and b turn with it.
+  scale = gl_FrontFacing ? scale : -scale;
+#endif
   return (m.x * scale) * t - (m.y * scale) * b + m.z * n;
 #endif
 }
 #endif
 
+// The face's own normal, toward the viewer; not of unit length.
+vec3 face_normal() { return cross(dFdy(v_position), dFdx(v_position)); }
+
 vec3 surface_normal() {
-#ifdef HAS_NORMAL
+#ifdef PARTIAL_NORMALS
+  vec3 face = face_normal();
+#ifdef DOUBLE_SIDED
+  face = gl_FrontFacing ? face : -face;
+#endif
+  return normalize(dot(v_normal, v_normal) > 0.0 ? v_normal : face);
+#elif defined(HAS_NORMAL)
   return normalize(v_normal);
 #else
-  return normalize(cross(dFdy(v_position), dFdx(v_position)));  // flat, toward the viewer
+  return normalize(face_normal());
 #endif
 }
 

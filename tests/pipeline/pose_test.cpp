@@ -80,6 +80,22 @@ TEST_CASE("posed pictures: the vertex shader and the host pose alike, for skins,
   require_other(picture("builtin:flag", 0.3), picture("builtin:flag", 0.9));
 }
 
+TEST_CASE("posed pictures: weights that do not sum to one draw what those divided by their sum do, by the vertex shader and by the host") {
+  const PlainShader plain;
+  const scenes::TempGltf whole(scenes::arm_gltf());
+  for (const int bits : {8, 16, 32}) {
+    for (const float weight : {0.9F, 0.0F}) {
+      CAPTURE(bits, weight);
+      scenes::ArmOptions options;
+      options.weight_bits = bits;
+      options.weight = weight;
+      const scenes::TempGltf file(scenes::arm_gltf(options));
+      require_same(picture(file.path(), 0.6), picture(whole.path(), 0.6));
+      require_same(picture(file.path(), 0.6, plain.path()), picture(whole.path(), 0.6));
+    }
+  }
+}
+
 TEST_CASE("posed pictures: a mirrored skin shows its front faces, and is lit from the same side") {
   const scenes::TempGltf mirrored(mirrored_arm()), plain(scenes::arm_gltf());
   const auto a = picture(mirrored.path(), 0), b = picture(plain.path(), 0);  // a rectangle is its own mirror image
