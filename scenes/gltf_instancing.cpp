@@ -36,8 +36,12 @@ class InstanceReader {
       : file_(file), object_(file.path, place + ".EXT_mesh_gpu_instancing", extension) {}
 
   std::vector<glm::dmat4> read() {
-    if (!object_.has("attributes")) object_.fail("attributes", "it is missing");
+    if (!object_.has("attributes")) return {};
     const GltfObject attributes = object_.object("attributes");
+    for (const char* name : {"TRANSLATION", "ROTATION", "SCALE"}) {
+      if (attributes.has(name)) count(attributes, name);
+    }
+    for (const std::string& name : attributes.value().Keys()) count(attributes, name);
     const auto translation = stream(attributes, "TRANSLATION", 3), rotation = stream(attributes, "ROTATION", 4),
                scale = stream(attributes, "SCALE", 3);
     std::vector<glm::dmat4> result;
@@ -59,6 +63,16 @@ class InstanceReader {
     return static_cast<double>(component_value(elements, i, k));
   }
 
+  /// All attributes are of one number of elements, those too that only an application knows the meaning of: that many copies there are.
+  void count(const GltfObject& attributes, const std::string& name) {
+    const std::size_t elements =
+        file_.model.accessors[static_cast<std::size_t>(attributes.index(name.c_str(), file_.model.accessors.size()))].count;
+    if (elements == 0) attributes.fail(name, "its accessor has no elements");
+    if (elements > kMaxInstances) attributes.fail(name, fmt::format("{} instances; at most {} are drawn", elements, kMaxInstances));
+    if (count_ && *count_ != elements) attributes.fail(name, fmt::format("{} elements where another attribute has {}", elements, *count_));
+    count_ = static_cast<std::uint32_t>(elements);
+  }
+
   /// Floats, or for rotations normalized integers too.
   std::optional<Elements> stream(const GltfObject& attributes, const char* name, std::size_t components) {
     if (!attributes.has(name)) return std::nullopt;
@@ -70,11 +84,6 @@ class InstanceReader {
     if (elements.components != components || !(is_float || is_fraction))
       attributes.fail(name, fmt::format("accessor {} is not of {} floats{}", accessor, components,
                                         components == 4 ? " or normalized bytes or shorts" : ""));
-    if (elements.count > kMaxInstances)
-      attributes.fail(name, fmt::format("{} instances; at most {} are drawn", elements.count, kMaxInstances));
-    if (count_ && *count_ != elements.count)
-      attributes.fail(name, fmt::format("{} elements where another attribute has {}", elements.count, *count_));
-    count_ = elements.count;
     for (std::uint32_t i = 0; i < elements.count; ++i) {
       for (std::size_t k = 0; k < components; ++k) {
         if (!std::isfinite(value(elements, i, k))) attributes.fail(name, fmt::format("element {} is not finite", i));
@@ -101,10 +110,11 @@ std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Val
   return InstanceReader(file, extension, place).read();
 }
 
-void place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place, const glm::dmat4& world,
+bool place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place, const glm::dmat4& world,
                   std::size_t first, SceneData& scene, PlacedCopies& placed_copies) {
   const auto [entry, added] = placed_copies.matrices.try_emplace(&extension);
   if (added) entry->second = read_instances(file, extension, place);
+  if (entry->second.empty()) return false;
   placed_copies.drawn += entry->second.size() * std::max<std::size_t>(1, scene.instances.size() - first);
   if (placed_copies.drawn > kMaxInstances)
     throw user_error("{}: {}: the scene has more than {} instances of primitives", file.path, place, kMaxInstances);
@@ -124,6 +134,7 @@ void place_copies(const GltfFile& file, const tinygltf::Value& extension, const 
     }
     scene.copies.push_back(std::move(side));
   }
+  return true;
 }
 
 }  // namespace quadrille::scenes

@@ -260,13 +260,18 @@ class GltfScene::Reader {
       const std::string& name = scene_.primitives[primitive].name;
       scene_.instances.push_back({primitive, world, node.name.empty() ? name : node.name + "/" + name, -1, number});
     }
-    // A skin places its mesh by joints alone, so that instances of it would all lie in one place.
-    const auto found = node.extensions.find("EXT_mesh_gpu_instancing");
-    if (found == node.extensions.end()) return;
-    if (node.skin < 0) return place_copies(file_, found->second, place_of(at), world, first, scene_, copies_);
+    if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end())
+      place_copies_of(node, found->second, world, at, first);
+  }
+
+  /// A skin places its mesh by joints alone, so that instances of it would all lie in one place.
+  void place_copies_of(const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& world, int at, std::size_t first) {
+    const bool skinned = node.skin >= 0;
+    if (!skinned && place_copies(file_, extension, place_of(at), world, first, scene_, copies_)) return;
     if (!std::exchange(warned_of_copies_, true))
       file_.notes.push_back(
-          fmt::format("{}: EXT_mesh_gpu_instancing counts for nothing on a node with a skin; it is drawn once", place_of(at)));
+          fmt::format("{}: EXT_mesh_gpu_instancing {}; it is drawn once", place_of(at),
+                      skinned ? "counts for nothing on a node with a skin" : "has no attribute that says how many copies there are"));
   }
 
   /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]

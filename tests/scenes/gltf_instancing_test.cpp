@@ -184,6 +184,24 @@ TEST_CASE("instancing: a node with a skin is drawn once, where its joints place 
   CHECK(scene.copies.empty());
 }
 
+TEST_CASE("instancing: attributes that only an application knows say how many copies there are, too") {
+  const Stream ids{"_FEATURE_ID_0", "VEC3", {1, 2, 3, 4, 5, 6}};
+  std::string text = instanced({ids});
+  text.insert(text.find(R"("mesh":0)"), R"("translation":[10,0,0],)");
+  const SceneData scene = load(text);
+  REQUIRE(scene.copies.size() == 1);
+  REQUIRE(scene.copies[0].size() == 2);
+  for (const glm::dmat4& copy : scene.copies[0]) CHECK(copy == glm::translate(glm::dmat4(1), glm::dvec3(10, 0, 0)));
+  CHECK(load(instanced({ids, {"SCALE", "VEC3", {1, 1, 1, 2, 2, 2}}})).copies[0][1][0].x == 2);
+  CHECK_THAT(load_result(instanced({kThree, ids})), Contains("attributes._FEATURE_ID_0: 2 elements where another attribute has 3"));
+}
+
+TEST_CASE("instancing: without any attribute the mesh is drawn once") {
+  const SceneData scene = load(instanced({}));
+  REQUIRE(scene.instances.size() == 1);
+  CHECK(scene.instances[0].copies == -1);
+}
+
 TEST_CASE("instancing: unequal counts, other types and values that are not finite are refused with their place") {
   REQUIRE_THAT(load_result(instanced({kThree, {"SCALE", "VEC3", {1, 1, 1}}})),
                Contains("nodes[0].EXT_mesh_gpu_instancing.attributes.SCALE: 1 elements where another attribute has 3"));
