@@ -13,7 +13,7 @@ namespace quadrille::scenes {
 namespace {
 
 /// What docs/scenes.md lists as covered.
-constexpr std::array<std::string_view, 21> kSupported{"EXT_mesh_gpu_instancing",
+constexpr std::array<std::string_view, 22> kSupported{"EXT_mesh_gpu_instancing",
                                                       "EXT_meshopt_compression",
                                                       "EXT_texture_webp",
                                                       "KHR_draco_mesh_compression",
@@ -28,6 +28,7 @@ constexpr std::array<std::string_view, 21> kSupported{"EXT_mesh_gpu_instancing",
                                                       "KHR_materials_unlit",
                                                       "KHR_materials_variants",
                                                       "KHR_materials_volume",
+                                                      "KHR_meshopt_compression",
                                                       "KHR_mesh_quantization",
                                                       "KHR_node_visibility",
                                                       "KHR_texture_transform",

@@ -93,6 +93,7 @@ GltfFile read_gltf_file(const std::string& path) {
   const GltfContainer container = split_gltf(path, bytes);
   const PreparedJson json = prepare_json(path, container.json);
   parse(file, json);
+  if (!json.note.empty()) file.notes.push_back(json.note);
   check_extensions(file);
   read_buffers(file, json, container);
   list_images(file, json);

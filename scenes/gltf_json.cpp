@@ -48,6 +48,50 @@ Extent extent_of(std::string_view text) {
   return extent;
 }
 
+/// Takes members that are null out of a document: some exporters write them for what is absent. Counts them, and says where the first was.
+class NullMembers {
+ public:
+  void take_out(Json& value) { take_out(value, {}); }
+  [[nodiscard]] std::string note() const {
+    if (count_ == 0) return "";
+    return fmt::format("{} is null{} and counts as absent", first_, count_ > 1 ? fmt::format(", as are {} more members,", count_ - 1) : "");
+  }
+
+ private:
+  /// Where the walk is; spelled only for the first one.
+  struct Place {
+    const Place* above = nullptr;
+    std::string_view member;
+    std::size_t index = 0;  ///< of an array's element, where there is no name
+    [[nodiscard]] std::string text() const {
+      const std::string before = above == nullptr ? "" : above->text();
+      if (member.empty()) return above == nullptr ? "" : fmt::format("{}[{}]", before, index);
+      return fmt::format("{}{}{}", before, before.empty() ? "" : ".", member.substr(0, kMaxShownName));
+    }
+  };
+
+  void take_out(Json& value, const Place& place) {
+    if (value.is_array()) {
+      for (std::size_t i = 0; i < value.size(); ++i) take_out(value[i], {&place, {}, i});
+    } else if (value.is_object()) {
+      for (auto item = value.begin(); item != value.end();) {
+        const Place here{&place, item.key()};
+        if (item->is_null()) {
+          if (count_++ == 0) first_ = here.text();
+          item = value.erase(item);
+        } else {
+          take_out(*item, here);
+          ++item;
+        }
+      }
+    }
+  }
+
+  static constexpr std::size_t kMaxShownName = 60;
+  std::size_t count_ = 0;
+  std::string first_;
+};
+
 class Preparer {
  public:
   Preparer(const std::string& path, std::string_view json) : path_(path) {
@@ -62,6 +106,7 @@ class Preparer {
       fail("its JSON", fmt::format("cannot be parsed at byte {}: not JSON in UTF-8", error.byte));
     } catch (const Json::out_of_range&) { fail("its JSON", "holds a number that is too large for any type"); }
     if (!root_.is_object()) fail("its JSON", "is no object");
+    nulls_.take_out(root_);
     check_version();
     make_integers(root_, false);
     check_types(path, root_);
@@ -72,6 +117,7 @@ class Preparer {
 
   PreparedJson prepare() {
     PreparedJson result;
+    result.note = nulls_.note();
     for_each("buffers", [&](const Json& item, const std::string& place) { result.buffers.push_back(buffer(item, place)); });
     for_each("images", [&](const Json& item, const std::string& place) { result.images.push_back(image(item, place)); });
     root_.erase("buffers");
@@ -171,6 +217,7 @@ class Preparer {
 
   std::string path_;
   Json root_;
+  NullMembers nulls_;
 };
 
 }  // namespace

@@ -23,6 +23,7 @@ struct PreparedJson {
   std::string text;  ///< for tinygltf
   std::vector<BufferSource> buffers;
   std::vector<ImageSource> images;
+  std::string note;  ///< what counts otherwise than it is written, in a line; empty: nothing
   std::vector<std::size_t>
       viewless;  ///< accessors that have no buffer view; in `text` they have number 0, since tinygltf refuses indices without one
 };

@@ -8,22 +8,7 @@
 
 namespace quadrille::scenes::schema {
 
-enum class Type : std::uint8_t {
-  kAny,
-  kObject,
-  kArray,
-  kIndex,
-  kInt,
-  kNumber,
-  kNumberOrNull,
-  kStride,
-  kString,
-  kBool,
-  kTwo,
-  kThree,
-  kFour,
-  kSixteen
-};
+enum class Type : std::uint8_t { kAny, kObject, kArray, kIndex, kInt, kNumber, kStride, kString, kBool, kTwo, kThree, kFour, kSixteen };
 
 /// Members of one type: names by path from the document's root; "[]" is each element of an array, "*" each member of an object. What leads to a member is by
 /// that an object, or an array. One with "!" may not be missing where the object around it stands. An index ends in ">" and the table that it leads into: one
@@ -68,8 +53,7 @@ inline constexpr std::array kRules{
          "extensions.KHR_lights_punctual.lights[].intensity extensions.KHR_lights_punctual.lights[].range "
          "extensions.KHR_lights_punctual.lights[].spot.innerConeAngle extensions.KHR_lights_punctual.lights[].spot.outerConeAngle"},
     Rule{Type::kStride, "bufferViews[].byteStride"},
-    Rule{Type::kNumberOrNull,
-         "materials[].extensions.KHR_materials_volume.attenuationDistance"},  // exporters write an infinite one as null
+    Rule{Type::kNumber, "materials[].extensions.KHR_materials_volume.attenuationDistance"},
     Rule{Type::kThree,
          "nodes[].translation nodes[].scale materials[].emissiveFactor "
          "materials[].extensions.KHR_materials_pbrSpecularGlossiness.specularFactor "

@@ -28,7 +28,6 @@ const char* due(Type type) {
     case Type::kIndex: return "an integer of 0 or more";
     case Type::kInt: return "an integer of 0 to 2147483647";
     case Type::kNumber: return "a number";
-    case Type::kNumberOrNull: return "a number";
     case Type::kStride: return "a multiple of 4 from 4 to 252";
     case Type::kString: return "a string";
     case Type::kBool: return "true or false";
@@ -59,7 +58,6 @@ bool is(const Json& value, Type type) {
     case Type::kIndex: return value.is_number_unsigned() || is_large_integer(value);
     case Type::kInt: return value.is_number_unsigned() && value.get<std::uint64_t>() <= 0x7fffffff;  // tinygltf keeps it as an int
     case Type::kNumber: return value.is_number();
-    case Type::kNumberOrNull: return value.is_number() || value.is_null();
     case Type::kStride:
       return value.is_number_unsigned() && value.get<std::uint64_t>() <= 252 &&
              value.get<std::uint64_t>() % 4 == 0;  // 0 is written for none

@@ -175,7 +175,8 @@ void add_parts(std::vector<Case>& cases) {
            {lights + R"([{"type":"sun"}]}})", "extensions.KHR_lights_punctual.lights[0].type: one of directional, point, spot is due"},
            {lights + R"([{"type":"spot"}]}})", "extensions.KHR_lights_punctual.lights[0].spot: is missing"},
            {lights + R"([{"type":"point","color":[1,1]}]}})", "extensions.KHR_lights_punctual.lights[0].color: "},
-           {lights + R"([{"type":"point","range":null}]}})", "extensions.KHR_lights_punctual.lights[0].range: a number is due"}})
+           {lights + R"([{"type":"point","range":"far"}]}})", "extensions.KHR_lights_punctual.lights[0].range: a number is due"},
+           {lights + R"([{"type":null}]}})", "extensions.KHR_lights_punctual.lights[0].type: is missing"}})
     add(scene, scene + "," + part, place);
   const std::string base = R"("baseColorTexture":{"index":0,"extensions":)", to = "materials[0].pbrMetallicRoughness.baseColorTexture";
   add(rough, base + R"({"KHR_texture_transform":"x"}}})", to + ".extensions.KHR_texture_transform: an object is due");
@@ -184,7 +185,7 @@ void add_parts(std::vector<Case>& cases) {
   for (const std::string member :
        {"KHR_materials_clearcoat.clearcoatFactor", "KHR_materials_sheen.sheenColorFactor", "KHR_materials_ior.ior",
         "KHR_materials_transmission.transmissionTexture", "KHR_materials_volume.thicknessTexture.index"})
-    add(rough, rough + ",\"extensions\":" + nested(member, "null"), "materials[0].extensions." + member + ": ");
+    add(rough, rough + ",\"extensions\":" + nested(member, "true"), "materials[0].extensions." + member + ": ");
   const std::string sparse = count + R"(,"sparse":{"values":{"bufferView":0},"indices":{"bufferView":0,"componentType":5125)";
   add(count, sparse + R"(},"count":4294967297})", "accessors[0].sparse.count: an integer of 0 to 2147483647 is due");
   add(count, sparse + R"(,"byteOffset":4294967296},"count":1})",

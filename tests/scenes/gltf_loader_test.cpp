@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "models/base/error.h"
+#include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
 
 using namespace quadrille;
@@ -168,4 +169,71 @@ TEST_CASE("gltf: a node that is not visible hides meshes and lights of itself an
   }
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_node_visibility":{"visible":0}})")),
                Contains("nodes[0].extensions.KHR_node_visibility.visible: true or false is due"));
+}
+
+TEST_CASE("gltf: members that are null count as absent, whatever they are") {
+  for (const char* member : {R"("material":null)", R"("indices":null)", R"("mode":null)", R"("targets":null)", R"("extensions":null)",
+                             R"("extensions":{"KHR_materials_variants":null})"}) {
+    CAPTURE(member);
+    CHECK(load_result(triangle_gltf(std::string(",") + member)) == "loaded");
+  }
+  for (const char* table : {R"("cameras":null)", R"("images":null)", R"("animations":null)", R"("extensionsRequired":null)",
+                            R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","range":null,"color":null}]}})"})
+    CHECK(load_result(triangle_gltf("", std::string(",") + table)) == "loaded");
+  CHECK(load_result(triangle_gltf("", "", R"(,"rotation":null,"camera":null,"children":null)")) == "loaded");
+  // What may not be missing may not be null, and an element of an array is no member.
+  CHECK_THAT(load_result(R"({"asset":null})"), Contains("asset: is missing; an object is due"));
+  CHECK_THAT(load_result(triangle_gltf("", "", R"(,"children":[null])")), Contains("nodes[0].children[0]: an integer of 0 or more is due"));
+}
+
+namespace {
+
+/// The triangle with these normals or tangents, as they lie in the file.
+template <class T>
+SceneData with_stream(const char* semantic, const std::vector<T>& values, const std::string& type, bool normalized) {
+  GltfBuilder b;
+  const int positions = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const int normals = b.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  const int stream = b.accessor(values, type, normalized);
+  const std::string more = std::string(semantic) == "NORMAL" ? "" : fmt::format(R"(,"NORMAL":{})", normals);
+  const TempGltf file(b.text(fmt::format(
+      R"("scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":{},"{}":{}{}}}}}]}}])",
+      positions, semantic, stream, more)));
+  return load_gltf(file.path());
+}
+
+}  // namespace
+
+TEST_CASE("gltf: normals without a direction are those of their faces, in every format") {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  CHECK_FALSE(with_stream<float>("NORMAL", {0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", false).primitives[0].partial_normals);
+  for (const float bad : {0.0F, -0.0F, nan, inf}) {
+    const SceneData scene = with_stream<float>("NORMAL", {0, 0, 1, bad, bad, bad, 0, 0, 1}, "VEC3", false);
+    REQUIRE(scene.primitives[0].partial_normals);
+    const Array& normals = scene.arrays[static_cast<std::size_t>(scene.primitives[0].attributes[1])];
+    for (std::size_t c = 3; c < 6; ++c) CHECK(normals.data[4 * c] == std::byte{0});
+  }
+  CHECK(with_stream<std::int8_t>("NORMAL", {0, 0, 127, 0, 0, 0, 0, 0, 127}, "VEC3", true).primitives[0].partial_normals);
+  CHECK(with_stream<std::int16_t>("NORMAL", {0, 0, 127, 0, 0, 0, 0, 0, 127}, "VEC3", true).primitives[0].partial_normals);
+  CHECK_FALSE(with_stream<std::int16_t>("NORMAL", {0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", true).primitives[0].partial_normals);
+}
+
+TEST_CASE("gltf: normals too short or too long for their squares keep their direction") {
+  const SceneData scene = with_stream<float>("NORMAL", {0, 0, 1e-30F, 0, 3e30F, 4e30F, 0, 0, 2}, "VEC3", false);
+  CHECK_FALSE(scene.primitives[0].partial_normals);
+  const Array& normals = scene.arrays[static_cast<std::size_t>(scene.primitives[0].attributes[1])];
+  std::array<float, 9> n{};
+  std::memcpy(n.data(), normals.data.data(), sizeof(n));
+  const std::array<float, 9> wanted{0, 0, 1, 0, 0.6F, 0.8F, 0, 0, 2};
+  for (std::size_t i = 0; i < n.size(); ++i) CHECK(n[i] == Approx(wanted[i]));
+}
+
+TEST_CASE("gltf: tangents without a direction or a side give way to those that texture coordinates span") {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto tangent = [](const SceneData& scene) { return scene.primitives[0].attributes[2]; };
+  CHECK(tangent(with_stream<float>("TANGENT", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, -1}, "VEC4", false)) >= 0);
+  CHECK(tangent(with_stream<float>("TANGENT", {1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 0, 1}, "VEC4", false)) == -1);
+  CHECK(tangent(with_stream<float>("TANGENT", {1, 0, 0, 1, nan, 0, 0, 1, 1, 0, 0, 1}, "VEC4", false)) == -1);
+  CHECK(tangent(with_stream<float>("TANGENT", {1, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 1}, "VEC4", false)) == -1);
+  CHECK(tangent(with_stream<std::int8_t>("TANGENT", {127, 0, 0, 127, 0, 0, 0, 127, 127, 0, 0, 127}, "VEC4", true)) == -1);
 }
