@@ -29,6 +29,15 @@ bool read_number(std::string_view text, T& value) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
+/// None: chosen by the scene.
+std::optional<double> parse_exposure(std::string_view text) {
+  double factor = 0;
+  if (text == "auto") return std::nullopt;
+  if (!read_number(text, factor) || !(factor >= scenes::kLeastExposure && factor <= scenes::kMostExposure))
+    throw user_error("--exposure: '{}' is neither a number within {}..{} nor auto", text, scenes::kLeastExposure, scenes::kMostExposure);
+  return factor;
+}
+
 }  // namespace
 
 std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least, std::int64_t most) {
@@ -91,6 +100,12 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
   command.add_option("--time", time, "poses the scene by its animation, S seconds after its start (default: at rest)")->type_name("S");
   command.add_option("--animation", animation, "which animation, by number from 0 or by name, or all of them at once (default: the first)")
       ->type_name("N|NAME|all");
+  command
+      .add_option("--exposure", exposure,
+                  "factor of the light that the file states in lux and candela, and of what its materials emit (default: 1); auto: chosen "
+                  "so that a "
+                  "white wall is almost white, and printed")
+      ->type_name("X|auto");
   command.add_option("--vert", vert, "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")
       ->type_name("F");
   command.add_option("--frag", frag, "fragment shader for all materials, as for --vert")->type_name("F");
@@ -109,6 +124,7 @@ scenes::SceneOptions SceneArguments::options() const {
   options.scene = scene_choice.value_or("");
   options.animation = animation.value_or("");
   if (time) options.time = parse_number(*time, "--time", 0, kMaxSeconds);
+  if (exposure) options.exposure = parse_exposure(*exposure);
   if (eye) options.eye = parse_point(*eye, "--eye");
   if (at) options.at = parse_point(*at, "--at");
   if (camera && (eye || at)) throw user_error("--camera: not together with --eye or --at");
@@ -120,11 +136,10 @@ scenes::SceneOptions SceneArguments::options() const {
 
 void SceneArguments::check() const {
   if (is_trace()) {
-    if (size || scene_choice || camera || eye || at || time || animation || vert || frag) {
+    if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag) {
       throw user_error(
-          "{}: a trace has its size, camera, pose and shaders in it; --size, --scene, --camera, --eye, --at, --time, --animation, --vert "
-          "and --frag "
-          "are for scenes",
+          "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, --eye, --at, --time, --animation, "
+          "--exposure, --vert and --frag are for scenes",
           scene);
     }
     return;
@@ -150,6 +165,7 @@ traces::CommandStream SceneArguments::load_visibility() const {
 
 SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes::Moment& moment) const {
   Loaded loaded{file.record(moment), {}};
+  if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
   if (const std::size_t packed = file.packed_images(); packed > 0)
     loaded.left_out.push_back({"images", "no shader of the frame samples them", fmt::format("{} images of the file stay packed", packed)});
   const std::size_t shaders = loaded.stream.shaders.size();

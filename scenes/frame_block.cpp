@@ -10,13 +10,13 @@
 #include <glm/geometric.hpp>
 
 #include "models/base/error.h"
+#include "scenes/exposure.h"
 
 namespace quadrille::scenes {
 namespace {
 
 constexpr std::size_t kMaxLights = 256;
 constexpr std::size_t kMaxUnrolledLights = 4;
-constexpr float kKeyLux = 2.4F;            // [G: with the default sky, a white wall in the light is just below white]
 constexpr float kSkyBesideLights = 0.35F;  // the sky's share where the file brings its own lights [G: shadows stay readable]
 
 /// `Light` of interface.glsl, std140.
@@ -59,17 +59,18 @@ std::size_t count(const std::vector<Light>& lights, Light::Kind kind) {
 
 }  // namespace
 
-std::vector<Light> frame_lights(const PlacedScene& scene, const View& view) {
-  if (scene.at.lights.empty()) return {key_light(view)};
+std::vector<Light> frame_lights(const PlacedScene& scene, const View& view, float exposure) {
+  std::vector<Light> lights = scene.at.lights;
+  if (lights.empty()) lights.push_back(key_light(view));
   if (scene.at.lights.size() > kMaxLights)
     throw user_error("{}: {} lights; at most {} are supported", scene.data.name, scene.at.lights.size(), kMaxLights);
-  std::vector<Light> lights = scene.at.lights;
+  for (Light& light : lights) light.color = exposed(light.color, exposure);
   std::ranges::stable_sort(lights, {}, &Light::kind);
   return lights;
 }
 
-std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights) {
-  const float share = scene.lights.empty() ? 1.0F : kSkyBesideLights;
+std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights, float exposure) {
+  const float share = scene.lights.empty() ? exposure : kSkyBesideLights;
   const FrameHead head{view.view_projection, glm::vec4(view.eye, 0), glm::vec4(view.toward_viewer, 0),
                        glm::vec4(scene.environment.sky * share, 0), glm::vec4(scene.environment.ground * share, 0)};
   std::vector<LightBlock> blocks;

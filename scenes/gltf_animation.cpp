@@ -171,7 +171,7 @@ std::vector<Animation> choose_animations(GltfFile& file, const std::string& choi
   if (std::ranges::find(file.model.extensionsUsed, "KHR_animation_pointer") != file.model.extensionsUsed.end())
     file.notes.emplace_back("KHR_animation_pointer is not supported; its channels are left out");
   std::vector<Animation> chosen;
-  if (choice == kAll) {
+  if (choice == kAll && !names.empty()) {
     for (std::size_t i = 0; i < names.size(); ++i) chosen.push_back(read_animation(file, i));
     return chosen;
   }

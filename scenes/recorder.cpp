@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "models/base/error.h"
+#include "scenes/exposure.h"
 #include "scenes/frame_block.h"
 #include "scenes/host_pose.h"
 #include "traces/trace_file.h"
@@ -54,12 +55,14 @@ std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored) {
 
 Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
     : scene_(scene),
-      range_(needed_range(scene, options)),
+      seen_(make_view(scene, options)),
+      range_(needed_range(PlacedScene(scene), seen_)),
       moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
       placed_(moved_ ? PlacedScene(scene, *moved_) : PlacedScene(scene)),
       options_(range_ ? moved(options, *range_) : options),
-      view_(make_view(placed_, options_)),
-      lights_(frame_lights(placed_, view_)),
+      view_(range_ ? make_view(placed_, options_) : seen_),
+      exposure_(scenes::exposure(placed_, options_)),
+      lights_(frame_lights(placed_, view_, exposure_)),
       shaders_(options, frame_defines(view_, lights_), stream_.shaders),
       bound_(kVertexSlot + kLocations, traces::EndPass{}) {}
 
@@ -193,7 +196,7 @@ const Recorder::PosedStreams& Recorder::posed_streams(const Instance& instance, 
 
 void Recorder::record_frame_set() {
   const auto block = static_cast<traces::Index>(stream_.buffers.size());
-  stream_.buffers.push_back({"frame", frame_block(scene_, view_, lights_)});
+  stream_.buffers.push_back({"frame", frame_block(scene_, view_, lights_, exposure_)});
   const auto set = static_cast<traces::Index>(stream_.descriptor_sets.size());
   stream_.descriptor_sets.push_back({{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
   stream_.commands.emplace_back(traces::BindDescriptorSet{kFrameSet, set});
@@ -254,17 +257,32 @@ void Recorder::push_constants(const glm::mat4& world, bool mirrored) {
 }
 
 void Recorder::record_instance(const Instance& instance) {
-  const Geometry g = geometry(instance);
-  if (instance.copies >= 0) return record_copies(instance, g);
-  bind(instance, g);
-  record_draw(instance, g, glm::mat4(instance.world), 1);
+  if (instance.copies >= 0) return record_copies(instance, geometry(instance));
+  if (instance.pose >= 0) {
+    const Geometry g = geometry(instance);
+    bind(instance, g);
+    return record_draw(instance, g, glm::mat4(instance.world), 1);
+  }
+  const glm::mat4 world(instance.world);
+  const auto [entry, added] = states_.try_emplace({instance.primitive, mirrors(world)});
+  if (added) entry->second = states(instance, geometry(instance));
+  bind(scene_.primitives[instance.primitive], entry->second);
+  record_draw(instance, entry->second.geometry, world, 1);
 }
 
-void Recorder::bind(const Instance& instance, const Geometry& g) {
+Recorder::States Recorder::states(const Instance& instance, Geometry g) {
   const Primitive& primitive = scene_.primitives[instance.primitive];
-  bind_once(traces::BindPipeline{pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], g)}, kPipelineSlot);
-  bind_once(traces::BindDescriptorSet{kMaterialSet, material_set(primitive.material, g.variant)}, kSetSlot);
-  bind_geometry(primitive, g);
+  States s;
+  s.pipeline = pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], g);
+  s.material_set = material_set(primitive.material, g.variant);
+  s.geometry = std::move(g);
+  return s;
+}
+
+void Recorder::bind(const Primitive& primitive, const States& states) {
+  bind_once(traces::BindPipeline{states.pipeline}, kPipelineSlot);
+  bind_once(traces::BindDescriptorSet{kMaterialSet, states.material_set}, kSetSlot);
+  bind_geometry(primitive, states.geometry);
 }
 
 void Recorder::record_draw(const Instance& instance, const Geometry& g, const glm::mat4& world, std::uint32_t copies) {

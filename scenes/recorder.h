@@ -47,6 +47,7 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
   [[nodiscard]] traces::CommandStream record();
   [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled(); }
+  [[nodiscard]] float exposure() const { return exposure_; }
 
  private:
   struct TextureKey {
@@ -62,6 +63,12 @@ class Recorder {
     std::vector<traces::Format> formats;                           ///< of the streams
     traces::Index pose_set = traces::kNone;
     bool mirrored = false;
+  };
+
+  /// What a draw binds.
+  struct States {
+    Geometry geometry;
+    traces::Index pipeline = traces::kNone, material_set = traces::kNone;
   };
 
   /// What the host has posed: format and buffer by semantic; kNone: the mesh's own.
@@ -88,7 +95,9 @@ class Recorder {
   void add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer);
   [[nodiscard]] traces::Index array_buffer(int array);
   [[nodiscard]] traces::Index pose_set(const std::vector<std::byte>& block);
-  void bind(const Instance& instance, const Geometry& geometry);
+  void bind(const Instance& instance, const Geometry& geometry) { bind(scene_.primitives[instance.primitive], states(instance, geometry)); }
+  [[nodiscard]] States states(const Instance& instance, Geometry geometry);
+  void bind(const Primitive& primitive, const States& states);
   void bind_geometry(const Primitive& primitive, const Geometry& geometry);
   void push_constants(const glm::mat4& world, bool mirrored);
   void bind_once(const traces::Command& command, std::size_t slot);
@@ -99,11 +108,13 @@ class Recorder {
   [[nodiscard]] const Variant& variant(const Primitive& primitive);
 
   const SceneData& scene_;
+  View seen_;                        ///< of the world as it is
   std::optional<WorldRange> range_;  ///< how the world was moved, if it had to be
   std::optional<Placements> moved_;  ///< and what moved with it
   PlacedScene placed_;
   SceneOptions options_;
   View view_;
+  float exposure_ = 1;
   std::vector<Light> lights_;
   traces::CommandStream stream_;
   ShaderLibrary shaders_;
@@ -111,9 +122,11 @@ class Recorder {
   std::map<std::tuple<int, std::array<bool, kSemantics>, bool>, Variant> variants_;  ///< by material, available attributes, partial normals
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
-  std::map<int, traces::Index> copies_buffers_;                                 ///< by `Instance::copies`, where their order is the scene's
-  std::vector<traces::Index> array_buffers_;                                    ///< by array of the scene; kNone: not recorded
-  std::map<std::string, traces::Index> pose_sets_;                              ///< by the block's bytes
+  std::map<std::pair<std::uint32_t, bool>, States>
+      states_;                                      ///< of instances neither posed nor copied, by primitive and whether they mirror
+  std::map<int, traces::Index> copies_buffers_;     ///< by `Instance::copies`, where their order is the scene's
+  std::vector<traces::Index> array_buffers_;        ///< by array of the scene; kNone: not recorded
+  std::map<std::string, traces::Index> pose_sets_;  ///< by the block's bytes
   std::map<std::tuple<std::uint32_t, int, bool>, PosedStreams> posed_streams_;  ///< by primitive, pose, and whether the host skins too
   std::vector<traces::Command> bound_;                                          ///< what each slot holds, to leave out repeated binds
   std::size_t posed_bytes_ = 0;                                                 ///< by the host

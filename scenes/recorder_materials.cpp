@@ -3,6 +3,7 @@
 #include <cstring>
 #include <set>
 
+#include "scenes/exposure.h"
 #include "scenes/mip_chain.h"
 #include "scenes/parallel.h"
 #include "scenes/recorder.h"
@@ -23,9 +24,11 @@ struct LayerBlock {
   std::array<glm::vec4, 2 * (kTextureSlots - kBaseTextureSlots)> uv_rows;
 };
 
-MaterialBlock material_values(const Material& m) {
-  MaterialBlock block{
-      m.base_color, glm::vec4(m.emissive, m.alpha_cutoff), {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength}, {}};
+MaterialBlock material_values(const Material& m, float exposure) {
+  MaterialBlock block{m.base_color,
+                      glm::vec4(exposed(m.emissive, exposure), m.alpha_cutoff),
+                      {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength},
+                      {}};
   for (std::size_t slot = 0; slot < kBaseTextureSlots; ++slot) {
     block.uv_rows[2 * slot] = glm::vec4(m.textures[slot].u_row, 0);
     block.uv_rows[2 * slot + 1] = glm::vec4(m.textures[slot].v_row, 0);
@@ -136,7 +139,7 @@ traces::Index Recorder::material_block(int material) {
   const auto [entry, added] = material_blocks_.try_emplace(material, static_cast<traces::Index>(stream_.buffers.size()));
   if (added) {
     const Material& m = scene_.materials[static_cast<std::size_t>(material)];
-    std::vector<std::byte> block = bytes_of(material_values(m));
+    std::vector<std::byte> block = bytes_of(material_values(m, exposure_));
     const std::vector<std::byte> layers = m.layers.any() ? bytes_of(layer_values(m)) : std::vector<std::byte>();
     block.insert(block.end(), layers.begin(), layers.end());
     stream_.buffers.push_back({"material " + m.name, std::move(block)});

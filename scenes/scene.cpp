@@ -25,6 +25,8 @@ void check(const SceneOptions& options) {
   if (options.width == 0 || options.height == 0 || options.width > kMaxTargetSide || options.height > kMaxTargetSide) {
     throw user_error("size: {}x{} is outside 1x1 .. {}x{}", options.width, options.height, kMaxTargetSide, kMaxTargetSide);
   }
+  if (options.exposure && !(*options.exposure >= kLeastExposure && *options.exposure <= kMostExposure))
+    throw user_error("exposure: {} is outside {}..{}", *options.exposure, kLeastExposure, kMostExposure);
   if (options.time && !std::isfinite(*options.time)) throw user_error("time: {} is not a number of seconds", *options.time);
   if (!finite(options.eye) || !finite(options.at)) throw user_error("camera: eye and point looked at are finite numbers");
 }
@@ -39,6 +41,7 @@ struct Scene::Parts {
   double length = 0;
   std::optional<GltfScene> file;
   std::size_t compiled_shaders = 0;
+  float exposure = 1;
 };
 
 Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options) : parts_(std::make_unique<Parts>()) {
@@ -51,7 +54,8 @@ Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options) : 
     parts_->length = builtin_length(parts_->builtin);
     parts_->animated = animated && parts_->length > 0;
     if (!options.scene.empty()) throw user_error("{}: a built-in scene is one scene; there is no other to choose", file_or_builtin);
-    if (!options.animation.empty() && options.animation != "0" && options.animation != "all")
+    const bool there = parts_->length > 0 && (options.animation == "0" || options.animation == "all");
+    if (!options.animation.empty() && !there)
       throw user_error("{}: animation '{}' does not exist; animations: {}", file_or_builtin, options.animation.substr(0, 60),
                        parts_->length > 0 ? "0" : "none");
     return;
@@ -75,6 +79,8 @@ std::size_t Scene::packed_images() const {
          static_cast<std::size_t>(std::ranges::count_if(images, [](const SceneImage& i) { return !i.packed(); }));
 }
 
+float Scene::exposure() const { return parts_->exposure; }
+
 std::size_t Scene::compiled_shaders() const { return parts_->compiled_shaders; }
 
 traces::CommandStream Scene::record(const Moment& moment) {
@@ -91,6 +97,7 @@ traces::CommandStream Scene::record(const Moment& moment) {
   Recorder recorder(scene, options);
   traces::CommandStream stream = recorder.record();
   parts_->compiled_shaders += recorder.compiled_shaders();
+  parts_->exposure = recorder.exposure();
   traces::validate(stream);
   if (parts_->file) parts_->file->print_notes();
   return stream;

@@ -7,8 +7,6 @@
 #include <glm/ext/vector_double3.hpp>
 #include <glm/geometric.hpp>
 
-#include "scenes/camera.h"
-
 namespace quadrille::scenes {
 namespace {
 
@@ -41,11 +39,14 @@ glm::dmat4 moved_matrix(const glm::dmat4& matrix, const WorldRange& range, doubl
 }  // namespace
 
 std::optional<WorldRange> needed_range(const PlacedScene& scene, const SceneOptions& options) {
+  return needed_range(scene, make_view(scene, options));
+}
+
+std::optional<WorldRange> needed_range(const PlacedScene& scene, const View& view) {
   const Bounds box = scene.bounds();
   if (box.empty()) return std::nullopt;
   const double size = radius(box);
   if (!std::isfinite(size) || !(size > 0)) return std::nullopt;
-  const View view = make_view(scene, options);
   const glm::dvec3 eye(view.eye);
   WorldRange range;
   const int exponent = std::ilogb(size);

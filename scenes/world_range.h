@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "scenes/camera.h"
 #include "scenes/scene.h"
 #include "scenes/scene_data.h"
 
@@ -21,6 +22,8 @@ struct WorldRange {
 /// How the world has to be moved for this view; nothing when it is within range: the half diagonal of its box in 2^-20 .. 2^40 metres, and its origin no more
 /// than 1024 times as far from the eye as what the eye sees nearest (0.06 pixels of jitter at 1000 pixels). Throws as `make_view` does.
 [[nodiscard]] std::optional<WorldRange> needed_range(const PlacedScene& scene, const SceneOptions& options);
+/// The same for the view that the options ask for.
+[[nodiscard]] std::optional<WorldRange> needed_range(const PlacedScene& scene, const View& view);
 /// A scene's placements in the new world: instances, lights (with the intensity that keeps their light the same) and cameras.
 [[nodiscard]] Placements moved(Placements placements, const WorldRange& range);
 /// The camera that options ask for, in the new world.

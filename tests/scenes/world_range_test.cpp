@@ -36,8 +36,8 @@ std::vector<std::byte> placed(const traces::CommandStream& stream) {
 }
 
 TEST_CASE("world range: every built-in scene is within range and left alone") {
-  for (const BuiltinScene& scene : builtin_scenes()) CHECK_FALSE(needed_range(build_builtin(std::string(scene.name)), {}));
-  CHECK_FALSE(needed_range(SceneData{}, {}));
+  for (const BuiltinScene& scene : builtin_scenes()) CHECK_FALSE(needed_range(build_builtin(std::string(scene.name)), SceneOptions{}));
+  CHECK_FALSE(needed_range(SceneData{}, SceneOptions{}));
 }
 
 TEST_CASE("world range: worlds that differ by a power of two record the same matrices once they are out of range") {
@@ -74,7 +74,7 @@ TEST_CASE("world range: cameras and lights move with the world, and light stays 
   camera.near = 0x1p58;
   camera.far = 0x1p66;
   scene.cameras = {camera};
-  const auto range = needed_range(scene, {});
+  const auto range = needed_range(scene, SceneOptions{});
   REQUIRE(range);
   CHECK(range->origin == glm::vec3(0));
   const Placements m = moved(scene, *range);
@@ -163,7 +163,7 @@ TEST_CASE("world range: the nearest copy decides, not the box around all copies"
   scene.copies = {{glm::dmat4(1), glm::translate(glm::dmat4(1), glm::dvec3(1e7, 0, 0))}};
   scene.cameras.resize(1);
   scene.cameras[0].pose = glm::translate(glm::dmat4(1), glm::dvec3(1e7, 0, 5));
-  const auto range = needed_range(scene, {});
+  const auto range = needed_range(scene, SceneOptions{});
   REQUIRE(range);
   CHECK(range->origin.x == 1e7F);
 }
@@ -177,7 +177,7 @@ TEST_CASE("world range: a scene that is moved is not copied, and its images are 
   });
   for (Instance& instance : scene.instances) instance.world[3] += glm::dvec4(1e7, 0, 0, 0);
   scene.cameras.clear();
-  REQUIRE(needed_range(scene, {}));
+  REQUIRE(needed_range(scene, SceneOptions{}));
   for (int frame = 0; frame < 2; ++frame) (void)Recorder(scene, {}).record();
   CHECK(unpacked == 1);
   CHECK_FALSE(scene.images[0].packed());
