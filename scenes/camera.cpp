@@ -6,19 +6,22 @@
 #include <numbers>
 
 #include <glm/ext/matrix_double4x4.hpp>
+#include <glm/ext/vector_double2.hpp>
 #include <glm/ext/vector_double3.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "models/base/error.h"
 #include "scenes/named_choice.h"
+#include "scenes/scene_reach.h"
 
 namespace quadrille::scenes {
 namespace {
 
 constexpr double kFramingFov = std::numbers::pi / 4;
 constexpr double kUserFov = std::numbers::pi / 3;
-constexpr double kMargin = 1.04;
+constexpr double kFramed = 0.8;                                  // of the picture's height or width
+constexpr std::size_t kMostFramedPoints = std::size_t{1} << 20;  // each is looked at 23 times [G: some hundredths of a second]
 constexpr int kOrbitPlaces = 32;
 constexpr double kNearestRatio = 1e-4;  // near plane over far plane, at least: keeps 32-bit depth useful
 
@@ -111,36 +114,80 @@ CameraPose turned(const CameraPose& pose, const glm::dvec3& center, double turns
   return {center + turn(pose.eye - center), turn(pose.right), turn(pose.up), turn(pose.backward)};
 }
 
-/// How far before the centre a camera with the axes of `pose` has to stand to hold the scene.
-double framing_distance(const PlacedScene& scene, const CameraPose& pose, const glm::dvec3& center, double aspect) {
-  const double tangent_y = std::tan(kFramingFov / 2) / kMargin, tangent_x = tangent_y * aspect;
-  double distance = 0;
-  for_each_corner(scene, [&](const glm::dvec3& corner) {
-    const glm::dvec3 offset = corner - center;
-    const double reach = std::max(std::abs(glm::dot(offset, pose.right)) / tangent_x, std::abs(glm::dot(offset, pose.up)) / tangent_y);
-    distance = std::max(distance, glm::dot(offset, pose.backward) + reach);
-  });
-  return distance;
+/// A camera that frames the scene, and the part of its picture plane that it shows: what is middle, in tangents right and up of the view direction.
+struct Framing {
+  CameraPose pose;
+  glm::dvec2 middle{0};
+};
+
+/// How far back the eye has to be for the scene to lie within each side of the picture: a point does when it is within the plane through the eye and that side.
+/// Right, left, upper, lower; `half` is half the picture in tangents. Over all places of an orbit.
+Reaches distances(const SceneReach& reach, const CameraPose& pose, const glm::dvec3& center, int places, const glm::dvec2& middle,
+                  const glm::dvec2& half) {
+  const glm::dvec2 high = half + middle, low = half - middle;
+  Reaches most;
+  most.fill(-INFINITY);
+  for (int i = 0; i < places; ++i) {
+    const CameraPose p = turned(pose, center, static_cast<double>(i) / places);
+    const Reaches reaches =
+        reach({p.backward + p.right / high.x, p.backward - p.right / low.x, p.backward + p.up / high.y, p.backward - p.up / low.y});
+    for (std::size_t d = 0; d < most.size(); ++d) most[d] = std::max(most[d], reaches[d]);
+  }
+  return most;
 }
 
-CameraPose framing_pose(const PlacedScene& scene, double aspect, bool orbiting) {
+double side(double a, double b) { return a > b ? 1 : a < b ? -1 : 0; }
+
+/// The middle of what the scene takes of the picture plane, seen from `distance` away: each of its sides by halving what is left.
+glm::dvec2 middle_of(const SceneReach& reach, const CameraPose& pose, const glm::dvec3& center, int places, const glm::dvec2& half,
+                     double distance) {
+  constexpr int kHalvings = 10;
+  Reaches slope{}, step{half.x, half.x, half.y, half.y};
+  for (int i = 0; i < kHalvings; ++i) {
+    Reaches most;
+    most.fill(-INFINITY);
+    for (int k = 0; k < places; ++k) {
+      const CameraPose p = turned(pose, center, static_cast<double>(k) / places);
+      const Reaches reaches = reach(
+          {p.right + slope[0] * p.backward, slope[1] * p.backward - p.right, p.up + slope[2] * p.backward, slope[3] * p.backward - p.up});
+      for (std::size_t d = 0; d < most.size(); ++d) most[d] = std::max(most[d], reaches[d]);
+    }
+    for (std::size_t d = 0; d < most.size(); ++d) slope[d] += step[d] * side(most[d], slope[d] * distance), step[d] /= 2;
+  }
+  return {places > 1 ? 0 : (slope[0] - slope[1]) / 2, (slope[2] - slope[3]) / 2};
+}
+
+/// The eye is on the line from the centre along the pose's view direction. The picture is shifted, as by a shift lens, until opposite sides ask for one distance,
+/// by halving what is left; a camera that goes around keeps the centre in the middle from left to right.
+Framing framed(const PlacedScene& scene, const CameraPose& pose, const glm::dvec3& center, double aspect, int places) {
+  constexpr int kHalvings = 12;
+  const SceneReach reach(scene, center, kMostFramedPoints / static_cast<std::size_t>(places));
+  const double tangent = std::tan(kFramingFov / 2) * kFramed;
+  const glm::dvec2 half(tangent * aspect, tangent);
+  Framing framing{pose};
+  glm::dvec2 step = half * 0.45;
+  if (places > 1) step.x = 0;
+  Reaches d = distances(reach, pose, center, places, framing.middle, half);
+  for (int i = 0; i < kHalvings; ++i, step *= 0.5) {
+    framing.middle += step * glm::dvec2(side(d[0], d[1]), side(d[2], d[3]));
+    d = distances(reach, pose, center, places, framing.middle, half);
+  }
+  const double distance = std::max({d[0], d[1], d[2], d[3]});
+  if (distance > 0) framing.middle = middle_of(reach, pose, center, places, half, distance);
+  framing.pose.eye = center + pose.backward * (distance > 0 ? distance : 1.0);
+  return framing;
+}
+
+Framing framing(const PlacedScene& scene, double aspect, bool orbiting) {
   const Bounds box = scene.bounds();
   const glm::dvec3 center = box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
-  const CameraPose pose = upright(center, {0.55, 0.42, 1});
-  double distance = 0;
-  // A camera that goes around stays as far away as its worst place needs.
-  const int places = orbiting ? kOrbitPlaces : 1;
-  for (int i = 0; i < places; ++i)
-    distance = std::max(distance, framing_distance(scene, turned(pose, center, static_cast<double>(i) / places), center, aspect));
-  CameraPose placed = pose;
-  placed.eye = center + pose.backward * (distance > 0 ? distance : 1.0);
-  return placed;
+  return framed(scene, upright(center, {0.55, 0.42, 1}), center, aspect, orbiting ? kOrbitPlaces : 1);
 }
 
 View user_view(const PlacedScene& scene, const SceneOptions& options, double aspect) {
   const Bounds box = scene.bounds();
   const glm::dvec3 at = options.at ? glm::dvec3(*options.at) : box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
-  const glm::dvec3 eye = options.eye ? glm::dvec3(*options.eye) : framing_pose(scene, aspect, options.orbit.has_value()).eye;
+  const glm::dvec3 eye = options.eye ? glm::dvec3(*options.eye) : framing(scene, aspect, options.orbit.has_value()).pose.eye;
   const double distance = glm::length(eye - at);
   if (!std::isfinite(distance) || !(distance > 0)) throw user_error("camera: the eye is where it looks at ({}, {}, {})", at.x, at.y, at.z);
   const CameraPose pose = turned(upright(eye, eye - at), at, options.orbit.value_or(0));
@@ -197,9 +244,13 @@ const Camera* chosen_camera(const PlacedScene& scene, const SceneOptions& option
 View framing_view(const PlacedScene& scene, double aspect, std::optional<double> orbit) {
   const Bounds box = scene.bounds();
   const glm::dvec3 center = box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
-  const CameraPose pose = turned(framing_pose(scene, aspect, orbit.has_value()), center, orbit.value_or(0));
+  const Framing placed = framing(scene, aspect, orbit.has_value());
+  const CameraPose pose = turned(placed.pose, center, orbit.value_or(0));
   const auto [near, far] = depth_range(scene, pose);
-  return finish(pose, perspective(kFramingFov, aspect, near, far), false);
+  glm::dmat4 projection = perspective(kFramingFov, aspect, near, far);
+  projection[2][0] = projection[0][0] * placed.middle.x;
+  projection[2][1] = projection[1][1] * placed.middle.y;
+  return finish(pose, projection, false);
 }
 
 View make_view(const PlacedScene& scene, const SceneOptions& options) {

@@ -25,7 +25,8 @@ struct View {
 /// Throws `UserError` when the scene has no such camera, or eye and point looked at coincide.
 [[nodiscard]] View make_view(const PlacedScene& scene, const SceneOptions& options);
 
-/// A perspective camera, 45 degrees high, right of, above and before the scene, as near as keeps every instance's box inside with a margin of 4 %.
+/// A perspective camera, 45 degrees high, right of, above and before the scene, which takes 80 % of the picture's height or width, whichever it fills first, in
+/// its middle (scenes/scene_reach.h).
 /// `orbit`: carried around the scene's centre by this part of a turn, as far away as all parts of the turn need.
 [[nodiscard]] View framing_view(const PlacedScene& scene, double aspect, std::optional<double> orbit = std::nullopt);
 

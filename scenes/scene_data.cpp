@@ -46,20 +46,23 @@ Bounds morphed(Bounds box, const Primitive& primitive, const std::vector<float>&
 
 glm::mat4 matrix_of(const JointMatrix& rows) { return glm::transpose(glm::mat4(rows[0], rows[1], rows[2], glm::vec4(0, 0, 0, 1))); }
 
-/// Holds the posed vertices: a skinned one is a mean of where its joints would put it, each within its joint's moved box.
-Bounds posed(const Primitive& primitive, const Pose& pose) {
-  if (pose.joints.empty()) return morphed(primitive.bounds, primitive, pose.weights);
-  Bounds box;
-  for (std::size_t j = 0; j < std::min(pose.joints.size(), primitive.joint_boxes.size()); ++j)
-    box.add(morphed(primitive.joint_boxes[j], primitive, pose.weights).transformed(matrix_of(pose.joints[j])));
-  return box;
-}
-
 }  // namespace
 
-Bounds SceneData::model_box(const Instance& instance) const {
+/// A skinned vertex is a mean of where its joints would put it, each within its joint's moved box.
+void SceneData::visit_model_boxes(const Instance& instance, const VisitModelBox& visit) const {
   const Primitive& primitive = primitives[instance.primitive];
-  return instance.pose < 0 ? primitive.bounds : posed(primitive, poses[static_cast<std::size_t>(instance.pose)]);
+  if (instance.pose < 0) return visit(primitive.bounds, glm::mat4(1));
+  const Pose& pose = poses[static_cast<std::size_t>(instance.pose)];
+  if (pose.joints.empty()) return visit(morphed(primitive.bounds, primitive, pose.weights), glm::mat4(1));
+  for (std::size_t j = 0; j < std::min(pose.joints.size(), primitive.joint_boxes.size()); ++j)
+    visit(morphed(primitive.joint_boxes[j], primitive, pose.weights), matrix_of(pose.joints[j]));
+}
+
+Bounds SceneData::model_box(const Instance& instance) const {
+  if (instance.pose < 0) return primitives[instance.primitive].bounds;
+  Bounds all;
+  visit_model_boxes(instance, [&](const Bounds& box, const glm::mat4& matrix) { all.add(box.transformed(matrix)); });
+  return all;
 }
 
 Bounds SceneData::box(const Instance& instance) const { return PlacedScene(*this).box(instance); }

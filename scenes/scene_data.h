@@ -225,6 +225,9 @@ struct SceneData : Placements {
   Environment environment;
   glm::vec3 background{0.30F, 0.42F, 0.58F};
   bool depth = true;  ///< false: draw without depth test and depth attachment
+  using VisitModelBox = std::function<void(const Bounds&, const glm::mat4&)>;
+  /// Boxes that, each moved by a matrix into model space, hold an instance as it is posed together.
+  void visit_model_boxes(const Instance& instance, const VisitModelBox& visit) const;
   /// A box that holds an instance as it is posed, model space.
   [[nodiscard]] Bounds model_box(const Instance& instance) const;
   /// A box that holds an instance with all its copies, world space.

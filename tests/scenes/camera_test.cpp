@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <random>
+#include <span>
 
 #include <glm/ext/matrix_transform.hpp>
 
@@ -32,15 +34,15 @@ SceneData boxes(std::uint32_t seed) {
   return scene;
 }
 
-/// Does every corner of every box lie within the clip volume?
+/// Does every corner of every box, where its instance puts it, lie within the clip volume?
 bool all_inside(const SceneData& scene, const View& view) {
   bool inside = true;
+  const Bounds& box = scene.primitives[0].bounds;
   for (const Instance& instance : scene.instances) {
-    const Bounds box = scene.primitives[0].bounds.transformed(instance.world);
     for (int c = 0; c < 8; ++c) {
-      const glm::vec4 corner((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y,
-                             (c & 4) != 0 ? box.high.z : box.low.z, 1);
-      const glm::vec4 clip = view.view_projection * corner;
+      const glm::dvec4 corner((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y,
+                              (c & 4) != 0 ? box.high.z : box.low.z, 1);
+      const glm::vec4 clip = view.view_projection * glm::vec4(instance.world * corner);
       inside = inside && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z >= 0 && clip.z <= clip.w;
     }
   }
@@ -56,6 +58,91 @@ TEST_CASE("camera: the framing camera holds every box of the scene, at every sha
       CAPTURE(seed, aspect);
       REQUIRE(all_inside(scene, framing_view(scene, aspect)));
     }
+  }
+}
+
+namespace {
+
+/// A mesh of these points, seen as it stands.
+SceneData points(const std::vector<glm::vec3>& positions, const glm::dmat4& world = glm::dmat4(1)) {
+  SceneData scene;
+  scene.materials.resize(1);
+  Primitive p;
+  p.attributes[0] = 0;
+  p.count = static_cast<std::uint32_t>(positions.size());
+  for (const glm::vec3& at : positions) p.bounds.add(at);
+  const auto bytes = std::as_bytes(std::span(positions));
+  scene.arrays.push_back({"positions", traces::Format::kR32G32B32Float, p.count, {bytes.begin(), bytes.end()}});
+  scene.primitives.push_back(p);
+  scene.instances.push_back({0, world, ""});
+  return scene;
+}
+
+/// A ball, a slanting needle, a flat square, a point and a thing far from the origin: none of them fills its box.
+std::vector<SceneData> shapes() {
+  std::vector<glm::vec3> ball, square;
+  for (int i = 0; i < 60; ++i) {
+    for (int k = 0; k <= 30; ++k) {
+      const float a = 0.10471976F * static_cast<float>(i), b = 0.10471976F * static_cast<float>(k);
+      ball.emplace_back(std::sin(b) * std::cos(a), std::cos(b), std::sin(b) * std::sin(a));
+    }
+  }
+  for (const float x : {-1.0F, 1.0F}) {
+    for (const float y : {-1.0F, 1.0F}) square.emplace_back(x, y, 0);
+  }
+  const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(500, 30, -70)), 0.7, glm::dvec3(0.6, 0, 0.8));
+  return {points(ball), points({{0, 0, 0}, {1e-3F, 2e-3F, 1e-3F}}), points(square),
+          points(ball, glm::scale(turned, glm::dvec3(3, 0.1, 1)))};
+}
+
+/// How much of the picture's width and height the scene takes, and where its middle is, in clip coordinates.
+struct Shown {
+  glm::vec2 low{INFINITY}, high{-INFINITY};
+};
+
+Shown shown(const SceneData& scene, const View& view) {
+  Shown s;
+  const Array& positions = scene.arrays[0];
+  for (std::size_t i = 0; i < positions.count; ++i) {
+    glm::vec3 at;
+    std::memcpy(&at, &positions.data[i * sizeof(at)], sizeof(at));
+    const glm::vec4 clip = view.view_projection * glm::vec4(glm::vec3(scene.instances[0].world * glm::dvec4(at, 1)), 1);
+    s.low = glm::min(s.low, glm::vec2(clip) / clip.w);
+    s.high = glm::max(s.high, glm::vec2(clip) / clip.w);
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("camera: what is framed takes 80 % of the picture's height or width, whatever its shape, in the middle") {
+  for (const SceneData& scene : shapes()) {
+    for (const double aspect : {0.3, 1.0, 16.0 / 9, 5.0}) {
+      CAPTURE(aspect);
+      const Shown s = shown(scene, framing_view(scene, aspect));
+      const glm::vec2 part = (s.high - s.low) / 2.0F, middle = (s.high + s.low) / 2.0F;
+      CHECK(std::max(part.x, part.y) == Approx(0.8).epsilon(0.01));
+      CHECK((part.x >= part.y ? middle.x : middle.y) == Approx(0).margin(0.01));
+      CHECK(std::max(std::abs(middle.x), std::abs(middle.y)) < 0.1F);
+    }
+  }
+}
+
+TEST_CASE("camera: one that goes around keeps the scene within 80 %, and fills them at its worst place") {
+  for (const SceneData& scene : shapes()) {
+    float most = 0;
+    for (int i = 0; i < 32; ++i) {
+      const Shown s = shown(scene, framing_view(scene, 1.5, i / 32.0));
+      for (const glm::vec2& side : {s.low, s.high}) most = std::max({most, std::abs(side.x), std::abs(side.y)});
+    }
+    CHECK(most == Approx(0.8).epsilon(0.01));
+  }
+}
+
+TEST_CASE("camera: a scene that is a point, or empty, has a camera") {
+  for (const SceneData& scene : {points({{3, 4, 5}}), SceneData{}}) {
+    const View view = framing_view(scene, 1);
+    for (int i = 0; i < 16; ++i) CHECK(std::isfinite(view.view_projection[i / 4][i % 4]));
   }
 }
 

@@ -1,0 +1,104 @@
+#include "scenes/scene_reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <glm/ext/matrix_double3x3.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::size_t kMostParts = 4096;
+
+const Array* positions_of(const SceneData& scene, const Primitive& primitive) {
+  return primitive.attributes[0] < 0 ? nullptr : &scene.arrays[static_cast<std::size_t>(primitive.attributes[0])];
+}
+
+std::size_t copies_of(const PlacedScene& scene, const Instance& instance) {
+  return instance.copies < 0 ? 1 : scene.at.copies[static_cast<std::size_t>(instance.copies)].size();
+}
+
+struct Extent {
+  std::size_t draws = 0, points = 0;
+};
+
+Extent extent_of(const PlacedScene& scene) {
+  Extent extent;
+  for (const Instance& instance : scene.at.instances) {
+    const Array* const positions = positions_of(scene.data, scene.data.primitives[instance.primitive]);
+    const std::size_t copies = copies_of(scene, instance);
+    extent.draws += copies;
+    if (positions != nullptr) extent.points += positions->count * copies;
+  }
+  return extent;
+}
+
+double reach_of(const Bounds& box, const glm::dvec3& direction) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c)
+    sum += std::max(direction[c] * static_cast<double>(box.low[c]), direction[c] * static_cast<double>(box.high[c]));
+  return sum;
+}
+
+double reach_of(const Array& points, const glm::dvec3& direction) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.count; ++i) {
+    glm::vec3 point;
+    std::memcpy(&point, &points.data[i * sizeof(point)], sizeof(point));
+    most = std::max(most, glm::dot(direction, glm::dvec3(point)));
+  }
+  return most;
+}
+
+}  // namespace
+
+SceneReach::SceneReach(const PlacedScene& scene, const glm::dvec3& origin, std::size_t most_points) : scene_(scene), origin_(origin) {
+  const Extent extent = extent_of(scene);
+  if (!scene.at.extent.empty()) {
+    for (const Bounds& box : scene.at.extent) add_box(box);
+  } else if (extent.draws > kMostParts) {
+    add_box(scene.bounds());
+  } else {
+    for (const Instance& instance : scene.at.instances) {
+      if (instance.copies < 0) add(instance, instance.world, extent.points <= most_points);
+      else
+        for (const glm::dmat4& copy : scene.at.copies[static_cast<std::size_t>(instance.copies)])
+          add(instance, copy, extent.points <= most_points);
+    }
+  }
+}
+
+void SceneReach::add(const Instance& instance, const glm::dmat4& world, bool by_vertex) {
+  const Array* const positions = positions_of(scene_.data, scene_.data.primitives[instance.primitive]);
+  if (instance.pose < 0 && by_vertex && positions != nullptr) {
+    parts_.push_back({world, positions, {}});
+    return;
+  }
+  scene_.data.visit_model_boxes(instance, [&](const Bounds& box, const glm::mat4& matrix) { add_box(box, world * glm::dmat4(matrix)); });
+}
+
+void SceneReach::add_box(const Bounds& box, const glm::dmat4& world) {
+  if (!box.empty()) parts_.push_back({world, nullptr, box});
+}
+
+/// Directions are turned into a part's space, once for all its points.
+Reaches SceneReach::operator()(const Directions& directions) const {
+  Reaches reaches;
+  reaches.fill(-std::numeric_limits<double>::infinity());
+  for (const Part& part : parts_) {
+    const glm::dvec3 place = glm::dvec3(part.world[3]) - origin_;
+    const glm::dmat3 back = glm::transpose(glm::dmat3(part.world));
+    for (std::size_t d = 0; d < directions.size(); ++d) {
+      const glm::dvec3 direction = back * directions[d];
+      const double reach = part.points != nullptr ? reach_of(*part.points, direction) : reach_of(part.box, direction);
+      reaches[d] = std::max(reaches[d], glm::dot(directions[d], place) + reach);
+    }
+  }
+  return reaches;
+}
+
+}  // namespace quadrille::scenes
