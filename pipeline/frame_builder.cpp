@@ -202,12 +202,15 @@ class FrameBuilder {
       std::uint32_t* const to = words.data() + range.first_word;
       switch (range.source) {
         case models::ConstantLayout::Source::kLiteral: std::copy(range.literals.begin(), range.literals.end(), to); break;
-        case models::ConstantLayout::Source::kPushConstant: copy_words(push_, range, to, program, "the push constants"); break;
+        case models::ConstantLayout::Source::kPushConstant:
+          copy_words(push_, range, to, program, [] { return "the push constants"; });
+          break;
         case models::ConstantLayout::Source::kUniformBlock: {
           const traces::UniformBinding& bound = uniform(program, range.set, range.binding);
           const auto& data = stream_.buffers[bound.buffer].data;
           const std::span<const std::byte> view = std::span(data).subspan(bound.offset, bound.range);
-          copy_words(view, range, to, program, fmt::format("the uniform block at set {}, binding {}", range.set, range.binding));
+          copy_words(view, range, to, program,
+                     [&] { return fmt::format("the uniform block at set {}, binding {}", range.set, range.binding); });
           break;
         }
       }
@@ -215,10 +218,12 @@ class FrameBuilder {
     return words;
   }
 
+  /// `what` makes the name of `from`, for an error: it would cost more than the copy.
+  template <class What>
   static void copy_words(std::span<const std::byte> from, const models::ConstantLayout::Range& range, std::uint32_t* to,
-                         const models::Program& program, const std::string& what) {
+                         const models::Program& program, const What& what) {
     const std::uint64_t end = range.byte_offset + std::uint64_t{4} * range.words;
-    if (end > from.size()) throw user_error("{}: reads {} bytes of {}, which holds {}", program.name, end, what, from.size());
+    if (end > from.size()) throw user_error("{}: reads {} bytes of {}, which holds {}", program.name, end, what(), from.size());
     std::memcpy(to, from.data() + range.byte_offset, std::size_t{4} * range.words);
   }
 

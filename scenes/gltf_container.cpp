@@ -43,11 +43,25 @@ GltfContainer split_binary(const std::string& path, std::span<const std::byte> b
   return result;
 }
 
+bool is_named_binary(const std::string& path) { return std::filesystem::path(path).extension() == ".glb"; }
+
+[[noreturn]] void refuse_as_binary(const std::string& path) { throw user_error("{}: not a binary glTF file (by its first bytes)", path); }
+
 }  // namespace
+
+void look_at_gltf(const std::string& path, std::span<const std::byte> beginning) {
+  if (beginning.size() >= 4 && word(beginning, 0) == kMagic) return;
+  if (is_named_binary(path)) refuse_as_binary(path);
+  constexpr std::string_view kBlanks = " \t\r\n", kStarts = "{[\"-0123456789tfn\xef";  // of any JSON; the last begins a byte order mark
+  const std::string_view text(reinterpret_cast<const char*>(beginning.data()), beginning.size());
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first != std::string_view::npos && kStarts.find(text[first]) == std::string_view::npos)
+    throw user_error("{}: its JSON cannot be parsed at byte {}: not JSON in UTF-8", path, first + 1);
+}
 
 GltfContainer split_gltf(const std::string& path, std::span<const std::byte> bytes) {
   if (bytes.size() >= 4 && word(bytes, 0) == kMagic) return split_binary(path, bytes);
-  if (std::filesystem::path(path).extension() == ".glb") throw user_error("{}: not a binary glTF file (by its first bytes)", path);
+  if (is_named_binary(path)) refuse_as_binary(path);
   return {{reinterpret_cast<const char*>(bytes.data()), bytes.size()}, {}};
 }
 

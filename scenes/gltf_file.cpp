@@ -89,11 +89,12 @@ void print_notes(GltfFile& file) {
 GltfFile read_gltf_file(const std::string& path) {
   GltfFile file;
   file.path = path;
-  const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxFileBytes);
+  const std::vector<std::byte> bytes =
+      traces::read_whole_file(path, kMaxFileBytes, [&](std::span<const std::byte> beginning) { look_at_gltf(path, beginning); });
   const GltfContainer container = split_gltf(path, bytes);
   const PreparedJson json = prepare_json(path, container.json);
-  parse(file, json);
   if (!json.note.empty()) file.notes.push_back(json.note);
+  parse(file, json);
   check_extensions(file);
   read_buffers(file, json, container);
   list_images(file, json);

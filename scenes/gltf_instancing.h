@@ -14,7 +14,8 @@
 namespace quadrille::scenes {
 
 /// The matrices of the extension's instances relative to their node, at most 2^20: as many as any of its attributes has elements. What attributes other than
-/// TRANSLATION, ROTATION and SCALE hold is passed over; where those three are absent, the copies lie in the node's place. None without an attribute. Throws `UserError` for accessors of other types, of unequal counts, or with values that are not finite. [EXT_mesh_gpu_instancing]
+/// TRANSLATION, ROTATION and SCALE hold is passed over; where those three are absent, the copies lie in the node's place. None without an attribute.
+/// Throws `UserError` for accessors of other types, of unequal counts, or with values that are not finite. [EXT_mesh_gpu_instancing]
 [[nodiscard]] std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Value& extension, const std::string& place);
 
 /// What one visit of all nodes has placed, and what the visits share.

@@ -33,6 +33,10 @@ struct ChunkHeader {
 };
 static_assert(sizeof(ChunkHeader) == 32);
 
+[[noreturn]] void refuse_other_file(const std::string& name) {
+  throw user_error("{}: not a trace file (its first bytes are not those of a .qtrace)", name);
+}
+
 std::uint64_t checksum(const ChunkHeader& header, const std::byte* payload) {
   const std::uint64_t seed = XXH3_64bits(&header, offsetof(ChunkHeader, checksum));
   return XXH3_64bits_withSeed(payload, header.stored_bytes, seed);
@@ -81,7 +85,7 @@ class Parser {
 
   void read_header() {
     const auto header = take<FileHeader>(name_);
-    if (header.magic != kMagic) throw user_error("{}: not a trace file (its first bytes are not those of a .qtrace)", name_);
+    if (header.magic != kMagic) refuse_other_file(name_);
     if (header.version != kTraceVersion)
       throw user_error("{}: trace version {}; this program reads version {}", name_, header.version, kTraceVersion);
     if (header.chunks != kChunkTags.size())
@@ -143,6 +147,11 @@ CommandStream decode_trace(std::span<const std::byte> bytes, const std::string& 
 
 void write_trace(const CommandStream& stream, const std::string& path) { write_whole_file(path, encode_trace(stream)); }
 
-CommandStream read_trace(const std::string& path) { return decode_trace(read_whole_file(path, kMaxTraceBytes), path); }
+CommandStream read_trace(const std::string& path) {
+  const auto look = [&](std::span<const std::byte> beginning) {
+    if (beginning.size() >= sizeof(FileHeader) && std::memcmp(beginning.data(), kMagic.data(), kMagic.size()) != 0) refuse_other_file(path);
+  };
+  return decode_trace(read_whole_file(path, kMaxTraceBytes, look), path);
+}
 
 }  // namespace quadrille::traces

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -13,16 +14,28 @@
 #include "traces/unfinished.h"
 
 namespace quadrille::traces {
+namespace {
 
-std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t limit) {
+constexpr std::uintmax_t kBeginning = 64;
+
+}  // namespace
+
+std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t limit, const LookAtBeginning& look) {
   std::error_code failure;
   if (!std::filesystem::exists(path, failure)) throw user_error("{}: no such file", path);
   if (!std::filesystem::is_regular_file(path, failure)) throw user_error("{}: not a regular file", path);
   const std::uintmax_t size = std::filesystem::file_size(path, failure);
   if (failure) throw user_error("{}: {}", path, failure.message());
   if (size > limit) throw user_error("{}: {} bytes; at most {} are read", path, size, limit);
-  std::vector<std::byte> bytes(size);
   std::ifstream file(path, std::ios::binary);
+  if (look) {
+    std::vector<std::byte> beginning(std::min<std::uintmax_t>(size, kBeginning));
+    if (!file.read(reinterpret_cast<char*>(beginning.data()), static_cast<std::streamsize>(beginning.size())))
+      throw user_error("{}: cannot be read", path);
+    look(beginning);
+    file.seekg(0);
+  }
+  std::vector<std::byte> bytes(size);
   if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) throw user_error("{}: cannot be read", path);
   return bytes;
 }

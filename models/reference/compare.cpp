@@ -15,6 +15,7 @@ int channel(std::uint32_t rgba, std::size_t c) { return static_cast<int>((rgba >
 int channel_difference(std::uint32_t a, std::uint32_t b, std::size_t c) { return std::abs(channel(a, c) - channel(b, c)); }
 
 int largest_difference(std::uint32_t a, std::uint32_t b, std::size_t channels) {
+  if (a == b) return 0;
   int largest = 0;
   for (std::size_t c = 0; c < channels; ++c) largest = std::max(largest, channel_difference(a, b, c));
   return largest;
@@ -82,9 +83,14 @@ ImageDifference compare_images(ImageView a, ImageView b, std::span<const std::ui
   ImageDifference out;
   const std::size_t channels = with_alpha ? 4 : 3;
   double squares = 0;
+  std::uint64_t equal = 0;  // most pixels are, as a rule
   for (std::size_t at = 0; at < a.rgba.size(); ++at) {
     if (!excluded.empty() && excluded[at] != 0) continue;
     ++out.pixels;
+    if (a.rgba[at] == b.rgba[at]) {
+      ++equal;
+      continue;
+    }
     for (std::size_t c = 0; c < channels; ++c) {
       const int d = channel_difference(a.rgba[at], b.rgba[at], c);
       ++out.histogram[c][static_cast<std::size_t>(d)];
@@ -94,6 +100,8 @@ ImageDifference compare_images(ImageView a, ImageView b, std::span<const std::ui
     ++out.max_histogram[static_cast<std::size_t>(largest)];
     out.max_lsb = std::max(out.max_lsb, largest);
   }
+  for (std::size_t c = 0; c < channels; ++c) out.histogram[c][0] += equal;
+  out.max_histogram[0] += equal;
   out.psnr_db = squares == 0 ? std::numeric_limits<double>::infinity()
                              : 10.0 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(out.pixels) / squares);
   count_blocks(a, b, excluded, channels, out);

@@ -77,11 +77,16 @@ class QuietErrors {
 };
 
 bool read_bytes(OIIO::ImageInput& input, QuadrilleImage& result) {
-  const std::size_t channels = std::min(result.channels, 4U);
-  std::vector<std::uint8_t> pixels(std::size_t{result.width} * result.height * channels);
-  if (!input.read_image(0, 0, 0, static_cast<int>(channels), OIIO::TypeDesc::UINT8, pixels.data())) return fail(result, input.geterror());
-  if (!allocate(result, std::size_t{4} * result.width * result.height)) return false;
-  widen_to_rgba(pixels, channels, static_cast<std::uint8_t*>(result.data));
+  const std::size_t channels = std::min(result.channels, 4U), pixels = std::size_t{result.width} * result.height;
+  if (!allocate(result, 4 * pixels)) return false;
+  std::vector<std::uint8_t> narrow(channels < 4 ? channels * pixels : 0);
+  void* const to = channels < 4 ? narrow.data() : result.data;
+  if (!input.read_image(0, 0, 0, static_cast<int>(channels), OIIO::TypeDesc::UINT8, to)) {
+    std::free(result.data);
+    result.data = nullptr;
+    return fail(result, input.geterror());
+  }
+  if (channels < 4) widen_to_rgba(narrow, channels, static_cast<std::uint8_t*>(result.data));
   result.channels = 4;
   return true;
 }
