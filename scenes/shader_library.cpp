@@ -1,5 +1,6 @@
 #include "scenes/shader_library.h"
 
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 
@@ -7,6 +8,7 @@
 #include "scenes/glsl.h"
 #include "scenes/shader_pack.h"
 #include "scenes/shader_sources.h"
+#include "scenes/spirv_entry.h"
 #include "traces/whole_file.h"
 
 /// The file that scenes/make_shader_pack.cpp wrote, put into the program by the assembler.
@@ -27,16 +29,22 @@ std::vector<std::uint32_t> spirv_words(const std::vector<std::byte>& bytes, cons
 
 }  // namespace
 
-ShaderLibrary::Source ShaderLibrary::read_source(const std::string& path) {
+ShaderLibrary::Source ShaderLibrary::read_source(traces::ShaderStage stage, const std::string& path) {
   const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxShaderBytes);
-  if (std::filesystem::path(path).extension() == ".spv") return {path, {}, spirv_words(bytes, path)};
+  if (std::filesystem::path(path).extension() == ".spv") {
+    Source source{path, {}, spirv_words(bytes, path)};
+    std::string note;
+    call_entry_point_main(source.spirv, stage, path, note);
+    if (!note.empty()) std::fprintf(stderr, "%s\n", note.c_str());
+    return source;
+  }
   return {path, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), {}};
 }
 
 ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines, std::vector<traces::Shader>& shaders)
     : leave_out_(options.leave_out), frame_defines_(std::move(frame_defines)), shaders_(shaders) {
   const auto source = [](traces::ShaderStage stage, const std::string& path) {
-    return path.empty() ? Source{std::string(material_shader_name(stage)), {}, {}, true} : read_source(path);
+    return path.empty() ? Source{std::string(material_shader_name(stage)), {}, {}, true} : read_source(stage, path);
   };
   const bool user = !options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility);
   set_ = user ? ShaderSet::kUser : options.visibility ? ShaderSet::kVisibility : ShaderSet::kMaterial;

@@ -30,7 +30,7 @@ class ShaderLibrary {
     std::vector<std::uint32_t> spirv;  ///< instead of GLSL
     bool material = false;             ///< the materials' own; its GLSL is put together when it is needed
   };
-  [[nodiscard]] static Source read_source(const std::string& path);
+  [[nodiscard]] static Source read_source(traces::ShaderStage stage, const std::string& path);
   [[nodiscard]] traces::Index shader(traces::ShaderStage stage, const Variant& variant);
   [[nodiscard]] std::vector<std::string> defines(traces::ShaderStage stage, const Source& source, const Variant& variant) const;
   [[nodiscard]] std::vector<std::uint32_t> spirv(traces::ShaderStage stage, const Source& source, const std::vector<std::string>& defines);
