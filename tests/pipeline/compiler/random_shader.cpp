@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <utility>
 
 namespace quadrille::pipeline {
@@ -32,7 +34,7 @@ class ShaderGenerator {
       callees_.push_back(returns_value);
     }
     Place place;
-    place.depth = 2 + static_cast<int>(below(3));
+    place.depth = 2 + static_cast<int>(one_in(8) ? 3 : below(3));
     place.in_main = true;
     result.functions.push_back({main_head(), "  " + write_color() + "\n", block(place, 2)});
     return result;
@@ -47,8 +49,9 @@ class ShaderGenerator {
   [[nodiscard]] std::string main_head() const {
     const std::string start = stage_ == ShaderStage::kFragment ? "int x0 = int(gl_FragCoord.x) & 15, x1 = int(gl_FragCoord.y) & 1"
                                                                : "int x0 = gl_VertexIndex & 15, x1 = (gl_VertexIndex >> 4) & 1";
-    return fmt::format("void main() {{\n  {}, x2 = (x0 * 5 + x1 * 3) & 7, x3 = x0 ^ (x1 * 9);\n  color = pack(x3, x2, x1, x0);\n{}", start,
-                       stage_ == ShaderStage::kVertex ? "  gl_Position = vec4(0, 0, 0, 1);\n" : "");
+    return fmt::format(
+        "void main() {{\n  {}, x2 = (x0 * 5 + x1 * 3) & 7, x3 = x0 ^ (x1 * 9), m[2] = int[2](3, x0);\n  color = pack(x3, x2, x1, x0);\n{}",
+        start, stage_ == ShaderStage::kVertex ? "  gl_Position = vec4(0, 0, 0, 1);\n" : "");
   }
 
   RandomFunction function(std::size_t index, bool returns_value) {
@@ -56,7 +59,8 @@ class ShaderGenerator {
     place.depth = 1 + static_cast<int>(below(3));
     place.returns_value = returns_value;
     const std::string type = returns_value ? "int" : "void", mode = returns_value ? "" : "inout ";
-    std::string head = fmt::format("{0} f{1}({2}int x0, {2}int x1) {{\n  int x2 = x0 & 5, x3 = x1 + 2;\n", type, index, mode);
+    std::string head =
+        fmt::format("{0} f{1}({2}int x0, {2}int x1) {{\n  int x2 = x0 & 5, x3 = x1 + 2, m[2] = int[2](x1, x0);\n", type, index, mode);
     return {std::move(head), returns_value ? "  return (x0 + x1 * 3 + x2 + x3) & 63;\n" : "", block(place, 0)};
   }
 
@@ -65,7 +69,7 @@ class ShaderGenerator {
     --place.depth;
     const std::uint32_t count = least + below(place.depth > 0 ? 4 : 3);
     while (result.size() < count) result.push_back(statement(place));
-    if (one_in(8)) result.push_back(leave(place));
+    if (one_in(8)) result.insert(result.begin() + (one_in(4) ? below(count + 1) : count), leave(place));  // what follows it is dead
     return result;
   }
   RandomBlock block(const Place& place) { return block(place, one_in(6) ? 0 : 1); }
@@ -90,7 +94,10 @@ class ShaderGenerator {
 
   RandomStatement assignment(const Place& place) {
     const std::string d = variable(), s = variable(), t = variable();
-    switch (below(5)) {
+    switch (below(8)) {
+      case 5: return {{fmt::format("m[{} & 1] = {};", operand(place), t)}, {}};
+      case 6: return {{fmt::format("{} = (m[{} & 1] + {}) & 127;", d, operand(place), t)}, {}};
+      case 7: return {{place.in_main && one_in(2) ? write_color() : fmt::format("m[{}] = {};", below(2), s)}, {}};
       case 0: return {{fmt::format("{} = ({} ^ {}) & 63;", d, s, operand(place))}, {}};
       case 1: return {{fmt::format("{} = {} ? {} : {};", d, condition(place), s, operand(place))}, {}};
       case 2: return {{fmt::format("{0} = min({0}, 200) + {1};", d, 1 + below(3))}, {}};
@@ -317,6 +324,12 @@ std::size_t RandomShader::statements() const {
   std::size_t sum = 0;
   for (const RandomFunction& function : functions) sum += count(function.body);
   return sum;
+}
+
+Seeds seeds_or(Seeds usual) {
+  Seeds given{};
+  const char* const text = std::getenv("QUADRILLE_SHADER_SEEDS");
+  return text != nullptr && std::sscanf(text, "%u %u", &given.first, &given.count) == 2 ? given : usual;
 }
 
 RandomShader random_shader(std::uint32_t seed, ShaderStage stage) { return ShaderGenerator(seed, stage).shader(); }

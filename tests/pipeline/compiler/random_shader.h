@@ -35,6 +35,12 @@ struct RandomShader {
   [[nodiscard]] std::size_t statements() const;
 };
 
+struct Seeds {
+  std::uint32_t first, count;
+};
+/// Those of QUADRILLE_SHADER_SEEDS ("FIRST COUNT"), or the usual ones.
+[[nodiscard]] Seeds seeds_or(Seeds usual);
+
 /// The program of a seed, the same everywhere.
 [[nodiscard]] RandomShader random_shader(std::uint32_t seed, traces::ShaderStage stage);
 

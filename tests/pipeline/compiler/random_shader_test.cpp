@@ -8,23 +8,12 @@
 #include <catch2/catch.hpp>
 
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 namespace quadrille::pipeline {
 namespace {
 
 using traces::ShaderStage;
-
-struct Seeds {
-  std::uint32_t first, count;
-};
-
-Seeds seeds_or(Seeds usual) {
-  Seeds given{};
-  const char* const text = std::getenv("QUADRILLE_SHADER_SEEDS");
-  return text != nullptr && std::sscanf(text, "%u %u", &given.first, &given.count) == 2 ? given : usual;
-}
 
 /// A program may be beyond a limit of the machine; nothing else is a reason to refuse one.
 bool is_limit(std::string_view message) {

@@ -1,0 +1,125 @@
+/// Random structured programs, compiled by us, against the Vulkan driver's compiler, pixel by pixel. QUADRILLE_SHADER_SEEDS="FIRST COUNT" runs other seeds.
+#include "tests/pipeline/compiler/random_shader_run.h"
+
+#include <fmt/format.h>
+#include <catch2/catch.hpp>
+
+#include <cstring>
+#include <optional>
+
+#include "models/base/error.h"
+#include "scenes/glsl.h"
+#include "tests/lavapipe/vulkan_renderer.h"
+
+namespace quadrille::lavapipe {
+namespace {
+
+using pipeline::RandomShader;
+using pipeline::RandomShaderResult;
+using traces::ShaderStage;
+
+constexpr std::uint32_t kColumns = 8, kBatch = 64;                ///< programs side by side in one picture
+constexpr std::uint32_t kTileWidth = 16, kTileHeight = 2;         ///< a warp's worth of pixels
+constexpr std::array<std::uint32_t, 4> kClear{11, 222, 33, 251};  ///< 255ths, where a program discarded
+
+std::uint32_t clear_word() { return kClear[0] | kClear[1] << 8 | kClear[2] << 16 | kClear[3] << 24; }
+
+traces::Index add_shader(traces::CommandStream& stream, const std::string& source, ShaderStage stage) {
+  stream.shaders.push_back({"random", stage, scenes::compile_glsl(source, stage, "random")});
+  return static_cast<traces::Index>(stream.shaders.size() - 1);
+}
+
+/// Every program in a tile of its own.
+traces::CommandStream stream_of(const std::vector<RandomShader>& programs) {
+  traces::CommandStream stream;
+  stream.name = "random shaders";
+  const std::uint32_t width = kColumns * kTileWidth, height = (kBatch / kColumns) * kTileHeight;
+  stream.targets.push_back({width, height, traces::Format::kR8G8B8A8Unorm, traces::Format::kUndefined});
+  constexpr float kCorners[] = {-1, -1, 0, 1, 3, -1, 0, 1, -1, 3, 0, 1};
+  stream.buffers.push_back({"corners", std::vector<std::byte>(sizeof(kCorners))});
+  std::memcpy(stream.buffers[0].data.data(), kCorners, sizeof(kCorners));
+  const traces::Index vertex =
+      add_shader(stream, "#version 450\nlayout(location = 0) in vec4 p;\nvoid main() { gl_Position = p; }", ShaderStage::kVertex);
+  traces::BeginPass pass;
+  for (std::size_t c = 0; c < 4; ++c) pass.clear_color[c] = static_cast<float>(kClear[c]) / 255.0f;
+  stream.commands = {pass, traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1}};
+  for (std::uint32_t k = 0; k < programs.size(); ++k) {
+    traces::Pipeline pipeline;
+    pipeline.vertex_shader = vertex;
+    pipeline.fragment_shader = add_shader(stream, programs[k].source(), ShaderStage::kFragment);
+    pipeline.bindings = {{0, 4 * sizeof(float), false}};
+    pipeline.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0}};
+    stream.pipelines.push_back(pipeline);
+    stream.commands.emplace_back(traces::BindPipeline{k});
+    stream.commands.emplace_back(traces::BindVertexBuffer{0, 0, 0});
+    stream.commands.emplace_back(traces::SetScissor{static_cast<std::int32_t>(k % kColumns * kTileWidth),
+                                                    static_cast<std::int32_t>(k / kColumns * kTileHeight), kTileWidth, kTileHeight});
+    traces::Draw draw;
+    draw.count = 3;
+    stream.commands.emplace_back(draw);
+  }
+  stream.commands.emplace_back(traces::EndPass{});
+  traces::validate(stream);
+  return stream;
+}
+
+/// What the driver drew in tile `k`, in the order of a warp's lanes.
+RandomShaderResult tile_of(const Rendered& image, std::uint32_t k) {
+  RandomShaderResult result{};
+  for (std::size_t lane = 0; lane < result.size(); ++lane) {
+    const std::size_t x = k % kColumns * kTileWidth + 2 * (lane / 4) + lane % 2, y = k / kColumns * kTileHeight + lane % 4 / 2;
+    result[lane] = image.color[y * image.width + x];
+  }
+  return result;
+}
+
+/// Ours, with the clear colour where the program discarded; nothing for a program beyond a limit of the machine.
+std::optional<RandomShaderResult> ours(const RandomShader& shader) {
+  try {
+    RandomShaderResult result = pipeline::run_compiled(shader);
+    for (std::uint64_t& pixel : result) {
+      if (pixel == pipeline::kDiscarded) pixel = clear_word();
+    }
+    return result;
+  } catch (const UserError&) { return std::nullopt; }  // the reference's test judges refusals
+}
+
+bool differs(VulkanRenderer& renderer, const RandomShader& shader) {
+  try {
+    const std::optional<RandomShaderResult> expected = ours(shader);
+    return expected && tile_of(renderer.render(stream_of({shader})), 0) != *expected;
+  } catch (const UserError&) { return false; }  // what was left out of it made it no program
+}
+
+}  // namespace
+
+TEST_CASE("lavapipe random shaders: every pixel is the driver's") {
+  std::optional<VulkanRenderer> renderer;
+  try {
+    renderer.emplace();
+  } catch (const UserError& error) {
+    WARN("skipped: " << error.what());
+    return;
+  }
+  const pipeline::Seeds seeds = pipeline::seeds_or({2000, 4 * kBatch});
+  fmt::print("random shaders: QUADRILLE_SHADER_SEEDS=\"{} {}\"\n", seeds.first, seeds.count);
+  std::uint32_t compared = 0;
+  for (std::uint32_t first = 0; first < seeds.count; first += kBatch) {
+    std::vector<RandomShader> programs;
+    for (std::uint32_t k = first; k < std::min(first + kBatch, seeds.count); ++k)
+      programs.push_back(pipeline::random_shader(seeds.first + k, ShaderStage::kFragment));
+    const Rendered image = renderer->render(stream_of(programs));
+    for (std::uint32_t k = 0; k < programs.size(); ++k) {
+      const std::optional<RandomShaderResult> expected = ours(programs[k]);
+      if (!expected) continue;
+      ++compared;
+      if (tile_of(image, k) == *expected) continue;
+      const RandomShader small =
+          pipeline::shrink(programs[k], [&](const RandomShader& candidate) { return differs(*renderer, candidate); });
+      FAIL_CHECK("seed " << seeds.first + first + k << " differs from " << renderer->info().name << "\n" << small.source());
+    }
+  }
+  CHECK(compared * 50 >= seeds.count * 49);
+}
+
+}  // namespace quadrille::lavapipe
