@@ -50,9 +50,27 @@ ShaderProgram Decoder::decode() {
 
 void Decoder::constant(const SpirvInstruction& in) {
   check_type(in.type);
+  if (in.op == spv::OpSpecConstantOp) return specialised(in);
   Value& v = globals_[in.result];
   v = new_value(in.type);
   set_constant(in, v);
+}
+
+/// The operation is decoded as if it stood in a function, and run at once.
+void Decoder::specialised(const SpirvInstruction& in) {
+  SpirvInstruction step = in;
+  step.op = in.words[0];
+  step.words.erase(step.words.begin());
+  Frame frame;
+  const std::size_t first = program_.code.size();
+  instruction(frame, step);
+  Lanes lanes;
+  lanes.cells = program_.initial;
+  for (std::size_t k = first; k < program_.code.size(); ++k) program_.code[k].run(program_.code[k], lanes);
+  program_.initial = std::move(lanes.cells);
+  program_.code.resize(first);
+  const Value& result = globals_[in.result] = frame.values.at(in.result);
+  if (module_.type(in.type).kind == TypeKind::kInt) constant_words_[in.result] = program_.initial[result.slot].u(0);
 }
 
 void Decoder::set_constant(const SpirvInstruction& in, Value& v) {

@@ -62,6 +62,7 @@ class Decoder {
   // decode.cpp: module-level constants.
   void constant(const SpirvInstruction& in);
   void set_constant(const SpirvInstruction& in, Value& value);
+  void specialised(const SpirvInstruction& in);
 
   // decode_interface.cpp: module-level variables.
   void variable(const SpirvInstruction& in);

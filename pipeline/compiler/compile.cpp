@@ -15,8 +15,12 @@ namespace {
 using models::Op;
 
 ScalarShader compile_stage(std::span<const std::uint32_t> words, std::string_view name, traces::ShaderStage stage) {
-  const spirv::Module module(optimise_spirv(words, name), stage, name);
-  return lower_shader(module, stage == traces::ShaderStage::kVertex ? models::Stage::kVertex : models::Stage::kFragment);
+  OptimisedSpirv optimised = optimise_spirv(words, name);
+  spirv::Module module(std::move(optimised.words), stage, name);
+  module.kills_return = optimised.kills_return;
+  ScalarShader lowered = lower_shader(module, stage == traces::ShaderStage::kVertex ? models::Stage::kVertex : models::Stage::kFragment);
+  if (!module.unsupported_capability.empty()) throw user_error("{}: {}", name, module.unsupported_capability);
+  return lowered;
 }
 
 /// Packs the varyings that the fragment shader still reads, in order of location and component.

@@ -1,5 +1,6 @@
 /// GLSL.std.450: the built-in functions, expanded to ISA operations. The formulas and their grouping are those of Mesa's SPIR-V reader. [Mesa vtn_glsl450]
 #include "pipeline/compiler/lowering.h"
+#include "pipeline/compiler/spirv_names.h"
 
 #include <spirv/unified1/GLSL.std.450.h>
 
@@ -62,11 +63,24 @@ class Functions {
     if (x.is_literal(lit(2.0f).bits)) return b_.emit(Op::kFExp2, y);
     return b_.emit(Op::kFExp2, b_.fmul(b_.emit(Op::kFLog2, x), y));
   }
-  Value asin(Value x, float p0, float p1) {
+  /// Mesa's polynomial, of which acos is made.
+  Value rough_asin(Value x, float p0, float p1) {
     const Value a = b_.fabs(x);
     const Value inner = b_.fmad(a, lit(p1), lit(p0));
     const Value tail = b_.fmad(a, b_.fmad(a, inner, lit(kQuarterPi - 1.0f)), lit(kHalfPi));
     return b_.fmul(sign(x), b_.fsub(lit(kHalfPi), b_.fmul(sqrt(b_.fsub(lit(kOne), a)), tail)));
+  }
+  /// Up to a half r + r z P(z) with z = r r; beyond it by the half angle, asin(a) = pi/2 - 2 asin(sqrt((1 - a) / 2)). Within 2 units in the last place: an
+  /// error that does not shrink with x would add up where results are fed back. P is a fit at Chebyshev's nodes of z in [0, 1/4].
+  Value asin(Value x) {
+    constexpr std::array<float, 5> kTerms{0.16666673f, 0.07498809f, 0.0450107f, 0.026494281f, 0.038206443f};
+    const Value a = b_.fabs(x), half = lit(0.5f), small = less(a, half);
+    const Value z = b_.select(small, b_.fmul(a, a), b_.fmul(b_.fsub(lit(kOne), a), half));
+    const Value r = b_.select(small, a, sqrt(z));
+    Value sum = lit(kTerms.back());
+    for (std::size_t k = kTerms.size() - 1; k-- > 0;) sum = b_.fmad(sum, z, lit(kTerms[k]));
+    const Value arc = b_.fmad(b_.fmul(r, z), sum, r);
+    return b_.fmul(sign(x), b_.select(small, arc, b_.fmad(arc, lit(-2.0f), lit(kHalfPi))));
   }
   Value atan(Value y_over_x) {
     constexpr std::array<float, 6> kTerms{0.9999793128310355f,  -0.3326756418091246f, 0.1938924977115610f,
@@ -127,6 +141,17 @@ class Functions {
         b_.emit(Op::kOr, b_.emit(Op::kAnd, x, literal(0x807fffffu)), b_.select(is_zero, literal(0u), literal(0x3f000000u)));
     return {significand, exponent};
   }
+  /// Number of the only bit that is set: the exponent of its float. `none` where no bit is.
+  Value bit_number(Value bit) {
+    const Value exponent = b_.emit(Op::kShrU, b_.emit(Op::kU2F, bit), literal(23u));
+    return b_.select(b_.emit(Op::kIEq, bit, literal(0u)), literal(0xffffffffu),
+                     b_.iadd(exponent, literal(static_cast<std::uint32_t>(-127))));
+  }
+  Value find_lowest(Value x) { return bit_number(b_.emit(Op::kAnd, x, b_.emit(Op::kISub, literal(0u), x))); }
+  /// Without the bit below the highest one, rounding to a float cannot carry into the next exponent; the bits below only change the significand.
+  Value find_highest(Value x) { return bit_number(b_.emit(Op::kAnd, x, b_.emit(Op::kNot, b_.emit(Op::kShrU, x, literal(1u))))); }
+  Value find_highest_signed(Value x) { return find_highest(b_.emit(Op::kXor, x, b_.emit(Op::kShrS, x, literal(31u)))); }
+
   /// Nearest half float, to even; its 16 bits.
   Value to_half(Value x) {
     const Value magnitude = b_.emit(Op::kAnd, x, literal(0x7fffffffu));
@@ -184,13 +209,18 @@ class Functions {
 void Lowering::glsl450(const spirv::Instruction& i) {
   if (!module_.glsl_imports.contains(i.operands[0])) throw unsupported(i, "an extended instruction set other than GLSL.std.450");
   const auto function = static_cast<int>(i.operands[1]);
+  if (function == GLSLstd450InterpolateAtCentroid || function == GLSLstd450InterpolateAtSample) {
+    spirv::Instruction plain = i;  // one sample a pixel, at its centre
+    plain.operands = i.operands.subspan(2, 1);
+    return load(plain);
+  }
   std::vector<Values> in;
   const bool by_pointer = function == GLSLstd450Modf || function == GLSLstd450Frexp;
   for (const Id id : i.operands.subspan(2, i.operands.size() - 2 - (by_pointer ? 1 : 0))) {
-    if (pointers_.contains(id)) throw unsupported(i, fmt::format("GLSL.std.450 function {} through a pointer", function));
+    if (pointers_.contains(id)) throw unsupported(i, spirv::name_of(i));
     in.push_back(value(id));
   }
-  if (in.empty()) throw unsupported(i, fmt::format("GLSL.std.450 function {}", function));
+  if (in.empty()) throw unsupported(i, spirv::name_of(i));
   Functions f(build_);
   auto& b = build_;
   const auto each = [&](auto&& compute) {
@@ -220,8 +250,9 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     case GLSLstd450Radians: return each([&](Value x, Value, Value) { return b.fmul(x, f.lit(kPi / 180.0f)); });
     case GLSLstd450Degrees: return each([&](Value x, Value, Value) { return b.fmul(x, f.lit(57.29577951308232f)); });
     case GLSLstd450Tan: return each([&](Value x, Value, Value) { return b.fdiv(b.emit(Op::kFSin, x), b.emit(Op::kFCos, x)); });
-    case GLSLstd450Asin: return each([&](Value x, Value, Value) { return f.asin(x, 0.086566724f, -0.03102955f); });
-    case GLSLstd450Acos: return each([&](Value x, Value, Value) { return b.fsub(f.lit(kHalfPi), f.asin(x, 0.08132463f, -0.02363318f)); });
+    case GLSLstd450Asin: return each([&](Value x, Value, Value) { return f.asin(x); });
+    case GLSLstd450Acos:
+      return each([&](Value x, Value, Value) { return b.fsub(f.lit(kHalfPi), f.rough_asin(x, 0.08132463f, -0.02363318f)); });
     case GLSLstd450Atan: return each([&](Value x, Value, Value) { return f.atan(x); });
     case GLSLstd450Atan2: return each([&](Value y, Value x, Value) { return f.atan2(y, x); });
     case GLSLstd450Sinh: return each([&](Value x, Value, Value) { return b.fmul(f.lit(0.5f), b.fsub(f.exp(x), f.exp(b.fneg(x)))); });
@@ -306,7 +337,10 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     case GLSLstd450PackHalf2x16:
       return define(i, {b.emit(Op::kOr, b.emit(Op::kShl, f.to_half(in[0][1]), literal(16u)), f.to_half(in[0][0]))});
     case GLSLstd450UnpackHalf2x16: return define(i, {f.from_half(in[0][0]), f.from_half(b.emit(Op::kShrU, in[0][0], literal(16u)))});
-    default: throw unsupported(i, fmt::format("GLSL.std.450 function {}", function));
+    case GLSLstd450FindILsb: return each([&](Value x, Value, Value) { return f.find_lowest(x); });
+    case GLSLstd450FindUMsb: return each([&](Value x, Value, Value) { return f.find_highest(x); });
+    case GLSLstd450FindSMsb: return each([&](Value x, Value, Value) { return f.find_highest_signed(x); });
+    default: throw unsupported(i, spirv::name_of(i));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "pipeline/compiler/lower.h"
 
 #include "pipeline/compiler/lowering.h"
+#include "pipeline/compiler/spirv_names.h"
 
 namespace quadrille::pipeline {
 namespace {
@@ -30,6 +31,10 @@ ScalarShader Lowering::run() {
   for (const spirv::Variable& variable : module_.variables) variables_[variable.id] = &variable;
   find_tables();
   for (const spirv::Variable& variable : module_.variables) declare(variable);
+  if (module_.kills_return) {
+    killed_ = build_.new_variable();
+    build_.assign(killed_, literal(0u));
+  }
   region(module_.entry, {});
   build_.effect(models::Op::kEnd);
   return std::move(shader_);
@@ -59,8 +64,9 @@ Id Lowering::value_type(Id id) const {
 void Lowering::check_size(const spirv::Instruction& i) {
   if (i.type != 0 && module_.type(i.type).scalars > spirv::kMaxValueScalars)
     throw unsupported(i, fmt::format("a value of more than {} scalars", spirv::kMaxValueScalars));
-  if (shader_.code.size() > kMaxScalarCode)
-    throw unsupported(i, fmt::format("a program of more than {} scalar instructions", kMaxScalarCode));
+  if (shader_.code.size() <= kMaxScalarCode) return;
+  roll_a_loop();
+  throw unsupported(i, fmt::format("a program of more than {} scalar instructions", kMaxScalarCode));
 }
 
 void Lowering::instruction(const spirv::Instruction& i) {
@@ -78,10 +84,13 @@ void Lowering::instruction(const spirv::Instruction& i) {
     case spv::OpLoad: return load(i);
     case spv::OpStore: return store(i);
     case spv::OpExtInst: return glsl450(i);
-    case spv::OpDemoteToHelperInvocation: return build_.effect(models::Op::kKillIf, literal(kTrue));
+    case spv::OpDemoteToHelperInvocation:
+      build_.effect(models::Op::kKillIf, literal(kTrue));
+      if (module_.kills_return) build_.assign(killed_, literal(kTrue));
+      return;
     default: break;
   }
-  if (!arithmetic(i) && !comparison(i) && !composite(i) && !matrix(i) && !image(i)) throw unsupported(i, spirv::opcode_name(i.op));
+  if (!arithmetic(i) && !comparison(i) && !composite(i) && !matrix(i) && !image(i)) throw unsupported(i, spirv::name_of(i));
 }
 
 }  // namespace quadrille::pipeline

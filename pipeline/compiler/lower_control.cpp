@@ -26,7 +26,10 @@ void Lowering::region(Id first, const Stop& stop) {
 }
 
 Id Lowering::lower_block(Id label, const Stop& stop) {
-  if (++work_ > kMaxBlocks) throw user_error("{}: more than {} blocks of control flow", module_.shader, kMaxBlocks);
+  if (++work_ > kMaxBlocks) {
+    roll_a_loop();
+    throw user_error("{}: more than {} blocks of control flow", module_.shader, kMaxBlocks);
+  }
   const spirv::Block& block = module_.block(label);
   const LoopFrame* loop = real_loop();
   if (block.merge_kind == spv::OpLoopMerge && (loop == nullptr || loop->header != label)) return lower_loop(block, stop);
@@ -124,7 +127,7 @@ Id Lowering::follow(Id to, const Stop& stop) {
 /// Takes the lanes that execute out of the innermost loop of the source (or out of all, if they are killed).
 void Lowering::leave(LoopFrame::Leave how) {
   for (const LoopFrame& frame : loops_)
-    if (frame.unrolled) throw StartAgain{&Attempts::rolled_loops, frame.header};
+    if (frame.unrolled) throw StartAgain{&Attempts::rolled_loops, frame.header};  // it has no LOOP to leave
   for (std::size_t k = loops_.size(); k-- > 0;) {
     LoopFrame& frame = loops_[k];
     const bool last = how == LoopFrame::kKill ? k == 0 : !frame.is_switch;
@@ -175,7 +178,7 @@ bool Lowering::may_unroll(Id header) const {
 Id Lowering::lower_unrolled(const spirv::Block& header, const Stop& stop) {
   const bool asked = (header.loop_control & spv::LoopControlUnrollMask) != 0;
   const int most_iterations = asked ? 64 : 8;
-  const std::size_t most_code = shader_.code.size() + (asked ? 6000 : 200);
+  const std::size_t most_code = shader_.code.size() + (asked ? 6000 : 200), first_block = work_;
   LoopFrame frame;
   frame.unrolled = true;
   frame.nesting = nesting_;
@@ -189,7 +192,15 @@ Id Lowering::lower_unrolled(const spirv::Block& header, const Stop& stop) {
     if (!loops_.back().finished && header.continue_target != header.label) region(header.continue_target, {header.label, nullptr});
   }
   loops_.pop_back();
+  if (work_ - first_block > widest_unrolled_.first) widest_unrolled_ = {work_ - first_block, header.label};
   return follow(header.merge, stop);
+}
+
+/// Where a limit is passed: starts again with one loop less written out, if any was.
+void Lowering::roll_a_loop() const {
+  for (const LoopFrame& frame : loops_)
+    if (frame.unrolled) throw StartAgain{&Attempts::rolled_loops, frame.header};
+  if (widest_unrolled_.second != 0) throw StartAgain{&Attempts::rolled_loops, widest_unrolled_.second};
 }
 
 Id Lowering::lower_loop(const spirv::Block& header, const Stop& stop) {
@@ -206,6 +217,7 @@ Id Lowering::lower_loop(const spirv::Block& header, const Stop& stop) {
     build_.open_scope();
     region(header.continue_target, {header.label, nullptr});
   }
+  leave_if_killed();
   pop_loop();
   return follow(header.merge, stop);
 }
@@ -230,6 +242,16 @@ Id Lowering::terminator(const spirv::Block& block, const Stop& stop) {
 void Lowering::kill() {
   build_.effect(Op::kKillIf, literal(kTrue));
   if (!loops_.empty()) leave(LoopFrame::kKill);
+}
+
+/// At the end of an iteration, where a discard has returned to a loop that only a lane's own values would end.
+void Lowering::leave_if_killed() {
+  if (!module_.kills_return) return;
+  build_.effect(Op::kIf, build_.read(killed_));
+  build_.open_scope();
+  leave(LoopFrame::kKill);
+  build_.close_scope();
+  build_.effect(Op::kEndIf);
 }
 
 /// Whether `to` is a block that only leaves the innermost loop; `from` is then the block whose edge counts.

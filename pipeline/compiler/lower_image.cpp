@@ -15,8 +15,10 @@ void Lowering::declare_texture(const spirv::Variable& variable) {
   const spirv::Type& type = module_.type(variable.type);
   if (type.kind != Kind::kSampledImage || module_.type(type.element).count != 2 ||
       module_.type(module_.type(type.element).element).kind != Kind::kFloat)
-    throw user_error("{}: resource {} is not a combined 2D float image sampler (sampler2D), the only kind supported", module_.shader,
-                     module_.name(variable.id));
+    throw user_error(
+        "{}",
+        module_.at_use(variable.id, fmt::format("resource {} is not a combined 2D float image sampler (sampler2D), the only kind supported",
+                                                module_.name(variable.id))));
   const spirv::Decorations& d = module_.decorations(variable.id);
   const models::TextureBinding binding{static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.set)),
                                        static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.binding))};

@@ -1,6 +1,7 @@
 /// Loads and stores: uniform blocks read constant words, local variables are registers, and an index known only at run time becomes an indexed constant
 /// load (blocks and constant tables) or a chain of selections (registers).
 #include "pipeline/compiler/lowering.h"
+#include "pipeline/compiler/spirv_names.h"
 
 #include <algorithm>
 
@@ -81,8 +82,8 @@ void Lowering::declare(const spirv::Variable& variable) {
       if (tables_.contains(variable.id)) break;
       const std::uint32_t scalars = module_.type(variable.type).scalars;
       if (scalars == 0 || scalars > kMaxLocalScalars)
-        throw user_error("{}: local variable {} has {} scalars; 1 to {} are supported", module_.shader, module_.name(variable.id), scalars,
-                         kMaxLocalScalars);
+        throw user_error("{}", module_.at_use(variable.id, fmt::format("local variable {} has {} scalars; 1 to {} are supported",
+                                                                       module_.name(variable.id), scalars, kMaxLocalScalars)));
       Values& registers = memory_[variable.id];
       for (std::uint32_t k = 0; k < scalars; ++k) registers.push_back(build_.new_variable());
       if (const auto* words = variable.initializer == 0 ? nullptr : module_.constant(variable.initializer); words != nullptr)
@@ -90,9 +91,9 @@ void Lowering::declare(const spirv::Variable& variable) {
       break;
     }
     default:
-      throw user_error(
-          "{}: variable {} has storage class {}, which is not supported (uniform blocks, push constants, inputs, outputs and locals are)",
-          module_.shader, module_.name(variable.id), static_cast<std::uint32_t>(variable.storage));
+      throw user_error("{}", module_.at_use(variable.id, fmt::format("variable {} has storage class {}, which is not supported ({})",
+                                                                     module_.name(variable.id), spirv::storage_class_name(variable.storage),
+                                                                     "use a uniform block, push constants, inputs, outputs or locals")));
   }
   pointers_[variable.id] = p;
 }

@@ -90,6 +90,7 @@ class Lowering {
   Id lower_loop(const spirv::Block& header, const Stop& stop);
   Id lower_unrolled(const spirv::Block& header, const Stop& stop);
   [[nodiscard]] bool may_unroll(Id header) const;
+  void roll_a_loop() const;
   Id terminator(const spirv::Block& block, const Stop& stop);
   Id conditional(const spirv::Block& block, const Stop& stop);
   Id edge(Id from, Id to, const Stop& stop);
@@ -99,6 +100,7 @@ class Lowering {
   void body(const spirv::Block& block);
   void copy_phis(Id from, Id to);
   void kill();
+  void leave_if_killed();
   void leave(LoopFrame::Leave how);
   void push_loop(LoopFrame frame);
   void pop_loop();
@@ -183,8 +185,10 @@ class Lowering {
   std::unordered_map<Id, Values> phis_, resolved_phis_;
   std::vector<LoopFrame> loops_;
   std::map<Id, Id> open_switches_;  ///< merge -> header of switches that are not loops
+  Value killed_;                    ///< `Module::kills_return`: set for lanes that a demotion has killed
   int nesting_ = 0;
   std::size_t work_ = 0;
+  std::pair<std::size_t, Id> widest_unrolled_;  ///< blocks, header
 };
 
 }  // namespace quadrille::pipeline

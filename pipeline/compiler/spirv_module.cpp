@@ -1,9 +1,14 @@
 #include "pipeline/compiler/spirv_module.h"
 
 #include "models/base/error.h"
+#include "pipeline/compiler/spirv_names.h"
+#include "pipeline/compiler/spirv_spec_constants.h"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 namespace quadrille::pipeline::spirv {
 namespace {
@@ -41,35 +46,6 @@ std::vector<Id> successors(const Block& block) {
   return result;
 }
 
-std::string opcode_name(spv::Op op) {
-  // The assembler's own table is not public; a disassembled one-instruction module would be needed for the text. Number and common names suffice.
-  switch (static_cast<std::uint32_t>(op)) {
-    case spv::OpFunctionCall: return "OpFunctionCall";
-    case spv::OpImageFetch: return "OpImageFetch (texelFetch)";
-    case spv::OpImageGather: return "OpImageGather (textureGather)";
-    case spv::OpImageDrefGather: return "OpImageDrefGather";
-    case spv::OpImageSampleDrefImplicitLod: return "OpImageSampleDrefImplicitLod (shadow sampler)";
-    case spv::OpImageSampleDrefExplicitLod: return "OpImageSampleDrefExplicitLod (shadow sampler)";
-    case spv::OpImageRead: return "OpImageRead (imageLoad)";
-    case spv::OpImageWrite: return "OpImageWrite (imageStore)";
-    case spv::OpImageQueryLevels: return "OpImageQueryLevels";
-    case spv::OpImageQueryLod: return "OpImageQueryLod";
-    case spv::OpImageQuerySize: return "OpImageQuerySize";
-    case spv::OpSampledImage: return "OpSampledImage (separate texture and sampler)";
-    case spv::OpBitCount: return "OpBitCount";
-    case spv::OpBitReverse: return "OpBitReverse";
-    case spv::OpBitFieldInsert: return "OpBitFieldInsert";
-    case spv::OpBitFieldSExtract: return "OpBitFieldSExtract";
-    case spv::OpBitFieldUExtract: return "OpBitFieldUExtract";
-    case spv::OpCopyMemory: return "OpCopyMemory";
-    case spv::OpIAddCarry: return "OpIAddCarry";
-    case spv::OpISubBorrow: return "OpISubBorrow";
-    case spv::OpUMulExtended: return "OpUMulExtended";
-    case spv::OpSMulExtended: return "OpSMulExtended";
-    default: return fmt::format("opcode {}", static_cast<std::uint32_t>(op));
-  }
-}
-
 Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std::string_view shader_name)
     : shader(shader_name), words_(std::move(words)), stage_(stage) {
   bound = words_.size() > 3 ? words_[3] : 0;
@@ -88,8 +64,11 @@ Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std:
     add(instruction);
     at += count;
   }
+  if (!wide_types_.empty()) throw user_error("{}: {}", shader, wide_types_.begin()->second);
   if (entry == 0)
-    throw user_error("{}: no entry point \"main\" of the {} stage", shader, stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment");
+    throw user_error("{}: no entry point \"main\" of the {} stage{}", shader,
+                     stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment",
+                     other_entry_points_.empty() ? "" : fmt::format("; it has {}", fmt::join(other_entry_points_, ", ")));
 }
 
 const Type& Module::type(Id id) const {
@@ -136,6 +115,19 @@ std::string Module::at(const Instruction& instruction, std::string_view text) co
   return instruction.line == 0 ? fmt::format("{}: {}", shader, text) : fmt::format("{}:{}: {}", shader, instruction.line, text);
 }
 
+std::string Module::at_use(Id id, std::string_view text) const {
+  std::uint32_t line = 0;
+  for (const auto& entry_and_block : blocks) {
+    for (const Instruction& i : entry_and_block.second.body) {
+      const bool uses = (i.op == spv::OpLoad || i.op == spv::OpStore || i.op == spv::OpAccessChain || i.op == spv::OpInBoundsAccessChain ||
+                         i.op == spv::OpImageTexelPointer) &&
+                        i.operands[0] == id;
+      if (uses && i.line != 0 && (line == 0 || i.line < line)) line = i.line;
+    }
+  }
+  return line == 0 ? fmt::format("{}: {}", shader, text) : fmt::format("{}:{}: {}", shader, line, text);
+}
+
 void Module::add(const Instruction& given) {
   Instruction instruction = given;
   instruction.line = line_;
@@ -174,17 +166,21 @@ void Module::add(const Instruction& given) {
   }
 }
 
-void Module::add_capability(std::uint32_t capability) const {
-  if (!harmless_capability(capability))
-    throw user_error(
-        "{}: capability {} is not supported (vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are)",
-        shader, capability);
+/// Not refused here: an instruction that needs it has a line, and is met when the module is lowered.
+void Module::add_capability(std::uint32_t capability) {
+  if (harmless_capability(capability) || !unsupported_capability.empty()) return;
+  const std::string instead = instead_of_capability(capability);
+  unsupported_capability = fmt::format(
+      "capability {} is not supported ({})", capability_name(capability),
+      instead.empty() ? "vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are" : instead);
 }
 
 void Module::add_entry_point(const Instruction& instruction) {
   const spv::ExecutionModel wanted = stage_ == traces::ShaderStage::kVertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
-  if (instruction.operands[0] == static_cast<std::uint32_t>(wanted) && literal_string(instruction.operands.subspan(2)) == "main")
-    entry_function_ = instruction.operands[1];
+  const std::string name = literal_string(instruction.operands.subspan(2));
+  const bool of_stage = instruction.operands[0] == static_cast<std::uint32_t>(wanted);
+  if (of_stage && name == "main") entry_function_ = instruction.operands[1];
+  else other_entry_points_.push_back(fmt::format("'{}'{}", name, of_stage ? "" : " of another stage"));
 }
 
 void Module::add_decoration(Decorations& target, spv::Decoration decoration, std::span<const std::uint32_t> arguments) {
@@ -218,7 +214,11 @@ void Module::add_type(const Instruction& instruction) {
       break;
     case spv::OpTypeInt:
     case spv::OpTypeFloat:
-      if (operands[0] != 32) throw user_error("{}: {}-bit types are not supported (32-bit ones are)", shader, operands[0]);
+      if (operands[0] != 32)
+        wide_types_[instruction.result] = fmt::format("{}-bit {} are not supported by the shader compiler (32-bit ones are)", operands[0],
+                                                      instruction.op == spv::OpTypeInt ? "integers"
+                                                      : operands[0] == 64              ? "floats (double)"
+                                                                                       : "floats");
       type.kind = instruction.op == spv::OpTypeInt ? Type::Kind::kInt : Type::Kind::kFloat;
       type.is_signed = instruction.op == spv::OpTypeInt && operands[1] != 0;
       type.scalars = 1;
@@ -229,11 +229,12 @@ void Module::add_type(const Instruction& instruction) {
       type.element = operands[0];
       type.count = operands[1];
       type.scalars = saturating_product(this->type(type.element).scalars, type.count);
+      if (const auto wide = wide_types_.find(type.element); wide != wide_types_.end()) wide_types_[instruction.result] = wide->second;
       break;
     case spv::OpTypeArray: {
       const std::vector<std::uint32_t>* length = constant(operands[1]);
       if (length == nullptr || length->size() != 1)
-        throw user_error("{}: the length of array type %{} is not a constant", shader, instruction.result);
+        throw user_error("{}: the length of an array, {}, is not a constant", shader, name(operands[1]));
       type.kind = Type::Kind::kArray;
       type.element = operands[0];
       type.count = (*length)[0];
@@ -279,7 +280,7 @@ void Module::add_constant(const Instruction& instruction) {
     case spv::OpSpecConstantComposite:
       for (const Id part : instruction.operands) {
         const std::vector<std::uint32_t>* words = constant(part);
-        if (words == nullptr) throw user_error("{}: constant %{} has a part that is none", shader, instruction.result);
+        if (words == nullptr) throw user_error("{}: constant {} has a part that is none", shader, name(instruction.result));
         value.insert(value.end(), words->begin(), words->end());
         if (value.size() > kMaxValueScalars)
           throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
@@ -293,10 +294,19 @@ void Module::add_constant(const Instruction& instruction) {
       value.assign(scalars, 0);
       break;
     }
-    default: throw user_error("{}: specialisation constant {} has no default that can be evaluated", shader, name(instruction.result));
+    case spv::OpSpecConstantOp: value = specialisation_constant(instruction); break;
+    default: throw user_error("{}", at(instruction, fmt::format("a constant by {} is not supported", name_of(instruction))));
   }
   constant_types_[instruction.result] = instruction.type;
   constants_[instruction.result] = std::move(value);
+}
+
+std::vector<std::uint32_t> Module::specialisation_constant(const Instruction& instruction) const {
+  std::optional<std::vector<std::uint32_t>> value = evaluate_spec_constant(*this, instruction.operands, type(instruction.type).scalars);
+  if (value) return *std::move(value);
+  throw user_error("{}",
+                   at(instruction, fmt::format("specialisation constant {}: its expression ({}) cannot be evaluated; compute it in main",
+                                               name(instruction.result), name_of(instruction))));
 }
 
 void Module::add_variable(const Instruction& instruction) {
@@ -313,6 +323,8 @@ void Module::add_variable(const Instruction& instruction) {
 void Module::add_to_function(const Instruction& instruction) {
   if (instruction.op == spv::OpFunction) open_function_ = instruction.result;
   if (open_function_ != entry_function_) return;
+  if (const auto wide = wide_types_.find(instruction.type); wide != wide_types_.end())
+    throw user_error("{}", at(instruction, wide->second));
   switch (static_cast<std::uint32_t>(instruction.op)) {
     case spv::OpFunction:
     case spv::OpFunctionEnd: open_block_ = 0; break;

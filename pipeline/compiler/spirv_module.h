@@ -67,7 +67,7 @@ inline constexpr std::uint32_t kMaxValueScalars = 4096;
 
 class Module {
  public:
-  /// Reads an optimised, valid module. Throws `UserError` naming `shader` for what the compiler cannot take: other capabilities than Shader and its kin,
+  /// Reads an optimised, valid module. Throws `UserError` naming `shader` for what the compiler cannot take: types of other than 32 bits,
   /// several functions, no entry point "main" of the stage.
   Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std::string_view shader);
 
@@ -82,6 +82,8 @@ class Module {
   [[nodiscard]] std::string name(Id id) const;
   /// Builds "shader:line: text"; the line is left out where the module has none.
   [[nodiscard]] std::string at(const Instruction& instruction, std::string_view text) const;
+  /// The same with the first line of the entry point that reads or writes the variable `id`.
+  [[nodiscard]] std::string at_use(Id id, std::string_view text) const;
 
   std::string shader;
   Id entry = 0;                     ///< label of the first block
@@ -89,6 +91,8 @@ class Module {
   std::unordered_map<Id, Block> blocks;
   std::unordered_map<Id, Id> glsl_imports;  ///< ids of OpExtInstImport "GLSL.std.450"
   bool early_fragment_tests = false;
+  bool kills_return = false;           ///< a demotion stands for a discard (spirv_returning_kills.h)
+  std::string unsupported_capability;  ///< what is wrong with it; the module must be refused, if nothing that needs it was
   Id bound = 0;
 
  private:
@@ -98,7 +102,8 @@ class Module {
   void add_decoration(Decorations& target, spv::Decoration decoration, std::span<const std::uint32_t> arguments);
   void add_variable(const Instruction& instruction);
   void add_entry_point(const Instruction& instruction);
-  void add_capability(std::uint32_t capability) const;
+  void add_capability(std::uint32_t capability);
+  [[nodiscard]] std::vector<std::uint32_t> specialisation_constant(const Instruction& instruction) const;
   void add_to_function(const Instruction& instruction);
 
   std::vector<std::uint32_t> words_;
@@ -111,9 +116,8 @@ class Module {
   std::unordered_map<Id, std::string> names_;
   Id entry_function_ = 0, open_function_ = 0, open_block_ = 0;
   std::uint32_t line_ = 0;
+  std::map<Id, std::string> wide_types_;  ///< types of other than 32 bits and vectors of them: why they are refused
+  std::vector<std::string> other_entry_points_;
 };
-
-/// "OpName" of an opcode, for messages.
-[[nodiscard]] std::string opcode_name(spv::Op op);
 
 }  // namespace quadrille::pipeline::spirv

@@ -3,6 +3,7 @@
 #include "models/base/error.h"
 #include "pipeline/compiler/spirv_loops.h"
 #include "pipeline/compiler/spirv_module.h"
+#include "pipeline/compiler/spirv_returning_kills.h"
 #include "pipeline/compiler/spirv_words.h"
 
 #include <spirv-tools/libspirv.hpp>
@@ -141,12 +142,13 @@ void register_passes(spvtools::Optimizer& optimizer) {
 
 }  // namespace
 
-std::vector<std::uint32_t> optimise_spirv(std::span<const std::uint32_t> words, std::string_view shader) {
+OptimisedSpirv optimise_spirv(std::span<const std::uint32_t> words, std::string_view shader) {
   validate(words, shader);
   refuse_endless_loops(words, shader);
   if (ExpandedSize(words).largest() > kMaxInlinedInstructions)
     throw user_error("{}: more than {} instructions once every call is expanded in place", shader, kMaxInlinedInstructions);
-  const std::vector<std::uint32_t> input = forbid_float_rewrites(words);
+  ReturningKills kills = let_kills_return({words.begin(), words.end()});
+  const std::vector<std::uint32_t> input = forbid_float_rewrites(kills.words);
   std::string message;
   spvtools::Optimizer optimizer(kEnvironment);
   optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
@@ -159,7 +161,7 @@ std::vector<std::uint32_t> optimise_spirv(std::span<const std::uint32_t> words, 
   if (!optimizer.Run(input.data(), input.size(), &output, options))
     throw user_error("{}: SPIRV-Tools cannot optimise it: {}", shader, message);
   validate(output, shader);
-  return output;
+  return {std::move(output), kills.any};
 }
 
 }  // namespace quadrille::pipeline

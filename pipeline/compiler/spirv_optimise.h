@@ -13,8 +13,13 @@ inline constexpr std::size_t kMaxModuleWords = 1u << 20;
 /// Most instructions that all calls, expanded in place, may come to.
 inline constexpr std::uint64_t kMaxInlinedInstructions = 200000;
 
+struct OptimisedSpirv {
+  std::vector<std::uint32_t> words;
+  bool kills_return = false;  ///< a demotion stands for a discard (spirv_returning_kills.h)
+};
+
 /// Validates `words` for Vulkan 1.1 and optimises them. Every float result is first marked NoContraction, so that no pass reorders, merges or evaluates
 /// float arithmetic: the order of operations is the source's (docs/shader_compiler.md). Throws `UserError` naming `shader` for a module that is not valid.
-[[nodiscard]] std::vector<std::uint32_t> optimise_spirv(std::span<const std::uint32_t> words, std::string_view shader);
+[[nodiscard]] OptimisedSpirv optimise_spirv(std::span<const std::uint32_t> words, std::string_view shader);
 
 }  // namespace quadrille::pipeline

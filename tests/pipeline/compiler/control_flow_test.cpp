@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
 
 namespace quadrille::pipeline {
 namespace {
@@ -374,6 +375,62 @@ void main() { float s = 0.0; for (int k = 0; k < 3; ++k) { if (float(k) > p.x) b
     const float x = static_cast<float>(lane % 5) - 1.5f;
     CHECK(std::bit_cast<float>(outputs[4][lane]) == (x < 0 ? 0.0f : x < 1 ? 1.0f : x < 2 ? 2.0f : 3.0f));
   }
+}
+
+TEST_CASE("control flow: a switch whose default falls into a case") {
+  const auto expected = [](int x, int, int, int) {
+    int r = 1;
+    switch (x & 7) {
+      case 2: r = 40; [[fallthrough]];
+      default: r += 5; [[fallthrough]];
+      case 0: r *= 3; [[fallthrough]];
+      case 1: r += 1; break;
+      case 4: r = 9;
+    }
+    return r;
+  };
+  check(
+      "int r = 1; switch (i.x & 7) { case 2: r = 40; default: r += 5; case 0: r *= 3; case 1: r += 1; break; case 4: r = 9; } color = "
+      "vec4(r);",
+      expected);
+}
+
+TEST_CASE("control flow: a called function that discards, wherever it is called") {
+  const std::string functions = R"(int s = 0;
+bool stop(int at) { if (at > i.x) discard; return false; }
+int always() { discard; return 1; }
+void deeper(int at) { for (int k = 0; k < 3; ++k) { if (k + at == i.y) discard; } }
+bool both(int at) { deeper(at); return stop(at); })";
+  const auto dies = [&](const std::string& body, auto expected) {
+    INFO(body);
+    RunInput input;
+    input.points = assorted_points(21);
+    const RunOutput out = run_snippet(body + " color = vec4(s);", input, functions);
+    for (int k = 0; k < models::kWarpQuads; ++k) {
+      const auto& p = input.points[static_cast<std::size_t>(k)].i;
+      INFO("i = " << p[0] << ", " << p[1]);
+      CHECK(((out.killed >> (4 * k)) & 0xfu) == (expected(p[0], p[1]) ? 0xfu : 0u));
+      if (!expected(p[0], p[1])) CHECK(out.point(k)[0] == 5.0f);
+    }
+  };
+  dies("s = 5; if (i.x < 0) s = always();", [](int x, int) { return x < 0; });
+  dies("do { ++s; } while (s < 5 && !stop(s));", [](int x, int) { return x < 4; });
+  dies("for (s = 0; s < 5; s += stop(s) ? 2 : 1) {}", [](int x, int) { return x < 4; });
+  dies("for (int j = 0; j < 2; ++j) { s = 0; do { ++s; } while (s < 5 && !both(s)); }",
+       [](int x, int y) { return x < 4 || (y >= 1 && y <= 6); });
+  // Only the function ends this loop; what it returns after a discard does not.
+  dies("do { if (i.x >= 4) { s = 5; break; } ++s; } while (!stop(s) || s < 100); s = 5;", [](int x, int) { return x < 4; });
+}
+
+TEST_CASE("control flow: short loops nested so deeply that they cannot all be written out") {
+  const auto loop = [](int k) {
+    return "for (int k" + std::to_string(k) + " = 0; k" + std::to_string(k) + " < 8; ++k" + std::to_string(k) + ") ";
+  };
+  const std::string nest = loop(0) + loop(1) + loop(2) + loop(3) + loop(4) + "++s; ";
+  check("int s = 0; " + nest + "color = vec4(s + i.x);", [](int x, int, int, int) { return 32768 + x; });
+  std::string row = "int s = 0; ";
+  for (int k = 0; k < 40; ++k) row += loop(1) + loop(2) + loop(3) + "++s; ";
+  check(row + "color = vec4(s + i.x);", [](int x, int, int, int) { return 40 * 512 + x; });
 }
 
 }  // namespace quadrille::pipeline

@@ -61,6 +61,32 @@ TEST_CASE("unsupported features are refused by name and line") {
   CHECK_THROWS_WITH(compile_pipeline(fragment, "i.vert", fragment, "f.frag"), Catch::Contains("i.vert") && Catch::Contains("entry point"));
 }
 
+TEST_CASE("a refusal names what is not supported, where it is, and what to write instead") {
+  const std::string sampler = "layout(set=0,binding=0) uniform sampler2D t;";
+  CHECK_THAT(error_of("double d = double(a.x); color = vec4(d);"),
+             Catch::Contains("test.frag:5:") && Catch::Contains("64-bit floats (double)"));
+  CHECK_THAT(error_of("color = vec4(int64_t(i.x) * 3);", "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require"),
+             Catch::Contains("test.frag:5:") && Catch::Contains("64-bit integers"));
+  CHECK_THAT(
+      error_of("s.x = 1; color = a;", "layout(set=0,binding=0) buffer S { int x; } s;"),
+      Catch::Contains("test.frag:5:") && Catch::Contains("'s'") && Catch::Contains("StorageBuffer") && Catch::Contains("uniform block"));
+  CHECK_THAT(error_of("color = interpolateAtOffset(a, vec2(0.25));"),
+             Catch::Contains("test.frag:5:") && Catch::Contains("interpolateAtOffset") && Catch::Contains("dFdx"));
+  CHECK_THAT(error_of("color = vec4(bitCount(i.x));"), Catch::Contains("test.frag:5:") && Catch::Contains("bitCount"));
+  CHECK_THAT(error_of("uint c; uint s = uaddCarry(uint(i.x), 3u, c); color = vec4(s, c, 0, 0);"), Catch::Contains("OpIAddCarry"));
+  CHECK_THAT(error_of("color = textureGather(t, a.xy);", sampler), Catch::Contains("test.frag:5:") && Catch::Contains("textureGather"));
+  CHECK_THAT(error_of("color = vec4(textureQueryLevels(t));", sampler), Catch::Contains("textureQueryLevels"));
+  CHECK_THAT(error_of("color = vec4(subgroupElect());", "#extension GL_KHR_shader_subgroup_basic : require"),
+             Catch::Contains("test.frag:5:") && Catch::Contains("OpGroupNonUniformElect"));
+  CHECK_THAT(error_of("color = texture(t, a.xyz);", "layout(set=0,binding=0) uniform samplerCube t;"), Catch::Contains("test.frag:5:"));
+}
+
+TEST_CASE("an entry point of another name or stage is named") {
+  const auto vertex = vertex_spirv(plain_vertex_source());
+  CHECK_THROWS_WITH(compile_pipeline(vertex, "v.vert", vertex, "f.frag"),
+                    Catch::Contains("f.frag") && Catch::Contains("fragment stage; it has 'main' of another stage"));
+}
+
 TEST_CASE("a loop that nothing leads out of is refused with its line, whatever it computes") {
   const auto endless = Catch::Contains("a loop without an end");
   for (const char* body :

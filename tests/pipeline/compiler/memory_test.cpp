@@ -160,4 +160,15 @@ TEST_CASE("compiler: integer vertex inputs are read as they are, and the pipelin
   CHECK(std::ranges::any_of(p.vertex.vertex_inputs, [](const auto& use) { return use.location == 3 && use.component == 1; }));
 }
 
+TEST_CASE("specialisation constants may be floats and vectors chosen by others, and what is computed of them") {
+  const std::string declarations = R"(layout(constant_id = 0) const int N = 3; layout(constant_id = 1) const bool B = true;
+layout(constant_id = 2) const float F = 0.5; layout(constant_id = 3) const uint U = 0xfffffff0u;
+const float S = N == 3 ? 1.0 : F; const vec3 V = B ? vec3(F, 2.0, 3.0) : vec3(0.0); const vec2 W = N > 5 ? vec2(1.0) : V.yx;
+const ivec3 I = ivec3(N, N + 6, N * 7) % 4; const uint X = (U >> 2) ^ uint(N); const bvec2 P = bvec2(B, !B); const vec2 Q = P.y ? V.xy : W;
+const int M = (N << 4) / (N - 1) - (~N & 5); const bool O = (uint(N) < U) == (B != false);)";
+  const std::string sum =
+      R"(S + V.x + 10.0 * V.z + 100.0 * W.x + 1000.0 * Q.y + float(I.x * 3 - I.y + M) + (O ? 0.25 : 0.0) + (X == 0x3fffffffu ? 1000.0 : 0.0))";
+  CHECK(run_snippet("color = vec4(" + sum + ");", {}, declarations).point(0)[0] == 1759.75f);
+}
+
 }  // namespace quadrille::pipeline
