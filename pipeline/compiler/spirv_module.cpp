@@ -310,8 +310,7 @@ std::vector<std::uint32_t> Module::specialisation_constant(const Instruction& in
 }
 
 void Module::add_variable(const Instruction& instruction) {
-  if (open_function_ != 0 && open_function_ != entry_function_)
-    throw user_error("{}: a function call is left that cannot be expanded in place", shader);
+  if (open_function_ != 0 && open_function_ != entry_function_) return;  // of another entry point
   Variable variable;
   variable.id = instruction.result;
   variable.type = type(instruction.type).element;

@@ -4,6 +4,7 @@
 #include "tests/pipeline/compiler/shader_runner.h"
 
 #include <catch2/catch.hpp>
+#include <spirv/unified1/spirv.hpp>
 
 namespace quadrille::pipeline {
 namespace {
@@ -85,6 +86,34 @@ TEST_CASE("an entry point of another name or stage is named") {
   const auto vertex = vertex_spirv(plain_vertex_source());
   CHECK_THROWS_WITH(compile_pipeline(vertex, "v.vert", vertex, "f.frag"),
                     Catch::Contains("f.frag") && Catch::Contains("fragment stage; it has 'main' of another stage"));
+}
+
+TEST_CASE("spir-v: what other entry points of a module compute is not looked at") {
+  const auto vertex = vertex_spirv(plain_vertex_source());
+  std::vector<std::uint32_t> fragment = fragment_spirv(fragment_source("vec4 v[2] = vec4[2](a, b); color = v[i.x & 1];"));
+  // A second entry point for the same function under another name, and "main" for one of nothing.
+  std::vector<std::uint32_t> both(fragment.begin(), fragment.begin() + 5);
+  const std::uint32_t bound = fragment[3], nothing = bound, label = bound + 1;
+  both[3] = bound + 2;
+  std::uint32_t void_type = 0, function_type = 0, main_function = 0;
+  for (std::size_t at = 5; at < fragment.size(); at += fragment[at] >> 16) {
+    const auto op = static_cast<spv::Op>(fragment[at] & 0xffff);
+    const std::vector<std::uint32_t> words(fragment.begin() + static_cast<std::ptrdiff_t>(at),
+                                           fragment.begin() + static_cast<std::ptrdiff_t>(at + (fragment[at] >> 16)));
+    both.insert(both.end(), words.begin(), words.end());
+    if (op == spv::OpEntryPoint) {
+      both[both.size() - words.size() + 3] = 0x6e69616e;  // "nain"
+      std::vector<std::uint32_t> again = words;
+      again[2] = nothing;
+      both.insert(both.end(), again.begin(), again.end());
+    }
+    if (op == spv::OpExecutionMode) both.insert(both.end(), {words[0], nothing, words[2]});
+    if (op == spv::OpFunction) void_type = words[1], function_type = words[4], main_function = words[2];
+  }
+  REQUIRE(main_function != 0);
+  both.insert(both.end(), {5u << 16 | spv::OpFunction, void_type, nothing, 0, function_type, 2u << 16 | spv::OpLabel, label,
+                           1u << 16 | spv::OpReturn, 1u << 16 | spv::OpFunctionEnd});
+  CHECK(compile_pipeline(vertex, "v", both, "f").fragment.varyings.empty());
 }
 
 TEST_CASE("a loop that nothing leads out of is refused with its line, whatever it computes") {
