@@ -61,9 +61,9 @@ void check_seeds(ShaderStage stage, Seeds usual) {
 
 }  // namespace
 
-TEST_CASE("random shaders: fragments, the first part") { check_seeds(ShaderStage::kFragment, {0, 400}); }
-TEST_CASE("random shaders: fragments, the second part") { check_seeds(ShaderStage::kFragment, {400, 400}); }
-TEST_CASE("random shaders: vertices") { check_seeds(ShaderStage::kVertex, {800, 400}); }
+TEST_CASE("random shaders: fragments, the first part") { check_seeds(ShaderStage::kFragment, {0, 800}); }
+TEST_CASE("random shaders: fragments, the second part") { check_seeds(ShaderStage::kFragment, {800, 800}); }
+TEST_CASE("random shaders: vertices") { check_seeds(ShaderStage::kVertex, {1600, 800}); }
 
 TEST_CASE("random shaders: a program that fails is made small") {
   const auto fails = [](const RandomShader& shader) { return shader.source().find("continue;") != std::string::npos; };
