@@ -46,6 +46,7 @@ std::string_view stage_name(std::uint32_t model) {
 
 std::string list(const std::vector<Entry>& entries) {
   std::vector<std::string> names;
+  names.reserve(entries.size());
   for (const Entry& entry : entries) names.push_back(fmt::format("'{}' ({})", entry.name, stage_name(entry.model)));
   return fmt::format("{}", fmt::join(names, ", "));
 }

@@ -87,7 +87,7 @@ void SpirvFlow::add_to_block(const std::uint32_t* operands, std::size_t at, std:
 }
 
 std::unordered_set<SpirvFlow::Id> SpirvFlow::reached(const Function& function, std::vector<Id> from, std::vector<Id> Block::*edges,
-                                                     std::unordered_set<Id> walls) {
+                                                     const std::unordered_set<Id>& walls) {
   std::unordered_set<Id> found(from.begin(), from.end());
   while (!from.empty()) {
     const Block& block = function.blocks.at(from.back());

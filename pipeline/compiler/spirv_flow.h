@@ -33,7 +33,7 @@ class SpirvFlow {
 
   /// The blocks that edges lead to from `from`, along them or against them, `from` among them. Nothing is followed beyond `walls`.
   [[nodiscard]] static std::unordered_set<Id> reached(const Function& function, std::vector<Id> from, std::vector<Id> Block::*edges,
-                                                      std::unordered_set<Id> walls = {});
+                                                      const std::unordered_set<Id>& walls = {});
 
   std::vector<Id> entry_points;
   std::unordered_map<Id, Function> functions;
