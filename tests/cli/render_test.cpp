@@ -205,7 +205,7 @@ TEST_CASE("diff tells pictures apart, by how much, and where") {
   CHECK(run_quadrille(folder, {"diff", "a.png", "b.png", "--max-lsb", "255"}).exit_code == 0);
 }
 
-TEST_CASE("--stats - writes the JSON alone to standard output, and the table to standard error") {
+TEST_CASE("the JSON of --stats - is alone on standard output, and the table on standard error") {
   const ScratchFolder folder;
   const std::vector<std::string> draw{"render", "builtin:triangle", "--size", "16x16", "--stats", "-"};
   const ProgramRun run = run_quadrille(folder, draw);
