@@ -14,6 +14,7 @@ using Command = std::function<int()>;
 
 void add_render(CLI::App& app, Command& chosen);
 void add_diff(CLI::App& app, Command& chosen);
+void add_experiment(CLI::App& app, Command& chosen);
 void add_describe(CLI::App& app, Command& chosen);
 void add_trace(CLI::App& app, Command& chosen);
 void add_accuracy(CLI::App& app, Command& chosen);

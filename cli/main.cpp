@@ -34,6 +34,7 @@ constexpr const char* kExamples = R"(Examples:
   quadrille accuracy builtin:courtyard      what speed costs in truth: windows and precisions
   quadrille trace record helmet.gltf -o helmet.qtrace
   quadrille stability --quick       frames and machines at the edge of what is possible
+  quadrille experiment memory-scheduling    what others measured, on the simulated machine
 Each subcommand has its own --help.
 Exit code: 0 done, 1 a check failed or pictures differ, 2 something given was wrong.)";
 
@@ -116,6 +117,7 @@ int run(int argc, char** argv) {
   add_leave_out(app, chosen);
   add_lists(app, chosen);
   add_stability(app, chosen);
+  add_experiment(app, chosen);
   try {
     try {
       app.parse(argc, argv);
