@@ -27,7 +27,7 @@ struct DescribeArguments {
 constexpr std::string_view kMachine = "machine";  // as WHAT: every parameter of the machine that NAME is
 
 /// Counters of a kind of unit.
-using DescribedUnit = std::pair<std::string, std::vector<const hw::Counter*>>;
+using DescribedUnit = std::pair<std::string, std::vector<const hw::Statistic*>>;
 
 /// What was asked for. A group of parameters and a unit's counters share a name, except where only one of them exists.
 class Description {
@@ -66,7 +66,7 @@ class Description {
     for (const Asks asks : kWays) {
       for (const auto& [path, group] : config_.groups()) exists |= take(group->params(), path, what, asks, parameters ? &groups_ : nullptr);
       for (const UnitCounters& u : units_)
-        exists |= take(u.stats->counters(), std::string(u.kind), what, asks, counters ? &described_units_ : nullptr);
+        exists |= take(u.stats->all(), std::string(u.kind), what, asks, counters ? &described_units_ : nullptr);
       if (exists) return;
     }
     throw unknown(what);
@@ -94,7 +94,7 @@ class Description {
     for (const UnitCounters& u : units_) {
       legal.insert(std::string(u.kind));
       names.emplace_back(u.kind);
-      for (const hw::Counter* c : u.stats->counters()) names.push_back(fmt::format("{}.{}", u.kind, c->name()));
+      for (const hw::Statistic* c : u.stats->all()) names.push_back(fmt::format("{}.{}", u.kind, c->name()));
     }
     return user_error("describe: no group, parameter or counter '{}'; groups: {}{}", what, fmt::join(legal, ", "),
                       did_you_mean(what, names));
@@ -117,7 +117,7 @@ std::string plain(const Description& d) {
   }
   for (const auto& [kind, counters] : d.units()) {
     text += fmt::format("{} counts\n", kind);
-    for (const hw::Counter* c : counters) text += fmt::format("  {:<24} {:<12} {}\n", c->name(), c->unit(), c->definition());
+    for (const hw::Statistic* c : counters) text += fmt::format("  {:<24} {:<12} {}\n", c->name(), c->unit(), c->definition());
   }
   return text;
 }
@@ -140,7 +140,8 @@ std::string markdown(const Description& d) {
   }
   for (const auto& [kind, counted] : d.units()) {
     counters += fmt::format("\n## {}\n\n| counter | unit | definition |\n|---|---|---|\n", kind);
-    for (const hw::Counter* c : counted) counters += fmt::format("| `{}` | {} | {} |\n", c->name(), cell(c->unit()), cell(c->definition()));
+    for (const hw::Statistic* c : counted)
+      counters += fmt::format("| `{}` | {} | {} |\n", c->name(), cell(c->unit()), cell(c->definition()));
   }
   std::string text;
   if (!parameters.empty()) {
@@ -156,7 +157,7 @@ std::string markdown(const Description& d) {
   if (!counters.empty()) {
     text += std::string(text.empty() ? "" : "\n") +
             "# Counters\n\nWhat every kind of unit counts. In the JSON of `quadrille render --stats` they are under "
-            "`units.<unit>.counters`; a unit of which the\n"
+            "`units.<unit>.counters` and, those that are histograms, `units.<unit>.histograms`; a unit of which the\n"
             "machine has several carries its number (`core_0`).\n" +
             counters;
   }
@@ -168,8 +169,8 @@ std::string json(const Description& d) {
   nlohmann::ordered_json parameters = nlohmann::ordered_json::object(), counters = nlohmann::ordered_json::object();
   for (const auto& [path, params] : d.groups()) {
     for (const hw::ParamBase* p : params) {
-      parameters[path + "." + std::string(p->name())] = {{"value", nlohmann::ordered_json::parse(p->value_text())},
-                                                         {"default", nlohmann::ordered_json::parse(p->default_text())},
+      parameters[path + "." + std::string(p->name())] = {{"value", nlohmann::ordered_json::parse(p->literal())},
+                                                         {"default", nlohmann::ordered_json::parse(p->default_literal())},
                                                          {"unit", p->unit()},
                                                          {"legal", p->legal_text()},
                                                          {"reason", p->reason()}};
@@ -177,7 +178,7 @@ std::string json(const Description& d) {
   }
   for (const auto& [kind, counted] : d.units()) {
     nlohmann::ordered_json& unit = counters[kind] = nlohmann::ordered_json::object();
-    for (const hw::Counter* c : counted) unit[std::string(c->name())] = {{"unit", c->unit()}, {"definition", c->definition()}};
+    for (const hw::Statistic* c : counted) unit[std::string(c->name())] = {{"unit", c->unit()}, {"definition", c->definition()}};
   }
   document["parameters"] = std::move(parameters);
   document["counters"] = std::move(counters);

@@ -16,6 +16,7 @@ void MachineArguments::add_to(CLI::App& command) {
 
 void MachineArguments::apply(pipeline::MachineConfig& config) const {
   pipeline::load_machine(config, machine);
+  config.begin_layer();
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) throw user_error("--set: '{}' is not KEY=VALUE, as in gpu.cores=8", setting);

@@ -17,6 +17,13 @@ std::uint64_t value(const hw::Unit& unit, std::string_view counter) {
   return 0;
 }
 
+HistogramFigure figures_of(const hw::Histogram& h) {
+  HistogramFigure f{
+      std::string(h.name()), std::string(h.unit()), std::string(h.definition()), {h.buckets().begin(), h.buckets().end()}, h.sum()};
+  while (!f.buckets.empty() && f.buckets.back() == 0) f.buckets.pop_back();
+  return f;
+}
+
 UnitFigures figures_of(const hw::Unit& unit) {
   UnitFigures f;
   f.path = unit.name();
@@ -34,6 +41,7 @@ UnitFigures figures_of(const hw::Unit& unit) {
     for (const hw::Counter* c : unit.stats()->counters()) {
       f.counters.push_back({std::string(c->name()), std::string(c->unit()), std::string(c->definition()), c->value()});
     }
+    for (const hw::Histogram* h : unit.stats()->histograms()) f.histograms.push_back(figures_of(*h));
   }
   return f;
 }
@@ -214,11 +222,24 @@ class Laws {
         sum_.memory("read_bytes"));
     law("bytes written back by L2 = bytes written to memory", "l2.writeback_bytes", sum_.l2("writeback_bytes"), "memory.write_bytes",
         sum_.memory("write_bytes"));
+    law("rows hit + missed + in conflict = accesses", "memory.row_hits + row_misses + row_conflicts",
+        sum_.memory("row_hits") + sum_.memory("row_misses") + sum_.memory("row_conflicts"), "memory.reads + writes",
+        sum_.memory("reads") + sum_.memory("writes"));
+    data_buses();
     if (!frame_.frame.passes.empty()) {
       law("bytes scanned out = bytes of the target", "scan_out.read_bytes", value(m_.scan_out(), "read_bytes"), "target.bytes",
           frame_.frame.passes.back().color.bytes());
     }
     law("dirty lines left in first-level caches = 0", "device_memory.dirty_lines", frame_.memory.dirty_lines(), "none", 0);
+  }
+
+  void data_buses() {
+    std::uint64_t uses = 0, cycles = 0;
+    for (const char* use : {"bus_read", "bus_write", "bus_refresh", "bus_turnaround", "bus_activation", "bus_spacing", "bus_idle"})
+      uses += sum_.memory(use);
+    for (const auto& channel : m_.channels()) cycles += static_cast<std::uint64_t>(channel->total_cycles());
+    law("data bus: every cycle has a use", "memory.bus_read + write + refresh + turnaround + activation + spacing + idle", uses,
+        "memory.cycles", cycles);
   }
 
   const Machine& m_;

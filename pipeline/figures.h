@@ -17,6 +17,13 @@ struct CounterFigure {
   std::uint64_t value = 0;
 };
 
+/// How often a quantity had which size: bucket 0 counts zeros, bucket k > 0 sizes from 2^(k-1) to 2^k - 1. Ends with the last bucket that is not empty.
+struct HistogramFigure {
+  std::string name, unit, definition;
+  std::vector<std::uint64_t> buckets;
+  std::uint64_t sum = 0;
+};
+
 /// Cycles that a unit waited for one of its ports.
 struct WaitFigure {
   std::string port;
@@ -41,6 +48,7 @@ struct UnitFigures {
   std::optional<double> capacity_used;  ///< 0..1, of a unit that does several things at once; others: busy
   std::vector<WaitFigure> waits;        ///< longest first, ports that cost nothing left out
   std::vector<CounterFigure> counters;
+  std::vector<HistogramFigure> histograms;
 };
 
 struct ClientFigures {

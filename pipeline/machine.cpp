@@ -82,13 +82,13 @@ void Machine::create_units(const MachineOptions& options) {
                          fmt::format("{} links, and their places in the arbiters of {} L2 slices", 2 * partitions * channels, channels)});
   }
   if (!frame_.blends()) left_out_.push_back({"blending", "no draw combines with the old colour", "reading colours back"});
-  clients_ = {"vertex_fetch"};
-  for (int c = 0; textured && c < cores; ++c) clients_.push_back(fmt::format("texture_{}", c));
+  clients_ = {{"vertex_fetch", hw::MemoryClient::kVertexFetch}};
+  for (int c = 0; textured && c < cores; ++c) clients_.push_back({fmt::format("texture_{}", c), hw::MemoryClient::kTexture});
   for (int p = 0; p < partitions; ++p) {
-    if (depth_memory) clients_.push_back(fmt::format("depth_{}", p));
-    clients_.push_back(fmt::format("rop_{}", p));
+    if (depth_memory) clients_.push_back({fmt::format("depth_{}", p), hw::MemoryClient::kDepth});
+    clients_.push_back({fmt::format("rop_{}", p), hw::MemoryClient::kColor});
   }
-  clients_.push_back("scan_out");
+  clients_.push_back({"scan_out", hw::MemoryClient::kScanOut});
   partitions_.resize(static_cast<std::size_t>(partitions));
   cores_.resize(static_cast<std::size_t>(cores));
   slices_.resize(static_cast<std::size_t>(channels));
@@ -158,7 +158,9 @@ void Machine::create_units(const MachineOptions& options) {
   }
   for (int i = 0; i < channels; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    make(slices_[k], [&, i] { return std::make_unique<hw::L2Slice>(fmt::format("l2_{}", i).c_str(), config_.l2, clock_, clients_); });
+    make(slices_[k], [&, i, channels] {
+      return std::make_unique<hw::L2Slice>(fmt::format("l2_{}", i).c_str(), config_.l2, clock_, clients_, channels);
+    });
     make(channels_[k], [&, i, channels] {
       return std::make_unique<hw::MemoryChannel>(fmt::format("memory_{}", i).c_str(), config_.memory, memory_clock_, channels);
     });
@@ -168,8 +170,12 @@ void Machine::create_units(const MachineOptions& options) {
 }
 
 template <class T, class Out, class In>
-void Machine::connect(Out& out, In& in, const LinkParams& params, const std::string& name) {
-  auto link = std::make_unique<hw::Fifo<T>>(name.c_str(), params.spec());
+void Machine::connect(Out& out, In& in, const LinkParams& params, const std::string& name, int path_clk) {
+  hw::LinkSpec spec = params.spec();
+  // A longer way holds as many tokens more as are on it.
+  spec.latency += path_clk;
+  spec.depth += spec.width * path_clk;
+  auto link = std::make_unique<hw::Fifo<T>>(name.c_str(), spec);
   out.bind(*link);
   in.bind(*link);
   links_.push_back(std::move(link));
@@ -235,7 +241,7 @@ void Machine::wire_core(std::size_t c) {
 }
 
 void Machine::attach_client(const hw::Unit& client_unit, hw::MemoryPort& port) {
-  const auto found = std::ranges::find(clients_, std::string_view(client_unit.name()));
+  const auto found = std::ranges::find(clients_, std::string_view(client_unit.name()), &hw::L2Slice::Client::name);
   QUADRILLE_CHECK(found != clients_.end(), "{} is no client of the L2 cache", client_unit.name());
   const auto client = static_cast<std::size_t>(found - clients_.begin());
   for (std::size_t i = 0; i < slices_.size(); ++i) {
@@ -260,7 +266,7 @@ void Machine::wire_memory() {
     connect<hw::MemoryRequest>(slices_[i]->memory_out, channels_[i]->request_in, config_.link.l2_to_memory,
                                fmt::format("l2_to_memory_{}", i));
     connect<hw::MemoryResponse>(channels_[i]->response_out, slices_[i]->fill_in, config_.link.memory_to_l2,
-                                fmt::format("memory_to_l2_{}", i));
+                                fmt::format("memory_to_l2_{}", i), config_.memory.path_clk);
   }
 }
 

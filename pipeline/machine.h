@@ -80,14 +80,14 @@ class Machine {
   void wire_memory();
   void attach_client(const hw::Unit& client_unit, hw::MemoryPort& port);
   template <class T, class Out, class In>
-  void connect(Out& out, In& in, const LinkParams& params, const std::string& name);
+  void connect(Out& out, In& in, const LinkParams& params, const std::string& name, int path_clk = 0);
 
   const MachineConfig& config_;
   DeviceFrame& frame_;
   hw::Clock clock_, memory_clock_;
   hw::QuietLog quiet_;
   std::vector<LeftOut> left_out_;
-  std::vector<std::string> clients_;  ///< of the L2 slices: names of units, in the order of their ports
+  std::vector<hw::L2Slice::Client> clients_;  ///< of the L2 slices: names of units, in the order of their ports
   std::unique_ptr<hw::Driver> own_driver_;
   hw::Driver* driver_ = nullptr;
   std::unique_ptr<hw::Store<hw::BatchSlot>> batches_;

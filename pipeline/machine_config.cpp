@@ -57,7 +57,7 @@ MachineConfig::MachineConfig() {
 std::vector<std::string> MachineConfig::values() const {
   std::vector<std::string> all;
   for (const auto& [path, group] : groups_) {
-    for (const hw::ParamBase* p : group->params()) all.push_back(p->value_text());
+    for (const hw::ParamBase* p : group->params()) all.push_back(p->literal());
   }
   return all;
 }
@@ -72,7 +72,7 @@ std::vector<MachineConfig::Change> MachineConfig::changes() const {
   std::size_t i = 0;
   for (const auto& [path, group] : groups_) {
     for (const hw::ParamBase* p : group->params()) {
-      const std::string value = p->value_text(), &before = base_values_[i++];
+      const std::string value = p->literal(), &before = base_values_[i++];
       if (value != before) all.push_back({fmt::format("{}.{}", path, p->name()), value, before});
     }
   }
@@ -115,7 +115,13 @@ std::vector<std::string> MachineConfig::paths() const {
   return all;
 }
 
-void MachineConfig::set(std::string_view key, std::string_view value, std::string_view where) {
+const hw::ParamBase* MachineConfig::find(std::string_view key) const {
+  const std::size_t dot = std::min(key.rfind('.'), key.size());
+  const auto group = std::ranges::find(groups_, key.substr(0, dot), [](const auto& g) { return std::string_view(g.first); });
+  return group == groups_.end() || dot == key.size() ? nullptr : group->second->find(key.substr(dot + 1));
+}
+
+void MachineConfig::assign(std::string_view key, std::string_view value, std::string_view where) {
   const std::size_t dot = key.rfind('.');
   const std::string_view group_name = dot == std::string_view::npos ? std::string_view{} : key.substr(0, dot);
   const auto group = std::ranges::find_if(groups_, [&](const auto& g) { return g.first == group_name; });
@@ -130,7 +136,30 @@ void MachineConfig::set(std::string_view key, std::string_view value, std::strin
   } catch (const UserError& e) { throw user_error("{}: {}: {}", where, key, e.what()); }
 }
 
+void MachineConfig::set(std::string_view key, std::string_view value, std::string_view where) {
+  assign(key, value, where);
+  given_.emplace(key);
+  if (key != "memory.kind") return;
+  for (const auto& [path, number] : memory_kind_values(std::string(value))) {
+    if (!given_.contains(path)) assign(path, number, where);
+  }
+}
+
+void MachineConfig::check_memory() const {
+  const hw::MemoryChannel::Params& m = memory;
+  if (m.banks % m.bank_groups != 0)
+    throw user_error("machine: memory.banks ({}) is not a multiple of memory.bank_groups ({})", m.banks.value(), m.bank_groups.value());
+  if (m.burst_bytes != 32 && m.burst_bytes != 64 && m.burst_bytes != 128)
+    throw user_error("machine: memory.burst_bytes ({}) is none of 32, 64 and 128", m.burst_bytes.value());
+  if (m.row_bytes % 128 != 0) throw user_error("machine: memory.row_bytes ({}) is not a multiple of 128, a line", m.row_bytes.value());
+  if (m.write_low >= m.write_high)
+    throw user_error("machine: memory.write_low ({}) is not below memory.write_high ({})", m.write_low.value(), m.write_high.value());
+  if (m.refresh == models::DramRefresh::kPerBank && m.t_refi < m.banks)
+    throw user_error("machine: memory.t_refi ({}) is less than a cycle for each of memory.banks ({})", m.t_refi.value(), m.banks.value());
+}
+
 void MachineConfig::check() const {
+  check_memory();
   const auto cache = [](std::string_view path, int lines, int ways) {
     if (lines % ways == 0) return;  // whole sets
     const int fewer = lines - lines % ways, more = fewer + ways;

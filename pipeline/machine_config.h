@@ -24,6 +24,8 @@
 #include "hw/shader/work_distributor.h"
 #include "hw/texture/texture_unit.h"
 
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -134,7 +136,12 @@ class MachineConfig {
   [[nodiscard]] const std::vector<std::pair<std::string, hw::ParamGroup*>>& groups() const { return groups_; }
   /// `group.parameter` of every parameter.
   [[nodiscard]] std::vector<std::string> paths() const;
-  /// Sets `group.parameter` from text. Throws `UserError` naming the key and what is legal; `where` (a file and line, or a flag) leads the message.
+  /// What is set from here on belongs together: a file, or all of `--set`. Within a layer the order does not matter in which `memory.kind` and what it stands for
+  /// are set.
+  void begin_layer() { given_.clear(); }
+  /// The parameter of that name; null if there is none.
+  [[nodiscard]] const hw::ParamBase* find(std::string_view key) const;
+  /// Sets `group.parameter` from text; `memory.kind` also what its data file holds and this layer does not set. Throws `UserError` with the key and what is legal; `where` leads it.
   void set(std::string_view key, std::string_view value, std::string_view where);
   /// Checks that hold between parameters.
   void check() const;
@@ -142,16 +149,21 @@ class MachineConfig {
 
  private:
   [[nodiscard]] std::vector<std::string> values() const;
+  void assign(std::string_view key, std::string_view value, std::string_view where);
+  void check_memory() const;
 
   std::vector<std::pair<std::string, hw::ParamGroup*>> groups_;
   std::string base_ = "default";
-  std::vector<std::string> base_values_;  ///< of every parameter, in the order of `groups_`
+  std::set<std::string, std::less<>> given_;  ///< keys that this layer set
+  std::vector<std::string> base_values_;      ///< of every parameter, in the order of `groups_`
 };
 
 /// Applies a machine: a path ending in .toml, or the name of one in configs/. Its base, and the base of that, are applied before it. Throws `UserError`.
 void load_machine(MachineConfig& config, const std::string& name_or_path);
 /// Applies the text of a machine file (TOML); `file` is its name in errors, and a base that is a path is looked for beside it. Throws `UserError` with file and line.
 void apply_machine_text(MachineConfig& config, std::string_view text, const std::string& file);
+/// What a kind of memory stands for: keys and values of its data file, `gpu.memory_mhz` among them. Throws `UserError`.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> memory_kind_values(const std::string& kind);
 /// Names of the machines that come with the program.
 [[nodiscard]] std::vector<std::string> machine_names();
 

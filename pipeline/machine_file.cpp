@@ -39,7 +39,12 @@ void check_lines(std::string_view text, const std::string& file) {
   }
 }
 
-std::string value_text(const toml::node& node, const std::string& where, const std::string& key) {
+/// The value as `set` reads it. A word is in quotes, and nothing else is.
+std::string value_text(const toml::node& node, bool word, const std::string& where, const std::string& key) {
+  if (word) {
+    if (const auto* v = node.as_string()) return v->get();
+    throw user_error("{}: {}: a word in quotes is expected", where, key);
+  }
   if (const auto* v = node.as_integer()) return fmt::format("{}", v->get());
   if (const auto* v = node.as_floating_point()) return fmt::format("{}", v->get());
   if (const auto* v = node.as_boolean()) return v->get() ? "true" : "false";
@@ -82,7 +87,8 @@ void apply(MachineConfig& config, const toml::table& table, const std::string& p
       names.insert(names.end(), {"name", "base"});
       throw user_error("{}: unknown key '{}'; outside of groups there are name and base{}", where, key, did_you_mean(key, names));
     } else {
-      config.set(key, value_text(node, where, key), where);
+      const hw::ParamBase* const param = config.find(key);
+      config.set(key, value_text(node, param != nullptr && param->is_word(), where, key), where);
     }
   }
 }
@@ -94,6 +100,7 @@ void apply_layers(MachineConfig& config, std::string_view text, const std::strin
     const toml::table table = toml::parse(text, file);
     if (const toml::node* base = table.get("base")) apply_base(config, *base, file, layers);
     config.name = fs::path(file).filename().string();  // unless it says another
+    config.begin_layer();
     apply(config, table, "", file);
   } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", file, e.source().begin.line, e.description()); }
 }
@@ -107,6 +114,15 @@ fs::path file_of_machine(const std::string& name) {
   const std::vector<std::string> names = machine_names();
   throw user_error("machine '{}' is unknown; machines: {}; or give a path that ends in .toml{}", name, fmt::join(names, ", "),
                    did_you_mean(name, names));
+}
+
+/// The data file of a kind of memory.
+fs::path file_of_memory(const std::string& kind) {
+  for (const fs::path& folder : config_folders()) {
+    fs::path file = folder / "memory" / (kind + ".toml");
+    if (fs::exists(file)) return file;
+  }
+  throw user_error("memory '{}': no file memory/{}.toml beside the machines that come with the program", kind, kind);
 }
 
 void load_layer(MachineConfig& config, const std::string& name_or_path, const Layers& above) {
@@ -147,6 +163,22 @@ std::vector<std::string> machine_names() {
   return names;
 }
 
+std::vector<std::pair<std::string, std::string>> memory_kind_values(const std::string& kind) {
+  const std::string file = file_of_memory(kind).string();
+  const std::vector<std::byte> bytes = traces::read_whole_file(file, kMaxFileBytes);
+  std::vector<std::pair<std::string, std::string>> values;
+  try {
+    const toml::table table = toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file);
+    const toml::table* memory = table["memory"].as_table();
+    if (memory == nullptr) throw user_error("{}: has no table [memory]", file);
+    for (const auto& [name, node] : *memory) {
+      const std::string key = name.str() == "clock_mhz" ? "gpu.memory_mhz" : fmt::format("memory.{}", name.str());
+      values.emplace_back(key, value_text(node, node.is_string(), fmt::format("{}:{}", file, node.source().begin.line), key));
+    }
+  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", file, e.source().begin.line, e.description()); }
+  return values;
+}
+
 void apply_machine_text(MachineConfig& config, std::string_view text, const std::string& file) {
   apply_layers(config, text, file, {});
   check(config, file);
@@ -163,7 +195,7 @@ std::string machine_toml(const std::vector<DescribedGroup>& groups) {
     text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", path);
     for (const hw::ParamBase* p : params) {
       const std::string unit = p->unit().empty() ? "" : fmt::format("{}, ", p->unit());
-      text += fmt::format("{} = {}  # {}{}: {}\n", p->name(), p->value_text(), unit, p->legal_text(), p->reason());
+      text += fmt::format("{} = {}  # {}{}: {}\n", p->name(), p->literal(), unit, p->legal_text(), p->reason());
     }
   }
   return text;

@@ -44,13 +44,16 @@ Json unit_json(const UnitFigures& u) {
   Json waits = Json::object(), counters = Json::object();
   for (const WaitFigure& w : u.waits) waits[w.port] = w.cycles;
   for (const CounterFigure& c : u.counters) counters[c.name] = c.value;
+  Json histograms = Json::object();
+  for (const HistogramFigure& h : u.histograms) histograms[h.name] = {{"buckets", h.buckets}, {"sum", h.sum}};
   return {{"cycles", u.cycles},
           {"busy", u.busy},
           {"starved", u.starved},
           {"blocked", u.blocked},
           {"idle", u.idle},
           {"waits", std::move(waits)},
-          {"counters", std::move(counters)}};
+          {"counters", std::move(counters)},
+          {"histograms", std::move(histograms)}};
 }
 
 /// Unit and definition of every counter, once a kind of unit.
@@ -61,6 +64,7 @@ Json definitions_json(const Figures& f) {
     if (!kind.is_null()) continue;
     kind = Json::object();
     for (const CounterFigure& c : u.counters) kind[c.name] = {{"unit", c.unit}, {"definition", c.definition}};
+    for (const HistogramFigure& h : u.histograms) kind[h.name] = {{"unit", h.unit}, {"definition", h.definition}};
   }
   return all;
 }
@@ -110,7 +114,7 @@ Json host_json(const Figures& f) {
 std::string machine_json(const MachineConfig& machine) {
   Json parameters = Json::object(), changed = Json::object();
   for (const auto& [path, group] : machine.groups()) {
-    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->value_text());
+    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->literal());
   }
   for (const MachineConfig::Change& c : machine.changes())
     changed[c.path] = {{"value", Json::parse(c.value)}, {"base", Json::parse(c.base_value)}};

@@ -207,8 +207,8 @@ std::string_view without_number(std::string_view name) {
 }
 
 double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
-  constexpr double kSectorBytes = 32;
-  return machine.gpu.channels * kSectorBytes / machine.memory.t_burst * machine.gpu.memory_mhz / machine.gpu.clock_mhz;
+  const double burst = static_cast<double>(machine.memory.burst_bytes) * machine.memory.pseudo_channels / machine.memory.t_burst;
+  return machine.gpu.channels * burst * machine.gpu.memory_mhz / machine.gpu.clock_mhz;
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {

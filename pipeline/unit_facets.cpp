@@ -98,7 +98,12 @@ const std::map<std::string_view, std::vector<Facet>>& facet_table() {
       {"memory",
        {{"accesses", kCount, "reads+writes"},
         {"row hit", kShare, "row_hits", "reads+writes"},
-        {"data bus held", kShare, "bus_busy", "cycles"}}},
+        {"data bus held", kShare, "bus_busy", "cycles"},
+        {"refresh", kShare, "bus_refresh", "cycles"},
+        {"turn-around", kShare, "bus_turnaround", "cycles"},
+        {"activation", kShare, "bus_activation", "cycles"},
+        {"spacing", kShare, "bus_spacing", "cycles"},
+        {"in queue", kMean, "queue_occupancy", "cycles"}}},
       {"scan_out", {{"lines", kCount, "lines"}}}};
   return table;
 }

@@ -1,13 +1,34 @@
 /// Counters of units. A counter is declared once, with name, unit and definition, and is its own storage; reports, JSON and documentation walk the group.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <string_view>
 #include <vector>
 
 namespace quadrille::hw {
 
 class Counter;
+class Histogram;
+
+/// What every statistic says of itself.
+class Statistic {
+ public:
+  Statistic(std::string_view name, std::string_view unit, std::string_view definition)
+      : name_(name), unit_(unit), definition_(definition) {}
+  Statistic(const Statistic&) = delete;
+  Statistic& operator=(const Statistic&) = delete;
+  [[nodiscard]] std::string_view name() const { return name_; }
+  [[nodiscard]] std::string_view unit() const { return unit_; }
+  [[nodiscard]] std::string_view definition() const { return definition_; }
+
+ private:
+  std::string_view name_, unit_, definition_;
+};
 
 /// The counters of one unit. Not copyable: counters register their own address.
 class StatGroup {
@@ -16,21 +37,23 @@ class StatGroup {
   StatGroup(const StatGroup&) = delete;
   StatGroup& operator=(const StatGroup&) = delete;
   [[nodiscard]] const std::vector<Counter*>& counters() const { return counters_; }
-  void add(Counter& c) { counters_.push_back(&c); }
+  [[nodiscard]] const std::vector<Histogram*>& histograms() const { return histograms_; }
+  /// Both, in the order in which they are declared.
+  [[nodiscard]] const std::vector<Statistic*>& all() const { return all_; }
+  void add(Counter& c);
+  void add(Histogram& h);
 
  private:
+  std::vector<Statistic*> all_;
   std::vector<Counter*> counters_;
+  std::vector<Histogram*> histograms_;
 };
 
-class Counter {
+class Counter final : public Statistic {
  public:
-  Counter(StatGroup& group, std::string_view name, std::string_view unit, std::string_view definition)
-      : name_(name), unit_(unit), definition_(definition) {
+  Counter(StatGroup& group, std::string_view name, std::string_view unit, std::string_view definition) : Statistic(name, unit, definition) {
     group.add(*this);
   }
-  Counter(const Counter&) = delete;
-  Counter& operator=(const Counter&) = delete;
-
   Counter& operator++() {
     ++value_;
     return *this;
@@ -40,13 +63,40 @@ class Counter {
     return *this;
   }
   [[nodiscard]] std::uint64_t value() const { return value_; }
-  [[nodiscard]] std::string_view name() const { return name_; }
-  [[nodiscard]] std::string_view unit() const { return unit_; }
-  [[nodiscard]] std::string_view definition() const { return definition_; }
 
  private:
   std::uint64_t value_ = 0;
-  std::string_view name_, unit_, definition_;
 };
+
+/// How often a quantity had which size: bucket 0 counts zeros, bucket k > 0 counts sizes from 2^(k-1) to 2^k - 1.
+class Histogram final : public Statistic {
+ public:
+  static constexpr std::size_t kBuckets = 48;
+  Histogram(StatGroup& group, std::string_view name, std::string_view unit, std::string_view definition)
+      : Statistic(name, unit, definition) {
+    group.add(*this);
+  }
+  void note(std::uint64_t size) {
+    ++buckets_[std::min<std::size_t>(static_cast<std::size_t>(std::bit_width(size)), kBuckets - 1)];
+    sum_ += size;
+  }
+  [[nodiscard]] const std::array<std::uint64_t, kBuckets>& buckets() const { return buckets_; }
+  /// Of all sizes noted.
+  [[nodiscard]] std::uint64_t sum() const { return sum_; }
+  [[nodiscard]] std::uint64_t count() const { return std::accumulate(buckets_.begin(), buckets_.end(), std::uint64_t{0}); }
+
+ private:
+  std::array<std::uint64_t, kBuckets> buckets_{};
+  std::uint64_t sum_ = 0;
+};
+
+inline void StatGroup::add(Counter& c) {
+  counters_.push_back(&c);
+  all_.push_back(&c);
+}
+inline void StatGroup::add(Histogram& h) {
+  histograms_.push_back(&h);
+  all_.push_back(&h);
+}
 
 }  // namespace quadrille::hw

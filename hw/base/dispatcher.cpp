@@ -153,7 +153,7 @@ void Dispatcher::settle() {
     for (std::uint64_t marks = std::exchange(touched_[w], 0); marks != 0; marks &= marks - 1) {
       const std::size_t k = chooser_of_[w * 64 + static_cast<std::size_t>(std::countr_zero(marks))];
       const Wake asked = choosers_[k].unit->next();
-      if (window_ > 0) adapt(k, asked.at());
+      if (window_ > 0 && choosers_[k].unit->may_run_ahead()) adapt(k, asked.at());
       choosers_[k].wake = asked.not_before(choosers_[k].unit->last_action());
       times_[k] = choosers_[k].wake.at();
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -32,6 +33,11 @@ class ParamBase {
   [[nodiscard]] virtual std::string value_text() const = 0;
   [[nodiscard]] virtual std::string default_text() const = 0;
   [[nodiscard]] virtual std::string legal_text() const = 0;
+  /// Is the value one of a list of words?
+  [[nodiscard]] virtual bool is_word() const { return false; }
+  /// Value and default as TOML and JSON write them: words in quotes.
+  [[nodiscard]] virtual std::string literal() const { return value_text(); }
+  [[nodiscard]] virtual std::string default_literal() const { return default_text(); }
   /// Reads a value. Throws `UserError` (without file or key, which the caller adds) when it is not a legal value.
   virtual void parse(std::string_view text) = 0;
 
@@ -77,6 +83,40 @@ class Param final : public ParamBase {
  private:
   T value_, default_;
   ParamRange<T> range_;
+};
+
+/// A parameter that is one word of a list: which policy, which kind. `E` is an enumeration whose values count from 0 in the order of the words.
+template <class E>
+class Choice final : public ParamBase {
+  static_assert(std::is_enum_v<E>);
+
+ public:
+  Choice(ParamGroup& group, std::string_view name, E value, std::initializer_list<std::string_view> words, std::string_view reason)
+      : ParamBase(name, "", reason), value_(value), default_(value), words_(words) {
+    group.add(*this);
+  }
+  operator E() const { return value_; }  // NOLINT(google-explicit-constructor): a parameter reads as its value
+  [[nodiscard]] E value() const { return value_; }
+  void set(E value) { value_ = value; }
+  [[nodiscard]] std::string value_text() const override { return std::string(word(value_)); }
+  [[nodiscard]] std::string default_text() const override { return std::string(word(default_)); }
+  [[nodiscard]] std::string legal_text() const override { return fmt::format("{}", fmt::join(words_, ", ")); }
+  [[nodiscard]] bool is_word() const override { return true; }
+  [[nodiscard]] std::string literal() const override { return fmt::format("\"{}\"", value_text()); }
+  [[nodiscard]] std::string default_literal() const override { return fmt::format("\"{}\"", default_text()); }
+  void parse(std::string_view text) override {
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      if (words_[i] != text) continue;
+      value_ = static_cast<E>(i);
+      return;
+    }
+    throw user_error("'{}' is not one of its words; legal: {}", text, legal_text());
+  }
+
+ private:
+  [[nodiscard]] std::string_view word(E value) const { return words_[static_cast<std::size_t>(value)]; }
+  E value_, default_;
+  std::vector<std::string_view> words_;
 };
 
 extern template class Param<int>;

@@ -52,6 +52,7 @@ void Unit::close(Tick end, Tick reachable_until) {
   idle_ += span(accounted_, last_edge);
   accounted_ = last_edge;
   total_ = clock_.edges_before(end);
+  finish_stats(end);
   const std::int64_t busy = busy_cycles(), starved = starved_cycles(), blocked = blocked_cycles(), idle = idle_cycles();
   QUADRILLE_CHECK(busy + starved + blocked + idle == total_, "{}: busy {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy,
                   starved, blocked, idle, total_);

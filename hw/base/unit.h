@@ -98,9 +98,13 @@ class Unit : public sc_core::sc_module {
   [[nodiscard]] virtual Wake next() const = 0;
   /// Performs that action. `now` is an edge of the unit's clock: `next().at()`, or the latest action's tick if that is later.
   virtual void act(Tick now) = 0;
+  /// May a window let this chooser run ahead of what can still reach it? Not one that picks the best of all it holds: each late arrival would be a wrong choice.
+  [[nodiscard]] virtual bool may_run_ahead() const { return true; }
   /// One line on what the unit holds, for the deadlock report.
   [[nodiscard]] virtual std::string state_text() const { return {}; }
   [[nodiscard]] virtual const StatGroup* stats() const { return nullptr; }
+  /// The frame ended at `end`: counts of time that go on up to there are brought up to date.
+  virtual void finish_stats(Tick end) { (void)end; }
 
   /// What drivers ask: `next()`, but not before the latest action, since the unit's state was another one then.
   [[nodiscard]] Wake wake() const { return next().not_before(last_action_); }

@@ -127,6 +127,9 @@ struct TextureToken {
   bool vertex_stage = false;
 };
 
+/// On whose behalf memory is accessed.
+enum class MemoryClient : std::uint8_t { kVertexFetch, kTexture, kDepth, kColor, kScanOut, kWriteBack };
+
 /// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer. Writes are not answered; a fence is, once all
 /// requests of its client before it have been taken in.
 struct MemoryRequest {
@@ -135,6 +138,7 @@ struct MemoryRequest {
   std::uint32_t tag = 0;
   std::uint8_t sectors = 0;
   Kind kind = Kind::kRead;
+  MemoryClient client = MemoryClient::kVertexFetch;  ///< written by the L2 slice
 };
 struct MemoryResponse {
   std::uint32_t line = 0;

@@ -2,12 +2,8 @@
 
 namespace quadrille::hw {
 
-namespace {
-std::uint32_t whole_sets(int lines, int ways) { return static_cast<std::uint32_t>(std::max(1, lines / ways) * ways); }
-}  // namespace
-
 L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses)
-    : tags_(whole_sets(lines, ways), static_cast<std::uint32_t>(ways)),
+    : tags_(static_cast<std::uint32_t>(lines), static_cast<std::uint32_t>(ways)),
       misses_(static_cast<std::size_t>(misses)),
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
       stats_(stats) {

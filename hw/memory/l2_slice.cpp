@@ -1,5 +1,6 @@
 #include "hw/memory/l2_slice.h"
 
+#include "hw/memory/memory_port.h"
 #include "models/memory/device_memory.h"
 
 #include <algorithm>
@@ -15,18 +16,20 @@ std::string port_name(const std::string& client, std::string_view side) {
   if (number == client.size()) return fmt::format("{}_{}", client, side);
   return fmt::format("{}{}_{}", client.substr(0, number), side, client.substr(number));
 }
-std::uint32_t whole_sets(int lines, int ways) { return static_cast<std::uint32_t>(std::max(1, lines / ways) * ways); }
 }  // namespace
 
-L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<std::string>& clients)
+L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<Client>& clients, int slices)
     : Unit(name, Kind::kChooser, clock),
       params_(params),
-      tags_(whole_sets(params.cache_lines, params.cache_ways), static_cast<std::uint32_t>(params.cache_ways.value())),
+      tags_(static_cast<std::uint32_t>(params.cache_lines.value()), static_cast<std::uint32_t>(params.cache_ways.value()),
+            static_cast<std::uint32_t>(slices)),
       misses_(static_cast<std::size_t>(params.cache_misses.value())),
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
       answers_(clients.size()),
-      answering_((clients.size() + 63) / 64, 0) {
-  for (const std::string& client : clients) {
+      answering_((clients.size() + 63) / 64, 0),
+      interleave_(static_cast<std::uint32_t>(slices)) {
+  for (const auto& [client, kind] : clients) {
+    client_kinds_.push_back(kind);
     request_in.add(*this, port_name(client, "in").c_str());
     response_out.push_back(std::make_unique<FifoOut<MemoryResponse>>(*this, port_name(client, "out").c_str(), LinkRole::kReply));
   }
@@ -47,7 +50,7 @@ Wake L2Slice::look_up_wake() const {
 Wake L2Slice::next() const {
   Wake wake = look_up_wake();
   wake = Wake::sooner(wake, Wake().input(fill_in));
-  if (!to_memory_.empty()) wake = Wake::sooner(wake, Wake().output(memory_out));
+  if (!to_memory_.empty()) wake = Wake::sooner(wake, Wake(to_memory_.front().at).output(memory_out));
   if (answer_due_ < wake.at())
     visit_answering([&](std::size_t c) { wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c])); });
   return wake;
@@ -63,10 +66,13 @@ void L2Slice::act(Tick now) {
       return true;
     });
   }
-  if (!to_memory_.empty() && memory_out.room_at(now)) {
-    memory_out.push(now, to_memory_.front());
-    to_memory_.pop_front();
-  }
+  send_to_memory(now);
+}
+
+void L2Slice::send_to_memory(Tick now) {
+  if (to_memory_.empty() || to_memory_.front().at > now || !memory_out.room_at(now)) return;
+  memory_out.push(now, to_memory_.front().token);
+  to_memory_.pop_front();
 }
 
 void L2Slice::send_answers(Tick now) {
@@ -87,7 +93,7 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
   bool taken = true;
   switch (request.kind) {
     case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
-    case MemoryRequest::Kind::kWrite: taken = write(request); break;
+    case MemoryRequest::Kind::kWrite: taken = write(now, request); break;
     case MemoryRequest::Kind::kFence: answer(after(now, params_.hit_clk), client, {request.line, request.tag, 0}); break;
   }
   if (!taken) {
@@ -101,13 +107,32 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
   occupy(now, 1);
 }
 
-int L2Slice::place(std::uint32_t line) {
+int L2Slice::place(Tick now, std::uint32_t line) {
   const models::TagArray::Allocation got = tags_.allocate(line);
   if (got.victim.valid && got.victim.dirty != 0) {
-    stats_.writeback_bytes += bytes_of(got.victim.dirty);
-    to_memory_.push_back({got.victim.line, 0, got.victim.dirty, MemoryRequest::Kind::kWrite});
+    write_back(now, got.victim.line, got.victim.dirty);
+    if (params_.write_back == WriteBack::kRow) write_back_block(now, got.victim.line);
   }
   return got.slot;
+}
+
+void L2Slice::write_back(Tick now, std::uint32_t line, std::uint8_t sectors) {
+  stats_.writeback_bytes += bytes_of(sectors);
+  to_memory_.push_back({after(now, params_.hit_clk), {line, 0, sectors, MemoryRequest::Kind::kWrite, MemoryClient::kWriteBack}});
+}
+
+void L2Slice::write_back_block(Tick now, std::uint32_t victim) {
+  // The lines of this slice around the victim, in order of address.
+  const auto block = static_cast<std::uint32_t>(params_.write_back_lines.value());
+  const std::uint32_t first = interleave_.index_of(victim) / block * block;
+  for (std::uint32_t within = first; within < first + block; ++within) {
+    const std::uint32_t line = interleave_.line_of(interleave_.member_of(victim), within);
+    const int slot = tags_.find(line);
+    if (slot == models::TagArray::kNone || tags_.at(slot).dirty == 0) continue;
+    write_back(now, line, tags_.at(slot).dirty);
+    tags_.clean(slot);
+    ++stats_.early_write_backs;
+  }
 }
 
 bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request) {
@@ -120,7 +145,7 @@ bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request)
   }
   const bool under_way = slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
   if (!under_way && free_misses_.empty()) return false;
-  if (slot == models::TagArray::kNone) slot = place(request.line);
+  if (slot == models::TagArray::kNone) slot = place(now, request.line);
   if (slot == models::TagArray::kNone) return false;
   if (!under_way) {
     miss_of_slot_[static_cast<std::size_t>(slot)] = static_cast<int>(free_misses_.back());
@@ -135,7 +160,7 @@ bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request)
     tags_.mark_pending(slot, missing);
     miss.pending |= missing;
     stats_.fill_bytes += bytes_of(missing);
-    to_memory_.push_back({request.line, tag, missing, MemoryRequest::Kind::kRead});
+    to_memory_.push_back({after(now, params_.hit_clk), {request.line, tag, missing, MemoryRequest::Kind::kRead, client_kinds_[client]}});
   } else {
     ++stats_.merged;
   }
@@ -143,9 +168,9 @@ bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request)
   return true;
 }
 
-bool L2Slice::write(const MemoryRequest& request) {
+bool L2Slice::write(Tick now, const MemoryRequest& request) {
   int slot = tags_.lookup(request.line);
-  if (slot == models::TagArray::kNone) slot = place(request.line);
+  if (slot == models::TagArray::kNone) slot = place(now, request.line);
   if (slot == models::TagArray::kNone) return false;
   tags_.mark_dirty(slot, request.sectors);
   ++stats_.hits;

@@ -3,7 +3,8 @@
 /// In    request_in[c]   sectors of a line, from client c      fill_in   a line's sectors from the channel
 /// Out   response_out[c] answers to reads and fences           memory_out  misses and write-backs
 ///       Ports are named for their client: those of texture_3 are texture_in_3 and texture_out_3.
-/// Time  one request a cycle, clients take turns; an answer leaves when its sectors are there; a line that is under way serves all who ask for it
+/// Time  one request a cycle, clients take turns; `hit_clk` after its look-up a hit is answered and a miss goes to the channel, whose fill is answered when it
+///       comes; a line that is under way serves all who ask for it.
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -11,6 +12,7 @@
 #include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
 #include "models/cache/tag_array.h"
+#include "models/memory/interleave.h"
 
 #include <bit>
 #include <memory>
@@ -19,12 +21,21 @@ namespace quadrille::hw {
 
 class L2Slice final : public Unit {
  public:
+  /// How dirty lines leave.
+  enum class WriteBack : std::uint8_t { kVictim, kRow };
   struct Params : ParamGroup {
     Param<int> cache_lines{*this, "cache_lines", 4096, "line", {1, 1 << 24}, "Lines of 128 bytes in a slice. [G: 512 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 16, "way", {1, 64}, "Associativity. [G]"};
     Param<int> cache_misses{*this,  "cache_misses", 128,
                             "line", {1, 65536},     "Lines under way to and from the channel. [G: bandwidth times latency]"};
-    Param<int> hit_clk{*this, "hit_clk", 20, "clk", {1, 1 << 20}, "Latency from look-up to answer. [G]"};
+    Param<int> hit_clk{*this, "hit_clk", 20, "clk", {1, 1 << 20}, "Latency from look-up to answer, or to the channel for a miss. [G]"};
+    Choice<WriteBack> write_back{*this,
+                                 "write_back",
+                                 WriteBack::kVictim,
+                                 {"victim", "row"},
+                                 "A dirty victim leaves alone, or with the other dirty lines of its block. [P: Lee 2010]"};
+    Param<int> write_back_lines{*this,  "write_back_lines", 128,
+                                "line", {1, 4096},          "Lines of that block: those that lie in the same rows of all banks. [G]"};
   };
   struct Stats : StatGroup {
     Counter requests{*this, "requests", "request", "Read and write requests looked up"};
@@ -35,8 +46,14 @@ class L2Slice final : public Unit {
     Counter write_bytes{*this, "write_bytes", "byte", "Bytes written by clients"};
     Counter fill_bytes{*this, "fill_bytes", "byte", "Bytes read from the memory channel"};
     Counter writeback_bytes{*this, "writeback_bytes", "byte", "Bytes written back to the memory channel"};
+    Counter early_write_backs{*this, "early_write_backs", "line", "Lines written back with a victim of their block"};
   };
-  L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<std::string>& clients);
+  struct Client {
+    std::string name;
+    MemoryClient kind = MemoryClient::kVertexFetch;
+  };
+  /// `slices` of the machine, this one among them.
+  L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<Client>& clients, int slices);
 
   FifoInGroup<MemoryRequest> request_in;
   std::vector<std::unique_ptr<FifoOut<MemoryResponse>>> response_out;
@@ -45,6 +62,7 @@ class L2Slice final : public Unit {
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
+  [[nodiscard]] bool may_run_ahead() const override { return false; }
   [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
   [[nodiscard]] std::string state_text() const override;
 
@@ -62,14 +80,21 @@ class L2Slice final : public Unit {
     Tick at = 0;
     MemoryResponse token;
   };
+  struct ToMemory {
+    Tick at = 0;  ///< the look-up's latency is over
+    MemoryRequest token;
+  };
   [[nodiscard]] Wake look_up_wake() const;
   [[nodiscard]] bool can_look_up() const;
   void send_answers(Tick now);
   void look_up(Tick now, std::uint32_t client);
   /// False when the line has no place now; nothing was changed.
   bool read(Tick now, std::uint32_t client, const MemoryRequest& request);
-  bool write(const MemoryRequest& request);
-  [[nodiscard]] int place(std::uint32_t line);
+  bool write(Tick now, const MemoryRequest& request);
+  [[nodiscard]] int place(Tick now, std::uint32_t line);
+  void write_back(Tick now, std::uint32_t line, std::uint8_t sectors);
+  void write_back_block(Tick now, std::uint32_t line);
+  void send_to_memory(Tick now);
   void take_fill(Tick now);
   void answer(Tick at, std::uint32_t client, const MemoryResponse& token);
   /// Calls `visit(client)` for the clients that have answers.
@@ -90,7 +115,9 @@ class L2Slice final : public Unit {
   std::vector<Queue<Answer>> answers_;    ///< by client, in order of time
   std::vector<std::uint64_t> answering_;  ///< a bit a client: it has answers
   Tick answer_due_ = kNever;              ///< no client has an answer due before
-  Queue<MemoryRequest> to_memory_;
+  models::Interleave interleave_;
+  std::vector<MemoryClient> client_kinds_;
+  Queue<ToMemory> to_memory_;
   std::size_t turn_ = 0;
   bool stalled_ = false;  ///< the line in turn had no place; a fill will make one
   Tick free_ = 0;

@@ -1,68 +1,183 @@
 #include "hw/memory/memory_channel.h"
 
-#include "hw/memory/memory_port.h"
 #include "models/memory/device_memory.h"
 
 #include <bit>
 
 namespace quadrille::hw {
 
-namespace {
-models::DramParams dram_params(const MemoryChannel::Params& p) {
-  models::DramParams d;
-  d.banks = p.banks;
-  d.row_bytes = p.row_bytes;
-  d.t_rcd = p.t_rcd;
-  d.t_rp = p.t_rp;
-  d.t_cas = p.t_cas;
-  d.t_burst = p.t_burst;
-  return d;
+models::DramControllerParams MemoryChannel::Params::controller() const {
+  models::DramControllerParams p;
+  p.timing = {.pseudo_channels = pseudo_channels,
+              .ranks = ranks,
+              .bank_groups = bank_groups,
+              .banks = banks,
+              .rows = rows,
+              .row_bytes = row_bytes,
+              .burst_bytes = burst_bytes,
+              .t_burst = t_burst,
+              .t_rcd = t_rcd,
+              .t_rcd_wr = t_rcd_wr,
+              .t_rp = t_rp,
+              .t_ras = t_ras,
+              .t_rc = t_rc,
+              .t_cas = t_cas,
+              .t_cwl = t_cwl,
+              .t_ccd_s = t_ccd_s,
+              .t_ccd_l = t_ccd_l,
+              .t_rrd_s = t_rrd_s,
+              .t_rrd_l = t_rrd_l,
+              .t_faw = t_faw,
+              .t_wr = t_wr,
+              .t_wtr_s = t_wtr_s,
+              .t_wtr_l = t_wtr_l,
+              .t_rtp = t_rtp,
+              .t_rtw = t_rtw,
+              .t_rtrs = t_rtrs,
+              .refresh = refresh,
+              .t_refi = t_refi,
+              .t_rfc = t_rfc,
+              .t_rfc_pb = t_rfc_pb,
+              .t_rrefd = t_rrefd,
+              .refresh_postpone = refresh_postpone,
+              .separate_buses = separate_buses,
+              .shared_commands = shared_commands,
+              .act_slots = act_slots,
+              .column_slots = column_slots};
+  p.interleave = mapping;
+  p.hash = bank_hash;
+  p.scheduler = scheduler;
+  p.age_cap = age_cap;
+  p.write_drain = write_drain;
+  p.write_high = std::max(1, write_queue * write_high / 100);
+  p.write_low = write_queue * write_low / 100;
+  p.page = page;
+  p.page_idle = page_idle;
+  p.reads = queue_depth;
+  p.writes = write_queue;
+  return p;
 }
-}  // namespace
+
+Histogram& MemoryChannel::Stats::latency(MemoryClient client) {
+  switch (client) {
+    case MemoryClient::kVertexFetch: return latency_vertex_fetch;
+    case MemoryClient::kTexture: return latency_texture;
+    case MemoryClient::kDepth: return latency_depth;
+    case MemoryClient::kColor: return latency_color;
+    case MemoryClient::kScanOut: return latency_scan_out;
+    case MemoryClient::kWriteBack: return latency_write_back;
+  }
+  return latency_write_back;
+}
 
 MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const Params& params, const Clock& clock, int channels)
-    : Unit(name, Kind::kChooser, clock), params_(params), channels_(static_cast<std::uint32_t>(channels)), dram_(dram_params(params)) {}
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      interleave_(static_cast<std::uint32_t>(channels)),
+      stats_(std::make_unique<Stats>()),
+      controller_(params.controller()) {}
 
-std::string MemoryChannel::state_text() const { return fmt::format("{} accesses under way", under_way_.size()); }
+MemoryChannel::~MemoryChannel() = default;
+
+const StatGroup* MemoryChannel::stats() const { return stats_.get(); }
+
+std::string MemoryChannel::state_text() const {
+  return fmt::format("{} reads and {} writes in the queue, {} answers", controller_.held(false), controller_.held(true), answers_.size());
+}
 
 Wake MemoryChannel::take_wake() const {
-  if (under_way_.size() >= static_cast<std::size_t>(params_.queue_depth.value())) return Wake::never(response_out);
-  return Wake(free_).input(request_in);
+  if (request_in.ready() == kNever) return Wake().input(request_in);
+  const bool write = request_in.front().kind == MemoryRequest::Kind::kWrite;
+  return controller_.room(write) ? Wake().input(request_in) : Wake::never(request_in);
 }
 
-Wake MemoryChannel::finish_wake() const {
-  if (under_way_.empty()) return Wake::never(request_in);
-  Wake wake(under_way_.front().done);
-  return under_way_.front().write ? wake : wake.output(response_out);
+Wake MemoryChannel::command_wake() const {
+  const std::int64_t cycle = controller_.next();
+  return cycle == models::DramController::kNever ? Wake::never(request_in) : Wake(clock().edge(cycle));
 }
 
-Wake MemoryChannel::next() const { return Wake::sooner(finish_wake(), take_wake()); }
+Wake MemoryChannel::next() const {
+  Wake wake = Wake::sooner(command_wake(), take_wake());
+  if (!answers_.empty()) wake = Wake::sooner(wake, Wake(answers_.front().at).output(response_out));
+  return wake;
+}
 
 void MemoryChannel::act(Tick now) {
-  if (finish_wake().at() <= now) {
-    if (!under_way_.front().write) response_out.push(now, under_way_.front().answer);
-    under_way_.pop_front();
+  const std::int64_t cycle = clock().edges_before(now);
+  while (request_in.ready_at(now) && take_wake().at() <= now) take(now, cycle);
+  if (controller_.next() <= cycle) {
+    note_occupancy(cycle);
+    done_.clear();
+    controller_.step(cycle, done_);
+    for (const models::DramDone& done : done_) finish(done);
+    occupy(now, 1);
   }
-  if (take_wake().at() <= now) take(now);
+  while (!answers_.empty() && answers_.front().at <= now && response_out.room_at(now)) {
+    response_out.push(now, answers_.front().token);
+    answers_.pop_front();
+  }
 }
 
-void MemoryChannel::take(Tick now) {
+void MemoryChannel::note_occupancy(std::int64_t cycle) {
+  const auto held = static_cast<std::uint64_t>(controller_.held(false) + controller_.held(true));
+  stats_->queue_occupancy += held * static_cast<std::uint64_t>(cycle - occupancy_noted_);
+  occupancy_noted_ = cycle;
+}
+
+void MemoryChannel::take(Tick now, std::int64_t cycle) {
   const MemoryRequest request = request_in.pop(now);
   const bool write = request.kind == MemoryRequest::Kind::kWrite;
-  const auto bytes = static_cast<std::uint32_t>(models::kSectorBytes * static_cast<unsigned>(std::popcount(request.sectors)));
-  const std::uint64_t address = std::uint64_t{line_within_slice(request.line, channels_)} * models::kLineBytes;
-  const std::int64_t cycle = clock().edges_before(now);
-  const models::DramAccess access = dram_.access(address, bytes, write, cycle);
-  ++(write ? stats_.writes : stats_.reads);
-  (write ? stats_.write_bytes : stats_.read_bytes) += bytes;
-  if (access.row_hit) ++stats_.row_hits;
-  if (access.row_conflict) ++stats_.row_conflicts;
-  stats_.bus_busy += static_cast<std::uint64_t>(access.done - access.start);
-  const Tick done = clock().edge(access.done + (write ? 0 : params_.path_clk.value()));
-  under_way_.push_back(
-      {under_way_.empty() ? done : std::max(done, under_way_.back().done), {request.line, request.tag, request.sectors}, write});
-  free_ = after(now, 1);
-  occupy(now, access.done - access.start);
+  const auto bytes = models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(request.sectors));
+  note_occupancy(cycle);
+  ++(write ? stats_->writes : stats_->reads);
+  (write ? stats_->write_bytes : stats_->read_bytes) += bytes;
+  if (free_ids_.empty()) {
+    free_ids_.push_back(static_cast<std::uint32_t>(held_.size()));
+    held_.emplace_back();
+  }
+  const std::uint32_t id = free_ids_.back();
+  free_ids_.pop_back();
+  held_[id] = {{request.line, request.tag, request.sectors}, request.client};
+  controller_.take({interleave_.index_of(request.line), request.sectors, write, id}, cycle);
+}
+
+void MemoryChannel::finish(const models::DramDone& done) {
+  switch (done.row) {
+    case models::DramRowOutcome::kHit: ++stats_->row_hits; break;
+    case models::DramRowOutcome::kMiss: ++stats_->row_misses; break;
+    case models::DramRowOutcome::kConflict: ++stats_->row_conflicts; break;
+  }
+  const Held& held = held_[done.id];
+  stats_->latency(held.client).note(static_cast<std::uint64_t>(done.done - done.arrived));
+  free_ids_.push_back(done.id);
+  if (done.write) return;
+  answers_.push_back({clock().edge(done.done), held.answer});
+  // Pseudo-channels finish in any order: keep the answers in order of time.
+  for (std::size_t i = answers_.size() - 1; i > 0 && answers_[i - 1].at > answers_[i].at; --i) std::swap(answers_[i - 1], answers_[i]);
+}
+
+void MemoryChannel::finish_stats(Tick end) {
+  const std::int64_t cycles = clock().edges_before(end);
+  note_occupancy(std::max(cycles, occupancy_noted_));
+  const models::DramCommandCounts& counts = controller_.counts();
+  stats_->activates += counts.activates;
+  stats_->precharges += counts.precharges;
+  stats_->read_bursts += counts.reads;
+  stats_->write_bursts += counts.writes;
+  stats_->refreshes += counts.refreshes;
+  // Shares of all pseudo-channels in whole cycles of the channel: what a division leaves over goes on to the next use, so that they still add up.
+  const models::BusAccount::Cycles sums = controller_.bus_cycles(cycles);
+  const std::array<Counter*, models::kBusUses> counters{&stats_->bus_read,       &stats_->bus_write,      &stats_->bus_refresh,
+                                                        &stats_->bus_turnaround, &stats_->bus_activation, &stats_->bus_spacing,
+                                                        &stats_->bus_idle};
+  const std::int64_t buses = params_.pseudo_channels;
+  std::int64_t sum = 0, given = 0;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    sum += sums[i];
+    *counters[i] += static_cast<std::uint64_t>(sum / buses - given);
+    given = sum / buses;
+  }
+  stats_->bus_busy += stats_->bus_read.value() + stats_->bus_write.value();
 }
 
 }  // namespace quadrille::hw

@@ -2,11 +2,13 @@
 
 #include "models/memory/device_memory.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace quadrille::hw {
 
-MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices) : stats_(stats) {
+MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices)
+    : stats_(stats), interleave_(static_cast<std::uint32_t>(std::max(slices, 1))) {
   for (int i = 0; i < slices; ++i) {
     request_out.push_back(std::make_unique<FifoOut<MemoryRequest>>(owner, fmt::format("memory_out_{}", i).c_str(), LinkRole::kReply));
     response_in.add(owner, fmt::format("memory_in_{}", i).c_str(), LinkRole::kReply);

@@ -1,19 +1,16 @@
 /// A client's side of the memory system: one request link and one answer link to each L2 slice, and a queue of requests that wait for room.
 ///
-/// Lines are spread over the slices so that any stride uses them all: slice = (line + line / slices) mod slices.
+/// Lines are spread over the slices by models/memory/interleave.h.
 #pragma once
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
+#include "models/memory/interleave.h"
 
 #include <memory>
 
 namespace quadrille::hw {
-
-/// Slice that holds a line, and the line's number within that slice's memory channel.
-[[nodiscard]] inline std::uint32_t slice_of(std::uint32_t line, std::uint32_t slices) { return (line + line / slices) % slices; }
-[[nodiscard]] inline std::uint32_t line_within_slice(std::uint32_t line, std::uint32_t slices) { return line / slices; }
 
 /// Traffic of one client, counted where the client asks.
 struct MemoryPortStats {
@@ -58,9 +55,10 @@ class MemoryPort {
     MemoryRequest request;
     std::uint32_t slice = 0;
   };
-  void queue(const MemoryRequest& request) { queue_.push_back({request, slice_of(request.line, static_cast<std::uint32_t>(slices()))}); }
+  void queue(const MemoryRequest& request) { queue_.push_back({request, interleave_.member_of(request.line)}); }
 
   MemoryPortStats stats_;
+  models::Interleave interleave_;
   Queue<Queued> queue_;
 };
 

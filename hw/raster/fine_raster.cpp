@@ -1,5 +1,6 @@
 #include "hw/raster/fine_raster.h"
 
+#include "models/memory/interleave.h"
 #include "models/raster/fine.h"
 
 #include <bit>
@@ -19,7 +20,7 @@ Wake FineRaster::next() const {
   if (tile_in.ready() == kNever) return wake;
   const TileToken& tile = tile_in.front();
   if (tile.kind == TokenKind::kWork) {
-    return wake.output(*coverage_out[partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()))]);
+    return wake.output(*coverage_out[models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()))]);
   }
   for (const auto& out : coverage_out) wake.output(*out);
   return wake;
@@ -46,7 +47,7 @@ void FineRaster::rasterize(Tick now, const TileToken& tile) {
   free_ = after(now, cycles);
   occupy(now, cycles);
   if (coverage == 0) return;
-  const std::uint32_t p = partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
+  const std::uint32_t p = models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
   coverage_out[p]->push(now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});
 }
 

@@ -12,11 +12,6 @@
 
 namespace quadrille::hw {
 
-/// Partition that owns a tile: neighbours in x and y differ, so that any small area uses all of them.
-[[nodiscard]] inline std::uint32_t partition_of(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t partitions) {
-  return (tile_x + tile_y * (partitions / 2 + 1)) % partitions;
-}
-
 class FineRaster final : public Unit {
  public:
   struct Params : ParamGroup {

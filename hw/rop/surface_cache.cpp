@@ -1,6 +1,6 @@
 #include "hw/rop/surface_cache.h"
 
-#include "hw/raster/fine_raster.h"
+#include "models/memory/interleave.h"
 
 #include <algorithm>
 
@@ -22,7 +22,7 @@ void SurfaceCache::clear(const models::SurfaceLayout& surface, std::uint32_t val
   cleared_.assign(std::size_t{surface.tiles_x} * surface.tiles_y, false);
   for (std::uint32_t y = 0; y < surface.tiles_y; ++y) {
     for (std::uint32_t x = 0; x < surface.tiles_x; ++x) {
-      if (partition_of(x, y, partitions) != partition) continue;
+      if (models::partition_of(x, y, partitions) != partition) continue;
       auto* const pixels = reinterpret_cast<std::uint32_t*>(memory_.write(surface.tile_address(x, y), models::kTileBytes).data());
       std::fill_n(pixels, models::kTilePixels, value);
       cleared_[std::size_t{y} * surface.tiles_x + x] = true;

@@ -30,7 +30,7 @@ Wake TextureUnit::answer_wake() const {
   const Group& head = groups_.front();
   const bool still_looking_up = groups_.size() == 1 && next_line_ < lines_.size();
   if (head.missing > 0 || still_looking_up) return Wake::never(port_.response_in[0]);
-  return Wake(after(std::max(head.ready, filter_free_), head.filter_cycles)).output(response_out);
+  return Wake(after(std::max(head.ready, filter_free_), head.filter_cycles + params_.filter_clk)).output(response_out);
 }
 
 Wake TextureUnit::next() const {
@@ -51,7 +51,7 @@ void TextureUnit::act(Tick now) {
   });
   if (answer_wake().at() <= now) {
     response_out.push(now, groups_.front().token);
-    filter_free_ = now;
+    filter_free_ = after(std::max(groups_.front().ready, filter_free_), groups_.front().filter_cycles);
     groups_.pop_front();
     ++first_group_;
     ++stats_.groups_answered;
@@ -96,7 +96,7 @@ void TextureUnit::take(Tick now) {
   plan(slots_[token.slot], token, group, address_cycles);
   ++stats_.groups;
   address_free_ = after(now, address_cycles);
-  group.ready = after(now, address_cycles + params_.filter_clk);
+  group.ready = after(now, address_cycles);
   occupy(now, address_cycles);
   groups_.push_back(group);
   look_up(now);

@@ -15,8 +15,8 @@ constexpr std::uint32_t kFree = 0xffffffffu;
 
 }  // namespace
 
-TagArray::TagArray(std::uint32_t lines, std::uint32_t ways)
-    : sets_(ways == 0 ? 0 : lines / ways), ways_(ways), stride_((ways + 7) / 8 * 8) {
+TagArray::TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices)
+    : sets_(ways == 0 ? 0 : lines / ways), ways_(ways), stride_((ways + 7) / 8 * 8), over_slices_(slices), over_sets_(std::max(sets_, 1u)) {
   QUADRILLE_CHECK(ways > 0 && lines >= ways && lines % ways == 0, "{} lines of {} ways", lines, ways);
   tags_.assign(std::size_t{sets_} * stride_, kFree);
   used_.assign(lines, 0);

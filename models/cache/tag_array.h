@@ -2,9 +2,11 @@
 /// `DeviceMemory`.
 ///
 /// A line (128 bytes) has four sectors of 32 bytes, each absent, pending (asked for), valid, or valid and dirty. A line with a pending
-/// sector is never a victim. The set is a multiplicative hash of the line number, so any number of sets works and power-of-two strides
-/// spread: set = ((line * 2654435769 mod 2^32) * sets) >> 32. [P: Knuth, The Art of Computer Programming vol. 3, 6.4, Fibonacci hashing]
+/// sector is never a victim. Lines are spread over any number of sets by memory/interleave.h: consecutive lines go to consecutive sets, so
+/// that a stream evicts in the order in which it came, and strides of powers of two use all sets.
 #pragma once
+
+#include "models/memory/interleave.h"
 
 #include <cstdint>
 #include <vector>
@@ -31,8 +33,9 @@ class TagArray {
     SectorMask valid = 0, dirty = 0, pending = 0;
   };
 
-  /// `lines` in all, `ways` a set; `lines` is a multiple of `ways`.
-  TagArray(std::uint32_t lines, std::uint32_t ways);
+  /// `lines` in all, `ways` a set; `lines` is a multiple of `ways`. A cache that sees the lines of one slice of `slices` spreads them by
+  /// their numbers within the slice.
+  TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices = 1);
 
   /// Slot that holds the line, or kNone. Does not change the order of replacement.
   [[nodiscard]] int find(std::uint32_t line) const;
@@ -62,14 +65,13 @@ class TagArray {
 
  private:
   [[nodiscard]] Line& state(int slot) { return lines_[static_cast<std::size_t>(slot)]; }
-  [[nodiscard]] std::uint32_t set_of(std::uint32_t line) const {
-    return static_cast<std::uint32_t>((std::uint64_t{line * 2654435769u} * sets_) >> 32);
-  }
+  [[nodiscard]] std::uint32_t set_of(std::uint32_t line) const { return over_sets_.member_of(over_slices_.index_of(line)); }
 
   std::uint32_t sets_, ways_, stride_;  // stride: ways rounded up to a vector of tags
-  std::vector<std::uint32_t> tags_;     // sets x stride; kFree where no line is held
-  std::vector<std::uint64_t> used_;     // sets x ways: time of last use
-  std::vector<Line> lines_;             // sets x ways
+  Interleave over_slices_, over_sets_;
+  std::vector<std::uint32_t> tags_;  // sets x stride; kFree where no line is held
+  std::vector<std::uint64_t> used_;  // sets x ways: time of last use
+  std::vector<Line> lines_;          // sets x ways
   std::uint64_t clock_ = 0;
 };
 

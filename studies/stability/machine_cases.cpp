@@ -111,7 +111,8 @@ Case machine_case(const std::string& name, const std::string& purpose, const std
 void add_machine_cases(std::vector<Case>& cases) {
   const std::string million = "1000000";
   cases.push_back(machine_case("default-machine", "the default machine, to compare with", "cubes", {}, {.limits = {"core"}}));
-  cases.push_back(machine_case("depth-1", "every link holds one token", "overdraw", joined(every_link("depth", "1"), {{"gpu.cores", "16"}}),
+  cases.push_back(machine_case("depth-1", "every link holds one token", "overdraw",
+                               joined(every_link("depth", "1"), {{"gpu.cores", "16"}, {"l2.hit_clk", "1"}}),
                                {.limits = {"link.client_to_l2"}, .link = "link.client_to_l2"}));
   cases.push_back(machine_case("latency-1e6-raster", "a million cycles from coarse to fine raster, one elsewhere", "cubes",
                                joined(every_link("latency", "1"), {{"link.coarse_to_fine.latency", million}}),
@@ -132,7 +133,7 @@ void add_machine_cases(std::vector<Case>& cases) {
   cases.push_back(machine_case("irrational-clocks", "a memory clock of 1000 / pi MHz", "cubes", {{"gpu.memory_mhz", "318.309886183791"}},
                                {.limits = {"core"}}));
   cases.push_back(machine_case("one-line-caches", "every cache holds one line and asks for one at a time", "cubes", one_line_caches(),
-                               {.limits = {"memory", "l2"}}));
+                               {.limits = {"link.memory_to_l2"}}));
   cases.push_back(machine_case("thousandth-bandwidth", "a thousandth of the memory's bandwidth, and caches too small to hide it", "cubes",
                                {{"memory.t_burst", "1000"},
                                 {"l2.cache_lines", "16"},

@@ -73,7 +73,7 @@ TEST_CASE("a message that cannot be written ends nothing: the exit code is that 
   }
 }
 
-TEST_CASE("a table that cannot be written is the user's error; the files are there") {
+TEST_CASE("a table that cannot be written is the user's error, and the files are there") {
   for (const auto& lost : {closed({1}), full(1)}) {
     const ScratchFolder folder;
     const ProgramRun run = run_quadrille(folder, {"render", "builtin:triangle", "--size", "16x16", "--out", "x.png"}, lost);

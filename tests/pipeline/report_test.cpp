@@ -25,7 +25,12 @@ UnitFigures memory_unit(const std::string& path, std::int64_t busy, std::int64_t
                                                                                       {"write_bytes", 320},
                                                                                       {"row_hits", 20},
                                                                                       {"row_conflicts", 5},
-                                                                                      {"bus_busy", 40}}) {
+                                                                                      {"bus_busy", 40},
+                                                                                      {"bus_refresh", 1},
+                                                                                      {"bus_turnaround", 2},
+                                                                                      {"bus_activation", 3},
+                                                                                      {"bus_spacing", 4},
+                                                                                      {"queue_occupancy", 5}}) {
     u.counters.push_back({name, "access", "for a test", value});
   }
   return u;
@@ -90,7 +95,7 @@ TEST_CASE("report: bandwidth is a rate in GPU cycles and a share of what all cha
   CHECK(peak_memory_bytes_per_cycle(machine) == 64.0);                                        // two channels of 32 bytes a cycle, one clock
   CHECK_THAT(report_table({two_channels(), machine, 10, 10}), Contains("2.560        4.0"));  // 2560 bytes in 1000 cycles
   machine.set("gpu.memory_mhz", "500", "test");
-  machine.set("memory.t_burst", "2", "test");
+  machine.set("memory.t_burst", "4", "test");
   machine.set("gpu.channels", "4", "test");
   CHECK(peak_memory_bytes_per_cycle(machine) == 32.0);
 }

@@ -18,11 +18,15 @@ struct L2Bench final : Bench {
     int lines = 64, ways = 4, misses = 8, hit_clk = 20;
     Pace pace{};
     LinkSpec out{.depth = 64};
+    const char* write_back = "victim";
   };
   L2Bench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     set_cache(params, s.lines, s.ways, s.misses);
     params.hit_clk.set(s.hit_clk);
-    unit = std::make_unique<L2Slice>("unit", params, clock, std::vector<std::string>{"one", "many_7"});
+    params.write_back.parse(s.write_back);
+    params.write_back_lines.set(8);
+    unit = std::make_unique<L2Slice>(
+        "unit", params, clock, std::vector<L2Slice::Client>{{"one", MemoryClient::kVertexFetch}, {"many_7", MemoryClient::kTexture}}, 1);
     add(*unit);
     feed(unit->request_in[0], s.client_0);
     feed(unit->request_in[1], s.client_1);
@@ -44,11 +48,11 @@ std::string both(const L2Bench& b) { return b.sinks[0]->text() + " | " + b.sinks
 
 }  // namespace
 
-TEST_CASE("l2_slice: a miss takes the memory's time and three links, a hit exactly hit_clk and its two links") {
+TEST_CASE("l2_slice: a hit takes exactly hit_clk and its two links, a miss hit_clk, the memory's time and its links") {
   for (const int hit : {1, 20, 77}) {
     const L2Bench::Setup s{.client_0 = {{0, read(7, 1)}, {200, read(7, 2)}}, .hit_clk = hit};
     const auto text = run<L2Bench>(s, [](const L2Bench& b) { return fmt::format("{} memory {}", b.sinks[0]->text(), b.memory->text()); });
-    CHECK(text == fmt::format("{}:1 {}:2 memory 2:r7/f", 1 + 1 + kMemory + 1 + 1, 200 + 1 + hit + 1));
+    CHECK(text == fmt::format("{}:1 {}:2 memory {}:r7/f", 1 + hit + 1 + kMemory + 1 + 1, 200 + 1 + hit + 1, 1 + hit + 1));
   }
 }
 
@@ -70,7 +74,7 @@ TEST_CASE("l2_slice: a line under way serves all who ask for it") {
     return fmt::format("{} memory {} merged {} misses {}", both(b), b.memory->text(), counter(*b.unit, "merged"),
                        counter(*b.unit, "misses"));
   });
-  CHECK(text == "54:1 55:2 | 54:3 memory 2:r7/f merged 2 misses 1");
+  CHECK(text == "74:1 75:2 | 74:3 memory 22:r7/f merged 2 misses 1");
 }
 
 TEST_CASE("l2_slice: only sectors that are not there are asked for") {
@@ -78,7 +82,7 @@ TEST_CASE("l2_slice: only sectors that are not there are asked for") {
   const auto text = run<L2Bench>(s, [](const L2Bench& b) {
     return fmt::format("{} fill {} read {}", b.memory->text(), counter(*b.unit, "fill_bytes"), counter(*b.unit, "read_bytes"));
   });
-  CHECK(text == "2:r7/3 202:r7/4 fill 96 read 128");
+  CHECK(text == "22:r7/3 222:r7/4 fill 96 read 128");
 }
 
 TEST_CASE("l2_slice: clients take turns, one look-up a cycle") {
@@ -88,7 +92,7 @@ TEST_CASE("l2_slice: clients take turns, one look-up a cycle") {
 
 TEST_CASE("l2_slice: a hit overtakes an older miss") {
   const L2Bench::Setup s{.client_0 = {{0, read(7, 1)}, {100, read(8, 2)}, {101, read(7, 3)}}};
-  CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text(); }) == "54:1 123:3 154:2");
+  CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text(); }) == "74:1 123:3 174:2");
 }
 
 TEST_CASE("l2_slice: a write asks for nothing, and a dirty line is written back when its place is taken") {
@@ -97,14 +101,27 @@ TEST_CASE("l2_slice: a write asks for nothing, and a dirty line is written back 
     return fmt::format("{} memory {} written back {} of {}", b.sinks[0]->text(), b.memory->text(), counter(*b.unit, "writeback_bytes"),
                        counter(*b.unit, "write_bytes"));
   });
-  CHECK(text == "75:9 memory 12:w0/5 22:w1/f 23:r0/f written back 192 of 192");
+  CHECK(text == "95:9 memory 32:w0/5 42:w1/f 43:r0/f written back 192 of 192");
+}
+
+TEST_CASE("l2_slice: with row-ordered write-back the dirty lines of a victim's block leave with it, in order of address") {
+  const auto memory = [](const char* how) {
+    L2Bench::Setup s{.client_0 = {{0, write(5)}, {1, write(9)}, {2, write(4)}, {3, write(6, 0x3)}, {40, read(1000, 1)}},
+                     .lines = 4,
+                     .ways = 4,
+                     .write_back = how};
+    return run<L2Bench>(
+        s, [](const L2Bench& b) { return fmt::format("{} early {}", b.memory->text(), counter(*b.unit, "early_write_backs")); });
+  };
+  CHECK(memory("victim") == "62:w5/f 63:r1000/f early 0");
+  CHECK(memory("row") == "62:w5/f 63:w4/f 64:w6/3 65:r1000/f early 2");
 }
 
 TEST_CASE("l2_slice: a cache of one line and one miss answers everything, one line at a time") {
   L2Bench::Setup s{.client_0 = {}, .lines = 1, .ways = 1, .misses = 1};
   for (std::uint32_t i = 0; i < 4; ++i) s.client_0.push_back({0, read(i, i)});
-  // The next line is looked up the cycle the last one's fill arrives: 1 + 50 + 1 cycles after the look-up before.
-  CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text(); }) == "54:0 106:1 158:2 210:3");
+  // The next line is looked up the cycle the last one's fill arrives: 20 + 1 + 50 + 1 cycles after the look-up before.
+  CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text(); }) == "74:0 146:1 218:2 290:3");
 }
 
 TEST_CASE("l2_slice: an answer that has no room holds back no other client") {

@@ -28,9 +28,7 @@ TEST_CASE("tag_array: behaves like lists in order of use") {
     TagArray tags(lines, ways);
     CHECK(tags.sets() == lines / ways);
     std::map<std::uint32_t, std::list<NaiveLine>> sets;
-    const auto set_of = [count = lines / ways](std::uint32_t line) {
-      return static_cast<std::uint32_t>((std::uint64_t{line * 2654435769u} * count) >> 32);
-    };
+    const auto set_of = [over = Interleave(lines / ways)](std::uint32_t line) { return over.member_of(line); };
     int hits = 0, evictions = 0, refused = 0;
     for (int step = 0; step < 20000; ++step) {
       const auto line = static_cast<std::uint32_t>(random.integer(0, static_cast<int>(lines * 2)));
@@ -108,14 +106,73 @@ TEST_CASE("tag_array: invalidating forgets all and refuses to lose dirty data") 
   CHECK(aborts([] { TagArray bad(10, 4); }));
 }
 
-TEST_CASE("tag_array: strides of powers of two spread over the sets") {
-  const TagArray tags(64 * 4, 4);
-  for (std::uint32_t stride = 1; stride <= 65536; stride *= 2) {
-    std::map<int, int> load;
-    TagArray probe(64 * 4, 4);
-    for (std::uint32_t i = 0; i < 64; ++i) ++load[probe.allocate(1000 + i * stride).slot / 4];
-    int worst = 0;
-    for (const auto& [set, count] : load) worst = std::max(worst, count);
-    CHECK(worst <= 8);  // modulo indexing would put up to 64 into one set
+namespace {
+
+/// Share of `sets` that as many lines of a stride reach, by an index of a line.
+template <class Index>
+double reached(std::uint32_t sets, std::uint32_t first, std::uint32_t stride, Index&& index) {
+  std::set<std::uint32_t> used;
+  for (std::uint32_t i = 0; i < sets; ++i) used.insert(index(first + i * stride));
+  return static_cast<double>(used.size()) / sets;
+}
+
+/// Least share over strides of 1 to 4096 lines.
+template <class Index>
+double least_reached(std::uint32_t sets, Index&& index) {
+  double least = 1;
+  for (std::uint32_t stride = 1; stride <= 4096; ++stride) least = std::min(least, reached(sets, 1000, stride, index));
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("tag_array: no stride crowds into few sets, as it does by the remainder or by Fibonacci hashing") {
+  for (const std::uint32_t sets : {64u, 100u, 256u, 1000u}) {
+    const Interleave over(sets);
+    INFO(sets << " sets");
+    CHECK(least_reached(sets, [&](std::uint32_t line) { return over.member_of(line); }) >= 0.40);
+    CHECK(least_reached(sets, [&](std::uint32_t line) { return line % sets; }) <= 0.02);
+    CHECK(least_reached(sets, [&](std::uint32_t line) {
+            return static_cast<std::uint32_t>((std::uint64_t{line * 2654435769u} * sets) >> 32);
+          }) <= 0.04);
+  }
+}
+
+TEST_CASE("tag_array: strides of powers of two reach half of the sets and more") {
+  for (const std::uint32_t sets : {16u, 64u, 100u, 256u, 1000u}) {
+    const Interleave over(sets);
+    for (std::uint32_t stride = 1; stride <= 65536; stride *= 2) {
+      INFO(sets << " sets, stride " << stride);
+      CHECK(reached(sets, 0, stride, [&](std::uint32_t line) { return over.member_of(line); }) >= 0.5);
+    }
+  }
+}
+
+TEST_CASE("tag_array: a stream of lines evicts in the order in which it came, but for one turn a block") {
+  for (const auto& [lines, ways] : {std::pair{1024u, 4u}, {300u, 3u}, {4096u, 16u}}) {
+    TagArray tags(lines, ways);
+    std::uint32_t last = 0, victims = 0, jumps = 0;
+    for (std::uint32_t line = 0; line < 8 * lines; ++line) {
+      const TagArray::Allocation got = tags.allocate(line);
+      if (!got.victim.valid) continue;
+      if (victims++ > 0 && got.victim.line != last + 1) ++jumps;
+      last = got.victim.line;
+    }
+    CHECK(victims == 7 * lines);
+    // A block of a line a set starts and wraps at another place than the block that it throws out.
+    CHECK(jumps <= 3 * victims / (lines / ways));
+  }
+}
+
+TEST_CASE("tag_array: a slice's cache uses all sets, however many slices there are") {
+  for (const std::uint32_t slices : {1u, 2u, 3u, 16u, 64u}) {
+    const Interleave over_slices(slices);
+    for (std::uint32_t slice = 0; slice < slices; slice += 5) {
+      TagArray tags(64 * 4, 4, slices);
+      for (std::uint32_t index = 640; index < 640 + 256; ++index) {
+        INFO(slices << " slices, line " << index << " of slice " << slice);
+        CHECK_FALSE(tags.allocate(over_slices.line_of(slice, index)).victim.valid);  // four aligned blocks fill every set
+      }
+    }
   }
 }

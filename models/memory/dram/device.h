@@ -1,0 +1,104 @@
+/// The banks of one pseudo-channel: which rows are open, and the earliest cycle at which each next command keeps the standard's rules.
+///
+/// A caller asks for the earliest cycle of a command, picks one at or after it and issues it; commands come in order of time. Rules between commands (their
+/// names are those of the parameters in timing.h):
+///   same bank     ACT -> RD/WR t_rcd, t_rcd_wr; ACT -> PRE t_ras; ACT -> ACT t_rc; PRE -> ACT t_rp; RD -> PRE t_rtp; end of write data -> PRE t_wr
+///   same rank     ACT -> ACT t_rrd_l (same group) or t_rrd_s, four within t_faw; RD -> RD, WR -> WR t_ccd_l or t_ccd_s; end of write data -> RD t_wtr_l or t_wtr_s
+///   the data bus  one burst at a time; t_rtw idle from read to write data, t_rtrs between ranks
+///   refresh       all banks of the rank (or the bank) closed and t_rp past; then t_rfc (t_rfc_pb) until the next ACT there, t_rrefd until one elsewhere
+/// As public simulators, examples and data sheets have them: [Ramulator 2, DRAMsim3, gem5 LPDDR5, gem5 HBM2, AMD LPDDR5, DRAMSys, Micron GDDR6].
+#pragma once
+
+#include "models/memory/dram/timing.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace quadrille::models {
+
+class DramDevice {
+ public:
+  using Cycle = std::int64_t;
+  static constexpr std::int32_t kClosed = -1;
+
+  explicit DramDevice(const DramTiming& timing);
+
+  [[nodiscard]] std::int32_t open_row(std::uint32_t bank) const { return banks_[bank].row; }
+  [[nodiscard]] Cycle earliest_activate(std::uint32_t bank) const { return std::max(bank_activate(bank), group_activate(group_of(bank))); }
+  [[nodiscard]] Cycle earliest_precharge(std::uint32_t bank) const { return banks_[bank].precharge; }
+  [[nodiscard]] Cycle earliest_column(std::uint32_t bank, bool write) const {
+    const Cycle row = row_ready(bank, write), spaced = groups_[banks_[bank].group].column[write];
+    return row > spaced ? row : spaced;
+  }
+  // The same in two parts, of which the later counts: what the bank allows, and what its group and rank do.
+  [[nodiscard]] Cycle bank_activate(std::uint32_t bank) const { return banks_[bank].activate; }
+  [[nodiscard]] Cycle group_activate(std::uint32_t group) const {
+    const Group& g = groups_[group];
+    const Rank& rank = ranks_[g.rank];
+    return std::max({g.activate, rank.activate, rank.window[rank.oldest]});
+  }
+  [[nodiscard]] Cycle group_column(std::uint32_t group, bool write) const { return groups_[group].column[write]; }
+  /// Of all ranks.
+  [[nodiscard]] std::uint32_t groups() const { return static_cast<std::uint32_t>(groups_.size()); }
+  /// The rank's banks are closed.
+  [[nodiscard]] Cycle earliest_refresh(std::uint32_t rank) const;
+  [[nodiscard]] Cycle earliest_refresh_bank(std::uint32_t bank) const;
+
+  void activate(std::uint32_t bank, std::int32_t row, Cycle at);
+  void precharge(std::uint32_t bank, Cycle at);
+  /// A burst of the open row; with `precharge_after` the bank closes itself as soon as it may.
+  void column(std::uint32_t bank, bool write, bool precharge_after, Cycle at);
+  void refresh(std::uint32_t rank, Cycle at);
+  void refresh_bank(std::uint32_t bank, Cycle at);
+
+  /// First cycle of the data of a column command at `at`.
+  [[nodiscard]] Cycle data_start(bool write, Cycle at) const { return at + (write ? t_.t_cwl : t_.t_cas); }
+  /// First column command that the row's activation allowed.
+  [[nodiscard]] Cycle row_ready(std::uint32_t bank, bool write) const { return write ? banks_[bank].row_write : banks_[bank].row_read; }
+  /// First column command that a change of the bus's direction or rank since the last burst allows; 0 without a change.
+  [[nodiscard]] Cycle turned(std::uint32_t bank, bool write) const;
+  /// End of the latest refresh that kept the bank closed.
+  [[nodiscard]] Cycle refreshed(std::uint32_t bank) const { return banks_[bank].refreshed; }
+  [[nodiscard]] std::uint32_t rank_of(std::uint32_t bank) const { return banks_[bank].rank; }
+  /// Over all ranks: rank * groups + group.
+  [[nodiscard]] std::uint32_t group_of(std::uint32_t bank) const { return banks_[bank].group; }
+
+ private:
+  struct Bank {
+    std::int32_t row = kClosed;
+    Cycle activate = 0, precharge = 0;
+    Cycle row_read = 0, row_write = 0;
+    Cycle refreshed = 0;
+    std::uint32_t group = 0, rank = 0;  ///< over all ranks; of the pseudo-channel
+  };
+  struct Group {
+    std::uint32_t rank = 0;
+    Cycle activate = 0;
+    std::array<Cycle, 2> column{};  ///< read, write: after all column commands so far, of any rank and group
+  };
+  struct Rank {
+    Cycle activate = 0;             ///< t_rrd_s, t_rrefd
+    std::array<Cycle, 4> window{};  ///< the last four ACTs plus t_faw
+    std::size_t oldest = 0;
+    Cycle refresh_bank = 0;  ///< a refresh of one bank ends before the next begins
+  };
+
+  /// First column command to a group that the latest burst allows.
+  [[nodiscard]] Cycle after_burst(std::uint32_t rank, std::uint32_t group, bool write) const;
+
+  void bound_other_ranks(std::uint32_t rank);
+
+  DramTiming t_;
+  std::vector<Bank> banks_;
+  std::vector<Group> groups_;
+  std::vector<Rank> ranks_;
+  // The data bus.
+  bool used_ = false, wrote_ = false;
+  std::uint32_t last_rank_ = 0;
+  std::uint32_t last_group_ = 0;
+  Cycle data_end_ = 0, last_command_ = 0;
+};
+
+}  // namespace quadrille::models
