@@ -27,7 +27,7 @@ struct ExperimentArguments {
 };
 
 constexpr const char* kOwnScenes[] = {"builtin:fill", "builtin:overdraw", "builtin:courtyard"};
-constexpr const char* kOwnSize = "640x360";
+constexpr const char* kOwnSize = "960x540";
 
 std::vector<const experiments::Experiment*> chosen_of(const std::vector<std::string>& names) {
   std::vector<const experiments::Experiment*> chosen;
@@ -103,7 +103,7 @@ void add_experiment(CLI::App& app, Command& chosen) {
       ->type_name("SCENE")
       ->expected(1)
       ->take_all();
-  command->add_option("--size", arguments->size, "of the pictures of scenes (default 640x360)")->type_name("WxH");
+  command->add_option("--size", arguments->size, "of the pictures of scenes (default 960x540)")->type_name("WxH");
   command->add_option("--out", arguments->out, "writes a page and a plot of each there")->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "processes at a time (default 2)")->type_name("N");
   command->footer(R"(Exit code 1 when a figure lies outside its band.
