@@ -309,8 +309,8 @@ TEST_CASE("meshopt: the streams of EXT_meshopt_compression are those of KHR_mesh
 }
 
 TEST_CASE("meshopt: attributes of version 1 come back bit for bit, with every control, width and mode of a channel") {
-  for (const std::size_t stride : {4, 8, 12, 20, 64, 256}) {
-    for (const std::size_t count : {1, 15, 16, 17, 200, 256, 1000}) {
+  for (const std::size_t stride : {4u, 8u, 12u, 20u, 64u, 256u}) {
+    for (const std::size_t count : {1u, 15u, 16u, 17u, 200u, 256u, 1000u}) {
       CAPTURE(stride, count);
       std::vector<unsigned> modes;
       for (std::size_t c = 0; c < stride / 4; ++c) modes.push_back(c % 4 == 3 ? 0x52 : static_cast<unsigned>(c % 3));
@@ -331,7 +331,7 @@ TEST_CASE("meshopt: attributes of version 1 come back bit for bit, with every co
 TEST_CASE("meshopt: the specification's example of sixteen deltas") {
   // One byte position of 4-bit deltas, the others still; the baseline is zero.
   std::vector<std::byte> stream;
-  for (const unsigned b : {0xa1, 0xa8, 0x03, 0x17, 0x5f, 0xf0, 0xbc, 0x77, 0xa9, 0x21, 0x00, 0x34, 0xb5})
+  for (const unsigned b : {0xa1u, 0xa8u, 0x03u, 0x17u, 0x5fu, 0xf0u, 0xbcu, 0x77u, 0xa9u, 0x21u, 0x00u, 0x34u, 0xb5u})
     stream.push_back(static_cast<std::byte>(b));
   stream.resize(stream.size() + 24);
   std::vector<std::byte> out(64);
@@ -356,7 +356,7 @@ TEST_CASE("meshopt: damaged attributes of version 1 are refused, and nothing is 
   std::vector<std::byte> longer = packed;
   longer.insert(longer.begin() + 40, std::byte{0});
   CHECK_FALSE(decode_attribute_stream_1(longer, 100, 16, out));
-  for (const unsigned mode : {3, 15, 0x10, 0x11}) {
+  for (const unsigned mode : {3u, 15u, 0x10u, 0x11u}) {
     std::vector<std::byte> other = packed;
     other.back() = static_cast<std::byte>(mode);
     CHECK_FALSE(decode_attribute_stream_1(other, 100, 16, out));
