@@ -154,8 +154,9 @@ void MachineConfig::check_memory() const {
   if (m.row_bytes % 128 != 0) throw user_error("machine: memory.row_bytes ({}) is not a multiple of 128, a line", m.row_bytes.value());
   if (m.write_low >= m.write_high)
     throw user_error("machine: memory.write_low ({}) is not below memory.write_high ({})", m.write_low.value(), m.write_high.value());
-  if (m.refresh == models::DramRefresh::kPerBank && m.t_refi < m.banks)
-    throw user_error("machine: memory.t_refi ({}) is less than a cycle for each of memory.banks ({})", m.t_refi.value(), m.banks.value());
+  if (m.refresh == models::DramRefresh::kAllBank && m.t_refi < 2 * m.t_rfc)
+    throw user_error("machine: memory.t_rfc ({}) is more than half of memory.t_refi ({}): refresh leaves too little time", m.t_rfc.value(),
+                     m.t_refi.value());
 }
 
 void MachineConfig::check() const {

@@ -45,6 +45,8 @@ class DramDevice {
   /// The rank's banks are closed.
   [[nodiscard]] Cycle earliest_refresh(std::uint32_t rank) const;
   [[nodiscard]] Cycle earliest_refresh_bank(std::uint32_t bank) const;
+  /// When the latest refresh of one bank is over, and the next may begin.
+  [[nodiscard]] Cycle refresh_turn(std::uint32_t rank) const { return ranks_[rank].refresh_bank; }
 
   void activate(std::uint32_t bank, std::int32_t row, Cycle at);
   void precharge(std::uint32_t bank, Cycle at);

@@ -21,7 +21,8 @@ DramController::PseudoChannel::PseudoChannel(const DramControllerParams& params,
       used_(static_cast<std::size_t>(params.timing.all_banks()), 0),
       view_{queue_, device_},
       picks_(static_cast<std::size_t>(params.timing.all_banks())),
-      must_refresh_(static_cast<std::size_t>(params.timing.ranks), 0) {}
+      must_refresh_(static_cast<std::size_t>(params.timing.ranks), 0),
+      fresh_rows_(static_cast<std::size_t>(params.timing.all_banks()), 0) {}
 
 void DramController::PseudoChannel::take(const DramEntry& entry, Cycle now) {
   if (queue_.empty()) waiting_since_ = now;
@@ -58,7 +59,8 @@ void DramController::PseudoChannel::consider_rank_refresh(Action& best, Cycle no
   for (std::uint32_t bank = rank * banks; bank < (rank + 1) * banks; ++bank) {
     if (device_.open_row(bank) == DramDevice::kClosed) continue;
     closed = false;
-    consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
+    if (fresh_rows_[bank] == 0)
+      consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
   }
   if (closed) consider(best, now, {std::max(device_.earliest_refresh(rank), commands_.free(false)), 0, Step::kRefresh, rank});
 }
@@ -68,7 +70,7 @@ void DramController::PseudoChannel::consider_bank_refresh(Action& best, Cycle no
   const bool must = refresh_[rank].must(now);
   must_refresh_[rank] = must;
   any_must_ |= must;
-  if (!must && queue_.bank_count(bank) > 0) return;
+  if ((!must && queue_.bank_count(bank) > 0) || keeps_row(bank, now)) return;
   if (device_.open_row(bank) != DramDevice::kClosed)
     consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
   else consider(best, now, {std::max(device_.earliest_refresh_bank(bank), commands_.free(false)), 0, Step::kRefreshBank, bank});
@@ -84,9 +86,14 @@ void DramController::PseudoChannel::consider_refresh(Action& best, Cycle now) {
   }
 }
 
-bool DramController::PseudoChannel::barred(std::uint32_t bank) const {
+bool DramController::PseudoChannel::keeps_row(std::uint32_t bank, Cycle now) const {
+  if (fresh_rows_[bank] == 0) return false;
+  return now < std::max(device_.row_ready(bank, false), device_.row_ready(bank, true)) + params_.timing.t_rc;
+}
+
+bool DramController::PseudoChannel::barred(std::uint32_t bank, Cycle now) const {
   const std::uint32_t rank = device_.rank_of(bank);
-  if (must_refresh_[rank] == 0) return false;
+  if (must_refresh_[rank] == 0 || keeps_row(bank, now)) return false;
   return !refresh_[rank].per_bank() || bank == rank * static_cast<std::uint32_t>(params_.timing.banks) + refresh_[rank].bank();
 }
 
@@ -119,7 +126,8 @@ void DramController::PseudoChannel::update_pick(std::uint32_t bank) {
 
 bool DramController::PseudoChannel::update_view(Cycle now) {
   drain_.update(queue_);
-  DramView view{queue_, device_, drain_.reads(), drain_.writes()};
+  // Before a refresh that must be, a row that was just opened gets its burst whatever the drain does.
+  DramView view{queue_, device_, drain_.reads() || any_must_, drain_.writes() || any_must_};
   for (const bool write : {false, true}) {
     const std::uint32_t oldest = queue_.oldest(write);
     if (oldest != DramQueue::kNone && now - queue_[oldest].arrived > params_.age_cap) view.starving[write] = oldest;
@@ -150,7 +158,7 @@ DramController::PseudoChannel::Action DramController::PseudoChannel::choose(Cycl
   for (const std::uint32_t bank : queue_.active_banks()) {
     if (picks_[bank].stale) update_pick(bank);
     const Pick& pick = picks_[bank];
-    if (pick.step == Step::kNothing || (any_must_ && barred(bank))) continue;
+    if (pick.step == Step::kNothing || (any_must_ && barred(bank, now))) continue;
     const Cycle at = std::max(now, earliest(pick));
     if (at < best.at || (at == best.at && pick.order < best.order)) best = {at, pick.order, pick.step, bank, pick.entry};
   }
@@ -210,6 +218,7 @@ void DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, s
   const Cycle end = data(now) + params_.timing.t_burst;
   device_.column(bank, entry.write, closes, now);
   used_[bank] = now;
+  fresh_rows_[bank] = 0;
   commands_.hold_column(now);
   if (!last) return;
   const DramRowOutcome row = entry.closed_other ? DramRowOutcome::kConflict : entry.opened ? DramRowOutcome::kMiss : DramRowOutcome::kHit;
@@ -232,6 +241,7 @@ void DramController::PseudoChannel::perform(const Action& action, Cycle now, std
     case Step::kActivate:
       sent.row = queue_[action.entry].at.row;
       queue_[action.entry].opened = true;
+      fresh_rows_[action.bank] = 1;
       device_.activate(action.bank, sent.row, now);
       commands_.hold_row(now, true);
       ++counts.activates;
@@ -239,6 +249,7 @@ void DramController::PseudoChannel::perform(const Action& action, Cycle now, std
     case Step::kPrecharge:
       if (action.entry != DramQueue::kNone) queue_[action.entry].closed_other = true;
       device_.precharge(action.bank, now);
+      fresh_rows_[action.bank] = 0;
       commands_.hold_row(now, false);
       ++counts.precharges;
       break;

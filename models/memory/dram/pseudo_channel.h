@@ -72,7 +72,9 @@ class DramController::PseudoChannel {
   void consider_bank_refresh(Action& best, Cycle now, std::uint32_t rank);
   void consider_idle_rows(Action& best, Cycle now) const;
   [[nodiscard]] bool rank_waits(std::uint32_t rank) const;
-  [[nodiscard]] bool barred(std::uint32_t bank) const;
+  [[nodiscard]] bool barred(std::uint32_t bank, Cycle now) const;
+  /// The row was opened and its first burst may still come: a refresh leaves it the time for that, so that every activation is of use.
+  [[nodiscard]] bool keeps_row(std::uint32_t bank, Cycle now) const;
   void perform(const Action& action, Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts,
                const std::function<void(const DramCommand&)>& trace);
   void chain_bursts(Action action, std::vector<DramDone>& done, DramCommandCounts& counts,
@@ -96,7 +98,8 @@ class DramController::PseudoChannel {
   std::vector<Pick> picks_;                 ///< by bank
   std::vector<std::uint8_t> must_refresh_;  ///< by rank: its requests wait for a refresh (of the bank in turn)
   bool any_must_ = false;
-  bool stale_ = true;  ///< what follows must be found again
+  std::vector<std::uint8_t> fresh_rows_;  ///< by bank: the row was opened and no burst of it moved yet
+  bool stale_ = true;                     ///< what follows must be found again
   Action planned_;
   Cycle planned_at_ = 0;  ///< its cycle, or when to look again if that is earlier
 };

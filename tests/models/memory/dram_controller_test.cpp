@@ -249,3 +249,26 @@ TEST_CASE("dram_controller: refreshes keep their mean interval, postponed while 
   CHECK(sent >= 12 - p.timing.refresh_postpone);
   CHECK(sent <= 12);
 }
+
+TEST_CASE("dram_controller: requests are served however long an activation or a refresh takes") {
+  const auto finishes = [](DramControllerParams p) {
+    std::vector<Timed> requests;
+    for (std::uint64_t i = 0; i < 600; ++i) requests.push_back({static_cast<Cycle>(i), {i * 977, kSector, i % 3 == 0}});
+    return serve(p, requests).done.size();
+  };
+  for (const char* standard : kStandards) {
+    INFO(standard);
+    DramControllerParams slow_rows = of(standard), long_gap = of(standard), many_banks = of(standard), half_refresh = of(standard);
+    slow_rows.timing.t_rcd = slow_rows.timing.t_rcd_wr = 3 * slow_rows.timing.t_refi;
+    CHECK(finishes(slow_rows) == 600);
+    long_gap.timing.refresh = many_banks.timing.refresh = DramRefresh::kPerBank;
+    long_gap.timing.t_rrefd = 500;
+    CHECK(finishes(long_gap) == 600);
+    many_banks.timing.t_refi = many_banks.timing.banks;
+    CHECK(finishes(many_banks) == 600);
+    half_refresh.timing.refresh = DramRefresh::kAllBank;
+    half_refresh.timing.t_rfc = half_refresh.timing.t_refi / 2;
+    half_refresh.timing.refresh_postpone = 0;
+    CHECK(finishes(half_refresh) == 600);
+  }
+}
