@@ -1,8 +1,8 @@
 /// Which pseudo-channel, rank, bank and row hold a line of a channel.
 ///
 /// From the least significant part of the line's number upward:
-///   group_interleaved   pseudo-channel, bank group, line of the row, bank of the group, rank, row
-///   row_interleaved     pseudo-channel, line of the row, bank group, bank of the group, rank, row
+///   group   pseudo-channel, bank group, line of the row, bank of the group, rank, row
+///   row     pseudo-channel, line of the row, bank group, bank of the group, rank, row
 /// The first sends neighbouring lines to different bank groups, whose bursts may follow each other more closely; the second fills a row before it opens the next.
 /// With `hash`, bank and group are exchanged by the row's number, so that surfaces at a distance of whole rows meet in different banks.
 /// [P: Zhang, Zhu, Zhang, A permutation-based page interleaving scheme, MICRO 2000]

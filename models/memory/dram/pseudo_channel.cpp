@@ -59,7 +59,7 @@ void DramController::PseudoChannel::consider_rank_refresh(Action& best, Cycle no
   for (std::uint32_t bank = rank * banks; bank < (rank + 1) * banks; ++bank) {
     if (device_.open_row(bank) == DramDevice::kClosed) continue;
     closed = false;
-    if (fresh_rows_[bank] == 0)
+    if (!keeps_row(bank, now))
       consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
   }
   if (closed) consider(best, now, {std::max(device_.earliest_refresh(rank), commands_.free(false)), 0, Step::kRefresh, rank});

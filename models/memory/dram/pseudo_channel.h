@@ -1,6 +1,6 @@
 /// One pseudo-channel of a controller: its requests, banks, data bus and refresh, and the choice of the next command.
 ///
-/// Each possible command has an earliest cycle. The soonest goes out; among those that can go out now refresh comes first, then the oldest request's.
+/// Each possible command has an earliest cycle. The soonest goes out; among those that can go out now refresh comes first, then activations, then the oldest request's.
 #pragma once
 
 #include "models/memory/dram/controller.h"
