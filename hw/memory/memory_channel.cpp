@@ -47,6 +47,7 @@ models::DramControllerParams MemoryChannel::Params::controller() const {
   p.interleave = mapping;
   p.hash = bank_hash;
   p.scheduler = scheduler;
+  p.in_order_ahead = in_order_ahead;
   p.age_cap = age_cap;
   p.write_drain = write_drain;
   p.write_high = std::max(1, write_queue * write_high / 100);

@@ -118,15 +118,17 @@ struct MemoryChannel::Params : ParamGroup {
 
   Choice<models::DramInterleave> mapping{*this,
                                          "mapping",
-                                         models::DramInterleave::kGroup,
+                                         models::DramInterleave::kRow,
                                          {"group", "row"},
-                                         "What neighbouring lines of a channel lie in: other bank groups, or one row"};
+                                         "What neighbouring lines of a channel lie in: other bank groups, or one row. [G: more row hits]"};
   Param<bool> bank_hash{*this, "bank_hash", true, "", "Banks are exchanged by the row's number. [P: Zhang 2000]"};
   Choice<models::DramSchedulerKind> scheduler{*this,
                                               "scheduler",
                                               models::DramSchedulerKind::kFirstReady,
                                               {"in_order", "first_ready"},
                                               "Which request is served: the oldest, or hits to open rows first. [P: Rixner 2000]"};
+  Int in_order_ahead{*this,     "in_order_ahead", 0,
+                     "request", {0, 64},          "In order: rows of so many requests behind the oldest are opened meanwhile"};
   Int age_cap{*this, "age_cap", 1000, "clk", kTime, "After that long the oldest request goes before younger hits to its bank. [G]"};
   Choice<models::DramWriteDrainKind> write_drain{*this,
                                                  "write_drain",

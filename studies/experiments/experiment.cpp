@@ -24,7 +24,8 @@ constexpr Experiment kExperiments[] = {
      "Rixner and others (Memory Access Scheduling, ISCA 2000), media kernels and applications on one Imagine processor with in-order "
      "access as the base: "
      "first-ready scheduling raises the sustained bandwidth by 17 % on applications and 40 % on streams, aggressive reordering by 93 %.",
-     "Frames that memory limits, each with three controllers: in order; first-ready; first-ready with writes drained by watermarks. "
+     "Frames that memory limits, each with four controllers: in order; in order with rows opened ahead; first-ready; first-ready with "
+     "writes drained by watermarks. "
      "Victims leave the L2 cache in "
      "the order of eviction. Bandwidth is bytes moved by the channels over the frame's cycles.",
      &memory_scheduling},

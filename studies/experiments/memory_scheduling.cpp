@@ -14,9 +14,11 @@ struct Controller {
 };
 
 const std::vector<Controller>& controllers() {
-  static const std::vector<Controller> all{{"in order", {"memory.scheduler=in_order", "memory.write_drain=off"}},
-                                           {"first-ready", {"memory.scheduler=first_ready", "memory.write_drain=off"}},
-                                           {"first-ready, write drain", {"memory.scheduler=first_ready", "memory.write_drain=watermark"}}};
+  static const std::vector<Controller> all{
+      {"in order", {"memory.scheduler=in_order", "memory.write_drain=off"}},
+      {"in order, rows ahead", {"memory.scheduler=in_order", "memory.write_drain=off", "memory.in_order_ahead=8"}},
+      {"first-ready", {"memory.scheduler=first_ready", "memory.write_drain=off"}},
+      {"first-ready, write drain", {"memory.scheduler=first_ready", "memory.write_drain=watermark"}}};
   return all;
 }
 
@@ -92,11 +94,12 @@ Result memory_scheduling(const Setting& setting) {
     }
   }
   result.remarks = {
-      "Where the verdict fails, reordering gains more than was published. In order here is strict: a request's row is neither closed nor "
-      "opened before the "
-      "request in front of it is done, so each change of row is paid in full, and reads and write-backs of a frame change rows at almost "
-      "every request. "
-      "The paper does not say how much of that its base overlaps.",
+      "Where the verdict fails, reordering gains more than was published. In order here is strict, as the paper's base is: a request's row "
+      "is "
+      "neither closed nor opened before the request in front of it is done. Rows that are opened ahead, for the next eight requests, give "
+      "back less than a third of the difference. The rest is in the traffic: the fill and the write-back of a line follow each other, so "
+      "the bus "
+      "turns around and rows change at almost every request. The paper's applications move long runs of one kind.",
       "A row of GDDR6 takes 45 cycles from one activation to the next, as long as twenty bursts of its bus; one of the paper's SDRAM nine, "
       "as long as nine "
       "references. Its rows are held to no band."};
@@ -104,7 +107,10 @@ Result memory_scheduling(const Setting& setting) {
       "set style data histograms\nset style fill solid 0.8\nset xtics rotate by -30 font ',9'\nset ylabel 'bytes a GPU cycle'\nset yrange "
       "[0:*]\nset key outside top center horizontal\nset grid "
       "y\n$d << EOD\n" +
-      data + "EOD\nplot $d using 2:xtic(1) title 'in order', '' using 3 title 'first-ready', '' using 4 title 'first-ready, write drain'";
+      data +
+      "EOD\nplot $d using 2:xtic(1) title 'in order', '' using 3 title 'in order, rows ahead', '' using 4 title 'first-ready', '' using 5 "
+      "title "
+      "'first-ready, write drain'";
   return result;
 }
 

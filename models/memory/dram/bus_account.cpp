@@ -23,7 +23,7 @@ void BusAccount::charge(BusUse use, std::int64_t to) {
   late_.push_back({use, to});
 }
 
-void BusAccount::burst(std::int64_t start, std::int64_t length, bool write, const BurstWaits& waits) {
+void BusAccount::burst_after_gap(std::int64_t start, std::int64_t length, BusUse use, const BurstWaits& waits) {
   QUADRILLE_CHECK(start >= charged_ || cycles_ == Cycles{}, "burst at {} while the bus is held until {}", start, charged_);
   if (start > charged_) {
     charge(BusUse::kIdle, std::min(start, waits.pending));
@@ -32,7 +32,7 @@ void BusAccount::burst(std::int64_t start, std::int64_t length, bool write, cons
     charge(BusUse::kActivation, std::min(start, waits.activated));
     charge(BusUse::kSpacing, start);
   }
-  charge(write ? BusUse::kWrite : BusUse::kRead, start + length);
+  charge(use, start + length);
 }
 
 BusAccount::Cycles BusAccount::until(std::int64_t end) const {

@@ -28,7 +28,12 @@ class BusAccount {
   using Cycles = std::array<std::int64_t, kBusUses>;
 
   /// A burst holds the bus during [start, start + length). In order of time.
-  void burst(std::int64_t start, std::int64_t length, bool write, const BurstWaits& waits);
+  void burst(std::int64_t start, std::int64_t length, bool write, const BurstWaits& waits) {
+    const BusUse use = write ? BusUse::kWrite : BusUse::kRead;
+    if (start != charged_ || late_.empty() || late_.back().use != use) return burst_after_gap(start, length, use, waits);
+    cycles_[static_cast<std::size_t>(use)] += length;
+    late_.back().to = charged_ = start + length;
+  }
   /// Every cycle before it is charged: a burst that begins there waited for nothing.
   [[nodiscard]] std::int64_t charged() const { return charged_; }
   /// The cycles of [0, end): what was charged before it, and idleness behind the last burst. A burst that outlives `end` counts up to there.
@@ -39,6 +44,7 @@ class BusAccount {
     BusUse use;
     std::int64_t to;  ///< from the end of the piece before
   };
+  void burst_after_gap(std::int64_t start, std::int64_t length, BusUse use, const BurstWaits& waits);
   void charge(BusUse use, std::int64_t to);
 
   Cycles cycles_{};

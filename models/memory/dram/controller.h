@@ -23,9 +23,10 @@ namespace quadrille::models {
 
 struct DramControllerParams {
   DramTiming timing;
-  DramInterleave interleave = DramInterleave::kGroup;
+  DramInterleave interleave = DramInterleave::kRow;
   bool hash = true;
   DramSchedulerKind scheduler = DramSchedulerKind::kFirstReady;
+  int in_order_ahead = 0;  ///< in order: requests behind the oldest whose rows are prepared
   std::int64_t age_cap = 1000;
   DramWriteDrainKind write_drain = DramWriteDrainKind::kWatermark;
   int write_high = 112, write_low = 16;  ///< of the whole controller

@@ -14,7 +14,8 @@ DramDevice::DramDevice(const DramTiming& timing)
     : t_(timing),
       banks_(static_cast<std::size_t>(timing.all_banks())),
       groups_(static_cast<std::size_t>(timing.ranks * timing.bank_groups)),
-      ranks_(static_cast<std::size_t>(timing.ranks)) {
+      ranks_(static_cast<std::size_t>(timing.ranks)),
+      bounds_(kGroupRules * groups_.size() + 1, 0) {
   QUADRILLE_CHECK(
       timing.banks > 0 && timing.bank_groups > 0 && timing.banks % timing.bank_groups == 0 && timing.ranks > 0 && timing.t_burst > 0,
       "{} ranks of {} banks in {} groups, burst of {}", timing.ranks, timing.banks, timing.bank_groups, timing.t_burst);
@@ -23,23 +24,31 @@ DramDevice::DramDevice(const DramTiming& timing)
     banks_[b].group = b / static_cast<std::uint32_t>(timing.group_banks());
     banks_[b].rank = b / static_cast<std::uint32_t>(timing.banks);
   }
+  for (const bool wrote : {false, true}) {
+    gaps_[wrote].assign(groups_.size() * bounds_.size(), -(Cycle{1} << 40));
+    for (std::uint32_t from = 0; from < groups_.size(); ++from) {
+      for (std::uint32_t to = 0; to < groups_.size(); ++to) {
+        const Relation is = relation(from, groups_[from].rank, to);
+        for (const bool write : {false, true}) gaps_[wrote][from * bounds_.size() + column_rule(to, write)] = column_gap(wrote, write, is);
+      }
+    }
+  }
+}
+
+DramDevice::Cycle DramDevice::column_gap(bool wrote, bool write, Relation to) const {
+  const Cycle data_end = data_start(wrote, 0) + t_.t_burst;
+  if (to == kOtherRank) {
+    const int idle = write && !wrote ? std::max(t_.t_rtrs, t_.t_rtw) : t_.t_rtrs;
+    return data_end + idle - data_start(write, 0);
+  }
+  if (write == wrote) return std::max(to == kSameGroup ? t_.t_ccd_l : t_.t_ccd_s, t_.t_burst);
+  if (wrote) return data_end + (to == kSameGroup ? t_.t_wtr_l : t_.t_wtr_s);
+  return data_end + t_.t_rtw - t_.t_cwl;
 }
 
 DramDevice::Cycle DramDevice::turned(std::uint32_t bank, bool write) const {
-  if (!used_) return 0;
-  const std::uint32_t rank = rank_of(bank);
-  if (write == wrote_ && rank == last_rank_) return 0;
-  return after_burst(rank, group_of(bank), write);
-}
-
-DramDevice::Cycle DramDevice::after_burst(std::uint32_t rank, std::uint32_t group, bool write) const {
-  if (rank == last_rank_) {
-    if (write == wrote_) return last_command_ + std::max(group == last_group_ ? t_.t_ccd_l : t_.t_ccd_s, t_.t_burst);
-    if (wrote_) return data_end_ + (group == last_group_ ? t_.t_wtr_l : t_.t_wtr_s);
-    return data_end_ + t_.t_rtw - t_.t_cwl;
-  }
-  const int idle = write && !wrote_ ? std::max(t_.t_rtrs, t_.t_rtw) : t_.t_rtrs;
-  return data_end_ + idle - (write ? t_.t_cwl : t_.t_cas);
+  if (!used_ || (write == wrote_ && rank_of(bank) == last_rank_)) return 0;
+  return last_command_ + gaps_[wrote_][last_group_ * bounds_.size() + column_rule(group_of(bank), write)];
 }
 
 DramDevice::Cycle DramDevice::earliest_refresh(std::uint32_t rank) const {
@@ -66,6 +75,14 @@ void DramDevice::activate(std::uint32_t bank, std::int32_t row, Cycle at) {
   raise(rank.activate, at + t_.t_rrd_s);
   rank.window[rank.oldest] = at + t_.t_faw;
   rank.oldest = (rank.oldest + 1) % rank.window.size();
+  bound_activates(b.rank);
+}
+
+void DramDevice::bound_activates(std::uint32_t rank) {
+  const Cycle bound = std::max(ranks_[rank].activate, ranks_[rank].window[ranks_[rank].oldest]);
+  const auto groups = static_cast<std::uint32_t>(t_.bank_groups);
+  for (std::uint32_t group = rank * groups; group < (rank + 1) * groups; ++group)
+    bounds_[activate_rule(group)] = std::max(groups_[group].activate, bound);
 }
 
 void DramDevice::precharge(std::uint32_t bank, Cycle at) {
@@ -80,25 +97,11 @@ void DramDevice::column(std::uint32_t bank, bool write, bool precharge_after, Cy
   last_rank_ = b.rank;
   last_group_ = b.group;
   last_command_ = at;
-  data_end_ = data_start(write, at) + t_.t_burst;
-  const auto groups = static_cast<std::uint32_t>(t_.bank_groups);
-  const std::uint32_t first = b.rank * groups, neighbour = groups > 1 ? (b.group == first ? first + 1 : first) : b.group;
-  for (const bool kind : {false, true}) {
-    const Cycle elsewhere = after_burst(b.rank, neighbour, kind);
-    for (std::uint32_t group = first; group < first + groups; ++group) raise(groups_[group].column[kind], elsewhere);
-    raise(groups_[b.group].column[kind], after_burst(b.rank, b.group, kind));
-  }
-  if (t_.ranks > 1) bound_other_ranks(b.rank);
-  raise(b.precharge, write ? data_end_ + t_.t_wr : at + t_.t_rtp);
+  const std::size_t rules = bounds_.size();
+  const Cycle* gaps = gaps_[write].data() + b.group * rules;
+  for (std::size_t rule = 0; rule < rules; ++rule) raise(bounds_[rule], at + gaps[rule]);
+  raise(b.precharge, write ? data_start(true, at) + t_.t_burst + t_.t_wr : at + t_.t_rtp);
   if (precharge_after) precharge(bank, b.precharge);
-}
-
-void DramDevice::bound_other_ranks(std::uint32_t rank) {
-  const auto groups = static_cast<std::uint32_t>(t_.bank_groups);
-  for (std::uint32_t group = 0; group < groups_.size(); ++group) {
-    if (group / groups == rank) continue;
-    for (const bool kind : {false, true}) raise(groups_[group].column[kind], after_burst(group / groups, group, kind));
-  }
 }
 
 void DramDevice::refresh(std::uint32_t rank, Cycle at) {
@@ -115,6 +118,7 @@ void DramDevice::refresh_bank(std::uint32_t bank, Cycle at) {
   Rank& rank = ranks_[rank_of(bank)];
   raise(rank.activate, at + t_.t_rrefd);
   raise(rank.refresh_bank, at + t_.t_rfc_pb);
+  bound_activates(rank_of(bank));
 }
 
 }  // namespace quadrille::models

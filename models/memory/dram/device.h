@@ -26,20 +26,21 @@ class DramDevice {
   explicit DramDevice(const DramTiming& timing);
 
   [[nodiscard]] std::int32_t open_row(std::uint32_t bank) const { return banks_[bank].row; }
-  [[nodiscard]] Cycle earliest_activate(std::uint32_t bank) const { return std::max(bank_activate(bank), group_activate(group_of(bank))); }
+  [[nodiscard]] Cycle earliest_activate(std::uint32_t bank) const {
+    return std::max(bank_activate(bank), shared_bound(activate_rule(group_of(bank))));
+  }
   [[nodiscard]] Cycle earliest_precharge(std::uint32_t bank) const { return banks_[bank].precharge; }
   [[nodiscard]] Cycle earliest_column(std::uint32_t bank, bool write) const {
-    const Cycle row = row_ready(bank, write), spaced = groups_[banks_[bank].group].column[write];
-    return row > spaced ? row : spaced;
+    return std::max(row_ready(bank, write), shared_bound(column_rule(group_of(bank), write)));
   }
-  // The same in two parts, of which the later counts: what the bank allows, and what its group and rank do.
+  // The same in two parts, of which the later counts: what the bank allows, and what it shares with others by a rule: the columns and activates of a group, each
+  // bound by its rank too. The rule of no group bounds nothing.
   [[nodiscard]] Cycle bank_activate(std::uint32_t bank) const { return banks_[bank].activate; }
-  [[nodiscard]] Cycle group_activate(std::uint32_t group) const {
-    const Group& g = groups_[group];
-    const Rank& rank = ranks_[g.rank];
-    return std::max({g.activate, rank.activate, rank.window[rank.oldest]});
-  }
-  [[nodiscard]] Cycle group_column(std::uint32_t group, bool write) const { return groups_[group].column[write]; }
+  [[nodiscard]] Cycle shared_bound(std::uint32_t rule) const { return bounds_[rule]; }
+  [[nodiscard]] const Cycle* shared_bounds() const { return bounds_.data(); }
+  [[nodiscard]] static std::uint32_t column_rule(std::uint32_t group, bool write) { return kGroupRules * group + (write ? 1 : 0); }
+  [[nodiscard]] static std::uint32_t activate_rule(std::uint32_t group) { return kGroupRules * group + 2; }
+  [[nodiscard]] std::uint32_t no_rule() const { return kGroupRules * groups(); }
   /// Of all ranks.
   [[nodiscard]] std::uint32_t groups() const { return static_cast<std::uint32_t>(groups_.size()); }
   /// The rank's banks are closed.
@@ -77,8 +78,7 @@ class DramDevice {
   };
   struct Group {
     std::uint32_t rank = 0;
-    Cycle activate = 0;
-    std::array<Cycle, 2> column{};  ///< read, write: after all column commands so far, of any rank and group
+    Cycle activate = 0;  ///< t_rrd_l
   };
   struct Rank {
     Cycle activate = 0;             ///< t_rrd_s, t_rrefd
@@ -87,20 +87,27 @@ class DramDevice {
     Cycle refresh_bank = 0;  ///< a refresh of one bank ends before the next begins
   };
 
-  /// First column command to a group that the latest burst allows.
-  [[nodiscard]] Cycle after_burst(std::uint32_t rank, std::uint32_t group, bool write) const;
-
-  void bound_other_ranks(std::uint32_t rank);
+  static constexpr std::uint32_t kGroupRules = 3;
+  enum Relation : std::uint8_t { kSameGroup, kSameRank, kOtherRank, kRelations };
+  /// Cycles from a column command to the first one of `write` that it allows.
+  [[nodiscard]] Cycle column_gap(bool wrote, bool write, Relation to) const;
+  [[nodiscard]] Relation relation(std::uint32_t group, std::uint32_t rank, std::uint32_t other_group) const {
+    return group == other_group ? kSameGroup : groups_[other_group].rank == rank ? kSameRank : kOtherRank;
+  }
+  void bound_activates(std::uint32_t rank);
 
   DramTiming t_;
   std::vector<Bank> banks_;
   std::vector<Group> groups_;
   std::vector<Rank> ranks_;
+  std::vector<Cycle> bounds_;  ///< by rule
+  std::array<std::vector<Cycle>, 2>
+      gaps_;  ///< column_gap() of reads and of writes to each rule, one row of rules for each group that the burst is of
   // The data bus.
   bool used_ = false, wrote_ = false;
   std::uint32_t last_rank_ = 0;
   std::uint32_t last_group_ = 0;
-  Cycle data_end_ = 0, last_command_ = 0;
+  Cycle last_command_ = 0;
 };
 
 }  // namespace quadrille::models

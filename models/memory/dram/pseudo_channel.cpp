@@ -13,7 +13,7 @@ DramController::PseudoChannel::PseudoChannel(const DramControllerParams& params,
       number_(number),
       queue_(static_cast<std::size_t>(params.timing.all_banks())),
       device_(params.timing),
-      scheduler_(make_dram_scheduler(params.scheduler)),
+      scheduler_(make_dram_scheduler(params.scheduler, params.in_order_ahead)),
       drain_(params.write_drain, std::max(1, params.write_high / params.timing.pseudo_channels),
              params.write_low / params.timing.pseudo_channels),
       page_(params.page, params.page_idle),
@@ -27,6 +27,7 @@ DramController::PseudoChannel::PseudoChannel(const DramControllerParams& params,
 void DramController::PseudoChannel::take(const DramEntry& entry, Cycle now) {
   if (queue_.empty()) waiting_since_ = now;
   queue_.add(entry);
+  view_holds_until_ = 0;
   forget_picks(entry.at.bank);
   // What was planned stands unless the request changes the rules, or can be served sooner.
   if (stale_ || planned_.order == 0 || scheduler_->looks_beyond_bank() || update_view(now)) {
@@ -45,58 +46,6 @@ void DramController::PseudoChannel::consider(Action& best, Cycle now, const Acti
   best.at = at;
 }
 
-bool DramController::PseudoChannel::rank_waits(std::uint32_t rank) const {
-  return std::ranges::any_of(queue_.active_banks(), [&](std::uint32_t bank) { return device_.rank_of(bank) == rank; });
-}
-
-void DramController::PseudoChannel::consider_rank_refresh(Action& best, Cycle now, std::uint32_t rank) {
-  const bool must = refresh_[rank].must(now);
-  must_refresh_[rank] = must;
-  any_must_ |= must;
-  if (!must && rank_waits(rank)) return;
-  bool closed = true;
-  const auto banks = static_cast<std::uint32_t>(params_.timing.banks);
-  for (std::uint32_t bank = rank * banks; bank < (rank + 1) * banks; ++bank) {
-    if (device_.open_row(bank) == DramDevice::kClosed) continue;
-    closed = false;
-    if (!keeps_row(bank, now))
-      consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
-  }
-  if (closed) consider(best, now, {std::max(device_.earliest_refresh(rank), commands_.free(false)), 0, Step::kRefresh, rank});
-}
-
-void DramController::PseudoChannel::consider_bank_refresh(Action& best, Cycle now, std::uint32_t rank) {
-  const std::uint32_t bank = rank * static_cast<std::uint32_t>(params_.timing.banks) + refresh_[rank].bank();
-  const bool must = refresh_[rank].must(now);
-  must_refresh_[rank] = must;
-  any_must_ |= must;
-  if ((!must && queue_.bank_count(bank) > 0) || keeps_row(bank, now)) return;
-  if (device_.open_row(bank) != DramDevice::kClosed)
-    consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
-  else consider(best, now, {std::max(device_.earliest_refresh_bank(bank), commands_.free(false)), 0, Step::kRefreshBank, bank});
-}
-
-void DramController::PseudoChannel::consider_refresh(Action& best, Cycle now) {
-  any_must_ = false;
-  for (std::uint32_t rank = 0; rank < refresh_.size(); ++rank) {
-    must_refresh_[rank] = 0;
-    if (!refresh_[rank].on() || refresh_[rank].due_at() > now) continue;
-    if (refresh_[rank].per_bank()) consider_bank_refresh(best, now, rank);
-    else consider_rank_refresh(best, now, rank);
-  }
-}
-
-bool DramController::PseudoChannel::keeps_row(std::uint32_t bank, Cycle now) const {
-  if (fresh_rows_[bank] == 0) return false;
-  return now < std::max(device_.row_ready(bank, false), device_.row_ready(bank, true)) + params_.timing.t_rc;
-}
-
-bool DramController::PseudoChannel::barred(std::uint32_t bank, Cycle now) const {
-  const std::uint32_t rank = device_.rank_of(bank);
-  if (must_refresh_[rank] == 0 || keeps_row(bank, now)) return false;
-  return !refresh_[rank].per_bank() || bank == rank * static_cast<std::uint32_t>(params_.timing.banks) + refresh_[rank].bank();
-}
-
 void DramController::PseudoChannel::forget_picks(std::uint32_t bank) {
   picks_[bank].stale = true;
   if (!scheduler_->looks_beyond_bank()) return;
@@ -105,16 +54,18 @@ void DramController::PseudoChannel::forget_picks(std::uint32_t bank) {
 
 void DramController::PseudoChannel::update_pick(std::uint32_t bank) {
   Pick& pick = picks_[bank];
-  pick = {0, 0, scheduler_->pick(view_, bank), static_cast<std::uint16_t>(device_.group_of(bank)), Step::kNothing, false, false};
+  pick = {kNever, ~std::uint64_t{0}, scheduler_->pick(view_, bank), device_.no_rule(), Step::kNothing, false};
   if (pick.entry == DramQueue::kNone) return;
   const DramEntry& entry = queue_[pick.entry];
   const std::int32_t open = device_.open_row(bank);
-  pick.write = entry.write;
   if (open == entry.at.row) {
+    if (!scheduler_->moves(view_, pick.entry)) return;
     pick.step = Step::kColumn;
+    pick.rule = DramDevice::column_rule(device_.group_of(bank), entry.write);
     pick.ready = device_.row_ready(bank, entry.write);
   } else if (open == DramDevice::kClosed) {
     pick.step = Step::kActivate;
+    pick.rule = DramDevice::activate_rule(device_.group_of(bank));
     pick.ready = device_.bank_activate(bank);
   } else {
     pick.step = Step::kPrecharge;
@@ -128,10 +79,15 @@ bool DramController::PseudoChannel::update_view(Cycle now) {
   drain_.update(queue_);
   // Before a refresh that must be, a row that was just opened gets its burst whatever the drain does.
   DramView view{queue_, device_, drain_.reads() || any_must_, drain_.writes() || any_must_};
+  Cycle holds_until = kNever;
   for (const bool write : {false, true}) {
     const std::uint32_t oldest = queue_.oldest(write);
-    if (oldest != DramQueue::kNone && now - queue_[oldest].arrived > params_.age_cap) view.starving[write] = oldest;
+    if (oldest == DramQueue::kNone) continue;
+    const Cycle starves_at = queue_[oldest].arrived + params_.age_cap + 1;
+    if (now >= starves_at) view.starving[write] = oldest;
+    else holds_until = std::min(holds_until, starves_at);
   }
+  view_holds_until_ = any_must_ ? 0 : holds_until;
   const bool same = view.reads == view_.reads && view.writes == view_.writes && view.starving == view_.starving;
   view_.reads = view.reads;
   view_.writes = view.writes;
@@ -154,15 +110,34 @@ DramController::PseudoChannel::Action DramController::PseudoChannel::choose(Cycl
   consider_refresh(best, now);
   if (page_.times()) consider_idle_rows(best, now);
   if (queue_.empty()) return best;
-  (void)update_view(now);
-  for (const std::uint32_t bank : queue_.active_banks()) {
-    if (picks_[bank].stale) update_pick(bank);
-    const Pick& pick = picks_[bank];
-    if (pick.step == Step::kNothing || (any_must_ && barred(bank, now))) continue;
-    const Cycle at = std::max(now, earliest(pick));
-    if (at < best.at || (at == best.at && pick.order < best.order)) best = {at, pick.order, pick.step, bank, pick.entry};
-  }
+  if (any_must_ || now >= view_holds_until_) (void)update_view(now);
+  choose_pick(best, now);
   return best;
+}
+
+// This loop takes a good part of the simulation's time.
+void DramController::PseudoChannel::choose_pick(Action& best, Cycle now) {
+  const Cycle* shared = device_.shared_bounds();
+  const Cycle row_bus = std::max(now, commands_.free(false)), column_bus = std::max(now, commands_.free(true));
+  Cycle best_at = best.at;
+  std::uint64_t best_order = best.order;
+  std::uint32_t chosen = DramQueue::kNone;
+  for (const bool write : {false, true}) {
+    if (!(write ? view_.writes : view_.reads)) continue;
+    for (const std::uint32_t bank : queue_.active_banks(write)) {
+      if (picks_[bank].stale) update_pick(bank);
+      const Pick& pick = picks_[bank];
+      const Cycle own = std::max(pick.ready, shared[pick.rule]);
+      const Cycle at = std::max(own, pick.step == Step::kColumn ? column_bus : row_bus);
+      if (at > best_at || (at == best_at && pick.order >= best_order) || (any_must_ && barred(bank, now))) continue;
+      best_at = at;
+      best_order = pick.order;
+      chosen = bank;
+    }
+  }
+  if (chosen == DramQueue::kNone) return;
+  const Pick& pick = picks_[chosen];
+  best = {best_at, best_order, pick.step, chosen, pick.entry};
 }
 
 void DramController::PseudoChannel::plan(Cycle now) {
@@ -198,7 +173,7 @@ DramCommand DramController::PseudoChannel::command(Step step, std::uint32_t bank
   return c;
 }
 
-void DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, std::vector<DramDone>& done, DramCommand& command) {
+bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, std::vector<DramDone>& done, DramCommand& command) {
   DramEntry& entry = queue_[index];
   const std::uint32_t bank = entry.at.bank;
   const int burst = std::countr_zero(entry.bursts);
@@ -220,22 +195,25 @@ void DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, s
   used_[bank] = now;
   fresh_rows_[bank] = 0;
   commands_.hold_column(now);
-  if (!last) return;
+  if (!last) return false;
   const DramRowOutcome row = entry.closed_other ? DramRowOutcome::kConflict : entry.opened ? DramRowOutcome::kMiss : DramRowOutcome::kHit;
   done.push_back({entry.id, entry.write, row, entry.arrived, end});
   queue_.remove(index);
+  view_holds_until_ = 0;
+  if (queue_.bank_count(bank) == 0) refresh_quiet_until_ = 0;
+  return true;
 }
 
 void DramController::PseudoChannel::perform(const Action& action, Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts,
                                             const std::function<void(const DramCommand&)>& trace) {
   DramCommand sent;
   if (trace) sent = command(action.step, action.bank, now);
-  if (action.step != Step::kRefresh) forget_picks(action.bank);
+  bool changes_picks = action.step != Step::kRefresh;
   switch (action.step) {
     case Step::kNothing: return;
     case Step::kColumn: {
       ++(queue_[action.entry].write ? counts.writes : counts.reads);
-      move_burst(action.entry, now, done, sent);
+      changes_picks = move_burst(action.entry, now, done, sent);
       break;
     }
     case Step::kActivate:
@@ -262,10 +240,12 @@ void DramController::PseudoChannel::perform(const Action& action, Cycle now, std
         device_.refresh_bank(action.bank, now);
       }
       refresh_[action.step == Step::kRefresh ? action.bank : device_.rank_of(action.bank)].send();
+      refresh_quiet_until_ = 0;
       commands_.hold_row(now, false);
       ++counts.refreshes;
       break;
   }
+  if (changes_picks) forget_picks(action.bank);
   if (trace) trace(sent);
 }
 

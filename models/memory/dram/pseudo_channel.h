@@ -51,25 +51,25 @@ class DramController::PseudoChannel {
     Cycle ready = 0;  ///< as far as the bank itself is concerned
     std::uint64_t order = 0;
     std::uint32_t entry = DramQueue::kNone;
-    std::uint16_t group = 0;
+    std::uint32_t rule = 0;  ///< DramDevice::shared_bound
     Step step = Step::kNothing;
-    bool write = false, stale = true;
+    bool stale = true;
   };
   [[nodiscard]] Action choose(Cycle now);
   void plan(Cycle now);
   [[nodiscard]] Cycle earliest(const Pick& pick) const {
-    const Cycle ready = std::max(pick.ready, commands_.free(pick.step == Step::kColumn));
-    if (pick.step == Step::kColumn) return std::max(ready, device_.group_column(pick.group, pick.write));
-    return pick.step == Step::kActivate ? std::max(ready, device_.group_activate(pick.group)) : ready;
+    return std::max({pick.ready, device_.shared_bound(pick.rule), commands_.free(pick.step == Step::kColumn)});
   }
   /// True when something that every bank's pick depends on changed.
   bool update_view(Cycle now);
   void update_pick(std::uint32_t bank);
+  void choose_pick(Action& best, Cycle now);
   void forget_picks(std::uint32_t bank);
   void consider(Action& best, Cycle now, const Action& action) const;
   void consider_refresh(Action& best, Cycle now);
-  void consider_rank_refresh(Action& best, Cycle now, std::uint32_t rank);
-  void consider_bank_refresh(Action& best, Cycle now, std::uint32_t rank);
+  // True when it is postponed because requests wait.
+  bool consider_rank_refresh(Action& best, Cycle now, std::uint32_t rank);
+  bool consider_bank_refresh(Action& best, Cycle now, std::uint32_t rank);
   void consider_idle_rows(Action& best, Cycle now) const;
   [[nodiscard]] bool rank_waits(std::uint32_t rank) const;
   [[nodiscard]] bool barred(std::uint32_t bank, Cycle now) const;
@@ -79,7 +79,8 @@ class DramController::PseudoChannel {
                const std::function<void(const DramCommand&)>& trace);
   void chain_bursts(Action action, std::vector<DramDone>& done, DramCommandCounts& counts,
                     const std::function<void(const DramCommand&)>& trace);
-  void move_burst(std::uint32_t entry, Cycle now, std::vector<DramDone>& done, DramCommand& command);
+  /// True when it was the request's last one.
+  bool move_burst(std::uint32_t entry, Cycle now, std::vector<DramDone>& done, DramCommand& command);
   [[nodiscard]] DramCommand command(Step step, std::uint32_t bank, Cycle now) const;
 
   const DramControllerParams& params_;
@@ -98,6 +99,8 @@ class DramController::PseudoChannel {
   std::vector<Pick> picks_;                 ///< by bank
   std::vector<std::uint8_t> must_refresh_;  ///< by rank: its requests wait for a refresh (of the bank in turn)
   bool any_must_ = false;
+  Cycle refresh_quiet_until_ = 0;         ///< until then no refresh concerns what is chosen
+  Cycle view_holds_until_ = 0;            ///< until then no request starves that did not; 0 when the queue changed
   std::vector<std::uint8_t> fresh_rows_;  ///< by bank: the row was opened and no burst of it moved yet
   bool stale_ = true;                     ///< what follows must be found again
   Action planned_;

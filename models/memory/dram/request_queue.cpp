@@ -14,13 +14,14 @@ std::uint32_t DramQueue::add(const DramEntry& entry) {
   nodes_[index] = {entry, kNone, age.last, kNone, list.last};
   (age.last == kNone ? age.first : nodes_[age.last].next) = index;
   age.last = index;
+  if (list.last == kNone) {
+    bank.place[entry.write] = static_cast<std::uint32_t>(active_[entry.write].size());
+    active_[entry.write].push_back(entry.at.bank);
+  }
   (list.last == kNone ? list.first : nodes_[list.last].bank_next) = index;
   list.last = index;
   ++count_[entry.write];
-  if (bank.count++ == 0) {
-    bank.place = static_cast<std::uint32_t>(active_.size());
-    active_.push_back(entry.at.bank);
-  }
+  ++bank.count;
   return index;
 }
 
@@ -33,10 +34,12 @@ void DramQueue::remove(std::uint32_t index) {
   (node.bank_prev == kNone ? list.first : nodes_[node.bank_prev].bank_next) = node.bank_next;
   (node.bank_next == kNone ? list.last : nodes_[node.bank_next].bank_prev) = node.bank_prev;
   --count_[node.entry.write];
-  if (--bank.count == 0) {
-    active_[bank.place] = active_.back();
-    banks_[active_.back()].place = bank.place;
-    active_.pop_back();
+  --bank.count;
+  if (list.first == kNone) {
+    std::vector<std::uint32_t>& active = active_[node.entry.write];
+    active[bank.place[node.entry.write]] = active.back();
+    banks_[active.back()].place[node.entry.write] = bank.place[node.entry.write];
+    active.pop_back();
   }
   free_.push_back(index);
 }

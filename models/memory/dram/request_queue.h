@@ -33,6 +33,8 @@ class DramQueue {
   [[nodiscard]] const DramEntry& operator[](std::uint32_t i) const { return nodes_[i].entry; }
 
   [[nodiscard]] std::uint32_t oldest(bool write) const { return age_[write].first; }
+  /// The next younger one of the same kind.
+  [[nodiscard]] std::uint32_t younger(std::uint32_t i) const { return nodes_[i].next; }
   /// Over both kinds.
   [[nodiscard]] std::uint32_t oldest() const;
   [[nodiscard]] std::uint32_t oldest(std::uint32_t bank, bool write) const { return banks_[bank].list[write].first; }
@@ -43,8 +45,8 @@ class DramQueue {
   [[nodiscard]] int count(bool write) const { return count_[write]; }
   [[nodiscard]] bool empty() const { return count_[0] + count_[1] == 0; }
   [[nodiscard]] int bank_count(std::uint32_t bank) const { return banks_[bank].count; }
-  /// Banks with requests, in no order of meaning.
-  [[nodiscard]] const std::vector<std::uint32_t>& active_banks() const { return active_; }
+  /// Banks with requests of a kind, in no order of meaning.
+  [[nodiscard]] const std::vector<std::uint32_t>& active_banks(bool write) const { return active_[write]; }
 
  private:
   struct List {
@@ -58,14 +60,14 @@ class DramQueue {
   struct Bank {
     std::array<List, 2> list;
     int count = 0;
-    std::uint32_t place = kNone;  ///< in active_
+    std::array<std::uint32_t, 2> place{kNone, kNone};  ///< in active_
   };
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> free_;
   std::array<List, 2> age_;
   std::array<int, 2> count_{};
   std::vector<Bank> banks_;
-  std::vector<std::uint32_t> active_;
+  std::array<std::vector<std::uint32_t>, 2> active_;
 };
 
 }  // namespace quadrille::models

@@ -21,9 +21,9 @@ std::uint32_t FirstReadyScheduler::pick(const DramView& view, std::uint32_t bank
   return view.queue[read].seq < view.queue[write].seq ? read : write;
 }
 
-std::unique_ptr<DramScheduler> make_dram_scheduler(DramSchedulerKind kind) {
+std::unique_ptr<DramScheduler> make_dram_scheduler(DramSchedulerKind kind, int in_order_ahead) {
   switch (kind) {
-    case DramSchedulerKind::kInOrder: return std::make_unique<InOrderScheduler>();
+    case DramSchedulerKind::kInOrder: return std::make_unique<InOrderScheduler>(in_order_ahead);
     case DramSchedulerKind::kFirstReady: return std::make_unique<FirstReadyScheduler>();
   }
   return nullptr;

@@ -15,7 +15,11 @@ class DramWriteDrain {
  public:
   DramWriteDrain(DramWriteDrainKind kind, int high, int low) : kind_(kind), high_(high), low_(low) {}
   /// Looks at what waits; before reads() and writes().
-  void update(const DramQueue& queue);
+  void update(const DramQueue& queue) {
+    const int reads = queue.count(false), writes = queue.count(true);
+    if (draining_) draining_ = writes > 0 && (writes > low_ || reads == 0);
+    else draining_ = writes >= high_ || (reads == 0 && writes > 0);
+  }
   [[nodiscard]] bool reads() const { return kind_ == DramWriteDrainKind::kOff || !draining_; }
   [[nodiscard]] bool writes() const { return kind_ == DramWriteDrainKind::kOff || draining_; }
 
