@@ -26,9 +26,6 @@ struct ExperimentArguments {
   bool list = false;
 };
 
-constexpr const char* kOwnScenes[] = {"builtin:fill", "builtin:overdraw", "builtin:courtyard"};
-constexpr const char* kOwnSize = "960x540";
-
 std::vector<const experiments::Experiment*> chosen_of(const std::vector<std::string>& names) {
   std::vector<const experiments::Experiment*> chosen;
   std::vector<std::string> all;
@@ -45,14 +42,14 @@ std::vector<const experiments::Experiment*> chosen_of(const std::vector<std::str
   return chosen;
 }
 
-experiments::Setting setting_of(const ExperimentArguments& a) {
+experiments::Setting setting_of(const experiments::Experiment& e, const ExperimentArguments& a) {
   experiments::Setting setting;
   std::vector<std::string> scenes = a.scenes;
-  if (scenes.empty()) scenes.assign(std::begin(kOwnScenes), std::end(kOwnScenes));
+  if (scenes.empty()) scenes.assign(e.scenes.begin(), e.scenes.end());
   for (const std::string& name : scenes) {
     SceneArguments scene;
     scene.scene = name;
-    if (!scene.is_trace()) scene.size = a.size.value_or(kOwnSize);
+    if (!scene.is_trace()) scene.size = a.size.value_or(e.size);
     scene.check();
     scene.check_there();
     setting.scenes.emplace_back(fs::path(name).stem().string(), [scene] { return scene.load().stream; });
@@ -67,7 +64,8 @@ int run_experiments(const ExperimentArguments& a) {
     for (const experiments::Experiment* e : all) fmt::print("{:<24}{}\n", e->name, e->title);
     return kDone;
   }
-  experiments::Setting setting = setting_of(a);
+  std::vector<experiments::Setting> settings;
+  for (const experiments::Experiment* e : all) settings.push_back(setting_of(*e, a));
   if (a.out) {
     studies::require_gnuplot("--out");
     std::error_code error;
@@ -75,7 +73,9 @@ int run_experiments(const ExperimentArguments& a) {
     if (error || !fs::is_directory(*a.out)) throw user_error("--out: {}: cannot be made a folder", *a.out);
   }
   bool hold = true;
-  for (const experiments::Experiment* e : all) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const experiments::Experiment* e = all[i];
+    experiments::Setting& setting = settings[i];
     Progress progress;
     setting.progress = [&](const std::string& text) { progress.show(fmt::format("{}: {}", e->name, text)); };
     const experiments::Result result = e->run(setting);
@@ -103,7 +103,7 @@ void add_experiment(CLI::App& app, Command& chosen) {
       ->type_name("SCENE")
       ->expected(1)
       ->take_all();
-  command->add_option("--size", arguments->size, "of the pictures of scenes (default 960x540)")->type_name("WxH");
+  command->add_option("--size", arguments->size, "of the pictures of scenes (default: the experiment's own)")->type_name("WxH");
   command->add_option("--out", arguments->out, "writes a page and a plot of each there")->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "processes at a time (default 2)")->type_name("N");
   command->footer(R"(Exit code 1 when a figure lies outside its band.

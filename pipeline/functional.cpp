@@ -79,7 +79,7 @@ class FunctionalRenderer {
       const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]), vertex_number(corner[2])};
       if (!reuse.fits(vertex)) break;
       BatchSlot::Triangle triangle{{}, t};
-      for (std::size_t i = 0; i < 3; ++i) triangle.lane[i] = static_cast<std::uint8_t>(reuse.find_or_add(vertex[i]));
+      for (std::size_t i = 0; i < 3; ++i) triangle.corner[i] = reuse.place(vertex[i]);
       batch_.triangles.push_back(triangle);
     }
     batch_.lanes = reuse.size();
@@ -124,7 +124,8 @@ class FunctionalRenderer {
     ++counts_.triangles;
     std::array<glm::vec4, 3> position;
     for (std::size_t i = 0; i < 3; ++i) {
-      for (int c = 0; c < 4; ++c) position[i][c] = std::bit_cast<float>(batch_.outputs[static_cast<std::size_t>(c)][triangle.lane[i]]);
+      for (int c = 0; c < 4; ++c)
+        position[i][c] = std::bit_cast<float>(batch_.outputs[static_cast<std::size_t>(c)][triangle.corner[i].lane]);
     }
     models::ClippedPolygon polygon;
     const models::ClipOutcome outcome = models::clip_triangle(position, draw_->clip, polygon);
@@ -159,7 +160,9 @@ class FunctionalRenderer {
     if (observer_) observer_(window);
     slot.draw = warp_.draw;
     slot.primitive = triangle.primitive;
-    hw::gather_varyings(batch_, {triangle.lane[0], triangle.lane[1], triangle.lane[2]}, draw_->varyings(), slot.varyings);
+    std::array<hw::CornerOutputs, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = {&batch_.outputs, triangle.corner[k].lane};
+    hw::gather_varyings(corners, draw_->varyings(), slot.varyings);
     rasterize(slot.setup);
     ++sequence_;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "hw/frame/frame.h"
+#include "models/geometry/post_transform.h"
 
 #include <memory>
 
@@ -16,7 +17,7 @@ struct BatchSlot {
   std::vector<models::LaneWords> attributes;  ///< rows by Program::vertex_inputs
   std::vector<models::LaneWords> outputs;     ///< rows by output slot
   struct Triangle {
-    std::uint8_t lane[3];
+    models::VertexPlace corner[3];  ///< in this batch, or in an earlier one whose slot is kept
     std::uint32_t primitive;
   };
   std::vector<Triangle> triangles;

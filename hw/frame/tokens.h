@@ -6,6 +6,8 @@
 ///   kSync      all tiles of the triangles before `sequence` have passed (their slots may be reused once retired)
 #pragma once
 
+#include "models/geometry/post_transform.h"
+
 #include <cstdint>
 
 namespace quadrille::hw {
@@ -37,22 +39,22 @@ struct VertexDoneToken {
   std::uint32_t slot = 0;
 };
 
-/// Primitive assembly -> clipper: one triangle as lanes of a batch.
+/// Primitive assembly -> clipper: one triangle of shaded vertices.
 struct PrimitiveToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint8_t lane[3] = {};
   std::uint32_t index = 0;      ///< draw or pass
-  std::uint32_t slot = 0;       ///< batch
+  std::uint32_t slot = 0;       ///< kBatchEnd: batch
   std::uint32_t primitive = 0;  ///< 0-based in the draw's instance
+  models::VertexPlace corner[3] = {};
 };
 
 /// Clipper -> set-up: a triangle or a piece of a clipped one; its window vertices are in the clipper's ring.
 struct ClippedToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint8_t lane[3] = {};
   std::uint32_t index = 0;
-  std::uint32_t slot = 0;  ///< batch
+  std::uint32_t slot = 0;  ///< kBatchEnd: batch
   std::uint32_t primitive = 0;
+  models::VertexPlace corner[3] = {};
   std::uint32_t piece = 0;  ///< slot in the ring of clipped pieces
 };
 

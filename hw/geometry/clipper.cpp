@@ -16,16 +16,16 @@ void Clipper::act(Tick now) {
   if (next_piece_ > 0) return emit_piece(now, next_piece_);
   const PrimitiveToken& token = primitive_in.front();
   if (token.kind == TokenKind::kWork) return take_triangle(now);
-  clipped_out.push(now, {token.kind, {}, token.index, token.slot, 0, 0});
+  clipped_out.push(now, {token.kind, token.index, token.slot, 0, {}, 0});
   (void)primitive_in.pop(now);
 }
 
 void Clipper::take_triangle(Tick now) {
   const PrimitiveToken& token = primitive_in.front();
-  const BatchSlot& batch = batches_[token.slot];
   std::array<glm::vec4, 3> position;
   for (std::size_t i = 0; i < 3; ++i) {
-    for (int c = 0; c < 4; ++c) position[i][c] = std::bit_cast<float>(batch.outputs[static_cast<std::size_t>(c)][token.lane[i]]);
+    const auto& [slot, lane] = token.corner[i];
+    for (int c = 0; c < 4; ++c) position[i][c] = std::bit_cast<float>(batches_[slot].outputs[static_cast<std::size_t>(c)][lane]);
   }
   ++stats_.triangles;
   switch (models::clip_triangle(position, frame_.draw(token.index).clip, polygon_)) {
@@ -55,7 +55,8 @@ void Clipper::emit_piece(Tick now, int i) {
     piece.weights[k] = {v.b1, v.b2};
   }
   QUADRILLE_CHECK(valid, "{}: a clipped vertex of draw {} has no window position", name(), token.index);
-  clipped_out.push(now, {TokenKind::kWork, {token.lane[0], token.lane[1], token.lane[2]}, token.index, token.slot, token.primitive, ring_});
+  clipped_out.push(
+      now, {TokenKind::kWork, token.index, token.slot, token.primitive, {token.corner[0], token.corner[1], token.corner[2]}, ring_});
   ring_ = ring_ + 1 == pieces_.size() ? 0 : ring_ + 1;
   next_piece_ = i + 2 < polygon_.count ? i + 1 : 0;
   if (next_piece_ == 0) (void)primitive_in.pop(now);

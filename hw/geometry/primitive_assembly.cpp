@@ -13,7 +13,7 @@ Wake PrimitiveAssembly::emit_wake() const {
   Wake wake = Wake(free_).input(batch_in);
   if (batch_in.ready() == kNever) return wake;
   const BatchToken& head = batch_in.front();
-  if (head.kind == TokenKind::kWork && !shaded_[head.slot]) return Wake::never(done_in[0]);
+  if (head.kind == TokenKind::kWork && batches_[head.slot].lanes > 0 && !shaded_[head.slot]) return Wake::never(done_in[0]);
   return wake.output(primitive_out);
 }
 
@@ -29,18 +29,18 @@ void PrimitiveAssembly::emit(Tick now) {
   free_ = after(now, 1);
   occupy(now, 1);
   if (head.kind != TokenKind::kWork) {
-    primitive_out.push(now, {head.kind, {}, head.index, 0, 0});
+    primitive_out.push(now, {head.kind, head.index, 0, 0, {}});
     (void)batch_in.pop(now);
     return;
   }
   const BatchSlot& batch = batches_[head.slot];
   if (next_triangle_ < batch.triangles.size()) {
     const BatchSlot::Triangle& t = batch.triangles[next_triangle_++];
-    primitive_out.push(now, {TokenKind::kWork, {t.lane[0], t.lane[1], t.lane[2]}, head.index, head.slot, t.primitive});
+    primitive_out.push(now, {TokenKind::kWork, head.index, head.slot, t.primitive, {t.corner[0], t.corner[1], t.corner[2]}});
     ++stats_.triangles;
     return;
   }
-  primitive_out.push(now, {TokenKind::kBatchEnd, {}, head.index, head.slot, 0});
+  primitive_out.push(now, {TokenKind::kBatchEnd, head.index, head.slot, 0, {}});
   ++stats_.batches;
   stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
   shaded_[head.slot] = false;

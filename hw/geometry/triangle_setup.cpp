@@ -75,19 +75,23 @@ void TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   ++stats_.kept;
   slot.draw = token.index;
   slot.primitive = token.primitive;
-  gather_varyings(batches_[token.slot], {token.lane[0], token.lane[1], token.lane[2]}, draw.varyings(), slot.varyings);
+  std::array<CornerOutputs, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = {&batches_[token.corner[i].slot].outputs, token.corner[i].lane};
+  gather_varyings(corners, draw.varyings(), slot.varyings);
   triangle_out.push(now, {TokenKind::kWork, token.index, sequence_++});
 }
 
-void gather_varyings(const BatchSlot& batch, const std::array<std::uint8_t, 3>& lanes, int components, std::vector<float>& out) {
+void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components, std::vector<float>& out) {
   out.resize(static_cast<std::size_t>(3 * components));
   for (int c = 0; c < components; ++c) {
-    const models::LaneWords& row = batch.outputs[static_cast<std::size_t>(models::kFirstVaryingOutput + c)];
-    const auto a0 = std::bit_cast<float>(row[lanes[0]]);
+    const auto value = [&](std::size_t i) {
+      return std::bit_cast<float>((*corners[i].rows)[static_cast<std::size_t>(models::kFirstVaryingOutput + c)][corners[i].lane]);
+    };
+    const float a0 = value(0);
     float* const at = out.data() + 3 * c;
     at[0] = a0;
-    at[1] = std::bit_cast<float>(row[lanes[1]]) - a0;
-    at[2] = std::bit_cast<float>(row[lanes[2]]) - a0;
+    at[1] = value(1) - a0;
+    at[2] = value(2) - a0;
   }
 }
 

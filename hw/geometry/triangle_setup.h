@@ -58,7 +58,12 @@ class TriangleSetupUnit final : public Unit {
   Tick free_ = 0;
 };
 
-/// Fills a triangle slot's varyings, 3 floats a component: a0, a1 - a0, a2 - a0 of the batch's lanes.
-void gather_varyings(const BatchSlot& batch, const std::array<std::uint8_t, 3>& lanes, int components, std::vector<float>& out);
+/// Outputs of a shaded vertex: a lane of its batch's rows.
+struct CornerOutputs {
+  const std::vector<models::LaneWords>* rows = nullptr;
+  std::uint8_t lane = 0;
+};
+/// Fills a triangle slot's varyings, 3 floats a component: a0, a1 - a0, a2 - a0 of the corners.
+void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components, std::vector<float>& out);
 
 }  // namespace quadrille::hw

@@ -12,12 +12,12 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const Params& params, con
       device_(memory),
       batches_(batches),
       port_(*this, stats_, slices),
-      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {
-  for (std::uint64_t i = batches.size(); i-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(i));
-}
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses),
+      reuse_(params.reuse, params.batch_vertices, params.reuse_entries),
+      slots_(batches.size()) {}
 
 std::string VertexFetch::state_text() const {
-  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_, triangle_, pending_.size(), free_slots_.size());
+  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_, triangle_, pending_.size(), slots_.free());
 }
 
 Wake VertexFetch::build_wake() const {
@@ -26,7 +26,7 @@ Wake VertexFetch::build_wake() const {
     return Wake(free_);
   }
   if (!drawing_) return Wake(free_).input(draw_in);
-  if (free_slots_.empty()) return Wake::never(release_in);
+  if (!slots_.any_free()) return Wake::never(release_in);
   return Wake(free_);
 }
 
@@ -36,7 +36,7 @@ Wake VertexFetch::leave_wake() const {
   const bool still_looking_up = pending_.size() == 1 && next_line_ < lines_.size();
   if (head.missing > 0 || still_looking_up) return Wake::never(port_.response_in[0]);
   Wake wake(head.ready);
-  if (head.kind == TokenKind::kWork) wake.output(warp_out);
+  if (shades(head)) wake.output(warp_out);
   return wake.output(batch_out);
 }
 
@@ -48,7 +48,7 @@ Wake VertexFetch::next() const {
 }
 
 void VertexFetch::act(Tick now) {
-  while (release_in.ready_at(now)) free_slots_.push_back(release_in.pop(now).slot);
+  take_releases(now);
   port_.receive(now, [&](const MemoryResponse& answer) {
     stalled_ = false;
     cache_.fill(answer, [&](std::uint32_t number) {
@@ -60,6 +60,12 @@ void VertexFetch::act(Tick now) {
   if (build_wake().at() <= now) build(now);
   if (leave_wake().at() <= now) leave(now);
   port_.send(now);
+}
+
+void VertexFetch::take_releases(Tick now) {
+  if (!release_in.ready_at(now)) return;
+  for (; release_in.ready_at(now); (void)release_in.pop(now)) slots_.release();
+  slots_.sweep(reuse_);
 }
 
 void VertexFetch::build(Tick now) {
@@ -79,6 +85,7 @@ void VertexFetch::start_draw(std::uint32_t draw) {
   draw_ = draw;
   instance_ = 0;
   triangle_ = 0;
+  reuse_.start_draw();
   drawing_ = frame_.draw(draw).triangles() > 0 && frame_.draw(draw).instances > 0;
 }
 
@@ -133,8 +140,7 @@ void VertexFetch::fetch_attributes(BatchSlot& batch) {
 
 void VertexFetch::form_batch(Tick now) {
   const DrawState& draw = frame_.draw(draw_);
-  const std::uint32_t slot = free_slots_.back();
-  free_slots_.pop_back();
+  const std::uint32_t slot = slots_.take();
   BatchSlot& batch = batches_[slot];
   batch.draw = draw_;
   batch.triangles.clear();
@@ -144,13 +150,16 @@ void VertexFetch::form_batch(Tick now) {
   next_line_ = last_touched_ = 0;
   fetches_ = 0;
   indices_ = 0;
-  reuse_.reset();
+  reuse_.start_batch(slot);
   while (triangle_ < draw.triangles() && batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value())) {
     const auto corner = models::triangle_vertices(draw.topology, triangle_);
     const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]), vertex_number(corner[2])};
     if (!reuse_.fits(vertex)) break;
     BatchSlot::Triangle triangle{{}, triangle_};
-    for (std::size_t i = 0; i < 3; ++i) triangle.lane[i] = static_cast<std::uint8_t>(reuse_.find_or_add(vertex[i]));
+    for (std::size_t i = 0; i < 3; ++i) {
+      triangle.corner[i] = reuse_.place(vertex[i]);
+      slots_.note_use(triangle.corner[i].slot);
+    }
     batch.triangles.push_back(triangle);
     ++triangle_;
   }
@@ -164,7 +173,11 @@ void VertexFetch::form_batch(Tick now) {
   if (triangle_ == draw.triangles()) {
     triangle_ = 0;
     drawing_ = ++instance_ < draw.instances;
+    reuse_.start_draw();
   }
+  // One slot is for the next batch, whatever is remembered.
+  reuse_.limit_slots(static_cast<int>(batches_.size()) - 1);
+  slots_.sweep(reuse_);
   stats_.indices += indices_;
   stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
   stats_.attribute_fetches += fetches_;
@@ -190,11 +203,13 @@ void VertexFetch::look_up(Tick now) {
   pending_.back().ready = std::max(pending_.back().ready, now);
 }
 
+bool VertexFetch::shades(const Pending& head) const { return head.kind == TokenKind::kWork && batches_[head.slot].lanes > 0; }
+
 void VertexFetch::leave(Tick now) {
   const Pending head = pending_.front();
   pending_.pop_front();
   ++first_pending_;
-  if (head.kind == TokenKind::kWork) warp_out.push(now, {head.index, head.slot, 0});
+  if (shades(head)) warp_out.push(now, {head.index, head.slot, 0});
   batch_out.push(now, {head.kind, head.index, head.slot});
 }
 

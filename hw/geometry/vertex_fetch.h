@@ -1,15 +1,18 @@
-/// Vertex fetch: reads indices and attributes through its cache, finds reused vertices, and forms batches of up to 32 distinct vertices.
+/// Vertex fetch: reads indices and attributes through its cache, finds reused vertices, and forms batches of up to 32 vertices to shade.
 ///
 /// In    draw_in      draws and pass boundaries     release_in  a batch slot is free again
 /// Out   warp_out     a batch to shade              batch_out   its triangles, in draw order; pass and draw boundaries
 /// Mem   indices and attributes, 128-byte lines in 32-byte sectors
 /// Time  `indices_per_clk` indices and `attributes_per_clk` attribute fetches a cycle, whichever takes longer; a batch leaves when its lines have arrived
-/// Not modelled: reuse across batches (docs/deviations.md#D2)
+/// Reuse  by batch, through a FIFO of vertices, or not at all (models/geometry/post_transform.h). Under the FIFO the outputs of a batch stay in its slot while
+///       a vertex of it is remembered or a triangle on its way names one; the oldest are forgotten rather than that they hold the last slot.
+/// Not modelled: a post-transform store apart from the batches' slots (docs/deviations.md#D2)
 #pragma once
 
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
+#include "hw/geometry/batch_slots.h"
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 #include "models/geometry/post_transform.h"
@@ -24,7 +27,20 @@ class VertexFetch final : public Unit {
     Param<int> attributes_per_clk{*this, "attributes_per_clk", 8, "fetch/clk", {1, 256}, "Attribute fetches a cycle. [G: 8 address lanes]"};
     Param<int> batch_slots{*this,   "batch_slots", 32,
                            "batch", {2, 4096},     "Vertex batches between fetch and set-up. [G: covers shading latency]"};
-    Param<int> batch_triangles{*this, "batch_triangles", 64, "triangle", {1, 1024}, "Triangles a batch may name. [G: twice its vertices]"};
+    Choice<models::ReusePolicy> reuse{
+        *this,
+        "reuse",
+        models::ReusePolicy::kBatch,
+        {"batch", "fifo", "none"},
+        "A vertex is shaded once a batch, once while a FIFO across batches holds it, or for every corner. [P: Kerbl 2018]"};
+    Param<int> batch_vertices{*this,    "batch_vertices", 32,
+                              "vertex", {3, 32},          "Vertices shaded as one warp, of 32 lanes. [P: Kerbl 2018: a GeForce's batch]"};
+    Param<int> batch_triangles{*this,     "batch_triangles",
+                               32,        "triangle",
+                               {1, 1024}, "Triangles a batch may name. [P: Kerbl 2018: 32 on a GeForce, 128 on a Radeon]"};
+    Param<int> reuse_entries{*this,     "reuse_entries",
+                             32,        "vertex",
+                             {3, 1024}, "Vertices that the FIFO of reuse=fifo holds; no use otherwise. [G: as many as a batch]"};
     Param<int> cache_lines{*this, "cache_lines", 128, "line", {1, 1 << 16}, "Lines of 128 bytes in the vertex cache. [G: 16 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 4, "way", {1, 64}, "Associativity of the vertex cache. [G]"};
     Param<int> cache_misses{*this,  "cache_misses", 64,
@@ -66,8 +82,11 @@ class VertexFetch final : public Unit {
   };
   [[nodiscard]] Wake build_wake() const;
   [[nodiscard]] Wake leave_wake() const;
+  void take_releases(Tick now);
   void build(Tick now);
   void look_up(Tick now);
+  /// A batch may name vertices of earlier ones only; then there is nothing to shade.
+  [[nodiscard]] bool shades(const Pending& head) const;
   void leave(Tick now);
   void start_draw(std::uint32_t draw);
   void form_batch(Tick now);
@@ -88,7 +107,7 @@ class VertexFetch final : public Unit {
 
   bool drawing_ = false;
   std::uint32_t draw_ = 0, instance_ = 0, triangle_ = 0;  ///< next triangle to take
-  std::vector<std::uint32_t> free_slots_;
+  BatchSlots slots_;
   Queue<Pending> pending_;
   std::uint32_t first_pending_ = 0;  ///< number of pending_.front(); waiters are named by number
   std::vector<Line> lines_;          ///< look-ups of the newest batch

@@ -48,6 +48,8 @@ struct Experiment {
   const char* published;  ///< what was measured, by whom
   const char* how;        ///< how it runs here
   Result (*run)(const Setting& setting);
+  std::vector<const char*> scenes = {};  ///< drawn unless others are given; none: it makes its own frames
+  const char* size = "960x540";          ///< of the pictures of scenes
 };
 
 [[nodiscard]] std::span<const Experiment> experiments();
@@ -76,5 +78,6 @@ class Readings {
 
 // The experiments, each in its file.
 [[nodiscard]] Result memory_scheduling(const Setting& setting);
+[[nodiscard]] Result vertex_reuse(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

@@ -37,6 +37,10 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.core.register_rows.set(random.pick({256, 1024}));
   config.core.simds.set(random.pick({1, 2, 4}));
   config.vertex_fetch.batch_slots.set(random.pick({2, 3, 16}));
+  config.vertex_fetch.reuse.set(static_cast<models::ReusePolicy>(random.integer(0, 2)));
+  config.vertex_fetch.batch_vertices.set(random.pick({3, 4, 31, 32}));
+  config.vertex_fetch.batch_triangles.set(random.pick({1, 2, 32, 128}));
+  config.vertex_fetch.reuse_entries.set(random.pick({3, 4, 16, 128}));
   config.warp_packer.warp_slots.set(random.pick({1, 2, 16}));
   config.warp_packer.patience_clk.set(random.pick({1, 5, 1000}));
   config.triangle_setup.triangle_slots.set(random.pick({1, 2, 9, 64}));

@@ -64,8 +64,12 @@ ClipBench::Setup shapes(const std::vector<Shape>& list) {
   ClipBench::Setup s;
   for (const Shape shape : list) {
     const auto first = static_cast<std::uint8_t>(3 * shape);
-    s.primitives.push_back(
-        {0, {TokenKind::kWork, {first, static_cast<std::uint8_t>(first + 1), static_cast<std::uint8_t>(first + 2)}, 0, 0, shape}});
+    s.primitives.push_back({0,
+                            {TokenKind::kWork,
+                             0,
+                             0,
+                             shape,
+                             {{0, first}, {0, static_cast<std::uint8_t>(first + 1)}, {0, static_cast<std::uint8_t>(first + 2)}}}});
   }
   return s;
 }
@@ -115,7 +119,7 @@ TEST_CASE("clipper: stops between pieces while clipped_out is full") {
 
 TEST_CASE("clipper: keeps the contract, one-deep links included") {
   auto s = shapes({kInside, kOneOut, kNan, kTwoOut, kBeside, kInside});
-  s.primitives.push_back({30, {TokenKind::kBatchEnd, {}, 0, 0, 0}});
+  s.primitives.push_back({30, {TokenKind::kBatchEnd, 0, 0, 0, {}}});
   s.pace = {.from = 0, .period = 3};
   CHECK(contract_text<ClipBench>(s) == "");
 }

@@ -16,12 +16,14 @@ struct AssemblyBench final : Bench {
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
-  /// Batch 0 has triangles 0 and 1, batch 1 has triangle 10, batch 2 none.
-  AssemblyBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), store(3) {
-    store[0].triangles = {{{0, 1, 2}, 0}, {{2, 1, 3}, 1}};
-    store[1].triangles = {{{0, 1, 2}, 10}};
+  /// Batch 0 has triangles 0 and 1, batch 1 has triangle 10, batch 2 none; batch 3 shades nothing, its triangle 20 names vertices of batch 0.
+  AssemblyBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), store(4) {
+    store[0].triangles = {{{{0, 0}, {0, 1}, {0, 2}}, 0}, {{{0, 2}, {0, 1}, {0, 3}}, 1}};
+    store[1].triangles = {{{{1, 0}, {1, 1}, {1, 2}}, 10}};
     store[0].lanes = 4;
     store[1].lanes = 3;
+    store[2].lanes = 1;
+    store[3].triangles = {{{{0, 0}, {0, 2}, {0, 3}}, 20}};
     unit = std::make_unique<PrimitiveAssembly>("unit", clock, store, 2);
     add(*unit);
     feed(unit->batch_in, s.batches);
@@ -67,6 +69,17 @@ TEST_CASE("primitive_assembly: boundaries pass without waiting for a report, and
   const AssemblyBench::Setup s{.batches = {{0, {TokenKind::kPassBegin, 0, 0}}, {0, batch(2)}, {0, {TokenKind::kDrawEnd, 0, 0}}},
                                .done_0 = {{10, {2}}}};
   CHECK(primitives(s) == "2:903 12:901 13:902");
+}
+
+TEST_CASE("primitive_assembly: a batch that shades nothing waits for none, and its triangles name the vertices of the batch that did") {
+  const AssemblyBench::Setup s{.batches = {{0, batch(0)}, {0, batch(3)}}, .done_0 = {{30, {0}}}};
+  CHECK(primitives(s) == "32:0 33:1 34:901 35:20 36:901");
+  const auto corners = run<AssemblyBench>(s, [](const AssemblyBench& b) {
+    const PrimitiveToken& t = b.sink->got[3].token;
+    return fmt::format("{}.{} {}.{} {}.{}", t.corner[0].slot, t.corner[0].lane, t.corner[1].slot, t.corner[1].lane, t.corner[2].slot,
+                       t.corner[2].lane);
+  });
+  CHECK(corners == "0.0 0.2 0.3");
 }
 
 TEST_CASE("primitive_assembly: takes reports while primitive_out is full") {
