@@ -2,6 +2,7 @@
 
 #include "models/raster/interpolate.h"
 #include "models/rop/depth.h"
+#include "models/rop/tile_in_frame.h"
 
 #include <algorithm>
 #include <bit>
@@ -35,6 +36,16 @@ bool asks_for_less(const DrawState& draw) {
 int quads_in(std::uint64_t coverage) { return std::popcount(models::quads_of(coverage)); }
 
 std::uint32_t tile_of(std::uint16_t pixel) { return pixel / static_cast<std::uint32_t>(models::kTileSize); }
+
+/// Of the tile's pixels in the frame. Those outside keep the clear depth for ever; with them no tile that the frame cuts would be hidden.
+float greatest_depth(const float* depths, const models::SurfaceLayout& surface, std::uint32_t tile_x, std::uint32_t tile_y) {
+  const auto left = [](std::uint32_t size, std::uint32_t tile) {
+    return static_cast<int>(size) - static_cast<int>(tile) * models::kTileSize;
+  };
+  const int width = left(surface.width, tile_x), height = left(surface.height, tile_y);
+  const bool whole = width >= models::kTileSize && height >= models::kTileSize;
+  return whole ? models::tile_max(depths) : models::tile_max_within(depths, models::pixels_within(width, height));
+}
 
 int quad_in_tile(const WarpSlot::Quad& quad) { return 4 * ((quad.y % models::kTileSize) / 2) + (quad.x % models::kTileSize) / 2; }
 
@@ -279,7 +290,7 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
 void DepthUnit::send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y) {
   if (!lowering_) return;
   float& known = known_max_[tile_number(tile_x, tile_y)];
-  const float greatest = models::tile_max(depths(tile_x, tile_y));
+  const float greatest = greatest_depth(depths(tile_x, tile_y), frame_.passes[pass_].depth, tile_x, tile_y);
   if (!(greatest < known)) return;
   if (!hiz_out.room_at(now)) {
     ++stats_.hiz_dropped;

@@ -1,5 +1,6 @@
 /// Depth unit: the time of early and late tests, when a tile must go late, Hi-Z updates, the flush.
 #include "hw/rop/depth_unit.h"
+#include "models/rop/tile_in_frame.h"
 #include "tests/hw/bench_stub.h"
 #include "tests/hw/raster/triangles.h"
 
@@ -16,12 +17,13 @@ struct DepthBench final : Bench {
     std::vector<Timed<CoverageToken>> coverage;
     std::vector<Timed<LateToken>> late{};
     int lines = 256, ways = 8, misses = 32;
+    std::uint32_t width = 16, height = 8;
   };
   /// Draws: 0 tests and writes with "less" early, 1 the same late, 2 without depth, 3 writes with "greater". Triangle i lies at depth i / 8.
   DepthBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), triangles(8), warps(4) {
     PassState pass;
     pass.has_depth = true;
-    pass.depth = models::allocate_surface(device, 16, 8);
+    pass.depth = models::allocate_surface(device, s.width, s.height);
     pass.draws = 4;
     frame.passes = {pass};
     frame.draws.resize(4);
@@ -148,6 +150,14 @@ TEST_CASE("depth_unit: Hi-Z is told when the greatest depth of a tile falls, and
   CHECK(run<DepthBench>(s, text) == "23:500 43:250");  // the half that was clear kept the greatest depth at 1
   s.coverage[3].token = tile(7, 3, kUpperHalf);        // raises some: nothing may be told any more
   CHECK(run<DepthBench>(s, text) == "23:500");
+}
+
+TEST_CASE("depth_unit: Hi-Z is told of a tile that the frame cuts, whose other pixels keep the clear depth") {
+  const DepthBench::Setup s{
+      .coverage = {{0, kBegin}, {10, tile(4, 0, models::pixels_within(8, 5))}, {20, tile(4, 0, models::pixels_within(3, 5), 1)}},
+      .width = 11,
+      .height = 5};
+  CHECK(run<DepthBench>(s, [](const DepthBench& b) { return b.hiz->text(); }) == "13:500 23:500");
 }
 
 TEST_CASE("depth_unit: the flush writes dirty lines, no cleared tiles, and answers after its fence") {
