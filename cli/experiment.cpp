@@ -54,6 +54,7 @@ experiments::Setting setting_of(const experiments::Experiment& e, const Experime
     scene.check_there();
     setting.scenes.emplace_back(fs::path(name).stem().string(), [scene] { return scene.load().stream; });
   }
+  std::tie(setting.width, setting.height) = parse_size(a.size.value_or(e.size), "--size");
   setting.jobs = a.jobs ? static_cast<int>(parse_whole(*a.jobs, "--jobs", 1, 64)) : 2;
   return setting;
 }
@@ -103,7 +104,7 @@ void add_experiment(CLI::App& app, Command& chosen) {
       ->type_name("SCENE")
       ->expected(1)
       ->take_all();
-  command->add_option("--size", arguments->size, "of the pictures of scenes (default: the experiment's own)")->type_name("WxH");
+  command->add_option("--size", arguments->size, "of the pictures (default: the experiment's own)")->type_name("WxH");
   command->add_option("--out", arguments->out, "writes a page and a plot of each there")->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "processes at a time (default 2)")->type_name("N");
   command->footer(R"(Exit code 1 when a figure lies outside its band.

@@ -4,6 +4,7 @@
 /// plot. A band is never widened so that it holds: a figure that falls outside says FAILS, and the page says why.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -17,8 +18,9 @@ namespace quadrille::studies::experiments {
 /// What every experiment is given.
 struct Setting {
   std::vector<std::pair<std::string, std::function<traces::CommandStream()>>>
-      scenes;    ///< name and how to load; empty: the experiment's own
-  int jobs = 1;  ///< processes at a time
+      scenes;                           ///< name and how to load; empty: the experiment's own
+  std::uint32_t width = 0, height = 0;  ///< of frames that an experiment makes itself, pixels
+  int jobs = 1;                         ///< processes at a time
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 
@@ -49,7 +51,7 @@ struct Experiment {
   const char* how;        ///< how it runs here
   Result (*run)(const Setting& setting);
   std::vector<const char*> scenes = {};  ///< drawn unless others are given; none: it makes its own frames
-  const char* size = "960x540";          ///< of the pictures of scenes
+  const char* size = "960x540";          ///< of the pictures
 };
 
 [[nodiscard]] std::span<const Experiment> experiments();
@@ -79,5 +81,9 @@ class Readings {
 // The experiments, each in its file.
 [[nodiscard]] Result memory_scheduling(const Setting& setting);
 [[nodiscard]] Result vertex_reuse(const Setting& setting);
+[[nodiscard]] Result small_triangles(const Setting& setting);
+[[nodiscard]] Result setup_rate(const Setting& setting);
+[[nodiscard]] Result quad_overhead(const Setting& setting);
+[[nodiscard]] Result hidden_surfaces(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

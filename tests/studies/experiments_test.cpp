@@ -31,3 +31,52 @@ TEST_CASE("experiments: a figure outside its band fails, and the text and the pa
              Catch::Contains("holds  gain of fill: 1.5") && Catch::Contains("FAILS  gain of overdraw: 1.94"));
   CHECK_THAT(result_markdown(experiment, result, "x.png"), Catch::Contains("FAILS  gain of overdraw") && Catch::Contains("(x.png)"));
 }
+
+namespace {
+
+/// The verdicts of which the name has `part` in it; at least one.
+std::vector<Verdict> verdicts_of(const Result& result, const std::string& part) {
+  std::vector<Verdict> found;
+  for (const Verdict& v : result.verdicts) {
+    if (v.what.find(part) != std::string::npos) found.push_back(v);
+  }
+  REQUIRE_FALSE(found.empty());
+  return found;
+}
+
+Setting sized(std::uint32_t width, std::uint32_t height) {
+  Setting setting;
+  setting.width = width;
+  setting.height = height;
+  setting.jobs = 2;
+  return setting;
+}
+
+void check_holds(const std::vector<Verdict>& verdicts) {
+  for (const Verdict& v : verdicts) {
+    INFO(v.what << " " << v.value);
+    CHECK(v.holds());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("experiments: the set-up rate is the closed form") { check_holds(setup_rate(sized(64, 64)).verdicts); }
+
+TEST_CASE("experiments: of layers from front to back one is shaded, from back to front all") {
+  check_holds(verdicts_of(hidden_surfaces(sized(100, 60)), "shaded a pixel"));
+}
+
+TEST_CASE("experiments: hidden surfaces take the closed form's cycles", "[slow]") {
+  check_holds(hidden_surfaces(sized(960, 540)).verdicts);
+}
+
+TEST_CASE("experiments: lanes of quads are those counted from the triangles", "[slow]") {
+  check_holds(verdicts_of(quad_overhead(sized(320, 180)), "over those counted"));
+}
+
+TEST_CASE("experiments: a frame of small triangles takes the closed form's cycles", "[slow]") {
+  const Result result = small_triangles(sized(480, 270));
+  check_holds(verdicts_of(result, "over closed form"));
+  check_holds(verdicts_of(result, "GeForce GTX 680"));
+}

@@ -1,0 +1,114 @@
+#include "studies/experiments/triangle_mesh.h"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "scenes/glsl.h"
+
+namespace quadrille::studies::experiments {
+namespace {
+
+constexpr std::uint32_t kColumnTiles = 4;
+
+constexpr const char* kVertexShader = R"(#version 450
+layout(location = 0) in vec3 position;
+void main() { gl_Position = vec4(position, 1); })";
+constexpr const char* kFragmentShader = R"(#version 450
+layout(location = 0) out vec4 color;
+void main() { color = vec4(0.8, 0.4, 0.2, 1); })";
+
+template <class T>
+traces::Buffer buffer_of(const char* name, std::span<const T> values) {
+  traces::Buffer buffer{name, std::vector<std::byte>(values.size_bytes())};
+  std::memcpy(buffer.data.data(), values.data(), values.size_bytes());
+  return buffer;
+}
+
+/// Clip space, from the window. The error of a float, 2^-24 of the frame, is far below half a step of the grid: snapping finds the corner again.
+std::vector<float> clip_positions(const TriangleMesh& mesh, bool depth) {
+  std::vector<float> positions;
+  positions.reserve(3 * mesh.corners.size());
+  const auto clip = [](std::int32_t at, std::uint32_t size) { return static_cast<float>(2.0 * at / (double{kGrid} * size) - 1); };
+  for (const WindowCorner& c : mesh.corners) {
+    positions.push_back(clip(c.x, mesh.width));
+    positions.push_back(clip(c.y, mesh.height));
+    if (depth) positions.push_back(c.depth);
+  }
+  return positions;
+}
+
+traces::Pipeline pipeline_of(const DrawOptions& options) {
+  traces::Pipeline pipeline;
+  pipeline.vertex_shader = 0;
+  pipeline.fragment_shader = 1;
+  // A component that is not there reads as 0.
+  const traces::Format format = options.depth ? traces::Format::kR32G32B32Float : traces::Format::kR32G32Float;
+  pipeline.bindings = {{0, traces::format_bytes(format), false}};
+  pipeline.attributes = {{0, 0, format, 0}};
+  pipeline.cull = options.cull;
+  if (options.depth) pipeline.depth = {true, true, traces::CompareOp::kLess};
+  return pipeline;
+}
+
+}  // namespace
+
+void TriangleMesh::rectangle(std::int32_t left, std::int32_t top, std::int32_t right, std::int32_t bottom, float depth) {
+  const auto first = static_cast<std::uint32_t>(corners.size());
+  for (const auto& [x, y] : {std::array{left, top}, {right, top}, {right, bottom}, {left, bottom}})
+    corners.push_back({x * kGrid, y * kGrid, depth});
+  triangles.push_back({first, first + 1, first + 2});
+  triangles.push_back({first, first + 2, first + 3});
+}
+
+TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height) {
+  TriangleMesh mesh{width, height, {}, {}};
+  const auto tiles = [](std::uint32_t size, std::uint32_t tile) { return (size + tile - 1) / tile; };
+  const std::uint32_t columns = tiles(width, tile_width), rows = tiles(height, tile_height);
+  for (std::uint32_t from = 0; from < columns; from += kColumnTiles) {
+    const std::uint32_t across = std::min(kColumnTiles, columns - from);
+    for (std::uint32_t row = 0; row <= rows; ++row) {
+      const auto first = static_cast<std::uint32_t>(mesh.corners.size());
+      for (std::uint32_t i = 0; i <= across; ++i) {
+        mesh.corners.push_back({static_cast<std::int32_t>(std::min((from + i) * tile_width, width)) * kGrid,
+                                static_cast<std::int32_t>(std::min(row * tile_height, height)) * kGrid});
+      }
+      for (std::uint32_t i = 0; row > 0 && i < across; ++i) {
+        const std::uint32_t below = first + i, above = below - (across + 1);
+        mesh.triangles.push_back({above, above + 1, below + 1});
+        mesh.triangles.push_back({above, below + 1, below});
+      }
+    }
+  }
+  return mesh;
+}
+
+traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& options) {
+  using traces::ShaderStage;
+  traces::CommandStream stream;
+  stream.name = "triangles";
+  stream.shaders = {
+      {"hand through", ShaderStage::kVertex, scenes::compile_glsl(kVertexShader, ShaderStage::kVertex, "triangles.vert")},
+      {"one colour", ShaderStage::kFragment, scenes::compile_glsl(kFragmentShader, ShaderStage::kFragment, "triangles.frag")}};
+  const std::vector<float> positions = clip_positions(mesh, options.depth);
+  const std::span<const std::uint32_t> indices(mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), 3 * mesh.triangles.size());
+  stream.buffers = {buffer_of<float>("positions", positions), buffer_of("indices", indices)};
+  stream.targets = {
+      {mesh.width, mesh.height, traces::Format::kR8G8B8A8Unorm, options.depth ? traces::Format::kD32Float : traces::Format::kUndefined}};
+  stream.pipelines = {pipeline_of(options)};
+  traces::Draw draw;
+  draw.indexed = true;
+  draw.count = static_cast<std::uint32_t>(indices.size());
+  stream.commands = {traces::BeginPass{},
+                     traces::BindPipeline{0},
+                     traces::BindVertexBuffer{0, 0, 0},
+                     traces::BindIndexBuffer{1, 0, traces::IndexType::kUint32},
+                     traces::SetViewport{0, 0, static_cast<float>(mesh.width), static_cast<float>(mesh.height), 0, 1},
+                     traces::SetScissor{0, 0, mesh.width, mesh.height},
+                     draw,
+                     traces::EndPass{}};
+  traces::validate(stream);
+  return stream;
+}
+
+}  // namespace quadrille::studies::experiments

@@ -1,0 +1,41 @@
+/// Meshes of flat triangles in the window, for experiments whose outcome follows from counting: what is drawn, and the frame that draws it.
+///
+/// Corners lie on the grid of 1/256 pixel that the machine snaps to, so what a triangle covers is known exactly.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "traces/command_stream.h"
+
+namespace quadrille::studies::experiments {
+
+inline constexpr std::int32_t kGrid = 256;  ///< steps of a pixel
+
+struct WindowCorner {
+  std::int32_t x = 0, y = 0;  ///< 1/256 pixel, y down
+  float depth = 0.5F;
+};
+
+struct TriangleMesh {
+  std::uint32_t width = 0, height = 0;  ///< of the frame, pixels
+  std::vector<WindowCorner> corners;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  /// Two triangles that make up the rectangle between two corners, in pixels; its four corners are new.
+  void rectangle(std::int32_t left, std::int32_t top, std::int32_t right, std::int32_t bottom, float depth);
+};
+
+/// The frame filled by pairs of triangles, each pair a tile of `tile_width` x `tile_height` pixels (cut at the right and lower edge). Tiles come in columns
+/// of four, from top to bottom, and share their corners within a column.
+[[nodiscard]] TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height);
+
+struct DrawOptions {
+  traces::CullMode cull = traces::CullMode::kNone;
+  bool depth = false;  ///< test "less" and write
+};
+/// One indexed draw of the mesh; the shaders hand positions through and write one colour.
+[[nodiscard]] traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& options = {});
+
+}  // namespace quadrille::studies::experiments
