@@ -14,6 +14,9 @@ struct CoreSlot {
   std::uint32_t draw = 0, store_slot = 0;
   std::uint16_t partition = 0;
   bool vertex_stage = false;
+  std::uint16_t simd = 0;                                  ///< where its clauses issue
+  models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues
+  std::uint32_t drain = 0;                                 ///< cycles from that clause's last issue until its results are there
 };
 
 }  // namespace quadrille::hw

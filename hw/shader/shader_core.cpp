@@ -15,6 +15,24 @@ int hungriest_fragment_program(const Frame& frame) {
   return rows;
 }
 
+/// Cycles by class. A class without results that others read has the latency of its issue.
+models::IssueTiming issue_timing(const ShaderCore::Params& params) {
+  const auto cycles = [](int lanes) { return static_cast<std::uint32_t>((models::kWarpLanes + lanes - 1) / lanes); };
+  const std::uint32_t plain = cycles(params.simd_lanes);
+  models::IssueTiming timing;
+  const auto set = [&](models::IssueClass issue_class, std::uint32_t issue, int latency) {
+    timing.classes[static_cast<std::size_t>(issue_class)] = {issue, static_cast<std::uint32_t>(latency)};
+  };
+  set(models::IssueClass::kAlu, plain, params.alu_clk);
+  set(models::IssueClass::kSfu, cycles(params.sfu_lanes), params.sfu_clk);
+  set(models::IssueClass::kInterp, plain, params.interp_clk);
+  set(models::IssueClass::kConst, plain, params.const_clk);
+  set(models::IssueClass::kTex, plain, params.alu_clk);
+  set(models::IssueClass::kControl, 1, params.branch_clk);
+  set(models::IssueClass::kExport, plain, params.alu_clk);
+  return timing;
+}
+
 }  // namespace
 
 ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots,
@@ -28,7 +46,9 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const
       triangles_(triangles),
       fragment_rows_(hungriest_fragment_program(frame)),
       free_rows_(params.register_rows),
-      simd_free_(static_cast<std::size_t>(params.simds.value()), 0) {
+      issue_timing_(issue_timing(params)),
+      simds_(static_cast<std::size_t>(params.simds.value()), Simd(params.scheduler)),
+      simd_warps_(simds_.size(), 0) {
   for (std::size_t p = 0; p < warps_.size(); ++p) {
     fragment_out.push_back(
         std::make_unique<FifoOut<FragmentDoneToken>>(*this, fmt::format("fragment_out_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
@@ -58,9 +78,12 @@ Wake ShaderCore::accept_wake(const FifoIn<WarpToken>& in, bool vertex) const {
   return room ? wake : Wake(kNever);
 }
 
-Wake ShaderCore::issue_wake() const {
-  if (ready_.empty()) return Wake(kNever);
-  return Wake(std::max(ready_.front().at, *std::min_element(simd_free_.begin(), simd_free_.end())));
+Wake ShaderCore::issue_wake() const { return Wake(ready_.empty() ? kNever : ready_.front().at); }
+
+Wake ShaderCore::simd_wake() const {
+  Simd::Cycle first = Simd::kNever;
+  for (const Simd& simd : simds_) first = std::min(first, simd.next_end());
+  return Wake(first == Simd::kNever ? kNever : clock().edge(first));
 }
 
 Wake ShaderCore::completion_wake(const Completion& done) const {
@@ -87,6 +110,7 @@ Wake ShaderCore::next() const {
   Wake wake;
   (void)next_completion(wake);
   wake = Wake::sooner(wake, issue_wake());
+  wake = Wake::sooner(wake, simd_wake());
   wake = Wake::sooner(wake, accept_wake(vertex_in, true));
   wake = Wake::sooner(wake, accept_wake(fragment_in, false));
   if (texture_in) wake = Wake::sooner(wake, Wake().input(*texture_in));
@@ -98,6 +122,7 @@ Wake ShaderCore::next() const {
 
 void ShaderCore::act(Tick now) {
   if (texture_in && texture_in->ready_at(now)) take_texels(now);
+  end_clauses(now);
   Wake wake;
   if (const Completion* done = next_completion(wake); done != nullptr && wake.at() <= now) {
     const Completion taken = *done;
@@ -106,7 +131,9 @@ void ShaderCore::act(Tick now) {
   }
   if (accept_wake(fragment_in, false).at() <= now) accept(now, fragment_in, false);
   else if (accept_wake(vertex_in, true).at() <= now) accept(now, vertex_in, true);
-  if (issue_wake().at() <= now) issue(now);
+  while (issue_wake().at() <= now) issue(now);
+  // The SIMDs issue at least until the first of their clauses ends.
+  if (const Tick until = simd_wake().at(); until != kNever) occupy(now, clock().edges_before(until) - clock().edges_before(now));
 }
 
 void ShaderCore::take_texels(Tick now) {
@@ -127,6 +154,7 @@ void ShaderCore::accept(Tick now, FifoIn<WarpToken>& in, bool vertex) {
   slot.store_slot = token.slot;
   slot.partition = token.partition;
   slot.vertex_stage = vertex;
+  give_simd(slot);
   if (vertex) launch_vertex(slot);
   else launch_fragment(slot);
   free_rows_ -= slot.warp.program->num_regs;
@@ -163,28 +191,44 @@ void ShaderCore::launch_fragment(CoreSlot& slot) {
   stats_.helper_lanes += 4 * static_cast<std::uint64_t>(work.quads) - live;
 }
 
+void ShaderCore::give_simd(CoreSlot& slot) {
+  const auto fewest = std::min_element(simd_warps_.begin(), simd_warps_.end());
+  ++*fewest;
+  slot.simd = static_cast<std::uint16_t>(fewest - simd_warps_.begin());
+}
+
+const models::ProgramTiming& ShaderCore::timing_of(const models::Program& program) {
+  const auto found = timings_.find(&program);
+  return found != timings_.end() ? found->second : timings_.emplace(&program, models::ProgramTiming(program, issue_timing_)).first->second;
+}
+
 void ShaderCore::issue(Tick now) {
   const std::uint32_t index = ready_.front().slot;
   ready_.pop_front();
   CoreSlot& slot = slots_[index];
-  const models::ClauseResult result = models::run_clause(slot.warp);
+  warp_clock_.restart(timing_of(*slot.warp.program), slot.warp.program->num_regs);
+  const models::ClauseResult result = models::run_clause(slot.warp, warp_clock_);
   const models::ClauseCost& cost = result.cost;
-  const std::uint32_t textures = static_cast<std::uint32_t>(result.end == models::ClauseEnd::kTextures ? slot.warp.texture_count : 0);
-  const std::uint32_t plain = cost.alu + cost.interp + cost.constant + cost.exported;
-  const std::int64_t per_alu = (models::kWarpLanes + params_.simd_lanes - 1) / params_.simd_lanes;
-  const std::int64_t per_sfu = (models::kWarpLanes + params_.sfu_lanes - 1) / params_.sfu_lanes;
-  const std::int64_t cycles = std::max<std::int64_t>(1, plain * per_alu + cost.sfu * per_sfu + cost.control + textures * per_alu);
-  auto simd = std::min_element(simd_free_.begin(), simd_free_.end());
-  *simd = after(now, cycles);
-  occupy(now, cycles);
-  completions_.push_back({after(now, cycles + params_.alu_clk), index, result.end});
+  slot.end = result.end;
+  slot.drain = warp_clock_.drain() - warp_clock_.span();
+  simds_[slot.simd].add(clock().edges_before(now), index, warp_clock_.work(), warp_clock_.span());
+  const auto textures = static_cast<std::uint32_t>(result.end == models::ClauseEnd::kTextures ? slot.warp.texture_count : 0);
   ++stats_.clauses;
   stats_.instructions += cost.instructions() + textures;
-  stats_.alu += plain;
+  stats_.alu += cost.alu + cost.interp + cost.constant + cost.exported;
   stats_.sfu += cost.sfu;
   stats_.texture += textures;
   stats_.lane_operations += cost.lane_ops;
-  stats_.simd_busy += static_cast<std::uint64_t>(cycles);
+  stats_.simd_busy += warp_clock_.work();
+  stats_.operand_waits += warp_clock_.span() - warp_clock_.work();
+}
+
+void ShaderCore::end_clauses(Tick now) {
+  const Simd::Cycle cycle = clock().edges_before(now);
+  std::uint32_t index = 0;
+  for (Simd& simd : simds_) {
+    while (simd.take_ended(cycle, index)) completions_.push_back({after(now, slots_[index].drain), index, slots_[index].end});
+  }
 }
 
 void ShaderCore::complete(Tick now, const Completion& done) {
@@ -204,6 +248,7 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
     work.depth = slot.warp.program->writes_depth ? std::bit_cast<models::LaneFloats>(slot.outputs[models::kDepthOutput]) : slot.fragment.z;
     fragment_out[slot.partition]->push(now, {slot.store_slot});
   }
+  --simd_warps_[slot.simd];
   free_rows_ += slot.warp.program->num_regs;
   free_slots_.push_back(index);
 }

@@ -2,9 +2,10 @@
 ///
 /// In    vertex_in, fragment_in  warps to run          texture_in  the texels of a warp have been filtered
 /// Out   vertex_out              batch shaded          fragment_out[p]  fragment warp shaded    texture_out  a clause's texture requests
-/// Time  a clause holds its SIMD for 32 / simd_lanes cycles an instruction (32 / sfu_lanes for special functions) and its results are there `alu_clk`
-///       cycles later; ready warps take turns, the longest ready first. A warp needs a slot and its registers; a slot and registers for one fragment warp
-///       are never given to vertex warps.
+/// Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes for special functions), and one that reads its result waits for the latency of
+///       its class (models/shader/timing.h); other warps of the SIMD issue meanwhile, as `scheduler` says (hw/shader/simd.h). A warp stays on the SIMD that it
+///       was given, the one with the fewest warps. It needs a slot and its registers; a slot and registers for one fragment warp are never given to vertex
+///       warps.
 /// Not modelled: instruction and constant caches (docs/deviations.md#D4), register bank conflicts (#D5)
 #pragma once
 
@@ -13,17 +14,40 @@
 #include "hw/base/unit.h"
 #include "hw/frame/tokens.h"
 #include "hw/shader/core_slots.h"
+#include "hw/shader/simd.h"
+#include "models/shader/timing.h"
+
+#include <unordered_map>
 
 namespace quadrille::hw {
 
 class ShaderCore final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> simds{*this, "simds", 4, "simd", {1, 64}, "SIMD units, each running one clause at a time. [G: 4 schedulers a core]"};
+    Param<int> simds{*this, "simds", 4, "simd", {1, 64}, "SIMD units, each issuing one instruction at a time. [G: 4 schedulers a core]"};
     Param<int> simd_lanes{*this,  "simd_lanes", 8,
                           "lane", {1, 32},      "Lanes a SIMD computes a cycle; a warp instruction takes 32 / lanes cycles. [G]"};
     Param<int> sfu_lanes{*this, "sfu_lanes", 2, "lane", {1, 32}, "Special-function lanes of a SIMD. [G: a quarter of the ALU]"};
-    Param<int> alu_clk{*this, "alu_clk", 4, "clk", {0, 1 << 16}, "Latency from the last issue of a clause to its results. [G]"};
+    Param<int> alu_clk{*this,
+                       "alu_clk",
+                       8,
+                       "clk",
+                       {0, 1 << 16},
+                       "From an arithmetic instruction to one that reads its result. [G: four cycles to go in, four through the pipe]"};
+    Param<int> sfu_clk{*this, "sfu_clk",    20,
+                       "clk", {0, 1 << 16}, "The same: special functions. [G: sixteen cycles to go in, four through]"};
+    Param<int> interp_clk{*this, "interp_clk", 12,
+                          "clk", {0, 1 << 16}, "The same: inputs and interpolated varyings. [G: planes are read first]"};
+    Param<int> const_clk{*this, "const_clk",  12,
+                         "clk", {0, 1 << 16}, "The same: constants that a register indexes. [G: as an address and a read]"};
+    Param<int> branch_clk{*this, "branch_clk", 4,
+                          "clk", {0, 1 << 16}, "From control flow to the warp's next instruction. [G: the front end is refilled]"};
+    Choice<WarpScheduling> scheduler{
+        *this,
+        "scheduler",
+        WarpScheduling::kRoundRobin,
+        {"oldest", "round_robin"},
+        "Which warp of a SIMD issues when several could: the longest ready, or all in turn. [G: in turn is 0 to 2 % faster on our scenes]"};
     Param<int> warp_slots{*this, "warp_slots", 32, "warp", {2, 1024}, "Warps resident on the core. [G]"};
     Param<int> register_rows{*this, "register_rows", 1024, "row", {16, 1 << 20}, "Register rows of 32 words: 1024 are 128 KiB. [G]"};
   };
@@ -39,7 +63,9 @@ class ShaderCore final : public Unit {
     Counter sfu{*this, "sfu_instructions", "instruction", "Warp instructions of the special-function class"};
     Counter texture{*this, "texture_instructions", "instruction", "Texture requests sent"};
     Counter lane_operations{*this, "lane_operations", "lane", "Lanes executed, summed over instructions"};
-    Counter simd_busy{*this, "simd_busy", "clk", "Cycles that SIMD units were held, summed over the units"};
+    Counter simd_busy{*this, "simd_busy", "clk", "Cycles in which SIMD units issued, summed over the units"};
+    Counter operand_waits{*this, "operand_waits", "clk",
+                          "Cycles in which a clause, alone on its SIMD, would wait for its own results, summed over clauses"};
   };
   ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots,
              Store<BatchSlot>& batches, std::vector<Store<WarpSlot>*> warps, const TriangleStore& triangles, bool textured);
@@ -77,6 +103,10 @@ class ShaderCore final : public Unit {
   void launch_vertex(CoreSlot& slot);
   void launch_fragment(CoreSlot& slot);
   void issue(Tick now);
+  [[nodiscard]] Wake simd_wake() const;
+  void end_clauses(Tick now);
+  void give_simd(CoreSlot& slot);
+  [[nodiscard]] const models::ProgramTiming& timing_of(const models::Program& program);
   void complete(Tick now, const Completion& done);
   void retire(Tick now, std::uint32_t index);
   void take_texels(Tick now);
@@ -91,7 +121,11 @@ class ShaderCore final : public Unit {
   Stats stats_;
   std::vector<std::uint32_t> free_slots_;
   int free_rows_;
-  std::vector<Tick> simd_free_;
+  models::IssueTiming issue_timing_;
+  std::unordered_map<const models::Program*, models::ProgramTiming> timings_;
+  models::WarpClock warp_clock_;
+  std::vector<Simd> simds_;
+  std::vector<int> simd_warps_;  ///< resident, by SIMD
   Queue<Ready> ready_;
   std::vector<Completion> completions_;
   Tick accept_free_ = 0;

@@ -3,6 +3,7 @@
 #include "models/shader/decode.h"
 #include "models/shader/lanes.h"
 #include "models/shader/op_table.h"
+#include "models/shader/timing.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +14,7 @@ namespace {
 
 class Execution {
  public:
-  explicit Execution(Warp& warp) : warp_(warp), program_(*warp.code) {
+  Execution(Warp& warp, WarpClock* clock) : warp_(warp), program_(*warp.code), clock_(clock) {
     context_.regs = reinterpret_cast<std::byte*>(warp.regs.data());
     context_.constants = warp.constants;
     context_.warp = &warp;
@@ -34,10 +35,12 @@ class Execution {
       if (flow.control) {
         result.cost.control += 1;
         result.cost.lane_ops += static_cast<std::uint64_t>(std::popcount(warp_.exec));
+        if (clock_ != nullptr) clock_->control(warp_.program->code[warp_.pc].a);
         if (program_.code[warp_.pc].op == Op::kEnd) return result;
         step_control(flow);
         mask_changed();
       } else {
+        if (clock_ != nullptr) clock_->run(warp_.pc);
         run_straight(flow.run_end, result.cost);
       }
     }
@@ -133,6 +136,7 @@ class Execution {
 
   Warp& warp_;
   const DecodedProgram& program_;
+  WarpClock* const clock_;
   ExecutionContext context_;
 };
 
@@ -142,14 +146,17 @@ void check_interface(const Warp& warp) {
   QUADRILLE_CHECK(has_inputs && warp.outputs != nullptr, "warp of '{}' runs without inputs or outputs", warp.program->name);
 }
 
-}  // namespace
-
-ClauseResult run_clause(Warp& warp) {
+ClauseResult run(Warp& warp, WarpClock* clock) {
   warp.instructions += kTextureInstructions * static_cast<std::uint64_t>(warp.texture_count);
   warp.texture_count = 0;
   if (warp.launched == 0) return {};
   check_interface(warp);
-  return Execution(warp).run();
+  return Execution(warp, clock).run();
 }
+
+}  // namespace
+
+ClauseResult run_clause(Warp& warp) { return run(warp, nullptr); }
+ClauseResult run_clause(Warp& warp, WarpClock& clock) { return run(warp, &clock); }
 
 }  // namespace quadrille::models

@@ -12,6 +12,8 @@
 
 namespace quadrille::models {
 
+class WarpClock;
+
 using LaneFloats = std::array<float, kWarpLanes>;
 using LaneWords = std::array<std::uint32_t, kWarpLanes>;
 using LaneMask = std::uint32_t;  ///< bit i = lane i; quad q owns bits 4q..4q+3
@@ -104,6 +106,8 @@ struct ClauseResult {
 /// The caller writes the results with `write_texture_result` before it calls again. Throws `UserError` when a loop does not end (`kMaxBackEdges`,
 /// `kMaxLoopInstructions`).
 ClauseResult run_clause(Warp& warp);
+/// The same; `clock`, which was restarted for the warp's program, counts the clause's cycles.
+ClauseResult run_clause(Warp& warp, WarpClock& clock);
 
 /// Stores a filtered result into the registers the request named, for its active lanes.
 void write_texture_result(Warp& warp, const TextureRequest& request, const std::array<LaneFloats, 4>& rgba);

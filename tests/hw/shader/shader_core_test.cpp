@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <sstream>
+
 using namespace quadrille;
 using namespace quadrille::hw;
 using namespace quadrille::hw::bench;
@@ -16,7 +18,9 @@ struct CoreBench final : Bench {
     std::string code = "output out0, r0\noutput out1, r0\noutput out2, r0\noutput out3, r0\n";
     std::vector<Timed<WarpToken>> vertex{}, fragment{};
     std::vector<Timed<TextureToken>> texels{};
-    int simds = 4, simd_lanes = 8, sfu_lanes = 2, alu_clk = 4, warp_slots = 32, rows = 1024;
+    int simds = 4, simd_lanes = 8, sfu_lanes = 2, warp_slots = 32, rows = 1024;
+    int alu_clk = 4, sfu_clk = 0, interp_clk = 0, const_clk = 0, branch_clk = 0;
+    WarpScheduling scheduler = WarpScheduling::kOldest;
     bool textured = false;
     Pace pace{};
     LinkSpec out{.depth = 64};
@@ -41,6 +45,11 @@ struct CoreBench final : Bench {
     params.simd_lanes.set(s.simd_lanes);
     params.sfu_lanes.set(s.sfu_lanes);
     params.alu_clk.set(s.alu_clk);
+    params.sfu_clk.set(s.sfu_clk);
+    params.interp_clk.set(s.interp_clk);
+    params.const_clk.set(s.const_clk);
+    params.branch_clk.set(s.branch_clk);
+    params.scheduler.set(s.scheduler);
     params.warp_slots.set(s.warp_slots);
     params.register_rows.set(s.rows);
     unit = std::make_unique<ShaderCore>("unit", params, clock, frame, slots, batches, std::vector<Store<WarpSlot>*>{&warps}, triangles,
@@ -78,13 +87,105 @@ std::string vertex_text(const CoreBench& b) { return b.vertex_done->text(); }
 
 }  // namespace
 
-TEST_CASE("shader_core: a clause takes its instructions times 32 / simd_lanes and a cycle for its end, its results alu_clk more") {
+TEST_CASE("shader_core: a clause takes its instructions times 32 / simd_lanes and a cycle for its end, and waits for its last result") {
   for (const int lanes : {1, 8, 12, 32}) {
-    for (const int latency : {0, 4}) {
+    for (const int latency : {0, 4, 50}) {
       const CoreBench::Setup s{.vertex = work(0, 1), .simd_lanes = lanes, .alu_clk = latency};
-      // Accepted at 1, ready at 2; a sink sees the end one cycle after it.
-      CHECK(run<CoreBench>(s, vertex_text) == fmt::format("{}:0", 2 + 4 * ((32 + lanes - 1) / lanes) + 1 + latency + 1));
+      // Accepted at 1, ready at 2; a sink sees the end one cycle after it. The last of four exports issues after three.
+      const int issue = (32 + lanes - 1) / lanes;
+      CHECK(run<CoreBench>(s, vertex_text) == fmt::format("{}:0", 2 + std::max(4 * issue + 1, 3 * issue + latency) + 1));
     }
+  }
+}
+
+namespace {
+
+/// Cycles from the first acceptance until the last of `warps` warps that run `code` is seen by a sink.
+int cycles_of(CoreBench::Setup s, const std::string& code, int warps) {
+  s.code = code;
+  s.fragment = work(0, warps);
+  const std::string text = run<CoreBench>(s, [](const CoreBench& b) { return b.fragment_done->text(); });
+  int last = 0;
+  std::istringstream in(text);
+  for (std::string item; in >> item;) last = std::max(last, std::stoi(item));
+  return last;
+}
+std::string repeated(const std::string& line, int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += line;
+  return all;
+}
+const std::string kDependent = "fmad r0, r0, r1, r2\n";
+/// Eight results in turn, none read.
+std::string independent(int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += fmt::format("fmad r{}, r8, r9, r10\n", i % 8);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("shader_core: a chain of dependent instructions takes its length times the distance of its class") {
+  struct Case {
+    std::string line;
+    int CoreBench::Setup::*latency;
+    int issue;
+  };
+  const std::vector<Case> cases{{kDependent, &CoreBench::Setup::alu_clk, 4}, {"frcp r0, r0\n", &CoreBench::Setup::sfu_clk, 16}};
+  for (const Case& c : cases) {
+    for (const int latency : {0, 3, 8, 32}) {
+      CoreBench::Setup s{.simds = 1, .alu_clk = 0};
+      s.*c.latency = latency;
+      INFO(c.line << " latency " << latency);
+      CHECK(cycles_of(s, repeated(c.line, 96), 1) - cycles_of(s, repeated(c.line, 32), 1) == 64 * std::max(c.issue, latency));
+    }
+  }
+}
+
+TEST_CASE("shader_core: independent instructions are bound by their issue, whatever the latency") {
+  for (const int latency : {0, 8, 32}) {
+    const CoreBench::Setup s{.simds = 1, .alu_clk = latency};
+    CHECK(cycles_of(s, independent(96), 1) - cycles_of(s, independent(32), 1) == 64 * 4);
+  }
+}
+
+TEST_CASE("shader_core: other warps of a SIMD hide the latency of a chain up to its issue bound and no further") {
+  constexpr int kLength = 64, kIssue = 4, kLatency = 17;
+  for (const WarpScheduling scheduler : {WarpScheduling::kOldest, WarpScheduling::kRoundRobin}) {
+    const CoreBench::Setup s{.simds = 1, .alu_clk = kLatency, .scheduler = scheduler};
+    const int alone = cycles_of(s, repeated(kDependent, kLength), 1);
+    for (const int warps : {1, 2, 3, 4, 8}) {
+      // The oldest first: four fill the SIMD, and what comes after them begins when they end.
+      const int rounds = scheduler == WarpScheduling::kOldest ? (warps + 3) / 4 : 1;
+      const int expected =
+          scheduler == WarpScheduling::kOldest ? rounds * kLength * kLatency : std::max(kLength * kLatency, warps * kLength * kIssue);
+      INFO(warps << " warps, policy " << static_cast<int>(scheduler));
+      CHECK(cycles_of(s, repeated(kDependent, kLength), warps) ==
+            Approx(static_cast<double>(alone + expected - kLength * kLatency))
+                .epsilon(warps <= 4 ? 0.02 : 0.05));  // what four leave of the SIMD goes to the fifth
+    }
+  }
+}
+
+TEST_CASE("shader_core: registers bound how many warps hide each other's latency") {
+  constexpr int kLength = 64, kLatency = 17;
+  // Sixteen registers a warp: rows for one, two and four of them; eight warps in all.
+  const std::string code = repeated(kDependent, kLength) + "output out0, r15\n";
+  const auto cycles = [&](int rows) { return cycles_of({.simds = 1, .rows = rows, .alu_clk = kLatency}, code, 8); };
+  const int one = kLength * kLatency;
+  CHECK(cycles(16) == Approx(static_cast<double>(8 * one)).epsilon(0.03));
+  CHECK(cycles(32) == Approx(static_cast<double>(4 * one)).epsilon(0.03));
+  CHECK(cycles(47) == cycles(32));
+  CHECK(cycles(64) == Approx(static_cast<double>(2 * one)).epsilon(0.03));
+  CHECK(cycles(128) == Approx(static_cast<double>(2 * one)).epsilon(0.03));  // four fill the SIMD: more registers gain nothing
+}
+
+TEST_CASE("shader_core: a branch waits for its condition, and the next instruction for the branch") {
+  const std::string before = "ine r3, r0, r1\n";
+  const auto code = [&](int count) { return repeated(before + "if r3\nendif\n", count); };
+  for (const int branch : {0, 7}) {
+    const CoreBench::Setup s{.simds = 1, .alu_clk = 20, .branch_clk = branch};
+    CHECK(cycles_of(s, code(24), 1) - cycles_of(s, code(8), 1) == 16 * (20 + std::max(1, branch) * 2));
   }
 }
 
@@ -94,28 +195,28 @@ TEST_CASE("shader_core: special functions go through their own lanes") {
     return fmt::format("{} sfu {} alu {} simd {}", b.vertex_done->text(), counter(*b.unit, "sfu_instructions"),
                        counter(*b.unit, "alu_instructions"), counter(*b.unit, "simd_busy"));
   });
-  CHECK(text == "32:0 sfu 1 alu 2 simd 25");  // 2 + 16 + 2 * 4 + 1 + 4, and one
+  CHECK(text == "28:0 sfu 1 alu 2 simd 25");  // 2 + 16 + 2 * 4 + 1, and one
 }
 
 TEST_CASE("shader_core: as many clauses run at a time as there are SIMDs, one warp is accepted a cycle") {
-  CHECK(run<CoreBench>({.vertex = work(0, 3)}, vertex_text) == "24:0 25:1 26:2");
-  CHECK(run<CoreBench>({.vertex = work(0, 3), .simds = 1}, vertex_text) == "24:0 41:1 58:2");
-  CHECK(run<CoreBench>({.vertex = work(0, 3), .simds = 2}, vertex_text) == "24:0 25:1 41:2");
+  CHECK(run<CoreBench>({.vertex = work(0, 3)}, vertex_text) == "20:0 21:1 22:2");
+  CHECK(run<CoreBench>({.vertex = work(0, 3), .simds = 1}, vertex_text) == "20:0 37:1 54:2");
+  CHECK(run<CoreBench>({.vertex = work(0, 3), .simds = 2}, vertex_text) == "20:0 21:1 37:2");
 }
 
 TEST_CASE("shader_core: a slot for one fragment warp is never given to vertex warps") {
   CoreBench::Setup s{.vertex = work(0, 3), .fragment = {{5, {0, 7, 0}}}, .warp_slots = 2};
   const auto text = [](const CoreBench& b) { return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text()); };
   // The next vertex warp is accepted the cycle the fragment warp ends: only then it leaves a slot free.
-  CHECK(run<CoreBench>(s, text) == "24:0 51:1 73:2 | 29:7");
+  CHECK(run<CoreBench>(s, text) == "20:0 43:1 61:2 | 25:7");
 }
 
 TEST_CASE("shader_core: registers for one fragment warp are never given to vertex warps") {
   CoreBench::Setup s{.code = "output out0, r15\n", .vertex = work(0, 2), .fragment = {{5, {0, 7, 0}}}, .rows = 47};
   const auto text = [](const CoreBench& b) { return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text()); };
-  CHECK(run<CoreBench>(s, text) == "12:0 27:1 | 17:7");  // 16 rows each: two vertex warps would leave 15
+  CHECK(run<CoreBench>(s, text) == "8:0 19:1 | 13:7");  // 16 rows each: two vertex warps would leave 15
   s.rows = 48;
-  CHECK(run<CoreBench>(s, text) == "12:0 13:1 | 17:7");
+  CHECK(run<CoreBench>(s, text) == "8:0 9:1 | 13:7");
 }
 
 TEST_CASE("shader_core: helper lanes run but are not fragments, and killed ones are reported dead") {
@@ -124,18 +225,18 @@ TEST_CASE("shader_core: helper lanes run but are not fragments, and killed ones 
     return fmt::format("{} fragments {} helpers {} alive {:x}", b.fragment_done->text(), counter(*b.unit, "fragments"),
                        counter(*b.unit, "helper_lanes"), b.warps[3].alive);
   });
-  CHECK(text == "21:3 fragments 7 helpers 1 alive 0");
+  CHECK(text == "17:3 fragments 7 helpers 1 alive 0");
 }
 
 TEST_CASE("shader_core: a warp that waits for texels does not hold its SIMD, and goes on when they are there") {
-  // Slots are given out from 0. A clause of one request (four cycles) and one of an export and the end (five), with four of latency.
+  // Slots are given out from 0. A clause of one request (four cycles) and one of an export and the end (five).
   const CoreBench::Setup s{.code = "tex r0, t0, r8, r9\noutput out0, r0\n",
                            .fragment = work(5, 2),
                            .texels = {{50, {1, 0, false}}, {100, {0, 0, false}}},
                            .simds = 1,
                            .textured = true};
   CHECK(run<CoreBench>(s, [](const CoreBench& b) { return b.requests->text() + " | " + b.fragment_done->text(); }) ==
-        "11:0 15:1 | 61:6 111:5");
+        "7:0 11:1 | 57:6 107:5");
 }
 
 TEST_CASE("shader_core: waits while vertex_out is full") {
