@@ -1,6 +1,7 @@
 #include "pipeline/figures.h"
 
 #include "pipeline/report.h"
+#include "pipeline/sensitivity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,7 @@ UnitFigures figures_of(const hw::Unit& unit) {
   f.path = unit.name();
   f.cycles = unit.total_cycles();
   f.busy = unit.busy_cycles();
+  f.waiting = unit.waiting_cycles();
   f.starved = unit.starved_cycles();
   f.blocked = unit.blocked_cycles();
   f.idle = unit.idle_cycles();
@@ -37,6 +39,8 @@ UnitFigures figures_of(const hw::Unit& unit) {
       f.waits.push_back({port->name(), port->direction() == hw::PortBase::Direction::kIn, port->waited(), port->fifo().path()});
   }
   std::ranges::stable_sort(f.waits, std::ranges::greater{}, &WaitFigure::cycles);
+  for (const hw::Resource& r : unit.resources().all())
+    f.resources.push_back({std::string(r.name), std::string(r.serial), r.kind == hw::Resource::Kind::kPlaces, r.total(), r.at_end_of});
   if (unit.stats() != nullptr) {
     for (const hw::Counter* c : unit.stats()->counters()) {
       f.counters.push_back({std::string(c->name()), std::string(c->unit()), std::string(c->definition()), c->value()});
@@ -264,15 +268,6 @@ std::uint64_t memory_bytes(const Figures& figures) {
 
 namespace {
 
-/// A core is busy while any of its SIMD units is held; what it can do is that of all of them.
-void note_core_capacity(const Machine& m, Figures& f) {
-  for (const Machine::Core& core : m.cores()) {
-    const auto figures = std::ranges::find(f.units, std::string(core.core->name()), &UnitFigures::path);
-    const double slots = static_cast<double>(figures->cycles) * m.config().core.simds.value();
-    figures->capacity_used = slots > 0 ? static_cast<double>(value(*core.core, "simd_busy")) / slots : 0;
-  }
-}
-
 Fates fates_of(const Machine& m) {
   const Sums sum(m);
   const hw::Unit &clipper = m.clipper(), &setup = m.setup();
@@ -305,10 +300,17 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
   f.frame.fragments_written = sum.rop("written");
   f.frame.fates = fates_of(m);
   for (const hw::Unit* unit : m.units()) f.units.push_back(figures_of(*unit));
-  note_core_capacity(m, f);
+  for (const hw::Unit* unit : m.units()) {
+    if (!unit->resources().empty())
+      f.slice_cycles = static_cast<double>(unit->resources().slice()) * static_cast<double>(m.clock().frequency_hz()) * 1e-15;
+  }
   for (std::size_t i = 0; i < m.links().size(); ++i) f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));
   f.bandwidth = bandwidth(m);
   f.checks = Laws(m, frame, f.bandwidth).all();
+  // The counted work at its peak rates fits into the frame.
+  const auto light = static_cast<std::int64_t>(std::ceil(speed_of_light(f).cycles - 1e-6));
+  f.checks.push_back({"cycles are not below the least time of the counted work", "frame.cycles below frame.least_cycles", "none",
+                      static_cast<std::uint64_t>(std::max<std::int64_t>(0, light - f.frame.cycles)), 0});
   f.left_out = m.left_out();
   f.host.actions = m.driver().actions();
   return f;

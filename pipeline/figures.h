@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,11 +41,20 @@ struct LinkFigures {
   double use = 0;  ///< least time in which the link can carry its tokens, over the frame's time: 0..1
 };
 
+/// What a unit took of one of its resources (hw/base/resource.h): cycles of its clock, and what they had come to at the end of each slice of the frame.
+struct ResourceFigure {
+  std::string name, serial;
+  bool places = false;
+  double cycles = 0;
+  std::vector<double> at_end_of = {};
+};
+
 struct UnitFigures {
   std::string path;
-  std::int64_t cycles = 0, busy = 0, starved = 0, blocked = 0, idle = 0;  ///< of the unit's clock; the last four add up to the first
-  std::optional<double> capacity_used;  ///< 0..1, of a unit that does several things at once; others: busy
-  std::vector<WaitFigure> waits;        ///< longest first, ports that cost nothing left out
+  std::int64_t cycles = 0, busy = 0, waiting = 0, starved = 0, blocked = 0,
+               idle = 0;  ///< of the unit's clock; the last five add up to the first
+  std::vector<ResourceFigure> resources;
+  std::vector<WaitFigure> waits;  ///< longest first, ports that cost nothing left out
   std::vector<CounterFigure> counters;
   std::vector<HistogramFigure> histograms;
 };
@@ -90,6 +98,7 @@ struct Figures {
   std::string scene, fidelity = "exact";
   std::int64_t window_cycles = 0;  ///< how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
   FrameFigures frame;
+  double slice_cycles = 0;  ///< of the GPU clock; 0: there are no slices
   std::vector<UnitFigures> units;
   std::vector<LinkFigures> links;
   std::vector<ClientFigures> bandwidth;

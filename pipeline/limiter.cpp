@@ -27,8 +27,6 @@ struct KindWait {
 /// Units of a kind: what they did with their cycles, and whom they waited for (by class of link and direction).
 struct Kind {
   std::int64_t cycles = 0, busy = 0;
-  double busiest = 0;                                             ///< of its units: capacity used, or busy
-  bool parallel = false;                                          ///< its units do several things at once
   std::map<std::pair<std::string, std::string>, KindWait> waits;  ///< by key of the link and kind of the other end
 };
 
@@ -40,9 +38,7 @@ class Graph {
     for (const UnitFigures& unit : figures.units) {
       Kind& kind = kinds_[kind_of(unit.path)];
       kind.cycles += unit.cycles;
-      kind.busy += unit.busy;
-      kind.parallel = kind.parallel || unit.capacity_used.has_value();
-      kind.busiest = std::max(kind.busiest, unit.capacity_used.value_or(share(unit.busy, unit.cycles)));
+      kind.busy += unit.busy + unit.waiting;
       for (const WaitFigure& wait : unit.waits) {
         const auto found = links.find(wait.link);
         if (found == links.end()) continue;
@@ -64,12 +60,6 @@ class Graph {
  private:
   std::map<std::string, Kind> kinds_;
 };
-
-std::string link_detail(const LinkFigures& link) {
-  const int round_trip = link.latency + link.credit_latency;
-  const double rate = std::min(static_cast<double>(link.width), static_cast<double>(link.depth) / round_trip);
-  return fmt::format("depth {}, round trip {} clk: {:.3g} token/clk at most", link.depth, round_trip, rate);
-}
 
 std::string arrows(const std::vector<std::string>& names) {
   std::string text;
@@ -149,6 +139,7 @@ const char* limiter_kind_name(Limiter::Kind kind) {
   switch (kind) {
     case Limiter::Kind::kNothing: return "nothing";
     case Limiter::Kind::kUnit: return "unit";
+    case Limiter::Kind::kPlaces: return "places";
     case Limiter::Kind::kLink: return "link";
     case Limiter::Kind::kWork: return "work";
     case Limiter::Kind::kLatency: return "latency";
@@ -156,33 +147,35 @@ const char* limiter_kind_name(Limiter::Kind kind) {
   return "";
 }
 
-std::vector<ResourceUse> resource_uses(const Figures& figures) {
-  std::vector<ResourceUse> uses;
-  const Graph graph(figures);
-  for (const auto& [name, kind] : graph.kinds())
-    uses.push_back({name, kind.busiest, fmt::format("{} {:.1f} %", kind.parallel ? "capacity used" : "busy", 100 * kind.busiest)});
-  std::map<std::string, const LinkFigures*> most;
-  for (const LinkFigures& link : figures.links) {
-    const LinkFigures*& best = most[link.key];
-    if (best == nullptr || link.use > best->use) best = &link;
-  }
-  for (const auto& [key, link] : most)
-    uses.push_back({key, link->use, fmt::format("used {:.1f} % ({})", 100 * link->use, link_detail(*link))});
-  std::ranges::stable_sort(uses, std::ranges::greater{}, &ResourceUse::use);
-  return uses;
+namespace {
+
+/// "core.issue 38 % (lanes of the SIMDs)".
+std::string gain_text(const Gain& gain) {
+  const Doubling* doubling = doubling_of(gain.resource);
+  const std::string words = doubling != nullptr ? doubling->words : gain.resource.starts_with("link.") ? "depth and width" : "no parameter";
+  return fmt::format("{} {:.0f} % ({})", gain.resource, 100 * gain.share, words);
 }
+
+}  // namespace
 
 Limiter find_limiter(const Figures& figures) {
   if (figures.units.empty()) return {};
-  const std::vector<ResourceUse> uses = resource_uses(figures);
-  if (uses.empty()) return {};
-  if (uses.front().use < kUsedUp) return walk(Graph(figures), scan_part(figures.frame));
+  const Sensitivity s = sensitivity(figures);
+  if (s.gains.empty() || s.gains.front().share < kLeastGain) return walk(Graph(figures), scan_part(figures.frame));
   Limiter limiter;
-  limiter.kind = uses.front().name.starts_with("link.") ? Limiter::Kind::kLink : Limiter::Kind::kUnit;
-  limiter.name = uses.front().name;
-  limiter.share = uses.front().use;
-  limiter.text = fmt::format("{}: {}", limiter.name, uses.front().detail);
-  if (uses.size() > 1) limiter.text += fmt::format("; next {}: {}", uses[1].name, uses[1].detail);
+  const Gain& first = s.gains.front();
+  const auto places = std::ranges::find_if(s.uses, [&](const ResourceUse& use) { return use.places && use.name == first.resource; });
+  const bool link = first.resource.starts_with("link.");
+  limiter.kind = link ? Limiter::Kind::kLink : places != s.uses.end() ? Limiter::Kind::kPlaces : Limiter::Kind::kUnit;
+  limiter.resource = first.resource;
+  limiter.name = link ? first.resource : first.resource.substr(0, first.resource.find('.'));
+  limiter.share = first.share;
+  limiter.text = "twice as much of this is expected to save, of the frame: ";
+  for (std::size_t i = 0; i < s.gains.size() && i < kNamedGains; ++i) {
+    if (s.gains[i].share < 0.005) break;
+    limiter.text += (i > 0 ? ", " : "") + gain_text(s.gains[i]);
+  }
+  if (s.waiting >= kLeastGain) limiter.text += fmt::format("; waiting that none of it explains {:.0f} %", 100 * s.waiting);
   return limiter;
 }
 

@@ -2,6 +2,7 @@
 #include "pipeline/limiter.h"
 #include "pipeline/notes.h"
 #include "pipeline/report.h"
+#include "pipeline/sensitivity.h"
 
 #include <nlohmann/json.hpp>
 
@@ -26,6 +27,7 @@ Json frame_json(const ReportSubject& s) {
           {"cycles", if_timed(s.figures, f.cycles)},
           {"render_cycles", if_timed(s.figures, f.render_cycles)},
           {"scan_out_cycles", if_timed(s.figures, f.scan_out_cycles())},
+          {"least_cycles", if_timed(s.figures, speed_of_light(s.figures).cycles)},
           {"period_cycles", if_timed(s.figures, f.period_cycles())},
           {"clock_mhz", s.machine.gpu.clock_mhz.value()},
           {"draws", f.draws},
@@ -46,11 +48,17 @@ Json unit_json(const UnitFigures& u) {
   for (const CounterFigure& c : u.counters) counters[c.name] = c.value;
   Json histograms = Json::object();
   for (const HistogramFigure& h : u.histograms) histograms[h.name] = {{"buckets", h.buckets}, {"sum", h.sum}};
+  Json resources = Json::object();
+  for (const ResourceFigure& r : u.resources)
+    resources[r.name] = {{"kind", r.places ? "places" : "rate"}, {r.places ? "full_cycles" : "least_cycles", r.cycles}};
   return {{"cycles", u.cycles},
+          {"use", use_of(u)},
           {"busy", u.busy},
+          {"waiting", u.waiting},
           {"starved", u.starved},
           {"blocked", u.blocked},
           {"idle", u.idle},
+          {"resources", std::move(resources)},
           {"waits", std::move(waits)},
           {"counters", std::move(counters)},
           {"histograms", std::move(histograms)}};
@@ -80,20 +88,28 @@ Json checks_json(const Figures& f) {
   return all;
 }
 
-/// What holds the frame up, and all uses above a hundredth.
+/// What holds the frame up: what each resource's doubling is expected to gain, and all uses, from a thousandth and a hundredth on.
 Json limit_json(const Figures& f) {
   const Limiter limiter = find_limiter(f);
   if (limiter.kind == Limiter::Kind::kNothing) return nullptr;
-  Json uses = Json::object();
-  for (const ResourceUse& use : resource_uses(f)) {
-    if (use.use >= 0.01) uses[use.name] = use.use;
+  const Sensitivity s = sensitivity(f);
+  Json uses = Json::object(), full = Json::object(), gains = Json::object();
+  for (const ResourceUse& use : s.uses) {
+    if (use.use >= 0.01) (use.places ? full : uses)[use.name] = use.use;
+  }
+  for (const Gain& gain : s.gains) {
+    if (gain.share >= 0.001) gains[gain.resource] = gain.share;
   }
   return {{"kind", limiter_kind_name(limiter.kind)},
           {"name", limiter.name},
+          {"resource", limiter.resource},
           {"share", limiter.share},
           {"walk", limiter.walk},
           {"text", limiter.text},
-          {"uses", std::move(uses)}};
+          {"gains", std::move(gains)},
+          {"uses", std::move(uses)},
+          {"full", std::move(full)},
+          {"waiting", s.waiting}};
 }
 
 Json host_json(const Figures& f) {

@@ -100,8 +100,11 @@ std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
   };
   const std::string name = group.units.size() > 1 ? fmt::format("{} x{}", group.kind, group.units.size()) : group.name;
   const std::string spread = group.units.size() > 1 ? fmt::format("+-{:.1f}", group.busy_spread()) : "";
-  std::string out = fmt::format("  {:<19}{:>6.1f} {:<6}{:>8.1f}{:>9.1f}{:>6.1f}  {:<22} ", name, share(&UnitFigures::busy), spread,
-                                share(&UnitFigures::starved), share(&UnitFigures::blocked), share(&UnitFigures::idle), wait_text(group));
+  double use = 0;
+  for (const UnitFigures* unit : group.units) use = std::max(use, use_of(*unit));
+  std::string out = fmt::format("  {:<19}{:>6.1f}{:>7.1f} {:<6}{:>7.1f}{:>8.1f}{:>8.1f}{:>6.1f}  {:<22} ", name, 100 * use,
+                                share(&UnitFigures::busy), spread, share(&UnitFigures::waiting), share(&UnitFigures::starved),
+                                share(&UnitFigures::blocked), share(&UnitFigures::idle), wait_text(group));
   out.resize(std::max(out.size(), kFacetColumn), ' ');
   const std::vector<std::string> facets = unit_facets(group, machine);
   if (facets.empty()) out.erase(out.find_last_not_of(' ') + 1);
@@ -111,19 +114,26 @@ std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
 std::string units_text(const ReportSubject& s, UnitRows rows) {
   if (s.figures.units.empty()) return "";
   std::string out = fmt::format(
-      "\nUNITS{}  shares of each unit's cycles in %: busy + starved (an input was missing) + blocked (an output was full) + idle (no work "
-      "in "
-      "flight)\n"
-      "  {:<19}{:>6} {:<6}{:>8}{:>9}{:>6}  {:<15}{:>6}  {}\n",
-      s.figures.window_cycles > 0 ? " (approximate)" : "", "unit", "busy", "", "starved", "blocked", "idle", "longest wait", "%",
-      "what it did; /clk is a unit's mean rate, with % of its peak");
+      "\nUNITS{}  in % of each unit's cycles: use is the least time of its work at its peak rates; busy (work begins) + waiting (for its "
+      "own "
+      "latencies) + starved (an\n  input was missing) + blocked (an output was full) + idle (no work in flight) make 100\n"
+      "  {:<19}{:>6}{:>7} {:<6}{:>7}{:>8}{:>8}{:>6}  {:<15}{:>6}  {}\n",
+      s.figures.window_cycles > 0 ? " (approximate)" : "", "unit", "use", "busy", "", "waiting", "starved", "blocked", "idle",
+      "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
   for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded)) out += unit_row(group, s.machine);
   return out;
 }
 
+std::string light_text(const Figures& f) {
+  const SpeedOfLight light = speed_of_light(f);
+  return fmt::format("LEAST  {} cycles for the counted work at its peak rates ({}): the frame takes {:.2f} times that\n",
+                     grouped(static_cast<std::uint64_t>(std::ceil(light.cycles))), light.resource,
+                     ratio(static_cast<double>(f.frame.cycles), light.cycles));
+}
+
 std::string limit_text(const Figures& f) {
   const Limiter limiter = find_limiter(f);
-  return limiter.kind == Limiter::Kind::kNothing ? "" : fmt::format("\nLIMIT  {}\n", limiter.text);
+  return limiter.kind == Limiter::Kind::kNothing ? "" : fmt::format("\nLIMIT  {}\n{}", limiter.text, light_text(f));
 }
 
 std::string notes_text(const Figures& f) {

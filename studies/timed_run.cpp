@@ -79,7 +79,7 @@ MachineCost machine_cost(const pipeline::Figures& figures) {
   cost.cycles = figures.frame.cycles;
   cost.memory_bytes = pipeline::memory_bytes(figures);
   for (const pipeline::UnitFigures& u : figures.units) {
-    cost.units.push_back({u.path, u.cycles > 0 ? 100.0 * static_cast<double>(u.busy) / static_cast<double>(u.cycles) : 0.0});
+    cost.units.push_back({u.path, u.cycles > 0 ? 100.0 * static_cast<double>(u.busy + u.waiting) / static_cast<double>(u.cycles) : 0.0});
   }
   for (const pipeline::ClientFigures& c : figures.bandwidth) cost.clients.push_back({c.name, c.read_bytes + c.write_bytes});
   return cost;

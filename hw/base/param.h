@@ -74,6 +74,7 @@ class Param final : public ParamBase {
   }
   operator T() const { return value_; }  // NOLINT(google-explicit-constructor): a parameter reads as its value
   [[nodiscard]] T value() const { return value_; }
+  [[nodiscard]] const ParamRange<T>& range() const { return range_; }
   void set(T value);
   [[nodiscard]] std::string value_text() const override { return fmt::format("{}", value_); }
   [[nodiscard]] std::string default_text() const override { return fmt::format("{}", default_); }

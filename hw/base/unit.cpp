@@ -31,7 +31,7 @@ void Unit::charge_wait(Tick until, const PortBase* cause) {
   const std::int64_t waited = all - quiet;
   accounted_ = until;
   if (cause == nullptr) {
-    busy_ += waited;
+    waiting_ += waited;
     return;
   }
   cause->add_wait(waited);
@@ -53,9 +53,11 @@ void Unit::close(Tick end, Tick reachable_until) {
   accounted_ = last_edge;
   total_ = clock_.edges_before(end);
   finish_stats(end);
-  const std::int64_t busy = busy_cycles(), starved = starved_cycles(), blocked = blocked_cycles(), idle = idle_cycles();
-  QUADRILLE_CHECK(busy + starved + blocked + idle == total_, "{}: busy {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy,
-                  starved, blocked, idle, total_);
+  const std::int64_t busy = busy_cycles(), waiting = waiting_cycles(), starved = starved_cycles(), blocked = blocked_cycles(),
+                     idle = idle_cycles();
+  QUADRILLE_CHECK(busy + waiting + starved + blocked + idle == total_,
+                  "{}: busy {} + waiting {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy, waiting, starved, blocked,
+                  idle, total_);
 }
 
 namespace {
@@ -109,6 +111,9 @@ class FlowActivity {
 void close_accounts(const std::vector<Unit*>& units, Tick end) {
   const FlowActivity activity(units);
   for (Unit* unit : units) unit->close(end, activity.reaching(*unit));
+  Tick slice = 0;
+  for (const Unit* unit : units) slice = std::max(slice, unit->resources().slice());
+  for (Unit* unit : units) unit->finish_resources(end, slice);
 }
 
 }  // namespace quadrille::hw

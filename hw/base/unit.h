@@ -2,13 +2,15 @@
 ///
 /// `next()` gives the earliest tick at which some action is possible, and which port was satisfied last; `act(now)` consumes, computes through `models/` and
 /// produces. Units never call each other: a push or a pop marks the peer, and the driver asks it again. The base class charges every cycle once:
-///   busy     an initiation slot is in use (`occupy`), or the unit's own resource makes it wait
+///   busy     an initiation slot is in use (`occupy`)
+///   waiting  for something of its own that is under way: its latency, or a timer
 ///   starved  waiting for an input          blocked  waiting for an output
 ///   idle     no token of any draw in flight can still reach the unit
 #pragma once
 
 #include "hw/base/counter.h"
 #include "hw/base/fifo.h"
+#include "hw/base/resource.h"
 
 #include <vector>
 
@@ -111,6 +113,7 @@ class Unit : public sc_core::sc_module {
   /// Charges the gap before the action, then acts. `wake` is what `wake()` answers now.
   void perform(const Wake& wake) {
     const Tick now = wake.at();
+    if (!resources_.empty()) resources_.note(now, cycles_since_last(now));
     last_action_ = now;
     if (now > accounted_) charge_gap(wake);
     ++actions_;
@@ -136,11 +139,15 @@ class Unit : public sc_core::sc_module {
   void set_quiet_log(const QuietLog& log) { quiet_ = &log; }
 
   [[nodiscard]] std::int64_t busy_cycles() const { return to_cycles(busy_); }
+  [[nodiscard]] std::int64_t waiting_cycles() const { return to_cycles(waiting_); }
   [[nodiscard]] std::int64_t starved_cycles() const { return to_cycles(starved_); }
   [[nodiscard]] std::int64_t blocked_cycles() const { return to_cycles(blocked_); }
   [[nodiscard]] std::int64_t idle_cycles() const { return to_cycles(idle_); }
   [[nodiscard]] std::int64_t total_cycles() const { return total_; }
   [[nodiscard]] std::uint64_t actions() const { return actions_; }
+  [[nodiscard]] const Resources& resources() const { return resources_; }
+  /// Its slices become those of a machine's common length; for `close_accounts`.
+  void finish_resources(Tick end, Tick slice) { resources_.finish(end, slice); }
   /// Tick of the latest action; -1 before the first.
   [[nodiscard]] Tick last_action() const { return last_action_; }
   /// A span of this unit's accounts in cycles.
@@ -155,14 +162,28 @@ class Unit : public sc_core::sc_module {
     accounted_ = until;
   }
   [[nodiscard]] Tick after(Tick now, std::int64_t cycles) const { return clock_.after(now, cycles); }
+  // What the unit needs for its work. A unit that names no rate has its initiation slot: the busy cycles. Names are those of the parameters that set them where
+  // one does.
+  void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
+    resources_.add({.name = name, .kind = Resource::Kind::kRate, .serial = serial, .cycles = std::move(cycles)});
+  }
+  void add_initiation_rate(std::string_view name) {
+    add_rate(name, [this] { return static_cast<double>(busy_cycles()); });
+  }
+  void add_places(std::string_view name, std::function<bool()> full) {
+    resources_.add({.name = name, .kind = Resource::Kind::kPlaces, .full = std::move(full)});
+  }
 
  private:
   /// Accounts are kept in spans: ticks where all cycles are equal (no division on the way), cycles elsewhere. Both arguments are edges.
   [[nodiscard]] std::int64_t span(Tick from, Tick to) const { return clock_.uniform() ? to - from : clock_.cycles(from, to); }
+  [[nodiscard]] double cycles_since_last(Tick now) const {
+    return last_action_ < 0 ? 0 : static_cast<double>(now - last_action_) / static_cast<double>(clock_.period());
+  }
   void charge_gap(const Wake& wake) {
     if (wake.waited_until() > accounted_) charge_wait(wake.waited_until(), wake.cause());
     if (wake.at() > accounted_) {
-      busy_ += span(accounted_, wake.at());
+      waiting_ += span(accounted_, wake.at());
       accounted_ = wake.at();
     }
   }
@@ -173,7 +194,8 @@ class Unit : public sc_core::sc_module {
   Tick accounted_ = 0;  ///< every cycle before this tick is charged
   Tick last_action_ = -1;
   std::uint64_t actions_ = 0;
-  std::int64_t busy_ = 0, starved_ = 0, blocked_ = 0, idle_ = 0;  ///< spans
+  std::int64_t busy_ = 0, waiting_ = 0, starved_ = 0, blocked_ = 0, idle_ = 0;  ///< spans
+  Resources resources_;
   Clock clock_;
   const QuietLog* quiet_ = nullptr;
   std::uint64_t unbound_word_ = 0;

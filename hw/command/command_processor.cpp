@@ -11,6 +11,7 @@ CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const Params& p
       frame_(frame),
       quiet_log_(quiet),
       retired_by_(static_cast<std::size_t>(partitions)) {
+  add_initiation_rate("draw_clk");
   for (int i = 0; i < partitions; ++i) { retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply); }
   if (frame.passes.empty()) step_ = Step::kDone;
 }

@@ -4,7 +4,10 @@ namespace quadrille::hw {
 
 ScanOut::ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
                  const models::DeviceMemory& memory, int slices)
-    : Unit(name, Kind::kChooser, clock), params_(params), frame_(frame), device_(memory), port_(*this, stats_, slices) {}
+    : Unit(name, Kind::kChooser, clock), params_(params), frame_(frame), device_(memory), port_(*this, stats_, slices) {
+  add_initiation_rate("rate");
+  add_places("lines_in_flight", [this] { return in_flight_ >= params_.lines_in_flight; });
+}
 
 std::string ScanOut::state_text() const { return fmt::format("{} lines left, {} under way", end_line_ - next_line_, in_flight_); }
 

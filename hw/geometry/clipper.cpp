@@ -6,7 +6,9 @@ namespace quadrille::hw {
 
 Clipper::Clipper(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
                  const Store<BatchSlot>& batches, Store<ClippedPiece>& pieces)
-    : Unit(name, Kind::kFixedOrder, clock), params_(params), frame_(frame), batches_(batches), pieces_(pieces) {}
+    : Unit(name, Kind::kFixedOrder, clock), params_(params), frame_(frame), batches_(batches), pieces_(pieces) {
+  add_initiation_rate("rate");
+}
 
 Wake Clipper::next() const { return Wake(free_).input(primitive_in).output(clipped_out); }
 

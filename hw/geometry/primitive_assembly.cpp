@@ -4,6 +4,7 @@ namespace quadrille::hw {
 
 PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const Clock& clock, const Store<BatchSlot>& batches, int cores)
     : Unit(name, Kind::kChooser, clock), batches_(batches), shaded_(static_cast<std::size_t>(batches.size()), false) {
+  add_initiation_rate("rate");
   for (int i = 0; i < cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 

@@ -15,6 +15,8 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const Params&
       pieces_(pieces),
       triangles_(triangles),
       retired_by_(static_cast<std::size_t>(partitions)) {
+  add_initiation_rate("rate");
+  add_places("triangle_slots", [this] { return sequence_ - retired_ >= triangles_.size(); });
   for (int i = 0; i < partitions; ++i) { sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply); }
 }
 

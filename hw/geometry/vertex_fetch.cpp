@@ -14,7 +14,11 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const Params& params, con
       port_(*this, stats_, slices),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses),
       reuse_(params.reuse, params.batch_vertices, params.reuse_entries),
-      slots_(batches.size()) {}
+      slots_(batches.size()) {
+  add_initiation_rate("rates");
+  add_places("batch_slots", [this] { return slots_.free() == 0; });
+  add_places("cache_misses", [this] { return cache_.full(); });
+}
 
 std::string VertexFetch::state_text() const {
   return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_, triangle_, pending_.size(), slots_.free());

@@ -57,6 +57,8 @@ class L1Cache {
   void mark_dirty(std::uint32_t line, std::uint8_t sectors);
   /// Queues all dirty sectors for writing and forgets all lines; nothing may be under way.
   void flush(MemoryPort& port);
+  /// No more lines may be asked for.
+  [[nodiscard]] bool full() const { return free_.empty(); }
   [[nodiscard]] bool idle() const { return free_.size() == misses_.size(); }
 
  private:

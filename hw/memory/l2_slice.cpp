@@ -28,6 +28,8 @@ L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock
       answers_(clients.size()),
       answering_((clients.size() + 63) / 64, 0),
       interleave_(static_cast<std::uint32_t>(slices)) {
+  add_initiation_rate("rate");
+  add_places("cache_misses", [this] { return free_misses_.empty(); });
   for (const auto& [client, kind] : clients) {
     client_kinds_.push_back(kind);
     request_in.add(*this, port_name(client, "in").c_str());

@@ -76,7 +76,19 @@ MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const Params& params,
       params_(params),
       interleave_(static_cast<std::uint32_t>(channels)),
       stats_(std::make_unique<Stats>()),
-      controller_(params.controller()) {}
+      controller_(params.controller()) {
+  add_rate(
+      "bus", [this] { return bus_cycles(models::BusUse::kRead) + bus_cycles(models::BusUse::kWrite); }, "data bus");
+  add_rate(
+      "rows",
+      [this] {
+        return bus_cycles(models::BusUse::kActivation) + bus_cycles(models::BusUse::kTurnaround) + bus_cycles(models::BusUse::kSpacing) +
+               bus_cycles(models::BusUse::kRefresh);
+      },
+      "data bus");
+  add_places("queue_depth", [this] { return !controller_.room(false); });
+  add_places("write_queue", [this] { return !controller_.room(true); });
+}
 
 MemoryChannel::~MemoryChannel() = default;
 
@@ -117,6 +129,11 @@ void MemoryChannel::act(Tick now) {
     response_out.push(now, answers_.front().token);
     answers_.pop_front();
   }
+}
+
+double MemoryChannel::bus_cycles(models::BusUse use) const {
+  const std::int64_t cycles = bus_at_end_ ? (*bus_at_end_)[static_cast<std::size_t>(use)] : controller_.charged(use);
+  return static_cast<double>(cycles) / params_.pseudo_channels;
 }
 
 void MemoryChannel::note_occupancy(std::int64_t cycle) {
@@ -168,6 +185,7 @@ void MemoryChannel::finish_stats(Tick end) {
   stats_->refreshes += counts.refreshes;
   // Shares of all pseudo-channels in whole cycles of the channel: what a division leaves over goes on to the next use, so that they still add up.
   const models::BusAccount::Cycles sums = controller_.bus_cycles(cycles);
+  bus_at_end_ = sums;
   const std::array<Counter*, models::kBusUses> counters{&stats_->bus_read,       &stats_->bus_write,      &stats_->bus_refresh,
                                                         &stats_->bus_turnaround, &stats_->bus_activation, &stats_->bus_spacing,
                                                         &stats_->bus_idle};

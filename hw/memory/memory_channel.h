@@ -13,6 +13,7 @@
 #include "models/memory/interleave.h"
 
 #include <array>
+#include <optional>
 
 namespace quadrille::hw {
 
@@ -52,6 +53,8 @@ class MemoryChannel final : public Unit {
   void take(Tick now, std::int64_t cycle);
   void finish(const models::DramDone& done);
   void note_occupancy(std::int64_t cycle);
+  /// So far, of the mean data bus.
+  [[nodiscard]] double bus_cycles(models::BusUse use) const;
 
   const Params& params_;
   models::Interleave interleave_;
@@ -62,6 +65,7 @@ class MemoryChannel final : public Unit {
   std::vector<models::DramDone> done_;
   Queue<Answer> answers_;  ///< in order of time
   std::int64_t occupancy_noted_ = 0;
+  std::optional<models::BusAccount::Cycles> bus_at_end_;  ///< once the frame has ended
 };
 
 struct MemoryChannel::Params : ParamGroup {

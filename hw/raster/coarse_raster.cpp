@@ -17,6 +17,7 @@ CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const Params& params, c
       frame_(frame),
       triangles_(triangles),
       sync_interval_(std::max<std::uint64_t>(1, triangles.size() / 8)) {
+  add_initiation_rate("tests_per_clk");
   for (int i = 0; i < partitions; ++i) { hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply); }
 }
 

@@ -10,6 +10,7 @@ namespace quadrille::hw {
 FineRaster::FineRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const TriangleStore& triangles,
                        int partitions)
     : Unit(name, Kind::kFixedOrder, clock), params_(params), triangles_(triangles) {
+  add_initiation_rate("quads_per_clk");
   for (int i = 0; i < partitions; ++i) {
     coverage_out.push_back(std::make_unique<FifoOut<CoverageToken>>(*this, fmt::format("coverage_out_{}", i).c_str()));
   }

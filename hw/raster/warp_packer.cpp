@@ -7,7 +7,10 @@
 namespace quadrille::hw {
 
 WarpPacker::WarpPacker(sc_core::sc_module_name name, const Params& params, const Clock& clock, Store<WarpSlot>& warps, int partition)
-    : Unit(name, Kind::kChooser, clock), params_(params), warps_(warps), partition_(static_cast<std::uint16_t>(partition)) {}
+    : Unit(name, Kind::kChooser, clock), params_(params), warps_(warps), partition_(static_cast<std::uint16_t>(partition)) {
+  add_initiation_rate("quads_per_clk");
+  add_places("warp_slots", [this] { return opened_ - retired_ >= warps_.size(); });
+}
 
 std::string WarpPacker::state_text() const { return fmt::format("{} of {} warp slots in use", opened_ - retired_, warps_.size()); }
 

@@ -63,7 +63,11 @@ DepthUnit::DepthUnit(sc_core::sc_module_name name, const Params& params, const C
       partition_(static_cast<std::uint32_t>(partition)),
       partitions_(static_cast<std::uint32_t>(partitions)),
       port_(*this, stats_, slices),
-      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner) {}
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner) {
+  add_initiation_rate("quads_per_clk");
+  add_places("tiles_in_flight", [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
+  add_places("cache_misses", [this] { return cache_.full(); });
+}
 
 std::string DepthUnit::state_text() const {
   return fmt::format("{} tiles in the early port, {} warps in the late port", early_.size(), late_.size());

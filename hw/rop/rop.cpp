@@ -60,6 +60,9 @@ Rop::Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock,
       port_(*this, stats_, slices),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner),
       shaded_(static_cast<std::size_t>(warps.size()), false) {
+  add_initiation_rate("quads_per_clk");
+  add_places("warps_in_flight", [this] { return acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value()); });
+  add_places("cache_misses", [this] { return cache_.full(); });
   for (int i = 0; i < cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 

@@ -46,6 +46,7 @@ class SurfaceCache {
   }
   /// Queues everything dirty for writing; with `write_cleared` the tiles still marked too.
   void flush(MemoryPort& port, bool write_cleared);
+  [[nodiscard]] bool full() const { return cache_.full(); }
   [[nodiscard]] bool idle() const { return cache_.idle(); }
 
  private:

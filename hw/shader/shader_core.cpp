@@ -49,6 +49,9 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const
       issue_timing_(issue_timing(params)),
       simds_(static_cast<std::size_t>(params.simds.value()), Simd(params.scheduler)),
       simd_warps_(simds_.size(), 0) {
+  add_rate("issue", [this] { return static_cast<double>(stats_.simd_busy.value()) / params_.simds; });
+  add_places("warp_slots", [this] { return kept_out(true); });
+  add_places("register_rows", [this] { return kept_out(false); });
   for (std::size_t p = 0; p < warps_.size(); ++p) {
     fragment_out.push_back(
         std::make_unique<FifoOut<FragmentDoneToken>>(*this, fmt::format("fragment_out_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
@@ -67,6 +70,16 @@ std::string ShaderCore::state_text() const {
 
 bool ShaderCore::fits(const models::Program& program, int kept_rows, int kept_slots) const {
   return static_cast<int>(free_slots_.size()) > kept_slots && free_rows_ >= program.num_regs + kept_rows;
+}
+
+bool ShaderCore::kept_out(bool by_slots) const {
+  const auto out = [&](const FifoIn<WarpToken>& in, bool vertex) {
+    if (in.ready() == kNever) return false;
+    const DrawState& draw = frame_.draw(in.front().draw);
+    if (vertex ? fits(*draw.vertex_program, fragment_rows_, 1) : fits(*draw.fragment_program, 0, 0)) return false;
+    return (static_cast<int>(free_slots_.size()) <= (vertex ? 1 : 0)) == by_slots;
+  };
+  return out(fragment_in, false) || out(vertex_in, true);
 }
 
 Wake ShaderCore::accept_wake(const FifoIn<WarpToken>& in, bool vertex) const {

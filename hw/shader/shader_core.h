@@ -95,6 +95,8 @@ class ShaderCore final : public Unit {
     std::uint32_t slot = 0;
   };
   [[nodiscard]] bool fits(const models::Program& program, int kept_rows, int kept_slots) const;
+  /// Does a warp wait for a slot, or else for registers?
+  [[nodiscard]] bool kept_out(bool by_slots) const;
   [[nodiscard]] Wake accept_wake(const FifoIn<WarpToken>& in, bool vertex) const;
   [[nodiscard]] Wake issue_wake() const;
   [[nodiscard]] Wake completion_wake(const Completion& done) const;

@@ -4,6 +4,7 @@ namespace quadrille::hw {
 
 WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Clock& clock, int partitions, int cores)
     : Unit(name, Kind::kChooser, clock) {
+  add_initiation_rate("rate");
   for (int p = 0; p < partitions; ++p) {
     fragment_in.add(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream);
   }

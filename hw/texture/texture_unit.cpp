@@ -13,7 +13,12 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const Params& params, con
       device_(memory),
       slots_(slots),
       port_(*this, stats_, slices),
-      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {}
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {
+  add_initiation_rate("address");
+  add_rate("filter", [this] { return static_cast<double>(stats_.bilinear_quads.value()) / params_.filter_quads_per_clk; });
+  add_places("groups_in_flight", [this] { return groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()); });
+  add_places("cache_misses", [this] { return cache_.full(); });
+}
 
 std::string TextureUnit::state_text() const {
   return fmt::format("{} request groups, {} look-ups left", groups_.size(), lines_.size() - next_line_);

@@ -15,7 +15,8 @@ struct Share {
   std::int64_t pipeline::UnitFigures::*member;
   std::array<std::uint8_t, 4> color;
 };
-constexpr std::array<Share, 4> kShares{{{&pipeline::UnitFigures::busy, {60, 170, 90, 255}},
+constexpr std::array<Share, 5> kShares{{{&pipeline::UnitFigures::busy, {60, 170, 90, 255}},
+                                        {&pipeline::UnitFigures::waiting, {160, 210, 120, 255}},
                                         {&pipeline::UnitFigures::starved, {70, 120, 220, 255}},
                                         {&pipeline::UnitFigures::blocked, {220, 70, 60, 255}},
                                         {&pipeline::UnitFigures::idle, {150, 150, 150, 255}}}};

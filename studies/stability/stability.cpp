@@ -43,12 +43,12 @@ std::uint64_t outside_touched(const Observed& o) {
 
 std::uint64_t unbalanced_units(const pipeline::Figures& figures) {
   return static_cast<std::uint64_t>(std::ranges::count_if(
-      figures.units, [](const pipeline::UnitFigures& u) { return u.busy + u.starved + u.blocked + u.idle != u.cycles; }));
+      figures.units, [](const pipeline::UnitFigures& u) { return u.busy + u.waiting + u.starved + u.blocked + u.idle != u.cycles; }));
 }
 
 std::uint64_t negative_accounts(const pipeline::Figures& figures) {
   return static_cast<std::uint64_t>(std::ranges::count_if(figures.units, [](const pipeline::UnitFigures& u) {
-    return std::min({u.busy, u.starved, u.blocked, u.idle}) < 0;
+    return std::min({u.busy, u.waiting, u.starved, u.blocked, u.idle}) < 0;
   }));
 }
 
@@ -97,8 +97,8 @@ void check_always(const Observed& o, Findings& findings) {
                  figures.checks.size());
   findings.equal("units whose cycles do not add up", unbalanced_units(figures) + negative_accounts(figures), 0);
   findings.equal("pixels touched outside the scissor", outside_touched(o), 0);
-  const std::vector<pipeline::ResourceUse> uses = pipeline::resource_uses(figures);
-  findings.at_most("greatest use of a unit or link", uses.empty() ? 0 : 100 * uses.front().use, 100, "%");
+  const double cycles = std::max(1.0, static_cast<double>(figures.frame.cycles));
+  findings.at_most("greatest use of a unit or link", 100 * pipeline::speed_of_light(figures).cycles / cycles, 100, "%");
 }
 
 const std::vector<Case>& catalogue() {

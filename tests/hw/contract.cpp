@@ -38,6 +38,7 @@ void write_all(int fd, const std::string& text) {
 void add_unit_figures(const Unit& unit, std::map<std::string, std::int64_t>& figures) {
   const std::string path = unit.name();
   figures[path + ".busy"] = unit.busy_cycles();
+  figures[path + ".waiting"] = unit.waiting_cycles();
   figures[path + ".starved"] = unit.starved_cycles();
   figures[path + ".blocked"] = unit.blocked_cycles();
   figures[path + ".idle"] = unit.idle_cycles();
@@ -60,8 +61,10 @@ Tick default_end(const std::vector<Unit*>& units) {
 std::string attribution_failures(const std::vector<Unit*>& units, Tick end) {
   std::string text;
   for (const Unit* unit : units) {
-    const std::int64_t sum = unit->busy_cycles() + unit->starved_cycles() + unit->blocked_cycles() + unit->idle_cycles();
-    const std::int64_t smallest = std::min({unit->busy_cycles(), unit->starved_cycles(), unit->blocked_cycles(), unit->idle_cycles()});
+    const std::int64_t sum =
+        unit->busy_cycles() + unit->waiting_cycles() + unit->starved_cycles() + unit->blocked_cycles() + unit->idle_cycles();
+    const std::int64_t smallest =
+        std::min({unit->busy_cycles(), unit->waiting_cycles(), unit->starved_cycles(), unit->blocked_cycles(), unit->idle_cycles()});
     std::int64_t starved = 0, blocked = 0;
     for (const PortBase* port : unit->ports()) (port->direction() == PortBase::Direction::kIn ? starved : blocked) += port->waited();
     if (sum != unit->clock().edges_before(end))

@@ -17,6 +17,7 @@ UnitFigures unit(const std::string& path, std::int64_t busy, const std::vector<W
   u.cycles = 1000;
   u.busy = busy;
   u.waits = waits;
+  u.resources = {{"rate", "", false, static_cast<double>(busy)}};
   return u;
 }
 
@@ -27,6 +28,7 @@ LinkFigures link(const std::string& path, const std::string& from, const std::st
 /// command_processor <- rop <- core_0 <-> texture_0: nothing is used up.
 Figures waiting() {
   Figures f;
+  f.frame.cycles = f.frame.render_cycles = 1000;
   f.links = {link("rop_to_command", "rop_0", "command_processor", 2), link("core_to_rop", "core_0", "rop_0", 2),
              link("texture_to_core", "texture_0", "core_0", 700), link("core_to_texture", "core_0", "texture_0", 3)};
   f.units = {unit("command_processor", 10, {{"retire_in", true, 900, "rop_to_command"}}),
@@ -51,13 +53,74 @@ std::string limit_of(const char* scene, const std::vector<std::pair<std::string,
 
 TEST_CASE("limiter: a frame that was not simulated has none") { CHECK(find_limiter(Figures{}).kind == Limiter::Kind::kNothing); }
 
-TEST_CASE("limiter: a unit that is busy nearly all the time is named with its share") {
+TEST_CASE("limiter: a rate that is used all the time is named with what its doubling saves: half the frame if nothing else bounds it") {
   Figures f = waiting();
-  f.units[3].busy = 940;
+  f.units[3].resources[0].cycles = 1000;
   const Limiter limiter = find_limiter(f);
   CHECK(limiter.kind == Limiter::Kind::kUnit);
   CHECK(limiter.name == "texture");
-  CHECK(limiter.share == Approx(0.94));
+  CHECK(limiter.resource == "texture.rate");
+  CHECK(limiter.share == Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("limiter: a second bound nearly as long as the first leaves little to save") {
+  Figures f = waiting();
+  f.units[3].resources[0].cycles = 1000;
+  f.units[2].resources[0].cycles = 900;
+  const Limiter limiter = find_limiter(f);
+  CHECK(limiter.name == "texture");
+  CHECK(limiter.share < 0.12);
+  CHECK(limiter.share > 0.05);
+}
+
+TEST_CASE("limiter: rates that follow each other on one resource add up, and halving one leaves the other") {
+  Figures f = waiting();
+  f.units.push_back(unit("memory_0", 0, {}));
+  f.units.back().resources = {{"bus", "data bus", false, 700}, {"rows", "data bus", false, 300}};
+  const Sensitivity s = sensitivity(f);
+  REQUIRE(s.gains.size() >= 2);
+  CHECK(s.gains[0].resource == "memory.bus");
+  CHECK(s.gains[0].share == Approx(0.35).epsilon(0.01));
+  CHECK(s.gains[1].resource == "memory.rows");
+  CHECK(s.gains[1].share == Approx(0.15).epsilon(0.01));
+  CHECK(use_of(f.units.back()) == Approx(1));
+}
+
+TEST_CASE("limiter: places that are all taken while no rate is used up are named, those furthest downstream") {
+  Figures f = waiting();
+  f.units[2].resources.push_back({"warp_slots", "", true, 950});
+  f.units[3].resources.push_back({"cache_misses", "", true, 800});
+  const Limiter limiter = find_limiter(f);
+  CHECK(limiter.kind == Limiter::Kind::kPlaces);
+  CHECK(limiter.resource == "texture.cache_misses");
+  CHECK(limiter.share == Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("limiter: phases of a frame are told from an even mixture") {
+  Figures even = waiting(), phases = waiting();
+  even.slice_cycles = phases.slice_cycles = 500;
+  const auto set = [](Figures& f, std::size_t unit, std::vector<double> at_end_of) {
+    f.units[unit].resources[0].cycles = at_end_of.back();
+    f.units[unit].resources[0].at_end_of = std::move(at_end_of);
+  };
+  for (Figures* f : {&even, &phases}) {
+    set(*f, 0, {5, 10});
+    set(*f, 1, {25, 50});
+  }
+  set(even, 2, {250, 500});
+  set(even, 3, {250, 500});
+  set(phases, 2, {500, 500});
+  set(phases, 3, {0, 500});
+  CHECK(sensitivity(even).gains.front().share < 0.02);
+  CHECK(sensitivity(phases).gains[0].share == Approx(0.25).epsilon(0.02));  // half of its phase
+  CHECK(sensitivity(phases).gains[1].share == Approx(0.25).epsilon(0.02));
+}
+
+TEST_CASE("limiter: the least time of a frame is that of its most used rate") {
+  Figures f = waiting();
+  f.units[3].resources[0].cycles = 640;
+  CHECK(speed_of_light(f).cycles == Approx(640));
+  CHECK(speed_of_light(f).resource == "texture");
 }
 
 TEST_CASE("limiter: a link that carries all it can is named by its key") {
@@ -120,15 +183,6 @@ TEST_CASE("limiter: a frame that is mostly scan-out says so, with what scan-out 
   CHECK(find_limiter(f).name == "link.texture_to_core");
 }
 
-TEST_CASE("limiter: uses come greatest first and are of the busiest of a kind") {
-  Figures f = waiting();
-  f.units.push_back(unit("core_1", 600, {}));
-  const auto uses = resource_uses(f);
-  CHECK(uses.front().name == "core");
-  CHECK(uses.front().use == Approx(0.6));
-  CHECK(std::ranges::is_sorted(uses, std::ranges::greater{}, &ResourceUse::use));
-}
-
 TEST_CASE("limiter: machines made narrow at one place are limited there") {
   CHECK(limit_of("builtin:cubes", {{"gpu.cores", "1"}}) == "core");
   CHECK(limit_of("builtin:overdraw", {{"memory.t_burst", "1000"}, {"rop.cache_lines", "16"}, {"l2.cache_lines", "16"}}) == "memory");
@@ -144,7 +198,7 @@ TEST_CASE("limiter: no unit or link of a real frame is used more than all of the
     options.width = 96;
     options.height = 64;
     const MachineConfig machine;
-    return std::to_string(resource_uses(render_exact(scenes::load_scene("builtin:cubes", options), machine).figures).front().use);
+    return std::to_string(sensitivity(render_exact(scenes::load_scene("builtin:cubes", options), machine).figures).uses.front().use);
   }));
   CHECK(worst <= 1);
   CHECK(worst > 0.3);

@@ -36,6 +36,8 @@ class BusAccount {
   }
   /// Every cycle before it is charged: a burst that begins there waited for nothing.
   [[nodiscard]] std::int64_t charged() const { return charged_; }
+  /// Cycles of a use so far.
+  [[nodiscard]] std::int64_t charged(BusUse use) const { return cycles_[static_cast<std::size_t>(use)]; }
   /// The cycles of [0, end): what was charged before it, and idleness behind the last burst. A burst that outlives `end` counts up to there.
   [[nodiscard]] Cycles until(std::int64_t end) const;
 

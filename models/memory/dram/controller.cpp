@@ -95,6 +95,12 @@ void DramController::catch_up(Cycle now) {
   caught_up_ = now;
 }
 
+std::int64_t DramController::charged(BusUse use) const {
+  std::int64_t sum = 0;
+  for (const PseudoChannel& channel : parts_->all) sum += channel.bus().charged(use);
+  return sum;
+}
+
 BusAccount::Cycles DramController::bus_cycles(Cycle end) const {
   BusAccount::Cycles sum{};
   for (const PseudoChannel& channel : parts_->all) {

@@ -78,6 +78,8 @@ class DramController {
   void step(Cycle now, std::vector<DramDone>& done);
   /// The cycles of the data buses up to `end`, summed over the pseudo-channels: `end` times their number. Nothing may be held.
   [[nodiscard]] BusAccount::Cycles bus_cycles(Cycle end) const;
+  /// Cycles of a use so far, summed over the pseudo-channels.
+  [[nodiscard]] std::int64_t charged(BusUse use) const;
   [[nodiscard]] const DramCommandCounts& counts() const { return counts_; }
   /// Gets every command, in order of time for each pseudo-channel.
   void set_trace(std::function<void(const DramCommand&)> trace) { trace_ = std::move(trace); }

@@ -1,0 +1,57 @@
+/// What a unit needs to do its work, and how much of it a frame took: the base of its use, of the frame's speed of light and of what limits it.
+///
+///   rate     work that can be done at so much a cycle: cycles that the counted work takes at that rate. No frame is shorter than that.
+///   places   a number of things that can be under way: cycles in which all places were taken.
+/// Rates of one `serial` group follow each other on the same resource (a data bus moves data or waits for rows), so their cycles add up.
+///
+/// Both are sampled over the frame, so that a frame of unlike phases can be told from an even one: slice i ends at the start of the frame plus (i + 1) slice lengths.
+#pragma once
+
+#include "hw/base/clock.h"
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace quadrille::hw {
+
+struct Resource {
+  enum class Kind : std::uint8_t { kRate, kPlaces };
+  std::string_view name;
+  Kind kind = Kind::kRate;
+  std::string_view serial = {};
+  std::function<double()> cycles = {};  ///< kRate: so far, of the unit's clock
+  std::function<bool()> full = {};      ///< kPlaces: now
+  double taken = 0;                     ///< kPlaces: cycles in which it was full, so far
+  std::vector<double> at_end_of = {};   ///< by slice: what it had come to
+  [[nodiscard]] double total() const { return kind == Kind::kRate ? cycles() : taken; }
+};
+
+class Resources {
+ public:
+  /// Slices of a frame: between half of that and that.
+  static constexpr std::size_t kMostSlices = 256;
+  /// Length of a slice at first; it doubles whenever a frame would have more than kMostSlices.
+  static constexpr Tick kFirstSlice = 512'000'000;  // fs: 512 cycles at 1 GHz
+
+  void add(Resource resource) { all_.push_back(std::move(resource)); }
+  [[nodiscard]] bool empty() const { return all_.empty(); }
+  [[nodiscard]] const std::vector<Resource>& all() const { return all_; }
+  [[nodiscard]] Tick slice() const { return slice_; }
+  /// Nothing has changed since the action at `last`, `cycles` ago; an action follows at `now`.
+  void note(Tick now, double cycles) {
+    for (Resource& r : all_)
+      if (r.kind == Resource::Kind::kPlaces && r.full()) r.taken += cycles;
+    if (now >= next_slice_) end_slices(now);
+  }
+  /// The slices up to `end`, of `slice` each, which is at least `slice()` and a power of two times it.
+  void finish(Tick end, Tick slice);
+
+ private:
+  void end_slices(Tick now);
+  void double_slice();
+  std::vector<Resource> all_;
+  Tick slice_ = kFirstSlice, next_slice_ = kFirstSlice;
+};
+
+}  // namespace quadrille::hw
