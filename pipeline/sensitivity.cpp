@@ -13,8 +13,12 @@ namespace {
 
 /// How bounds of like length add up: infinity would be perfect overlap, 1 none. [M: `quadrille experiment limits`]
 constexpr double kNorm = 12;
-/// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between them it is shared. [M: the same]
-constexpr double kMostlyWaiting = 0.35, kMostlyWork = 0.75;
+/// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between them it is shared. Where places are full, somebody
+/// waits for one, and the bounds have to reach further. [M: the same]
+struct Reach {
+  double waiting, work;
+};
+constexpr Reach kWithoutFullPlaces{0.35, 0.75}, kWithFullPlaces{0.5, 0.95};
 /// Slices are joined until they are no shorter than this, and no more than so many: within a batch or a tile units take turns, and that is no phase.
 constexpr double kShortestSlice = 4000;
 constexpr std::size_t kMostSlices = 24;
@@ -133,14 +137,15 @@ void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double
   double sum = 0;
   for (const auto& [name, bound] : slices.rates()) sum += std::pow(bound.use[s], kNorm);
   const double reach = std::pow(sum, 1 / kNorm), length = slices.length(s);
-  const double work = std::clamp((reach - kMostlyWaiting) / (kMostlyWork - kMostlyWaiting), 0.0, 1.0);
+  const std::string_view full = full_places(slices, s);
+  const Reach& between = full.empty() ? kWithoutFullPlaces : kWithFullPlaces;
+  const double work = std::clamp((reach - between.waiting) / (between.work - between.waiting), 0.0, 1.0);
   for (const auto& [name, bound] : slices.rates()) {
     for (const auto& [resource, part] : bound.of) {
       const double rest = sum - std::pow(bound.use[s], kNorm) + std::pow(bound.use[s] - part[s] / 2, kNorm);
       if (reach > 0) gains[resource] += length * work * (1 - std::pow(std::max(0.0, rest), 1 / kNorm) / reach);
     }
   }
-  const std::string_view full = full_places(slices, s);
   if (full.empty()) waiting_cycles += length * (1 - work);
   else gains[std::string(full)] += length * (1 - work) * (1 - std::max(0.5, std::min(1.0, reach)));
 }

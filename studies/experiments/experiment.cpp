@@ -85,6 +85,22 @@ const Experiment kExperiments[] = {
      &hidden_surfaces,
      {},
      "960x540"},
+    {"limits",
+     "What limits a frame",
+     "Nothing is published to compare with: the ruler is the machine itself, drawn again with one resource doubled.",
+     "Frames on machines that are narrow at different places. The report of each frame, from its one run, names the doublings that it "
+     "expects to gain most. Then every resource is doubled by itself, and the gains are measured.",
+     &limits,
+     {"builtin:cubes", "builtin:materials", "builtin:flag", "builtin:overdraw"},
+     "160x90"},
+    {"parameters",
+     "Every parameter by itself",
+     "Nothing is published to compare with: each parameter is held to what it declares of itself.",
+     "Small frames on a few machines, each drawn again with one parameter changed. More of a resource shall slow no frame by more than 1 "
+     "%, and every parameter shall do something somewhere.",
+     &parameters,
+     {"builtin:cubes", "builtin:materials", "builtin:flag", "builtin:overdraw"},
+     "96x54"},
 };
 
 std::string figures_of(const Frame& frame) {
@@ -126,6 +142,9 @@ Readings::Readings(const std::string& report_json) {
     sums[kind + ".busy"] += unit.at("busy").get<double>();
     for (const auto& [name, value] : unit.at("counters").items()) sums[kind + "." + name] += value.get<double>();
   }
+  if (!report.at("limit").is_null()) {
+    for (const auto& [name, value] : report["limit"].at("gains").items()) sums["gain." + name] = value.get<double>();
+  }
   values_.assign(sums.begin(), sums.end());
 }
 
@@ -133,6 +152,11 @@ double Readings::operator[](const std::string& name) const {
   const auto found = std::ranges::find(values_, name, &std::pair<std::string, double>::first);
   if (found == values_.end()) throw std::out_of_range("no reading " + name);
   return found->second;
+}
+
+double Readings::gain(const std::string& resource) const {
+  const auto found = std::ranges::find(values_, "gain." + resource, &std::pair<std::string, double>::first);
+  return found == values_.end() ? 0 : found->second;
 }
 
 std::vector<Readings> draw(const std::vector<Frame>& frames, const Setting& setting) {

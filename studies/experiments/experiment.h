@@ -67,6 +67,8 @@ class Readings {
   explicit Readings(const std::string& report_json);
   /// Throws `std::out_of_range` for a name that the report does not have.
   [[nodiscard]] double operator[](const std::string& name) const;
+  /// The part of the frame that doubling a resource is expected to save; 0 where the report expects nothing.
+  [[nodiscard]] double gain(const std::string& resource) const;
 
  private:
   std::vector<std::pair<std::string, double>> values_;
@@ -79,6 +81,8 @@ class Readings {
 [[nodiscard]] std::string result_markdown(const Experiment& experiment, const Result& result, const std::string& picture);
 
 // The experiments, each in its file.
+[[nodiscard]] Result limits(const Setting& setting);
+[[nodiscard]] Result parameters(const Setting& setting);
 [[nodiscard]] Result memory_scheduling(const Setting& setting);
 [[nodiscard]] Result vertex_reuse(const Setting& setting);
 [[nodiscard]] Result small_triangles(const Setting& setting);

@@ -133,7 +133,7 @@ void add_machine_cases(std::vector<Case>& cases) {
   cases.push_back(machine_case("irrational-clocks", "a memory clock of 1000 / pi MHz", "cubes", {{"gpu.memory_mhz", "318.309886183791"}},
                                {.limits = {"core"}}));
   cases.push_back(machine_case("one-line-caches", "every cache holds one line and asks for one at a time", "cubes", one_line_caches(),
-                               {.limits = {"link.memory_to_l2"}}));
+                               {.limits = {"l2"}}));
   cases.push_back(machine_case("thousandth-bandwidth", "a thousandth of the memory's bandwidth, and caches too small to hide it", "cubes",
                                {{"memory.t_burst", "1000"},
                                 {"l2.cache_lines", "16"},

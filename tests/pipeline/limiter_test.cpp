@@ -2,6 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <fstream>
+#include <sstream>
+
 #include "pipeline/render.h"
 #include "scenes/scene.h"
 #include "tests/hw/contract.h"
@@ -98,20 +101,24 @@ TEST_CASE("limiter: places that are all taken while no rate is used up are named
 
 TEST_CASE("limiter: phases of a frame are told from an even mixture") {
   Figures even = waiting(), phases = waiting();
-  even.slice_cycles = phases.slice_cycles = 500;
+  for (Figures* f : {&even, &phases}) {
+    f->frame.cycles = f->frame.render_cycles = 100000;
+    f->slice_cycles = 50000;
+    for (UnitFigures& u : f->units) u.cycles = 100000;
+  }
   const auto set = [](Figures& f, std::size_t unit, std::vector<double> at_end_of) {
     f.units[unit].resources[0].cycles = at_end_of.back();
     f.units[unit].resources[0].at_end_of = std::move(at_end_of);
   };
   for (Figures* f : {&even, &phases}) {
-    set(*f, 0, {5, 10});
-    set(*f, 1, {25, 50});
+    set(*f, 0, {500, 1000});
+    set(*f, 1, {2500, 5000});
   }
-  set(even, 2, {250, 500});
-  set(even, 3, {250, 500});
-  set(phases, 2, {500, 500});
-  set(phases, 3, {0, 500});
-  CHECK(sensitivity(even).gains.front().share < 0.02);
+  set(even, 2, {25000, 50000});
+  set(even, 3, {25000, 50000});
+  set(phases, 2, {50000, 50000});
+  set(phases, 3, {0, 50000});
+  CHECK(sensitivity(even).gains.front().share < 0.03);
   CHECK(sensitivity(phases).gains[0].share == Approx(0.25).epsilon(0.02));  // half of its phase
   CHECK(sensitivity(phases).gains[1].share == Approx(0.25).epsilon(0.02));
 }
@@ -202,4 +209,19 @@ TEST_CASE("limiter: no unit or link of a real frame is used more than all of the
   }));
   CHECK(worst <= 1);
   CHECK(worst > 0.3);
+}
+
+TEST_CASE("limiter: the page on it says what every doubling sets, and doublings change something on the default machine") {
+  std::ifstream file(QUADRILLE_SOURCE_DIR "/docs/limit.md");
+  std::stringstream page;
+  page << file.rdbuf();
+  const MachineConfig machine;
+  for (const Doubling& doubling : doublings()) {
+    std::string row = fmt::format("| `{}` | {} | ", doubling.resource, doubling.words);
+    for (const DoublingStep& step : doubling.steps)
+      row += fmt::format("{}`{}` {}", &step == &doubling.steps.front() ? "" : ", ", step.parameter, step.factor == 2 ? "x 2" : "/ 2");
+    INFO(row);
+    CHECK(page.str().find(row + " |") != std::string::npos);
+    CHECK_FALSE(settings_of(doubling, machine).empty());
+  }
 }

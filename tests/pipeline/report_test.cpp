@@ -75,10 +75,11 @@ TEST_CASE("report: units of a kind share a row of means with the spread of busy"
   CHECK(group_units(f.units, false).size() == 2);
   const MachineConfig machine;
   const std::string table = report_table({f, machine, 10, 10});
-  CHECK_THAT(table, Contains("memory x2            25.0 +-5.0"));
+  CHECK_THAT(table, Contains("memory x2" + std::string(13, ' ') + "0.0   25.0 +-5.0"));
   CHECK_THAT(table, Contains("request_in       60.0"));  // of 2000 cycles of both
   CHECK_THAT(table, Contains("accesses 80") && Contains("row hit 50.0 %") && Contains("data bus held 4.0 %"));
-  CHECK_THAT(report_table({f, machine, 10, 10}, UnitRows::kAll), Contains("memory_1             30.0") && !Contains("x2"));
+  CHECK_THAT(report_table({f, machine, 10, 10}, UnitRows::kAll),
+             Contains("memory_1" + std::string(14, ' ') + "0.0   30.0") && !Contains("x2"));
 }
 
 TEST_CASE("report: bytes of memory are those of its channels, in JSON too") {

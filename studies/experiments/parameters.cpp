@@ -1,0 +1,146 @@
+/// Every parameter of the machine, changed by itself: does it do something, and what it declares?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "models/base/error.h"
+#include "studies/experiments/experiment.h"
+#include "studies/experiments/parameter_effect.h"
+
+namespace quadrille::studies::experiments {
+namespace {
+
+/// A parameter that has no effect on a machine that has enough of everything is tried on ones that do not.
+struct Ground {
+  const char* name;
+  std::vector<std::string> settings;
+};
+const std::vector<Ground>& grounds() {
+  static const std::vector<Ground> all{
+      {"default", {}},
+      {"narrow memory",
+       {"gpu.channels=1", "memory.t_burst=8", "memory.t_ccd_s=8", "memory.t_ccd_l=8", "l2.cache_lines=256", "gpu.cores=8"}},
+      {"many cores", {"gpu.cores=16", "gpu.channels=4"}}};
+  return all;
+}
+
+/// More of a resource may not slow a frame by more than this part, and less of it may not make it faster.
+constexpr double kWrong = 0.01;
+/// A change of less than this part is no effect.
+constexpr double kEffect = 0.0005;
+/// Anomalies that are listed by name, with their cause.
+constexpr std::size_t kListed = 5;
+
+std::vector<std::string> values_of(const hw::ParamBase& p) {
+  std::vector<std::string> values;
+  const auto numbers = [&](double value, double least, double most, bool whole) {
+    for (const double factor : {0.125, 0.5, 2.0, 8.0}) {
+      double other = std::clamp(value == 0 ? (factor > 1 ? factor * 4 : 0) : value * factor, least, most);
+      if (whole) other = factor < 1 ? std::floor(other) : std::ceil(other);
+      const std::string text = whole ? fmt::format("{:.0f}", other) : fmt::format("{}", other);
+      if (other != value && std::ranges::find(values, text) == values.end()) values.push_back(text);
+    }
+  };
+  if (const auto* n = dynamic_cast<const hw::Param<int>*>(&p)) numbers(n->value(), n->range().min, n->range().max, true);
+  else if (const auto* d = dynamic_cast<const hw::Param<double>*>(&p)) numbers(d->value(), d->range().min, d->range().max, false);
+  else {
+    std::string words = p.legal_text() == "true or false" ? "true, false" : p.legal_text();
+    for (std::size_t at = 0; at < words.size();) {
+      const std::size_t end = std::min(words.find(", ", at), words.size());
+      if (const std::string word = words.substr(at, end - at); word != p.value_text()) values.push_back(word);
+      at = end + 2;
+    }
+  }
+  return values;
+}
+
+struct Change {
+  std::string path, value;
+  std::size_t ground = 0, scene = 0;
+  bool more = false;
+};
+
+/// What is wrong with a change; empty if nothing is.
+std::string fault(const Change& c, double part) {
+  const Effect effect = effect_of(c.path);
+  if (effect != Effect::kFaster && effect != Effect::kSlower) return {};
+  const bool should_gain = c.more == (effect == Effect::kFaster);
+  const bool wrong = should_gain ? part > kWrong : part < -kWrong;
+  return wrong ? fmt::format("{:+.1f} %", 100 * part) : std::string();
+}
+
+}  // namespace
+
+Result parameters(const Setting& setting) {
+  std::vector<std::pair<std::string, traces::CommandStream>> streams;
+  for (const auto& [name, load] : setting.scenes) streams.emplace_back(name, load());
+  std::vector<Frame> frames;
+  std::vector<Change> changes;
+  const std::size_t bases = grounds().size() * streams.size();
+  for (const Ground& ground : grounds())
+    for (const auto& [name, stream] : streams) frames.push_back({&stream, ground.settings});
+  for (std::size_t g = 0; g < grounds().size(); ++g) {
+    pipeline::MachineConfig machine;
+    machine.begin_layer();
+    for (const std::string& s : grounds()[g].settings) machine.set(s.substr(0, s.find('=')), s.substr(s.find('=') + 1), "experiment");
+    for (const auto& [group, params] : machine.groups()) {
+      for (const hw::ParamBase* p : params->params()) {
+        const std::string path = group + "." + std::string(p->name());
+        if (effect_of(path) == Effect::kPicture) continue;
+        for (const std::string& value : values_of(*p)) {
+          const std::string change = fmt::format("{}={}", path, value);
+          if (refused(grounds()[g].settings, change)) continue;
+          const bool more = p->is_word() || p->value_text() == "true" || p->value_text() == "false"
+                                ? value == "true"
+                                : std::stod(value) > std::stod(p->value_text());
+          for (std::size_t s = 0; s < streams.size(); ++s) {
+            frames.push_back({&streams[s].second, grounds()[g].settings});
+            frames.back().settings.push_back(change);
+            changes.push_back({path, value, g, s, more});
+          }
+        }
+      }
+    }
+  }
+  const std::vector<Readings> read = draw(frames, setting);
+  std::map<std::string, double> greatest;
+  std::map<std::string, std::string> faults;
+  std::string data;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const Change& c = changes[i];
+    const double base = read[c.ground * streams.size() + c.scene]["frame.cycles"], cycles = read[bases + i]["frame.cycles"];
+    const double part = cycles / base - 1;
+    greatest[c.path] = std::max(greatest[c.path], std::abs(part));
+    if (const std::string wrong = fault(c, part); !wrong.empty() && faults[c.path].size() < 160)
+      faults[c.path] += fmt::format("{}={} on {}, {}: {}; ", c.path, c.value, streams[c.scene].first, grounds()[c.ground].name, wrong);
+  }
+  std::erase_if(faults, [](const auto& f) { return f.second.empty(); });
+  Result result;
+  result.table.head = {"parameter", "declared", "greatest change of the frame, %", "against what it declares"};
+  std::size_t without = 0;
+  for (const auto& [path, change] : greatest) {
+    const bool none = change < kEffect && effect_of(path) != Effect::kNeutral;
+    without += none;
+    const auto wrong = faults.find(path);
+    result.table.rows.push_back({path, std::string(effect_name(effect_of(path))),
+                                 fmt::format("{:.2f}{}", 100 * change, none ? " (none)" : ""), wrong == faults.end() ? "" : wrong->second});
+    data += fmt::format("{}\n", std::max(0.01, 100 * change));
+  }
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  result.verdicts = {{"parameters that go against what they declare by more than 1 %", count(faults.size()), 0, count(kListed)},
+                     {"parameters without any effect", count(without), 0, 0}};
+  result.remarks = {fmt::format(
+      "{} changes: an eighth, half, twice and eight times of each number, every other word of each choice, one at a time, on {} machines.",
+      changes.size() / std::max<std::size_t>(1, streams.size()), grounds().size())};
+  result.plot =
+      "set logscale y\nset ylabel 'greatest change, % of the frame'\nset xlabel 'parameters, in the order of the table'\nset grid y\nset "
+      "key off\n$d << EOD\n" +
+      data + "EOD\nplot $d using 0:1 with impulses lw 2";
+  return result;
+}
+
+}  // namespace quadrille::studies::experiments
