@@ -142,7 +142,7 @@ Readings::Readings(const std::string& report_json) {
     sums[kind + ".busy"] += unit.at("busy").get<double>();
     for (const auto& [name, value] : unit.at("counters").items()) sums[kind + "." + name] += value.get<double>();
   }
-  if (!report.at("limit").is_null()) {
+  if (report.contains("limit") && !report["limit"].is_null()) {
     for (const auto& [name, value] : report["limit"].at("gains").items()) sums["gain." + name] = value.get<double>();
   }
   values_.assign(sums.begin(), sums.end());

@@ -124,7 +124,8 @@ TEST_CASE("the JSON holds the frame, every unit's cycles, and laws with both sid
   REQUIRE(s.at("units").contains("core_0"));
   for (const auto& [path, u] : s.at("units").items()) {
     CAPTURE(path);
-    CHECK(u.at("busy").get<long>() + u.at("starved").get<long>() + u.at("blocked").get<long>() + u.at("idle").get<long>() ==
+    CHECK(u.at("busy").get<long>() + u.at("waiting").get<long>() + u.at("starved").get<long>() + u.at("blocked").get<long>() +
+              u.at("idle").get<long>() ==
           u.at("cycles").get<long>());
     CHECK(u.at("waits").is_object());
     CHECK(u.at("counters").is_object());
