@@ -13,12 +13,12 @@ namespace {
 
 /// How bounds of like length add up: infinity would be perfect overlap, 1 none. [M: `quadrille experiment limits`]
 constexpr double kNorm = 12;
-/// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between them it is shared. Where the unit of the greatest bound
-/// has no place for more work, it waits for its own, and the bounds have to reach further. [M: the same]
+/// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between them it is shared. Where places are full, somebody waits for
+/// one, and the bounds of units have to reach further; a link's own bound counts its places. [M: the same]
 struct Reach {
   double waiting, work;
 };
-constexpr Reach kReach{0.35, 0.75}, kReachOfFullUnit{0.5, 0.95};
+constexpr Reach kReach{0.35, 0.75}, kReachWithFullPlaces{0.5, 0.95};
 /// Slices are joined until they are no shorter than this, and no more than so many: within a batch or a tile units take turns, and that is no phase.
 constexpr double kShortestSlice = 4000;
 constexpr std::size_t kMostSlices = 24;
@@ -139,8 +139,7 @@ void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double
   const double reach = std::pow(sum, 1 / kNorm), length = slices.length(s);
   const std::string_view full = full_places(slices, s);
   const auto greatest = std::ranges::max_element(slices.rates(), {}, [s](const auto& r) { return r.second.use[s]; });
-  const auto kind = [](std::string_view name) { return name.substr(0, name.find('.')); };
-  const Reach& between = !full.empty() && kind(full) == kind(greatest->first) ? kReachOfFullUnit : kReach;
+  const Reach& between = full.empty() || greatest->first.starts_with("link.") ? kReach : kReachWithFullPlaces;
   const double work = std::clamp((reach - between.waiting) / (between.work - between.waiting), 0.0, 1.0);
   for (const auto& [name, bound] : slices.rates()) {
     for (const auto& [resource, part] : bound.of) {
