@@ -47,20 +47,17 @@ const Experiment kExperiments[] = {
     {"small-triangles",
      "Small triangles",
      "Riccio (How bad are small triangles on GPU and why?, g-truc, 2014), a frame of 1920x1080 filled by tiles of two triangles, time "
-     "against tiles of 128x128: "
-     "no loss at 16x16 and above, a visible one at 8x8; at 1x1 about 10 times on Haswell, 15 on Kepler, 20 on Southern Islands. 256x1 "
-     "differs from 1x256.",
+     "against tiles of 128x128: no loss at 16x16 and above, a visible one at 8x8; at 1x1 about 10 times on Haswell, 15 on Kepler, 20 on "
+     "Southern Islands. 256x1 differs from 1x256.",
      "The same tiles, one indexed draw, shaders that hand through, on the default machine with four times its channels, so that memory is "
-     "not the limit, and on "
-     "machines of the cards' rates. Cycles until the pass is flushed.",
+     "not the limit, and on machines of the cards' rates. Cycles until the pass is flushed.",
      &small_triangles,
      {},
      "1920x1080"},
     {"setup-rate",
      "Set-up rate",
      "Reviews of the time (gpu-tech.org, GF100 vs. Archmark): up to the GT200 one triangle a clock when it is culled and half of that when "
-     "it is drawn; one drawn a "
-     "clock on the Radeon HD 5000; 3.5 a clock with the four raster engines of the GF100.",
+     "it is drawn; one drawn a clock on the Radeon HD 5000; 3.5 a clock with the four raster engines of the GF100.",
      "A mesh of triangles of one pixel each, drawn eight times over: as it is, all culled, and all off screen. Cycles until the pass is "
      "flushed.",
      &setup_rate,
@@ -69,8 +66,7 @@ const Experiment kExperiments[] = {
     {"quad-overhead",
      "Quad overhead",
      "Fatahalian and others (Reducing Shading on GPUs using Quad-Fragment Merging, SIGGRAPH 2010): a fragment costs at most 4 lanes at one "
-     "sample; with "
-     "multisampling about 1.4 lanes of 4 are live at triangles of one pixel, and a covered pixel is shaded more than 8 times.",
+     "sample; about 1.4 lanes of 4 are live at triangles of one pixel; with several samples a covered pixel is shaded more than 8 times.",
      "Frames of triangles of one area each, on the default machine: lanes executed over fragments covered.",
      &quad_overhead,
      {},
@@ -80,8 +76,7 @@ const Experiment kExperiments[] = {
      "ATI's Radeon X800 (reviews of 2004: Hexus, AnandTech) drops up to 256 hidden pixels a clock by a hierarchical depth test of blocks "
      "of 8x8 pixels.",
      "Ten layers over the whole frame, each two triangles, depth test less and depth written: front to back and back to front, with and "
-     "without Hi-Z, on the "
-     "default machine with four times its channels.",
+     "without Hi-Z, on the default machine with four times its channels.",
      &hidden_surfaces,
      {},
      "960x540"},

@@ -80,18 +80,15 @@ Result hidden_surfaces(const Setting& setting) {
     data += quoted(c.name()) + fmt::format(" {} {}\n", cycles, expected);
   }
   result.remarks = {fmt::format("The closed form: each layer that is drawn takes the fine rasteriser's cycles, four quads a cycle, tile by "
-                                "tile; each that is hidden takes its "
-                                "tile tests at their rate. Four tests of 8x8 pixels a cycle are the published {} pixels; a few less "
-                                "arrive, since tiles on the diagonal are "
-                                "tested for both triangles of a layer, a row ends with a test that fails, and the frame begins and ends.",
+                                "tile; each that is hidden takes its tile tests at their rate. Four tests of 8x8 pixels a cycle are the "
+                                "published {} pixels; a few less arrive, since tiles on the diagonal are tested for both triangles of a "
+                                "layer, a row ends with a test that fails, and the frame begins and ends.",
                                 kPublishedPixels),
                     "Early depth without Hi-Z saves shading, not rasterising: front to back all ten layers pass the rasteriser, and one is "
-                    "shaded. From back to front "
-                    "nothing is hidden, and Hi-Z costs nothing."};
+                    "shaded. From back to front nothing is hidden, and Hi-Z costs nothing."};
   result.plot =
       "set style data histograms\nset style fill solid 0.8\nset ylabel 'cycles'\nset yrange [0:*]\nset xtics rotate by -25 font ',9'\nset "
-      "grid y\nset key outside top "
-      "center horizontal\n$d << EOD\n" +
+      "grid y\nset key outside top center horizontal\n$d << EOD\n" +
       data + "EOD\nplot $d using 2:xtic(1) title 'simulated', '' using 3 title 'closed form'";
   return result;
 }

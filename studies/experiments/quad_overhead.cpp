@@ -96,21 +96,17 @@ Result quad_overhead(const Setting& setting) {
   }
   result.remarks = {
       "The triangles are equilateral, turned and placed by chance, so no tile or quad is favoured. What is counted is counted pixel by "
-      "pixel by a "
-      "rasteriser that shares no code with the machine.",
+      "pixel by a rasteriser that shares no code with the machine.",
       "At one sample the published 1.4 live lanes of 4 cannot be reached by any rasteriser that tests pixel centres: a triangle of one "
-      "pixel covers one centre "
-      "on average and touches 0.92 quads, so 1.08 lanes of a quad that is shaded are live. With four samples a pixel, as in the published "
-      "measurement, "
-      "the count gives 1.47 live lanes and 7.1 lanes shaded a pixel of area, where 1.4 and more than 8 are published. The machine has one "
-      "sample."};
+      "pixel covers one centre on average and touches 0.92 quads, so 1.08 lanes of a quad that is shaded are live. With four samples a "
+      "pixel the count gives 1.47 live lanes and 7.1 lanes shaded a pixel of area, which suggests that the published 1.4, and more than 8, "
+      "are of several samples. The machine has one."};
   result.plot =
       "set logscale x 2\nset xlabel 'area of a triangle, pixels'\nset ylabel 'lanes'\nset yrange [0:*]\nset key top right\nset grid\n$d << "
       "EOD\n" +
       data +
       "EOD\nplot $d using 1:3 with lines lw 2 title 'counted, a fragment', '' using 1:2 with points pt 7 title 'simulated, a fragment', '' "
-      "using "
-      "1:4 with lines dt 2 title 'counted with 4 samples, a pixel of area'";
+      "using 1:4 with lines dt 2 title 'counted with 4 samples, a pixel of area'";
   return result;
 }
 
