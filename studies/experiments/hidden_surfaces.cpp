@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "studies/experiments/experiment.h"
+#include "studies/experiments/measured_meshes.h"
 #include "studies/experiments/triangle_work.h"
 #include "studies/plot.h"
 
@@ -13,15 +14,6 @@ namespace {
 constexpr int kLayers = 10;
 constexpr double kLeast = 0.98, kMost = 1.02;
 constexpr double kPublishedPixels = 256;  ///< discarded a clock by the Radeon X800
-
-TriangleMesh stack(std::uint32_t width, std::uint32_t height, int layers, bool front_first) {
-  TriangleMesh mesh{width, height, {}, {}};
-  for (int i = 0; i < layers; ++i) {
-    const int place = front_first ? i : layers - 1 - i;
-    mesh.rectangle(0, 0, static_cast<std::int32_t>(width), static_cast<std::int32_t>(height), 0.05F * static_cast<float>(place + 1));
-  }
-  return mesh;
-}
 
 struct Case {
   bool front_first, hiz;
@@ -39,7 +31,7 @@ struct Form {
   [[nodiscard]] double cycles(bool hides) const { return hides ? drawn + (kLayers - 1) * hidden : kLayers * drawn; }
 };
 Form form_of(std::uint32_t width, std::uint32_t height, const Case& c) {
-  const TriangleWork layer = work_of(stack(width, height, 1, true), {.tile_tests = c.tests});
+  const TriangleWork layer = work_of(layers(width, height, 1, true), {.tile_tests = c.tests});
   return {static_cast<double>(std::max(layer.coarse_clk, layer.fine_clk)), static_cast<double>(layer.tile_tests) / c.tests};
 }
 
@@ -47,8 +39,8 @@ Form form_of(std::uint32_t width, std::uint32_t height, const Case& c) {
 
 Result hidden_surfaces(const Setting& setting) {
   const std::uint32_t width = setting.width, height = setting.height;
-  const traces::CommandStream front = stream_of(stack(width, height, kLayers, true), {.depth = true});
-  const traces::CommandStream back = stream_of(stack(width, height, kLayers, false), {.depth = true});
+  const traces::CommandStream front = stream_of(layers(width, height, kLayers, true), {.depth = true});
+  const traces::CommandStream back = stream_of(layers(width, height, kLayers, false), {.depth = true});
   std::vector<Frame> frames;
   for (const Case& c : kCases) {
     frames.push_back(

@@ -1,54 +1,18 @@
 /// Lanes shaded a covered fragment, by the area of the triangles: quads at their edges are shaded whole.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "studies/experiments/experiment.h"
+#include "studies/experiments/measured_meshes.h"
 #include "studies/experiments/triangle_work.h"
 
 namespace quadrille::studies::experiments {
 namespace {
 
-constexpr int kAreas = 11;               ///< 1, 2, 4 ... 1024 pixels
-constexpr double kFragments = 1 << 17;   ///< of all triangles of a frame, about
-constexpr int kMostTriangles = 1 << 15;  ///< of a frame
+constexpr int kAreas = 11;  ///< 1, 2, 4 ... 1024 pixels
 constexpr Sample kOneSample[] = {{}};
 /// Vulkan's standard places of four samples. [VK1.3 #primsrast-multisampling]
 constexpr Sample kFourSamples[] = {{96, 32}, {224, 96}, {32, 160}, {160, 224}};
 constexpr double kPublishedLive = 1.4, kPublishedBand = 0.15;
-
-/// Fractions that are the same on every host.
-class Draws {
- public:
-  double next() {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-    return static_cast<double>(state_ >> 40) / (1 << 24);
-  }
-
- private:
-  std::uint64_t state_ = 1;
-};
-
-/// Equilateral triangles of `area` pixels, turned and placed by chance within the frame, each with corners of its own.
-TriangleMesh scattered(std::uint32_t width, std::uint32_t height, double area) {
-  TriangleMesh mesh{width, height, {}, {}};
-  Draws draws;
-  const double radius = std::sqrt(4 * area / (3 * std::sqrt(3.0)));  // of the circle through its corners
-  const int count = static_cast<int>(std::min<double>(kMostTriangles, kFragments / area));
-  for (int i = 0; i < count; ++i) {
-    const double turn = draws.next() * 2 * std::numbers::pi;
-    const double x = radius + draws.next() * (width - 2 * radius), y = radius + draws.next() * (height - 2 * radius);
-    const auto first = static_cast<std::uint32_t>(mesh.corners.size());
-    for (int c = 0; c < 3; ++c) {
-      const double angle = turn + c * 2 * std::numbers::pi / 3;
-      mesh.corners.push_back({static_cast<std::int32_t>(std::lround(kGrid * (x + radius * std::cos(angle)))),
-                              static_cast<std::int32_t>(std::lround(kGrid * (y + radius * std::sin(angle))))});
-    }
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
-}
 
 double ratio(std::uint64_t a, std::uint64_t b) { return static_cast<double>(a) / static_cast<double>(b); }
 

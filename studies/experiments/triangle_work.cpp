@@ -72,16 +72,26 @@ Coverage tile_coverage(const Shape& shape, std::int64_t tx, std::int64_t ty) {
   return covered;
 }
 
-/// Pixels of the triangle with a covered sample, a quad at a time.
-void count_quads(const Shape& shape, std::span<const Sample> samples, Coverage& coverage) {
+/// Pixels of the quad with a covered sample.
+std::uint64_t pixels_of_quad(const Shape& shape, std::span<const Sample> samples, std::int64_t x, std::int64_t y) {
+  std::uint64_t pixels = 0;
+  for (int i = 0; i < 4; ++i)
+    pixels += std::ranges::any_of(samples, [&](const Sample& s) { return shape.covers(x + i % 2, y + i / 2, s); }) ? 1 : 0;
+  return pixels;
+}
+
+/// Pixels of the triangle with a covered sample, a block of four quads at a time.
+void count_blocks(const Shape& shape, std::span<const Sample> samples, Coverage& coverage) {
   // Samples off the centre may lie in pixels one beyond those of the centres.
-  for (std::int64_t y = (shape.top - 1) & ~1; y <= shape.bottom; y += 2) {
-    for (std::int64_t x = (shape.left - 1) & ~1; x <= shape.right; x += 2) {
-      std::uint64_t pixels = 0;
-      for (int i = 0; i < 4; ++i)
-        pixels += std::ranges::any_of(samples, [&](const Sample& s) { return shape.covers(x + i % 2, y + i / 2, s); }) ? 1 : 0;
-      coverage.pixels += pixels;
-      coverage.quads += pixels > 0 ? 1 : 0;
+  for (std::int64_t y = (shape.top - 1) & ~3; y <= shape.bottom; y += 4) {
+    for (std::int64_t x = (shape.left - 1) & ~3; x <= shape.right; x += 4) {
+      const std::uint64_t before = coverage.pixels;
+      for (int i = 0; i < 4; ++i) {
+        const std::uint64_t pixels = pixels_of_quad(shape, samples, x + 2 * (i % 2), y + 2 * (i / 2));
+        coverage.pixels += pixels;
+        coverage.quads += pixels > 0 ? 1 : 0;
+      }
+      coverage.blocks += coverage.pixels > before ? 1 : 0;
     }
   }
 }
@@ -141,7 +151,7 @@ Coverage coverage_of(const TriangleMesh& mesh, std::span<const Sample> samples) 
   Coverage coverage;
   Shape shape;
   for (const auto& triangle : mesh.triangles) {
-    if (shape_of(mesh, triangle, shape)) count_quads(shape, samples, coverage);
+    if (shape_of(mesh, triangle, shape)) count_blocks(shape, samples, coverage);
   }
   return coverage;
 }

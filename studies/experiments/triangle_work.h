@@ -35,8 +35,9 @@ struct Sample {
 struct Coverage {
   std::uint64_t quads = 0;   ///< of a triangle, with a covered sample
   std::uint64_t pixels = 0;  ///< of a triangle, with a covered sample
+  std::uint64_t blocks = 0;  ///< of 4x4 pixels, of a triangle, with a covered sample
 };
-/// Quads and pixels that the triangles of the mesh touch, each triangle by itself, with these samples a pixel.
+/// Quads, pixels and blocks that the triangles of the mesh touch, each triangle by itself, with these samples a pixel.
 [[nodiscard]] Coverage coverage_of(const TriangleMesh& mesh, std::span<const Sample> samples);
 
 /// Counts the mesh with every triangle drawn: none culled, hidden or off screen.

@@ -53,6 +53,14 @@ std::set<std::string> device_extensions(VkPhysicalDevice device) {
   return names;
 }
 
+const char* type_name(VkPhysicalDeviceType type) {
+  if (type == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU) return "discrete GPU";
+  if (type == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU) return "integrated GPU";
+  if (type == VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU) return "virtual GPU";
+  if (type == VK_PHYSICAL_DEVICE_TYPE_CPU) return "cpu";
+  return "other";
+}
+
 DeviceInfo describe(VkPhysicalDevice device) {
   VkPhysicalDeviceDriverProperties driver{};
   driver.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES;
@@ -61,12 +69,38 @@ DeviceInfo describe(VkPhysicalDevice device) {
   properties.pNext = &driver;
   vkGetPhysicalDeviceProperties2(device, &properties);
   const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+  VkPhysicalDeviceFeatures features{};
+  vkGetPhysicalDeviceFeatures(device, &features);
+  const std::uint32_t api = properties.properties.apiVersion;
   return {.name = properties.properties.deviceName,
           .driver = fmt::format("{}: {}", driver.driverName, driver.driverInfo),
           .subpixel_bits = limits.subPixelPrecisionBits,
           .subtexel_bits = limits.subTexelPrecisionBits,
           .mipmap_bits = limits.mipmapPrecisionBits,
-          .max_push_constants = limits.maxPushConstantsSize};
+          .max_push_constants = limits.maxPushConstantsSize,
+          .type = type_name(properties.properties.deviceType),
+          .api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api), VK_API_VERSION_PATCH(api)),
+          .pipeline_statistics = features.pipelineStatisticsQuery == VK_TRUE,
+          .precise_occlusion = features.occlusionQueryPrecise == VK_TRUE,
+          .timestamp_bits = 0,  // of a queue: filled in with its choice
+          .timestamp_ns = limits.timestampPeriod};
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// Among devices as wished, the highest is opened; the first of equals. 0: not as wished.
+int rank(const VkPhysicalDeviceProperties& device, const DeviceWish& wish) {
+  switch (wish.kind) {
+    case DeviceWish::Kind::kLavapipe: return device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 2 : 1;
+    case DeviceWish::Kind::kNamed: return lower(device.deviceName).find(lower(wish.name)) == std::string::npos ? 0 : 1;
+    case DeviceWish::Kind::kGpu: break;
+  }
+  if (device.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU) return 4;
+  if (device.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU) return 3;
+  return device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 0 : 2;
 }
 
 }  // namespace
@@ -82,10 +116,11 @@ Cleanup::~Cleanup() {
   }
 }
 
-VulkanDevice::VulkanDevice(bool validate) {
-  prefer_lavapipe();
-  create_instance(validate);
-  choose_physical_device();
+VulkanDevice::VulkanDevice(const DeviceWish& wish) {
+  if (wish.kind == DeviceWish::Kind::kLavapipe) prefer_lavapipe();
+  create_instance(wish.validate);
+  choose_physical_device(wish);
+  choose_queue_family();
   create_device();
 }
 
@@ -107,7 +142,8 @@ void VulkanDevice::create_instance(bool validate) {
     info.ppEnabledExtensionNames = &extension;
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
-  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throw user_error("Vulkan: no driver found; lavapipe is in the package mesa-vulkan-drivers");
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
+    throw user_error("Vulkan: no driver found; a GPU's comes with its vendor's packages, lavapipe, in software, with mesa-vulkan-drivers");
   if (result == VK_ERROR_LAYER_NOT_PRESENT) throw user_error("Vulkan: no validation layer; it is in the package vulkan-validationlayers");
   require(result, "vkCreateInstance");
   cleanup_.add([this] { vkDestroyInstance(instance_, nullptr); });
@@ -121,19 +157,33 @@ void VulkanDevice::create_instance(bool validate) {
   cleanup_.add([this, destroy, handle] { destroy(instance_, handle, nullptr); });
 }
 
-void VulkanDevice::choose_physical_device() {
+void VulkanDevice::choose_physical_device(const DeviceWish& wish) {
   std::uint32_t count = 0;
   require(vkEnumeratePhysicalDevices(instance_, &count, nullptr), "vkEnumeratePhysicalDevices");
   std::vector<VkPhysicalDevice> devices(count);
   require(vkEnumeratePhysicalDevices(instance_, &count, devices.data()), "vkEnumeratePhysicalDevices");
+  int best = 0;
+  std::vector<std::string> names;
   for (const VkPhysicalDevice device : devices) {
     VkPhysicalDeviceProperties properties{};
     vkGetPhysicalDeviceProperties(device, &properties);
     if (properties.apiVersion < VK_API_VERSION_1_3) continue;
-    if (physical_ == VK_NULL_HANDLE || properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU) physical_ = device;
+    names.push_back(fmt::format("'{}'", properties.deviceName));
+    const int its_rank = rank(properties, wish);
+    if (its_rank > best) {
+      best = its_rank;
+      physical_ = device;
+    }
   }
-  if (physical_ == VK_NULL_HANDLE) throw user_error("Vulkan: none of {} device(s) offers Vulkan 1.3", count);
+  if (names.empty()) throw user_error("Vulkan: none of {} device(s) offers Vulkan 1.3", count);
+  if (physical_ == VK_NULL_HANDLE) {
+    const std::string wished = wish.kind == DeviceWish::Kind::kNamed ? fmt::format("device named '{}'", wish.name) : "GPU";
+    throw user_error("Vulkan: no {}; there are: {}", wished, fmt::join(names, ", "));
+  }
   info_ = describe(physical_);
+}
+
+void VulkanDevice::choose_queue_family() {
   family_ = 0;
   std::uint32_t families = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &families, nullptr);
@@ -141,6 +191,7 @@ void VulkanDevice::choose_physical_device() {
   vkGetPhysicalDeviceQueueFamilyProperties(physical_, &families, queues.data());
   while (family_ < families && (queues[family_].queueFlags & VK_QUEUE_GRAPHICS_BIT) == 0) ++family_;
   if (family_ == families) throw user_error("Vulkan: {} has no graphics queue", info_.name);
+  info_.timestamp_bits = queues[family_].timestampValidBits;
 }
 
 void VulkanDevice::create_device() {
@@ -160,6 +211,8 @@ void VulkanDevice::create_device() {
   features.features.depthClamp = present.depthClamp;
   features.features.geometryShader = present.geometryShader;  // gl_PrimitiveID in a fragment shader
   features.features.robustBufferAccess = present.robustBufferAccess;
+  features.features.pipelineStatisticsQuery = present.pipelineStatisticsQuery;
+  features.features.occlusionQueryPrecise = present.occlusionQueryPrecise;
 
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{};
@@ -204,20 +257,47 @@ VkDeviceMemory VulkanDevice::allocate(Cleanup& owner, const VkMemoryRequirements
   return handle;
 }
 
-HostBuffer VulkanDevice::buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const {
+VulkanDevice::BoundBuffer VulkanDevice::create_buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage,
+                                                      VkMemoryPropertyFlags properties) const {
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = bytes == 0 ? 4 : bytes;
   info.usage = usage;
-  HostBuffer result;
+  BoundBuffer result;
   require(vkCreateBuffer(device_, &info, nullptr, &result.buffer), "vkCreateBuffer");
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(device_, result.buffer, &needs);
-  const VkDeviceMemory memory = allocate(owner, needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  result.memory = allocate(owner, needs, properties);
   owner.add([this, handle = result.buffer] { vkDestroyBuffer(device_, handle, nullptr); });
-  require(vkBindBufferMemory(device_, result.buffer, memory, 0), "vkBindBufferMemory");
-  require(vkMapMemory(device_, memory, 0, VK_WHOLE_SIZE, 0, &result.mapped), "vkMapMemory");
+  require(vkBindBufferMemory(device_, result.buffer, result.memory, 0), "vkBindBufferMemory");
   return result;
+}
+
+HostBuffer VulkanDevice::buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const {
+  const BoundBuffer made = create_buffer(owner, bytes, usage, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  HostBuffer result{made.buffer, nullptr};
+  require(vkMapMemory(device_, made.memory, 0, VK_WHOLE_SIZE, 0, &result.mapped), "vkMapMemory");
+  return result;
+}
+
+VkBuffer VulkanDevice::device_buffer(Cleanup& owner, std::span<const std::byte> data, VkBufferUsageFlags usage) const {
+  const BoundBuffer made = create_buffer(owner, data.size(), usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+  if (data.empty()) return made.buffer;
+  Cleanup upload;
+  const HostBuffer staging = buffer(upload, data.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  std::memcpy(staging.mapped, data.data(), data.size());
+  const VkCommandBuffer commands = begin_commands(upload);
+  const VkBufferCopy whole{0, 0, data.size()};
+  vkCmdCopyBuffer(commands, staging.buffer, made.buffer, 1, &whole);
+  VkMemoryBarrier barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+  barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT;
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &barrier, 0, nullptr, 0,
+                       nullptr);
+  require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+  submit(commands);
+  return made.buffer;
 }
 
 DeviceImage VulkanDevice::image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels, VkImageUsageFlags usage,

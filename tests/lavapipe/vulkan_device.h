@@ -3,7 +3,9 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,9 +39,22 @@ struct DeviceImage {
   VkImageView view = VK_NULL_HANDLE;
 };
 
+/// Which of the devices to open.
+struct DeviceWish {
+  enum class Kind : std::uint8_t {
+    kLavapipe,  ///< the software driver before any other, and drivers of GPUs not opened at all
+    kGpu,       ///< a GPU, discrete before others; never a software driver
+    kNamed      ///< the one with `name` in its name
+  };
+  Kind kind = Kind::kLavapipe;
+  std::string name{};     ///< of `kNamed`: part of a device's name, in any case of letters
+  bool validate = false;  ///< under the Khronos validation layer
+};
+
 class VulkanDevice {
  public:
-  explicit VulkanDevice(bool validate);
+  /// Throws `UserError` when there is no driver, no device as wished, or none with Vulkan 1.3.
+  explicit VulkanDevice(const DeviceWish& wish);
 
   [[nodiscard]] VkDevice handle() const { return device_; }
   [[nodiscard]] const DeviceInfo& info() const { return info_; }
@@ -47,6 +62,8 @@ class VulkanDevice {
 
   /// A buffer of at least `bytes` (and never none) that lives until `owner` ends.
   [[nodiscard]] HostBuffer buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const;
+  /// A buffer in the device's own memory that holds `data`.
+  [[nodiscard]] VkBuffer device_buffer(Cleanup& owner, std::span<const std::byte> data, VkBufferUsageFlags usage) const;
   /// A 2D image with a view of all its levels that lives until `owner` ends.
   [[nodiscard]] DeviceImage image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels, VkImageUsageFlags usage,
                                   VkImageAspectFlags aspect) const;
@@ -57,8 +74,15 @@ class VulkanDevice {
 
  private:
   void create_instance(bool validate);
-  void choose_physical_device();
+  void choose_physical_device(const DeviceWish& wish);
+  void choose_queue_family();
   void create_device();
+  struct BoundBuffer {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+  };
+  [[nodiscard]] BoundBuffer create_buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage,
+                                          VkMemoryPropertyFlags properties) const;
   [[nodiscard]] VkDeviceMemory allocate(Cleanup& owner, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties) const;
 
   Cleanup cleanup_;

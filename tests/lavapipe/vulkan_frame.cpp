@@ -45,7 +45,8 @@ VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, con
 
 }  // namespace
 
-VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream) : device_(device), stream_(stream) {
+VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream, const PassQueries* queries)
+    : device_(device), stream_(stream), queries_(queries) {
   upload_buffers();
   upload_images();
   create_samplers();
@@ -55,13 +56,9 @@ VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream
 }
 
 void VulkanFrame::upload_buffers() {
-  for (const traces::Buffer& source : stream_.buffers) {
-    const HostBuffer buffer =
-        device_.buffer(cleanup_, source.data.size(),
-                       VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    if (!source.data.empty()) std::memcpy(buffer.mapped, source.data.data(), source.data.size());
-    buffers_.push_back(buffer);
-  }
+  for (const traces::Buffer& source : stream_.buffers)
+    buffers_.push_back(device_.device_buffer(
+        cleanup_, source.data, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
 }
 
 void VulkanFrame::upload_images() {
@@ -129,6 +126,7 @@ void VulkanFrame::create_targets() {
 
 void VulkanFrame::record() {
   commands_ = device_.begin_commands(cleanup_);
+  if (queries_ != nullptr) queries_->reset(commands_);
   const auto commands = commands_;
   const auto& buffers = buffers_;
   const Overloaded record_one{
@@ -139,8 +137,8 @@ void VulkanFrame::record() {
         if (bound_.sets.size() <= c.set) bound_.sets.resize(c.set + std::size_t{1}, traces::kNone);
         bound_.sets[c.set] = c.descriptors;
       },
-      [&](const traces::BindVertexBuffer& c) { vkCmdBindVertexBuffers(commands, c.binding, 1, &buffers[c.buffer].buffer, &c.offset); },
-      [&](const traces::BindIndexBuffer& c) { vkCmdBindIndexBuffer(commands, buffers[c.buffer].buffer, c.offset, vk_index_type(c.type)); },
+      [&](const traces::BindVertexBuffer& c) { vkCmdBindVertexBuffers(commands, c.binding, 1, &buffers[c.buffer], &c.offset); },
+      [&](const traces::BindIndexBuffer& c) { vkCmdBindIndexBuffer(commands, buffers[c.buffer], c.offset, vk_index_type(c.type)); },
       [this](const traces::PushConstants& c) {
         bound_.push_constants.resize(std::max(bound_.push_constants.size(), c.offset + c.data.size()));
         std::copy(c.data.begin(), c.data.end(), bound_.push_constants.begin() + c.offset);
@@ -179,11 +177,14 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
                VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     info.pDepthAttachment = &depth;
   }
+  if (queries_ != nullptr) queries_->begin(commands_, passes_);
   vkCmdBeginRendering(commands_, &info);
 }
 
 void VulkanFrame::end_pass() {
   vkCmdEndRendering(commands_);
+  if (queries_ != nullptr) queries_->end(commands_, passes_);
+  ++passes_;
   const Target& target = targets_[bound_.target];
   transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);

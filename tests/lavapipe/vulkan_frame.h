@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "tests/lavapipe/vulkan_device.h"
+#include "tests/lavapipe/vulkan_queries.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::lavapipe {
 
 class VulkanFrame {
  public:
-  /// Uploads and records. `device` and `stream` must outlive the frame.
-  VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream);
+  /// Uploads and records. `device` and `stream` must outlive the frame, and so must `queries`, which are asked around each pass.
+  VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream, const PassQueries* queries = nullptr);
 
   void submit() const { device_.submit(commands_); }
   /// The attachments of the last pass, as the last submission left them.
@@ -58,7 +59,9 @@ class VulkanFrame {
   const VulkanDevice& device_;
   const traces::CommandStream& stream_;
   Cleanup cleanup_;
-  std::vector<HostBuffer> buffers_;
+  const PassQueries* queries_;
+  std::uint32_t passes_ = 0;  ///< recorded
+  std::vector<VkBuffer> buffers_;
   std::vector<DeviceImage> images_;
   std::vector<VkSampler> samplers_;
   std::vector<Target> targets_;

@@ -131,7 +131,7 @@ void VulkanFrame::create_descriptor_sets() {
     write.dstSet = set;
     write.descriptorCount = 1;
     for (const auto& uniform : source.uniforms) {
-      const VkDescriptorBufferInfo buffer{buffers_[uniform.buffer].buffer, uniform.offset, uniform.range};
+      const VkDescriptorBufferInfo buffer{buffers_[uniform.buffer], uniform.offset, uniform.range};
       write.dstBinding = uniform.binding;
       write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
       write.pBufferInfo = &buffer;

@@ -12,7 +12,7 @@
 namespace quadrille::lavapipe {
 
 struct VulkanRenderer::State {
-  explicit State(bool validate) : device(validate) {}
+  explicit State(bool validate) : device({.validate = validate}) {}
   VulkanDevice device;
 };
 

@@ -16,12 +16,18 @@ namespace quadrille::lavapipe {
 
 /// What the driver says of itself.
 struct DeviceInfo {
-  std::string name;                      ///< for example "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string driver;                    ///< for example "llvmpipe: Mesa 22.3.6 (LLVM 15.0.6)"
+  std::string name{};                    ///< for example "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string driver{};                  ///< for example "llvmpipe: Mesa 22.3.6 (LLVM 15.0.6)"
   std::uint32_t subpixel_bits = 0;       ///< fractional bits of a snapped window coordinate
   std::uint32_t subtexel_bits = 0;       ///< fractional bits of a texel coordinate when filtering
   std::uint32_t mipmap_bits = 0;         ///< fractional bits of the level of detail when filtering between levels
   std::uint32_t max_push_constants = 0;  ///< bytes
+  std::string type{};                    ///< "cpu", "discrete GPU", ...
+  std::string api_version{};             ///< for example "1.3.230"
+  bool pipeline_statistics = false;      ///< counts its stages' work (feature pipelineStatisticsQuery)
+  bool precise_occlusion = false;        ///< counts samples exactly (feature occlusionQueryPrecise)
+  std::uint32_t timestamp_bits = 0;      ///< valid bits of a timestamp of the queue used; 0: it has none
+  double timestamp_ns = 0;               ///< nanoseconds a tick
 };
 
 /// The attachments of the last pass, rows top to bottom.

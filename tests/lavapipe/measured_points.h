@@ -1,0 +1,37 @@
+/// The experiments that run on any Vulkan device and on the simulated machine: meshes, and what changes from point to point.
+///
+/// Each is a curve. Devices differ in clock and width, so curves are compared as shapes, each divided by its own first point: the first point is the one
+/// that every device should be best at.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "studies/experiments/triangle_mesh.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::lavapipe {
+
+struct Point {
+  std::string name;
+  double x = 0;                                                ///< along the axis of the experiment
+  std::function<studies::experiments::TriangleMesh()> mesh{};  ///< of an experiment; made when it is its turn: all at once would not fit
+  std::function<traces::CommandStream()> stream{};             ///< that draws it, or a scene
+};
+
+struct MeasuredExperiment {
+  std::string name, axis;
+  std::vector<Point> points;
+};
+
+/// All experiments for a target of this size, in pixels.
+[[nodiscard]] std::vector<MeasuredExperiment> measured_experiments(std::uint32_t width, std::uint32_t height);
+/// Those named, in the order of all; no name: all. Throws `UserError` for a name that there is not.
+[[nodiscard]] std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string>& names, std::uint32_t width,
+                                                                 std::uint32_t height);
+/// The experiments and their points, a line each.
+[[nodiscard]] std::string listed(const std::vector<MeasuredExperiment>& experiments);
+
+}  // namespace quadrille::lavapipe
