@@ -112,7 +112,9 @@ void Machine::create_units(const MachineOptions& options) {
   make(vertex_fetch_, [&, channels] {
     return std::make_unique<hw::VertexFetch>("vertex_fetch", config_.vertex_fetch, clock_, frame, memory, *batches_, channels);
   });
-  make(assembly_, [&, cores] { return std::make_unique<hw::PrimitiveAssembly>("primitive_assembly", clock_, *batches_, cores); });
+  make(assembly_, [&, cores] {
+    return std::make_unique<hw::PrimitiveAssembly>("primitive_assembly", config_.primitive_assembly, clock_, *batches_, cores);
+  });
   make(clipper_, [&] { return std::make_unique<hw::Clipper>("clipper", config_.clipper, clock_, frame, *batches_, *pieces_); });
   make(setup_, [&, partitions] {
     return std::make_unique<hw::TriangleSetupUnit>("triangle_setup", config_.triangle_setup, clock_, frame, *batches_, *pieces_,

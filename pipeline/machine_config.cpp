@@ -10,6 +10,7 @@ MachineConfig::MachineConfig() {
   groups_ = {{"gpu", &gpu},
              {"command_processor", &command_processor},
              {"vertex_fetch", &vertex_fetch},
+             {"primitive_assembly", &primitive_assembly},
              {"clipper", &clipper},
              {"triangle_setup", &triangle_setup},
              {"coarse_raster", &coarse_raster},

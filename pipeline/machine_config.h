@@ -103,6 +103,7 @@ class MachineConfig {
   GpuParams gpu;
   hw::CommandProcessor::Params command_processor;
   hw::VertexFetch::Params vertex_fetch;
+  hw::PrimitiveAssembly::Params primitive_assembly;
   hw::Clipper::Params clipper;
   hw::TriangleSetupUnit::Params triangle_setup;
   hw::CoarseRaster::Params coarse_raster;

@@ -6,18 +6,22 @@ namespace quadrille::hw {
 
 Clipper::Clipper(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
                  const Store<BatchSlot>& batches, Store<ClippedPiece>& pieces)
-    : Unit(name, Kind::kFixedOrder, clock), params_(params), frame_(frame), batches_(batches), pieces_(pieces) {
+    : Unit(name, Kind::kFixedOrder, clock), params_(params), frame_(frame), batches_(batches), pieces_(pieces), rate_(clock) {
   add_initiation_rate("rate");
 }
 
 Wake Clipper::next() const { return Wake(free_).input(primitive_in).output(clipped_out); }
 
+void Clipper::spend(Tick now, std::int64_t cost) {
+  free_ = rate_.charge(now, cost);
+  occupy(now, rate_.cycles());
+}
+
 void Clipper::act(Tick now) {
-  free_ = after(now, 1);
-  occupy(now, 1);
-  if (next_piece_ > 0) return emit_piece(now, next_piece_);
   const PrimitiveToken& token = primitive_in.front();
-  if (token.kind == TokenKind::kWork) return take_triangle(now);
+  if (next_piece_ == 0 && token.kind == TokenKind::kWork) return take_triangle(now);
+  spend(now, WorkRate::cost(params_.triangles_per_clk));
+  if (next_piece_ > 0) return emit_piece(now, next_piece_);
   clipped_out.push(now, {token.kind, token.index, token.slot, 0, {}, 0});
   (void)primitive_in.pop(now);
 }
@@ -30,14 +34,14 @@ void Clipper::take_triangle(Tick now) {
     for (int c = 0; c < 4; ++c) position[i][c] = std::bit_cast<float>(batches_[slot].outputs[static_cast<std::size_t>(c)][lane]);
   }
   ++stats_.triangles;
-  switch (models::clip_triangle(position, frame_.draw(token.index).clip, polygon_)) {
+  const models::ClipOutcome outcome = models::clip_triangle(position, frame_.draw(token.index).clip, polygon_);
+  spend(now, outcome == models::ClipOutcome::kClipped ? params_.clip_clk * WorkRate::kCycle : WorkRate::cost(params_.triangles_per_clk));
+  switch (outcome) {
     case models::ClipOutcome::kInside: ++stats_.passed; return emit_piece(now, 1);
     case models::ClipOutcome::kClipped:
       ++stats_.clipped;
       stats_.pieces += static_cast<std::uint64_t>(polygon_.count - 2);
       next_piece_ = 1;
-      free_ = after(now, params_.clip_clk);
-      occupy(now, params_.clip_clk);
       return;
     case models::ClipOutcome::kRejected: ++stats_.rejected; break;
     case models::ClipOutcome::kNotFinite: ++stats_.not_finite; break;

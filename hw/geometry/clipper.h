@@ -2,11 +2,12 @@
 ///
 /// In    primitive_in  triangles as lanes of a shaded batch; boundaries
 /// Out   clipped_out   triangles and pieces with window positions; boundaries
-/// Time  one triangle a cycle; a cut one `clip_clk` cycles and then one piece a cycle
+/// Time  `triangles_per_clk` triangles a cycle; a cut one `clip_clk` cycles, and then its pieces as many a cycle; a boundary takes the place of a triangle
 #pragma once
 
 #include "hw/base/param.h"
 #include "hw/base/unit.h"
+#include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 
@@ -15,6 +16,14 @@ namespace quadrille::hw {
 class Clipper final : public Unit {
  public:
   struct Params : ParamGroup {
+    Param<int> triangles_per_clk{
+        *this,
+        "triangles_per_clk",
+        1,
+        "triangle/clk",
+        {1, 64},
+        "Triangles judged, or pieces handed on, a cycle; for more than one handed on link.clipper_to_setup.width must be as "
+        "much. [G: one geometry engine]"};
     Param<int> clip_clk{*this,          "clip_clk", 12,
                         "clk/triangle", {1, 4096},  "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]"};
   };
@@ -39,6 +48,7 @@ class Clipper final : public Unit {
  private:
   void emit_piece(Tick now, int i);
   void take_triangle(Tick now);
+  void spend(Tick now, std::int64_t cost);
 
   const Params& params_;
   const Frame& frame_;
@@ -48,6 +58,7 @@ class Clipper final : public Unit {
   models::ClippedPolygon polygon_;
   int next_piece_ = 0;  ///< of the polygon being emitted; 0: none
   std::uint32_t ring_ = 0;
+  WorkRate rate_;
   Tick free_ = 0;
 };
 

@@ -2,8 +2,13 @@
 
 namespace quadrille::hw {
 
-PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const Clock& clock, const Store<BatchSlot>& batches, int cores)
-    : Unit(name, Kind::kChooser, clock), batches_(batches), shaded_(static_cast<std::size_t>(batches.size()), false) {
+PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const Params& params, const Clock& clock,
+                                     const Store<BatchSlot>& batches, int cores)
+    : Unit(name, Kind::kChooser, clock),
+      params_(params),
+      batches_(batches),
+      shaded_(static_cast<std::size_t>(batches.size()), false),
+      rate_(clock) {
   add_initiation_rate("rate");
   for (int i = 0; i < cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
@@ -27,8 +32,8 @@ void PrimitiveAssembly::act(Tick now) {
 
 void PrimitiveAssembly::emit(Tick now) {
   const BatchToken head = batch_in.front();
-  free_ = after(now, 1);
-  occupy(now, 1);
+  free_ = rate_.charge(now, WorkRate::cost(params_.triangles_per_clk));
+  occupy(now, rate_.cycles());
   if (head.kind != TokenKind::kWork) {
     primitive_out.push(now, {head.kind, head.index, 0, 0, {}});
     (void)batch_in.pop(now);

@@ -1,12 +1,13 @@
-/// Primitive assembly: waits for a batch to be shaded and hands its triangles on, one a cycle, in draw order.
+/// Primitive assembly: waits for a batch to be shaded and hands its triangles on in draw order.
 ///
 /// In    batch_in       batches and boundaries, in order       done_in[core]  a batch was shaded
 /// Out   primitive_out  triangles as lanes of their batch, then a batch end; draw and pass boundaries
-/// Time  one token a cycle
+/// Time  `triangles_per_clk` triangles a cycle; a boundary takes the place of one
 #pragma once
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
+#include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 
@@ -14,12 +15,18 @@ namespace quadrille::hw {
 
 class PrimitiveAssembly final : public Unit {
  public:
+  struct Params : ParamGroup {
+    Param<int> triangles_per_clk{
+        *this,   "triangles_per_clk",
+        1,       "triangle/clk",
+        {1, 64}, "Triangles handed on a cycle; more than link.assembly_to_clipper.width has no effect. [G: one geometry engine]"};
+  };
   struct Stats : StatGroup {
     Counter batches{*this, "batches", "batch", "Shaded batches taken apart"};
     Counter vertices{*this, "vertices", "vertex", "Shaded vertices in those batches"};
     Counter triangles{*this, "triangles", "triangle", "Triangles handed to the clipper"};
   };
-  PrimitiveAssembly(sc_core::sc_module_name name, const Clock& clock, const Store<BatchSlot>& batches, int cores);
+  PrimitiveAssembly(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Store<BatchSlot>& batches, int cores);
 
   FifoIn<BatchToken> batch_in{*this, "batch_in"};
   FifoInGroup<VertexDoneToken> done_in;
@@ -34,10 +41,12 @@ class PrimitiveAssembly final : public Unit {
   [[nodiscard]] Wake emit_wake() const;
   void emit(Tick now);
 
+  const Params& params_;
   const Store<BatchSlot>& batches_;
   Stats stats_;
   std::vector<bool> shaded_;       ///< by batch slot
   std::size_t next_triangle_ = 0;  ///< of the batch at the head
+  WorkRate rate_;
   Tick free_ = 0;
 };
 

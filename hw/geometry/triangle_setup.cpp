@@ -14,7 +14,8 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const Params&
       batches_(batches),
       pieces_(pieces),
       triangles_(triangles),
-      retired_by_(static_cast<std::size_t>(partitions)) {
+      retired_by_(static_cast<std::size_t>(partitions)),
+      rate_(clock) {
   add_initiation_rate("rate");
   add_places("triangle_slots", [this] { return sequence_ - retired_ >= triangles_.size(); });
   for (int i = 0; i < partitions; ++i) { sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply); }
@@ -49,30 +50,30 @@ void TriangleSetupUnit::take_syncs(Tick now) {
 
 void TriangleSetupUnit::work(Tick now) {
   const ClippedToken token = clipped_in.pop(now);
-  int cycles = 1;
+  std::int64_t cost = WorkRate::cost(params_.culled_per_clk);
   if (token.kind == TokenKind::kWork) {
-    set_up(now, token);
-    cycles = params_.setup_clk;
+    if (set_up(now, token)) cost = WorkRate::cost(params_.drawn_per_clk);
   } else if (token.kind == TokenKind::kBatchEnd) {
     release_out.push(now, {token.slot, 0});
   } else {
     triangle_out.push(now, {token.kind, token.index, sequence_});
   }
-  free_ = after(now, cycles);
-  occupy(now, cycles);
+  if (token.kind != TokenKind::kWork) cost = std::min(cost, WorkRate::kCycle);
+  free_ = rate_.charge(now, cost);
+  occupy(now, rate_.cycles());
 }
 
-void TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
+bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   const DrawState& draw = frame_.draw(token.index);
   const ClippedPiece& piece = pieces_[token.piece];
   TriangleSlot& slot = triangles_[sequence_];
   ++stats_.triangles;
   switch (models::setup_triangle(piece.vertices, piece.weights, draw.setup, slot.setup)) {
     case models::SetupOutcome::kKept: break;
-    case models::SetupOutcome::kCulledFace: ++stats_.culled; return;
-    case models::SetupOutcome::kZeroArea: ++stats_.zero_area; return;
-    case models::SetupOutcome::kOffscreen: ++stats_.offscreen; return;
-    case models::SetupOutcome::kNoSample: ++stats_.no_sample; return;
+    case models::SetupOutcome::kCulledFace: ++stats_.culled; return false;
+    case models::SetupOutcome::kZeroArea: ++stats_.zero_area; return false;
+    case models::SetupOutcome::kOffscreen: ++stats_.offscreen; return false;
+    case models::SetupOutcome::kNoSample: ++stats_.no_sample; return false;
   }
   ++stats_.kept;
   slot.draw = token.index;
@@ -81,6 +82,7 @@ void TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   for (std::size_t i = 0; i < 3; ++i) corners[i] = {&batches_[token.corner[i].slot].outputs, token.corner[i].lane};
   gather_varyings(corners, draw.varyings(), slot.varyings);
   triangle_out.push(now, {TokenKind::kWork, token.index, sequence_++});
+  return true;
 }
 
 void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components, std::vector<float>& out) {

@@ -2,11 +2,13 @@
 ///
 /// In    clipped_in     triangles with window positions; boundaries      sync_in[p]  triangles before a sequence number are retired in partition p
 /// Out   triangle_out   kept triangles and boundaries                    release_out  a vertex batch may be reused
-/// Time  `setup_clk` cycles a triangle, culled or kept; waits while the triangle store is full
+/// Time  `drawn_per_clk` triangles a cycle that are kept, `culled_per_clk` that are not; a boundary takes the place of a culled one, a cycle at most; waits while the triangle
+///       store is full
 #pragma once
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
+#include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 
@@ -15,7 +17,20 @@ namespace quadrille::hw {
 class TriangleSetupUnit final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> setup_clk{*this, "setup_clk", 1, "clk/triangle", {1, 1024}, "Cycles a triangle. [G: one triangle a cycle]"};
+    Param<double> drawn_per_clk{*this,
+                                "drawn_per_clk",
+                                1,
+                                "triangle/clk",
+                                {0.001, 64},
+                                "Triangles set up a cycle that are kept: 0.5 is two cycles each. More than 1 needs width on the links from "
+                                "link.assembly_to_clipper to link.coarse_to_fine. [G: one triangle a cycle]"};
+    Param<double> culled_per_clk{*this,
+                                 "culled_per_clk",
+                                 1,
+                                 "triangle/clk",
+                                 {0.001, 64},
+                                 "Triangles a cycle that are culled. More than 1 needs width on link.assembly_to_clipper and "
+                                 "link.clipper_to_setup. [G: one triangle a cycle]"};
     Param<int> triangle_slots{*this,      "triangle_slots", 1024,
                               "triangle", {1, 1 << 20},     "Triangles between set-up and their last retired fragment. [G]"};
   };
@@ -43,7 +58,8 @@ class TriangleSetupUnit final : public Unit {
  private:
   [[nodiscard]] Wake work_wake() const;
   void work(Tick now);
-  void set_up(Tick now, const ClippedToken& token);
+  /// Is it kept?
+  bool set_up(Tick now, const ClippedToken& token);
   void take_syncs(Tick now);
 
   const Params& params_;
@@ -55,6 +71,7 @@ class TriangleSetupUnit final : public Unit {
   std::uint64_t sequence_ = 0;             ///< of the next kept triangle
   std::uint64_t retired_ = 0;              ///< triangles before this are retired everywhere
   std::vector<std::uint64_t> retired_by_;  ///< by partition
+  WorkRate rate_;
   Tick free_ = 0;
 };
 

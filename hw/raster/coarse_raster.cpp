@@ -16,7 +16,8 @@ CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const Params& params, c
       params_(params),
       frame_(frame),
       triangles_(triangles),
-      sync_interval_(std::max<std::uint64_t>(1, triangles.size() / 8)) {
+      sync_interval_(std::max<std::uint64_t>(1, triangles.size() / static_cast<std::uint64_t>(params.reports.value()))),
+      rate_(clock) {
   add_initiation_rate("tests_per_clk");
   for (int i = 0; i < partitions; ++i) { hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply); }
 }
@@ -52,11 +53,14 @@ void CoarseRaster::work(Tick now) {
     tile_out.push(now, {TokenKind::kSync, false, 0, 0, draw_, triangle_ + 1});
     sync_due_ = false;
     since_sync_ = 0;
-    free_ = after(now, 1);
-    occupy(now, 1);
-    return;
+    return spend(now, WorkRate::kCycle);
   }
   take_token(now);
+}
+
+void CoarseRaster::spend(Tick now, std::int64_t cost) {
+  free_ = rate_.charge(now, cost);
+  occupy(now, rate_.cycles());
 }
 
 void CoarseRaster::take_token(Tick now) {
@@ -75,8 +79,7 @@ void CoarseRaster::take_token(Tick now) {
   }
   if (token.kind == TokenKind::kPassBegin) begin_pass(token.index);
   tile_out.push(now, {token.kind, false, 0, 0, token.index, token.triangle});
-  free_ = after(now, 1);
-  occupy(now, 1);
+  spend(now, WorkRate::kCycle);
 }
 
 void CoarseRaster::begin_pass(std::uint32_t pass) {
@@ -123,10 +126,7 @@ void CoarseRaster::walk(Tick now) {
   const std::uint64_t tests = walk_.tests() - charged_tests_;
   charged_tests_ = walk_.tests();
   stats_.tiles_tested += tests;
-  const auto rate = static_cast<std::uint64_t>(params_.tests_per_clk.value());
-  const auto cycles = static_cast<std::int64_t>(std::max<std::uint64_t>(1, (tests + rate - 1) / rate));
-  free_ = after(now, cycles);
-  occupy(now, cycles);
+  spend(now, std::max(WorkRate::cost(params_.tiles_per_clk), WorkRate::cost_of(static_cast<std::int64_t>(tests), params_.tests_per_clk)));
   if (found) {
     ++stats_.tiles_kept;
     tile_out.push(now, {TokenKind::kWork, found->fully_covered, static_cast<std::uint16_t>(found->tile_x),

@@ -9,6 +9,7 @@
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
+#include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 #include "models/raster/coarse.h"
@@ -21,6 +22,22 @@ class CoarseRaster final : public Unit {
  public:
   struct Params : ParamGroup {
     Param<int> tests_per_clk{*this, "tests_per_clk", 4, "tile/clk", {1, 64}, "Tile tests a cycle. [G: feeds 16 px/clk]"};
+    Param<int> tiles_per_clk{
+        *this,
+        "tiles_per_clk",
+        1,
+        "tile/clk",
+        {1, 64},
+        "Tiles handed on, or triangles without any, a cycle; more than link.coarse_to_fine.width tiles are not. [G: one raster "
+        "engine]"};
+    Param<int> reports{
+        *this,
+        "reports",
+        8,
+        "report",
+        {1, 1 << 20},
+        "Reports behind which a triangle's slot may be used again, a turn of the triangle store; each takes a cycle. [G: an eighth of "
+        "the store waits]"};
     Param<bool> hiz{*this, "hiz", true, "", "Drop tiles that Hi-Z proves hidden."};
   };
   struct Stats : StatGroup {
@@ -46,6 +63,7 @@ class CoarseRaster final : public Unit {
   [[nodiscard]] Wake work_wake() const;
   void work(Tick now);
   void take_token(Tick now);
+  void spend(Tick now, std::int64_t cost);
   void take_updates(Tick now);
   /// Finds the next tile of the walk, so that the last one is known as such when it leaves.
   void look_ahead();
@@ -70,6 +88,7 @@ class CoarseRaster final : public Unit {
   std::uint64_t since_sync_ = 0;
   bool sync_due_ = false;
   std::vector<float> hiz_;  ///< by tile of the pass; empty when no draw of it tests depth
+  WorkRate rate_;
   Tick free_ = 0;
 };
 

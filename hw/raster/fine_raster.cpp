@@ -9,7 +9,7 @@ namespace quadrille::hw {
 
 FineRaster::FineRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const TriangleStore& triangles,
                        int partitions)
-    : Unit(name, Kind::kFixedOrder, clock), params_(params), triangles_(triangles) {
+    : Unit(name, Kind::kFixedOrder, clock), params_(params), triangles_(triangles), rate_(clock) {
   add_initiation_rate("quads_per_clk");
   for (int i = 0; i < partitions; ++i) {
     coverage_out.push_back(std::make_unique<FifoOut<CoverageToken>>(*this, fmt::format("coverage_out_{}", i).c_str()));
@@ -31,8 +31,8 @@ void FineRaster::act(Tick now) {
   const TileToken tile = tile_in.pop(now);
   if (tile.kind == TokenKind::kWork) return rasterize(now, tile);
   for (auto& out : coverage_out) out->push(now, {tile.kind, false, 0, 0, tile.index, tile.triangle, 0});
-  free_ = after(now, 1);
-  occupy(now, 1);
+  free_ = rate_.charge(now, WorkRate::kCycle);
+  occupy(now, rate_.cycles());
 }
 
 void FineRaster::rasterize(Tick now, const TileToken& tile) {
@@ -44,9 +44,8 @@ void FineRaster::rasterize(Tick now, const TileToken& tile) {
   if (~coverage == 0) ++stats_.tiles_full;
   stats_.quads += static_cast<std::uint64_t>(quads);
   stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));
-  const int cycles = std::max(1, (quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
-  free_ = after(now, cycles);
-  occupy(now, cycles);
+  free_ = rate_.charge(now, std::max(WorkRate::cost(params_.tiles_per_clk), WorkRate::cost_of(quads, params_.quads_per_clk)));
+  occupy(now, rate_.cycles());
   if (coverage == 0) return;
   const std::uint32_t p = models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
   coverage_out[p]->push(now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});

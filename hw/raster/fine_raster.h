@@ -7,6 +7,7 @@
 
 #include "hw/base/param.h"
 #include "hw/base/unit.h"
+#include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 
@@ -16,6 +17,14 @@ class FineRaster final : public Unit {
  public:
   struct Params : ParamGroup {
     Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Covered quads a cycle. [G: 16 px/clk]"};
+    Param<int> tiles_per_clk{
+        *this,
+        "tiles_per_clk",
+        1,
+        "tile/clk",
+        {1, 64},
+        "Tiles a cycle whose quads would leave room for more; the links to the depth units take link.fine_to_depth.width each. [G: one "
+        "raster engine]"};
   };
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in"};
@@ -39,6 +48,7 @@ class FineRaster final : public Unit {
   const Params& params_;
   const TriangleStore& triangles_;
   Stats stats_;
+  WorkRate rate_;
   Tick free_ = 0;
 };
 

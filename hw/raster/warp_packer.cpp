@@ -123,8 +123,8 @@ void WarpPacker::launch(Tick now) {
   warp_out.push(now, {warp.draw, static_cast<std::uint32_t>(slot), partition_});
   order_out.push(now, {TokenKind::kWork, warp.draw, static_cast<std::uint32_t>(slot), sync_});
   open_ = false;
-  free_ = after(now, 1);
-  occupy(now, 1);
+  free_ = params_.launch_clk == 0 ? now : after(now, params_.launch_clk);
+  occupy(now, params_.launch_clk);
 }
 
 }  // namespace quadrille::hw

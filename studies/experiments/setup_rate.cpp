@@ -44,7 +44,7 @@ struct Rate {
   std::vector<std::string> settings;
 };
 const std::vector<Rate>& rates() {
-  static const std::vector<Rate> all{{"1", 1, {"triangle_setup.setup_clk=1"}}, {"1/2", 2, {"triangle_setup.setup_clk=2"}}};
+  static const std::vector<Rate> all{{"1", 1, {}}, {"1/2", 2, {"triangle_setup.drawn_per_clk=0.5", "triangle_setup.culled_per_clk=0.5"}}};
   return all;
 }
 

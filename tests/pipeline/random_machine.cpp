@@ -38,6 +38,14 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.core.simds.set(random.pick({1, 2, 4}));
   config.vertex_fetch.batch_slots.set(random.pick({2, 3, 16}));
   config.vertex_fetch.reuse.set(static_cast<models::ReusePolicy>(random.integer(0, 2)));
+  config.primitive_assembly.triangles_per_clk.set(random.pick({1, 2, 64}));
+  config.clipper.triangles_per_clk.set(random.pick({1, 3, 64}));
+  config.triangle_setup.drawn_per_clk.set(random.pick({1, 2, 4}) / 2.0);
+  config.triangle_setup.culled_per_clk.set(random.pick({1, 2, 5}) / 3.0);
+  config.coarse_raster.tiles_per_clk.set(random.pick({1, 2, 64}));
+  config.coarse_raster.reports.set(random.pick({1, 8, 1000}));
+  config.fine_raster.tiles_per_clk.set(random.pick({1, 2, 64}));
+  config.warp_packer.launch_clk.set(random.pick({0, 1, 7}));
   config.vertex_fetch.batch_vertices.set(random.pick({3, 4, 31, 32}));
   config.vertex_fetch.batch_triangles.set(random.pick({1, 2, 32, 128}));
   config.vertex_fetch.reuse_entries.set(random.pick({3, 4, 16, 128}));

@@ -19,7 +19,7 @@ enum Shape : std::uint8_t { kInside, kOneOut, kTwoOut, kBeside, kNan };
 struct ClipBench final : Bench {
   struct Setup {
     std::vector<Timed<PrimitiveToken>> primitives;
-    int clip_clk = 12;
+    int clip_clk = 12, triangles_per_clk = 1;
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
@@ -37,6 +37,7 @@ struct ClipBench final : Bench {
     triangle(kBeside, {0.5f, 0.5f, 0.5f}, 5);
     triangle(kNan, {0.5f, nan, 0.5f}, 0);
     params.clip_clk.set(s.clip_clk);
+    params.triangles_per_clk.set(s.triangles_per_clk);
     unit = std::make_unique<Clipper>("unit", params, clock, frame, batches, pieces);
     add(*unit);
     feed(unit->primitive_in, s.primitives);
@@ -89,6 +90,22 @@ TEST_CASE("clipper: a cut triangle takes clip_clk cycles and then one a piece") 
     s = shapes({kTwoOut, kInside});
     s.clip_clk = clk;
     CHECK(cycles(s) == fmt::format("{}:2 {}:0", 2 + clk, 3 + clk));
+  }
+}
+
+TEST_CASE("clipper: n triangles take n over triangles_per_clk, whether they pass or not; a cut one clip_clk and its pieces") {
+  constexpr int kCount = 600;
+  for (const int rate : {1, 2, 4}) {
+    for (const Shape shape : {kInside, kBeside, kNan, kOneOut}) {
+      auto s = shapes(std::vector<Shape>(kCount, shape));
+      s.triangles_per_clk = rate;
+      s.pace = {.from = 0, .period = 0};
+      s.out = {.depth = 64, .width = 8};
+      s.primitives.push_back({0, {TokenKind::kDrawEnd, 0, 0, 0, {}}});
+      const auto last = std::stod(run<ClipBench>(s, [](const ClipBench& b) { return fmt::format("{}", b.sink->got.back().cycle); }));
+      const double each = shape == kOneOut ? 12 + 2.0 / rate : 1.0 / rate;
+      CHECK(last == Approx(kCount * each).epsilon(0.02));
+    }
   }
 }
 

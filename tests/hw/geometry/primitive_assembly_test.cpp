@@ -15,16 +15,21 @@ struct AssemblyBench final : Bench {
     std::vector<Timed<VertexDoneToken>> done_0{}, done_1{};
     Pace pace{};
     LinkSpec out{.depth = 64};
+    int triangles_per_clk = 1;
+    std::uint32_t triangles = 0;  ///< of batch 0, instead of two
   };
   /// Batch 0 has triangles 0 and 1, batch 1 has triangle 10, batch 2 none; batch 3 shades nothing, its triangle 20 names vertices of batch 0.
   AssemblyBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), store(4) {
     store[0].triangles = {{{{0, 0}, {0, 1}, {0, 2}}, 0}, {{{0, 2}, {0, 1}, {0, 3}}, 1}};
+    if (s.triangles > 0) store[0].triangles.clear();
+    for (std::uint32_t i = 0; i < s.triangles; ++i) store[0].triangles.push_back({{{0, 0}, {0, 1}, {0, 2}}, i});
+    params.triangles_per_clk.set(s.triangles_per_clk);
     store[1].triangles = {{{{1, 0}, {1, 1}, {1, 2}}, 10}};
     store[0].lanes = 4;
     store[1].lanes = 3;
     store[2].lanes = 1;
     store[3].triangles = {{{{0, 0}, {0, 2}, {0, 3}}, 20}};
-    unit = std::make_unique<PrimitiveAssembly>("unit", clock, store, 2);
+    unit = std::make_unique<PrimitiveAssembly>("unit", params, clock, store, 2);
     add(*unit);
     feed(unit->batch_in, s.batches);
     feed(unit->done_in[0], s.done_0);
@@ -34,6 +39,7 @@ struct AssemblyBench final : Bench {
         [](const PrimitiveToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); }, s.pace,
         s.out);
   }
+  PrimitiveAssembly::Params params;
   Store<BatchSlot> store;
   std::unique_ptr<PrimitiveAssembly> unit;
   StubSink<PrimitiveToken>* sink = nullptr;
@@ -49,6 +55,22 @@ std::string primitives(const AssemblyBench::Setup& s) {
 TEST_CASE("primitive_assembly: a batch's triangles leave from the cycle its shading is reported, one a cycle, then its end") {
   CHECK(primitives({.batches = {{0, batch(0)}}, .done_0 = {{30, {0}}}}) == "32:0 33:1 34:901");
   CHECK(primitives({.batches = {{50, batch(0)}}, .done_0 = {{30, {0}}}}) == "52:0 53:1 54:901");
+}
+
+TEST_CASE("primitive_assembly: n triangles take n over triangles_per_clk, and no less than the link's width allows") {
+  for (const int rate : {1, 2, 4}) {
+    for (const int width : {1, 8}) {
+      const AssemblyBench::Setup s{.batches = {{0, batch(0)}},
+                                   .done_0 = {{0, {0}}},
+                                   .pace = {.period = 0},
+                                   .out = {.depth = 64, .width = width},
+                                   .triangles_per_clk = rate,
+                                   .triangles = 1000};
+      const auto last =
+          std::stod(run<AssemblyBench>(s, [](const AssemblyBench& b) { return fmt::format("{}", b.sink->got.back().cycle); }));
+      CHECK(last == Approx(1000.0 / std::min(rate, width)).epsilon(0.02));
+    }
+  }
 }
 
 TEST_CASE("primitive_assembly: batches keep their order when the later one is shaded first") {

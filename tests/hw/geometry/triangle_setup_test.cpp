@@ -16,7 +16,7 @@ struct SetupBench final : Bench {
   struct Setup {
     std::vector<Timed<ClippedToken>> pieces;
     std::vector<Timed<ReleaseToken>> sync_0{}, sync_1{};
-    int setup_clk = 1;
+    double drawn_per_clk = 1, culled_per_clk = 1;
     std::size_t slots = 16;
     Pace pace{};
     LinkSpec out{.depth = 64};
@@ -37,7 +37,8 @@ struct SetupBench final : Bench {
     piece(2, {0, 0}, {512, 512}, {1024, 1024});
     piece(3, {100 * 256, 0}, {100 * 256, 2560}, {110 * 256, 0});
     piece(4, {0, 0}, {0, 64}, {64, 0});
-    params.setup_clk.set(s.setup_clk);
+    params.drawn_per_clk.set(s.drawn_per_clk);
+    params.culled_per_clk.set(s.culled_per_clk);
     unit = std::make_unique<TriangleSetupUnit>("unit", params, clock, frame, batches, pieces, triangles, 2);
     add(*unit);
     feed(unit->clipped_in, s.pieces);
@@ -71,12 +72,44 @@ std::string kept(const SetupBench& b) { return b.kept->text(); }
 
 }  // namespace
 
-TEST_CASE("triangle_setup: a triangle takes setup_clk cycles, kept or not, a boundary one") {
+TEST_CASE("triangle_setup: a rate below one is several cycles a triangle; a boundary is a cycle at most") {
   for (const int clk : {1, 5}) {
     const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, piece(2)}, {0, piece(0)}, {0, boundary(TokenKind::kDrawEnd)}, {0, piece(0)}},
-                              .setup_clk = clk};
+                              .drawn_per_clk = 1.0 / clk,
+                              .culled_per_clk = 1.0 / clk};
     CHECK(run<SetupBench>(s, kept) == fmt::format("2:0 {}:1 {}:902 {}:2", 2 + 2 * clk, 2 + 3 * clk, 3 + 3 * clk));
   }
+}
+
+/// Cycle in which the last of `count` pieces of a kind, and the boundary behind them, has left.
+double last_of(std::uint32_t kind, int count, double drawn, double culled) {
+  SetupBench::Setup s{.pieces = {},
+                      .drawn_per_clk = drawn,
+                      .culled_per_clk = culled,
+                      .slots = 1024,
+                      .pace = {.period = 0},
+                      .out = {.depth = 64, .width = 8}};
+  for (int i = 0; i < count; ++i) s.pieces.push_back({0, piece(kind)});
+  s.pieces.push_back({0, boundary(TokenKind::kDrawEnd)});
+  return std::stod(run<SetupBench>(s, [](const SetupBench& b) { return fmt::format("{}", b.kept->got.back().cycle); }));
+}
+
+TEST_CASE("triangle_setup: n triangles take n over their rate, those that are drawn and those that are culled") {
+  constexpr int kCount = 600;
+  for (const double rate : {0.5, 1.0, 2.0, 3.0, 4.0}) {
+    const double other = rate == 1.0 ? 0.25 : 1.0;  // the rate of the kind that does not come
+    CHECK(last_of(0, kCount, rate, other) == Approx(kCount / rate).epsilon(0.02));
+    for (const std::uint32_t kind : {1u, 2u, 3u, 4u}) CHECK(last_of(kind, kCount, other, rate) == Approx(kCount / rate).epsilon(0.02));
+  }
+}
+
+TEST_CASE("triangle_setup: culled triangles go at their rate between drawn ones") {
+  // Half of 400 are drawn at two cycles each, half culled at one, as GPUs did up to 2008.
+  SetupBench::Setup s{.pieces = {}, .drawn_per_clk = 0.5, .slots = 1024};
+  for (std::uint32_t i = 0; i < 400; ++i) s.pieces.push_back({0, piece(i % 2)});
+  s.pieces.push_back({0, boundary(TokenKind::kDrawEnd)});
+  const double last = std::stod(run<SetupBench>(s, [](const SetupBench& b) { return fmt::format("{}", b.kept->got.back().cycle); }));
+  CHECK(last == Approx(200 * 2 + 200).epsilon(0.02));
 }
 
 TEST_CASE("triangle_setup: every triangle is counted once by what became of it") {
@@ -116,7 +149,8 @@ TEST_CASE("triangle_setup: keeps the contract, one-deep links included") {
                                        {0, boundary(TokenKind::kPassEnd)}},
                             .sync_0 = {{30, {0, 1}}, {90, {0, 2}}},
                             .sync_1 = {{50, {0, 2}}},
-                            .setup_clk = 3,
+                            .drawn_per_clk = 1.0 / 3,
+                            .culled_per_clk = 2,
                             .slots = 2,
                             .pace = {.from = 0, .period = 5}};
   CHECK(contract_text<SetupBench>(s) == "");

@@ -17,7 +17,7 @@ struct CoarseBench final : Bench {
   struct Setup {
     std::vector<Timed<TriangleToken>> triangles;
     std::vector<Timed<HiZToken>> hiz{};
-    int rate = 4;
+    int rate = 4, tiles_per_clk = 1, reports = 8;
     Pace pace{};
     LinkSpec out{.depth = 64};
     bool use_hiz = true;
@@ -32,6 +32,8 @@ struct CoarseBench final : Bench {
     store[3] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}}, 0.75f);
     store[4] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}}, 0.75f, 1);
     params.tests_per_clk.set(s.rate);
+    params.tiles_per_clk.set(s.tiles_per_clk);
+    params.reports.set(s.reports);
     params.hiz.set(s.use_hiz);
     unit = std::make_unique<CoarseRaster>("unit", params, clock, frame, store, 1);
     add(*unit);
@@ -83,6 +85,23 @@ TEST_CASE("coarse_raster: one tile a cycle, from one triangle to the next") {
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(1)}, {0, triangle(1)}}};
   // Boundary at 1; tiles of the first triangle at 2 and 3, the only ones of the others at 4 and 5; all are seen a cycle later.
   CHECK(tiles(s) == "2:903 3:0 4:1 5:10 6:10");
+}
+
+TEST_CASE("coarse_raster: n triangles of one tile take n over tiles_per_clk, and no less than their tests take") {
+  for (const auto& [rate, tiles] : {std::pair{4, 1}, {4, 2}, {4, 4}, {2, 4}, {64, 8}}) {
+    CoarseBench::Setup s{.triangles = {{0, kBegin}},
+                         .rate = rate,
+                         .tiles_per_clk = tiles,
+                         .reports = 1,
+                         .pace = {.from = 0, .period = 0},
+                         .out = {.depth = 64, .width = 8},
+                         .store_slots = 4096};
+    for (int i = 0; i < 4000; ++i) s.triangles.push_back({0, triangle(1)});
+    const auto text =
+        run<CoarseBench>(s, [](const CoarseBench& b) { return fmt::format("{} {}", b.sink->got.back().cycle, counter(b, 1)); });
+    const double last = std::stod(text), tests = std::stod(text.substr(text.find(' ')));
+    CHECK(last == Approx(std::max(4000.0 / tiles, tests / rate)).epsilon(0.02));
+  }
 }
 
 TEST_CASE("coarse_raster: tests beyond a cycle's rate delay what follows, by tests divided by the rate, rounded up") {

@@ -17,7 +17,7 @@ TileToken tile(int x, int y, bool full = false, std::uint64_t triangle = 0) {
 struct FineBench final : Bench {
   struct Setup {
     std::vector<Timed<TileToken>> tiles;
-    int rate = 4;
+    int rate = 4, tiles_per_clk = 1;
     int partitions = 1;
     Pace pace{};
     LinkSpec out{.depth = 64};
@@ -27,6 +27,7 @@ struct FineBench final : Bench {
     store[0] = flat_triangle({glm::ivec2{0, 0}, {0, 32}, {32, 0}});
     store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 8}, {1, 0}});
     params.quads_per_clk.set(s.rate);
+    params.tiles_per_clk.set(s.tiles_per_clk);
     unit = std::make_unique<FineRaster>("unit", params, clock, store, s.partitions);
     add(*unit);
     feed(unit->tile_in, s.tiles);
@@ -59,6 +60,18 @@ TEST_CASE("fine_raster: a tile keeps it for its covered quads divided by the rat
     const auto text = run<FineBench>(tiles_of({tile(0, 0, true), tile(1, 0, true), tile(2, 0, true)}, rate),
                                      [](const FineBench& b) { return b.sinks[0]->text(); });
     CHECK(text == fmt::format("2:0 {}:1 {}:2", 2 + cycles, 2 + 2 * cycles));
+  }
+}
+
+TEST_CASE("fine_raster: n tiles of few quads take n over tiles_per_clk, and no less than their quads take") {
+  // Triangle 1 covers the four pixels of the column whose centres lie under its hypotenuse: two quads.
+  for (const auto& [rate, tiles, each] : {std::tuple{16, 1, 1.0}, {16, 2, 0.5}, {16, 4, 0.25}, {16, 8, 0.125}, {8, 4, 0.25}, {2, 4, 1.0}}) {
+    auto s = tiles_of(std::vector<TileToken>(400, tile(0, 0, false, 1)), rate);
+    s.tiles_per_clk = tiles;
+    s.pace = {.from = 0, .period = 0};
+    s.out = {.depth = 64, .width = 8};
+    const auto last = std::stod(run<FineBench>(s, [](const FineBench& b) { return fmt::format("{}", b.sinks[0]->got.back().cycle); }));
+    CHECK(last == Approx(400 * each).epsilon(0.02));
   }
 }
 

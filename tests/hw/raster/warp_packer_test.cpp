@@ -13,13 +13,14 @@ struct PackerBench final : Bench {
   struct Setup {
     std::vector<Timed<CoverageToken>> coverage;
     std::vector<Timed<ReleaseToken>> releases{};
-    int rate = 4, slots = 16, patience = 64;
+    int rate = 4, slots = 16, patience = 64, launch = 1;
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
   PackerBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), warps(static_cast<std::size_t>(s.slots)) {
     params.quads_per_clk.set(s.rate);
     params.patience_clk.set(s.patience);
+    params.launch_clk.set(s.launch);
     unit = std::make_unique<WarpPacker>("unit", params, clock, warps, 3);
     add(*unit);
     feed(unit->coverage_in, s.coverage);
@@ -55,6 +56,11 @@ TEST_CASE("warp_packer: a full tile makes two warps of eight quads, at the rate 
   CHECK(warps({.coverage = {{0, tile(16)}}}) == "4:0 7:1");
   CHECK(warps({.coverage = {{0, tile(16)}}, .rate = 1}) == "10:0 19:1");
   CHECK(warps({.coverage = {{0, tile(16)}}, .rate = 16}) == "3:0 5:1");
+}
+
+TEST_CASE("warp_packer: launch_clk is the time between a full warp and the next one's quads") {
+  CHECK(warps({.coverage = {{0, tile(16)}}, .launch = 3}) == "4:0 9:1");
+  CHECK(warps({.coverage = {{0, tile(16)}}, .launch = 0}) == "4:0 6:1");
 }
 
 TEST_CASE("warp_packer: quads of several triangles and tiles of a draw share a warp") {
