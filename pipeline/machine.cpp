@@ -125,8 +125,9 @@ void Machine::create_units(const MachineOptions& options) {
   });
   make(fine_,
        [&, partitions] { return std::make_unique<hw::FineRaster>("fine_raster", config_.fine_raster, clock_, *triangles_, partitions); });
-  make(distributor_,
-       [&, partitions, cores] { return std::make_unique<hw::WorkDistributor>("work_distributor", clock_, partitions, cores); });
+  make(distributor_, [&, partitions, cores] {
+    return std::make_unique<hw::WorkDistributor>("work_distributor", config_.work_distributor, clock_, partitions, cores);
+  });
   make(scan_out_, [&, channels] { return std::make_unique<hw::ScanOut>("scan_out", config_.scan_out, clock_, frame, memory, channels); });
   for (int p = 0; p < partitions; ++p) {
     Partition& part = partitions_[static_cast<std::size_t>(p)];
@@ -202,6 +203,8 @@ void Machine::wire_geometry() {
   connect<hw::BatchToken>(vertex_fetch_->batch_out, assembly_->batch_in, l.fetch_to_assembly, "fetch_to_assembly");
   connect<hw::PrimitiveToken>(assembly_->primitive_out, clipper_->primitive_in, l.assembly_to_clipper, "assembly_to_clipper");
   connect<hw::ClippedToken>(clipper_->clipped_out, setup_->clipped_in, l.clipper_to_setup, "clipper_to_setup");
+  connect<hw::ReleaseToken>(assembly_->load_out, distributor_->load_in[partitions_.size()], l.assembly_to_distributor,
+                            "assembly_to_distributor");
   connect<hw::ReleaseToken>(setup_->release_out, vertex_fetch_->release_in, l.setup_to_fetch, "setup_to_fetch");
   connect<hw::TriangleToken>(setup_->triangle_out, coarse_->triangle_in, l.setup_to_coarse, "setup_to_coarse");
   connect<hw::TileToken>(coarse_->tile_out, fine_->tile_in, l.coarse_to_fine, "coarse_to_fine");
@@ -219,6 +222,7 @@ void Machine::wire_partition(std::size_t p) {
   connect<hw::WarpToken>(part.packer->warp_out, distributor_->fragment_in[p], l.packer_to_distributor, name("packer_to_distributor"));
   connect<hw::OrderToken>(part.packer->order_out, part.rop->order_in, l.packer_to_rop, name("packer_to_rop"));
   connect<hw::ReleaseToken>(part.rop->release_out, part.packer->release_in, l.rop_to_packer, name("rop_to_packer"));
+  connect<hw::ReleaseToken>(part.rop->load_out, distributor_->load_in[p], l.rop_to_distributor, name("rop_to_distributor"));
   connect<hw::LateToken>(part.rop->late_out, part.depth->late_in, l.rop_to_depth, name("rop_to_depth"));
   connect<hw::LateToken>(part.depth->late_out, part.rop->late_in, l.depth_to_rop, name("depth_to_rop"));
   connect<hw::ReleaseToken>(part.rop->sync_out, setup_->sync_in[p], l.rop_to_setup, name("rop_to_setup"));

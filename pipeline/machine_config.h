@@ -68,6 +68,7 @@ struct Links {
   LinkParams fetch_to_assembly{64, 1, 1};
   LinkParams setup_to_fetch{4, 1, 1};
   LinkParams core_to_assembly{8, 1, 1};
+  LinkParams assembly_to_distributor{8, 4, 1};
   LinkParams assembly_to_clipper{8, 1, 1};
   LinkParams clipper_to_setup{8, 1, 4};
   LinkParams setup_to_coarse{16, 1, 4};
@@ -77,6 +78,7 @@ struct Links {
   LinkParams depth_to_packer{16, 1, 2};
   LinkParams packer_to_distributor{8, 1, 1};
   LinkParams packer_to_rop{64, 1, 1};
+  LinkParams rop_to_distributor{8, 4, 1};
   LinkParams rop_to_packer{8, 1, 1};
   LinkParams distributor_to_core{4, 1, 2};
   LinkParams core_to_rop{8, 1, 2};
@@ -109,6 +111,7 @@ class MachineConfig {
   hw::CoarseRaster::Params coarse_raster;
   hw::FineRaster::Params fine_raster;
   hw::WarpPacker::Params warp_packer;
+  hw::WorkDistributor::Params work_distributor;
   hw::ShaderCore::Params core;
   hw::TextureUnit::Params texture;
   hw::DepthUnit::Params depth;

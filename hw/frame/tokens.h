@@ -30,8 +30,9 @@ struct BatchToken {
 /// Vertex fetch or warp packer -> core: run this warp.
 struct WarpToken {
   std::uint32_t draw = 0;
-  std::uint32_t slot = 0;       ///< batch store or warp store
-  std::uint16_t partition = 0;  ///< fragment warps
+  std::uint32_t slot = 0;                ///< batch store or warp store
+  std::uint16_t partition = 0;           ///< fragment warps
+  std::uint16_t tile_x = 0, tile_y = 0;  ///< of their first quad
 };
 
 /// Core -> primitive assembly: the batch in this slot is shaded.

@@ -23,10 +23,14 @@ Wake PrimitiveAssembly::emit_wake() const {
   return wake.output(primitive_out);
 }
 
-Wake PrimitiveAssembly::next() const { return Wake::sooner(emit_wake(), done_in.earliest()); }
+Wake PrimitiveAssembly::next() const { return Wake::sooner(emit_wake(), done_in.earliest(Wake().output(load_out))); }
 
 void PrimitiveAssembly::act(Tick now) {
-  done_in.take_ready(now, [&](std::size_t, const VertexDoneToken& done) { shaded_[done.slot] = true; });
+  done_in.visit_holding(0, [&](std::size_t core, FifoIn<VertexDoneToken>& in) {
+    for (; in.ready_at(now) && load_out.room_at(now); load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
+      shaded_[in.pop(now).slot] = true;
+    return false;
+  });
   if (emit_wake().at() <= now) emit(now);
 }
 

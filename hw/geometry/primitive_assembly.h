@@ -1,7 +1,8 @@
 /// Primitive assembly: waits for a batch to be shaded and hands its triangles on in draw order.
 ///
 /// In    batch_in       batches and boundaries, in order       done_in[core]  a batch was shaded
-/// Out   primitive_out  triangles as lanes of their batch, then a batch end; draw and pass boundaries
+/// Out   load_out       a core has done a batch (`slot` is the core)
+///       primitive_out  triangles as lanes of their batch, then a batch end; draw and pass boundaries
 /// Time  `triangles_per_clk` triangles a cycle; a boundary takes the place of one
 #pragma once
 
@@ -31,6 +32,7 @@ class PrimitiveAssembly final : public Unit {
   FifoIn<BatchToken> batch_in{*this, "batch_in"};
   FifoInGroup<VertexDoneToken> done_in;
   FifoOut<PrimitiveToken> primitive_out{*this, "primitive_out"};
+  FifoOut<ReleaseToken> load_out{*this, "load_out", LinkRole::kReply};
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;

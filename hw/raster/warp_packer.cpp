@@ -120,7 +120,8 @@ void WarpPacker::launch(Tick now) {
   warp.alive = warp.covered;
   ++stats_.warps;
   if (warp.quads < models::kWarpQuads) ++stats_.partial_warps;
-  warp_out.push(now, {warp.draw, static_cast<std::uint32_t>(slot), partition_});
+  warp_out.push(now, {warp.draw, static_cast<std::uint32_t>(slot), partition_, static_cast<std::uint16_t>(warp.quad[0].x / 8),
+                      static_cast<std::uint16_t>(warp.quad[0].y / 8)});
   order_out.push(now, {TokenKind::kWork, warp.draw, static_cast<std::uint32_t>(slot), sync_});
   open_ = false;
   free_ = params_.launch_clk == 0 ? now : after(now, params_.launch_clk);

@@ -113,7 +113,7 @@ Wake Rop::next() const {
   wake = Wake::sooner(wake, test_wake());
   wake = Wake::sooner(wake, Wake().input(late_in));
   if (entries_.size() < warps_.size()) wake = Wake::sooner(wake, Wake().input(order_in));
-  wake = Wake::sooner(wake, done_in.earliest());
+  wake = Wake::sooner(wake, done_in.earliest(Wake().output(load_out)));
   wake = Wake::sooner(wake, port_.receive_wake());
   if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
   return wake;
@@ -144,7 +144,11 @@ void Rop::take_inputs(Tick now) {
       entry.ready = std::max(entry.ready, now);
     });
   });
-  done_in.take_ready(now, [&](std::size_t, const FragmentDoneToken& done) { shaded_[done.slot] = true; });
+  done_in.visit_holding(0, [&](std::size_t core, FifoIn<FragmentDoneToken>& in) {
+    for (; in.ready_at(now) && load_out.room_at(now); load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
+      shaded_[in.pop(now).slot] = true;
+    return false;
+  });
   while (late_in.ready_at(now)) take_late(now);
   while (entries_.size() < warps_.size() && order_in.ready_at(now)) entries_.push_back({order_in.pop(now)});
 }

@@ -2,7 +2,7 @@
 ///
 /// In    order_in   what retires next: warps and boundaries      done_in[core]  a warp was shaded     late_in  a warp was tested late; depth is flushed
 /// Out   late_out   test this warp; flush      release_out  a warp slot is free      sync_out  triangles before a sequence number are retired
-///       retire_out draw retired; pass flushed
+///       retire_out draw retired; pass flushed      load_out  a core has done a warp
 /// Mem   colour tiles
 /// Time  `quads_per_clk` quads a cycle (half of that when blending reads the old colour); up to `warps_in_flight` warps wait for their lines
 #pragma once
@@ -40,6 +40,7 @@ class Rop final : public Unit {
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
   FifoInGroup<FragmentDoneToken> done_in;
+  FifoOut<ReleaseToken> load_out{*this, "load_out", LinkRole::kReply};  ///< `slot` is the core that has done a warp
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
   FifoOut<LateToken> late_out{*this, "late_out", LinkRole::kReply};
   FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};

@@ -1,13 +1,18 @@
 #include "hw/shader/work_distributor.h"
 
+#include "models/memory/interleave.h"
+
+#include <fmt/ranges.h>
+
 namespace quadrille::hw {
 
-WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Clock& clock, int partitions, int cores)
-    : Unit(name, Kind::kChooser, clock) {
+WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Params& params, const Clock& clock, int partitions, int cores)
+    : Unit(name, Kind::kChooser, clock), params_(params), loads_(static_cast<std::size_t>(cores), 0) {
   add_initiation_rate("rate");
   for (int p = 0; p < partitions; ++p) {
     fragment_in.add(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream);
   }
+  for (int i = 0; i <= partitions; ++i) load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
   for (int c = 0; c < cores; ++c) {
     vertex_out.push_back(
         std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("vertex_out_{}", c).c_str(), LinkRole::kFlow, kVertexStream));
@@ -15,6 +20,8 @@ WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Clock& cloc
         std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("fragment_out_{}", c).c_str(), LinkRole::kFlow, kFragmentStream));
   }
 }
+
+std::string WorkDistributor::state_text() const { return fmt::format("warps out by core: {}", fmt::join(loads_, ", ")); }
 
 const FifoOut<WarpToken>& WorkDistributor::first_with_room(const Outputs& outputs) {
   const FifoOut<WarpToken>* first = outputs[0].get();
@@ -24,51 +31,72 @@ const FifoOut<WarpToken>& WorkDistributor::first_with_room(const Outputs& output
   return *first;
 }
 
+std::size_t WorkDistributor::core_at(const WarpToken& warp) const {
+  const auto side = static_cast<std::uint32_t>(params_.block_tiles.value());
+  return models::partition_of(warp.tile_x / side, warp.tile_y / side, static_cast<std::uint32_t>(fragment_out.size()));
+}
+
 Wake WorkDistributor::vertex_wake() const {
   const Wake wake = Wake(vertex_free_).input(vertex_in);
   return vertex_in.ready() == kNever ? wake : Wake(wake).output(first_with_room(vertex_out));
 }
 
 Wake WorkDistributor::fragment_wake() const {
-  const Wake wake = fragment_in.earliest(Wake(fragment_free_));
-  return wake.at() == kNever ? wake : Wake(wake).output(first_with_room(fragment_out));
+  Wake first = fragment_in.earliest(Wake(fragment_free_));
+  if (first.at() == kNever) return first;
+  if (params_.policy != WarpPolicy::kTile) return Wake(first).output(first_with_room(fragment_out));
+  bool any = false;
+  fragment_in.visit_holding(0, [&](std::size_t, FifoIn<WarpToken>& in) {
+    const Wake wake = Wake(fragment_free_).input(in).output(*fragment_out[core_at(in.front())]);
+    first = any ? Wake::sooner(first, wake) : wake;
+    any = true;
+    return false;
+  });
+  return first;
 }
 
-Wake WorkDistributor::next() const { return Wake::sooner(vertex_wake(), fragment_wake()); }
+Wake WorkDistributor::next() const { return Wake::sooner(Wake::sooner(vertex_wake(), fragment_wake()), load_in.earliest()); }
 
 void WorkDistributor::act(Tick now) {
+  load_in.take_ready(now, [&](std::size_t, const ReleaseToken& done) { --loads_[done.slot]; });
   if (vertex_wake().at() <= now) {
-    hand_out(now, vertex_in, vertex_out, vertex_turn_);
+    hand_out(now, vertex_in, vertex_out, choose(now, vertex_out, vertex_turn_), vertex_turn_);
     vertex_free_ = after(now, 1);
     ++stats_.vertex_warps;
   }
-  if (fragment_wake().at() <= now) {
-    fragment_in.visit_holding(partition_turn_, [&](std::size_t p, FifoIn<WarpToken>& in) {
-      if (!in.ready_at(now)) return false;
-      hand_out(now, in, fragment_out, fragment_turn_);
-      fragment_free_ = after(now, 1);
-      ++stats_.fragment_warps;
-      partition_turn_ = (p + 1) % fragment_in.size();
-      return true;
-    });
-  }
-  occupy(now, 1);
+  if (fragment_wake().at() <= now) hand_out_fragments(now);
 }
 
-void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t& turn) {
-  // The core with the most free places, the next in turn among equals.
+void WorkDistributor::hand_out_fragments(Tick now) {
+  const bool by_place = params_.policy == WarpPolicy::kTile;
+  fragment_in.visit_holding(partition_turn_, [&](std::size_t p, FifoIn<WarpToken>& in) {
+    if (!in.ready_at(now)) return false;
+    const std::size_t core = by_place ? core_at(in.front()) : choose(now, fragment_out, fragment_turn_);
+    if (!fragment_out[core]->room_at(now)) return false;
+    hand_out(now, in, fragment_out, core, fragment_turn_);
+    fragment_free_ = after(now, 1);
+    ++stats_.fragment_warps;
+    partition_turn_ = (p + 1) % fragment_in.size();
+    return true;
+  });
+}
+
+std::size_t WorkDistributor::choose(Tick now, const Outputs& outputs, std::size_t turn) const {
   std::size_t best = outputs.size();
-  int most = 0;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const std::size_t c = (turn + i) % outputs.size();
-    const int free = outputs[c]->room_at(now) ? outputs[c]->fifo().free_slots(now) : 0;
-    if (free > most) {
-      most = free;
-      best = c;
-    }
+    if (!outputs[c]->room_at(now)) continue;
+    if (params_.policy == WarpPolicy::kRoundRobin) return c;
+    if (best == outputs.size() || loads_[c] < loads_[best]) best = c;
   }
-  outputs[best]->push(now, in.pop(now));
-  turn = (best + 1) % outputs.size();
+  return best;
+}
+
+void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core, std::size_t& turn) {
+  outputs[core]->push(now, in.pop(now));
+  ++loads_[core];
+  turn = (core + 1) % outputs.size();
+  occupy(now, 1);
 }
 
 }  // namespace quadrille::hw

@@ -1,8 +1,11 @@
-/// Work distributor: hands vertex batches and fragment warps to the cores that have room, the least loaded first.
+/// Work distributor: hands vertex batches and fragment warps to the cores.
 ///
 /// In    vertex_in       batches to shade             fragment_in[p]  warps from the packer of partition p
+///       load_in[p]      a warp of a core is done: from the ROP of partition p; the last from primitive assembly
 /// Out   vertex_out[c]   to core c                    fragment_out[c]
 /// Time  one vertex and one fragment warp a cycle; partitions take turns
+/// Who   `policy`: in turn; fragments by where they are on the screen; or to the core with the fewest warps, sent and not reported done, which is what is known
+///       here of its load. A core is skipped while it has no room, but under `tile` its warps wait. Batches have no place on the screen and go by load then.
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -11,32 +14,53 @@
 
 namespace quadrille::hw {
 
+enum class WarpPolicy : std::uint8_t { kRoundRobin, kTile, kLeastLoaded };
+
 class WorkDistributor final : public Unit {
  public:
+  struct Params : ParamGroup {
+    Choice<WarpPolicy> policy{*this,
+                              "policy",
+                              WarpPolicy::kLeastLoaded,
+                              {"round_robin", "tile", "least_loaded"},
+                              "Which core gets a warp: the next in turn, the one of its part of the screen, or the one with the fewest. "
+                              "[M: warp policies: fewest cycles]"};
+    Param<int> block_tiles{*this,  "block_tiles", 4,
+                           "tile", {1, 2048},     "policy=tile: side of the squares of 8x8-pixel tiles whose warps go to one core. [G]"};
+  };
   struct Stats : StatGroup {
     Counter vertex_warps{*this, "vertex_warps", "warp", "Vertex batches handed to cores"};
     Counter fragment_warps{*this, "fragment_warps", "warp", "Fragment warps handed to cores"};
   };
-  WorkDistributor(sc_core::sc_module_name name, const Clock& clock, int partitions, int cores);
+  WorkDistributor(sc_core::sc_module_name name, const Params& params, const Clock& clock, int partitions, int cores);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
   FifoInGroup<WarpToken> fragment_in;
+  FifoInGroup<ReleaseToken> load_in;  ///< `slot` is the core
   std::vector<std::unique_ptr<FifoOut<WarpToken>>> vertex_out;
   std::vector<std::unique_ptr<FifoOut<WarpToken>>> fragment_out;
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
   [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] std::string state_text() const override;
 
  private:
   using Outputs = std::vector<std::unique_ptr<FifoOut<WarpToken>>>;
   [[nodiscard]] static const FifoOut<WarpToken>& first_with_room(const Outputs& outputs);
   [[nodiscard]] Wake vertex_wake() const;
   [[nodiscard]] Wake fragment_wake() const;
-  void hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t& turn);
+  /// The core whose part of the screen the warp is in.
+  [[nodiscard]] std::size_t core_at(const WarpToken& warp) const;
+  /// Of the cores with room the next in turn, or the least loaded one.
+  [[nodiscard]] std::size_t choose(Tick now, const Outputs& outputs, std::size_t turn) const;
+  void hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core, std::size_t& turn);
+  void hand_out_fragments(Tick now);
 
+  const Params& params_;
   Stats stats_;
+  std::vector<int> loads_;  ///< by core: warps sent and not reported done
   std::size_t partition_turn_ = 0, vertex_turn_ = 0, fragment_turn_ = 0;
   Tick vertex_free_ = 0, fragment_free_ = 0;
 };

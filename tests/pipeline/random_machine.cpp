@@ -33,6 +33,8 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
     group->find("cache_lines")->parse(std::to_string(w * random.pick({1, 1, 2, 8, 64})));
     group->find("cache_misses")->parse(std::to_string(random.pick({1, 2, 8})));
   }
+  config.work_distributor.policy.set(static_cast<hw::WarpPolicy>(random.integer(0, 2)));
+  config.work_distributor.block_tiles.set(random.pick({1, 2, 4, 2048}));
   config.core.warp_slots.set(random.pick({2, 3, 8, 32}));
   config.core.register_rows.set(random.pick({256, 1024}));
   config.core.simds.set(random.pick({1, 2, 4}));

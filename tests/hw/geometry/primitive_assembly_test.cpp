@@ -34,6 +34,7 @@ struct AssemblyBench final : Bench {
     feed(unit->batch_in, s.batches);
     feed(unit->done_in[0], s.done_0);
     feed(unit->done_in[1], s.done_1);
+    loads = &drain<ReleaseToken>(unit->load_out, [](const ReleaseToken& t) { return t.slot; });
     sink = &drain<PrimitiveToken>(
         unit->primitive_out,
         [](const PrimitiveToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); }, s.pace,
@@ -43,6 +44,7 @@ struct AssemblyBench final : Bench {
   Store<BatchSlot> store;
   std::unique_ptr<PrimitiveAssembly> unit;
   StubSink<PrimitiveToken>* sink = nullptr;
+  StubSink<ReleaseToken>* loads = nullptr;
 };
 
 BatchToken batch(std::uint32_t slot) { return {TokenKind::kWork, 0, slot}; }
@@ -85,6 +87,11 @@ TEST_CASE("primitive_assembly: a report counts for one use of a slot") {
                        counter(*b.unit, "triangles"));
   });
   CHECK(text == "12:10 13:901 42:10 43:901 batches 2 vertices 6 triangles 2");
+}
+
+TEST_CASE("primitive_assembly: tells which core has done a batch when the report arrives, not when the batch's turn comes") {
+  const AssemblyBench::Setup s{.batches = {{60, batch(0)}, {60, batch(1)}}, .done_0 = {{30, {0}}}, .done_1 = {{10, {1}}}};
+  CHECK(run<AssemblyBench>(s, [](const AssemblyBench& b) { return b.loads->text(); }) == "12:1 32:0");
 }
 
 TEST_CASE("primitive_assembly: boundaries pass without waiting for a report, and a batch without triangles has only its end") {

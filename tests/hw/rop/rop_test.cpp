@@ -38,6 +38,7 @@ struct RopBench final : Bench {
     feed(unit->late_in, s.late);
     late = &drain<LateToken>(unit->late_out, [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
     released = &drain<ReleaseToken>(unit->release_out, [](const ReleaseToken& t) { return t.slot; });
+    drain<ReleaseToken>(unit->load_out, [](const ReleaseToken& t) { return t.slot; });
     synced = &drain<ReleaseToken>(unit->sync_out, [](const ReleaseToken& t) { return t.sequence; });
     retired = &drain<RetireToken>(unit->retire_out, [](const RetireToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; });
     memory = &serve(unit->memory_port(), s.memory_latency);

@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <set>
+
 using namespace quadrille::hw;
 using namespace quadrille::hw::bench;
 
@@ -14,19 +16,28 @@ struct DistributorBench final : Bench {
     std::vector<Timed<WarpToken>> vertex{}, fragment_0{}, fragment_1{};
     std::vector<Pace> cores;
     LinkSpec out{.depth = 4};
+    WarpPolicy policy = WarpPolicy::kLeastLoaded;
+    int block_tiles = 4;
+    std::vector<Timed<ReleaseToken>> done{};  ///< `slot` is the core
   };
   DistributorBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
-    unit = std::make_unique<WorkDistributor>("unit", clock, 2, static_cast<int>(s.cores.size()));
+    params.policy.set(s.policy);
+    params.block_tiles.set(s.block_tiles);
+    unit = std::make_unique<WorkDistributor>("unit", params, clock, 2, static_cast<int>(s.cores.size()));
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in[0], s.fragment_0);
     feed(unit->fragment_in[1], s.fragment_1);
+    feed(unit->load_in[0], s.done);
+    feed(unit->load_in[1], {});
+    feed(unit->load_in[2], {});
     const auto key = [](const WarpToken& t) { return t.slot; };
     for (std::size_t c = 0; c < s.cores.size(); ++c) {
       vertex.push_back(&drain<WarpToken>(*unit->vertex_out[c], key, s.cores[c], s.out));
       fragment.push_back(&drain<WarpToken>(*unit->fragment_out[c], key, s.cores[c], s.out));
     }
   }
+  WorkDistributor::Params params;
   std::unique_ptr<WorkDistributor> unit;
   std::vector<StubSink<WarpToken>*> vertex, fragment;
 };
@@ -43,15 +54,65 @@ std::string vertex_text(const DistributorBench& b) {
   return all;
 }
 
-}  // namespace
-
-TEST_CASE("work_distributor: cores that are equally free take turns, one warp a cycle") {
-  CHECK(run<DistributorBench>({.vertex = warps(0, 6), .cores = {{}, {}, {}}}, vertex_text) == "2:0 5:3 | 3:1 6:4 | 4:2 7:5");
+std::string fragment_text(const DistributorBench& b) {
+  std::string all;
+  for (const auto* sink : b.fragment) all += (sink == b.fragment[0] ? "" : " | ") + sink->text();
+  return all;
 }
 
-TEST_CASE("work_distributor: a core that does not take its warps gets no more while others are less loaded") {
-  CHECK(run<DistributorBench>({.vertex = warps(0, 7, 10), .cores = {{.from = 200}, {}, {}}}, vertex_text) ==
-        "200:0 | 12:1 32:3 52:5 | 22:2 42:4 62:6");
+}  // namespace
+
+TEST_CASE("work_distributor: cores that are equally loaded take turns, one warp a cycle") {
+  for (const WarpPolicy policy : {WarpPolicy::kRoundRobin, WarpPolicy::kTile, WarpPolicy::kLeastLoaded})
+    CHECK(run<DistributorBench>({.vertex = warps(0, 6), .cores = {{}, {}, {}}, .policy = policy}, vertex_text) ==
+          "2:0 5:3 | 3:1 6:4 | 4:2 7:5");
+}
+
+TEST_CASE(
+    "work_distributor: a core that is not done with its warps gets no more while others have fewer, though it has room; in turn it does") {
+  // Cores 1 and 2 are done with each warp seven cycles after it was sent, core 0 never.
+  DistributorBench::Setup s{.vertex = warps(0, 7, 10), .cores = {{}, {}, {}}};
+  for (const auto& [cycle, core] : {std::pair{18, 1u}, {28, 2u}, {38, 1u}, {48, 2u}, {58, 1u}, {68, 2u}})
+    s.done.push_back({cycle, {core, 0}});
+  CHECK(run<DistributorBench>(s, vertex_text) == "2:0 | 12:1 32:3 52:5 | 22:2 42:4 62:6");
+  s.policy = WarpPolicy::kRoundRobin;
+  s.done.clear();
+  CHECK(run<DistributorBench>(s, vertex_text) == "2:0 32:3 62:6 | 12:1 42:4 | 22:2 52:5");
+}
+
+TEST_CASE("work_distributor: vertex and fragment warps of a core count together") {
+  const DistributorBench::Setup s{.vertex = warps(0, 1), .fragment_0 = warps(10, 1, 1), .cores = {{}, {}}};
+  auto later = s;
+  later.fragment_0[0].cycle = 20;
+  CHECK(run<DistributorBench>(later, fragment_text) == " | 22:10");
+}
+
+TEST_CASE("work_distributor: by tile, the warps of a square of tiles go to one core, and those of its neighbours to others") {
+  DistributorBench::Setup s{.cores = {{}, {}, {}, {}}, .out = {.depth = 64}, .policy = WarpPolicy::kTile, .block_tiles = 2};
+  std::uint32_t slot = 0;
+  for (std::uint16_t y = 0; y < 4; ++y) {
+    for (std::uint16_t x = 0; x < 4; ++x, ++slot) (x % 2 == 0 ? s.fragment_0 : s.fragment_1).push_back({0, {0, slot, 0, x, y}});
+  }
+  const auto cores = run<DistributorBench>(s, [](const DistributorBench& b) {
+    std::vector<std::size_t> core_of(16);
+    for (std::size_t c = 0; c < 4; ++c) {
+      for (const auto& got : b.fragment[c]->got) core_of[got.token.slot] = c;
+    }
+    bool together = true;
+    for (std::size_t i = 0; i < 16; ++i) together = together && core_of[i] == core_of[i / 8 * 8 + i % 4 / 2 * 2];
+    const std::set<std::size_t> row{core_of[0], core_of[2]}, column{core_of[0], core_of[8]};
+    return fmt::format("{} {} {}", together, row.size(), column.size());
+  });
+  CHECK(cores == "true 2 2");
+}
+
+TEST_CASE("work_distributor: by tile, a warp waits for its core while another has room; another partition's goes past it") {
+  DistributorBench::Setup s{.cores = {{.from = 100}, {.from = 100}}, .out = {.depth = 2}, .policy = WarpPolicy::kTile, .block_tiles = 1};
+  for (std::uint32_t i = 0; i < 3; ++i) s.fragment_0.push_back({0, {0, i, 0, 0, 0}});
+  s.fragment_1.push_back({50, {0, 9, 1, 1, 0}});
+  CHECK(run<DistributorBench>(s, fragment_text) == "100:0 101:1 102:2 | 100:9");
+  s.policy = WarpPolicy::kLeastLoaded;
+  CHECK(run<DistributorBench>(s, fragment_text) == "100:0 101:2 | 100:1 101:9");
 }
 
 TEST_CASE("work_distributor: partitions take turns, and vertex work does not slow fragments") {
@@ -70,9 +131,15 @@ TEST_CASE("work_distributor: waits while every core is full, and gives the next 
 }
 
 TEST_CASE("work_distributor: keeps the contract, one-deep links included") {
-  const DistributorBench::Setup s{.vertex = warps(0, 9),
-                                  .fragment_0 = warps(10, 7),
-                                  .fragment_1 = warps(20, 5, 3),
-                                  .cores = {{.from = 0, .period = 4}, {.from = 9, .period = 3}}};
-  CHECK(contract_text<DistributorBench>(s, false) == "");
+  for (const WarpPolicy policy : {WarpPolicy::kRoundRobin, WarpPolicy::kTile, WarpPolicy::kLeastLoaded}) {
+    DistributorBench::Setup s{.vertex = warps(0, 9),
+                              .fragment_0 = warps(10, 7),
+                              .fragment_1 = warps(20, 5, 3),
+                              .cores = {{.from = 0, .period = 4}, {.from = 9, .period = 3}},
+                              .policy = policy,
+                              .block_tiles = 1,
+                              .done = {{15, {1, 0}}, {30, {0, 0}}}};
+    for (std::uint16_t i = 0; i < 7; ++i) s.fragment_0[i].token.tile_x = i;
+    CHECK(contract_text<DistributorBench>(s, false) == "");
+  }
 }
