@@ -6,6 +6,22 @@
 
 namespace quadrille::pipeline {
 
+namespace {
+
+template <class T>
+std::string scaled_within(const hw::Param<T>& p, double value) {
+  const T legal = static_cast<T>(std::clamp(value, static_cast<double>(p.range().min), static_cast<double>(p.range().max)));
+  return fmt::format("{}", legal);
+}
+std::string scaled(const hw::ParamBase& p, double factor) {
+  if (const auto* whole = dynamic_cast<const hw::Param<int>*>(&p)) return scaled_within(*whole, std::floor(whole->value() * factor));
+  const auto* number = dynamic_cast<const hw::Param<double>*>(&p);
+  QUADRILLE_CHECK(number != nullptr, "{} is no number", p.name());
+  return scaled_within(*number, number->value() * factor);
+}
+
+}  // namespace
+
 const std::vector<Doubling>& doublings() {
   static const std::vector<Doubling> all{
       {"command_processor.draw_clk", "draws a cycle", {{"command_processor.draw_clk", 0.5}}},
@@ -15,6 +31,9 @@ const std::vector<Doubling>& doublings() {
       {"vertex_fetch.batch_slots", "vertex batches under way", {{"vertex_fetch.batch_slots", 2}}},
       {"vertex_fetch.cache_misses", "misses of the vertex cache under way", {{"vertex_fetch.cache_misses", 2}}},
       {"triangle_setup.triangle_slots", "triangles under way", {{"triangle_setup.triangle_slots", 2}}},
+      {"primitive_assembly.rate", "triangles assembled a cycle", {{"primitive_assembly.triangles_per_clk", 2}}},
+      {"clipper.rate", "triangles and pieces clipped a cycle", {{"clipper.triangles_per_clk", 2}, {"clipper.clip_clk", 0.5}}},
+      {"triangle_setup.rate", "triangles set up a cycle", {{"triangle_setup.drawn_per_clk", 2}, {"triangle_setup.culled_per_clk", 2}}},
       {"coarse_raster.tests_per_clk", "tiles tested a cycle", {{"coarse_raster.tests_per_clk", 2}}},
       {"fine_raster.quads_per_clk", "quads rasterised a cycle", {{"fine_raster.quads_per_clk", 2}}},
       {"depth.quads_per_clk", "quads a cycle of the depth units", {{"depth.quads_per_clk", 2}}},
@@ -73,12 +92,8 @@ std::vector<std::string> settings_of(const Doubling& doubling, const MachineConf
       if (name != path.substr(0, dot)) continue;
       const hw::ParamBase* p = group->find(path.substr(dot + 1));
       QUADRILLE_CHECK(p != nullptr, "no parameter {}", path);
-      const auto* number = dynamic_cast<const hw::Param<int>*>(p);
-      QUADRILLE_CHECK(number != nullptr, "{} is no number", path);
-      const double value = std::floor(number->value() * step.factor);
-      const int legal =
-          static_cast<int>(std::clamp(value, static_cast<double>(number->range().min), static_cast<double>(number->range().max)));
-      if (legal != number->value()) settings.push_back(fmt::format("{}={}", path, legal));
+      if (const std::string value = scaled(*p, step.factor); value != p->value_text())
+        settings.push_back(fmt::format("{}={}", path, value));
     }
   }
   return settings;

@@ -17,7 +17,7 @@ TEST_CASE("experiment vertex-reuse finds as many vertices shaded as the analyser
   const ScratchFolder folder;
   const auto run = run_quadrille(folder, {"experiment", "vertex-reuse", "--scene", "builtin:cubes", "--size", "32x32"});
   CHECK(run.exit_code == 0);
-  CHECK_THAT(run.out, Catch::Contains("holds  cubes: vertices shaded apart from the analyser's") &&
+  CHECK_THAT(run.out, Catch::Contains("holds  builtin:cubes: vertices shaded apart from the analyser's") &&
                           Catch::Contains("holds  GeForce GTX 1080 Ti, 96 indices: vertices shaded: 3") &&
                           Catch::Contains("holds  GeForce GTX 1080 Ti, 99 indices: vertices shaded: 6") && !Catch::Contains("FAILS"));
 }
