@@ -16,9 +16,9 @@ constexpr double kLeast = 0.98, kMost = 1.02;
 struct Kind {
   const char* name;
   const char* counter;  ///< that counts all of them
-  bool reaches_setup;
   TriangleMesh mesh;
   DrawOptions options;
+  enum class End : std::uint8_t { kClipper, kCulled, kDrawn } end;
 };
 
 TriangleMesh repeated(TriangleMesh mesh) {
@@ -31,20 +31,43 @@ TriangleMesh moved_right(TriangleMesh mesh, std::uint32_t pixels) {
   return mesh;
 }
 std::vector<Kind> kinds_of(std::uint32_t width, std::uint32_t height) {
-  // A tile of 2x1 pixels is two triangles of one pixel each: the centres lie to either side of the diagonal.
-  const TriangleMesh pixels = repeated(tiled_frame(width, height, 2, 1));
-  return {{"culled", "triangle_setup.culled", true, pixels, {.cull = traces::CullMode::kBack}},
-          {"off screen", "clipper.rejected", false, moved_right(pixels, 2 * width), {}},
-          {"one pixel", "triangle_setup.kept", true, pixels, {}}};
+  // A tile of 2x1 pixels is two triangles of one pixel each: the centres lie to either side of the diagonal. Eight in a row reach over two tiles of the
+  // rasteriser, and so to two partitions.
+  const TriangleMesh pixels = repeated(tiled_frame(width, height, 2, 1, 8));
+  return {{"culled", "triangle_setup.culled", pixels, {.cull = traces::CullMode::kBack}, Kind::End::kCulled},
+          {"off screen", "clipper.rejected", moved_right(pixels, 2 * width), {}, Kind::End::kClipper},
+          {"one pixel", "triangle_setup.kept", pixels, {}, Kind::End::kDrawn}};
 }
 
 struct Rate {
   const char* name;
-  double cycles;  ///< a triangle that reaches set-up
+  double drawn, culled, clipped;  ///< triangles a cycle; the last of assembly and clipper
   std::vector<std::string> settings;
+  /// Cycles of the slower of set-up and clipper. The end of a batch takes a culled triangle's place in set-up, and any one's in the clipper.
+  [[nodiscard]] double cycles(Kind::End end, double triangles, double ends) const {
+    const double clipper = (triangles + ends) / clipped;
+    switch (end) {
+      case Kind::End::kClipper: return clipper;
+      case Kind::End::kCulled: return std::max(clipper, (triangles + ends) / culled);
+      case Kind::End::kDrawn: return std::max(clipper, triangles / drawn + ends / culled);
+    }
+    return clipper;
+  }
 };
 const std::vector<Rate>& rates() {
-  static const std::vector<Rate> all{{"1", 1, {}}, {"1/2", 2, {"triangle_setup.drawn_per_clk=0.5", "triangle_setup.culled_per_clk=0.5"}}};
+  static const std::vector<Rate> all{
+      {"1", 1, 1, 1, {}},
+      {"1 culled, 1/2 drawn", 0.5, 1, 1, {"triangle_setup.drawn_per_clk=0.5"}},
+      {"1/2", 0.5, 0.5, 1, {"triangle_setup.drawn_per_clk=0.5", "triangle_setup.culled_per_clk=0.5"}},
+      {"2",
+       2,
+       2,
+       2,
+       {"triangle_setup.drawn_per_clk=2", "triangle_setup.culled_per_clk=2", "clipper.triangles_per_clk=2",
+        "primitive_assembly.triangles_per_clk=2", "coarse_raster.tiles_per_clk=2", "fine_raster.tiles_per_clk=2",
+        "link.assembly_to_clipper.width=2", "link.clipper_to_setup.width=2", "link.setup_to_coarse.width=2", "link.coarse_to_fine.width=2",
+        "link.fine_to_depth.width=2", "link.clipper_to_setup.depth=16", "triangle_setup.triangle_slots=8192",
+        "vertex_fetch.indices_per_clk=8", "warp_packer.launch_clk=0"}}};
   return all;
 }
 
@@ -69,7 +92,7 @@ Result setup_rate(const Setting& setting) {
       const TriangleWork w = work_of(k.mesh, {});
       const auto n = static_cast<double>(w.triangles);
       const double cycles = r["frame.render_cycles"];
-      const double form = n * (k.reaches_setup ? rate.cycles : 1) + static_cast<double>(w.batches);
+      const double form = rate.cycles(k.end, n, static_cast<double>(w.batches));
       result.table.rows.push_back({k.name, rate.name, fmt::format("{}", w.triangles), fmt::format("{:.0f}", r[k.counter]),
                                    fmt::format("{:.0f}", cycles), fmt::format("{:.0f}", form), fmt::format("{:.4f}", cycles / form),
                                    fmt::format("{:.3f}", n / cycles)});
@@ -81,17 +104,16 @@ Result setup_rate(const Setting& setting) {
     }
   }
   result.remarks = {
-      "The closed form: a cycle, or two, a triangle that reaches set-up; those off screen end in the clipper, which takes one a cycle; and "
-      "a cycle for the end "
-      "of each batch of vertices, which takes a triangle's place in assembly, clipper and set-up. That end is why one triangle a clock is "
+      "The closed form is the longer of set-up, at its rates of culled and of drawn triangles, and the clipper, in which those off screen "
+      "end. The end of a batch of vertices takes a triangle's place in assembly, clipper and set-up. That is why one triangle a clock is "
       "0.97: a batch has room for 32 triangles.",
-      "Drawn triangles are as fast as culled ones, as published of the Radeon HD 5000 and not of the GT200. The machine has one raster "
-      "engine: several, with "
-      "which the GF100 reaches 3.5 triangles a clock, cannot be simulated yet."};
+      "Drawn triangles are as fast as culled ones on the default machine, as published of the Radeon HD 5000; half as fast, as of the "
+      "GT200, is the second rate. Two a clock need two tokens a cycle of every link from assembly to the depth units, one of them deeper "
+      "for its latency, two tiles a cycle of both rasterisers, eight indices a cycle and more slots for triangles in flight. The machine "
+      "has one raster engine: several, with which the GF100 reaches 3.5 triangles a clock, are not simulated."};
   result.plot =
       "set style data histograms\nset style fill solid 0.8\nset ylabel 'triangles a clock'\nset yrange [0:*]\nset xtics rotate by -20\nset "
-      "grid y\nset key "
-      "outside top center horizontal\n$d << EOD\n" +
+      "grid y\nset key outside top center horizontal\n$d << EOD\n" +
       data + "EOD\nplot $d using 2:xtic(1) title 'simulated', '' using 3 title 'closed form'";
   return result;
 }

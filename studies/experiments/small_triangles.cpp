@@ -39,6 +39,7 @@ std::vector<std::string> Machine::settings() const {
   return {fmt::format("fine_raster.quads_per_clk={}", rates.fine_quads),
           fmt::format("coarse_raster.tests_per_clk={}", rates.tile_tests),
           fmt::format("warp_packer.quads_per_clk={}", rates.pack_quads),
+          fmt::format("warp_packer.launch_clk={}", rates.launch_clk),
           fmt::format("gpu.partitions={}", partitions),
           fmt::format("rop.quads_per_clk={}", partition_quads),
           fmt::format("gpu.cores={}", cores),
@@ -48,15 +49,14 @@ std::vector<std::string> Machine::settings() const {
           fmt::format("gpu.memory_mhz={}", memory_mhz)};
 }
 
-/// Rates and what of them is published: docs/sources.md. The launch of a warp takes the packer a cycle of its own; on the cards it packs four times what the
-/// rasteriser gives, so that it is not the limit.
+/// Rates and what of them is published: docs/sources.md. A warp's launch takes no time of the packers of the cards, so that they keep up with the rasteriser.
 const std::vector<Machine>& machines() {
   static const std::vector<Machine> all{
       {"default, 8 channels", {}, 2, 4, 4, 8, 8, 1000, 0, false, true},
-      {"HD Graphics 4600", {.fine_quads = 1, .pack_quads = 4}, 1, 1, 5, 8, 1, 640, 10, true},
-      {"GeForce GTX 680 / 4", {.fine_quads = 2, .pack_quads = 8}, 1, 2, 3, 32, 2, 747, 15, true},
-      {"Radeon HD 7970 / 2, published", {.fine_quads = 4}, 2, 4, 8, 32, 4, 1115, 20},
-      {"Radeon HD 7970 / 2, fitted", {.fine_quads = 3}, 2, 4, 8, 32, 4, 1115, 20, true},
+      {"HD Graphics 4600", {.fine_quads = 1, .pack_quads = 1, .launch_clk = 0}, 1, 1, 5, 8, 1, 640, 10, true},
+      {"GeForce GTX 680 / 4", {.fine_quads = 2, .pack_quads = 2, .launch_clk = 0}, 1, 2, 3, 32, 2, 747, 15, true},
+      {"Radeon HD 7970 / 2, published", {.fine_quads = 4, .launch_clk = 0}, 2, 4, 8, 32, 4, 1115, 20},
+      {"Radeon HD 7970 / 2, fitted", {.fine_quads = 3, .launch_clk = 0}, 2, 4, 8, 32, 4, 1115, 20, true},
   };
   return all;
 }
@@ -147,30 +147,23 @@ Result small_triangles(const Setting& setting) {
     slow_downs.push_back(report(machines()[i], drawings, std::span(read).subspan(i * drawings.size(), drawings.size()), result));
   result.remarks = {
       "The closed form is the longest of: triangles and ends of batches at one a cycle of set-up; tiles at one a cycle of the coarse "
-      "rasteriser; of the "
-      "fine one, the covered quads of each tile at its rate, rounded up, at least a cycle; quads and warps of the packer; quads of the "
-      "ROPs; instructions "
-      "of the cores; bytes of the memory. The work is counted by a rasteriser of its own, but for instructions and bytes, which are the "
-      "machine's counters.",
+      "rasteriser; of the fine one, the covered quads of each tile at its rate, rounded up, at least a cycle; quads and warps of the "
+      "packer; quads of the ROPs; instructions of the cores; bytes of the memory. The work is counted by a rasteriser of its own, but for "
+      "instructions and bytes, which are the machine's counters.",
       "Published is also that 16x16 costs nothing any more. Here a tile of 8x8 pixels takes the fine rasteriser its quads, rounded up: of "
-      "a tile of 16x16 "
-      "pixels the two tiles of 8x8 that the diagonal cuts take 2 x 3 cycles, not 2 x 2.5, and their four quads on the diagonal count "
-      "twice. So 16x16 "
-      "costs 1.1 to 1.2 times 128x128, and 8x8 1.2 to 1.5 times.",
+      "a tile of 16x16 pixels the two tiles of 8x8 that the diagonal cuts take 2 x 3 cycles, not 2 x 2.5, and their four quads on the "
+      "diagonal count twice. So 16x16 costs 1.1 to 1.2 times 128x128, and 8x8 1.2 to 1.5 times.",
       "256x1 and 1x256, which differ on the cards, do not differ here: tiles are square. Both pay for tiles of 8x8 that all but miss the "
-      "triangle: one of "
-      "which only pixels beyond the triangle's bounds are inside all edges is handed on, and found empty by the fine rasteriser.",
+      "triangle: one of which only pixels beyond the triangle's bounds are inside all edges is handed on, and found empty by the fine "
+      "rasteriser.",
       "A card with several raster engines is simulated as one of them, with its share of cores, ROPs and memory, since the machine has "
-      "one. Of the GeForce "
-      "GTX 680: four engines, 32 ROPs, 1536 lanes, 192 GB/s at 1006 MHz. Of the Radeon HD 7970: two engines, 32 ROPs, 2048 lanes, 264 GB/s "
-      "at 925 MHz. Of the HD "
-      "Graphics 4600: 20 units of 8 lanes, 25.6 GB/s at 1250 MHz. An engine's triangle a cycle is the rate published of their generation.",
+      "one. Of the GeForce GTX 680: four engines, 32 ROPs, 1536 lanes, 192 GB/s at 1006 MHz. Of the Radeon HD 7970: two engines, 32 ROPs, "
+      "2048 lanes, 264 GB/s at 925 MHz. Of the HD Graphics 4600: 20 units of 8 lanes, 25.6 GB/s at 1250 MHz. An engine's triangle a cycle "
+      "is the rate published of their generation.",
       "Three numbers are fitted, since no source was found or the published one does not give the measurement: one triangle and four "
-      "pixels a cycle of the "
-      "HD Graphics 4600, and three quads a cycle an engine of the HD 7970 instead of four. With the published 32 pixels and two "
-      "triangles a cycle it is 32 times slower at 1x1, by arithmetic (two triangles a pixel, 32 pixels in the time of two triangles), not "
-      "20: "
-      "either it fills 20 pixels a cycle or it sets up 3.2 triangles. Lanes of a warp are 32 on all."};
+      "pixels a cycle of the HD Graphics 4600, and three quads a cycle an engine of the HD 7970 instead of four. With the published 32 "
+      "pixels and two triangles a cycle it is 32 times slower at 1x1, by arithmetic (two triangles a pixel, 32 pixels in the time of two "
+      "triangles), not 20: either it fills 20 pixels a cycle or it sets up 3.2 triangles. Lanes of a warp are 32 on all."};
   result.plot = plot_of(slow_downs);
   return result;
 }

@@ -9,8 +9,6 @@
 namespace quadrille::studies::experiments {
 namespace {
 
-constexpr std::uint32_t kColumnTiles = 4;
-
 constexpr const char* kVertexShader = R"(#version 450
 layout(location = 0) in vec3 position;
 void main() { gl_Position = vec4(position, 1); })";
@@ -61,12 +59,13 @@ void TriangleMesh::rectangle(std::int32_t left, std::int32_t top, std::int32_t r
   triangles.push_back({first, first + 2, first + 3});
 }
 
-TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height) {
+TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height,
+                         std::uint32_t column_tiles) {
   TriangleMesh mesh{width, height, {}, {}};
   const auto tiles = [](std::uint32_t size, std::uint32_t tile) { return (size + tile - 1) / tile; };
   const std::uint32_t columns = tiles(width, tile_width), rows = tiles(height, tile_height);
-  for (std::uint32_t from = 0; from < columns; from += kColumnTiles) {
-    const std::uint32_t across = std::min(kColumnTiles, columns - from);
+  for (std::uint32_t from = 0; from < columns; from += column_tiles) {
+    const std::uint32_t across = std::min(column_tiles, columns - from);
     for (std::uint32_t row = 0; row <= rows; ++row) {
       const auto first = static_cast<std::uint32_t>(mesh.corners.size());
       for (std::uint32_t i = 0; i <= across; ++i) {

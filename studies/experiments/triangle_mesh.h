@@ -28,8 +28,9 @@ struct TriangleMesh {
 };
 
 /// The frame filled by pairs of triangles, each pair a tile of `tile_width` x `tile_height` pixels (cut at the right and lower edge). Tiles come in columns
-/// of four, from top to bottom, and share their corners within a column.
-[[nodiscard]] TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height);
+/// of `column_tiles`, from top to bottom, and share their corners within a column.
+[[nodiscard]] TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height,
+                                       std::uint32_t column_tiles = 4);
 
 struct DrawOptions {
   traces::CullMode cull = traces::CullMode::kNone;

@@ -164,7 +164,7 @@ TriangleWork work_of(const TriangleMesh& mesh, const Rates& rates) {
   for (const auto& triangle : mesh.triangles) {
     if (shape_of(mesh, triangle, shape) && shape.left < shape.right && shape.top < shape.bottom) count_triangle(shape, rates, work);
   }
-  work.pack_clk += parts(work.quads, kWarpQuads);
+  work.pack_clk += rates.launch_clk * parts(work.quads, kWarpQuads);
   const std::uint64_t messages = work.triangles / std::max(1u, rates.triangle_slots / 8);
   work.coarse_clk += messages;
   work.fine_clk += messages;

@@ -14,6 +14,7 @@ struct Rates {
   std::uint32_t fine_quads = 4;  ///< quads a cycle of the fine rasteriser
   std::uint32_t tile_tests = 4;  ///< tile tests a cycle of the coarse rasteriser
   std::uint32_t pack_quads = 4;  ///< quads a cycle of a warp packer
+  std::uint32_t launch_clk = 1;  ///< cycles of it a warp that it launches
   std::uint32_t batch_vertices = 32, batch_triangles = 32;
   std::uint32_t triangle_slots = 1024;  ///< of the triangle store; for each eighth of them a message goes through the rasterisers
 };

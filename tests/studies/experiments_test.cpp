@@ -61,7 +61,7 @@ void check_holds(const std::vector<Verdict>& verdicts) {
 
 }  // namespace
 
-TEST_CASE("experiments: the set-up rate is the closed form") { check_holds(setup_rate(sized(64, 64)).verdicts); }
+TEST_CASE("experiments: the set-up rate is the closed form") { check_holds(setup_rate(sized(128, 128)).verdicts); }
 
 TEST_CASE("experiments: of layers from front to back one is shaded, from back to front all") {
   check_holds(verdicts_of(hidden_surfaces(sized(100, 60)), "shaded a pixel"));
