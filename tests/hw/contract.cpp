@@ -69,7 +69,9 @@ std::string attribution_failures(const std::vector<Unit*>& units, Tick end) {
     for (const PortBase* port : unit->ports()) (port->direction() == PortBase::Direction::kIn ? starved : blocked) += port->waited();
     if (sum != unit->clock().edges_before(end))
       text += fmt::format("{}: the four charges sum to {}, not to its {} cycles\n", unit->name(), sum, unit->clock().edges_before(end));
-    if (smallest < 0) text += fmt::format("{}: a negative charge {}\n", unit->name(), smallest);
+    if (smallest < 0)
+      text += fmt::format("{}: a negative charge: busy {}, waiting {}, starved {}, blocked {}, idle {}\n", unit->name(),
+                          unit->busy_cycles(), unit->waiting_cycles(), unit->starved_cycles(), unit->blocked_cycles(), unit->idle_cycles());
     if (starved != unit->starved_cycles() || blocked != unit->blocked_cycles())
       text += fmt::format("{}: its ports' waits do not sum to starved and blocked\n", unit->name());
   }

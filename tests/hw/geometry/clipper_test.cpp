@@ -93,7 +93,7 @@ TEST_CASE("clipper: a cut triangle takes clip_clk cycles and then one a piece") 
   }
 }
 
-TEST_CASE("clipper: n triangles take n over triangles_per_clk, whether they pass or not; a cut one clip_clk and its pieces") {
+TEST_CASE("clipper: n triangles take n over triangles_per_clk, whether they pass or not, a cut one clip_clk and its pieces") {
   constexpr int kCount = 600;
   for (const int rate : {1, 2, 4}) {
     for (const Shape shape : {kInside, kBeside, kNan, kOneOut}) {

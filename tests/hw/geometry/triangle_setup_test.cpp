@@ -72,7 +72,7 @@ std::string kept(const SetupBench& b) { return b.kept->text(); }
 
 }  // namespace
 
-TEST_CASE("triangle_setup: a rate below one is several cycles a triangle; a boundary is a cycle at most") {
+TEST_CASE("triangle_setup: a rate below one is several cycles a triangle, a boundary is a cycle at most") {
   for (const int clk : {1, 5}) {
     const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, piece(2)}, {0, piece(0)}, {0, boundary(TokenKind::kDrawEnd)}, {0, piece(0)}},
                               .drawn_per_clk = 1.0 / clk,

@@ -106,7 +106,7 @@ TEST_CASE("work_distributor: by tile, the warps of a square of tiles go to one c
   CHECK(cores == "true 2 2");
 }
 
-TEST_CASE("work_distributor: by tile, a warp waits for its core while another has room; another partition's goes past it") {
+TEST_CASE("work_distributor: by tile, a warp waits for its core while another has room, another partition's goes past it") {
   DistributorBench::Setup s{.cores = {{.from = 100}, {.from = 100}}, .out = {.depth = 2}, .policy = WarpPolicy::kTile, .block_tiles = 1};
   for (std::uint32_t i = 0; i < 3; ++i) s.fragment_0.push_back({0, {0, i, 0, 0, 0}});
   s.fragment_1.push_back({50, {0, 9, 1, 1, 0}});
