@@ -30,20 +30,27 @@ void Unit::charge_wait(Tick until, const PortBase* cause) {
   idle_ += quiet;
   const std::int64_t waited = all - quiet;
   accounted_ = until;
-  if (cause == nullptr) {
-    waiting_ += waited;
-    return;
+  std::int64_t& of = cause == nullptr ? waiting_ : cause->direction() == PortBase::Direction::kIn ? starved_ : blocked_;
+  of += waited;
+  if (cause != nullptr) cause->add_wait(waited);
+  note_charge(of, cause);
+}
+
+void Unit::take_back_from(Tick end) {
+  for (std::uint32_t back = 0; accounted_ > end; ++back) {
+    QUADRILLE_CHECK(charges_ > 0 && back < kLateCharges, "{}: more than {} charges after the frame's end", name(), back);
+    const Charge& last = late_[--charges_ % kLateCharges];
+    const Tick from = charges_ > 0 ? std::max(end, late_[(charges_ - 1) % kLateCharges].to) : end;
+    const std::int64_t excess = span(from, accounted_);
+    *last.of -= excess;
+    if (last.port != nullptr) last.port->add_wait(-excess);
+    accounted_ = from;
   }
-  cause->add_wait(waited);
-  (cause->direction() == PortBase::Direction::kIn ? starved_ : blocked_) += waited;
 }
 
 void Unit::close(Tick end, Tick reachable_until) {
   const Tick last_edge = clock_.align(end);
-  if (accounted_ > last_edge) {  // the last occupation outlives the frame: the frame's cycles are what is reported
-    busy_ -= span(last_edge, accounted_);
-    accounted_ = last_edge;
-  }
+  take_back_from(last_edge);  // occupations may outlive the frame, and tokens that nobody waits for arrive behind it
   const Tick reach = std::clamp(clock_.align(reachable_until), accounted_, last_edge);
   if (reach > accounted_) {
     const Wake wake = next();

@@ -12,6 +12,7 @@
 #include "hw/base/fifo.h"
 #include "hw/base/resource.h"
 
+#include <array>
 #include <vector>
 
 namespace quadrille::hw {
@@ -160,6 +161,7 @@ class Unit : public sc_core::sc_module {
     if (until <= accounted_) return;
     busy_ += span(accounted_, until);
     accounted_ = until;
+    note_charge(busy_);
   }
   [[nodiscard]] Tick after(Tick now, std::int64_t cycles) const { return clock_.after(now, cycles); }
   // What the unit needs for its work. A unit that names no rate has its initiation slot: the busy cycles. Names are those of the parameters that set them where
@@ -185,9 +187,19 @@ class Unit : public sc_core::sc_module {
     if (wake.at() > accounted_) {
       waiting_ += span(accounted_, wake.at());
       accounted_ = wake.at();
+      note_charge(waiting_);
     }
   }
   void charge_wait(Tick until, const PortBase* cause);
+  /// The latest charges, up to `accounted_`: what lies behind the frame's end is taken back once that is known.
+  struct Charge {
+    Tick to = 0;
+    std::int64_t* of = nullptr;
+    const PortBase* port = nullptr;
+  };
+  static constexpr std::uint32_t kLateCharges = 256;  ///< more than the tokens that can still be under way to a unit then
+  void note_charge(std::int64_t& of, const PortBase* port = nullptr) { late_[charges_++ % kLateCharges] = {accounted_, &of, port}; }
+  void take_back_from(Tick end);
   /// Span within [from, to) in which no draw was in flight.
   [[nodiscard]] std::int64_t quiet_span(Tick from, Tick to) const;
 
@@ -195,6 +207,8 @@ class Unit : public sc_core::sc_module {
   Tick last_action_ = -1;
   std::uint64_t actions_ = 0;
   std::int64_t busy_ = 0, waiting_ = 0, starved_ = 0, blocked_ = 0, idle_ = 0;  ///< spans
+  std::array<Charge, kLateCharges> late_{};
+  std::uint32_t charges_ = 0;
   Resources resources_;
   Clock clock_;
   const QuietLog* quiet_ = nullptr;
