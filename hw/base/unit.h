@@ -200,6 +200,7 @@ class Unit : public sc_core::sc_module {
   static constexpr std::uint32_t kLateCharges = 256;  ///< more than the tokens that can still be under way to a unit then
   void note_charge(std::int64_t& of, const PortBase* port = nullptr) { late_[charges_++ % kLateCharges] = {accounted_, &of, port}; }
   void take_back_from(Tick end);
+  void take_back_rest(Tick end);
   /// Span within [from, to) in which no draw was in flight.
   [[nodiscard]] std::int64_t quiet_span(Tick from, Tick to) const;
 

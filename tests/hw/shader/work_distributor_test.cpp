@@ -69,7 +69,7 @@ TEST_CASE("work_distributor: cores that are equally loaded take turns, one warp 
 }
 
 TEST_CASE(
-    "work_distributor: a core that is not done with its warps gets no more while others have fewer, though it has room; in turn it does") {
+    "work_distributor: a core that is not done with its warps gets no more while others have fewer, though it has room, in turn it does") {
   // Cores 1 and 2 are done with each warp seven cycles after it was sent, core 0 never.
   DistributorBench::Setup s{.vertex = warps(0, 7, 10), .cores = {{}, {}, {}}};
   for (const auto& [cycle, core] : {std::pair{18, 1u}, {28, 2u}, {38, 1u}, {48, 2u}, {58, 1u}, {68, 2u}})
