@@ -157,7 +157,7 @@ TEST_CASE("statistics of triangles that the near plane cuts equal the machine's 
   }
 }
 
-TEST_CASE("statistics of hidden layers equal the machine's counters; llvmpipe counts hidden fragments as well") {
+TEST_CASE("statistics of hidden layers equal the machine's counters, llvmpipe counts hidden fragments as well") {
   for (const char* name : {"front-to-back", "back-to-front"}) {
     for (const Pair& p : both(name)) {
       INFO(name);
