@@ -137,7 +137,7 @@ TEST_CASE("statistics of culled, off-screen and one-pixel triangles equal the ma
   check_fragments(pairs[2]);
   CHECK(pairs[0].theirs.clipping_primitives == pairs[0].theirs.input_primitives);  // culling comes after clipping
   CHECK(pairs[1].theirs.clipping_primitives == 0);
-  for (int i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < 2; ++i) {
     CHECK(pairs[i].theirs.fragment_invocations == 0);
     CHECK(pairs[i].ours.fragment_invocations == 0);
   }
