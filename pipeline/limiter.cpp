@@ -172,7 +172,7 @@ Limiter find_limiter(const Figures& figures) {
   limiter.share = first.share;
   limiter.text = "twice as much of this is expected to save, of the frame: ";
   for (std::size_t i = 0; i < s.gains.size() && i < kNamedGains; ++i) {
-    if (s.gains[i].share < 0.005) break;
+    if (s.gains[i].share < kLeastNamedGain) break;
     limiter.text += (i > 0 ? ", " : "") + gain_text(s.gains[i]);
   }
   if (s.waiting >= kLeastGain) limiter.text += fmt::format("; waiting that none of it explains {:.0f} %", 100 * s.waiting);

@@ -35,8 +35,9 @@ struct Limiter {
 
 /// A doubling that is expected to gain less than this part of the frame does not limit it.
 inline constexpr double kLeastGain = 0.05;
-/// Resources that a report names.
+/// Resources that a report names, and the least part of the frame for which it names one.
 inline constexpr std::size_t kNamedGains = 3;
+inline constexpr double kLeastNamedGain = 0.005;
 
 /// What limits the frame.
 [[nodiscard]] Limiter find_limiter(const Figures& figures);

@@ -38,7 +38,7 @@ class Resources {
   [[nodiscard]] bool empty() const { return all_.empty(); }
   [[nodiscard]] const std::vector<Resource>& all() const { return all_; }
   [[nodiscard]] Tick slice() const { return slice_; }
-  /// Nothing has changed since the action at `last`, `cycles` ago; an action follows at `now`.
+  /// An action follows at `now`; nothing has changed in the `cycles` before it.
   void note(Tick now, double cycles) {
     for (Resource& r : all_)
       if (r.kind == Resource::Kind::kPlaces && r.full()) r.taken += cycles;

@@ -164,8 +164,8 @@ class Unit : public sc_core::sc_module {
     note_charge(busy_);
   }
   [[nodiscard]] Tick after(Tick now, std::int64_t cycles) const { return clock_.after(now, cycles); }
-  // What the unit needs for its work. A unit that names no rate has its initiation slot: the busy cycles. Names are those of the parameters that set them where
-  // one does.
+  // What the unit needs for its work, named in its constructor; names are those of the parameters that set them, where one does. The initiation slot is a rate
+  // whose work is the busy cycles.
   void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
     resources_.add({.name = name, .kind = Resource::Kind::kRate, .serial = serial, .cycles = std::move(cycles)});
   }
@@ -197,7 +197,8 @@ class Unit : public sc_core::sc_module {
     std::int64_t* of = nullptr;
     const PortBase* port = nullptr;
   };
-  static constexpr std::uint32_t kLateCharges = 256;  ///< more than the tokens that can still be under way to a unit then
+  static constexpr std::uint32_t kLateCharges =
+      256;  ///< more than a unit has behind the frame's end, but for a memory channel with much to write back
   void note_charge(std::int64_t& of, const PortBase* port = nullptr) { late_[charges_++ % kLateCharges] = {accounted_, &of, port}; }
   void take_back_from(Tick end);
   void take_back_rest(Tick end);

@@ -33,6 +33,12 @@ models::IssueTiming issue_timing(const ShaderCore::Params& params) {
   return timing;
 }
 
+Simd::Cycle first_end(const std::vector<Simd>& simds) {
+  Simd::Cycle first = Simd::kNever;
+  for (const Simd& simd : simds) first = std::min(first, simd.next_end());
+  return first;
+}
+
 }  // namespace
 
 ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots,
@@ -94,8 +100,7 @@ Wake ShaderCore::accept_wake(const FifoIn<WarpToken>& in, bool vertex) const {
 Wake ShaderCore::issue_wake() const { return Wake(ready_.empty() ? kNever : ready_.front().at); }
 
 Wake ShaderCore::simd_wake() const {
-  Simd::Cycle first = Simd::kNever;
-  for (const Simd& simd : simds_) first = std::min(first, simd.next_end());
+  const Simd::Cycle first = first_end(simds_);
   return Wake(first == Simd::kNever ? kNever : clock().edge(first));
 }
 
@@ -146,7 +151,7 @@ void ShaderCore::act(Tick now) {
   else if (accept_wake(vertex_in, true).at() <= now) accept(now, vertex_in, true);
   while (issue_wake().at() <= now) issue(now);
   // The SIMDs issue at least until the first of their clauses ends.
-  if (const Tick until = simd_wake().at(); until != kNever) occupy(now, clock().edges_before(until) - clock().edges_before(now));
+  if (const Simd::Cycle until = first_end(simds_); until != Simd::kNever) occupy(now, until - clock().edges_before(now));
 }
 
 void ShaderCore::take_texels(Tick now) {

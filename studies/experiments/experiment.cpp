@@ -100,11 +100,7 @@ const Experiment kExperiments[] = {
 
 std::string figures_of(const Frame& frame) {
   pipeline::MachineConfig machine;
-  machine.begin_layer();
-  for (const std::string& setting : frame.settings) {
-    const std::size_t equals = setting.find('=');
-    machine.set(setting.substr(0, equals), setting.substr(equals + 1), "experiment");
-  }
+  apply_settings(machine, frame.settings);
   machine.check();
   const pipeline::RenderedFrame drawn = pipeline::render_exact(*frame.stream, machine, {});
   if (!drawn.figures.checks_hold()) throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(drawn.figures));
@@ -120,6 +116,14 @@ std::string verdict_text(const Verdict& v) {
 }
 
 }  // namespace
+
+void apply_settings(pipeline::MachineConfig& machine, const std::vector<std::string>& settings) {
+  machine.begin_layer();
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    machine.set(setting.substr(0, equals), setting.substr(equals + 1), "experiment");
+  }
+}
 
 std::span<const Experiment> experiments() { return kExperiments; }
 

@@ -61,6 +61,8 @@ struct Frame {
   const traces::CommandStream* stream = nullptr;
   std::vector<std::string> settings;
 };
+/// The default machine with settings `KEY=VALUE`. Throws `UserError` for one that is refused.
+void apply_settings(pipeline::MachineConfig& machine, const std::vector<std::string>& settings);
 /// Figures of a frame, by name: "frame.cycles", and "KIND.COUNTER" summed over the units of a kind ("memory.bus_busy", "memory.cycles").
 class Readings {
  public:

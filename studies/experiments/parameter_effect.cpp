@@ -1,7 +1,5 @@
 #include "studies/experiments/parameter_effect.h"
 
-#include "models/base/error.h"
-
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -58,7 +56,7 @@ constexpr std::pair<std::string_view, Effect> kNamed[] = {
 };
 
 /// More of what ends so is slower; of all others faster.
-constexpr std::array<std::string_view, 3> kSlowerEndings{"_clk", "latency", "_slots_clk"};
+constexpr std::array<std::string_view, 2> kSlowerEndings{"_clk", "latency"};
 
 }  // namespace
 
@@ -79,17 +77,6 @@ std::string_view effect_name(Effect effect) {
     case kNeutral: return "neutral";
   }
   return "";
-}
-
-bool refused(const std::vector<std::string>& settings, const std::string& change) {
-  try {
-    pipeline::MachineConfig machine;
-    machine.begin_layer();
-    for (const std::string& s : settings) machine.set(s.substr(0, s.find('=')), s.substr(s.find('=') + 1), "experiment");
-    machine.set(change.substr(0, change.find('=')), change.substr(change.find('=') + 1), "experiment");
-    machine.check();
-    return false;
-  } catch (const UserError&) { return true; }
 }
 
 }  // namespace quadrille::studies::experiments

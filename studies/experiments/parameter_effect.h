@@ -1,11 +1,8 @@
 /// What more of each parameter does, as it is declared.
 #pragma once
 
-#include "pipeline/machine_config.h"
-
-#include <string>
+#include <cstdint>
 #include <string_view>
-#include <vector>
 
 namespace quadrille::studies::experiments {
 
@@ -18,8 +15,5 @@ enum class Effect : std::uint8_t {
 };
 [[nodiscard]] Effect effect_of(std::string_view path);
 [[nodiscard]] std::string_view effect_name(Effect effect);
-
-/// Is the machine with `settings` and `change` refused?
-[[nodiscard]] bool refused(const std::vector<std::string>& settings, const std::string& change);
 
 }  // namespace quadrille::studies::experiments

@@ -2,10 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "models/base/error.h"
 #include "studies/experiments/experiment.h"
@@ -74,37 +72,57 @@ std::string fault(const Change& c, double part) {
   return wrong ? fmt::format("{:+.1f} %", 100 * part) : std::string();
 }
 
+bool refused(std::vector<std::string> settings, const std::string& change) {
+  settings.push_back(change);
+  try {
+    pipeline::MachineConfig machine;
+    apply_settings(machine, settings);
+    machine.check();
+    return false;
+  } catch (const UserError&) { return true; }
+}
+
+/// More of a number; of a word, on.
+bool is_more(const hw::ParamBase& p, const std::string& value) {
+  if (p.is_word() || value == "true" || value == "false") return value == "true";
+  return std::stod(value) > std::stod(p.value_text());
+}
+
+/// All changes of one parameter that the machine takes.
+void add_changes(std::vector<Change>& changes, std::size_t ground, const std::string& group, const hw::ParamBase& p) {
+  const std::string path = group + "." + std::string(p.name());
+  if (effect_of(path) == Effect::kPicture) return;
+  for (const std::string& value : values_of(p)) {
+    if (!refused(grounds()[ground].settings, fmt::format("{}={}", path, value)))
+      changes.push_back({path, value, ground, is_more(p, value)});
+  }
+}
+
+std::vector<Change> all_changes() {
+  std::vector<Change> changes;
+  for (std::size_t g = 0; g < grounds().size(); ++g) {
+    pipeline::MachineConfig machine;
+    apply_settings(machine, grounds()[g].settings);
+    for (const auto& [group, params] : machine.groups())
+      for (const hw::ParamBase* p : params->params()) add_changes(changes, g, group, *p);
+  }
+  return changes;
+}
+
 }  // namespace
 
 Result parameters(const Setting& setting) {
   std::vector<std::pair<std::string, traces::CommandStream>> streams;
   for (const auto& [name, load] : setting.scenes) streams.emplace_back(name, load());
+  const std::vector<Change> changes = all_changes();
   std::vector<Frame> frames;
-  std::vector<Change> changes;
-  const std::size_t bases = grounds().size() * streams.size();
   for (const Ground& ground : grounds())
     for (const auto& [name, stream] : streams) frames.push_back({&stream, ground.settings});
-  for (std::size_t g = 0; g < grounds().size(); ++g) {
-    pipeline::MachineConfig machine;
-    machine.begin_layer();
-    for (const std::string& s : grounds()[g].settings) machine.set(s.substr(0, s.find('=')), s.substr(s.find('=') + 1), "experiment");
-    for (const auto& [group, params] : machine.groups()) {
-      for (const hw::ParamBase* p : params->params()) {
-        const std::string path = group + "." + std::string(p->name());
-        if (effect_of(path) == Effect::kPicture) continue;
-        for (const std::string& value : values_of(*p)) {
-          const std::string change = fmt::format("{}={}", path, value);
-          if (refused(grounds()[g].settings, change)) continue;
-          const bool more = p->is_word() || p->value_text() == "true" || p->value_text() == "false"
-                                ? value == "true"
-                                : std::stod(value) > std::stod(p->value_text());
-          for (const auto& [name, stream] : streams) {
-            frames.push_back({&stream, grounds()[g].settings});
-            frames.back().settings.push_back(change);
-          }
-          changes.push_back({path, value, g, more});
-        }
-      }
+  const std::size_t bases = frames.size();
+  for (const Change& c : changes) {
+    for (const auto& [name, stream] : streams) {
+      frames.push_back({&stream, grounds()[c.ground].settings});
+      frames.back().settings.push_back(fmt::format("{}={}", c.path, c.value));
     }
   }
   const std::vector<Readings> read = draw(frames, setting);

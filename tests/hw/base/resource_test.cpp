@@ -1,0 +1,68 @@
+/// Resources of a unit: what slices hold, and what becomes of them when a frame is long.
+#include "hw/base/resource.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille::hw;
+
+namespace {
+
+constexpr Tick kSlice = Resources::kFirstSlice;
+
+/// A rate whose work is set by hand.
+struct Worked {
+  double cycles = 0;
+  Resources resources;
+  Worked() {
+    resources.add({.name = "rate", .cycles = [this] { return cycles; }});
+  }
+  [[nodiscard]] const std::vector<double>& slices() const { return resources.all().front().at_end_of; }
+};
+
+}  // namespace
+
+TEST_CASE("resources: a slice ends with the work done before it, and the last one with the frame") {
+  Worked w;
+  w.cycles = 10;
+  w.resources.note(kSlice / 2, 1);
+  CHECK(w.slices().empty());
+  w.resources.note(kSlice, 1);
+  w.cycles = 30;
+  w.resources.note(3 * kSlice + 1, 1);  // two slices without an action
+  w.cycles = 35;
+  w.resources.finish(3 * kSlice + 2, kSlice);
+  CHECK(w.slices() == std::vector<double>{10, 30, 30, 35});
+}
+
+TEST_CASE("resources: slices of a long frame are joined in pairs, and none of the work is lost") {
+  Worked w;
+  const auto actions = static_cast<Tick>(5 * Resources::kMostSlices);
+  for (Tick i = 1; i <= actions; ++i) {
+    w.cycles = static_cast<double>(i);
+    w.resources.note(i * kSlice, 1);
+  }
+  w.resources.finish(actions * kSlice, w.resources.slice());
+  CHECK(w.resources.slice() == 8 * kSlice);
+  CHECK(w.slices().size() == 5 * Resources::kMostSlices / 8);
+  for (std::size_t i = 0; i < w.slices().size(); ++i) REQUIRE(w.slices()[i] == 8.0 * static_cast<double>(i + 1));
+}
+
+TEST_CASE("resources: a unit with longer slices sets those of all") {
+  Worked w;
+  for (Tick i = 1; i <= 6; ++i) {
+    w.cycles = static_cast<double>(i);
+    w.resources.note(i * kSlice, 1);
+  }
+  w.resources.finish(7 * kSlice, 4 * kSlice);
+  CHECK(w.slices() == std::vector<double>{4, 6});
+}
+
+TEST_CASE("resources: places count the cycles in which all were taken") {
+  bool full = false;
+  Resources resources;
+  resources.add({.name = "slots", .kind = Resource::Kind::kPlaces, .full = [&full] { return full; }});
+  resources.note(1, 5);
+  full = true;
+  resources.note(2, 7);
+  CHECK(resources.all().front().total() == 7);
+}
