@@ -21,7 +21,6 @@ struct Resource {
   Kind kind = Kind::kRate;
   std::string_view serial = {};
   std::function<double()> cycles = {};  ///< kRate: so far, of the unit's clock
-  std::function<bool()> full = {};      ///< kPlaces: now
   double taken = 0;                     ///< kPlaces: cycles in which it was full, so far
   std::vector<double> at_end_of = {};   ///< by slice: what it had come to
   [[nodiscard]] double total() const { return kind == Kind::kRate ? cycles() : taken; }
@@ -34,14 +33,22 @@ class Resources {
   /// Length of a slice at first; it doubles whenever a frame would have more than kMostSlices.
   static constexpr Tick kFirstSlice = 512'000'000;  // fs: 512 cycles at 1 GHz
 
-  void add(Resource resource) { all_.push_back(std::move(resource)); }
+  /// Work so far, in cycles of the unit's clock at its peak rate.
+  void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
+    all_.push_back({.name = name, .kind = Resource::Kind::kRate, .serial = serial, .cycles = std::move(cycles)});
+  }
+  /// Are all places taken now?
+  void add_places(std::string_view name, std::function<bool()> full) {
+    places_.push_back({all_.size(), std::move(full)});
+    all_.push_back({.name = name, .kind = Resource::Kind::kPlaces});
+  }
   [[nodiscard]] bool empty() const { return all_.empty(); }
   [[nodiscard]] const std::vector<Resource>& all() const { return all_; }
   [[nodiscard]] Tick slice() const { return slice_; }
-  /// An action follows at `now`; nothing has changed in the `cycles` before it.
-  void note(Tick now, double cycles) {
-    for (Resource& r : all_)
-      if (r.kind == Resource::Kind::kPlaces && r.full()) r.taken += cycles;
+  /// An action follows at `now`; nothing has changed since `since`. Called before every action of a unit.
+  void note(Tick now, Tick since, Tick period) {
+    for (const Place& place : places_)
+      if (place.full()) all_[place.of].taken += static_cast<double>(now - since) / static_cast<double>(period);
     if (now >= next_slice_) end_slices(now);
   }
   /// The slices up to `end`, of `slice` each, which is at least `slice()` and a power of two times it.
@@ -50,7 +57,12 @@ class Resources {
  private:
   void end_slices(Tick now);
   void double_slice();
+  struct Place {
+    std::size_t of;  ///< in `all_`
+    std::function<bool()> full;
+  };
   std::vector<Resource> all_;
+  std::vector<Place> places_;
   Tick slice_ = kFirstSlice, next_slice_ = kFirstSlice;
 };
 

@@ -114,7 +114,7 @@ class Unit : public sc_core::sc_module {
   /// Charges the gap before the action, then acts. `wake` is what `wake()` answers now.
   void perform(const Wake& wake) {
     const Tick now = wake.at();
-    if (!resources_.empty()) resources_.note(now, cycles_since_last(now));
+    if (!resources_.empty()) resources_.note(now, last_action_ < 0 ? now : last_action_, clock_.period());
     last_action_ = now;
     if (now > accounted_) charge_gap(wake);
     ++actions_;
@@ -167,21 +167,16 @@ class Unit : public sc_core::sc_module {
   // What the unit needs for its work, named in its constructor; names are those of the parameters that set them, where one does. The initiation slot is a rate
   // whose work is the busy cycles.
   void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
-    resources_.add({.name = name, .kind = Resource::Kind::kRate, .serial = serial, .cycles = std::move(cycles)});
+    resources_.add_rate(name, std::move(cycles), serial);
   }
   void add_initiation_rate(std::string_view name) {
     add_rate(name, [this] { return static_cast<double>(busy_cycles()); });
   }
-  void add_places(std::string_view name, std::function<bool()> full) {
-    resources_.add({.name = name, .kind = Resource::Kind::kPlaces, .full = std::move(full)});
-  }
+  void add_places(std::string_view name, std::function<bool()> full) { resources_.add_places(name, std::move(full)); }
 
  private:
   /// Accounts are kept in spans: ticks where all cycles are equal (no division on the way), cycles elsewhere. Both arguments are edges.
   [[nodiscard]] std::int64_t span(Tick from, Tick to) const { return clock_.uniform() ? to - from : clock_.cycles(from, to); }
-  [[nodiscard]] double cycles_since_last(Tick now) const {
-    return last_action_ < 0 ? 0 : static_cast<double>(now - last_action_) / static_cast<double>(clock_.period());
-  }
   void charge_gap(const Wake& wake) {
     if (wake.waited_until() > accounted_) charge_wait(wake.waited_until(), wake.cause());
     if (wake.at() > accounted_) {

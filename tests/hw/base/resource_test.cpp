@@ -14,7 +14,7 @@ struct Worked {
   double cycles = 0;
   Resources resources;
   Worked() {
-    resources.add({.name = "rate", .cycles = [this] { return cycles; }});
+    resources.add_rate("rate", [this] { return cycles; });
   }
   [[nodiscard]] const std::vector<double>& slices() const { return resources.all().front().at_end_of; }
 };
@@ -24,11 +24,11 @@ struct Worked {
 TEST_CASE("resources: a slice ends with the work done before it, and the last one with the frame") {
   Worked w;
   w.cycles = 10;
-  w.resources.note(kSlice / 2, 1);
+  w.resources.note(kSlice / 2, 0, 1);
   CHECK(w.slices().empty());
-  w.resources.note(kSlice, 1);
+  w.resources.note(kSlice, 0, 1);
   w.cycles = 30;
-  w.resources.note(3 * kSlice + 1, 1);  // two slices without an action
+  w.resources.note(3 * kSlice + 1, 0, 1);  // two slices without an action
   w.cycles = 35;
   w.resources.finish(3 * kSlice + 2, kSlice);
   CHECK(w.slices() == std::vector<double>{10, 30, 30, 35});
@@ -39,7 +39,7 @@ TEST_CASE("resources: slices of a long frame are joined in pairs, and none of th
   const auto actions = static_cast<Tick>(5 * Resources::kMostSlices);
   for (Tick i = 1; i <= actions; ++i) {
     w.cycles = static_cast<double>(i);
-    w.resources.note(i * kSlice, 1);
+    w.resources.note(i * kSlice, 0, 1);
   }
   w.resources.finish(actions * kSlice, w.resources.slice());
   CHECK(w.resources.slice() == 8 * kSlice);
@@ -51,7 +51,7 @@ TEST_CASE("resources: a unit with longer slices sets those of all") {
   Worked w;
   for (Tick i = 1; i <= 6; ++i) {
     w.cycles = static_cast<double>(i);
-    w.resources.note(i * kSlice, 1);
+    w.resources.note(i * kSlice, 0, 1);
   }
   w.resources.finish(7 * kSlice, 4 * kSlice);
   CHECK(w.slices() == std::vector<double>{4, 6});
@@ -60,9 +60,9 @@ TEST_CASE("resources: a unit with longer slices sets those of all") {
 TEST_CASE("resources: places count the cycles in which all were taken") {
   bool full = false;
   Resources resources;
-  resources.add({.name = "slots", .kind = Resource::Kind::kPlaces, .full = [&full] { return full; }});
-  resources.note(1, 5);
+  resources.add_places("slots", [&full] { return full; });
+  resources.note(10, 0, 2);
   full = true;
-  resources.note(2, 7);
+  resources.note(24, 10, 2);
   CHECK(resources.all().front().total() == 7);
 }

@@ -33,8 +33,10 @@ struct CoreBench final : Bench {
     DrawState draw;
     draw.vertex_program = &vertex_program;
     draw.fragment_program = &fragment_program;
+    draw.fragment_constants.assign(fragment_program.constants.words, 0);
     frame.draws = {draw};
     triangles[0] = flat_triangle({glm::ivec2{0, 0}, {0, 40}, {40, 0}});
+    triangles[0].varyings.assign(3, 0);
     for (std::uint32_t i = 0; i < 8; ++i) {
       batches[i].lanes = 5;
       batches[i].outputs.resize(4);
@@ -140,6 +142,27 @@ TEST_CASE("shader_core: a chain of dependent instructions takes its length times
       CHECK(cycles_of(s, repeated(c.line, 96), 1) - cycles_of(s, repeated(c.line, 32), 1) == 64 * std::max(c.issue, latency));
     }
   }
+}
+
+TEST_CASE("shader_core: varyings and indexed constants are there after the latencies of their classes") {
+  // A value, and one instruction that reads it; then the value again, which waits for nothing.
+  const auto period = [](const CoreBench::Setup& s, const std::string& head, const std::string& lines) {
+    return cycles_of(s, head + repeated(lines, 24), 1) - cycles_of(s, head + repeated(lines, 8), 1);
+  };
+  for (const int latency : {0, 12, 40}) {
+    const int expected = 16 * (std::max(4, latency) + 4);
+    CHECK(period({.simds = 1, .alu_clk = 0, .interp_clk = latency}, ".varying perspective\n", "interp r0, vary0\nieq r1, r0, r2\n") ==
+          expected);
+    CHECK(period({.simds = 1, .alu_clk = 0, .const_clk = latency}, ".literal c0 1 2 3\n", "loadconst r0, c1, r8, 2\nieq r2, r0, r3\n") ==
+          expected);
+  }
+}
+
+TEST_CASE("shader_core: waiting for operands is counted apart from issuing") {
+  CoreBench::Setup s{.code = repeated(kDependent, 10), .fragment = work(0, 1), .simds = 1, .alu_clk = 20};
+  const auto text = run<CoreBench>(
+      s, [](const CoreBench& b) { return fmt::format("{} {}", counter(*b.unit, "simd_busy"), counter(*b.unit, "operand_waits")); });
+  CHECK(text == "41 144");  // ten of four cycles and the end; nine times sixteen
 }
 
 TEST_CASE("shader_core: independent instructions are bound by their issue, whatever the latency") {
