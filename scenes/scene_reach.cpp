@@ -1,5 +1,7 @@
 #include "scenes/scene_reach.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -37,21 +39,28 @@ Extent extent_of(const PlacedScene& scene) {
   return extent;
 }
 
-double reach_of(const Bounds& box, const glm::dvec3& direction) {
-  double sum = 0;
-  for (int c = 0; c < 3; ++c)
-    sum += std::max(direction[c] * static_cast<double>(box.low[c]), direction[c] * static_cast<double>(box.high[c]));
-  return sum;
+Reaches reach_of(const Bounds& box, const Directions& directions) {
+  Reaches reaches{};
+  for (std::size_t d = 0; d < directions.size(); ++d)
+    for (int c = 0; c < 3; ++c)
+      reaches[d] += std::max(directions[d][c] * static_cast<double>(box.low[c]), directions[d][c] * static_cast<double>(box.high[c]));
+  return reaches;
 }
 
-double reach_of(const Array& points, const glm::dvec3& direction) {
-  double most = -std::numeric_limits<double>::infinity();
+/// The four directions stand side by side in a vector.
+Reaches reach_of(const Array& points, const Directions& d) {
+  const __m256d x = _mm256_setr_pd(d[0].x, d[1].x, d[2].x, d[3].x), y = _mm256_setr_pd(d[0].y, d[1].y, d[2].y, d[3].y),
+                z = _mm256_setr_pd(d[0].z, d[1].z, d[2].z, d[3].z);
+  __m256d most = _mm256_set1_pd(-std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < points.count; ++i) {
-    glm::vec3 point;
-    std::memcpy(&point, &points.data[i * sizeof(point)], sizeof(point));
-    most = std::max(most, glm::dot(direction, glm::dvec3(point)));
+    std::array<float, 3> p;
+    std::memcpy(p.data(), &points.data[i * sizeof(p)], sizeof(p));
+    const auto times = [](const __m256d& along, float by) { return _mm256_mul_pd(along, _mm256_set1_pd(static_cast<double>(by))); };
+    most = _mm256_max_pd(_mm256_add_pd(_mm256_add_pd(times(x, p[0]), times(y, p[1])), times(z, p[2])), most);
   }
-  return most;
+  Reaches reaches;
+  _mm256_storeu_pd(reaches.data(), most);
+  return reaches;
 }
 
 }  // namespace
@@ -92,11 +101,10 @@ Reaches SceneReach::operator()(const Directions& directions) const {
   for (const Part& part : parts_) {
     const glm::dvec3 place = glm::dvec3(part.world[3]) - origin_;
     const glm::dmat3 back = glm::transpose(glm::dmat3(part.world));
-    for (std::size_t d = 0; d < directions.size(); ++d) {
-      const glm::dvec3 direction = back * directions[d];
-      const double reach = part.points != nullptr ? reach_of(*part.points, direction) : reach_of(part.box, direction);
-      reaches[d] = std::max(reaches[d], glm::dot(directions[d], place) + reach);
-    }
+    Directions own;
+    for (std::size_t d = 0; d < directions.size(); ++d) own[d] = back * directions[d];
+    const Reaches reach = part.points != nullptr ? reach_of(*part.points, own) : reach_of(part.box, own);
+    for (std::size_t d = 0; d < directions.size(); ++d) reaches[d] = std::max(reaches[d], glm::dot(directions[d], place) + reach[d]);
   }
   return reaches;
 }

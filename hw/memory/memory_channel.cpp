@@ -117,7 +117,7 @@ Wake MemoryChannel::next() const {
 
 void MemoryChannel::act(Tick now) {
   const std::int64_t cycle = clock().edges_before(now);
-  while (request_in.ready_at(now) && take_wake().at() <= now) take(now, cycle);
+  while (request_in.ready_at(now) && controller_.room(request_in.front().kind == MemoryRequest::Kind::kWrite)) take(now, cycle);
   if (controller_.next() <= cycle) {
     note_occupancy(cycle);
     done_.clear();

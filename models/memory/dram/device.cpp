@@ -2,11 +2,15 @@
 
 #include "models/base/error.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 
 namespace quadrille::models {
 
 namespace {
+constexpr std::size_t kLanes = 4;  // of 64 bits in a vector register
+
 void raise(DramDevice::Cycle& bound, DramDevice::Cycle to) { bound = std::max(bound, to); }
 }  // namespace
 
@@ -15,7 +19,7 @@ DramDevice::DramDevice(const DramTiming& timing)
       banks_(static_cast<std::size_t>(timing.all_banks())),
       groups_(static_cast<std::size_t>(timing.ranks * timing.bank_groups)),
       ranks_(static_cast<std::size_t>(timing.ranks)),
-      bounds_(kGroupRules * groups_.size() + 1, 0) {
+      bounds_((kGroupRules * groups_.size() + 1 + kLanes - 1) / kLanes * kLanes, 0) {
   QUADRILLE_CHECK(
       timing.banks > 0 && timing.bank_groups > 0 && timing.banks % timing.bank_groups == 0 && timing.ranks > 0 && timing.t_burst > 0,
       "{} ranks of {} banks in {} groups, burst of {}", timing.ranks, timing.banks, timing.bank_groups, timing.t_burst);
@@ -97,9 +101,14 @@ void DramDevice::column(std::uint32_t bank, bool write, bool precharge_after, Cy
   last_rank_ = b.rank;
   last_group_ = b.group;
   last_command_ = at;
-  const std::size_t rules = bounds_.size();
-  const Cycle* gaps = gaps_[write].data() + b.group * rules;
-  for (std::size_t rule = 0; rule < rules; ++rule) raise(bounds_[rule], at + gaps[rule]);
+  const Cycle* gaps = gaps_[write].data() + b.group * bounds_.size();
+  const __m256i now = _mm256_set1_epi64x(at);
+  for (std::size_t rule = 0; rule < bounds_.size(); rule += kLanes) {
+    auto* const bounds = reinterpret_cast<__m256i*>(&bounds_[rule]);
+    const __m256i held = _mm256_loadu_si256(bounds);
+    const __m256i to = _mm256_add_epi64(now, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(gaps + rule)));
+    _mm256_storeu_si256(bounds, _mm256_blendv_epi8(held, to, _mm256_cmpgt_epi64(to, held)));
+  }
   raise(b.precharge, write ? data_start(true, at) + t_.t_burst + t_.t_wr : at + t_.t_rtp);
   if (precharge_after) precharge(bank, b.precharge);
 }

@@ -100,7 +100,7 @@ class DramDevice {
   std::vector<Bank> banks_;
   std::vector<Group> groups_;
   std::vector<Rank> ranks_;
-  std::vector<Cycle> bounds_;  ///< by rule
+  std::vector<Cycle> bounds_;  ///< by rule; filled up to whole vectors
   std::array<std::vector<Cycle>, 2>
       gaps_;  ///< column_gap() of reads and of writes to each rule, one row of rules for each group that the burst is of
   // The data bus.

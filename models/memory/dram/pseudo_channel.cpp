@@ -173,17 +173,19 @@ DramCommand DramController::PseudoChannel::command(Step step, std::uint32_t bank
   return c;
 }
 
-bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, std::vector<DramDone>& done, DramCommand& command) {
+bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, std::vector<DramDone>& done, DramCommand* command) {
   DramEntry& entry = queue_[index];
   const std::uint32_t bank = entry.at.bank;
   const int burst = std::countr_zero(entry.bursts);
   entry.bursts &= entry.bursts - 1;
   const bool last = entry.bursts == 0;
   const bool closes = page_.closes_with(queue_, index, last);
-  command.row = entry.at.row;
-  command.column = static_cast<std::int32_t>(entry.at.column) * static_cast<int>(kLineBytes) / params_.timing.burst_bytes + burst;
-  command.kind = entry.write ? (closes ? DramCommandKind::kWritePrecharge : DramCommandKind::kWrite)
-                             : (closes ? DramCommandKind::kReadPrecharge : DramCommandKind::kRead);
+  if (command != nullptr) {
+    command->row = entry.at.row;
+    command->column = static_cast<std::int32_t>(entry.at.column) * static_cast<int>(kLineBytes) / params_.timing.burst_bytes + burst;
+    command->kind = entry.write ? (closes ? DramCommandKind::kWritePrecharge : DramCommandKind::kWrite)
+                                : (closes ? DramCommandKind::kReadPrecharge : DramCommandKind::kRead);
+  }
   const auto data = [&](Cycle at) { return device_.data_start(entry.write, at); };
   BurstWaits waits;
   if (data(now) > bus_.charged())
@@ -213,7 +215,7 @@ void DramController::PseudoChannel::perform(const Action& action, Cycle now, std
     case Step::kNothing: return;
     case Step::kColumn: {
       ++(queue_[action.entry].write ? counts.writes : counts.reads);
-      changes_picks = move_burst(action.entry, now, done, sent);
+      changes_picks = move_burst(action.entry, now, done, trace ? &sent : nullptr);
       break;
     }
     case Step::kActivate:

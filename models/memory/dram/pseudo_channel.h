@@ -79,8 +79,8 @@ class DramController::PseudoChannel {
                const std::function<void(const DramCommand&)>& trace);
   void chain_bursts(Action action, std::vector<DramDone>& done, DramCommandCounts& counts,
                     const std::function<void(const DramCommand&)>& trace);
-  /// True when it was the request's last one.
-  bool move_burst(std::uint32_t entry, Cycle now, std::vector<DramDone>& done, DramCommand& command);
+  /// True when it was the request's last one. Fills in `command` where there is one.
+  bool move_burst(std::uint32_t entry, Cycle now, std::vector<DramDone>& done, DramCommand* command);
   [[nodiscard]] DramCommand command(Step step, std::uint32_t bank, Cycle now) const;
 
   const DramControllerParams& params_;
