@@ -112,7 +112,8 @@ std::string plain(const Description& d) {
     text += fmt::format("{}\n", path);
     for (const hw::ParamBase* p : params) {
       const std::string changed = p->value_text() == p->default_text() ? "" : fmt::format(" (default {})", p->default_text());
-      text += fmt::format("  {:<24} = {}{} {}   [{}]  {}\n", p->name(), p->value_text(), changed, p->unit(), p->legal_text(), p->reason());
+      text += fmt::format("  {:<24} = {}{} {}   [{}; more: {}]  {}\n", p->name(), p->value_text(), changed, p->unit(), p->legal_text(),
+                          hw::effect_name(p->effect()), p->reason());
     }
   }
   for (const auto& [kind, counters] : d.units()) {
@@ -132,10 +133,11 @@ std::string cell(std::string_view text) {
 std::string markdown(const Description& d) {
   std::string parameters, counters;
   for (const auto& [path, params] : d.groups()) {
-    parameters += fmt::format("\n## {}\n\n| parameter | default | unit | legal | what and why |\n|---|---|---|---|---|\n", path);
+    parameters +=
+        fmt::format("\n## {}\n\n| parameter | default | unit | legal | more is | what and why |\n|---|---|---|---|---|---|\n", path);
     for (const hw::ParamBase* p : params) {
-      parameters += fmt::format("| `{}` | {} | {} | {} | {} |\n", p->name(), p->default_text(), cell(p->unit()), cell(p->legal_text()),
-                                cell(p->reason()));
+      parameters += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", p->name(), p->default_text(), cell(p->unit()), cell(p->legal_text()),
+                                hw::effect_name(p->effect()), cell(p->reason()));
     }
   }
   for (const auto& [kind, counted] : d.units()) {
@@ -151,7 +153,9 @@ std::string markdown(const Description& d) {
         "A file may begin with `base = \"large\"`, or the path of another file: it then says only what differs. `quadrille describe "
         "machine NAME "
         "--toml` writes a machine out whole.\n"
-        "A tag in brackets is the source of the default ([sources](sources.md)); `[G]` is a guess.\n" +
+        "A tag in brackets is the source of the default ([sources](sources.md)); `[G]` is a guess.\n"
+        "What more of a number, or `true`, does to the cycles of a frame stands under \"more is\": faster, slower, a trade-off, another "
+        "picture, or nothing (neutral). `quadrille experiment parameters` holds each to it.\n" +
         parameters;
   }
   if (!counters.empty()) {
@@ -173,6 +177,7 @@ std::string json(const Description& d) {
                                                          {"default", nlohmann::ordered_json::parse(p->default_literal())},
                                                          {"unit", p->unit()},
                                                          {"legal", p->legal_text()},
+                                                         {"more", hw::effect_name(p->effect())},
                                                          {"reason", p->reason()}};
     }
   }

@@ -36,64 +36,110 @@ namespace quadrille::pipeline {
 /// The whole: how many of each unit, clocks, widths.
 struct GpuParams : hw::ParamGroup {
   hw::Param<int> cores{*this, "cores", 4, "core", {1, 64}, "Shader cores, each with a texture unit. [G: a small integrated GPU]"};
-  hw::Param<int> partitions{*this,       "partitions", 2,
-                            "partition", {1, 64},      "Screen partitions, each with a depth unit, a warp packer and a ROP. [G]"};
+  hw::Param<int> partitions{*this,
+                            "partitions",
+                            2,
+                            "partition",
+                            {1, 64},
+                            "Screen partitions, each with a depth unit, a warp packer and a ROP. [G]",
+                            hw::Effect::kTradeOff};
   hw::Param<int> channels{*this, "channels", 2, "channel", {1, 64}, "Memory channels, each with an L2 slice. [G]"};
-  hw::Param<double> clock_mhz{*this, "clock_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of everything but the memory channels. [G]"};
+  hw::Param<double> clock_mhz{
+      *this, "clock_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of everything but the memory channels. [G]", hw::Effect::kTradeOff};
   hw::Param<double> memory_mhz{*this, "memory_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of the memory channels. [G]"};
-  hw::Param<int> memory_mib{*this, "memory_mib", 4096, "MiB", {1, 16384}, "Device memory. [G]"};
-  hw::Param<int> subpixel_bits{*this, "subpixel_bits", 8,
-                               "bit", {4, 12},         "Fractional bits of window positions. [VK1.3 limit subPixelPrecisionBits]"};
-  hw::Param<int> subtexel_bits{*this, "subtexel_bits", 8,
-                               "bit", {1, 8},          "Fractional bits of texture coordinates. [VK1.3 limit subTexelPrecisionBits]"};
-  hw::Param<int> lod_bits{*this, "lod_bits", 8, "bit", {1, 8}, "Fractional bits of the level of detail. [VK1.3 limit mipmapPrecisionBits]"};
-  hw::Param<bool> linear_log2{*this, "linear_log2", false, "",
-                              "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]"};
+  hw::Param<int> memory_mib{*this, "memory_mib", 4096, "MiB", {1, 16384}, "Device memory. [G]", hw::Effect::kNeutral};
+  hw::Param<int> subpixel_bits{*this,
+                               "subpixel_bits",
+                               8,
+                               "bit",
+                               {4, 12},
+                               "Fractional bits of window positions. [VK1.3 limit subPixelPrecisionBits]",
+                               hw::Effect::kPicture};
+  hw::Param<int> subtexel_bits{*this,
+                               "subtexel_bits",
+                               8,
+                               "bit",
+                               {1, 8},
+                               "Fractional bits of texture coordinates. [VK1.3 limit subTexelPrecisionBits]",
+                               hw::Effect::kPicture};
+  hw::Param<int> lod_bits{*this,
+                          "lod_bits",
+                          8,
+                          "bit",
+                          {1, 8},
+                          "Fractional bits of the level of detail. [VK1.3 limit mipmapPrecisionBits]",
+                          hw::Effect::kPicture};
+  hw::Param<bool> linear_log2{*this,
+                              "linear_log2",
+                              false,
+                              "",
+                              "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]",
+                              hw::Effect::kPicture};
 };
+
+/// How many tokens the producer of a link can have for it: what that does not reach, more depth or width does nothing.
+enum class LinkFlow : std::uint8_t { kSeveralACycle, kOneACycle, kOneAPass };
 
 /// One class of links. Full rate needs depth >= width * (latency + credit_latency).
 struct LinkParams : hw::ParamGroup {
-  LinkParams(int depth_default, int width_default, int latency_default)
-      : depth{*this, "depth", depth_default, "token", {1, 1 << 20}, "Tokens the link holds."},
-        width{*this, "width", width_default, "token/clk", {1, 64}, "Tokens a cycle."},
-        latency{*this, "latency", latency_default, "clk", {1, 1 << 24}, "Cycles from push to visibility."},
-        credit_latency{*this, "credit_latency", 1, "clk", {1, 1 << 24}, "Cycles from pop to a usable slot."} {}
+  LinkParams(int depth_default, int width_default, int latency_default, LinkFlow flow = LinkFlow::kSeveralACycle)
+      : depth{*this, "depth", depth_default, "token", {1, 1 << 20}, "Tokens the link holds.", unless_one_a_pass(flow, hw::Effect::kFaster)},
+        width{*this,
+              "width",
+              width_default,
+              "token/clk",
+              {1, 64},
+              "Tokens a cycle.",
+              flow == LinkFlow::kSeveralACycle ? hw::Effect::kFaster : hw::Effect::kNeutral},
+        latency{*this, "latency", latency_default, "clk", {1, 1 << 24}, "Cycles from push to visibility.", hw::Effect::kSlower},
+        credit_latency{*this,
+                       "credit_latency",
+                       1,
+                       "clk",
+                       {1, 1 << 24},
+                       "Cycles from pop to a usable slot.",
+                       unless_one_a_pass(flow, hw::Effect::kSlower)} {}
   hw::Param<int> depth, width, latency, credit_latency;
   [[nodiscard]] hw::LinkSpec spec() const { return {depth, width, latency, credit_latency}; }
+
+ private:
+  static hw::Effect unless_one_a_pass(LinkFlow flow, hw::Effect effect) {
+    return flow == LinkFlow::kOneAPass ? hw::Effect::kNeutral : effect;
+  }
 };
 
 struct Links {
-  LinkParams command_to_fetch{4, 1, 1};
-  LinkParams fetch_to_distributor{8, 1, 1};
+  LinkParams command_to_fetch{4, 1, 1, LinkFlow::kOneACycle};
+  LinkParams fetch_to_distributor{8, 1, 1, LinkFlow::kOneACycle};
   LinkParams fetch_to_assembly{64, 1, 1};
-  LinkParams setup_to_fetch{4, 1, 1};
-  LinkParams core_to_assembly{8, 1, 1};
+  LinkParams setup_to_fetch{4, 1, 1, LinkFlow::kOneACycle};
+  LinkParams core_to_assembly{8, 1, 1, LinkFlow::kOneACycle};
   LinkParams assembly_to_distributor{8, 4, 1};
   LinkParams assembly_to_clipper{8, 1, 1};
   LinkParams clipper_to_setup{8, 1, 4};
   LinkParams setup_to_coarse{16, 1, 4};
   LinkParams coarse_to_fine{32, 1, 2};
   LinkParams fine_to_depth{32, 1, 2};
-  LinkParams depth_to_coarse{16, 1, 4};
-  LinkParams depth_to_packer{16, 1, 2};
-  LinkParams packer_to_distributor{8, 1, 1};
-  LinkParams packer_to_rop{64, 1, 1};
+  LinkParams depth_to_coarse{16, 1, 4, LinkFlow::kOneACycle};
+  LinkParams depth_to_packer{16, 1, 2, LinkFlow::kOneACycle};
+  LinkParams packer_to_distributor{8, 1, 1, LinkFlow::kOneACycle};
+  LinkParams packer_to_rop{64, 1, 1, LinkFlow::kOneACycle};
   LinkParams rop_to_distributor{8, 4, 1};
-  LinkParams rop_to_packer{8, 1, 1};
-  LinkParams distributor_to_core{4, 1, 2};
+  LinkParams rop_to_packer{8, 1, 1, LinkFlow::kOneACycle};
+  LinkParams distributor_to_core{4, 1, 2, LinkFlow::kOneACycle};
   LinkParams core_to_rop{8, 1, 2};
-  LinkParams rop_to_depth{8, 1, 2};
-  LinkParams depth_to_rop{8, 1, 2};
-  LinkParams rop_to_setup{8, 1, 2};
-  LinkParams rop_to_command{8, 1, 2};
-  LinkParams core_to_texture{8, 1, 2};
-  LinkParams texture_to_core{8, 1, 2};
+  LinkParams rop_to_depth{8, 1, 2, LinkFlow::kOneACycle};
+  LinkParams depth_to_rop{8, 1, 2, LinkFlow::kOneACycle};
+  LinkParams rop_to_setup{8, 1, 2, LinkFlow::kOneACycle};
+  LinkParams rop_to_command{8, 1, 2, LinkFlow::kOneACycle};
+  LinkParams core_to_texture{8, 1, 2, LinkFlow::kOneACycle};
+  LinkParams texture_to_core{8, 1, 2, LinkFlow::kOneACycle};
   LinkParams client_to_l2{16, 1, 8};
   LinkParams l2_to_client{16, 1, 8};
   LinkParams l2_to_memory{16, 1, 2};
   LinkParams memory_to_l2{16, 1, 2};
-  LinkParams command_to_scan{2, 1, 1};
-  LinkParams scan_to_command{2, 1, 1};
+  LinkParams command_to_scan{2, 1, 1, LinkFlow::kOneAPass};
+  LinkParams scan_to_command{2, 1, 1, LinkFlow::kOneAPass};
 };
 
 class MachineConfig {

@@ -5,6 +5,17 @@
 
 namespace quadrille::hw {
 
+std::string_view effect_name(Effect effect) {
+  switch (effect) {
+    case Effect::kFaster: return "faster";
+    case Effect::kSlower: return "slower";
+    case Effect::kTradeOff: return "trade-off";
+    case Effect::kPicture: return "picture";
+    case Effect::kNeutral: return "neutral";
+  }
+  return "";
+}
+
 ParamBase* ParamGroup::find(std::string_view name) const {
   for (ParamBase* p : params_)
     if (p->name() == name) return p;
@@ -15,6 +26,12 @@ template <class T>
 std::string Param<T>::legal_text() const {
   if constexpr (std::is_same_v<T, bool>) return "true or false";
   else return fmt::format("{} to {}", range_.min, range_.max);
+}
+
+template <class T>
+std::vector<std::string_view> Param<T>::words() const {
+  if constexpr (std::is_same_v<T, bool>) return {"false", "true"};
+  else return {};
 }
 
 template <class T>

@@ -19,10 +19,21 @@ struct ParamRange {
   T max = std::numeric_limits<T>::max();
 };
 
+/// What more of a parameter does to the cycles of a frame: `quadrille experiment parameters` holds each to it.
+enum class Effect : std::uint8_t {
+  kFaster,    ///< more of it is never slower
+  kSlower,    ///< more of it is never faster
+  kTradeOff,  ///< either, by the frame
+  kPicture,   ///< another picture, and thereby another frame
+  kNeutral    ///< nothing: it bounds what frames do not reach
+};
+[[nodiscard]] std::string_view effect_name(Effect effect);
+
 /// A parameter seen without its type: what the loader and the documentation need.
 class ParamBase {
  public:
-  ParamBase(std::string_view name, std::string_view unit, std::string_view reason) : name_(name), unit_(unit), reason_(reason) {}
+  ParamBase(std::string_view name, std::string_view unit, std::string_view reason, Effect effect)
+      : name_(name), unit_(unit), reason_(reason), effect_(effect) {}
   virtual ~ParamBase() = default;
   ParamBase(const ParamBase&) = delete;
   ParamBase& operator=(const ParamBase&) = delete;
@@ -30,9 +41,13 @@ class ParamBase {
   [[nodiscard]] std::string_view name() const { return name_; }
   [[nodiscard]] std::string_view unit() const { return unit_; }
   [[nodiscard]] std::string_view reason() const { return reason_; }
+  /// What more of a number does, or what `true` does.
+  [[nodiscard]] Effect effect() const { return effect_; }
   [[nodiscard]] virtual std::string value_text() const = 0;
   [[nodiscard]] virtual std::string default_text() const = 0;
   [[nodiscard]] virtual std::string legal_text() const = 0;
+  /// All legal values of a word or a switch; empty for a number.
+  [[nodiscard]] virtual std::vector<std::string_view> words() const { return {}; }
   /// Is the value one of a list of words?
   [[nodiscard]] virtual bool is_word() const { return false; }
   /// Value and default as TOML and JSON write them: words in quotes.
@@ -43,6 +58,7 @@ class ParamBase {
 
  private:
   std::string_view name_, unit_, reason_;
+  Effect effect_;
 };
 
 /// The parameters of one unit. Not copyable: a unit keeps a reference to the group that the configuration owns.
@@ -64,12 +80,14 @@ class Param final : public ParamBase {
   static_assert(std::is_same_v<T, int> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, double> || std::is_same_v<T, bool>);
 
  public:
-  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, ParamRange<T> range, std::string_view reason)
-      : ParamBase(name, unit, reason), value_(value), default_(value), range_(range) {
+  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, ParamRange<T> range, std::string_view reason,
+        Effect effect = Effect::kFaster)
+      : ParamBase(name, unit, reason, effect), value_(value), default_(value), range_(range) {
     group.add(*this);
   }
-  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, std::string_view reason) requires std::is_same_v<T, bool>
-      : ParamBase(name, unit, reason), value_(value), default_(value) {
+  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, std::string_view reason,
+        Effect effect = Effect::kFaster) requires std::is_same_v<T, bool>
+      : ParamBase(name, unit, reason, effect), value_(value), default_(value) {
     group.add(*this);
   }
   operator T() const { return value_; }  // NOLINT(google-explicit-constructor): a parameter reads as its value
@@ -79,6 +97,7 @@ class Param final : public ParamBase {
   [[nodiscard]] std::string value_text() const override { return fmt::format("{}", value_); }
   [[nodiscard]] std::string default_text() const override { return fmt::format("{}", default_); }
   [[nodiscard]] std::string legal_text() const override;
+  [[nodiscard]] std::vector<std::string_view> words() const override;
   void parse(std::string_view text) override;
 
  private:
@@ -93,7 +112,7 @@ class Choice final : public ParamBase {
 
  public:
   Choice(ParamGroup& group, std::string_view name, E value, std::initializer_list<std::string_view> words, std::string_view reason)
-      : ParamBase(name, "", reason), value_(value), default_(value), words_(words) {
+      : ParamBase(name, "", reason, Effect::kTradeOff), value_(value), default_(value), words_(words) {
     group.add(*this);
   }
   operator E() const { return value_; }  // NOLINT(google-explicit-constructor): a parameter reads as its value
@@ -102,6 +121,7 @@ class Choice final : public ParamBase {
   [[nodiscard]] std::string value_text() const override { return std::string(word(value_)); }
   [[nodiscard]] std::string default_text() const override { return std::string(word(default_)); }
   [[nodiscard]] std::string legal_text() const override { return fmt::format("{}", fmt::join(words_, ", ")); }
+  [[nodiscard]] std::vector<std::string_view> words() const override { return words_; }
   [[nodiscard]] bool is_word() const override { return true; }
   [[nodiscard]] std::string literal() const override { return fmt::format("\"{}\"", value_text()); }
   [[nodiscard]] std::string default_literal() const override { return fmt::format("\"{}\"", default_text()); }

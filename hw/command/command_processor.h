@@ -18,8 +18,9 @@ namespace quadrille::hw {
 class CommandProcessor final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> draw_clk{*this,      "draw_clk",   16,
-                        "clk/draw", {1, 1 << 20}, "Cycles to issue a draw's state and launch it. [G: a few register writes a draw]"};
+    Param<int> draw_clk{*this,          "draw_clk",   16,
+                        "clk/draw",     {1, 1 << 20}, "Cycles to issue a draw's state and launch it. [G: a few register writes a draw]",
+                        Effect::kSlower};
     Param<int> draws_in_flight{*this,  "draws_in_flight", 32,
                                "draw", {1, 65536},        "Draws whose state is kept at a time. [G: context slots of the front end]"};
   };

@@ -25,7 +25,8 @@ class Clipper final : public Unit {
         "Triangles judged, or pieces handed on, a cycle; for more than one handed on link.clipper_to_setup.width must be as "
         "much. [G: one geometry engine]"};
     Param<int> clip_clk{*this,          "clip_clk", 12,
-                        "clk/triangle", {1, 4096},  "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]"};
+                        "clk/triangle", {1, 4096},  "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]",
+                        Effect::kSlower};
   };
   struct Stats : StatGroup {
     Counter triangles{*this, "triangles", "triangle", "Triangles taken in"};

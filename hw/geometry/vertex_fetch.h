@@ -33,16 +33,29 @@ class VertexFetch final : public Unit {
         models::ReusePolicy::kBatch,
         {"batch", "fifo", "none"},
         "A vertex is shaded once a batch, once while a FIFO across batches holds it, or for every corner. [P: Kerbl 2018]"};
-    Param<int> batch_vertices{*this,    "batch_vertices", 32,
-                              "vertex", {3, 32},          "Vertices shaded as one warp, of 32 lanes. [P: Kerbl 2018: a GeForce's batch]"};
-    Param<int> batch_triangles{*this,     "batch_triangles",
-                               32,        "triangle",
-                               {1, 1024}, "Triangles a batch may name. [P: Kerbl 2018: 32 on a GeForce, 128 on a Radeon]"};
-    Param<int> reuse_entries{*this,     "reuse_entries",
-                             32,        "vertex",
-                             {3, 1024}, "Vertices that the FIFO of reuse=fifo holds; no use otherwise. [G: as many as a batch]"};
+    Param<int> batch_vertices{*this,
+                              "batch_vertices",
+                              32,
+                              "vertex",
+                              {3, 32},
+                              "Vertices shaded as one warp, of 32 lanes. [P: Kerbl 2018: a GeForce's batch]",
+                              Effect::kTradeOff};
+    Param<int> batch_triangles{*this,
+                               "batch_triangles",
+                               32,
+                               "triangle",
+                               {1, 1024},
+                               "Triangles a batch may name. [P: Kerbl 2018: 32 on a GeForce, 128 on a Radeon]",
+                               Effect::kTradeOff};
+    Param<int> reuse_entries{*this,
+                             "reuse_entries",
+                             32,
+                             "vertex",
+                             {3, 1024},
+                             "Vertices that the FIFO of reuse=fifo holds; no use otherwise. [G: as many as a batch]",
+                             Effect::kTradeOff};
     Param<int> cache_lines{*this, "cache_lines", 128, "line", {1, 1 << 16}, "Lines of 128 bytes in the vertex cache. [G: 16 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 4, "way", {1, 64}, "Associativity of the vertex cache. [G]"};
+    Param<int> cache_ways{*this, "cache_ways", 4, "way", {1, 64}, "Associativity of the vertex cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this,  "cache_misses", 64,
                             "line", {1, 4096},      "Lines the vertex cache may have under way. [G: bandwidth times latency]"};
   };

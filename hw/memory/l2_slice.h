@@ -25,17 +25,23 @@ class L2Slice final : public Unit {
   enum class WriteBack : std::uint8_t { kVictim, kRow };
   struct Params : ParamGroup {
     Param<int> cache_lines{*this, "cache_lines", 4096, "line", {1, 1 << 24}, "Lines of 128 bytes in a slice. [G: 512 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 16, "way", {1, 64}, "Associativity. [G]"};
+    Param<int> cache_ways{*this, "cache_ways", 16, "way", {1, 64}, "Associativity. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this,  "cache_misses", 128,
                             "line", {1, 65536},     "Lines under way to and from the channel. [G: bandwidth times latency]"};
-    Param<int> hit_clk{*this, "hit_clk", 20, "clk", {1, 1 << 20}, "Latency from look-up to answer, or to the channel for a miss. [G]"};
+    Param<int> hit_clk{
+        *this, "hit_clk", 20, "clk", {1, 1 << 20}, "Latency from look-up to answer, or to the channel for a miss. [G]", Effect::kSlower};
     Choice<WriteBack> write_back{*this,
                                  "write_back",
                                  WriteBack::kVictim,
                                  {"victim", "row"},
                                  "A dirty victim leaves alone, or with the other dirty lines of its block. [P: Lee 2010]"};
-    Param<int> write_back_lines{*this,  "write_back_lines", 128,
-                                "line", {1, 4096},          "Lines of that block: those that lie in the same rows of all banks. [G]"};
+    Param<int> write_back_lines{*this,
+                                "write_back_lines",
+                                128,
+                                "line",
+                                {1, 4096},
+                                "Lines of that block: those that lie in the same rows of all banks. [G]",
+                                Effect::kTradeOff};
   };
   struct Stats : StatGroup {
     Counter requests{*this, "requests", "request", "Read and write requests looked up"};

@@ -37,7 +37,8 @@ class CoarseRaster final : public Unit {
         "report",
         {1, 1 << 20},
         "Reports behind which a triangle's slot may be used again, a turn of the triangle store; each takes a cycle. [G: an eighth of "
-        "the store waits]"};
+        "the store waits]",
+        Effect::kTradeOff};
     Param<bool> hiz{*this, "hiz", true, "", "Drop tiles that Hi-Z proves hidden."};
   };
   struct Stats : StatGroup {

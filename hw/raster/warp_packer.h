@@ -19,9 +19,15 @@ class WarpPacker final : public Unit {
     Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads packed a cycle. [G: as the fine rasteriser]"};
     Param<int> warp_slots{*this,  "warp_slots", 128,
                           "warp", {1, 65536},   "Reorder buffer: fragment warps of a partition from packing to retirement. [G]"};
-    Param<int> launch_clk{*this, "launch_clk", 1, "clk", {0, 64}, "Cycles to send a warp off, in which no quad is packed. [G]"};
-    Param<int> patience_clk{*this, "patience_clk", 64,
-                            "clk", {1, 1 << 20},   "Cycles a partial warp waits for more quads. [G: a few tiles' time]"};
+    Param<int> launch_clk{*this,          "launch_clk", 1, "clk", {0, 64}, "Cycles to send a warp off, in which no quad is packed. [G]",
+                          Effect::kSlower};
+    Param<int> patience_clk{*this,
+                            "patience_clk",
+                            64,
+                            "clk",
+                            {1, 1 << 20},
+                            "Cycles a partial warp waits for more quads. [G: a few tiles' time]",
+                            Effect::kTradeOff};
   };
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in"};

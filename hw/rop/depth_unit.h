@@ -24,7 +24,7 @@ class DepthUnit final : public Unit {
     Param<int> tiles_in_flight{*this, "tiles_in_flight", 16, "tile", {1, 4096}, "Tiles waiting for their depths. [G: latency to hide]"};
     Param<int> cache_lines{*this,  "cache_lines", 256,
                            "line", {1, 1 << 20},  "Lines of 128 bytes in the depth cache; two hold a tile. [G: 32 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the depth cache. [G]"};
+    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the depth cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
   };
   struct Stats : StatGroup {

@@ -22,7 +22,7 @@ class Rop final : public Unit {
     Param<int> warps_in_flight{*this, "warps_in_flight", 16, "warp", {1, 4096}, "Warps waiting for their colours. [G: latency to hide]"};
     Param<int> cache_lines{*this,  "cache_lines", 256,
                            "line", {1, 1 << 20},  "Lines of 128 bytes in the colour cache; two hold a tile. [G: 32 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the colour cache. [G]"};
+    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the colour cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
   };
   struct Stats : StatGroup {

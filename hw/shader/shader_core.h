@@ -33,14 +33,19 @@ class ShaderCore final : public Unit {
                        8,
                        "clk",
                        {0, 1 << 16},
-                       "From an arithmetic instruction to one that reads its result. [G: four cycles to go in, four through the pipe]"};
-    Param<int> sfu_clk{*this, "sfu_clk",    20,
-                       "clk", {0, 1 << 16}, "The same: special functions. [G: sixteen cycles to go in, four through]"};
-    Param<int> interp_clk{*this, "interp_clk", 12, "clk", {0, 1 << 16}, "The same: interpolated varyings. [G: planes are read first]"};
-    Param<int> const_clk{*this, "const_clk",  12,
-                         "clk", {0, 1 << 16}, "The same: constants that a register indexes. [G: as an address and a read]"};
-    Param<int> branch_clk{*this, "branch_clk", 4,
-                          "clk", {0, 1 << 16}, "From control flow to the warp's next instruction. [G: the front end is refilled]"};
+                       "From an arithmetic instruction to one that reads its result. [G: four cycles to go in, four through the pipe]",
+                       Effect::kSlower};
+    Param<int> sfu_clk{*this,          "sfu_clk",    20,
+                       "clk",          {0, 1 << 16}, "The same: special functions. [G: sixteen cycles to go in, four through]",
+                       Effect::kSlower};
+    Param<int> interp_clk{
+        *this, "interp_clk", 12, "clk", {0, 1 << 16}, "The same: interpolated varyings. [G: planes are read first]", Effect::kSlower};
+    Param<int> const_clk{*this,          "const_clk",  12,
+                         "clk",          {0, 1 << 16}, "The same: constants that a register indexes. [G: as an address and a read]",
+                         Effect::kSlower};
+    Param<int> branch_clk{*this,          "branch_clk", 4,
+                          "clk",          {0, 1 << 16}, "From control flow to the warp's next instruction. [G: the front end is refilled]",
+                          Effect::kSlower};
     Choice<WarpScheduling> scheduler{
         *this,
         "scheduler",

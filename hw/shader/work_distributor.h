@@ -25,8 +25,13 @@ class WorkDistributor final : public Unit {
                               {"round_robin", "tile", "least_loaded"},
                               "Which core gets a warp: the next in turn, the one of its part of the screen, or the one with the fewest. "
                               "[M: warp policies: fewest cycles]"};
-    Param<int> block_tiles{*this,  "block_tiles", 4,
-                           "tile", {1, 2048},     "policy=tile: side of the squares of 8x8-pixel tiles whose warps go to one core. [G]"};
+    Param<int> block_tiles{*this,
+                           "block_tiles",
+                           4,
+                           "tile",
+                           {1, 2048},
+                           "policy=tile: side of the squares of 8x8-pixel tiles whose warps go to one core. [G]",
+                           Effect::kTradeOff};
   };
   struct Stats : StatGroup {
     Counter vertex_warps{*this, "vertex_warps", "warp", "Vertex batches handed to cores"};

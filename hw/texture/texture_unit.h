@@ -24,12 +24,13 @@ class TextureUnit final : public Unit {
     Param<int> filter_quads_per_clk{
         *this, "filter_quads_per_clk", 2, "quad/clk", {1, 64}, "Bilinear quads filtered a cycle. [G: 8 texels x 4 channels]"};
     Param<int> tags_per_clk{*this, "tags_per_clk", 4, "line/clk", {1, 64}, "Distinct lines looked up a cycle. [G: 4 tag banks]"};
-    Param<int> filter_clk{*this, "filter_clk", 8,
-                          "clk", {0, 1 << 16}, "Latency of the filter, paid after the last line of a group arrived. [G]"};
+    Param<int> filter_clk{*this,          "filter_clk", 8,
+                          "clk",          {0, 1 << 16}, "Latency of the filter, paid after the last line of a group arrived. [G]",
+                          Effect::kSlower};
     Param<int> groups_in_flight{*this,   "groups_in_flight", 32,
                                 "group", {1, 4096},          "Clauses' requests between addresses and filter. [G: latency to hide]"};
     Param<int> cache_lines{*this, "cache_lines", 256, "line", {1, 1 << 20}, "Lines of 128 bytes in the first-level cache. [G: 32 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the first-level cache. [G]"};
+    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the first-level cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this, "cache_misses", 64, "line", {1, 4096}, "Lines under way. [G: bandwidth times latency]"};
   };
   struct Stats : StatGroup {

@@ -94,17 +94,26 @@ const Experiment kExperiments[] = {
      "Small frames on a few machines, each drawn again with one parameter changed. More of a resource shall slow no frame by more than 1 "
      "%, and every parameter shall do something somewhere.",
      &parameters,
-     {"builtin:cubes", "builtin:materials", "builtin:flag", "builtin:overdraw"},
-     "96x54"},
+     {"builtin:cubes", "builtin:flag", "builtin:overdraw", "builtin:fill", "builtin:quad"},
+     "160x90"},
 };
+
+pipeline::RenderedFrame drawn(const traces::CommandStream& stream, const pipeline::MachineConfig& machine) {
+  pipeline::RenderedFrame frame = pipeline::render_exact(stream, machine, {});
+  if (!frame.figures.checks_hold()) throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(frame.figures));
+  return frame;
+}
+
+void set_up(pipeline::MachineConfig& machine, const std::vector<std::string>& settings) {
+  apply_settings(machine, settings);
+  machine.check();
+}
 
 std::string figures_of(const Frame& frame) {
   pipeline::MachineConfig machine;
-  apply_settings(machine, frame.settings);
-  machine.check();
-  const pipeline::RenderedFrame drawn = pipeline::render_exact(*frame.stream, machine, {});
-  if (!drawn.figures.checks_hold()) throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(drawn.figures));
-  return pipeline::report_json({drawn.figures, machine, drawn.image.width, drawn.image.height});
+  set_up(machine, frame.settings);
+  const pipeline::RenderedFrame rendered = drawn(*frame.stream, machine);
+  return pipeline::report_json({rendered.figures, machine, rendered.image.width, rendered.image.height});
 }
 
 std::string padded(const std::string& text, std::size_t width) {
@@ -156,6 +165,30 @@ double Readings::operator[](const std::string& name) const {
 double Readings::gain(const std::string& resource) const {
   const auto found = std::ranges::find(values_, "gain." + resource, &std::pair<std::string, double>::first);
   return found == values_.end() ? 0 : found->second;
+}
+
+std::vector<std::vector<double>> frame_cycles(const std::vector<traces::CommandStream>& streams,
+                                              const std::vector<std::vector<std::string>>& machines, const Setting& setting) {
+  // A process draws one frame: SystemC elaborates once.
+  std::vector<ChildWork> works;
+  for (const std::vector<std::string>& settings : machines) {
+    for (const traces::CommandStream& stream : streams) {
+      const auto cycles_of = [&stream, &settings] {
+        pipeline::MachineConfig machine;
+        set_up(machine, settings);
+        return fmt::format("{}", drawn(stream, machine).figures.frame.cycles);
+      };
+      works.push_back({cycles_of, {.seconds = kLongestFrameSeconds}});
+    }
+  }
+  std::vector<std::vector<double>> cycles(machines.size(), std::vector<double>(streams.size()));
+  std::size_t done = 0;
+  run_in_children(works, setting.jobs, [&](std::size_t i, const ChildRun& run) {
+    const std::size_t m = i / streams.size(), s = i % streams.size();
+    cycles[m][s] = std::stod(output_of(run, fmt::format("{} with {}", streams[s].name, fmt::join(machines[m], " "))));
+    setting.progress(fmt::format("{} of {} frames", ++done, works.size()));
+  });
+  return cycles;
 }
 
 std::vector<Readings> draw(const std::vector<Frame>& frames, const Setting& setting) {

@@ -78,6 +78,10 @@ class Readings {
 /// Draws all frames, in order. Throws `UserError` as a refused run does.
 [[nodiscard]] std::vector<Readings> draw(const std::vector<Frame>& frames, const Setting& setting);
 
+/// The cycles of all frames on all machines: [machine][stream]. Machines by their settings; throws as `draw` does.
+[[nodiscard]] std::vector<std::vector<double>> frame_cycles(const std::vector<traces::CommandStream>& streams,
+                                                            const std::vector<std::vector<std::string>>& machines, const Setting& setting);
+
 /// The result as text, and as a page of documentation that shows `picture`.
 [[nodiscard]] std::string result_text(const Experiment& experiment, const Result& result);
 [[nodiscard]] std::string result_markdown(const Experiment& experiment, const Result& result, const std::string& picture);

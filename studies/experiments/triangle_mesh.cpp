@@ -15,6 +15,13 @@ void main() { gl_Position = vec4(position, 1); })";
 constexpr const char* kFragmentShader = R"(#version 450
 layout(location = 0) out vec4 color;
 void main() { color = vec4(0.8, 0.4, 0.2, 1); })";
+/// Every other column of quads.
+constexpr const char* kDiscardingShader = R"(#version 450
+layout(location = 0) out vec4 color;
+void main() {
+  if ((int(gl_FragCoord.x) & 2) != 0) discard;
+  color = vec4(0.8, 0.4, 0.2, 1);
+})";
 
 template <class T>
 traces::Buffer buffer_of(const char* name, std::span<const T> values) {
@@ -88,7 +95,8 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
   stream.name = "triangles";
   stream.shaders = {
       {"hand through", ShaderStage::kVertex, scenes::compile_glsl(kVertexShader, ShaderStage::kVertex, "triangles.vert")},
-      {"one colour", ShaderStage::kFragment, scenes::compile_glsl(kFragmentShader, ShaderStage::kFragment, "triangles.frag")}};
+      {"one colour", ShaderStage::kFragment,
+       scenes::compile_glsl(options.discards ? kDiscardingShader : kFragmentShader, ShaderStage::kFragment, "triangles.frag")}};
   const std::vector<float> positions = clip_positions(mesh, options.depth);
   const std::span<const std::uint32_t> indices(mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), 3 * mesh.triangles.size());
   stream.buffers = {buffer_of<float>("positions", positions), buffer_of("indices", indices)};

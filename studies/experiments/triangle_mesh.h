@@ -34,7 +34,8 @@ struct TriangleMesh {
 
 struct DrawOptions {
   traces::CullMode cull = traces::CullMode::kNone;
-  bool depth = false;  ///< test "less" and write
+  bool depth = false;     ///< test "less" and write
+  bool discards = false;  ///< the fragment shader drops half of its fragments
 };
 /// One indexed draw of the mesh; the shaders hand positions through and write one colour.
 [[nodiscard]] traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& options = {});
