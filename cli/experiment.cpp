@@ -61,12 +61,12 @@ experiments::Setting setting_of(const experiments::Experiment& e, const Experime
 
 int run_experiments(const ExperimentArguments& a) {
   const std::vector<const experiments::Experiment*> all = chosen_of(a.names);
+  std::vector<experiments::Setting> settings;
+  for (const experiments::Experiment* e : all) settings.push_back(setting_of(*e, a));
   if (a.list) {
     for (const experiments::Experiment* e : all) fmt::print("{:<24}{}\n", e->name, e->title);
     return kDone;
   }
-  std::vector<experiments::Setting> settings;
-  for (const experiments::Experiment* e : all) settings.push_back(setting_of(*e, a));
   if (a.out) {
     studies::require_gnuplot("--out");
     std::error_code error;

@@ -120,7 +120,10 @@ scenes::SceneOptions SceneArguments::options() const {
   if (size) std::tie(options.width, options.height) = parse_size(*size, "--size");
   // A negative number is neither a number of a camera nor likely its name; the list of the file's own says what there is.
   options.camera_name = camera.value_or("");
-  if (camera && camera->empty()) throw user_error("--camera: neither a number nor a name");
+  for (const auto& [flag, text] : {std::pair{"--camera", &camera}, {"--scene", &scene_choice}, {"--animation", &animation}})
+    if (*text && (*text)->empty()) throw user_error("{}: neither a number nor a name", flag);
+  for (const auto& [flag, file] : {std::pair{"--vert", &vert}, {"--frag", &frag}})
+    if (*file && (*file)->empty()) throw user_error("{}: the name of the file is empty", flag);
   options.scene = scene_choice.value_or("");
   options.animation = animation.value_or("");
   if (time) options.time = parse_number(*time, "--time", 0, kMaxSeconds);

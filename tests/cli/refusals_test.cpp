@@ -83,7 +83,8 @@ TEST_CASE("a view is numbers, and a camera that exists") {
   render_refused({"--camera", "99"}, {"camera '99'", "cameras: "});
   render_refused({"--camera", "-1"}, {"camera '-1'"});
   render_refused({"--camera", "one"}, {"camera 'one'"});
-  render_refused({"--camera", ""}, {"--camera"});
+  for (const char* flag : {"--camera", "--scene", "--animation", "--vert", "--frag"}) render_refused({flag, ""}, {flag});
+  refused({"experiment", "--jobs", "0", "--list"}, {"--jobs"});
   render_refused({"--camera", "0", "--eye", "1,2,3"}, {"--camera", "--eye"});
   render_refused({"--eye", "1,2,3", "--at", "1,2,3"}, {"eye"});
 }
