@@ -57,6 +57,7 @@ struct UnitFigures {
   std::vector<WaitFigure> waits;  ///< longest first, ports that cost nothing left out
   std::vector<CounterFigure> counters;
   std::vector<HistogramFigure> histograms;
+  std::vector<hw::Facet> row;  ///< what it shows of itself
 };
 
 struct ClientFigures {

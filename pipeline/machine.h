@@ -9,6 +9,8 @@
 
 #include <memory>
 #include <string>
+#include <tuple>
+#include <variant>
 #include <vector>
 
 namespace quadrille::pipeline {
@@ -33,79 +35,62 @@ class Machine {
   /// Runs the frame to its end. Throws `UserError` with the deadlock report when it cannot progress.
   void run(const hw::RunLimits& limits);
 
-  struct Partition {
-    std::unique_ptr<hw::DepthUnit> depth;
-    std::unique_ptr<hw::WarpPacker> packer;
-    std::unique_ptr<hw::Rop> rop;
-    std::unique_ptr<hw::Store<hw::WarpSlot>> warps;
-  };
-  struct Core {
-    std::unique_ptr<hw::ShaderCore> core;
-    std::unique_ptr<hw::TextureUnit> texture;  ///< null when left out
-    std::unique_ptr<hw::Store<hw::CoreSlot>> slots;
-  };
   [[nodiscard]] const std::vector<hw::Unit*>& units() const { return driver_->units(); }
   [[nodiscard]] const std::vector<std::unique_ptr<hw::FifoBase>>& links() const { return links_; }
   /// By link: its key in a machine file ("link.coarse_to_fine").
   [[nodiscard]] const std::vector<std::string>& link_keys() const { return link_keys_; }
-  [[nodiscard]] const hw::CommandProcessor& command_processor() const { return *command_processor_; }
-  [[nodiscard]] const hw::VertexFetch& vertex_fetch() const { return *vertex_fetch_; }
-  [[nodiscard]] const hw::PrimitiveAssembly& assembly() const { return *assembly_; }
-  [[nodiscard]] const hw::Clipper& clipper() const { return *clipper_; }
-  [[nodiscard]] const hw::TriangleSetupUnit& setup() const { return *setup_; }
-  [[nodiscard]] const hw::CoarseRaster& coarse() const { return *coarse_; }
-  [[nodiscard]] const hw::FineRaster& fine() const { return *fine_; }
-  [[nodiscard]] const hw::WorkDistributor& distributor() const { return *distributor_; }
-  [[nodiscard]] const hw::ScanOut& scan_out() const { return *scan_out_; }
-  [[nodiscard]] const std::vector<Partition>& partitions() const { return partitions_; }
-  [[nodiscard]] const std::vector<Core>& cores() const { return cores_; }
-  [[nodiscard]] const std::vector<std::unique_ptr<hw::L2Slice>>& slices() const { return slices_; }
-  [[nodiscard]] const std::vector<std::unique_ptr<hw::MemoryChannel>>& channels() const { return channels_; }
+  /// The units of a kind, by their numbers; none where they were left out.
+  template <class Unit>
+  [[nodiscard]] const std::vector<Unit*>& all() const {
+    return std::get<std::vector<Unit*>>(by_kind_);
+  }
+  /// Of a kind that stands once.
+  template <class Unit>
+  [[nodiscard]] Unit& one() const {
+    return *all<Unit>().front();
+  }
   [[nodiscard]] const hw::Driver& driver() const { return *driver_; }
   [[nodiscard]] const hw::Clock& clock() const { return clock_; }
   [[nodiscard]] const MachineConfig& config() const { return config_; }
   [[nodiscard]] const std::vector<LeftOut>& left_out() const { return left_out_; }
   /// Tick at which the last image was read: the end of the frame.
-  [[nodiscard]] hw::Tick end() const { return command_processor_->end(); }
+  [[nodiscard]] hw::Tick end() const { return one<hw::CommandProcessor>().end(); }
 
  private:
+  /// What tokens name: the bulk behind them.
+  struct Stores {
+    Stores(const MachineConfig& config);
+    hw::Store<hw::BatchSlot> batches;
+    hw::Store<hw::ClippedPiece> pieces;
+    hw::TriangleStore triangles;
+    std::vector<std::unique_ptr<hw::Store<hw::WarpSlot>>> warps;  ///< by partition
+    std::vector<std::unique_ptr<hw::Store<hw::CoreSlot>>> cores;  ///< by core
+  };
+  class Maker;
+  class Wiring;
+
   void check_registers() const;
   /// Last tick at which anything moved.
   [[nodiscard]] hw::Tick quiet_end() const;
-  void create_units(const MachineOptions& options);
-  void wire();
-  void wire_geometry();
-  void wire_partition(std::size_t p);
-  void wire_core(std::size_t c);
-  void wire_memory();
-  void attach_client(const hw::Unit& client_unit, hw::MemoryPort& port);
-  template <class T, class Out, class In>
-  void connect(Out& out, In& in, const LinkParams& params, const std::string& name, int path_clk = 0);
+  void leave_out(bool wanted);
+  void list_clients();
+  void create_units(std::uint64_t order);
+  [[nodiscard]] int count(Stands stands) const;
 
   const MachineConfig& config_;
   DeviceFrame& frame_;
   hw::Clock clock_, memory_clock_;
   hw::QuietLog quiet_;
   std::vector<LeftOut> left_out_;
-  std::vector<hw::L2Slice::Client> clients_;  ///< of the L2 slices: names of units, in the order of their ports
+  bool textured_ = true, depth_memory_ = true;  ///< texture units are built; depth units are linked to memory
+  std::vector<hw::L2Slice::Client> clients_;    ///< of the L2 slices: names of units, in the order of their ports
   std::unique_ptr<hw::Driver> own_driver_;
   hw::Driver* driver_ = nullptr;
-  std::unique_ptr<hw::Store<hw::BatchSlot>> batches_;
-  std::unique_ptr<hw::Store<hw::ClippedPiece>> pieces_;
-  std::unique_ptr<hw::TriangleStore> triangles_;
-  std::unique_ptr<hw::CommandProcessor> command_processor_;
-  std::unique_ptr<hw::VertexFetch> vertex_fetch_;
-  std::unique_ptr<hw::PrimitiveAssembly> assembly_;
-  std::unique_ptr<hw::Clipper> clipper_;
-  std::unique_ptr<hw::TriangleSetupUnit> setup_;
-  std::unique_ptr<hw::CoarseRaster> coarse_;
-  std::unique_ptr<hw::FineRaster> fine_;
-  std::unique_ptr<hw::WorkDistributor> distributor_;
-  std::unique_ptr<hw::ScanOut> scan_out_;
-  std::vector<Partition> partitions_;
-  std::vector<Core> cores_;
-  std::vector<std::unique_ptr<hw::L2Slice>> slices_;
-  std::vector<std::unique_ptr<hw::MemoryChannel>> channels_;
+  Stores stores_;
+#define QUADRILLE_UNITS_OF(name, type, how_often) std::vector<type*>,
+  std::tuple<QUADRILLE_UNITS(QUADRILLE_UNITS_OF) std::monostate> by_kind_;
+#undef QUADRILLE_UNITS_OF
+  std::vector<std::unique_ptr<hw::Unit>> owned_;  ///< in the order in which they were made
   std::vector<std::unique_ptr<hw::FifoBase>> links_;
   std::vector<std::string> link_keys_;
 };

@@ -7,54 +7,13 @@
 namespace quadrille::pipeline {
 
 MachineConfig::MachineConfig() {
-  groups_ = {{"gpu", &gpu},
-             {"command_processor", &command_processor},
-             {"vertex_fetch", &vertex_fetch},
-             {"primitive_assembly", &primitive_assembly},
-             {"clipper", &clipper},
-             {"triangle_setup", &triangle_setup},
-             {"coarse_raster", &coarse_raster},
-             {"fine_raster", &fine_raster},
-             {"depth", &depth},
-             {"warp_packer", &warp_packer},
-             {"work_distributor", &work_distributor},
-             {"core", &core},
-             {"texture", &texture},
-             {"rop", &rop},
-             {"l2", &l2},
-             {"memory", &memory},
-             {"scan_out", &scan_out},
-             {"link.command_to_fetch", &link.command_to_fetch},
-             {"link.fetch_to_distributor", &link.fetch_to_distributor},
-             {"link.fetch_to_assembly", &link.fetch_to_assembly},
-             {"link.setup_to_fetch", &link.setup_to_fetch},
-             {"link.core_to_assembly", &link.core_to_assembly},
-             {"link.assembly_to_distributor", &link.assembly_to_distributor},
-             {"link.assembly_to_clipper", &link.assembly_to_clipper},
-             {"link.clipper_to_setup", &link.clipper_to_setup},
-             {"link.setup_to_coarse", &link.setup_to_coarse},
-             {"link.coarse_to_fine", &link.coarse_to_fine},
-             {"link.fine_to_depth", &link.fine_to_depth},
-             {"link.depth_to_coarse", &link.depth_to_coarse},
-             {"link.depth_to_packer", &link.depth_to_packer},
-             {"link.packer_to_distributor", &link.packer_to_distributor},
-             {"link.packer_to_rop", &link.packer_to_rop},
-             {"link.rop_to_distributor", &link.rop_to_distributor},
-             {"link.rop_to_packer", &link.rop_to_packer},
-             {"link.distributor_to_core", &link.distributor_to_core},
-             {"link.core_to_rop", &link.core_to_rop},
-             {"link.rop_to_depth", &link.rop_to_depth},
-             {"link.depth_to_rop", &link.depth_to_rop},
-             {"link.rop_to_setup", &link.rop_to_setup},
-             {"link.rop_to_command", &link.rop_to_command},
-             {"link.core_to_texture", &link.core_to_texture},
-             {"link.texture_to_core", &link.texture_to_core},
-             {"link.client_to_l2", &link.client_to_l2},
-             {"link.l2_to_client", &link.l2_to_client},
-             {"link.l2_to_memory", &link.l2_to_memory},
-             {"link.memory_to_l2", &link.memory_to_l2},
-             {"link.command_to_scan", &link.command_to_scan},
-             {"link.scan_to_command", &link.scan_to_command}};
+  groups_.emplace_back("gpu", &gpu);
+#define QUADRILLE_GROUP(name, type, how_often) groups_.emplace_back(#name, &name);
+  QUADRILLE_UNITS(QUADRILLE_GROUP)
+#undef QUADRILLE_GROUP
+#define QUADRILLE_GROUP(name, depth, width, latency, flow) groups_.emplace_back("link." #name, &link.name);
+  QUADRILLE_LINKS(QUADRILLE_GROUP)
+#undef QUADRILLE_GROUP
   base_values_ = values();
 }
 

@@ -7,22 +7,7 @@
 /// one it was made from, the last that came with the program, and what was changed since.
 #pragma once
 
-#include "hw/command/command_processor.h"
-#include "hw/display/scan_out.h"
-#include "hw/geometry/clipper.h"
-#include "hw/geometry/primitive_assembly.h"
-#include "hw/geometry/triangle_setup.h"
-#include "hw/geometry/vertex_fetch.h"
-#include "hw/memory/l2_slice.h"
-#include "hw/memory/memory_channel.h"
-#include "hw/raster/coarse_raster.h"
-#include "hw/raster/fine_raster.h"
-#include "hw/raster/warp_packer.h"
-#include "hw/rop/depth_unit.h"
-#include "hw/rop/rop.h"
-#include "hw/shader/shader_core.h"
-#include "hw/shader/work_distributor.h"
-#include "hw/texture/texture_unit.h"
+#include "pipeline/machine_plan.h"
 
 #include <functional>
 #include <set>
@@ -82,8 +67,10 @@ enum class LinkFlow : std::uint8_t { kSeveralACycle, kOneACycle, kOneAPass };
 
 /// One class of links. Full rate needs depth >= width * (latency + credit_latency).
 struct LinkParams : hw::ParamGroup {
-  LinkParams(int depth_default, int width_default, int latency_default, LinkFlow flow = LinkFlow::kSeveralACycle)
-      : depth{*this, "depth", depth_default, "token", {1, 1 << 20}, "Tokens the link holds.", unless_one_a_pass(flow, hw::Effect::kFaster)},
+  /// `link_name` has to live as long.
+  LinkParams(std::string_view link_name, int depth_default, int width_default, int latency_default, LinkFlow flow)
+      : name(link_name),
+        depth{*this, "depth", depth_default, "token", {1, 1 << 20}, "Tokens the link holds.", unless_one_a_pass(flow, hw::Effect::kFaster)},
         width{*this,
               "width",
               width_default,
@@ -99,6 +86,7 @@ struct LinkParams : hw::ParamGroup {
                        {1, 1 << 24},
                        "Cycles from pop to a usable slot.",
                        unless_one_a_pass(flow, hw::Effect::kSlower)} {}
+  std::string_view name;
   hw::Param<int> depth, width, latency, credit_latency;
   [[nodiscard]] hw::LinkSpec spec() const { return {depth, width, latency, credit_latency}; }
 
@@ -109,37 +97,9 @@ struct LinkParams : hw::ParamGroup {
 };
 
 struct Links {
-  LinkParams command_to_fetch{4, 1, 1, LinkFlow::kOneACycle};
-  LinkParams fetch_to_distributor{8, 1, 1, LinkFlow::kOneACycle};
-  LinkParams fetch_to_assembly{64, 1, 1};
-  LinkParams setup_to_fetch{4, 1, 1, LinkFlow::kOneACycle};
-  LinkParams core_to_assembly{8, 1, 1, LinkFlow::kOneACycle};
-  LinkParams assembly_to_distributor{8, 4, 1};
-  LinkParams assembly_to_clipper{8, 1, 1};
-  LinkParams clipper_to_setup{8, 1, 4};
-  LinkParams setup_to_coarse{16, 1, 4};
-  LinkParams coarse_to_fine{32, 1, 2};
-  LinkParams fine_to_depth{32, 1, 2};
-  LinkParams depth_to_coarse{16, 1, 4, LinkFlow::kOneACycle};
-  LinkParams depth_to_packer{16, 1, 2, LinkFlow::kOneACycle};
-  LinkParams packer_to_distributor{8, 1, 1, LinkFlow::kOneACycle};
-  LinkParams packer_to_rop{64, 1, 1, LinkFlow::kOneACycle};
-  LinkParams rop_to_distributor{8, 4, 1};
-  LinkParams rop_to_packer{8, 1, 1, LinkFlow::kOneACycle};
-  LinkParams distributor_to_core{4, 1, 2, LinkFlow::kOneACycle};
-  LinkParams core_to_rop{8, 1, 2};
-  LinkParams rop_to_depth{8, 1, 2, LinkFlow::kOneACycle};
-  LinkParams depth_to_rop{8, 1, 2, LinkFlow::kOneACycle};
-  LinkParams rop_to_setup{8, 1, 2, LinkFlow::kOneACycle};
-  LinkParams rop_to_command{8, 1, 2, LinkFlow::kOneACycle};
-  LinkParams core_to_texture{8, 1, 2, LinkFlow::kOneACycle};
-  LinkParams texture_to_core{8, 1, 2, LinkFlow::kOneACycle};
-  LinkParams client_to_l2{16, 1, 8};
-  LinkParams l2_to_client{16, 1, 8};
-  LinkParams l2_to_memory{16, 1, 2};
-  LinkParams memory_to_l2{16, 1, 2};
-  LinkParams command_to_scan{2, 1, 1, LinkFlow::kOneAPass};
-  LinkParams scan_to_command{2, 1, 1, LinkFlow::kOneAPass};
+#define QUADRILLE_LINK(name, depth, width, latency, flow) LinkParams name{#name, depth, width, latency, LinkFlow::flow};
+  QUADRILLE_LINKS(QUADRILLE_LINK)
+#undef QUADRILLE_LINK
 };
 
 class MachineConfig {
@@ -149,22 +109,9 @@ class MachineConfig {
   MachineConfig& operator=(const MachineConfig&) = delete;
 
   GpuParams gpu;
-  hw::CommandProcessor::Params command_processor;
-  hw::VertexFetch::Params vertex_fetch;
-  hw::PrimitiveAssembly::Params primitive_assembly;
-  hw::Clipper::Params clipper;
-  hw::TriangleSetupUnit::Params triangle_setup;
-  hw::CoarseRaster::Params coarse_raster;
-  hw::FineRaster::Params fine_raster;
-  hw::WarpPacker::Params warp_packer;
-  hw::WorkDistributor::Params work_distributor;
-  hw::ShaderCore::Params core;
-  hw::TextureUnit::Params texture;
-  hw::DepthUnit::Params depth;
-  hw::Rop::Params rop;
-  hw::L2Slice::Params l2;
-  hw::MemoryChannel::Params memory;
-  hw::ScanOut::Params scan_out;
+#define QUADRILLE_PARAMS(name, type, how_often) type::Params name;
+  QUADRILLE_UNITS(QUADRILLE_PARAMS)
+#undef QUADRILLE_PARAMS
   Links link;
 
   std::string name = "default";  ///< what reports call it: the name of the machine that comes with the program, or of its file

@@ -94,7 +94,7 @@ std::string wait_text(const UnitGroup& group) {
                      100 * ratio(static_cast<double>(longest->second), static_cast<double>(group.cycles())));
 }
 
-std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
+std::string unit_row(const UnitGroup& group) {
   const auto share = [&](std::int64_t UnitFigures::*member) {
     return 100 * ratio(static_cast<double>(group.sum(member)), static_cast<double>(group.cycles()));
   };
@@ -106,7 +106,7 @@ std::string unit_row(const UnitGroup& group, const MachineConfig& machine) {
                                 share(&UnitFigures::busy), spread, share(&UnitFigures::waiting), share(&UnitFigures::starved),
                                 share(&UnitFigures::blocked), share(&UnitFigures::idle), wait_text(group));
   out.resize(std::max(out.size(), kFacetColumn), ' ');
-  const std::vector<std::string> facets = unit_facets(group, machine);
+  const std::vector<std::string> facets = unit_facets(group);
   if (facets.empty()) out.erase(out.find_last_not_of(' ') + 1);
   return out + wrapped(facets, kFacetColumn);
 }
@@ -120,7 +120,7 @@ std::string units_text(const ReportSubject& s, UnitRows rows) {
       "  {:<19}{:>6}{:>7} {:<6}{:>7}{:>8}{:>8}{:>6}  {:<15}{:>6}  {}\n",
       s.figures.window_cycles > 0 ? " (approximate)" : "", "unit", "use", "busy", "", "waiting", "starved", "blocked", "idle",
       "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
-  for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded)) out += unit_row(group, s.machine);
+  for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded)) out += unit_row(group);
   return out;
 }
 

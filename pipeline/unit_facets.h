@@ -2,7 +2,6 @@
 #pragma once
 
 #include "pipeline/figures.h"
-#include "pipeline/machine_config.h"
 
 #include <span>
 #include <string>
@@ -27,8 +26,8 @@ struct UnitGroup {
 /// Rows in the order of first appearance: one a kind when `folded`, else one a unit.
 [[nodiscard]] std::vector<UnitGroup> group_units(std::span<const UnitFigures> units, bool folded);
 
-/// "L1 hit 97.1 %", "quads 1.20/clk (30 % of 4)", ...: for the kinds of this machine's units.
-[[nodiscard]] std::vector<std::string> unit_facets(const UnitGroup& group, const MachineConfig& machine);
+/// What the units show in their row (hw/base/facet.h): "L1 hit 97.1 %", "quads 1.20/clk (30 % of 4)", ...
+[[nodiscard]] std::vector<std::string> unit_facets(const UnitGroup& group);
 
 /// 1234567 as 1,234,567.
 [[nodiscard]] std::string grouped(std::uint64_t value);

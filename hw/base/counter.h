@@ -68,6 +68,10 @@ class Counter final : public Statistic {
   std::uint64_t value_ = 0;
 };
 
+/// Names the parts of a unit that register counters of their own with its group: `using CounterParts = Parts<MemoryPortStats>`.
+template <class... Stats>
+struct Parts {};
+
 /// How often a quantity had which size: bucket 0 counts zeros, bucket k > 0 counts sizes from 2^(k-1) to 2^k - 1.
 class Histogram final : public Statistic {
  public:

@@ -8,7 +8,9 @@
 ///   idle     no token of any draw in flight can still reach the unit
 #pragma once
 
+#include "hw/base/audit.h"
 #include "hw/base/counter.h"
+#include "hw/base/facet.h"
 #include "hw/base/fifo.h"
 #include "hw/base/resource.h"
 
@@ -106,6 +108,10 @@ class Unit : public sc_core::sc_module {
   /// One line on what the unit holds, for the deadlock report.
   [[nodiscard]] virtual std::string state_text() const { return {}; }
   [[nodiscard]] virtual const StatGroup* stats() const { return nullptr; }
+  /// Adds what it counted to the laws that concern it. After `finish_stats`.
+  virtual void audit(Audit& audit) const { (void)audit; }
+  /// What its row of the table shows. After `finish_stats`.
+  [[nodiscard]] virtual std::vector<Facet> row() const { return {}; }
   /// The frame ended at `end`: counts of time that go on up to there are brought up to date.
   virtual void finish_stats(Tick end) { (void)end; }
 

@@ -1,5 +1,7 @@
 #include "hw/command/command_processor.h"
 
+#include "hw/frame/laws.h"
+
 #include <algorithm>
 
 namespace quadrille::hw {
@@ -102,5 +104,12 @@ void CommandProcessor::issue(Tick now) {
   free_ = after(now, 1);
   occupy(now, 1);
 }
+
+void CommandProcessor::audit(Audit& audit) const {
+  audit.left(laws::kDrawsOfFrame, stats_.draws.value());
+  audit.left(laws::kDraws, stats_.draws.value() * retire_in.size());
+}
+
+std::vector<Facet> CommandProcessor::row() const { return {count("draws", stats_.draws), count("passes", stats_.passes)}; }
 
 }  // namespace quadrille::hw

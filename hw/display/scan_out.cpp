@@ -1,5 +1,7 @@
 #include "hw/display/scan_out.h"
 
+#include "hw/frame/laws.h"
+
 namespace quadrille::hw {
 
 ScanOut::ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
@@ -45,5 +47,12 @@ void ScanOut::act(Tick now) {
   }
   port_.send(now);
 }
+
+void ScanOut::audit(Audit& audit) const {
+  audit.left(laws::kScanOut, port_.stats().read_bytes.value());
+  port_.audit(audit);
+}
+
+std::vector<Facet> ScanOut::row() const { return {count("lines", stats_.lines)}; }
 
 }  // namespace quadrille::hw

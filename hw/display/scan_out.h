@@ -19,6 +19,7 @@ class ScanOut final : public Unit {
   struct Stats : StatGroup {
     Counter lines{*this, "lines", "line", "Lines of 128 bytes read"};
   };
+  using CounterParts = Parts<MemoryPortStats>;
   ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
           int slices);
 
@@ -27,7 +28,9 @@ class ScanOut final : public Unit {
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
-  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] const Stats* stats() const override { return &stats_; }
+  void audit(Audit& audit) const override;
+  [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
 

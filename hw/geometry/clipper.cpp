@@ -1,5 +1,7 @@
 #include "hw/geometry/clipper.h"
 
+#include "hw/frame/laws.h"
+
 #include <bit>
 
 namespace quadrille::hw {
@@ -66,6 +68,18 @@ void Clipper::emit_piece(Tick now, int i) {
   ring_ = ring_ + 1 == pieces_.size() ? 0 : ring_ + 1;
   next_piece_ = i + 2 < polygon_.count ? i + 1 : 0;
   if (next_piece_ == 0) (void)primitive_in.pop(now);
+}
+
+void Clipper::audit(Audit& audit) const {
+  audit.right(laws::kTrianglesAssembled, stats_.triangles.value());
+  audit.both(laws::kTrianglesClipped, stats_.triangles.value(),
+             stats_.passed.value() + stats_.clipped.value() + stats_.rejected.value() + stats_.not_finite.value());
+  audit.left(laws::kPieces, stats_.passed.value() + stats_.pieces.value());
+}
+
+std::vector<Facet> Clipper::row() const {
+  return {share("inside", stats_.passed, stats_.triangles), share("cut", stats_.clipped, stats_.triangles),
+          share("outside", stats_.rejected, stats_.triangles), count("pieces", stats_.pieces)};
 }
 
 }  // namespace quadrille::hw

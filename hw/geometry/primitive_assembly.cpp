@@ -1,5 +1,7 @@
 #include "hw/geometry/primitive_assembly.h"
 
+#include "hw/frame/laws.h"
+
 namespace quadrille::hw {
 
 PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const Params& params, const Clock& clock,
@@ -56,6 +58,17 @@ void PrimitiveAssembly::emit(Tick now) {
   shaded_[head.slot] = false;
   next_triangle_ = 0;
   (void)batch_in.pop(now);
+}
+
+void PrimitiveAssembly::audit(Audit& audit) const {
+  audit.right(laws::kVerticesShaded, stats_.vertices.value());
+  audit.right(laws::kTrianglesFetched, stats_.triangles.value());
+  audit.left(laws::kTrianglesAssembled, stats_.triangles.value());
+}
+
+std::vector<Facet> PrimitiveAssembly::row() const {
+  return {count("triangles", stats_.triangles), mean("vertices/batch", stats_.vertices, stats_.batches),
+          mean("triangles/batch", stats_.triangles, stats_.batches)};
 }
 
 }  // namespace quadrille::hw

@@ -36,7 +36,9 @@ class PrimitiveAssembly final : public Unit {
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
-  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] const Stats* stats() const override { return &stats_; }
+  void audit(Audit& audit) const override;
+  [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
 
  private:

@@ -1,5 +1,7 @@
 #include "hw/geometry/triangle_setup.h"
 
+#include "hw/frame/laws.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -97,6 +99,19 @@ void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components
     at[1] = value(1) - a0;
     at[2] = value(2) - a0;
   }
+}
+
+void TriangleSetupUnit::audit(Audit& audit) const {
+  audit.right(laws::kPieces, stats_.triangles.value());
+  audit.both(laws::kTrianglesSetUp, stats_.triangles.value(),
+             stats_.kept.value() + stats_.culled.value() + stats_.zero_area.value() + stats_.offscreen.value() + stats_.no_sample.value());
+  audit.left(laws::kTrianglesWalked, stats_.kept.value());
+}
+
+std::vector<Facet> TriangleSetupUnit::row() const {
+  return {share("kept", stats_.kept, stats_.triangles), share("culled", stats_.culled, stats_.triangles),
+          share("no area", stats_.zero_area, stats_.triangles), share("off screen", stats_.offscreen, stats_.triangles),
+          share("no sample", stats_.no_sample, stats_.triangles)};
 }
 
 }  // namespace quadrille::hw

@@ -1,5 +1,7 @@
 #include "hw/geometry/vertex_fetch.h"
 
+#include "hw/frame/laws.h"
+
 #include <algorithm>
 
 namespace quadrille::hw {
@@ -215,6 +217,19 @@ void VertexFetch::leave(Tick now) {
   ++first_pending_;
   if (shades(head)) warp_out.push(now, {head.index, head.slot, 0});
   batch_out.push(now, {head.kind, head.index, head.slot});
+}
+
+void VertexFetch::audit(Audit& audit) const {
+  audit.left(laws::kVerticesFetched, stats_.vertices.value());
+  audit.left(laws::kTrianglesFetched, stats_.triangles.value());
+  cache_.stats().audit(audit, laws::kVertexCache);
+  port_.audit(audit);
+}
+
+std::vector<Facet> VertexFetch::row() const {
+  return {rate("indices", stats_.indices, params_.indices_per_clk), mean("indices/vertex", stats_.indices, stats_.vertices),
+          rate("attributes", stats_.attribute_fetches, params_.attributes_per_clk),
+          share("cache hit", cache_.stats().hits, cache_.stats().requests)};
 }
 
 }  // namespace quadrille::hw

@@ -66,6 +66,7 @@ class VertexFetch final : public Unit {
     Counter batches{*this, "batches", "batch", "Vertex batches formed"};
     Counter triangles{*this, "triangles", "triangle", "Triangles named by batches"};
   };
+  using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
 
   VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
               const models::DeviceMemory& memory, Store<BatchSlot>& batches, int slices);
@@ -77,7 +78,9 @@ class VertexFetch final : public Unit {
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
-  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] const Stats* stats() const override { return &stats_; }
+  void audit(Audit& audit) const override;
+  [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
 

@@ -19,6 +19,7 @@ struct L1CacheStats {
         hits{group, "cache_hits", "request", "Look-ups that found all their sectors"},
         merged{group, "cache_merged", "request", "Look-ups that found all their sectors on their way already"},
         misses{group, "cache_misses", "request", "Look-ups that had to ask the L2 cache for a sector"} {}
+  void audit(Audit& audit, const Law& law) const { audit.both(law, requests.value(), hits.value() + merged.value() + misses.value()); }
   Counter requests, hits, merged, misses;
 };
 
@@ -60,6 +61,7 @@ class L1Cache {
   /// No more lines may be asked for.
   [[nodiscard]] bool full() const { return free_.empty(); }
   [[nodiscard]] bool idle() const { return free_.size() == misses_.size(); }
+  [[nodiscard]] const L1CacheStats& stats() const { return stats_; }
 
  private:
   struct Miss {

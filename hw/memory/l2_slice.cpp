@@ -1,5 +1,7 @@
 #include "hw/memory/l2_slice.h"
 
+#include "hw/frame/laws.h"
+
 #include "hw/memory/memory_port.h"
 #include "models/memory/device_memory.h"
 
@@ -201,6 +203,20 @@ void L2Slice::answer(Tick at, std::uint32_t client, const MemoryResponse& token)
   for (std::size_t i = queue.size() - 1; i > 0 && queue[i - 1].at > at; --i) std::swap(queue[i - 1], queue[i]);
   answering_[client / 64] |= std::uint64_t{1} << (client % 64);
   answer_due_ = std::min(answer_due_, at);
+}
+
+void L2Slice::audit(Audit& audit) const {
+  audit.both(laws::kL2, stats_.requests.value(), stats_.hits.value() + stats_.merged.value() + stats_.misses.value());
+  audit.right(laws::kClientRequests, stats_.requests.value());
+  audit.right(laws::kClientReads, stats_.read_bytes.value());
+  audit.right(laws::kClientWrites, stats_.write_bytes.value());
+  audit.left(laws::kFills, stats_.fill_bytes.value());
+  audit.left(laws::kWriteBacks, stats_.writeback_bytes.value());
+}
+
+std::vector<Facet> L2Slice::row() const {
+  return {count("requests", stats_.requests), share("hit", stats_.hits, stats_.requests), share("merged", stats_.merged, stats_.requests),
+          share("missed", stats_.misses, stats_.requests)};
 }
 
 }  // namespace quadrille::hw

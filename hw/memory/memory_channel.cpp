@@ -1,5 +1,7 @@
 #include "hw/memory/memory_channel.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/memory/device_memory.h"
 
 #include <bit>
@@ -197,6 +199,25 @@ void MemoryChannel::finish_stats(Tick end) {
     given = sum / buses;
   }
   stats_->bus_busy += stats_->bus_read.value() + stats_->bus_write.value();
+}
+
+void MemoryChannel::audit(Audit& audit) const {
+  const Stats& s = *stats_;
+  audit.right(laws::kFills, s.read_bytes.value());
+  audit.right(laws::kWriteBacks, s.write_bytes.value());
+  audit.both(laws::kRows, s.row_hits.value() + s.row_misses.value() + s.row_conflicts.value(), s.reads.value() + s.writes.value());
+  audit.both(laws::kDataBus,
+             s.bus_read.value() + s.bus_write.value() + s.bus_refresh.value() + s.bus_turnaround.value() + s.bus_activation.value() +
+                 s.bus_spacing.value() + s.bus_idle.value(),
+             static_cast<std::uint64_t>(total_cycles()));
+}
+
+std::vector<Facet> MemoryChannel::row() const {
+  const Stats& s = *stats_;
+  return {count("accesses", s.reads.value() + s.writes.value()),  share("row hit", s.row_hits, s.reads.value() + s.writes.value()),
+          share("data bus held", s.bus_busy, total_cycles()),     share("refresh", s.bus_refresh, total_cycles()),
+          share("turn-around", s.bus_turnaround, total_cycles()), share("activation", s.bus_activation, total_cycles()),
+          share("spacing", s.bus_spacing, total_cycles()),        mean("in queue", s.queue_occupancy, total_cycles())};
 }
 
 }  // namespace quadrille::hw

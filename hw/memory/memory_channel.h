@@ -34,6 +34,8 @@ class MemoryChannel final : public Unit {
   void act(Tick now) override;
   [[nodiscard]] bool may_run_ahead() const override { return false; }
   [[nodiscard]] const StatGroup* stats() const override;
+  void audit(Audit& audit) const override;
+  [[nodiscard]] std::vector<Facet> row() const override;
   void finish_stats(Tick end) override;
   [[nodiscard]] std::string state_text() const override;
   /// Gets every command that goes to the DRAM.

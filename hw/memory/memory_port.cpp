@@ -1,5 +1,7 @@
 #include "hw/memory/memory_port.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/memory/device_memory.h"
 
 #include <algorithm>
@@ -39,6 +41,12 @@ void MemoryPort::send(Tick now) {
     out.push(now, queue_.front().request);
     queue_.pop_front();
   }
+}
+
+void MemoryPort::audit(Audit& audit) const {
+  audit.left(laws::kClientRequests, stats_.reads.value() + stats_.writes.value());
+  audit.left(laws::kClientReads, stats_.read_bytes.value());
+  audit.left(laws::kClientWrites, stats_.write_bytes.value());
 }
 
 }  // namespace quadrille::hw

@@ -46,6 +46,8 @@ class MemoryPort {
     response_in.take_ready(now, [&](std::size_t, const MemoryResponse& answer) { take(answer); });
   }
 
+  [[nodiscard]] const MemoryPortStats& stats() const { return stats_; }
+  void audit(Audit& audit) const;
   [[nodiscard]] int slices() const { return static_cast<int>(request_out.size()); }
   std::vector<std::unique_ptr<FifoOut<MemoryRequest>>> request_out;  ///< by slice
   FifoInGroup<MemoryResponse> response_in;

@@ -1,5 +1,7 @@
 #include "hw/raster/coarse_raster.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/raster/interpolate.h"
 
 #include <algorithm>
@@ -135,6 +137,17 @@ void CoarseRaster::walk(Tick now) {
   if (ahead_) return;
   walking_ = false;
   sync_due_ = ++since_sync_ >= sync_interval_;
+}
+
+void CoarseRaster::audit(Audit& audit) const {
+  audit.right(laws::kTrianglesWalked, stats_.triangles.value());
+  audit.left(laws::kTiles, stats_.tiles_kept.value());
+}
+
+std::vector<Facet> CoarseRaster::row() const {
+  return {rate("tile tests", stats_.tiles_tested, params_.tests_per_clk), mean("tiles/triangle", stats_.tiles_kept, stats_.triangles),
+          share("kept", stats_.tiles_kept, stats_.tiles_tested),
+          share("Hi-Z hid", stats_.tiles_hidden, stats_.tiles_kept.value() + stats_.tiles_hidden.value())};
 }
 
 }  // namespace quadrille::hw

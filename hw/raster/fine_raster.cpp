@@ -1,5 +1,7 @@
 #include "hw/raster/fine_raster.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/memory/interleave.h"
 #include "models/raster/fine.h"
 
@@ -49,6 +51,17 @@ void FineRaster::rasterize(Tick now, const TileToken& tile) {
   if (coverage == 0) return;
   const std::uint32_t p = models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
   coverage_out[p]->push(now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});
+}
+
+void FineRaster::audit(Audit& audit) const {
+  audit.right(laws::kTiles, stats_.tiles.value());
+  audit.left(laws::kFragmentsCovered, stats_.fragments.value());
+  audit.left(laws::kFragmentsDeferredOrNot, stats_.fragments.value());
+}
+
+std::vector<Facet> FineRaster::row() const {
+  return {rate("quads", stats_.quads, params_.quads_per_clk), mean("fragments/quad", stats_.fragments, stats_.quads),
+          mean("quads/tile", stats_.quads, stats_.tiles), share("full tiles", stats_.tiles_full, stats_.tiles)};
 }
 
 }  // namespace quadrille::hw

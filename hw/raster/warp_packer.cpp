@@ -1,5 +1,7 @@
 #include "hw/raster/warp_packer.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/raster/tile.h"
 
 #include <bit>
@@ -126,6 +128,17 @@ void WarpPacker::launch(Tick now) {
   open_ = false;
   free_ = params_.launch_clk == 0 ? now : after(now, params_.launch_clk);
   occupy(now, params_.launch_clk);
+}
+
+void WarpPacker::audit(Audit& audit) const {
+  audit.right(laws::kFragmentsPassed, stats_.fragments.value());
+  audit.left(laws::kFragmentsPacked, stats_.fragments.value());
+  audit.left(laws::kWarpsPacked, stats_.warps.value());
+}
+
+std::vector<Facet> WarpPacker::row() const {
+  return {rate("quads", stats_.quads, params_.quads_per_clk), mean("live lanes/warp", stats_.fragments, stats_.warps),
+          share("partial warps", stats_.partial_warps, stats_.warps)};
 }
 
 }  // namespace quadrille::hw

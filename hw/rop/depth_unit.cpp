@@ -1,5 +1,7 @@
 #include "hw/rop/depth_unit.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/raster/interpolate.h"
 #include "models/rop/depth.h"
 #include "models/rop/tile_in_frame.h"
@@ -367,6 +369,23 @@ void DepthUnit::advance_flush(Tick now) {
   }
   flush_ = Flush::kFenced;
   free_ = after(now, 1);
+}
+
+void DepthUnit::audit(Audit& audit) const {
+  audit.right(laws::kFragmentsCovered, stats_.fragments_in.value());
+  audit.both(laws::kFragmentsTested, stats_.fragments_in.value(), stats_.early_killed.value() + stats_.fragments_out.value());
+  audit.right(laws::kFragmentsDeferredOrNot, stats_.early_tested.value() + stats_.deferred.value() + stats_.untested.value());
+  audit.both(laws::kFragmentsDeferred, stats_.deferred.value(), stats_.late_tested.value());
+  audit.left(laws::kFragmentsPassed, stats_.fragments_out.value());
+  audit.right(laws::kKilledLate, stats_.late_killed.value());
+  cache_.stats().audit(audit, laws::kDepthCache);
+  port_.audit(audit);
+}
+
+std::vector<Facet> DepthUnit::row() const {
+  return {rate("fragments", stats_.fragments_in, params_.quads_per_clk * models::kQuadPixels),
+          share("killed early", stats_.early_killed, stats_.fragments_in), share("tested late", stats_.late_tested, stats_.fragments_in),
+          count("killed late", stats_.late_killed), share("cache hit", cache_.stats().hits, cache_.stats().requests)};
 }
 
 }  // namespace quadrille::hw

@@ -43,6 +43,7 @@ class DepthUnit final : public Unit {
     Counter hiz_sent{*this, "hiz_sent", "update", "Hi-Z updates sent"};
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
   };
+  using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   DepthUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
             models::DeviceMemory::Owner owner, const TriangleStore& triangles, Store<WarpSlot>& warps, int partition, int partitions,
             int slices);
@@ -55,7 +56,9 @@ class DepthUnit final : public Unit {
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
-  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] const Stats* stats() const override { return &stats_; }
+  void audit(Audit& audit) const override;
+  [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
 

@@ -1,5 +1,7 @@
 #include "hw/rop/rop.h"
 
+#include "hw/frame/laws.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -308,6 +310,24 @@ void Rop::advance_flush(Tick now) {
   fences_ = port_.slices();
   flush_ = Flush::kFenced;
   free_ = after(now, 1);
+}
+
+void Rop::audit(Audit& audit) const {
+  audit.right(laws::kDraws, stats_.draws.value());
+  audit.right(laws::kFragmentsDeferred, stats_.late_discarded.value());
+  audit.right(laws::kWarpsDistributed, stats_.warps.value());
+  audit.right(laws::kFragmentsShaded, stats_.fragments_in.value());
+  audit.both(laws::kFragmentsRetired, stats_.fragments_in.value(),
+             stats_.discarded.value() + stats_.late_killed.value() + stats_.written.value());
+  audit.left(laws::kKilledLate, stats_.late_killed.value());
+  cache_.stats().audit(audit, laws::kColorCache);
+  port_.audit(audit);
+}
+
+std::vector<Facet> Rop::row() const {
+  return {rate("written", stats_.written, params_.quads_per_clk * models::kQuadPixels),
+          share("written", stats_.written, stats_.fragments_in), share("discarded", stats_.discarded, stats_.fragments_in),
+          share("blended", stats_.blended, stats_.written), share("cache hit", cache_.stats().hits, cache_.stats().requests)};
 }
 
 }  // namespace quadrille::hw

@@ -35,6 +35,7 @@ class Rop final : public Unit {
     Counter blended{*this, "blended", "fragment", "Fragments of those that were combined with the old colour"};
     Counter draws{*this, "draws", "draw", "Draws retired"};
   };
+  using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
       models::DeviceMemory::Owner owner, Store<WarpSlot>& warps, int partition, int partitions, int cores, int slices);
 
@@ -49,7 +50,9 @@ class Rop final : public Unit {
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
-  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] const Stats* stats() const override { return &stats_; }
+  void audit(Audit& audit) const override;
+  [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
 

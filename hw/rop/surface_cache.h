@@ -48,6 +48,7 @@ class SurfaceCache {
   void flush(MemoryPort& port, bool write_cleared);
   [[nodiscard]] bool full() const { return cache_.full(); }
   [[nodiscard]] bool idle() const { return cache_.idle(); }
+  [[nodiscard]] const L1CacheStats& stats() const { return cache_.stats(); }
 
  private:
   [[nodiscard]] std::uint32_t line_of(std::uint32_t tile_x, std::uint32_t tile_y) const {

@@ -1,5 +1,7 @@
 #include "hw/shader/shader_core.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/raster/interpolate.h"
 
 #include <algorithm>
@@ -280,6 +282,20 @@ void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, 
     models::interpolate_quad(triangle.setup, quad.x, quad.y, q, inputs);
     for (std::size_t i = 0; i < 4; ++i) inputs.primitive_id[4 * static_cast<std::size_t>(q) + i] = triangle.primitive;
   }
+}
+
+void ShaderCore::audit(Audit& audit) const {
+  audit.right(laws::kVerticesFetched, stats_.vertices.value());
+  audit.left(laws::kVerticesShaded, stats_.vertices.value());
+  audit.right(laws::kFragmentsPacked, stats_.fragments.value());
+  audit.left(laws::kFragmentsShaded, stats_.fragments.value());
+  if (texture_out) audit.left(laws::kTextureRequests, stats_.texture.value());
+}
+
+std::vector<Facet> ShaderCore::row() const {
+  return {rate("SIMDs held", stats_.simd_busy, params_.simds), count("instructions", stats_.instructions),
+          mean("lanes/instruction", stats_.lane_operations, stats_.instructions),
+          share("special function", stats_.sfu, stats_.instructions), share("texture", stats_.texture, stats_.instructions)};
 }
 
 }  // namespace quadrille::hw

@@ -1,5 +1,7 @@
 #include "hw/shader/work_distributor.h"
 
+#include "hw/frame/laws.h"
+
 #include "models/memory/interleave.h"
 
 #include <fmt/ranges.h>
@@ -97,6 +99,15 @@ void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs
   ++loads_[core];
   turn = (core + 1) % outputs.size();
   occupy(now, 1);
+}
+
+void WorkDistributor::audit(Audit& audit) const {
+  audit.right(laws::kWarpsPacked, stats_.fragment_warps.value());
+  audit.left(laws::kWarpsDistributed, stats_.fragment_warps.value());
+}
+
+std::vector<Facet> WorkDistributor::row() const {
+  return {count("vertex warps", stats_.vertex_warps), count("fragment warps", stats_.fragment_warps)};
 }
 
 }  // namespace quadrille::hw

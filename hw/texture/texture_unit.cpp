@@ -1,5 +1,7 @@
 #include "hw/texture/texture_unit.h"
 
+#include "hw/frame/laws.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -118,6 +120,19 @@ void TextureUnit::look_up(Tick now) {
     }
   }
   groups_.back().ready = std::max(groups_.back().ready, now);
+}
+
+void TextureUnit::audit(Audit& audit) const {
+  audit.right(laws::kTextureRequests, stats_.requests.value());
+  audit.both(laws::kTextureGroups, stats_.groups.value(), stats_.groups_answered.value());
+  cache_.stats().audit(audit, laws::kTextureCache);
+  port_.audit(audit);
+}
+
+std::vector<Facet> TextureUnit::row() const {
+  return {rate("bilinear quads", stats_.bilinear_quads, params_.filter_quads_per_clk), count("requests", stats_.requests),
+          mean("lanes/request", stats_.lanes, stats_.requests), share("cache hit", cache_.stats().hits, cache_.stats().requests),
+          share("merged", cache_.stats().merged, cache_.stats().requests)};
 }
 
 }  // namespace quadrille::hw

@@ -41,6 +41,7 @@ class TextureUnit final : public Unit {
     Counter texels{*this, "texels", "texel", "Texels read from the cache"};
     Counter groups_answered{*this, "groups_answered", "group", "Groups whose texels went back"};
   };
+  using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
   TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
               const models::DeviceMemory& memory, Store<CoreSlot>& slots, int slices);
 
@@ -49,7 +50,9 @@ class TextureUnit final : public Unit {
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
-  [[nodiscard]] const StatGroup* stats() const override { return &stats_; }
+  [[nodiscard]] const Stats* stats() const override { return &stats_; }
+  void audit(Audit& audit) const override;
+  [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
 

@@ -17,6 +17,7 @@ namespace quadrille::models {
 
 inline constexpr int kWarpLanes = 32;
 inline constexpr int kWarpQuads = 8;
+inline constexpr int kQuadPixels = 4;
 inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxVaryings = 64;      ///< scalar components between vertex and fragment shader
 inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attributes of 4)
