@@ -37,6 +37,8 @@ std::vector<const experiments::Experiment*> chosen_of(const std::vector<std::str
     const auto found = std::ranges::find(all, name);
     if (found == all.end())
       throw user_error("there is no experiment '{}'; there are: {}{}", name, fmt::join(all, ", "), did_you_mean(name, all));
+    if (std::ranges::find(chosen, &experiments::experiments()[static_cast<std::size_t>(found - all.begin())]) != chosen.end())
+      throw user_error("experiment: '{}' is named twice", name);
     chosen.push_back(&experiments::experiments()[static_cast<std::size_t>(found - all.begin())]);
   }
   return chosen;
@@ -52,11 +54,23 @@ experiments::Setting setting_of(const experiments::Experiment& e, const Experime
     if (!scene.is_trace()) scene.size = a.size.value_or(e.size);
     scene.check();
     scene.check_there();
-    setting.scenes.emplace_back(fs::path(name).stem().string(), [scene] { return scene.load().stream; });
+    setting.scenes.emplace_back(fs::path(name).stem().string(), [scene] {
+      traces::CommandStream stream = scene.load().stream;
+      const auto draws = [](const traces::Command& c) { return std::holds_alternative<traces::Draw>(c); };
+      if (std::ranges::none_of(stream.commands, draws)) throw user_error("{}: draws nothing: no figure comes of that", scene.scene);
+      return stream;
+    });
   }
   std::tie(setting.width, setting.height) = parse_size(a.size.value_or(e.size), "--size");
   setting.jobs = a.jobs ? static_cast<int>(parse_whole(*a.jobs, "--jobs", 1, 64)) : 2;
   return setting;
+}
+
+std::string page_of(const ExperimentArguments& a, const experiments::Experiment& e) {
+  return (fs::path(*a.out) / (std::string(e.name) + ".md")).string();
+}
+std::string picture_of(const ExperimentArguments& a, const experiments::Experiment& e) {
+  return (fs::path(*a.out) / (std::string(e.name) + ".png")).string();
 }
 
 int run_experiments(const ExperimentArguments& a) {
@@ -72,6 +86,10 @@ int run_experiments(const ExperimentArguments& a) {
     std::error_code error;
     fs::create_directories(*a.out, error);
     if (error || !fs::is_directory(*a.out)) throw user_error("--out: {}: cannot be made a folder", *a.out);
+    for (const experiments::Experiment* e : all) {
+      check_output("--out", page_of(a, *e), {".md"});
+      check_output("--out", picture_of(a, *e), {".png"});
+    }
   }
   bool hold = true;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -84,10 +102,8 @@ int run_experiments(const ExperimentArguments& a) {
     Tables(true, std::nullopt).print(experiments::result_text(*e, result));
     hold = hold && result.holds();
     if (!a.out) continue;
-    const fs::path page = fs::path(*a.out) / (std::string(e->name) + ".md");
-    const std::string picture = std::string(e->name) + ".png";
-    studies::draw_plot((fs::path(*a.out) / picture).string(), result.plot);
-    write_text(page.string(), experiments::result_markdown(*e, result, picture));
+    studies::draw_plot(picture_of(a, *e), result.plot);
+    write_text(page_of(a, *e), experiments::result_markdown(*e, result, std::string(e->name) + ".png"));
   }
   return hold ? kDone : kFailed;
 }

@@ -41,25 +41,36 @@ std::string seen_from(const std::string& page, const std::string& folder) {
   return fs::proximate(folder, fs::absolute(page).parent_path()).generic_string() + "/";
 }
 
+std::string picture_of(const StabilityArguments& arguments, const std::string& name) {
+  return (fs::path(*arguments.out) / (name + ".png")).string();
+}
+std::string contact_of(const StabilityArguments& arguments) { return (fs::path(*arguments.out) / "contact.html").string(); }
+
 void write_pictures(const StabilityArguments& arguments, std::span<const stability::CaseResult> results) {
   for (const stability::CaseResult& r : results) {
-    if (!r.picture.pixels.empty()) scenes::save_png((fs::path(*arguments.out) / (r.about->name + ".png")).string(), r.picture);
+    if (!r.picture.pixels.empty()) scenes::save_png(picture_of(arguments, r.about->name), r.picture);
   }
-  write_text((fs::path(*arguments.out) / "contact.html").string(), stability::contact_html(results));
+  write_text(contact_of(arguments), stability::contact_html(results));
 }
 
 int run_stability(const StabilityArguments& arguments) {
   std::vector<const stability::Case*> cases = stability::select(arguments.patterns);
   if (arguments.quick) std::erase_if(cases, [](const stability::Case* c) { return c->slow; });
-  if (arguments.list) {
-    print_list(cases);
-    return kDone;
-  }
+  if (cases.empty()) throw user_error("--quick: leaves out every case that was asked for");
   const std::int64_t jobs = arguments.jobs ? parse_whole(*arguments.jobs, "--jobs", 1, 64) : 2;
   if (arguments.json) check_json_output("--json", *arguments.json);
   if (arguments.page) check_output("--page", *arguments.page, {".md"});
   if (arguments.page && !arguments.out) throw user_error("--page: it shows the pictures of --out, which is missing");
-  if (arguments.out) make_folder(*arguments.out);
+  if (arguments.list) {
+    if (arguments.out || arguments.json || arguments.page) throw user_error("--list: runs no case, so there is nothing to write");
+    print_list(cases);
+    return kDone;
+  }
+  if (arguments.out) {
+    make_folder(*arguments.out);
+    for (const stability::Case* c : cases) check_output("--out", picture_of(arguments, c->name), {".png"});
+    check_output("--out", contact_of(arguments), {".html"});
+  }
 
   const Tables tables(true, arguments.json);
   const Stopwatch watch;

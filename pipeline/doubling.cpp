@@ -25,6 +25,7 @@ std::string scaled(const hw::ParamBase& p, double factor) {
 const std::vector<Doubling>& doublings() {
   static const std::vector<Doubling> all{
       {"command_processor.draw_clk", "draws a cycle", {{"command_processor.draw_clk", 0.5}}},
+      {"command_processor.draws_in_flight", "draws under way", {{"command_processor.draws_in_flight", 2}}},
       {"vertex_fetch.rates",
        "indices and attributes a cycle",
        {{"vertex_fetch.indices_per_clk", 2}, {"vertex_fetch.attributes_per_clk", 2}}},

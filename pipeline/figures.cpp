@@ -18,7 +18,7 @@ HistogramFigure figures_of(const hw::Histogram& h) {
   return f;
 }
 
-UnitFigures figures_of(const hw::Unit& unit) {
+UnitFigures figures_of(const hw::Unit& unit, hw::Tick end) {
   UnitFigures f;
   f.path = unit.name();
   f.cycles = unit.total_cycles();
@@ -33,7 +33,7 @@ UnitFigures figures_of(const hw::Unit& unit) {
   }
   std::ranges::stable_sort(f.waits, std::ranges::greater{}, &WaitFigure::cycles);
   for (const hw::Resource& r : unit.resources().all())
-    f.resources.push_back({std::string(r.name), std::string(r.serial), r.kind == hw::Resource::Kind::kPlaces, r.total(), r.at_end_of});
+    f.resources.push_back({std::string(r.name), std::string(r.serial), r.kind, r.total(end), r.at_end_of});
   if (unit.stats() != nullptr) {
     for (const hw::Counter* c : unit.stats()->counters()) {
       f.counters.push_back({std::string(c->name()), std::string(c->unit()), std::string(c->definition()), c->value()});
@@ -157,7 +157,7 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
   f.frame.fragment_warps = sum<hw::ShaderCore>(m, &Core::fragment_warps);
   f.frame.fragments_written = sum<hw::Rop>(m, &hw::Rop::Stats::written);
   f.frame.fates = fates_of(m);
-  for (const hw::Unit* unit : m.units()) f.units.push_back(figures_of(*unit));
+  for (const hw::Unit* unit : m.units()) f.units.push_back(figures_of(*unit, m.end()));
   for (const hw::Unit* unit : m.units()) {
     if (!unit->resources().empty())
       f.slice_cycles = static_cast<double>(unit->resources().slice()) * static_cast<double>(m.clock().frequency_hz()) * 1e-15;

@@ -44,7 +44,7 @@ struct LinkFigures {
 /// What a unit took of one of its resources (hw/base/resource.h): cycles of its clock, and what they had come to at the end of each slice of the frame.
 struct ResourceFigure {
   std::string name, serial;
-  bool places = false;
+  hw::Resource::Kind kind = hw::Resource::Kind::kRate;
   double cycles = 0;
   std::vector<double> at_end_of = {};
 };

@@ -123,6 +123,12 @@ void MachineConfig::check_memory() const {
 }
 
 void MachineConfig::check() const {
+  // The slower clock's cycle is many of the faster one's, and each costs the simulation time: refreshes, for example.
+  constexpr double kFarthestClocks = 1e4;
+  const double ratio = gpu.clock_mhz / gpu.memory_mhz;
+  if (ratio > kFarthestClocks || ratio < 1 / kFarthestClocks)
+    throw user_error("machine: gpu.clock_mhz ({}) and gpu.memory_mhz ({}) are more than {:.0f} times apart", gpu.clock_mhz.value(),
+                     gpu.memory_mhz.value(), kFarthestClocks);
   check_memory();
   const auto cache = [](std::string_view path, int lines, int ways) {
     if (lines % ways == 0) return;  // whole sets

@@ -75,6 +75,12 @@ void apply(MachineConfig& config, const toml::table& table, const std::string& p
     const std::string key = prefix.empty() ? std::string(name.str()) : prefix + "." + std::string(name.str());
     const std::string where = fmt::format("{}:{}", file, node.source().begin.line);
     if (const toml::table* inner = node.as_table()) {
+      const auto is_group = [&](const auto& group) { return group.first == key || group.first.starts_with(key + "."); };
+      if (std::ranges::none_of(config.groups(), is_group)) {
+        std::vector<std::string> names;
+        for (const auto& [path, group] : config.groups()) names.push_back(path);
+        throw user_error("{}: unknown group '{}'; `quadrille describe` lists them{}", where, key, did_you_mean(key, names));
+      }
       apply(config, *inner, key, file);
     } else if (key == "name") {
       const auto text = node.value<std::string>();

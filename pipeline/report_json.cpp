@@ -49,8 +49,13 @@ Json unit_json(const UnitFigures& u) {
   Json histograms = Json::object();
   for (const HistogramFigure& h : u.histograms) histograms[h.name] = {{"buckets", h.buckets}, {"sum", h.sum}};
   Json resources = Json::object();
-  for (const ResourceFigure& r : u.resources)
-    resources[r.name] = {{"kind", r.places ? "places" : "rate"}, {r.places ? "full_cycles" : "least_cycles", r.cycles}};
+  for (const ResourceFigure& r : u.resources) {
+    switch (r.kind) {
+      case hw::Resource::Kind::kRate: resources[r.name] = {{"kind", "rate"}, {"least_cycles", r.cycles}}; break;
+      case hw::Resource::Kind::kLoss: resources[r.name] = {{"kind", "loss"}, {"lost_cycles", r.cycles}}; break;
+      case hw::Resource::Kind::kPlaces: resources[r.name] = {{"kind", "places"}, {"full_cycles", r.cycles}}; break;
+    }
+  }
   return {{"cycles", u.cycles},
           {"use", use_of(u)},
           {"busy", u.busy},

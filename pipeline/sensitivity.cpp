@@ -88,7 +88,7 @@ class Slices {
     for (const ResourceFigure& r : unit.resources) {
       const std::string name = kind + "." + r.name;
       const std::vector<double> part = parts(r, per_cycle);
-      if (r.places) {
+      if (r.kind == hw::Resource::Kind::kPlaces) {
         std::vector<double>& most = places_[name];
         most.resize(count_, 0);
         for (std::size_t s = 0; s < count_; ++s) most[s] = std::max(most[s], part[s]);
@@ -156,7 +156,7 @@ void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double
 double use_of(const UnitFigures& unit) {
   std::map<std::string, double> bounds;
   for (const ResourceFigure& r : unit.resources)
-    if (!r.places) bounds[r.serial.empty() ? r.name : r.serial] += r.cycles;
+    if (r.kind == hw::Resource::Kind::kRate) bounds[r.serial.empty() ? r.name : r.serial] += r.cycles;
   double most = 0;
   for (const auto& [name, cycles] : bounds) most = std::max(most, cycles);
   return unit.cycles > 0 ? most / static_cast<double>(unit.cycles) : 0;

@@ -25,8 +25,10 @@ constexpr std::uint64_t kMaxPlotBytes = std::uint64_t{64} << 20;
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string pattern = (fs::temp_directory_path() / "quadrille-plot-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw user_error("{}: cannot make a folder for the plot", pattern);
+    std::error_code error;
+    std::string pattern = (fs::temp_directory_path(error) / "quadrille-plot-XXXXXX").string();
+    if (error || mkdtemp(pattern.data()) == nullptr)
+      throw user_error("{}: cannot make a folder for the plot there; TMPDIR says where", error ? "the folder of TMPDIR" : pattern);
     path_ = pattern;
   }
   ~ScratchFolder() {
@@ -67,7 +69,10 @@ void require_gnuplot(const std::string& flag) {
   std::string folders = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
   for (std::size_t from = 0; from <= folders.size();) {
     const std::size_t to = std::min(folders.find(':', from), folders.size());
-    if (access((fs::path(folders.substr(from, to - from)) / "gnuplot").c_str(), X_OK) == 0) return;
+    if (access((fs::path(folders.substr(from, to - from)) / "gnuplot").c_str(), X_OK) == 0) {
+      (void)ScratchFolder();
+      return;
+    }
     from = to + 1;
   }
   throw user_error("{}: gnuplot draws the plots and is not installed (Debian's package is gnuplot-nox)", flag);

@@ -4,7 +4,7 @@ namespace quadrille::hw {
 
 void Resources::end_slices(Tick now) {
   while (now >= next_slice_) {
-    for (Resource& r : all_) r.at_end_of.push_back(r.total());
+    for (Resource& r : all_) r.at_end_of.push_back(r.total(next_slice_));
     next_slice_ += slice_;
     if (static_cast<std::size_t>(next_slice_ / slice_) > kMostSlices) double_slice();
   }
@@ -24,7 +24,7 @@ void Resources::finish(Tick end, Tick slice) {
   end_slices(end);
   while (slice_ < slice) double_slice();
   if (static_cast<Tick>(all_.front().at_end_of.size()) * slice_ < end)
-    for (Resource& r : all_) r.at_end_of.push_back(r.total());
+    for (Resource& r : all_) r.at_end_of.push_back(r.total(end));
 }
 
 }  // namespace quadrille::hw

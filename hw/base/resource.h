@@ -1,8 +1,10 @@
 /// What a unit needs to do its work, and how much of it a frame took: the base of its use, of the frame's speed of light and of what limits it.
 ///
 ///   rate     work that can be done at so much a cycle: cycles that the counted work takes at that rate. No frame is shorter than that.
+///   loss     cycles in which a rate's resource could not work (a data bus that waits for a row). They are part of what limits the frame, but no work: another order
+///            of the same work loses others.
 ///   places   a number of things that can be under way: cycles in which all places were taken.
-/// Rates of one `serial` group follow each other on the same resource (a data bus moves data or waits for rows), so their cycles add up.
+/// Rates and losses of one `serial` group follow each other on the same resource, so their cycles add up.
 ///
 /// Both are sampled over the frame, so that a frame of unlike phases can be told from an even one: slice i ends at the start of the frame plus (i + 1) slice lengths.
 #pragma once
@@ -16,14 +18,14 @@
 namespace quadrille::hw {
 
 struct Resource {
-  enum class Kind : std::uint8_t { kRate, kPlaces };
+  enum class Kind : std::uint8_t { kRate, kLoss, kPlaces };
   std::string_view name;
   Kind kind = Kind::kRate;
   std::string_view serial = {};
-  std::function<double()> cycles = {};  ///< kRate: so far, of the unit's clock
-  double taken = 0;                     ///< kPlaces: cycles in which it was full, so far
-  std::vector<double> at_end_of = {};   ///< by slice: what it had come to
-  [[nodiscard]] double total() const { return kind == Kind::kRate ? cycles() : taken; }
+  std::function<double(Tick)> cycles = {};  ///< kRate, kLoss: up to a tick that is not before the latest action, of the unit's clock
+  double taken = 0;                         ///< kPlaces: cycles in which it was full, so far
+  std::vector<double> at_end_of = {};       ///< by slice: what it had come to
+  [[nodiscard]] double total(Tick at) const { return kind == Kind::kPlaces ? taken : cycles(at); }
 };
 
 class Resources {
@@ -33,9 +35,12 @@ class Resources {
   /// Length of a slice at first; it doubles whenever a frame would have more than kMostSlices.
   static constexpr Tick kFirstSlice = 512'000'000;  // fs: 512 cycles at 1 GHz
 
-  /// Work so far, in cycles of the unit's clock at its peak rate.
-  void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
+  /// Work up to a tick, in cycles of the unit's clock at its peak rate.
+  void add_rate(std::string_view name, std::function<double(Tick)> cycles, std::string_view serial = {}) {
     all_.push_back({.name = name, .kind = Resource::Kind::kRate, .serial = serial, .cycles = std::move(cycles)});
+  }
+  void add_loss(std::string_view name, std::function<double(Tick)> cycles, std::string_view serial) {
+    all_.push_back({.name = name, .kind = Resource::Kind::kLoss, .serial = serial, .cycles = std::move(cycles)});
   }
   /// Are all places taken now?
   void add_places(std::string_view name, std::function<bool()> full) {

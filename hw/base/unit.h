@@ -173,7 +173,14 @@ class Unit : public sc_core::sc_module {
   // What the unit needs for its work, named in its constructor; names are those of the parameters that set them, where one does. The initiation slot is a rate
   // whose work is the busy cycles.
   void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
-    resources_.add_rate(name, std::move(cycles), serial);
+    resources_.add_rate(
+        name, [cycles = std::move(cycles)](Tick) { return cycles(); }, serial);
+  }
+  /// Of work that goes on between actions: up to a tick that is not before the latest.
+  void add_rate_until(std::string_view name, std::function<double(Tick)> cycles) { resources_.add_rate(name, std::move(cycles)); }
+  void add_loss(std::string_view name, std::function<double()> cycles, std::string_view serial) {
+    resources_.add_loss(
+        name, [cycles = std::move(cycles)](Tick) { return cycles(); }, serial);
   }
   void add_initiation_rate(std::string_view name) {
     add_rate(name, [this] { return static_cast<double>(busy_cycles()); });

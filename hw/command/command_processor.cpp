@@ -14,6 +14,7 @@ CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const Params& p
       quiet_log_(quiet),
       retired_by_(static_cast<std::size_t>(partitions)) {
   add_initiation_rate("draw_clk");
+  add_places("draws_in_flight", [this] { return step_ == Step::kDraw && all_in_flight(); });
   for (int i = 0; i < partitions; ++i) { retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply); }
   if (frame.passes.empty()) step_ = Step::kDone;
 }
@@ -27,7 +28,7 @@ Wake CommandProcessor::retire_wake() const { return retire_in.earliest(); }
 Wake CommandProcessor::issue_wake() const {
   switch (step_) {
     case Step::kDraw:
-      if (draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value())) return Wake::never(retire_in[0]);
+      if (all_in_flight()) return Wake::never(retire_in[0]);
       return Wake(free_).output(draw_out);
     case Step::kPassBegin:
     case Step::kDrawEnd:

@@ -53,6 +53,8 @@ class CommandProcessor final : public Unit {
  private:
   enum class Step : std::uint8_t { kPassBegin, kDraw, kDrawEnd, kPassEnd, kWaitFlush, kScan, kWaitScan, kDone };
   [[nodiscard]] Wake issue_wake() const;
+  /// As many draws are under way as may be.
+  [[nodiscard]] bool all_in_flight() const { return draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value()); }
   [[nodiscard]] Wake retire_wake() const;
   void take_retirements(Tick now);
   void issue(Tick now);

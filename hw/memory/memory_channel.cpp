@@ -81,7 +81,7 @@ MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const Params& params,
       controller_(params.controller()) {
   add_rate(
       "bus", [this] { return bus_cycles(models::BusUse::kRead) + bus_cycles(models::BusUse::kWrite); }, "data bus");
-  add_rate(
+  add_loss(
       "rows",
       [this] {
         return bus_cycles(models::BusUse::kActivation) + bus_cycles(models::BusUse::kTurnaround) + bus_cycles(models::BusUse::kSpacing) +

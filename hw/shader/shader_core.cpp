@@ -57,7 +57,11 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const
       issue_timing_(issue_timing(params)),
       simds_(static_cast<std::size_t>(params.simds.value()), Simd(params.scheduler)),
       simd_warps_(simds_.size(), 0) {
-  add_rate("issue", [this] { return static_cast<double>(stats_.simd_busy.value()) / params_.simds; });
+  add_rate_until("issue", [this](Tick at) {
+    double issued = 0;
+    for (const Simd& simd : simds_) issued += simd.issued(this->clock().edges_before(at));
+    return issued / params_.simds;
+  });
   add_places("warp_slots", [this] { return kept_out(true); });
   add_places("register_rows", [this] { return kept_out(false); });
   for (std::size_t p = 0; p < warps_.size(); ++p) {

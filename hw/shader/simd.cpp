@@ -19,9 +19,18 @@ void Simd::add(Cycle now, std::uint32_t name, std::uint32_t work, std::uint32_t 
 
 void Simd::advance(Cycle now) {
   if (now == now_) return;
+  issued_ = issued(now);
   const auto cycles = static_cast<double>(now - now_);
   for (Running& clause : running_) clause.left -= clause.speed * cycles;
   now_ = now;
+}
+
+double Simd::issued(Cycle now) const {
+  double sum = issued_;
+  // A clause that ends within its last cycle has no more to issue.
+  for (const Running& clause : running_)
+    sum += std::max(0.0, std::min(clause.left, clause.speed * static_cast<double>(now - now_))) * clause.share;
+  return sum;
 }
 
 bool Simd::take_ended(Cycle now, std::uint32_t& name) {

@@ -31,6 +31,8 @@ class Simd {
   [[nodiscard]] Cycle next_end() const { return next_end_; }
   /// Takes a clause that has ended by `now` out. False when there is none.
   bool take_ended(Cycle now, std::uint32_t& name);
+  /// Issue cycles used up to `now`, which is not before the latest call and not after `next_end()`.
+  [[nodiscard]] double issued(Cycle now) const;
   [[nodiscard]] std::size_t clauses() const { return running_.size(); }
 
  private:
@@ -46,6 +48,7 @@ class Simd {
 
   WarpScheduling scheduling_;
   Cycle now_ = 0, next_end_ = kNever;
+  double issued_ = 0;             ///< up to `now_`
   std::vector<Running> running_;  ///< in order of arrival
   std::vector<double> shares_;    ///< scratch of share_out_evenly
 };

@@ -43,13 +43,14 @@ struct Rate {
   const char* name;
   double drawn, culled, clipped;  ///< triangles a cycle; the last of assembly and clipper
   std::vector<std::string> settings;
-  /// Cycles of the slower of set-up and clipper. The end of a batch takes a culled triangle's place in set-up, and any one's in the clipper.
+  /// Cycles of the slower of set-up and clipper. The end of a batch takes a culled triangle's place in set-up, but no more than a cycle, and any one's in the
+  /// clipper.
   [[nodiscard]] double cycles(Kind::End end, double triangles, double ends) const {
-    const double clipper = (triangles + ends) / clipped;
+    const double clipper = (triangles + ends) / clipped, ended = ends / std::max(1.0, culled);
     switch (end) {
       case Kind::End::kClipper: return clipper;
-      case Kind::End::kCulled: return std::max(clipper, (triangles + ends) / culled);
-      case Kind::End::kDrawn: return std::max(clipper, triangles / drawn + ends / culled);
+      case Kind::End::kCulled: return std::max(clipper, triangles / culled + ended);
+      case Kind::End::kDrawn: return std::max(clipper, triangles / drawn + ended);
     }
     return clipper;
   }

@@ -144,8 +144,7 @@ void add_machine_cases(std::vector<Case>& cases) {
   cases.push_back(machine_case("cores-1", "one core", "cubes", {{"gpu.cores", "1"}}, {.limits = {"core"}}));
   cases.push_back(machine_case("cores-64", "64 cores", "overdraw", {{"gpu.cores", "64"}}, {.limits = {"fine_raster", "rop"}}));
   cases.push_back(machine_case("everything-64", "64 cores, 64 partitions, 64 channels", "cubes",
-                               {{"gpu.cores", "64"}, {"gpu.partitions", "64"}, {"gpu.channels", "64"}},
-                               {.limits = {"fine_raster", "link.setup_to_coarse"}}));
+                               {{"gpu.cores", "64"}, {"gpu.partitions", "64"}, {"gpu.channels", "64"}}, {.limits = {"command_processor"}}));
   cases.back().slow = true;
 }
 

@@ -131,7 +131,7 @@ TEST_CASE("a cache is whole sets: other numbers of lines are refused with the ne
 
 TEST_CASE("a machine is written out whole, and read back it is the same") {
   const ScratchFolder folder;
-  folder.write("mine.toml", "name = \"a\\nb\"\nbase = \"large\"\ngpu.clock_mhz = 0.1\ngpu.linear_log2 = true\nmemory.path_clk = 7\n");
+  folder.write("mine.toml", "name = \"a\\nb\"\nbase = \"large\"\ngpu.clock_mhz = 1.5\ngpu.linear_log2 = true\nmemory.path_clk = 7\n");
   for (const std::string machine : {"default", "small", "large", "mine.toml"}) {
     const ProgramRun run = run_quadrille(folder, {"describe", "machine", machine, "--toml"});
     REQUIRE(run.exit_code == 0);

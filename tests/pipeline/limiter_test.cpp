@@ -20,7 +20,7 @@ UnitFigures unit(const std::string& path, std::int64_t busy, const std::vector<W
   u.cycles = 1000;
   u.busy = busy;
   u.waits = waits;
-  u.resources = {{"rate", "", false, static_cast<double>(busy)}};
+  u.resources = {{"rate", "", hw::Resource::Kind::kRate, static_cast<double>(busy)}};
   return u;
 }
 
@@ -76,23 +76,24 @@ TEST_CASE("limiter: a second bound nearly as long as the first leaves little to 
   CHECK(limiter.share > 0.05);
 }
 
-TEST_CASE("limiter: rates that follow each other on one resource add up, and halving one leaves the other") {
+TEST_CASE("limiter: a rate and its losses add up, halving one leaves the other, and losses are no work") {
   Figures f = waiting();
   f.units.push_back(unit("memory_0", 0, {}));
-  f.units.back().resources = {{"bus", "data bus", false, 700}, {"rows", "data bus", false, 300}};
+  f.units.back().resources = {{"bus", "data bus", hw::Resource::Kind::kRate, 700}, {"rows", "data bus", hw::Resource::Kind::kLoss, 300}};
   const Sensitivity s = sensitivity(f);
   REQUIRE(s.gains.size() >= 2);
   CHECK(s.gains[0].resource == "memory.bus");
   CHECK(s.gains[0].share == Approx(0.35).epsilon(0.01));
   CHECK(s.gains[1].resource == "memory.rows");
   CHECK(s.gains[1].share == Approx(0.15).epsilon(0.01));
-  CHECK(use_of(f.units.back()) == Approx(1));
+  CHECK(use_of(f.units.back()) == Approx(0.7));
+  CHECK(speed_of_light(f).cycles == Approx(0.7 * static_cast<double>(f.frame.cycles)));
 }
 
 TEST_CASE("limiter: places that are all taken while no rate is used up are named, those furthest downstream") {
   Figures f = waiting();
-  f.units[2].resources.push_back({"warp_slots", "", true, 950});
-  f.units[3].resources.push_back({"cache_misses", "", true, 800});
+  f.units[2].resources.push_back({"warp_slots", "", hw::Resource::Kind::kPlaces, 950});
+  f.units[3].resources.push_back({"cache_misses", "", hw::Resource::Kind::kPlaces, 800});
   const Limiter limiter = find_limiter(f);
   CHECK(limiter.kind == Limiter::Kind::kPlaces);
   CHECK(limiter.resource == "texture.cache_misses");

@@ -29,7 +29,7 @@ class MachineSpecimen final : public hw::contract::Specimen {
     machine_ = std::make_unique<Machine>(config_, frame_, options);
   }
   [[nodiscard]] std::uint64_t digest() const override { return image_digest(frame_); }
-  [[nodiscard]] bool finished() const override { return machine_->command_processor().finished(); }
+  [[nodiscard]] bool finished() const override { return machine_->one<hw::CommandProcessor>().finished(); }
   [[nodiscard]] hw::Tick end() const override { return machine_->end(); }
   void add_figures(std::map<std::string, std::int64_t>& figures) const override {
     const Figures f = collect_figures(*machine_, frame_);

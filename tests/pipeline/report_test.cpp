@@ -19,20 +19,13 @@ UnitFigures memory_unit(const std::string& path, std::int64_t busy, std::int64_t
   u.starved = starved;
   u.idle = 1000 - busy - starved;
   u.waits = {{"request_in", true, starved}};
-  for (const auto& [name, value] : std::vector<std::pair<std::string, std::uint64_t>>{{"reads", 30},
-                                                                                      {"writes", 10},
-                                                                                      {"read_bytes", 960},
-                                                                                      {"write_bytes", 320},
-                                                                                      {"row_hits", 20},
-                                                                                      {"row_conflicts", 5},
-                                                                                      {"bus_busy", 40},
-                                                                                      {"bus_refresh", 1},
-                                                                                      {"bus_turnaround", 2},
-                                                                                      {"bus_activation", 3},
-                                                                                      {"bus_spacing", 4},
-                                                                                      {"queue_occupancy", 5}}) {
+  for (const auto& [name, value] :
+       std::vector<std::pair<std::string, std::uint64_t>>{{"reads", 30}, {"writes", 10}, {"read_bytes", 960}, {"write_bytes", 320}})
     u.counters.push_back({name, "access", "for a test", value});
-  }
+  u.row = {hw::count("accesses", 40),
+           hw::share("row hit", 20, 40),
+           hw::mean("in queue", 5, 1000),
+           {"bursts", hw::Facet::Kind::kRate, 100, 0, 2}};
   return u;
 }
 
@@ -77,7 +70,8 @@ TEST_CASE("report: units of a kind share a row of means with the spread of busy"
   const std::string table = report_table({f, machine, 10, 10});
   CHECK_THAT(table, Contains("memory x2" + std::string(13, ' ') + "0.0   25.0 +-5.0"));
   CHECK_THAT(table, Contains("request_in       60.0"));  // of 2000 cycles of both
-  CHECK_THAT(table, Contains("accesses 80") && Contains("row hit 50.0 %") && Contains("data bus held 4.0 %"));
+  CHECK_THAT(table,
+             Contains("accesses 80") && Contains("row hit 50.0 %") && Contains("in queue 0.01") && Contains("bursts 0.10/clk (5 % of 2)"));
   CHECK_THAT(report_table({f, machine, 10, 10}, UnitRows::kAll),
              Contains("memory_1" + std::string(14, ' ') + "0.0   30.0") && !Contains("x2"));
 }

@@ -14,7 +14,7 @@ struct Worked {
   double cycles = 0;
   Resources resources;
   Worked() {
-    resources.add_rate("rate", [this] { return cycles; });
+    resources.add_rate("rate", [this](Tick) { return cycles; });
   }
   [[nodiscard]] const std::vector<double>& slices() const { return resources.all().front().at_end_of; }
 };
@@ -57,6 +57,13 @@ TEST_CASE("resources: a unit with longer slices sets those of all") {
   CHECK(w.slices() == std::vector<double>{4, 6});
 }
 
+TEST_CASE("resources: work that goes on between actions is asked for at the end of each slice") {
+  Resources resources;
+  resources.add_rate("rate", [](Tick at) { return static_cast<double>(at) / static_cast<double>(kSlice); });
+  resources.note(3 * kSlice, 0, 1);
+  CHECK(resources.all().front().at_end_of == std::vector<double>{1, 2, 3});
+}
+
 TEST_CASE("resources: places count the cycles in which all were taken") {
   bool full = false;
   Resources resources;
@@ -64,5 +71,5 @@ TEST_CASE("resources: places count the cycles in which all were taken") {
   resources.note(10, 0, 2);
   full = true;
   resources.note(24, 10, 2);
-  CHECK(resources.all().front().total() == 7);
+  CHECK(resources.all().front().total(24) == 7);
 }

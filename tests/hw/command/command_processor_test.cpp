@@ -64,9 +64,12 @@ TEST_CASE("command_processor: issues no more draws than may be in flight, one co
                               .retire_1 = {{50, kRetired}, {90, kRetired}},
                               .draw_clk = 1,
                               .in_flight = 1};
-  const auto text = run<CommandBench>(
-      s, [](const CommandBench& b) { return fmt::format("{} retired {}", b.issued->text(), counter(*b.unit, "draws_retired")); });
-  CHECK(text == "1:300 2:0 3:200 52:1 53:201 92:2 93:202 94:400 retired 2");
+  const auto text = run<CommandBench>(s, [](const CommandBench& b) {
+    const Resource& places = b.unit->resources().all().back();
+    return fmt::format("{} retired {}, {} full for {}", b.issued->text(), counter(*b.unit, "draws_retired"), places.name, places.taken);
+  });
+  // Full from the end of a draw until the last partition has retired it: 2 to 51, 52 to 91.
+  CHECK(text == "1:300 2:0 3:200 52:1 53:201 92:2 93:202 94:400 retired 2, draws_in_flight full for 88");
 }
 
 TEST_CASE("command_processor: the next pass begins the cycle the last partition has flushed") {
