@@ -37,6 +37,11 @@ class Description {
     const bool whole_machine = arguments.what == kMachine;
     if (arguments.name && !whole_machine)
       throw user_error("describe: '{}' after '{}': a name goes with 'describe machine'", *arguments.name, *arguments.what);
+    if (arguments.what && arguments.what->empty()) throw user_error("describe: WHAT is empty; without it everything is listed");
+    if (arguments.name && machine.machine != MachineArguments().machine)
+      throw user_error("describe: the machine is named twice: '{}', and --machine '{}'", *arguments.name, machine.machine);
+    if (arguments.toml && arguments.only == "counters")
+      throw user_error("describe: --toml writes parameters, and --only counters leaves none");
     if (arguments.name) machine.machine = *arguments.name;
     machine.apply(config_);
     const bool parameters = arguments.only != "counters", counters = arguments.only != "parameters" && !whole_machine && !arguments.toml;

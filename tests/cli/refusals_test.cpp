@@ -48,6 +48,9 @@ TEST_CASE("a name that is nearly one is refused with the one that may be meant")
   refused({"describe", "cache_hit"}, {"did you mean "});
   refused({"stability", "empty-pas"}, {"stability: no case matches 'empty-pas'", "did you mean 'empty-pass'?"});
   refused({"describe", "bicycle"}, {"bicycle", "groups: "});
+  refused({"describe", ""}, {"WHAT is empty"});
+  refused({"describe", "machine", "large", "--machine", "small"}, {"named twice"});
+  refused({"describe", "--toml", "--only", "counters"}, {"--toml"});
 }
 
 TEST_CASE("a scene that is none is refused with what is legal") {
