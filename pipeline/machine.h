@@ -59,7 +59,7 @@ class Machine {
  private:
   /// What tokens name: the bulk behind them.
   struct Stores {
-    Stores(const MachineConfig& config);
+    explicit Stores(const MachineConfig& config);
     hw::Store<hw::BatchSlot> batches;
     hw::Store<hw::ClippedPiece> pieces;
     hw::TriangleStore triangles;
