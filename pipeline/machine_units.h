@@ -11,11 +11,11 @@ class Machine::Maker {
  public:
   explicit Maker(Machine& machine) : m_(machine), c_(machine.config_), s_(machine.stores_) {}
 
-  /// The unit called `name`, number `i` of its kind.
   template <class Unit>
   using Made = std::unique_ptr<Unit>;
   template <class Unit>
   using Kind = std::type_identity<Unit>;
+  /// The unit called `name`, number `i` of its kind.
 #define QUADRILLE_MAKE(path, type, how_often) [[nodiscard]] Made<type> make(Kind<type> kind, const char* name, int i) const;
   QUADRILLE_UNITS(QUADRILLE_MAKE)
 #undef QUADRILLE_MAKE

@@ -26,7 +26,7 @@ constexpr std::size_t kMostSlices = 24;
 constexpr double kTaken = 0.5;
 
 /// From up- to downstream: who is full because of a full place further on waits for that.
-constexpr std::array<std::string_view, 20> kPlacesDownstream{"command_processor.draws_in_flight",
+constexpr std::array<std::string_view, 17> kPlacesDownstream{"command_processor.draws_in_flight",
                                                              "vertex_fetch.batch_slots",
                                                              "triangle_setup.triangle_slots",
                                                              "depth.tiles_in_flight",

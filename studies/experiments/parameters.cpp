@@ -7,6 +7,7 @@
 #include <set>
 
 #include "studies/experiments/experiment.h"
+#include "studies/experiments/measured_meshes.h"
 #include "studies/experiments/parameter_changes.h"
 #include "studies/experiments/triangle_mesh.h"
 
@@ -44,18 +45,16 @@ std::string_view cause_of(const std::string& path) {
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   constexpr std::int32_t kBeyond = 100'000;  // pixels
   constexpr int kLayers = 8;
-  TriangleMesh clipped{setting.width, setting.height, {}, {}}, layers = clipped;
-  for (int i = 0; i < kLayers; ++i) {
-    clipped.rectangle(-kBeyond + i, -kBeyond, kBeyond, kBeyond - i, 0.5F);
-    layers.rectangle(0, 0, static_cast<int>(setting.width), static_cast<int>(setting.height), static_cast<float>(i + 1) / (kLayers + 1));
-  }
+  TriangleMesh clipped{setting.width, setting.height, {}, {}};
+  for (int i = 0; i < kLayers; ++i) clipped.rectangle(-kBeyond + i, -kBeyond, kBeyond, kBeyond - i, 0.5F);
+  const TriangleMesh hiding = layers(setting.width, setting.height, kLayers, true);
   const TriangleMesh small = tiled_frame(setting.width, setting.height, 2, 2);
   std::vector<traces::CommandStream> streams;
   streams.push_back(stream_of(clipped));
   streams.push_back(stream_of(small));
   streams.push_back(stream_of(small, {.cull = traces::CullMode::kBack}));
-  streams.push_back(stream_of(layers, {.depth = true}));
-  streams.push_back(stream_of(layers, {.depth = true, .discards = true}));
+  streams.push_back(stream_of(hiding, {.depth = true}));
+  streams.push_back(stream_of(hiding, {.depth = true, .discards = true}));
   return streams;
 }
 
@@ -112,8 +111,10 @@ class Sweep {
   static Machine shaken(const Change& c, int shake) {
     Machine machine = c.settings;
     if (shake == 0) return machine;
-    if (c.path == "memory.path_clk") machine.push_back(fmt::format("l2.hit_clk={}", 30 + kShakeClk * shake));
-    else machine.push_back(fmt::format("memory.path_clk={}", 60 + kShakeClk * shake));
+    const pipeline::MachineConfig plain;
+    const int farther = kShakeClk * shake;
+    if (c.path == "memory.path_clk") machine.push_back(fmt::format("l2.hit_clk={}", plain.l2.hit_clk + farther));
+    else machine.push_back(fmt::format("memory.path_clk={}", plain.memory.path_clk + farther));
     return machine;
   }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 
 #include "studies/experiments/experiment.h"
+#include "studies/experiments/measured_meshes.h"
 #include "studies/experiments/triangle_work.h"
 #include "studies/plot.h"
 
 namespace quadrille::studies::experiments {
 namespace {
 
-constexpr int kRepeats = 8;  ///< of a mesh in its frame, which is small so that clearing it takes no time
+constexpr std::uint32_t kRepeats = 8;  ///< of a mesh in its frame, which is small so that clearing it takes no time
 constexpr double kLeast = 0.98, kMost = 1.02;
 
 struct Kind {
@@ -21,19 +22,10 @@ struct Kind {
   enum class End : std::uint8_t { kClipper, kCulled, kDrawn } end;
 };
 
-TriangleMesh repeated(TriangleMesh mesh) {
-  const std::vector<std::array<std::uint32_t, 3>> once = mesh.triangles;
-  for (int i = 1; i < kRepeats; ++i) mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
-  return mesh;
-}
-TriangleMesh moved_right(TriangleMesh mesh, std::uint32_t pixels) {
-  for (WindowCorner& c : mesh.corners) c.x += static_cast<std::int32_t>(pixels) * kGrid;
-  return mesh;
-}
 std::vector<Kind> kinds_of(std::uint32_t width, std::uint32_t height) {
   // A tile of 2x1 pixels is two triangles of one pixel each: the centres lie to either side of the diagonal. Eight in a row reach over two tiles of the
   // rasteriser, and so to two partitions.
-  const TriangleMesh pixels = repeated(tiled_frame(width, height, 2, 1, 8));
+  const TriangleMesh pixels = repeated(tiled_frame(width, height, 2, 1, 8), kRepeats);
   return {{"culled", "triangle_setup.culled", pixels, {.cull = traces::CullMode::kBack}, Kind::End::kCulled},
           {"off screen", "clipper.rejected", moved_right(pixels, 2 * width), {}, Kind::End::kClipper},
           {"one pixel", "triangle_setup.kept", pixels, {}, Kind::End::kDrawn}};
