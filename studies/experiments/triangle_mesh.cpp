@@ -15,6 +15,9 @@ void main() { gl_Position = vec4(position, 1); })";
 constexpr const char* kFragmentShader = R"(#version 450
 layout(location = 0) out vec4 color;
 void main() { color = vec4(0.8, 0.4, 0.2, 1); })";
+constexpr const char* kTranslucentShader = R"(#version 450
+layout(location = 0) out vec4 color;
+void main() { color = vec4(0.8, 0.4, 0.2, 0.5); })";
 /// Every other column of quads.
 constexpr const char* kDiscardingShader = R"(#version 450
 layout(location = 0) out vec4 color;
@@ -53,7 +56,17 @@ traces::Pipeline pipeline_of(const DrawOptions& options) {
   pipeline.attributes = {{0, 0, format, 0}};
   pipeline.cull = options.cull;
   if (options.depth) pipeline.depth = {true, true, traces::CompareOp::kLess};
+  if (options.blends) {
+    pipeline.blend.enable = true;
+    pipeline.blend.src_color = traces::BlendFactor::kSrcAlpha;
+    pipeline.blend.dst_color = traces::BlendFactor::kOneMinusSrcAlpha;
+  }
   return pipeline;
+}
+
+const char* fragment_shader_of(const DrawOptions& options) {
+  if (options.discards) return kDiscardingShader;
+  return options.blends ? kTranslucentShader : kFragmentShader;
 }
 
 }  // namespace
@@ -95,8 +108,7 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
   stream.name = "triangles";
   stream.shaders = {
       {"hand through", ShaderStage::kVertex, scenes::compile_glsl(kVertexShader, ShaderStage::kVertex, "triangles.vert")},
-      {"one colour", ShaderStage::kFragment,
-       scenes::compile_glsl(options.discards ? kDiscardingShader : kFragmentShader, ShaderStage::kFragment, "triangles.frag")}};
+      {"one colour", ShaderStage::kFragment, scenes::compile_glsl(fragment_shader_of(options), ShaderStage::kFragment, "triangles.frag")}};
   const std::vector<float> positions = clip_positions(mesh, options.depth);
   const std::span<const std::uint32_t> indices(mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), 3 * mesh.triangles.size());
   stream.buffers = {buffer_of<float>("positions", positions), buffer_of("indices", indices)};

@@ -36,6 +36,7 @@ struct DrawOptions {
   traces::CullMode cull = traces::CullMode::kNone;
   bool depth = false;     ///< test "less" and write
   bool discards = false;  ///< the fragment shader drops half of its fragments
+  bool blends = false;    ///< over what is there, by alpha, so that each fragment reads the colour it changes
 };
 /// One indexed draw of the mesh; the shaders hand positions through and write one colour.
 [[nodiscard]] traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& options = {});

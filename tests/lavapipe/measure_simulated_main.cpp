@@ -4,34 +4,56 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
+
 #include "models/base/error.h"
 #include "tests/lavapipe/measure_machine.h"
+#include "traces/trace_file.h"
 
 namespace quadrille::lavapipe {
 namespace {
 
 struct Arguments {
-  std::string size = "1920x1080", out = "-";
-  std::vector<std::string> experiments, settings;
+  std::string size = "1920x1080", out = "-", traces;
+  std::vector<std::string> experiments, scenes, settings;
   int jobs = 1;
   bool list = false, quiet = false;
 };
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("experiment", a.experiments, "which experiments; default: all");
+  app.add_option("--scene", a.scenes, "measure this instead: builtin:NAME, a glTF file or a trace (.qtrace); again for more")
+      ->allow_extra_args(false);
   app.add_option("--set", a.settings, "KEY=VALUE: what differs from the default machine; again for more")->allow_extra_args(false);
   app.add_option("--size", a.size, "of the target in pixels, WIDTHxHEIGHT")->capture_default_str();
   app.add_option("--jobs", a.jobs, "frames at a time")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--out", a.out, "JSON file; -: standard output; the last of several counts")->take_last()->capture_default_str();
+  app.add_option("--traces", a.traces,
+                 "folder that receives each point as a trace, for quadrille render and all its figures; nothing is simulated");
   app.add_flag("--list", a.list, "name the experiments and their points; draw nothing");
   app.add_flag("-q,--quiet", a.quiet, "say nothing while simulating");
 }
 
+void write_traces(const std::string& folder, const std::vector<MeasuredExperiment>& experiments) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) throw user_error("--traces: {}: not a folder", folder);
+  for (const MeasuredExperiment& e : experiments) {
+    for (const Point& p : e.points)
+      traces::write_trace(p.stream(), (std::filesystem::path(folder) / (e.name + "_" + p.name + ".qtrace")).string());
+  }
+}
+
 void run(const Arguments& a) {
   const auto [width, height] = parse_target_size(a.size);
-  const std::vector<MeasuredExperiment> experiments = chosen_experiments(a.experiments, width, height);
+  if (!a.scenes.empty() && !a.experiments.empty()) throw user_error("--scene: not together with an experiment ({})", a.experiments.front());
+  const std::vector<MeasuredExperiment> experiments =
+      a.scenes.empty() ? chosen_experiments(a.experiments, width, height) : std::vector{scene_experiment(a.scenes, width, height)};
   if (a.list) {
     fmt::print("{}", listed(experiments));
+    return;
+  }
+  if (!a.traces.empty()) {
+    write_traces(a.traces, experiments);
     return;
   }
   for (const std::string& setting : a.settings) {

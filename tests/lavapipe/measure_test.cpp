@@ -157,8 +157,8 @@ TEST_CASE("statistics of triangles that the near plane cuts equal the machine's 
   }
 }
 
-TEST_CASE("statistics of hidden layers equal the machine's counters, llvmpipe counts hidden fragments as well") {
-  for (const char* name : {"front-to-back", "back-to-front"}) {
+TEST_CASE("statistics of layers equal the machine's counters, llvmpipe counts hidden fragments as well") {
+  for (const char* name : {"front-to-back", "back-to-front", "opaque-layers", "blended-layers"}) {
     for (const Pair& p : both(name)) {
       INFO(name);
       check_equal(p);
@@ -219,6 +219,9 @@ TEST_CASE("the measuring programs refuse with one line and exit code 2") {
   check_refused(kVulkan + " --no-times --no-statistics", "nothing to measure");
   check_refused(kVulkan + " --scene builtin:quad setup-rate", "not together");
   check_refused(kVulkan + " --repeats 0", "--repeats");
+  check_refused(kVulkan + " --pictures /no/folder setup-rate", "--pictures: /no/folder: not a folder");
+  check_refused(kSimulated + " --traces /no/folder setup-rate", "--traces: /no/folder: not a folder");
+  check_refused(kSimulated + " --scene builtin:quad setup-rate", "not together");
   check_refused(kSimulated + " thin", "there is no experiment 'thin'");
   check_refused(kSimulated + " --set nonsense thin-triangles", "expected KEY=VALUE");
   try {

@@ -1,6 +1,10 @@
 #include "tests/lavapipe/measure_vulkan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "models/base/error.h"
 #include "tests/lavapipe/vulkan_frame.h"
@@ -33,6 +37,16 @@ PassStatistics statistics_of(const VulkanDevice& device, const traces::CommandSt
   return queries.statistics();
 }
 
+/// A portable pixmap (P6), which needs no library: the machine that draws may have none.
+void save_picture(const std::filesystem::path& path, const Rendered& picture) {
+  std::ofstream file(path, std::ios::binary);
+  file << fmt::format("P6\n{} {}\n255\n", picture.width, picture.height);
+  for (const std::uint32_t rgba : picture.color) {
+    for (const int shift : {0, 8, 16}) file.put(static_cast<char>(rgba >> shift));
+  }
+  if (!file.flush()) throw user_error("--pictures: {}: cannot be written", path.string());
+}
+
 }  // namespace
 
 void require_features(const DeviceInfo& device, const MeasureOptions& options) {
@@ -63,7 +77,13 @@ Measurement measure_all(const VulkanDevice& device, const std::vector<MeasuredEx
     measurement.curves.push_back({e.name, e.axis, {}});
     for (const Point& p : e.points) {
       progress(e.name + ", " + p.name);
-      MeasuredPoint point = measure(device, p.stream(), options);
+      const traces::CommandStream stream = p.stream();
+      MeasuredPoint point = measure(device, stream, options);
+      if (!options.pictures.empty()) {
+        const VulkanFrame frame(device, stream);
+        frame.submit();
+        save_picture(std::filesystem::path(options.pictures) / (e.name + "_" + p.name + ".ppm"), frame.read_back());
+      }
       point.name = p.name;
       point.x = p.x;
       measurement.curves.back().points.push_back(std::move(point));

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <functional>
+#include <string>
 
 #include "tests/lavapipe/measured_points.h"
 #include "tests/lavapipe/measurement.h"
@@ -14,6 +15,7 @@ struct MeasureOptions {
   bool times = true, statistics = true;
   int repeats = 21;                                ///< of a stream whose time is taken, after `kWarmUps`
   std::chrono::steady_clock::time_point enough{};  ///< from then on each stream is timed once
+  std::string pictures{};                          ///< folder that receives what each point drew; empty: none
 };
 
 /// Frames before the first that is timed: a device raises its clock under load.

@@ -5,19 +5,17 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
-#include <optional>
+#include <filesystem>
 
 #include "models/base/error.h"
-#include "scenes/scene.h"
 #include "tests/lavapipe/measure_vulkan.h"
-#include "traces/trace_file.h"
 
 namespace quadrille::lavapipe {
 namespace {
 
 struct Arguments {
-  std::string device, scene, size = "1920x1080", out = "-";
-  std::vector<std::string> experiments;
+  std::string device, size = "1920x1080", out = "-", pictures;
+  std::vector<std::string> experiments, scenes;
   int repeats = MeasureOptions{}.repeats, seconds = 240;
   bool no_times = false, no_statistics = false, validate = false, list = false, quiet = false;
 };
@@ -25,7 +23,8 @@ struct Arguments {
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("experiment", a.experiments, "which experiments; default: all");
   app.add_option("--device", a.device, "part of the device's name, which may be a software driver's (llvmpipe); default: a GPU");
-  app.add_option("--scene", a.scene, "measure this instead: builtin:NAME, a glTF file or a trace (.qtrace)");
+  app.add_option("--scene", a.scenes, "measure this instead: builtin:NAME, a glTF file or a trace (.qtrace); again for more")
+      ->allow_extra_args(false);
   app.add_option("--size", a.size, "of the target in pixels, WIDTHxHEIGHT; a trace has its own")->capture_default_str();
   app.add_option("--repeats", a.repeats, "times that each frame is timed")->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_option("--seconds", a.seconds, "after this long, the frames that are left are timed once")
@@ -33,6 +32,7 @@ void declare(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   app.add_option("--out", a.out, "JSON file; -: standard output; the last of several counts")->take_last()->capture_default_str();
+  app.add_option("--pictures", a.pictures, "folder that receives what each point drew, as .ppm");
   app.add_flag("--no-times", a.no_times, "statistics alone");
   app.add_flag("--no-statistics", a.no_statistics, "times alone");
   app.add_flag("--validate", a.validate, "run under the Khronos validation layer; a message is an error");
@@ -40,41 +40,30 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_flag("-q,--quiet", a.quiet, "say nothing while measuring");
 }
 
-traces::CommandStream load(const std::string& scene, std::uint32_t width, std::uint32_t height) {
-  if (scene.ends_with(".qtrace")) return traces::read_trace(scene);
-  scenes::SceneOptions options;
-  options.width = width;
-  options.height = height;
-  return scenes::load_scene(scene, options);
-}
-
 int run(const Arguments& a) {
-  auto [width, height] = parse_target_size(a.size);
-  const std::vector<MeasuredExperiment> experiments = chosen_experiments(a.experiments, width, height);
+  const auto [width, height] = parse_target_size(a.size);
+  const std::vector<MeasuredExperiment> experiments =
+      a.scenes.empty() ? chosen_experiments(a.experiments, width, height) : std::vector{scene_experiment(a.scenes, width, height)};
   if (a.list) {
     fmt::print("{}", listed(experiments));
     return 0;
   }
   if (a.no_times && a.no_statistics) throw user_error("--no-times with --no-statistics leaves nothing to measure");
-  if (!a.scene.empty() && !a.experiments.empty()) throw user_error("--scene: not together with an experiment ({})", a.experiments.front());
+  if (!a.scenes.empty() && !a.experiments.empty()) throw user_error("--scene: not together with an experiment ({})", a.experiments.front());
+  std::error_code error;
+  if (!a.pictures.empty() && !std::filesystem::is_directory(a.pictures, error))
+    throw user_error("--pictures: {}: not a folder", a.pictures);
   const DeviceWish::Kind kind = a.device.empty() ? DeviceWish::Kind::kGpu : DeviceWish::Kind::kNamed;
   const VulkanDevice device({.kind = kind, .name = a.device, .validate = a.validate});
   const MeasureOptions options{.times = !a.no_times,
                                .statistics = !a.no_statistics,
                                .repeats = a.repeats,
-                               .enough = std::chrono::steady_clock::now() + std::chrono::seconds(a.seconds)};
+                               .enough = std::chrono::steady_clock::now() + std::chrono::seconds(a.seconds),
+                               .pictures = a.pictures};
   const auto progress = [&](const std::string& text) {
     if (!a.quiet) fmt::print(stderr, "{}: {}\n", device.info().name, text);
   };
-  Measurement measurement;
-  if (a.scene.empty()) {
-    measurement = measure_all(device, experiments, options, progress);
-  } else {
-    const traces::CommandStream stream = load(a.scene, width, height);
-    width = stream.targets.front().width;
-    height = stream.targets.front().height;
-    measurement = measure_all(device, {{"scene", "scene", {{a.scene, 0, {}, [&] { return stream; }}}}}, options, progress);
-  }
+  Measurement measurement = measure_all(device, experiments, options, progress);
   measurement.width = width;
   measurement.height = height;
   write_measurement(a.out, measurement);

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "models/base/error.h"
 #include "models/base/near_name.h"
+#include "scenes/scene.h"
 #include "studies/experiments/measured_meshes.h"
+#include "traces/trace_file.h"
 
 namespace quadrille::lavapipe {
 namespace {
@@ -78,6 +81,13 @@ MeasuredExperiment hidden_surfaces(Frame f, bool front_first) {
   return e;
 }
 
+MeasuredExperiment colour_layers(Frame f, bool blended) {
+  MeasuredExperiment e{blended ? "blended-layers" : "opaque-layers", "layers over the whole frame, without depth", {}};
+  for (std::uint32_t n = 1; n <= kMostLayers; ++n)
+    e.points.push_back(point(fmt::format("{}", n), n, [=] { return meshes::layers(f.width, f.height, n, false); }, {.blends = blended}));
+  return e;
+}
+
 MeasuredExperiment near_plane(Frame f) {
   MeasuredExperiment e{"near-plane", "corners of a triangle before the near plane", {}};
   for (std::uint32_t behind = 0; behind <= 3; ++behind) {
@@ -87,12 +97,20 @@ MeasuredExperiment near_plane(Frame f) {
   return e;
 }
 
+traces::CommandStream load(const std::string& scene, Frame f) {
+  if (scene.ends_with(".qtrace")) return traces::read_trace(scene);
+  scenes::SceneOptions options;
+  options.width = f.width;
+  options.height = f.height;
+  return scenes::load_scene(scene, options);
+}
+
 }  // namespace
 
 std::vector<MeasuredExperiment> measured_experiments(std::uint32_t width, std::uint32_t height) {
   const Frame f{width, height};
-  return {vertex_reuse(f), small_triangles(f), thin_triangles(f),        setup_rate(f),
-          near_plane(f),   quad_overhead(f),   hidden_surfaces(f, true), hidden_surfaces(f, false)};
+  return {vertex_reuse(f),  small_triangles(f),       thin_triangles(f),         setup_rate(f),           near_plane(f),
+          quad_overhead(f), hidden_surfaces(f, true), hidden_surfaces(f, false), colour_layers(f, false), colour_layers(f, true)};
 }
 
 std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string>& names, std::uint32_t width, std::uint32_t height) {
@@ -105,6 +123,15 @@ std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string
   }
   if (!names.empty()) std::erase_if(all, [&](const MeasuredExperiment& e) { return std::ranges::find(names, e.name) == names.end(); });
   return all;
+}
+
+MeasuredExperiment scene_experiment(const std::vector<std::string>& scenes, std::uint32_t width, std::uint32_t height) {
+  MeasuredExperiment e{"scenes", "scene", {}};
+  for (const std::string& scene : scenes) {
+    const std::string name = scene.starts_with("builtin:") ? scene.substr(8) : std::filesystem::path(scene).stem().string();
+    e.points.push_back({name, static_cast<double>(e.points.size() + 1), {}, [=] { return load(scene, {width, height}); }});
+  }
+  return e;
 }
 
 std::string listed(const std::vector<MeasuredExperiment>& experiments) {
