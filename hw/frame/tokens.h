@@ -136,7 +136,12 @@ enum class MemoryClient : std::uint8_t { kVertexFetch, kTexture, kDepth, kColor,
 /// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer. Writes are not answered; a fence is, once all
 /// requests of its client before it have been taken in.
 struct MemoryRequest {
-  enum class Kind : std::uint8_t { kRead, kWrite, kFence };
+  enum class Kind : std::uint8_t {
+    kRead,
+    kWrite,      ///< sectors that are known whole
+    kWritePart,  ///< a part of each sector: whoever lacks the rest fetches it
+    kFence
+  };
   std::uint32_t line = 0;  ///< device address / 128
   std::uint32_t tag = 0;
   std::uint8_t sectors = 0;

@@ -1,6 +1,26 @@
 #include "hw/memory/l1_cache.h"
 
+#include <utility>
+
 namespace quadrille::hw {
+namespace {
+
+constexpr std::uint32_t kWordsOfSector = 0xff;
+
+std::uint32_t words_of(std::uint8_t sectors) {
+  std::uint32_t words = 0;
+  for (unsigned s = 0; s < 4; ++s) words |= (sectors >> s & 1u) * kWordsOfSector << 8 * s;
+  return words;
+}
+/// Sectors of which at least one of the words is set, or every one.
+std::uint8_t sectors_with_any(std::uint32_t words) {
+  std::uint8_t sectors = 0;
+  for (unsigned s = 0; s < 4; ++s) sectors = static_cast<std::uint8_t>(sectors | ((words >> 8 * s & kWordsOfSector) != 0) << s);
+  return sectors;
+}
+std::uint8_t sectors_with_all(std::uint32_t words) { return static_cast<std::uint8_t>(~sectors_with_any(~words) & 0xf); }
+
+}  // namespace
 
 L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses)
     : tags_(static_cast<std::uint32_t>(lines), static_cast<std::uint32_t>(ways)),
@@ -45,13 +65,23 @@ L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::u
 
 int L1Cache::place(std::uint32_t line, MemoryPort& port) {
   const models::TagArray::Allocation got = tags_.allocate(line);
-  if (got.victim.valid && got.victim.dirty != 0) write_back(got.victim.line, got.victim.dirty, port);
+  if (got.slot == models::TagArray::kNone || parts_.empty()) return got.slot;
+  write_back(got.victim.line, got.victim.dirty, std::exchange(parts_[static_cast<std::size_t>(got.slot)], 0), port);
   return got.slot;
 }
 
-void L1Cache::write_back(std::uint32_t line, std::uint8_t sectors, MemoryPort& port) {
-  port.write(line, sectors);
+void L1Cache::write_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port) {
+  if (sectors == 0 && parts == 0) return;
+  if (sectors != 0) port.write(line, sectors);
+  if (parts != 0) port.write_part(line, sectors_with_any(parts));
   memory_->mark_clean(line);
+}
+
+void L1Cache::complete(int slot, std::uint8_t sectors) {
+  if (parts_.empty()) return;
+  std::uint32_t& parts = parts_[static_cast<std::size_t>(slot)];
+  tags_.mark_dirty(slot, static_cast<models::SectorMask>(sectors_with_any(parts) & sectors));
+  parts &= ~words_of(sectors);
 }
 
 bool L1Cache::claim(std::uint32_t line, std::uint8_t sectors, MemoryPort& port) {
@@ -63,27 +93,27 @@ bool L1Cache::claim(std::uint32_t line, std::uint8_t sectors, MemoryPort& port) 
   const auto absent = static_cast<models::SectorMask>(sectors & ~(tags_.at(slot).pending | tags_.at(slot).valid));
   tags_.mark_pending(slot, absent);
   tags_.fill(slot, absent);
+  complete(slot, absent);
   return true;
 }
 
-bool L1Cache::holds(std::uint32_t line, std::uint8_t sectors) const {
+void L1Cache::write(std::uint32_t line, std::uint32_t words) {
   const int slot = tags_.find(line);
-  return slot != models::TagArray::kNone && (tags_.at(slot).valid & sectors) == sectors;
-}
-
-void L1Cache::mark_dirty(std::uint32_t line, std::uint8_t sectors) {
-  const int slot = tags_.find(line);
-  QUADRILLE_CHECK(slot != models::TagArray::kNone, "line {} is written but not held", line);
-  if (tags_.at(slot).dirty == 0) memory_->mark_dirty(line, owner_);
-  tags_.mark_dirty(slot, sectors);
+  QUADRILLE_CHECK(slot != models::TagArray::kNone, "line {} is written but has no place", line);
+  const models::TagArray::Line& held = tags_.at(slot);
+  std::uint32_t& parts = parts_[static_cast<std::size_t>(slot)];
+  if (held.dirty == 0 && parts == 0) memory_->mark_dirty(line, owner_);
+  parts |= words;
+  // Those under way become whole when they arrive.
+  const auto whole = static_cast<std::uint8_t>((held.valid | sectors_with_all(parts)) & ~held.pending);
+  complete(slot, whole);
 }
 
 void L1Cache::flush(MemoryPort& port) {
   QUADRILLE_CHECK(idle(), "flush with {} misses under way", misses_.size() - free_.size());
   for (int slot = 0; slot < tags_.slots(); ++slot) {
     const models::TagArray::Line& held = tags_.at(slot);
-    if (held.dirty == 0) continue;
-    write_back(held.line, held.dirty, port);
+    write_back(held.line, held.dirty, parts_.empty() ? 0 : std::exchange(parts_[static_cast<std::size_t>(slot)], 0), port);
     tags_.clean(slot);
   }
   tags_.invalidate_all();

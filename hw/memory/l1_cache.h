@@ -2,6 +2,9 @@
 ///
 /// One entry of the miss table serves all who want sectors of a line that is under way. Functional data live in `DeviceMemory`; only presence is kept. A
 /// cache that writes names itself as the owner of its dirty lines there, so that a read from below it is noticed.
+///
+/// A sector that is written in part is not read first: a mask keeps which of its words (of 4 bytes) were written. It becomes whole when the others are written
+/// too, or when someone reads it and the rest is fetched; else it leaves as it is, and the level below completes it.
 #pragma once
 
 #include "hw/memory/memory_port.h"
@@ -36,6 +39,7 @@ class L1Cache {
   void own_dirty_lines(models::DeviceMemory& memory, models::DeviceMemory::Owner owner) {
     memory_ = &memory;
     owner_ = owner;
+    parts_.assign(static_cast<std::size_t>(tags_.slots()), 0);
   }
 
   /// Looks up sectors of a line; asks for what is missing through `port`.
@@ -45,17 +49,19 @@ class L1Cache {
   void fill(const MemoryResponse& response, F&& ready) {
     Miss& miss = misses_[response.tag];
     tags_.fill(miss.slot, response.sectors);
+    complete(miss.slot, response.sectors);
     if (--miss.outstanding > 0) return;
     for (const std::uint32_t waiter : miss.waiters) ready(waiter);
     miss.waiters.clear();
     miss_of_slot_[static_cast<std::size_t>(miss.slot)] = -1;
     free_.push_back(response.tag);
   }
-  /// Makes sectors present without fetching them, because they are about to be overwritten whole. False when no way is free: try again after a fill.
+  /// Gives the line a place and makes sectors (there may be none) present without fetching them, because they are about to be overwritten whole. False when no
+  /// way is free: try again after a fill.
   bool claim(std::uint32_t line, std::uint8_t sectors, MemoryPort& port);
-  [[nodiscard]] bool holds(std::uint32_t line, std::uint8_t sectors) const;
-  /// Sectors that are present were written.
-  void mark_dirty(std::uint32_t line, std::uint8_t sectors);
+  [[nodiscard]] bool has_place(std::uint32_t line) const { return tags_.find(line) != models::TagArray::kNone; }
+  /// Words (bit 0 the first of 32) of a line that has a place were written.
+  void write(std::uint32_t line, std::uint32_t words);
   /// Queues all dirty sectors for writing and forgets all lines; nothing may be under way.
   void flush(MemoryPort& port);
   /// No more lines may be asked for.
@@ -70,7 +76,9 @@ class L1Cache {
     std::vector<std::uint32_t> waiters;
   };
   int place(std::uint32_t line, MemoryPort& port);
-  void write_back(std::uint32_t line, std::uint8_t sectors, MemoryPort& port);
+  /// Sectors became whole: what was written of them in parts is in them now.
+  void complete(int slot, std::uint8_t sectors);
+  void write_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port);
 
   models::TagArray tags_;
   models::DeviceMemory* memory_ = nullptr;
@@ -78,6 +86,7 @@ class L1Cache {
   std::vector<Miss> misses_;
   std::vector<std::uint32_t> free_;
   std::vector<int> miss_of_slot_;
+  std::vector<std::uint32_t> parts_;  ///< by slot: words written of sectors that are not whole; empty in a cache that does not write
   L1CacheStats stats_;
 };
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace quadrille::hw {
 
@@ -98,6 +99,7 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
   switch (request.kind) {
     case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
     case MemoryRequest::Kind::kWrite: taken = write(now, request); break;
+    case MemoryRequest::Kind::kWritePart: taken = write_part(now, client, request); break;
     case MemoryRequest::Kind::kFence: answer(after(now, params_.hit_clk), client, {request.line, request.tag, 0}); break;
   }
   if (!taken) {
@@ -140,17 +142,25 @@ void L2Slice::write_back_block(Tick now, std::uint32_t victim) {
 }
 
 bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request) {
-  int slot = tags_.lookup(request.line);
+  const int slot = tags_.lookup(request.line);
   const MemoryResponse token{request.line, request.tag, request.sectors};
   if (slot != models::TagArray::kNone && (tags_.at(slot).valid & request.sectors) == request.sectors) {
     ++stats_.hits;
     answer(after(now, params_.hit_clk), client, token);
     return true;
   }
+  Miss* const miss = fetch(now, client, request);
+  if (miss == nullptr) return false;
+  miss->waiters.push_back({client, token});
+  return true;
+}
+
+L2Slice::Miss* L2Slice::fetch(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  int slot = tags_.find(request.line);
   const bool under_way = slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
-  if (!under_way && free_misses_.empty()) return false;
+  if (!under_way && free_misses_.empty()) return nullptr;
   if (slot == models::TagArray::kNone) slot = place(now, request.line);
-  if (slot == models::TagArray::kNone) return false;
+  if (slot == models::TagArray::kNone) return nullptr;
   if (!under_way) {
     miss_of_slot_[static_cast<std::size_t>(slot)] = static_cast<int>(free_misses_.back());
     misses_[free_misses_.back()].slot = slot;
@@ -168,8 +178,7 @@ bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request)
   } else {
     ++stats_.merged;
   }
-  miss.waiters.push_back({client, token});
-  return true;
+  return &miss;
 }
 
 bool L2Slice::write(Tick now, const MemoryRequest& request) {
@@ -182,6 +191,18 @@ bool L2Slice::write(Tick now, const MemoryRequest& request) {
   return true;
 }
 
+bool L2Slice::write_part(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  const int slot = tags_.lookup(request.line);
+  const auto there = static_cast<std::uint8_t>(slot == models::TagArray::kNone ? 0 : tags_.at(slot).valid & request.sectors);
+  if (there == request.sectors) return write(now, request);
+  Miss* const miss = fetch(now, client, request);
+  if (miss == nullptr) return false;
+  tags_.mark_dirty(miss->slot, there);
+  miss->dirty = static_cast<std::uint8_t>(miss->dirty | (request.sectors & ~there));
+  stats_.write_bytes += bytes_of(request.sectors);
+  return true;
+}
+
 void L2Slice::take_fill(Tick now) {
   const MemoryResponse fill = fill_in.pop(now);
   stalled_ = false;
@@ -189,6 +210,7 @@ void L2Slice::take_fill(Tick now) {
   tags_.fill(miss.slot, fill.sectors);
   miss.pending &= static_cast<std::uint8_t>(~fill.sectors);
   if (miss.pending != 0) return;
+  tags_.mark_dirty(miss.slot, std::exchange(miss.dirty, std::uint8_t{0}));
   for (const Waiter& w : miss.waiters) answer(now, w.client, w.answer);
   miss.waiters.clear();
   miss_of_slot_[static_cast<std::size_t>(miss.slot)] = -1;

@@ -45,9 +45,9 @@ class L2Slice final : public Unit {
   };
   struct Stats : StatGroup {
     Counter requests{*this, "requests", "request", "Read and write requests looked up"};
-    Counter hits{*this, "hits", "request", "Requests whose sectors were there (writes always find a place)"};
-    Counter merged{*this, "merged", "request", "Reads whose sectors were on their way already"};
-    Counter misses{*this, "misses", "request", "Reads that went to the memory channel"};
+    Counter hits{*this, "hits", "request", "Requests whose sectors were there, and writes of whole sectors"};
+    Counter merged{*this, "merged", "request", "Requests whose sectors were on their way already"};
+    Counter misses{*this, "misses", "request", "Requests for which a sector was fetched from the memory channel"};
     Counter read_bytes{*this, "read_bytes", "byte", "Bytes answered to clients"};
     Counter write_bytes{*this, "write_bytes", "byte", "Bytes written by clients"};
     Counter fill_bytes{*this, "fill_bytes", "byte", "Bytes read from the memory channel"};
@@ -82,6 +82,7 @@ class L2Slice final : public Unit {
   struct Miss {
     int slot = 0;
     std::uint8_t pending = 0;  ///< sectors on their way
+    std::uint8_t dirty = 0;    ///< those of them that were written in part
     std::vector<Waiter> waiters;
   };
   struct Answer {
@@ -99,6 +100,9 @@ class L2Slice final : public Unit {
   /// False when the line has no place now; nothing was changed.
   bool read(Tick now, std::uint32_t client, const MemoryRequest& request);
   bool write(Tick now, const MemoryRequest& request);
+  bool write_part(Tick now, std::uint32_t client, const MemoryRequest& request);
+  /// The entry of a line's misses, with what the request lacks asked of the channel; none when the line has no place now.
+  Miss* fetch(Tick now, std::uint32_t client, const MemoryRequest& request);
   [[nodiscard]] int place(Tick now, std::uint32_t line);
   void write_back(Tick now, std::uint32_t line, std::uint8_t sectors);
   void write_back_block(Tick now, std::uint32_t line);

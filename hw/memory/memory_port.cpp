@@ -23,10 +23,14 @@ void MemoryPort::read(std::uint32_t line, std::uint8_t sectors, std::uint32_t ta
   queue({line, tag, sectors, MemoryRequest::Kind::kRead});
 }
 
-void MemoryPort::write(std::uint32_t line, std::uint8_t sectors) {
+void MemoryPort::write(std::uint32_t line, std::uint8_t sectors) { queue_write(line, sectors, MemoryRequest::Kind::kWrite); }
+
+void MemoryPort::write_part(std::uint32_t line, std::uint8_t sectors) { queue_write(line, sectors, MemoryRequest::Kind::kWritePart); }
+
+void MemoryPort::queue_write(std::uint32_t line, std::uint8_t sectors, MemoryRequest::Kind kind) {
   ++stats_.writes;
   stats_.write_bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(sectors));
-  queue({line, 0, sectors, MemoryRequest::Kind::kWrite});
+  queue({line, 0, sectors, kind});
 }
 
 void MemoryPort::fence(std::uint32_t tag) {

@@ -29,6 +29,8 @@ class MemoryPort {
   /// Queues a request; it leaves as soon as its slice's link has room.
   void read(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag);
   void write(std::uint32_t line, std::uint8_t sectors);
+  /// Writes a part of each of these sectors. The link carries them whole, with a mask.
+  void write_part(std::uint32_t line, std::uint8_t sectors);
   /// Asks every slice to answer once all earlier requests of this client have been taken in; `answers` counts them.
   void fence(std::uint32_t tag);
 
@@ -57,6 +59,7 @@ class MemoryPort {
     MemoryRequest request;
     std::uint32_t slice = 0;
   };
+  void queue_write(std::uint32_t line, std::uint8_t sectors, MemoryRequest::Kind kind);
   void queue(const MemoryRequest& request) { queue_.push_back({request, interleave_.member_of(request.line)}); }
 
   MemoryPortStats stats_;

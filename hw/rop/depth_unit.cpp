@@ -204,7 +204,7 @@ void DepthUnit::acquire_waiting(Tick now) {
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.index).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
-    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, sectors, 0, number & ~kLateBit, entry.missing, entry.done, port_))
+    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, {.read = sectors}, number & ~kLateBit, entry.missing, entry.done, port_))
       return false;
   }
   entry.acquired = true;
@@ -218,7 +218,7 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
       if (((warp.alive >> (4 * q)) & 0xf) == 0) continue;
       const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
       const std::uint8_t sector = sectors_of_quads(1u << quad_in_tile(quad));
-      if (!cache_.acquire(tile_of(quad.x), tile_of(quad.y), sector, 0, (number & ~kLateBit) | kLateBit, entry.missing,
+      if (!cache_.acquire(tile_of(quad.x), tile_of(quad.y), {.read = sector}, (number & ~kLateBit) | kLateBit, entry.missing,
                           entry.done[static_cast<std::size_t>(q)], port_)) {
         return false;
       }
@@ -276,8 +276,7 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
     token.coverage = models::depth_test(draw.depth_compare, stored, incoming, covered);
   }
   if (!token.late && draw.depth_write && token.coverage != 0) {
-    const std::uint8_t sectors = sectors_of_quads(models::quads_of(token.coverage));
-    if (!cache_.write(token.tile_x, token.tile_y, sectors, port_)) return false;
+    if (!cache_.write(token.tile_x, token.tile_y, std::bit_cast<SectorPixels>(token.coverage), port_)) return false;
     models::depth_write(stored, incoming, token.coverage);
     send_hiz(now, token.tile_x, token.tile_y);
   }
@@ -319,9 +318,10 @@ bool DepthUnit::test_late(Tick now) {
   WarpSlot& warp = warps_[token.slot];
   const DrawState& draw = frame_.draw(warp.draw);
   for (int q = 0; q < warp.quads && draw.depth_write; ++q) {
-    if (((warp.alive >> (4 * q)) & 0xf) == 0) continue;
+    const std::uint64_t lanes = (warp.alive >> (4 * q)) & 0xf;
+    if (lanes == 0) continue;
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-    if (!cache_.write(tile_of(quad.x), tile_of(quad.y), sectors_of_quads(1u << quad_in_tile(quad)), port_)) {
+    if (!cache_.write(tile_of(quad.x), tile_of(quad.y), std::bit_cast<SectorPixels>(lanes << 4 * quad_in_tile(quad)), port_)) {
       late_.front().acquired = false;
       stalled_ = !cache_.idle();
       return false;

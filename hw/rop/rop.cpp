@@ -24,10 +24,10 @@ QuadPlace place_of(const WarpSlot::Quad& quad) {
 
 models::LaneMask lanes_of(const WarpSlot& warp, int q) { return (warp.alive >> (4 * q)) & 0xf; }
 
-/// Sectors of one tile that a warp touches, and those of them it overwrites whole.
+/// Live pixels of a warp in one tile.
 struct TileTouch {
   std::uint32_t tile_x = 0, tile_y = 0;
-  std::array<std::uint8_t, 8> pixels{};  ///< live pixels by sector, of 8
+  SectorPixels pixels{};
 };
 
 /// Gathers a warp's live quads by tile; at most one entry a quad.
@@ -43,7 +43,7 @@ int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads
       ++i;
     if (i == count) tiles[static_cast<std::size_t>(count++)] = {place.tile_x, place.tile_y, {}};
     auto& pixels = tiles[static_cast<std::size_t>(i)].pixels[static_cast<std::size_t>(place.quad / 2)];
-    pixels = static_cast<std::uint8_t>(pixels + std::popcount(lanes));
+    pixels = static_cast<std::uint8_t>(pixels | lanes << (4 * (place.quad & 1)));
   }
   return count;
 }
@@ -199,14 +199,14 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
   const int count = touched_tiles(warp, tiles);
   for (int i = 0; i < count; ++i) {
     const TileTouch& tile = tiles[static_cast<std::size_t>(i)];
-    std::uint8_t read = 0, write = 0;
+    SectorWishes wishes;
     for (std::size_t s = 0; s < 8; ++s) {
       if (tile.pixels[s] == 0) continue;
-      // A sector of 8 pixels that is not written whole is completed from memory.
-      auto& mask = blends || tile.pixels[s] < 8 ? read : write;
-      mask = static_cast<std::uint8_t>(mask | 1u << s);
+      const bool whole = tile.pixels[s] == 0xff;
+      std::uint8_t& wish = blends ? wishes.read : whole ? wishes.write : wishes.part;
+      wish = static_cast<std::uint8_t>(wish | 1u << s);
     }
-    if (!cache_.acquire(tile.tile_x, tile.tile_y, read, write, number, entry.missing, entry.done[static_cast<std::size_t>(i)], port_))
+    if (!cache_.acquire(tile.tile_x, tile.tile_y, wishes, number, entry.missing, entry.done[static_cast<std::size_t>(i)], port_))
       return false;
   }
   return true;
@@ -277,9 +277,7 @@ bool Rop::claim_colors(const WarpSlot& warp) {
   const int count = touched_tiles(warp, tiles);
   for (int i = 0; i < count; ++i) {
     const TileTouch& tile = tiles[static_cast<std::size_t>(i)];
-    std::uint8_t sectors = 0;
-    for (std::size_t s = 0; s < 8; ++s) sectors = static_cast<std::uint8_t>(sectors | (tile.pixels[s] != 0 ? 1u << s : 0u));
-    if (!cache_.write(tile.tile_x, tile.tile_y, sectors, port_)) return false;
+    if (!cache_.write(tile.tile_x, tile.tile_y, tile.pixels, port_)) return false;
   }
   return true;
 }

@@ -36,7 +36,7 @@ bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
     if ((done & (kMaterialized << half)) != 0) continue;
     if (!cache_.claim(line, 0xf, port)) return false;
-    cache_.mark_dirty(line, 0xf);
+    cache_.write(line, 0xffffffffu);
     done = static_cast<std::uint8_t>(done | kMaterialized << half);
   }
   cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] = false;
@@ -44,15 +44,16 @@ bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::
   return true;
 }
 
-bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter,
-                           int& missing, std::uint8_t& done, MemoryPort& port) {
+bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes, std::uint32_t waiter, int& missing,
+                           std::uint8_t& done, MemoryPort& port) {
   if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, done, port)) return false;
   for (int half = 0; half < 2; ++half) {
     if ((done & (kAcquired << half)) != 0) continue;
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
-    const auto wanted = static_cast<std::uint8_t>((read >> (4 * half)) & 0xf);
-    const auto written = static_cast<std::uint8_t>((write >> (4 * half)) & 0xf & ~wanted);
-    if (written != 0 && !cache_.claim(line, written, port)) return false;
+    const auto wanted = static_cast<std::uint8_t>((wishes.read >> (4 * half)) & 0xf);
+    const auto written = static_cast<std::uint8_t>((wishes.write >> (4 * half)) & 0xf & ~wanted);
+    const bool in_part = ((wishes.part >> (4 * half)) & 0xf) != 0;
+    if ((written != 0 || in_part) && !cache_.claim(line, written, port)) return false;
     if (wanted != 0) {
       const L1Cache::Result result = cache_.access(line, wanted, waiter, port);
       if (result == L1Cache::Result::kStall) return false;
@@ -63,13 +64,14 @@ bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint
   return true;
 }
 
-bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t sectors, MemoryPort& port) {
-  for (int half = 0; half < 2; ++half) {
+bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels, MemoryPort& port) {
+  for (std::size_t half = 0; half < 2; ++half) {
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
-    const auto written = static_cast<std::uint8_t>((sectors >> (4 * half)) & 0xf);
-    if (written == 0) continue;
-    if (!cache_.holds(line, written) && !cache_.claim(line, written, port)) return false;
-    cache_.mark_dirty(line, written);
+    std::uint32_t words = 0;  // a pixel is one
+    for (std::size_t s = 0; s < 4; ++s) words |= std::uint32_t{pixels[4 * half + s]} << 8 * s;
+    if (words == 0) continue;
+    if (!cache_.has_place(line) && !cache_.claim(line, 0, port)) return false;
+    cache_.write(line, words);
   }
   return true;
 }

@@ -7,6 +7,8 @@
 #include "hw/memory/l1_cache.h"
 #include "models/memory/surface.h"
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 namespace quadrille::hw {
@@ -18,6 +20,14 @@ namespace quadrille::hw {
   pairs = (pairs | pairs >> 2) & 0x0f0fu;
   return static_cast<std::uint8_t>((pairs | pairs >> 4) & 0xffu);
 }
+
+/// Pixels of a tile by sector: bit 0 to 3 those of its first quad, 4 to 7 of its second.
+using SectorPixels = std::array<std::uint8_t, 8>;
+
+/// Sectors of a tile, a bit each, by what will be done with them.
+struct SectorWishes {
+  std::uint8_t read = 0, write = 0, part = 0;
+};
 
 struct SurfaceCacheStats {
   explicit SurfaceCacheStats(StatGroup& group)
@@ -33,13 +43,13 @@ class SurfaceCache {
 
   /// Begins a pass on `surface`: fills this partition's tiles with `value` and marks them.
   void clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition, std::uint32_t partitions);
-  /// Asks for sectors of a tile: those in `read` with their contents, those in `write` because they are overwritten whole.
+  /// Asks for sectors of a tile: those in `read` with their contents, and a place for those in `write`, which will be overwritten whole, and in `part`.
   /// Adds what is not there yet to `missing` and tells `waiter` of each. False when there is no place now: try again after a fill, with the same `done`,
   /// which starts at 0 and remembers what was asked for already, so that even a cache of one line gets through.
-  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t read, std::uint8_t write, std::uint32_t waiter, int& missing,
+  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes, std::uint32_t waiter, int& missing,
                std::uint8_t& done, MemoryPort& port);
-  /// Sectors of a tile were written. Takes back a line that was evicted since it was acquired; false when there is no place for it now.
-  bool write(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t sectors, MemoryPort& port);
+  /// Pixels of a tile were written. Takes back a line that was evicted since it was acquired; false when there is no place for it now.
+  bool write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels, MemoryPort& port);
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {
     cache_.fill(response, std::forward<F>(ready));

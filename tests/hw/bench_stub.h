@@ -109,15 +109,15 @@ class StubMemory final : public StubUnit {
     if (free_ > now || !in.ready_at(now)) return;
     const MemoryRequest request = in.pop(now);
     got.push_back({now / kCycle, request});
-    if (request.kind != MemoryRequest::Kind::kWrite)
+    if (request.kind == MemoryRequest::Kind::kRead || request.kind == MemoryRequest::Kind::kFence)
       waiting_.push_back({now / kCycle + latency_, {request.line, request.tag, request.sectors}});
     free_ = after(now, 1);
   }
-  /// "cycle:kind line/sectors" of each request; kind r, w or f.
+  /// "cycle:kind line/sectors" of each request; kind r, w, p (in part) or f.
   [[nodiscard]] std::string text() const {
     std::string all;
     for (const Timed<MemoryRequest>& t : got) {
-      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle, "rwf"[static_cast<int>(t.token.kind)], t.token.line,
+      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle, "rwpf"[static_cast<int>(t.token.kind)], t.token.line,
                          t.token.sectors);
     }
     return all;

@@ -43,6 +43,7 @@ struct L2Bench final : Bench {
 
 MemoryRequest read(std::uint32_t line, std::uint32_t tag, std::uint8_t sectors = 0xf) { return {line, tag, sectors, Kind::kRead}; }
 MemoryRequest write(std::uint32_t line, std::uint8_t sectors = 0xf) { return {line, 0, sectors, Kind::kWrite}; }
+MemoryRequest write_part(std::uint32_t line, std::uint8_t sectors) { return {line, 0, sectors, Kind::kWritePart}; }
 MemoryRequest fence(std::uint32_t tag) { return {0, tag, 0, Kind::kFence}; }
 std::string both(const L2Bench& b) { return b.sinks[0]->text() + " | " + b.sinks[1]->text(); }
 
@@ -83,6 +84,25 @@ TEST_CASE("l2_slice: only sectors that are not there are asked for") {
     return fmt::format("{} fill {} read {}", b.memory->text(), counter(*b.unit, "fill_bytes"), counter(*b.unit, "read_bytes"));
   });
   CHECK(text == "22:r7/3 222:r7/4 fill 96 read 128");
+}
+
+TEST_CASE("l2_slice: a sector written in part is completed from memory where it is not there, and leaves as a whole") {
+  // One line: the reads of others evict it.
+  const L2Bench::Setup s{
+      .client_0 = {{0, write_part(3, 0x5)}, {200, read(4, 1)}, {400, write(4, 0x1)}, {401, write_part(4, 0x1)}, {600, read(5, 2)}},
+      .lines = 1,
+      .ways = 1};
+  const auto text = run<L2Bench>(s, [](const L2Bench& b) {
+    return fmt::format("{} written {} fill {} back {} hits {} misses {}", b.memory->text(), counter(*b.unit, "write_bytes"),
+                       counter(*b.unit, "fill_bytes"), counter(*b.unit, "writeback_bytes"), counter(*b.unit, "hits"),
+                       counter(*b.unit, "misses"));
+  });
+  CHECK(text == "22:r3/5 222:w3/5 223:r4/f 622:w4/1 623:r5/f written 128 fill 320 back 96 hits 2 misses 3");
+}
+
+TEST_CASE("l2_slice: a read of a sector that is being completed waits for it") {
+  const L2Bench::Setup s{.client_0 = {{0, write_part(3, 0x1)}, {1, read(3, 1, 0x1)}}};
+  CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text() + " " + b.memory->text(); }) == "74:1 22:r3/1");
 }
 
 TEST_CASE("l2_slice: clients take turns, one look-up a cycle") {

@@ -158,6 +158,16 @@ TEST_CASE("rop: a tile that was only cleared is written by the flush") {
   CHECK(text == "68:400 cleared 2 written 2 requests 4");
 }
 
+TEST_CASE("rop: a warp that covers a sector in part reads nothing, unless it blends") {
+  auto s = whole_pass();
+  s.alive = 0x7fffffff;
+  s.lines = s.ways = 2;  // of four: lines are evicted and come back, after the first time not as cleared ones
+  const auto reads = [](const RopBench& b) { return fmt::format("{}", b.memory->count(MemoryRequest::Kind::kRead)); };
+  CHECK(run<RopBench>(s, reads) == "0");
+  s.blend = true;
+  CHECK(run<RopBench>(s, reads) == "3");
+}
+
 TEST_CASE("rop: a colour cache of one line gets through, and to the same image") {
   for (const bool blend : {false, true}) {
     auto s = whole_pass();

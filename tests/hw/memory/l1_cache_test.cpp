@@ -1,0 +1,141 @@
+/// First-level cache: hits, merged misses, stalls, and sectors written whole or in part.
+#include "hw/memory/l1_cache.h"
+#include "tests/hw/bench_stub.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille;
+using namespace quadrille::hw;
+using namespace quadrille::hw::bench;
+
+namespace {
+
+constexpr int kLatency = 20;  ///< of the memory behind the cache, cycles
+
+class CacheUser;
+using Use = std::function<void(CacheUser&)>;
+
+/// Uses a cache as its script says and notes what it is told.
+class CacheUser final : public StubUnit {
+ public:
+  struct Shape {
+    int lines = 4, ways = 4, misses = 4;
+  };
+  CacheUser(sc_core::sc_module_name name, const Clock& clock, Shape shape, models::DeviceMemory& memory, std::vector<Timed<Use>> script)
+      : StubUnit(name, Kind::kChooser, clock),
+        cache(stats_, shape.lines, shape.ways, shape.misses),
+        port(*this, stats_, 1),
+        script_(std::move(script)) {
+    cache.own_dirty_lines(memory, 1);
+  }
+  Wake next() const override {
+    Wake wake = played_ < script_.size() ? Wake(script_[played_].cycle * kCycle) : Wake(kNever);
+    if (!port.queue_empty()) wake = Wake::sooner(wake, port.send_wake());
+    return Wake::sooner(wake, port.receive_wake());
+  }
+  void act(Tick now) override {
+    port.receive(now, [&](const MemoryResponse& answer) {
+      cache.fill(answer, [&](std::uint32_t waiter) { log += fmt::format("ready {}; ", waiter); });
+    });
+    while (played_ < script_.size() && script_[played_].cycle * kCycle <= now) script_[played_++].token(*this);
+    port.send(now);
+  }
+  bool finished() const override { return played_ == script_.size() && port.queue_empty(); }
+  const StatGroup* stats() const override { return &stats_; }
+
+ private:
+  StatGroup stats_;
+
+ public:
+  L1Cache cache;
+  MemoryPort port;
+  std::string log;
+
+ private:
+  std::vector<Timed<Use>> script_;
+  std::size_t played_ = 0;
+};
+
+Use read(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter) {
+  return [=](CacheUser& u) {
+    constexpr const char* kNames[] = {"hit", "pending", "stall"};
+    u.log += fmt::format("{}; ", kNames[static_cast<int>(u.cache.access(line, sectors, waiter, u.port))]);
+  };
+}
+Use claim(std::uint32_t line, std::uint8_t sectors) {
+  return [=](CacheUser& u) { u.log += u.cache.claim(line, sectors, u.port) ? "" : "no place; "; };
+}
+Use write(std::uint32_t line, std::uint32_t words) {
+  return [=](CacheUser& u) { u.cache.write(line, words); };
+}
+const Use kFlush = [](CacheUser& u) { u.cache.flush(u.port); };
+
+struct CacheBench final : Bench {
+  struct Setup {
+    std::vector<Timed<Use>> script;
+    CacheUser::Shape shape{};
+  };
+  CacheBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
+    (void)device.allocate(1 << 12);
+    unit = std::make_unique<CacheUser>("unit", clock, s.shape, device, s.script);
+    add(*unit);
+    memory = &serve(unit->port, kLatency);
+  }
+  models::DeviceMemory device;
+  std::unique_ptr<CacheUser> unit;
+  StubMemory* memory = nullptr;
+};
+
+/// What the user was told, and what reached memory as "kind line/sectors" without times.
+std::string seen(const CacheBench& b) {
+  std::string text = b.unit->log + "|";
+  for (const auto& [cycle, r] : b.memory->got) text += fmt::format(" {}{}/{:x}", "rwpf"[static_cast<int>(r.kind)], r.line, r.sectors);
+  return text + fmt::format(" | dirty {}", b.device.dirty_lines());
+}
+std::string seen(std::vector<Timed<Use>> script, CacheUser::Shape shape = {}) {
+  return run<CacheBench>({std::move(script), shape}, [](const CacheBench& b) { return seen(b); });
+}
+
+constexpr std::uint32_t kFirstSector = 0xff, kHalf = 0x0f, kOtherHalf = 0xf0;
+
+}  // namespace
+
+TEST_CASE("l1_cache: a line under way serves all who ask for it, and is a hit afterwards") {
+  CHECK(seen({{0, read(3, 0x3, 1)}, {1, read(3, 0x1, 2)}, {2, read(3, 0x6, 3)}, {60, read(3, 0x7, 4)}}) ==
+        "pending; pending; pending; ready 1; ready 2; ready 3; hit; | r3/3 r3/4 | dirty 0");
+}
+
+TEST_CASE("l1_cache: no free way, or no free entry for a miss, is a stall") {
+  CHECK(seen({{0, read(1, 0xf, 1)}, {1, read(2, 0xf, 2)}, {60, read(2, 0xf, 2)}}, {.lines = 1, .ways = 1, .misses = 4}) ==
+        "pending; stall; ready 1; pending; ready 2; | r1/f r2/f | dirty 0");
+  CHECK(seen({{0, read(1, 0xf, 1)}, {1, read(2, 0xf, 2)}}, {.lines = 4, .ways = 4, .misses = 1}) ==
+        "pending; stall; ready 1; | r1/f | dirty 0");
+}
+
+TEST_CASE("l1_cache: a sector that is written whole is never read") {
+  CHECK(seen({{0, claim(3, 0x1)}, {1, write(3, kFirstSector)}, {2, read(3, 0x1, 1)}, {3, kFlush}}) == "hit; | w3/1 | dirty 0");
+}
+
+TEST_CASE("l1_cache: two parts make a whole sector, which leaves as if it had been written at once") {
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, write(3, kOtherHalf)}, {3, read(3, 0x1, 1)}, {4, kFlush}}) ==
+        "hit; | w3/1 | dirty 0");
+}
+
+TEST_CASE("l1_cache: a sector written in part leaves in part, by a flush or as a victim") {
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf | kFirstSector << 16)}, {2, kFlush}}) == "| w3/4 p3/1 | dirty 0");
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, claim(4, 0x2)}}, {.lines = 1, .ways = 1}) == "| p3/1 | dirty 0");
+}
+
+TEST_CASE("l1_cache: reading a sector that was written in part fetches the rest, and it is dirty as a whole") {
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, read(3, 0x1, 1)}, {60, read(3, 0x1, 2)}, {61, kFlush}}) ==
+        "pending; ready 1; hit; | r3/1 w3/1 | dirty 0");
+}
+
+TEST_CASE("l1_cache: a part written while its sector is under way is kept") {
+  CHECK(seen({{0, read(3, 0x1, 1)}, {1, write(3, kHalf)}, {60, kFlush}}) == "pending; ready 1; | r3/1 w3/1 | dirty 0");
+  CHECK(seen({{0, read(3, 0x1, 1)}, {1, write(3, kFirstSector)}, {60, kFlush}}) == "pending; ready 1; | r3/1 w3/1 | dirty 0");
+}
+
+TEST_CASE("l1_cache: overwriting a sector that was written in part keeps it dirty until it leaves") {
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, claim(3, 0x1)}, {3, kFlush}}) == "| w3/1 | dirty 0");
+}
