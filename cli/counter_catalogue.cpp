@@ -1,6 +1,6 @@
 #include "cli/counter_catalogue.h"
 
-#include "pipeline/machine_plan.h"
+#include "pipeline/machine/machine_plan.h"
 
 namespace quadrille::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "models/base/error.h"
 #include "models/base/say.h"
 #include "models/reference/compare.h"
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 
 namespace quadrille::cli {
 namespace {

@@ -1,4 +1,5 @@
 #include "cli/frame_sequence.h"
+#include "scenes/scene.h"
 
 #include <fmt/format.h>
 

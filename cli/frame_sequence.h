@@ -9,7 +9,7 @@
 
 #include "cli/process.h"
 #include "cli/scene_arguments.h"
-#include "pipeline/machine_config.h"
+#include "pipeline/machine/machine_config.h"
 
 namespace quadrille::cli {
 

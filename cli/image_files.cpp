@@ -11,7 +11,7 @@
 #include "cli/process.h"
 #include "models/base/error.h"
 #include "models/rop/srgb.h"
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 #include "traces/whole_file.h"
 
 namespace quadrille::cli {

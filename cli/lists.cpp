@@ -5,7 +5,8 @@
 
 #include "cli/command.h"
 #include "models/base/error.h"
-#include "pipeline/machine_config.h"
+#include "pipeline/machine/machine_config.h"
+#include "scenes/builtin/builtin.h"
 #include "scenes/contents.h"
 #include "scenes/scene.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/machine_config.h"
+#include "pipeline/machine/machine_config.h"
 
 namespace quadrille::cli {
 

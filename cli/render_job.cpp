@@ -7,9 +7,9 @@
 #include "cli/process.h"
 #include "models/base/error.h"
 #include "models/base/say.h"
-#include "pipeline/host_cost.h"
-#include "pipeline/report.h"
-#include "scenes/image_io.h"
+#include "pipeline/report/host_cost.h"
+#include "pipeline/report/report.h"
+#include "scenes/image/image_io.h"
 
 namespace quadrille::cli {
 namespace {

@@ -8,7 +8,9 @@
 #include <limits>
 
 #include "models/base/error.h"
-#include "scenes/image_io.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/image/image_io.h"
+#include "scenes/scene.h"
 #include "traces/trace_file.h"
 
 namespace quadrille::cli {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/frame_builder.h"
+#include "pipeline/driver/frame_builder.h"
 #include "scenes/scene.h"
 
 namespace quadrille::cli {

@@ -3,7 +3,7 @@
 #include <bit>
 #include <chrono>
 
-#include "pipeline/host_cost.h"
+#include "pipeline/report/host_cost.h"
 
 namespace quadrille::pipeline {
 

@@ -1,9 +1,9 @@
 /// One frame from a command stream to an image and, when timed, its figures. What the program, the tests and the comparisons call.
 #pragma once
 
-#include "pipeline/figures.h"
-#include "pipeline/functional.h"
-#include "pipeline/machine_config.h"
+#include "pipeline/functional/functional.h"
+#include "pipeline/machine/machine_config.h"
+#include "pipeline/report/figures.h"
 #include "traces/command_stream.h"
 
 #include <functional>

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "scenes/builtin.h"
-#include "scenes/gltf_animation.h"
-#include "scenes/gltf_file.h"
-#include "scenes/gltf_view.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/gltf/animation.h"
+#include "scenes/gltf/file.h"
+#include "scenes/gltf/view.h"
 
 namespace quadrille::scenes {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "models/base/error.h"
-#include "scenes/builtin.h"
-#include "scenes/gltf_loader.h"
-#include "scenes/recorder.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/gltf/loader.h"
+#include "scenes/record/recorder.h"
 
 namespace quadrille::scenes {
 namespace {

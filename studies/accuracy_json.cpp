@@ -1,7 +1,7 @@
 /// The JSON: everything that the tables show, and the single times behind their medians.
 #include <nlohmann/json.hpp>
 
-#include "pipeline/report.h"
+#include "pipeline/report/report.h"
 #include "studies/accuracy_report.h"
 #include "studies/statistics.h"
 

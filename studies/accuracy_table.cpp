@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/unit_facets.h"
+#include "pipeline/report/unit_facets.h"
 #include "studies/accuracy_report.h"
 #include "studies/statistics.h"
 

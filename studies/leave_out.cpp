@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "models/base/error.h"
-#include "pipeline/host_cost.h"
 #include "pipeline/render.h"
-#include "pipeline/report.h"
+#include "pipeline/report/host_cost.h"
+#include "pipeline/report/report.h"
 #include "studies/child_run.h"
 
 namespace quadrille::studies {

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/frame_builder.h"
-#include "pipeline/machine_config.h"
+#include "pipeline/driver/frame_builder.h"
+#include "pipeline/machine/machine_config.h"
 #include "studies/statistics.h"
 #include "traces/command_stream.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "models/base/error.h"
-#include "pipeline/report.h"
+#include "pipeline/report/report.h"
 #include "studies/child_run.h"
 
 namespace quadrille::studies {

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <unordered_map>
 
-#include "pipeline/frame_builder.h"
-#include "pipeline/machine_config.h"
+#include "pipeline/driver/frame_builder.h"
+#include "pipeline/machine/machine_config.h"
 
 namespace quadrille::studies::experiments {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "models/base/error.h"
 #include "pipeline/render.h"
-#include "pipeline/report.h"
+#include "pipeline/report/report.h"
 #include "studies/child_run.h"
 
 namespace quadrille::studies::experiments {

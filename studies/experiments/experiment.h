@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/machine_config.h"
+#include "pipeline/machine/machine_config.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::studies::experiments {

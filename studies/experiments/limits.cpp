@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "pipeline/limiter.h"
+#include "pipeline/report/limiter.h"
 #include "scenes/scene.h"
 #include "studies/experiments/experiment.h"
 #include "studies/plot.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <span>
 
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 
 namespace quadrille::studies::experiments {
 namespace {

@@ -1,6 +1,6 @@
 /// Cases of machines at their edges: links of one place, latencies of a million cycles, clocks a thousand to one, caches of one line, one core and 64.
-#include "pipeline/limiter.h"
-#include "pipeline/report.h"
+#include "pipeline/report/limiter.h"
+#include "pipeline/report/report.h"
 #include "studies/stability/machine_picture.h"
 #include "studies/stability/stability.h"
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/unit_facets.h"
+#include "pipeline/report/unit_facets.h"
 
 namespace quadrille::studies::stability {
 

@@ -3,7 +3,7 @@
 
 #include "models/reference/reference.h"
 #include "pipeline/render.h"
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 
 #include <cstdint>
 #include <memory>

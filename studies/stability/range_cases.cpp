@@ -11,8 +11,8 @@
 #include <cmath>
 
 #include "models/reference/compare.h"
-#include "scenes/builtin.h"
-#include "scenes/recorder.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/record/recorder.h"
 
 namespace quadrille::studies::stability {
 

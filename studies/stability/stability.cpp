@@ -11,7 +11,7 @@
 
 #include "models/base/error.h"
 #include "models/base/near_name.h"
-#include "pipeline/limiter.h"
+#include "pipeline/report/limiter.h"
 
 namespace quadrille::studies::stability {
 

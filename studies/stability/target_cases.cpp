@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "models/memory/device_memory.h"
-#include "scenes/recorder.h"
+#include "scenes/record/recorder.h"
 
 namespace quadrille::studies::stability {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 #include "tests/cli/quadrille.h"
 
 using namespace quadrille::tests;

@@ -1,5 +1,5 @@
 /// Image files, whatever their first bytes say they are.
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/fuzz/refusal.h"
 #include "tests/fuzz/targets.h"

@@ -1,7 +1,7 @@
 /// Machine files and settings, up to the checked configuration.
 #include <string_view>
 
-#include "pipeline/machine_config.h"
+#include "pipeline/machine/machine_config.h"
 #include "tests/fuzz/refusal.h"
 #include "tests/fuzz/targets.h"
 

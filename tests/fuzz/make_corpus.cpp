@@ -7,8 +7,8 @@
 #include <string>
 
 #include "models/base/error.h"
-#include "scenes/glsl.h"
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
+#include "scenes/material/glsl.h"
 #include "scenes/scene.h"
 #include "tests/fuzz/targets.h"
 #include "tests/scenes/gltf_builder.h"

@@ -3,7 +3,7 @@
 
 #include "models/reference/decode.h"
 #include "pipeline/compiler/compile.h"
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 #include "tests/fuzz/refusal.h"
 #include "tests/fuzz/targets.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "pipeline/frame_builder.h"
-#include "pipeline/functional.h"
+#include "pipeline/driver/frame_builder.h"
+#include "pipeline/functional/functional.h"
 #include "traces/trace_file.h"
 
 namespace quadrille::fuzz {

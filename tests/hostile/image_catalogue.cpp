@@ -1,7 +1,7 @@
 /// Image files that are cut, changed, or say more than they hold: as a texture and as an argument of `diff`.
 #include <fmt/format.h>
 
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 #include "tests/cli/program.h"
 #include "tests/hostile/hostile_case.h"
 #include "tests/scenes/gltf_text.h"

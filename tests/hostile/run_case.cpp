@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "models/base/error.h"
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 #include "tests/cli/program.h"
 #include "tests/host_speed.h"
 #include "tests/hostile/hostile_case.h"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 #include "tests/cli/program.h"
 #include "tests/hostile/hostile_case.h"
 #include "tests/scenes/gltf_text.h"

@@ -14,7 +14,7 @@
 
 #include "models/base/error.h"
 #include "models/reference/compare.h"
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 #include "scenes/scene.h"
 #include "tests/lavapipe/alpha_ties.h"
 #include "tests/lavapipe/compare_report.h"

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 
 namespace quadrille::lavapipe {
 namespace {

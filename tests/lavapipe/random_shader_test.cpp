@@ -12,7 +12,7 @@
 #include <string>
 
 #include "models/base/error.h"
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 #include "tests/lavapipe/vulkan_renderer.h"
 
 namespace quadrille::lavapipe {

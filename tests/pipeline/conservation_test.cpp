@@ -1,5 +1,5 @@
 /// The laws are worth something only if they break: each case loses something on a wire on purpose and finds the law that notices.
-#include "pipeline/figures.h"
+#include "pipeline/report/figures.h"
 #include "tests/hw/contract.h"
 #include "tests/pipeline/random_stream.h"
 

@@ -5,9 +5,9 @@
 
 #include "pipeline/compiler/compile.h"
 #include "pipeline/render.h"
-#include "pipeline/report.h"
-#include "scenes/mesh_builder.h"
-#include "scenes/recorder.h"
+#include "pipeline/report/report.h"
+#include "scenes/builtin/mesh_builder.h"
+#include "scenes/record/recorder.h"
 #include "scenes/scene.h"
 #include "tests/hw/contract.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/limiter.h"
+#include "pipeline/report/limiter.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 #include "tests/pipeline/machine_specimen.h"
 
-#include "pipeline/figures.h"
-#include "pipeline/functional.h"
+#include "pipeline/functional/functional.h"
+#include "pipeline/report/figures.h"
 #include "tests/pipeline/random_machine.h"
 
 namespace quadrille::pipeline::test {

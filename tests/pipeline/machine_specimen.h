@@ -1,7 +1,7 @@
 /// The whole machine for the contract harness: random stream, random machine, rendered in any driver and order.
 #pragma once
 
-#include "pipeline/machine.h"
+#include "pipeline/machine/machine.h"
 #include "tests/hw/contract.h"
 #include "traces/command_stream.h"
 

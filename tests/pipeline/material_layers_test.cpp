@@ -4,8 +4,8 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include "models/reference/reference.h"
-#include "scenes/mesh_builder.h"
-#include "scenes/recorder.h"
+#include "scenes/builtin/mesh_builder.h"
+#include "scenes/record/recorder.h"
 
 using namespace quadrille;
 using namespace quadrille::scenes;

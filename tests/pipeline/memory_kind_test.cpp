@@ -1,5 +1,5 @@
 /// `memory.kind`: the default machine is its own kind's data file, and another kind brings its clock and its numbers.
-#include "pipeline/machine_config.h"
+#include "pipeline/machine/machine_config.h"
 
 #include "models/base/error.h"
 

@@ -5,8 +5,8 @@
 
 #include "models/reference/compare.h"
 #include "pipeline/render.h"
-#include "scenes/mesh_builder.h"
-#include "scenes/recorder.h"
+#include "scenes/builtin/mesh_builder.h"
+#include "scenes/record/recorder.h"
 
 using namespace quadrille;
 using namespace quadrille::scenes;

@@ -1,4 +1,4 @@
-#include "pipeline/notes.h"
+#include "pipeline/report/notes.h"
 
 #include <fmt/format.h>
 

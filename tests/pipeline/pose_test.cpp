@@ -6,10 +6,10 @@
 #include "models/reference/compare.h"
 #include "models/reference/reference.h"
 #include "pipeline/render.h"
-#include "scenes/gltf_loader.h"
-#include "scenes/recorder.h"
+#include "scenes/gltf/loader.h"
+#include "scenes/material/shader_sources.h"
+#include "scenes/record/recorder.h"
 #include "scenes/scene.h"
-#include "scenes/shader_sources.h"
 #include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
 

@@ -1,7 +1,7 @@
 #include "tests/pipeline/random_stream.h"
 #include "tests/pipeline/random_source.h"
 
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 
 #include <array>
 #include <cstring>

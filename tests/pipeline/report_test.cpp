@@ -1,9 +1,9 @@
-#include "pipeline/report.h"
+#include "pipeline/report/report.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/unit_facets.h"
+#include "pipeline/report/unit_facets.h"
 
 using namespace quadrille;
 using namespace quadrille::pipeline;

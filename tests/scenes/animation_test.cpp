@@ -1,4 +1,4 @@
-#include "scenes/animation.h"
+#include "scenes/data/animation.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scenes/camera.h"
+#include "scenes/view/camera.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,13 +1,14 @@
 /// Exposure: a factor of the file's light, given or chosen.
-#include "scenes/exposure.h"
+#include "scenes/view/exposure.h"
+#include "scenes/scene.h"
 
 #include <catch2/catch.hpp>
 
 #include <fmt/format.h>
 
 #include "models/base/error.h"
-#include "scenes/frame_block.h"
-#include "scenes/recorder.h"
+#include "scenes/material/frame_block.h"
+#include "scenes/record/recorder.h"
 #include "tests/scenes/gltf_text.h"
 
 using namespace quadrille;

@@ -1,4 +1,4 @@
-#include "scenes/gltf_accessor.h"
+#include "scenes/gltf/accessor.h"
 
 #include <catch2/catch.hpp>
 #include <cstring>

@@ -1,5 +1,5 @@
 /// What Draco's encoder packs comes back within its quantisation; what nobody packed is refused before much memory is taken.
-#include "scenes/gltf_draco.h"
+#include "scenes/gltf/draco.h"
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/mesh.h>
@@ -11,7 +11,7 @@
 #include <cstring>
 #include <random>
 
-#include "scenes/gltf_loader.h"
+#include "scenes/gltf/loader.h"
 #include "tests/scenes/compressed_gltf.h"
 #include "tests/scenes/gltf_text.h"
 

@@ -6,11 +6,11 @@
 #include <fstream>
 
 #include "models/base/error.h"
-#include "scenes/gltf_container.h"
-#include "scenes/gltf_file.h"
-#include "scenes/gltf_loader.h"
-#include "scenes/gltf_uri.h"
-#include "scenes/image_io.h"
+#include "scenes/gltf/container.h"
+#include "scenes/gltf/file.h"
+#include "scenes/gltf/loader.h"
+#include "scenes/gltf/uri.h"
+#include "scenes/image/image_io.h"
 #include "tests/scenes/gltf_text.h"
 #include "traces/whole_file.h"
 

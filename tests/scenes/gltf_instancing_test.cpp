@@ -1,5 +1,5 @@
 /// Instanced draws: one command for all copies, and the same streams as the copies one by one would have.
-#include "scenes/gltf_instancing.h"
+#include "scenes/gltf/instancing.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 
 #include <glm/ext/matrix_transform.hpp>
 
-#include "scenes/gltf_loader.h"
-#include "scenes/recorder.h"
-#include "scenes/shader_sources.h"
+#include "scenes/gltf/loader.h"
+#include "scenes/material/shader_sources.h"
+#include "scenes/record/recorder.h"
 #include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
 #include "traces/trace_file.h"

@@ -1,4 +1,4 @@
-#include "scenes/gltf_loader.h"
+#include "scenes/gltf/loader.h"
 #include "scenes/scene.h"
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
 /// What meshoptimizer's encoders pack is unpacked bit for bit; what nobody packed is refused.
-#include "scenes/gltf_meshopt.h"
+#include "scenes/gltf/meshopt.h"
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
@@ -11,8 +11,8 @@
 #include <cstring>
 #include <random>
 
-#include "scenes/gltf_loader.h"
-#include "scenes/meshopt_attributes.h"
+#include "scenes/gltf/loader.h"
+#include "scenes/gltf/meshopt_attributes.h"
 #include "tests/scenes/compressed_gltf.h"
 #include "tests/scenes/gltf_text.h"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "models/base/error.h"
-#include "scenes/gltf_loader.h"
+#include "scenes/gltf/loader.h"
 
 namespace quadrille::scenes {
 

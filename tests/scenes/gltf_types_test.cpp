@@ -1,5 +1,5 @@
 /// JSON of wrong types, and members that are missing: refused with the place, whatever stands around them.
-#include "scenes/gltf_types.h"
+#include "scenes/gltf/types.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

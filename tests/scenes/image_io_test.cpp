@@ -1,4 +1,4 @@
-#include "scenes/image_io.h"
+#include "scenes/image/image_io.h"
 
 #include <array>
 #include <catch2/catch.hpp>

@@ -1,13 +1,13 @@
 /// Every feature on and off: what the shaders are compiled for must compile, and be valid SPIR-V for Vulkan 1.1.
-#include "scenes/material_variant.h"
+#include "scenes/material/material_variant.h"
 
 #include <catch2/catch.hpp>
 #include <set>
 #include <spirv-tools/libspirv.hpp>
 
 #include "models/base/error.h"
-#include "scenes/frame_block.h"
-#include "scenes/shader_library.h"
+#include "scenes/material/frame_block.h"
+#include "scenes/material/shader_library.h"
 #include "tests/scenes/gltf_text.h"
 
 using namespace quadrille;

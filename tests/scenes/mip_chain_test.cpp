@@ -1,4 +1,4 @@
-#include "scenes/mip_chain.h"
+#include "scenes/image/mip_chain.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -7,10 +7,10 @@
 #include <glm/ext/vector_double3.hpp>
 
 #include "models/base/error.h"
-#include "scenes/gltf_joint_streams.h"
-#include "scenes/gltf_loader.h"
-#include "scenes/host_pose.h"
-#include "scenes/pose_streams.h"
+#include "scenes/gltf/joint_streams.h"
+#include "scenes/gltf/loader.h"
+#include "scenes/record/host_pose.h"
+#include "scenes/record/pose_streams.h"
 #include "scenes/scene.h"
 #include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"

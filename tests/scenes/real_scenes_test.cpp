@@ -1,7 +1,7 @@
 /// Scenes from outside: counts of triangles and draws as their manifest states them.
 #include <catch2/catch.hpp>
 
-#include "scenes/mip_chain.h"
+#include "scenes/image/mip_chain.h"
 #include "scenes/scene.h"
 #include "tests/scenes/scene_folder.h"
 #include "traces/trace_file.h"

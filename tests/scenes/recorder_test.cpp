@@ -1,4 +1,5 @@
-#include "scenes/recorder.h"
+#include "scenes/record/recorder.h"
+#include "scenes/scene.h"
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -6,7 +7,7 @@
 #include <glm/ext/matrix_transform.hpp>
 
 #include "models/base/error.h"
-#include "scenes/mesh_builder.h"
+#include "scenes/builtin/mesh_builder.h"
 
 using namespace quadrille;
 using namespace quadrille::scenes;

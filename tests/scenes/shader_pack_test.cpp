@@ -1,12 +1,12 @@
 /// Shaders that came with the program: found by what they are compiled for, and the same words that the compiler makes of their source.
-#include "scenes/shader_pack.h"
+#include "scenes/material/shader_pack.h"
 
 #include <catch2/catch.hpp>
 
-#include "scenes/glsl.h"
-#include "scenes/material_variant.h"
+#include "scenes/material/glsl.h"
+#include "scenes/material/material_variant.h"
+#include "scenes/material/typical_shaders.h"
 #include "scenes/scene.h"
-#include "scenes/typical_shaders.h"
 
 using namespace quadrille;
 using namespace quadrille::scenes;

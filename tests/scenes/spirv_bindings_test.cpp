@@ -1,8 +1,8 @@
-#include "scenes/spirv_bindings.h"
+#include "scenes/material/spirv_bindings.h"
 
 #include <catch2/catch.hpp>
 
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 
 namespace quadrille::scenes {
 namespace {

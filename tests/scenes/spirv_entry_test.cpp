@@ -1,9 +1,9 @@
-#include "scenes/spirv_entry.h"
+#include "scenes/material/spirv_entry.h"
 
 #include <catch2/catch.hpp>
 
 #include "models/base/error.h"
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 
 namespace quadrille::scenes {
 namespace {

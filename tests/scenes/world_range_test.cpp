@@ -1,4 +1,4 @@
-#include "scenes/world_range.h"
+#include "scenes/view/world_range.h"
 
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <glm/ext/matrix_transform.hpp>
 
-#include "scenes/builtin.h"
-#include "scenes/camera.h"
-#include "scenes/gltf_loader.h"
-#include "scenes/recorder.h"
+#include "scenes/builtin/builtin.h"
+#include "scenes/gltf/loader.h"
+#include "scenes/record/recorder.h"
+#include "scenes/view/camera.h"
 #include "tests/scenes/gltf_text.h"
 
 namespace quadrille::scenes {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "scenes/builtin/builtin.h"
 #include "scenes/scene.h"
 
 namespace quadrille::studies {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "models/reference/shader_program.h"
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 /// What a user can get wrong, and modules that no compiler made: always one clear line, never a crash.
 #include "models/base/error.h"
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 #include "tests/pipeline/compiler/shader_runner.h"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 #include "models/reference/shader_program.h"
 #include "models/shader/warp.h"
 #include "pipeline/compiler/compile.h"
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 #include "tests/pipeline/compiler/shader_runner.h"
 
 #include <bit>

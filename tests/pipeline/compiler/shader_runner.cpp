@@ -1,6 +1,6 @@
 #include "tests/pipeline/compiler/shader_runner.h"
 
-#include "scenes/glsl.h"
+#include "scenes/material/glsl.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,0 +1,57 @@
+#include "pipeline/driver/device_resources.h"
+
+#include "models/memory/surface.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace quadrille::pipeline {
+
+DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory)
+    : stream_(stream), memory_(memory), buffers_(stream.buffers.size()), textures_(stream.images.size()) {
+  std::uint64_t bytes = 0;
+  const auto add = [&bytes](std::uint64_t size) { bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes; };
+  for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
+  for (const traces::Image& i : stream.images) add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
+  for (const traces::RenderTarget& t : stream.targets)
+    add(std::uint64_t{2} * models::kTileBytes * ((t.width + 7) / 8) * ((t.height + 7) / 8));
+  memory.reserve(bytes);
+}
+
+std::uint64_t DeviceResources::buffer(traces::Index index) {
+  std::optional<std::uint64_t>& address = buffers_[index];
+  if (!address) {
+    const std::vector<std::byte>& data = stream_.buffers[index].data;
+    address = memory_.allocate(std::max<std::size_t>(1, data.size()));
+    if (!data.empty()) std::memcpy(memory_.write(*address, data.size()).data(), data.data(), data.size());
+    buffer_bytes_ += data.size();
+  }
+  return *address;
+}
+
+const models::TextureView& DeviceResources::texture(traces::Index image) {
+  std::optional<models::TextureView>& view = textures_[image];
+  if (!view) {
+    const traces::Image& i = stream_.images[image];
+    view = models::upload_texture(memory_, static_cast<models::TexelFormat>(i.format), i.width, i.height, i.levels, i.texels);
+    texture_bytes_ += view->layout.bytes;
+  }
+  return *view;
+}
+
+void DeviceResources::place_rest() {
+  for (traces::Index i = 0; i < buffers_.size(); ++i) (void)buffer(i);
+  for (traces::Index i = 0; i < textures_.size(); ++i) (void)texture(i);
+}
+
+DeviceResources::Unplaced DeviceResources::unplaced_images() const {
+  Unplaced unplaced;
+  for (std::size_t i = 0; i < textures_.size(); ++i) {
+    if (textures_[i]) continue;
+    ++unplaced.images;
+    unplaced.bytes += stream_.images[i].texels.size();
+  }
+  return unplaced;
+}
+
+}  // namespace quadrille::pipeline

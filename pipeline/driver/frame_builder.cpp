@@ -1,0 +1,302 @@
+#include "pipeline/driver/frame_builder.h"
+
+#include "models/base/error.h"
+#include "pipeline/driver/device_resources.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <map>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+using traces::Index;
+using traces::kNone;
+
+// The models have their own enumerations with the command stream's values; a conversion is a cast.
+static_assert(static_cast<int>(models::CompareOp::kAlways) == static_cast<int>(traces::CompareOp::kAlways));
+static_assert(static_cast<int>(models::BlendFactor::kOneMinusDstAlpha) == static_cast<int>(traces::BlendFactor::kOneMinusDstAlpha));
+static_assert(static_cast<int>(models::BlendOp::kMax) == static_cast<int>(traces::BlendOp::kMax));
+static_assert(static_cast<int>(models::CullMode::kBack) == static_cast<int>(traces::CullMode::kBack));
+static_assert(static_cast<int>(models::FrontFace::kClockwise) == static_cast<int>(traces::FrontFace::kClockwise));
+static_assert(static_cast<int>(models::Topology::kTriangleFan) == static_cast<int>(traces::Topology::kTriangleFan));
+static_assert(static_cast<int>(models::Wrap::kClampToEdge) == static_cast<int>(traces::Wrap::kClampToEdge));
+static_assert(static_cast<int>(models::Filter::kLinear) == static_cast<int>(traces::Filter::kLinear));
+static_assert(static_cast<int>(models::AttributeFormat::kR32Float) == static_cast<int>(traces::Format::kR32Float));
+static_assert(static_cast<int>(models::AttributeFormat::kR16G16B16A16Uint) == static_cast<int>(traces::kLastFormat));
+static_assert(static_cast<int>(models::TexelFormat::kR8G8B8A8Srgb) == static_cast<int>(traces::Format::kR8G8B8A8Srgb));
+static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) == static_cast<int>(traces::Format::kR8G8B8A8Srgb));
+
+class FrameBuilder {
+ public:
+  FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out)
+      : stream_(stream), out_(out), resources_(stream, out.memory) {
+    out.frame.precision = precision;
+  }
+
+  void build(bool leave_out) {
+    for (const traces::Command& command : stream_.commands) {
+      std::visit([this](const auto& c) { apply(c); }, command);
+    }
+    if (!leave_out) resources_.place_rest();
+    out_.buffer_bytes = resources_.buffer_bytes();
+    out_.texture_bytes = resources_.texture_bytes();
+    note_left_out();
+  }
+
+ private:
+  void apply(const traces::BeginPass& c) {
+    const traces::RenderTarget& target = stream_.targets[c.target];
+    hw::PassState pass;
+    pass.color = models::allocate_surface(out_.memory, target.width, target.height);
+    out_.surface_bytes += pass.color.bytes();
+    pass.color_format = static_cast<models::ColorFormat>(target.color);
+    pass.clear_color = models::encode_color(pass.color_format, c.clear_color);
+    pass.clear_depth = c.clear_depth;
+    pass.first_draw = static_cast<std::uint32_t>(out_.frame.draws.size());
+    target_has_depth_ = target.depth != traces::Format::kUndefined;
+    out_.frame.passes.push_back(pass);
+    scissor_ = {0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)};
+    viewport_ = {0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
+  }
+  void apply(const traces::EndPass&) {
+    hw::PassState& pass = out_.frame.passes.back();
+    out_.shown_has_depth = target_has_depth_;
+    pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw;
+    const auto first = out_.frame.draws.begin() + pass.first_draw;
+    const bool tests = std::any_of(first, out_.frame.draws.end(), [](const hw::DrawState& d) { return d.depth_test; });
+    if (target_has_depth_ && tests) {
+      pass.has_depth = true;
+      pass.depth = models::allocate_surface(out_.memory, pass.color.width, pass.color.height);
+      out_.surface_bytes += pass.depth.bytes();
+    } else if (target_has_depth_) {
+      out_.left_out.push_back(
+          {"depth surface", "no draw of the pass tests depth", fmt::format("{} bytes of device memory", pass.color.bytes())});
+    }
+  }
+  void apply(const traces::BindPipeline& c) { pipeline_ = c.pipeline; }
+  void apply(const traces::BindDescriptorSet& c) { sets_[c.set] = c.descriptors; }
+  void apply(const traces::BindVertexBuffer& c) { vertex_buffers_[c.binding] = c; }
+  void apply(const traces::BindIndexBuffer& c) { index_buffer_ = c; }
+  void apply(const traces::PushConstants& c) {
+    if (push_.size() < c.offset + c.data.size()) push_.resize(c.offset + c.data.size());
+    std::copy(c.data.begin(), c.data.end(), push_.begin() + c.offset);
+  }
+  void apply(const traces::SetViewport& c) { viewport_ = {c.x, c.y, c.width, c.height, c.min_depth, c.max_depth}; }
+  void apply(const traces::SetScissor& c) {
+    scissor_ = {c.x, c.y, c.x + static_cast<std::int32_t>(c.width), c.y + static_cast<std::int32_t>(c.height)};
+  }
+  void apply(const traces::Draw& c) {
+    const traces::Pipeline& pipeline = stream_.pipelines[pipeline_];
+    const CompiledPipeline& programs = compiled(pipeline_);
+    hw::DrawState draw;
+    draw.label = c.label;
+    draw.pass = static_cast<std::uint32_t>(out_.frame.passes.size()) - 1;
+    draw.vertex_program = &programs.vertex;
+    draw.fragment_program = &programs.fragment;
+    geometry(c, pipeline, draw);
+    attributes(pipeline, programs.integer_inputs, draw);
+    fixed_function(pipeline, draw);
+    draw.vertex_constants = constants(programs.vertex);
+    draw.fragment_constants = constants(programs.fragment);
+    textures(programs.vertex, draw.vertex_textures, draw.vertex_texture_sizes);
+    textures(programs.fragment, draw.fragment_textures, draw.fragment_texture_sizes);
+    out_.frame.draws.push_back(std::move(draw));
+  }
+
+  const CompiledPipeline& compiled(Index index) {
+    const traces::Pipeline& pipeline = stream_.pipelines[index];
+    const auto key = std::pair{pipeline.vertex_shader, pipeline.fragment_shader};
+    const auto found = programs_.find(key);
+    if (found != programs_.end()) return *found->second;
+    const traces::Shader& vertex = stream_.shaders[key.first];
+    const traces::Shader& fragment = stream_.shaders[key.second];
+    out_.programs.push_back(compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name));
+    programs_[key] = &out_.programs.back();
+    return out_.programs.back();
+  }
+
+  void geometry(const traces::Draw& c, const traces::Pipeline& pipeline, hw::DrawState& draw) {
+    draw.topology = static_cast<models::Topology>(pipeline.topology);
+    draw.indexed = c.indexed;
+    draw.count = c.count;
+    draw.instances = c.instances;
+    draw.first_instance = c.first_instance;
+    draw.vertex_offset = c.vertex_offset;
+    draw.first_vertex = c.first;
+    if (c.indexed) {
+      draw.index_bytes = 1u << static_cast<int>(index_buffer_.type);
+      draw.index_address = resources_.buffer(index_buffer_.buffer) + index_buffer_.offset + std::uint64_t{c.first} * draw.index_bytes;
+    }
+  }
+
+  void attributes(const traces::Pipeline& pipeline, std::uint32_t integer_inputs, hw::DrawState& draw) {
+    const auto& uses = draw.vertex_program->vertex_inputs;
+    for (const traces::VertexAttribute& attribute : pipeline.attributes) {
+      hw::AttributeFetch fetch;
+      bool used = false;
+      for (std::size_t row = 0; row < uses.size(); ++row) {
+        if (uses[row].location != attribute.location) continue;
+        fetch.input_row[uses[row].component] = static_cast<int>(row);
+        used = true;
+      }
+      if (!used) {
+        ++unread_attributes_;
+        continue;
+      }
+      const bool integers = (integer_inputs >> attribute.location & 1u) != 0;
+      if (integers != traces::is_integer_format(attribute.format)) {
+        throw user_error("{}: reads vertex input location {} as {}, which pipeline '{}' supplies as {}", draw.vertex_program->name,
+                         attribute.location, integers ? "integers" : "floats", pipeline.name, integers ? "floats" : "integers");
+      }
+      const auto binding = std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
+      const traces::BindVertexBuffer& bound = vertex_buffers_.at(attribute.binding);
+      fetch.address = resources_.buffer(bound.buffer) + bound.offset + attribute.offset;
+      fetch.stride = binding->stride;
+      fetch.per_instance = binding->per_instance;
+      fetch.format = static_cast<models::AttributeFormat>(attribute.format);
+      draw.attributes.push_back(fetch);
+    }
+    for (const models::VertexInputUse& use : uses) {
+      const bool given = std::ranges::any_of(pipeline.attributes, [&](const auto& a) { return a.location == use.location; });
+      if (!given) {
+        throw user_error("{}: reads vertex input location {}, which pipeline '{}' does not supply", draw.vertex_program->name, use.location,
+                         pipeline.name);
+      }
+    }
+  }
+
+  void fixed_function(const traces::Pipeline& pipeline, hw::DrawState& draw) {
+    const models::PixelRect rect =
+        models::drawable_rect(viewport_, scissor_, out_.frame.passes.back().color.width, out_.frame.passes.back().color.height);
+    const int bits = out_.frame.precision.subpixel_bits;
+    draw.viewport = viewport_;
+    draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
+    draw.setup = {static_cast<models::CullMode>(pipeline.cull),
+                  static_cast<models::FrontFace>(pipeline.front),
+                  rect,
+                  bits,
+                  viewport_.min_depth,
+                  viewport_.max_depth};
+    draw.depth_test = pipeline.depth.test && target_has_depth_;
+    draw.depth_write = draw.depth_test && pipeline.depth.write;
+    draw.depth_compare = static_cast<models::CompareOp>(pipeline.depth.compare);
+    const traces::BlendState& b = pipeline.blend;
+    draw.blend = {b.enable,
+                  static_cast<models::BlendFactor>(b.src_color),
+                  static_cast<models::BlendFactor>(b.dst_color),
+                  static_cast<models::BlendFactor>(b.src_alpha),
+                  static_cast<models::BlendFactor>(b.dst_alpha),
+                  static_cast<models::BlendOp>(b.color),
+                  static_cast<models::BlendOp>(b.alpha),
+                  b.write_mask};
+    const models::Program& program = *draw.fragment_program;
+    draw.late_depth = draw.depth_test && (program.uses_discard || program.writes_depth) && !program.early_fragment_tests;
+  }
+
+  std::vector<std::uint32_t> constants(const models::Program& program) {
+    std::vector<std::uint32_t> words(program.constants.words);
+    for (const models::ConstantLayout::Range& range : program.constants.ranges) {
+      std::uint32_t* const to = words.data() + range.first_word;
+      switch (range.source) {
+        case models::ConstantLayout::Source::kLiteral: std::copy(range.literals.begin(), range.literals.end(), to); break;
+        case models::ConstantLayout::Source::kPushConstant:
+          copy_words(push_, range, to, program, [] { return "the push constants"; });
+          break;
+        case models::ConstantLayout::Source::kUniformBlock: {
+          const traces::UniformBinding& bound = uniform(program, range.set, range.binding);
+          const auto& data = stream_.buffers[bound.buffer].data;
+          const std::span<const std::byte> view = std::span(data).subspan(bound.offset, bound.range);
+          copy_words(view, range, to, program,
+                     [&] { return fmt::format("the uniform block at set {}, binding {}", range.set, range.binding); });
+          break;
+        }
+      }
+    }
+    return words;
+  }
+
+  /// `what` makes the name of `from`, for an error: it would cost more than the copy.
+  template <class What>
+  static void copy_words(std::span<const std::byte> from, const models::ConstantLayout::Range& range, std::uint32_t* to,
+                         const models::Program& program, const What& what) {
+    const std::uint64_t end = range.byte_offset + std::uint64_t{4} * range.words;
+    if (end > from.size()) throw user_error("{}: reads {} bytes of {}, which holds {}", program.name, end, what(), from.size());
+    std::memcpy(to, from.data() + range.byte_offset, std::size_t{4} * range.words);
+  }
+
+  const traces::UniformBinding& uniform(const models::Program& program, std::uint32_t set, std::uint32_t binding) {
+    if (const auto bound = sets_.find(set); bound != sets_.end()) {
+      for (const traces::UniformBinding& u : stream_.descriptor_sets[bound->second].uniforms) {
+        if (u.binding == binding) return u;
+      }
+    }
+    throw user_error("{}: no uniform buffer is bound at set {}, binding {}", program.name, set, binding);
+  }
+
+  void textures(const models::Program& program, std::vector<hw::TextureState>& states, std::vector<models::TextureSize>& sizes) {
+    for (const models::TextureBinding& use : program.textures) {
+      const traces::TextureDescriptor& bound = texture(program, use.set, use.binding);
+      const traces::Sampler& s = stream_.samplers[bound.sampler];
+      const traces::Image& image = stream_.images[bound.image];
+      states.push_back({resources_.texture(bound.image),
+                        {static_cast<models::Filter>(s.mag), static_cast<models::Filter>(s.min), static_cast<models::Filter>(s.mip),
+                         static_cast<models::Wrap>(s.wrap_u), static_cast<models::Wrap>(s.wrap_v), s.lod_bias, s.min_lod, s.max_lod}});
+      sizes.push_back({image.width, image.height, image.levels});
+    }
+  }
+
+  const traces::TextureDescriptor& texture(const models::Program& program, std::uint32_t set, std::uint32_t binding) {
+    if (const auto bound = sets_.find(set); bound != sets_.end()) {
+      for (const traces::TextureDescriptor& t : stream_.descriptor_sets[bound->second].textures) {
+        if (t.binding == binding) return t;
+      }
+    }
+    throw user_error("{}: no texture is bound at set {}, binding {}", program.name, set, binding);
+  }
+
+  void note_left_out() {
+    const auto note = [this](bool unneeded, const char* what, const char* why, std::string saved) {
+      if (unneeded) out_.left_out.push_back({what, why, std::move(saved)});
+    };
+    const auto [images, image_bytes] = resources_.unplaced_images();
+    note(images > 0, "textures", "no program of a draw reads them", fmt::format("{} textures, {} bytes", images, image_bytes));
+    note(unread_attributes_ > 0, "vertex attributes", "the vertex program does not read them",
+         fmt::format("{} attributes of draws", unread_attributes_));
+  }
+
+  const traces::CommandStream& stream_;
+  DeviceFrame& out_;
+  DeviceResources resources_;
+  std::map<std::pair<Index, Index>, const CompiledPipeline*> programs_;
+  std::map<std::uint32_t, Index> sets_;
+  std::map<std::uint32_t, traces::BindVertexBuffer> vertex_buffers_;
+  traces::BindIndexBuffer index_buffer_;
+  std::vector<std::byte> push_;
+  models::Viewport viewport_;
+  models::PixelRect scissor_;
+  Index pipeline_ = kNone;
+  bool target_has_depth_ = false;
+  std::uint64_t unread_attributes_ = 0;
+};
+
+}  // namespace
+
+bool DeviceFrame::reads_textures() const {
+  return std::ranges::any_of(frame.draws,
+                             [](const hw::DrawState& d) { return !d.vertex_textures.empty() || !d.fragment_textures.empty(); });
+}
+bool DeviceFrame::tests_depth() const {
+  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return d.depth_test; });
+}
+bool DeviceFrame::blends() const {
+  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return models::reads_destination(d.blend); });
+}
+
+void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out, bool leave_out) {
+  FrameBuilder(stream, precision, out).build(leave_out);
+}
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,280 @@
+#include "pipeline/functional/functional.h"
+
+#include "hw/geometry/triangle_setup.h"
+#include "hw/shader/shader_core.h"
+#include "models/geometry/post_transform.h"
+#include "models/raster/coarse.h"
+#include "models/raster/fine.h"
+#include "models/raster/interpolate.h"
+
+#include <bit>
+#include <cstring>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+using hw::BatchSlot;
+using hw::DrawState;
+using hw::WarpSlot;
+
+/// Runs a warp to its end, filtering its textures as it asks for them.
+void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures, const models::Precision& precision,
+              const models::DeviceMemory& memory, models::TexturePlan& plan) {
+  std::array<models::LaneFloats, 4> rgba;
+  while (models::run_clause(warp).end == models::ClauseEnd::kTextures) {
+    for (int i = 0; i < warp.texture_count; ++i) {
+      const models::TextureRequest& request = warp.textures[static_cast<std::size_t>(i)];
+      const hw::TextureState& texture = textures[request.binding];
+      models::plan_texture(texture.view, texture.sampler, request, precision, plan);
+      models::filter_texture(plan, memory, rgba);
+      models::write_texture_result(warp, request, rgba);
+    }
+  }
+}
+
+class FunctionalRenderer {
+ public:
+  FunctionalRenderer(const hw::Frame& frame, models::DeviceMemory& memory, const TriangleObserver& observer)
+      : frame_(frame), memory_(memory), observer_(observer), triangles_(kTriangles) {}
+
+  FunctionalCounts run() {
+    for (const hw::PassState& pass : frame_.passes) {
+      models::fill_surface(memory_, pass.color, pass.clear_color);
+      if (pass.has_depth) models::fill_surface(memory_, pass.depth, std::bit_cast<std::uint32_t>(pass.clear_depth));
+      for (std::uint32_t d = pass.first_draw; d < pass.first_draw + pass.draws; ++d) draw(d);
+    }
+    return counts_;
+  }
+
+ private:
+  /// Triangles that waiting quads may refer to, and the one being rasterised.
+  static constexpr std::size_t kTriangles = 16;
+
+  void draw(std::uint32_t index) {
+    draw_ = &frame_.draw(index);
+    pass_ = &frame_.pass_of(index);
+    warp_.draw = index;
+    for (instance_ = 0; instance_ < draw_->instances; ++instance_) {
+      for (std::uint32_t t = 0; t < draw_->triangles();) t = batch(t);
+    }
+    shade();
+  }
+
+  std::uint32_t vertex_number(std::uint32_t position) const {
+    if (!draw_->indexed) return draw_->first_vertex + position;
+    std::uint32_t index = 0;
+    std::memcpy(&index, memory_.read(draw_->index_address + std::uint64_t{position} * draw_->index_bytes, draw_->index_bytes).data(),
+                draw_->index_bytes);
+    return index + static_cast<std::uint32_t>(draw_->vertex_offset);
+  }
+
+  /// Forms, shades and rasterises the batch that begins with triangle `first`; returns the first triangle after it.
+  std::uint32_t batch(std::uint32_t first) {
+    models::VertexReuse reuse;
+    batch_.triangles.clear();
+    std::uint32_t t = first;
+    for (; t < draw_->triangles(); ++t) {
+      const auto corner = models::triangle_vertices(draw_->topology, t);
+      const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]), vertex_number(corner[2])};
+      if (!reuse.fits(vertex)) break;
+      BatchSlot::Triangle triangle{{}, t};
+      for (std::size_t i = 0; i < 3; ++i) triangle.corner[i] = reuse.place(vertex[i]);
+      batch_.triangles.push_back(triangle);
+    }
+    batch_.lanes = reuse.size();
+    batch_.attributes.resize(draw_->vertex_program->vertex_inputs.size());
+    batch_.outputs.resize(static_cast<std::size_t>(models::kFirstVaryingOutput + draw_->varyings()));
+    fetch(reuse);
+    shade_vertices();
+    for (const BatchSlot::Triangle& triangle : batch_.triangles) clip(triangle);
+    return t;
+  }
+
+  void fetch(const models::VertexReuse& reuse) {
+    for (int lane = 0; lane < batch_.lanes; ++lane) {
+      const auto l = static_cast<std::size_t>(lane);
+      batch_.inputs.vertex_index[l] = reuse.index(lane);
+      batch_.inputs.instance_index[l] = draw_->first_instance + instance_;
+      for (const hw::AttributeFetch& f : draw_->attributes) {
+        const std::uint32_t element = f.per_instance ? draw_->first_instance + instance_ : reuse.index(lane);
+        std::uint32_t value[4];
+        models::decode_attribute(
+            f.format, memory_.read(f.address + std::uint64_t{element} * f.stride, models::attribute_bytes(f.format)).data(), value);
+        for (std::size_t c = 0; c < 4; ++c) {
+          if (f.input_row[c] >= 0) batch_.attributes[static_cast<std::size_t>(f.input_row[c])][l] = value[c];
+        }
+      }
+    }
+    batch_.inputs.attributes = batch_.attributes.data();
+  }
+
+  void shade_vertices() {
+    counts_.vertices += static_cast<std::uint64_t>(batch_.lanes);
+    engine_.vertex = &batch_.inputs;
+    engine_.fragment = nullptr;
+    engine_.outputs = batch_.outputs.data();
+    engine_.texture_sizes = draw_->vertex_texture_sizes.data();
+    const models::LaneMask lanes = batch_.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch_.lanes) - 1;
+    engine_.launch(*draw_->vertex_program, draw_->vertex_constants.data(), lanes);
+    run_warp(engine_, draw_->vertex_textures, frame_.precision, memory_, plan_);
+  }
+
+  void clip(const BatchSlot::Triangle& triangle) {
+    ++counts_.triangles;
+    std::array<glm::vec4, 3> position;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (int c = 0; c < 4; ++c)
+        position[i][c] = std::bit_cast<float>(batch_.outputs[static_cast<std::size_t>(c)][triangle.corner[i].lane]);
+    }
+    models::ClippedPolygon polygon;
+    const models::ClipOutcome outcome = models::clip_triangle(position, draw_->clip, polygon);
+    switch (outcome) {
+      case models::ClipOutcome::kRejected: ++counts_.fates.off_screen; return;
+      case models::ClipOutcome::kNotFinite: ++counts_.fates.not_finite; return;
+      case models::ClipOutcome::kInside:
+      case models::ClipOutcome::kClipped: break;
+    }
+    for (int i = 1; i + 1 < polygon.count; ++i) piece(triangle, polygon, i);
+  }
+
+  void piece(const BatchSlot::Triangle& triangle, const models::ClippedPolygon& polygon, int i) {
+    RasterizedTriangle window{warp_.draw, instance_, triangle.primitive, {}, {}};
+    const std::array<int, 3> corner{0, i, i + 1};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const models::ClipVertex& v = polygon.vertices[static_cast<std::size_t>(corner[k])];
+      const bool valid = models::to_window(v.position, draw_->viewport, frame_.precision.subpixel_bits, window.vertices[k]);
+      QUADRILLE_CHECK(valid, "a clipped vertex of draw {} has no window position", warp_.draw);
+      window.weights[k] = {v.b1, v.b2};
+    }
+    // Quads that wait in the warp still need their triangles' slots.
+    if (warp_.quads > 0 && sequence_ - warp_.quad[0].triangle >= kTriangles) shade();
+    hw::TriangleSlot& slot = triangles_[sequence_];
+    switch (models::setup_triangle(window.vertices, window.weights, draw_->setup, slot.setup)) {
+      case models::SetupOutcome::kCulledFace: ++counts_.fates.culled; return;
+      case models::SetupOutcome::kZeroArea: ++counts_.fates.no_area; return;
+      case models::SetupOutcome::kOffscreen: ++counts_.fates.off_screen; return;
+      case models::SetupOutcome::kNoSample: ++counts_.fates.no_sample; return;
+      case models::SetupOutcome::kKept: ++counts_.fates.rasterised; break;
+    }
+    if (observer_) observer_(window);
+    slot.draw = warp_.draw;
+    slot.primitive = triangle.primitive;
+    std::array<hw::CornerOutputs, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = {&batch_.outputs, triangle.corner[k].lane};
+    hw::gather_varyings(corners, draw_->varyings(), slot.varyings);
+    rasterize(slot.setup);
+    ++sequence_;
+  }
+
+  void rasterize(const models::TriangleSetup& setup) {
+    models::TileWalk walk(setup);
+    models::TileHit tile;
+    while (walk.next(tile)) {
+      std::uint64_t coverage = tile.fully_covered ? ~std::uint64_t{0} : models::tile_coverage(setup, tile.tile_x, tile.tile_y);
+      counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
+      if (draw_->depth_test && !draw_->late_depth) coverage = test_tile(setup, tile, coverage);
+      for (std::uint32_t quads = models::quads_of(coverage); quads != 0; quads &= quads - 1)
+        add_quad(tile, coverage, std::countr_zero(quads));
+    }
+  }
+
+  float* depths(std::int32_t tile_x, std::int32_t tile_y) {
+    const std::uint64_t address = pass_->depth.tile_address(static_cast<std::uint32_t>(tile_x), static_cast<std::uint32_t>(tile_y));
+    return reinterpret_cast<float*>(memory_.write(address, models::kTileBytes).data());
+  }
+
+  std::uint64_t test_tile(const models::TriangleSetup& setup, const models::TileHit& tile, std::uint64_t coverage) {
+    alignas(32) float incoming[models::kTilePixels];
+    models::tile_depths(setup, tile.tile_x, tile.tile_y, incoming);
+    float* const stored = depths(tile.tile_x, tile.tile_y);
+    const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, coverage);
+    if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
+    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(coverage & ~survivors));
+    return survivors;
+  }
+
+  void add_quad(const models::TileHit& tile, std::uint64_t coverage, int q) {
+    if (warp_.quads == models::kWarpQuads) shade();
+    const auto lanes = static_cast<std::uint32_t>(coverage >> (4 * q)) & 0xfu;
+    warp_.covered |= lanes << (4 * warp_.quads);
+    warp_.quad[static_cast<std::size_t>(warp_.quads++)] = {sequence_, static_cast<std::uint16_t>(8 * tile.tile_x + 2 * (q & 3)),
+                                                           static_cast<std::uint16_t>(8 * tile.tile_y + 2 * (q >> 2))};
+  }
+
+  void shade() {
+    if (warp_.quads == 0) return;
+    const auto live = static_cast<std::uint64_t>(std::popcount(warp_.covered));
+    counts_.fragments_shaded += live;
+    counts_.helper_lanes += 4 * static_cast<std::uint64_t>(warp_.quads) - live;
+    hw::fill_fragment_inputs(warp_, triangles_, inputs_);
+    const models::LaneMask lanes =
+        warp_.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * warp_.quads)) - 1;
+    engine_.vertex = nullptr;
+    engine_.fragment = &inputs_;
+    engine_.outputs = outputs_.data();
+    engine_.texture_sizes = draw_->fragment_texture_sizes.data();
+    engine_.launch(*draw_->fragment_program, draw_->fragment_constants.data(), lanes);
+    run_warp(engine_, draw_->fragment_textures, frame_.precision, memory_, plan_);
+    warp_.alive = warp_.covered & ~engine_.killed;
+    counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & engine_.killed));
+    for (int q = 0; q < warp_.quads; ++q) write_quad(q);
+    warp_.quads = 0;
+    warp_.covered = 0;
+  }
+
+  void write_quad(int q) {
+    const WarpSlot::Quad& quad = warp_.quad[static_cast<std::size_t>(q)];
+    std::uint32_t lanes = (warp_.alive >> (4 * q)) & 0xf;
+    const int place = 4 * ((quad.y % 8) / 2) + (quad.x % 8) / 2;
+    if (lanes != 0 && draw_->late_depth) lanes = test_quad(quad, q, place, lanes);
+    if (lanes == 0) return;
+    counts_.fragments_written += static_cast<std::uint64_t>(std::popcount(lanes));
+    float rgba[4][4];
+    for (std::size_t c = 0; c < 4; ++c) {
+      for (std::size_t i = 0; i < 4; ++i) rgba[c][i] = std::bit_cast<float>(outputs_[c][static_cast<std::size_t>(4 * q) + i]);
+    }
+    auto* const tile =
+        reinterpret_cast<std::uint32_t*>(memory_.write(pass_->color.tile_address(quad.x / 8u, quad.y / 8u), models::kTileBytes).data());
+    models::blend_quad(draw_->blend, pass_->color_format, rgba, tile + 4 * place, lanes);
+  }
+
+  std::uint32_t test_quad(const WarpSlot::Quad& quad, int q, int place, std::uint32_t lanes) {
+    alignas(32) float incoming[models::kTilePixels] = {};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t lane = static_cast<std::size_t>(4 * q) + i;
+      incoming[static_cast<std::size_t>(4 * place) + i] =
+          draw_->fragment_program->writes_depth ? std::bit_cast<float>(outputs_[models::kDepthOutput][lane]) : inputs_.z[lane];
+    }
+    float* const stored = depths(quad.x / 8, quad.y / 8);
+    const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, std::uint64_t{lanes} << (4 * place));
+    if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
+    const std::uint32_t left = static_cast<std::uint32_t>(survivors >> (4 * place)) & 0xf;
+    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(lanes & ~left));
+    return left;
+  }
+
+  const hw::Frame& frame_;
+  models::DeviceMemory& memory_;
+  const TriangleObserver& observer_;
+  const DrawState* draw_ = nullptr;
+  const hw::PassState* pass_ = nullptr;
+  std::uint32_t instance_ = 0;
+  FunctionalCounts counts_;
+  BatchSlot batch_;
+  hw::TriangleStore triangles_;
+  std::uint64_t sequence_ = 0;
+  WarpSlot warp_;
+  models::FragmentInputs inputs_;
+  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs_{};
+  models::Warp engine_;
+  models::TexturePlan plan_;
+};
+
+}  // namespace
+
+FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory, const TriangleObserver& observer) {
+  return FunctionalRenderer(frame, memory, observer).run();
+}
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,31 @@
+/// Functional rendering: the machine's values without its time. The same models in API order, one warp after another; also the yardstick that every
+/// timed run must equal, bit for bit.
+#pragma once
+
+#include "hw/frame/frame.h"
+#include "models/memory/device_memory.h"
+#include "pipeline/functional/fates.h"
+
+#include <cstdint>
+#include <functional>
+
+namespace quadrille::pipeline {
+
+struct FunctionalCounts {
+  std::uint64_t vertices = 0, triangles = 0;
+  std::uint64_t fragments_covered = 0, fragments_shaded = 0, fragments_written = 0, helper_lanes = 0;
+  Fates fates;
+};
+
+/// A window-space triangle as it was rasterised, for the reference renderer.
+struct RasterizedTriangle {
+  std::uint32_t draw = 0, instance = 0, primitive = 0;
+  std::array<models::WindowVertex, 3> vertices;
+  std::array<glm::vec2, 3> weights;
+};
+using TriangleObserver = std::function<void(const RasterizedTriangle&)>;
+
+/// Renders all passes of the frame into its surfaces in `memory`.
+FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory, const TriangleObserver& observer = {});
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,32 @@
+/// How each kind of unit is made: which of the machine's stores, clocks and counts its constructor gets.
+#pragma once
+
+#include "pipeline/machine/machine.h"
+
+#include <type_traits>
+
+namespace quadrille::pipeline {
+
+class Machine::Maker {
+ public:
+  explicit Maker(Machine& machine) : m_(machine), c_(machine.config_), s_(machine.stores_) {}
+
+  template <class Unit>
+  using Made = std::unique_ptr<Unit>;
+  template <class Unit>
+  using Kind = std::type_identity<Unit>;
+  /// The unit called `name`, number `i` of its kind.
+#define QUADRILLE_MAKE(path, type, how_often) [[nodiscard]] Made<type> make(Kind<type> kind, const char* name, int i) const;
+  QUADRILLE_UNITS(QUADRILLE_MAKE)
+#undef QUADRILLE_MAKE
+
+ private:
+  [[nodiscard]] const hw::Frame& frame() const { return m_.frame_.frame; }
+  [[nodiscard]] models::DeviceMemory& memory() const { return m_.frame_.memory; }
+
+  Machine& m_;
+  const MachineConfig& c_;
+  Stores& s_;
+};
+
+}  // namespace quadrille::pipeline

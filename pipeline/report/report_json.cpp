@@ -1,0 +1,170 @@
+/// The figures as JSON. Keys keep the order in which they are written here, so that two runs compare as text.
+#include "pipeline/report/limiter.h"
+#include "pipeline/report/notes.h"
+#include "pipeline/report/report.h"
+#include "pipeline/report/sensitivity.h"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A frame that was not timed has no cycles, warps or traffic: null, not zero.
+template <class Count>
+Json if_timed(const Figures& f, Count count) {
+  return f.units.empty() ? Json(nullptr) : Json(count);
+}
+
+Json frame_json(const ReportSubject& s) {
+  const FrameFigures& f = s.figures.frame;
+  return {{"width", s.width},
+          {"height", s.height},
+          {"cycles", if_timed(s.figures, f.cycles)},
+          {"render_cycles", if_timed(s.figures, f.render_cycles)},
+          {"scan_out_cycles", if_timed(s.figures, f.scan_out_cycles())},
+          {"least_cycles", if_timed(s.figures, speed_of_light(s.figures).cycles)},
+          {"period_cycles", if_timed(s.figures, f.period_cycles())},
+          {"clock_mhz", s.machine.gpu.clock_mhz.value()},
+          {"draws", f.draws},
+          {"triangles", f.triangles},
+          {"vertices", f.vertices},
+          {"fragments_covered", f.fragments_covered},
+          {"fragments_shaded", f.fragments_shaded},
+          {"helper_lanes", f.helper_lanes},
+          {"executed_lanes", f.fragments_shaded + f.helper_lanes},
+          {"fragment_warps", if_timed(s.figures, f.fragment_warps)},
+          {"fragments_written", f.fragments_written},
+          {"memory_bytes", if_timed(s.figures, memory_bytes(s.figures))}};
+}
+
+Json unit_json(const UnitFigures& u) {
+  Json waits = Json::object(), counters = Json::object();
+  for (const WaitFigure& w : u.waits) waits[w.port] = w.cycles;
+  for (const CounterFigure& c : u.counters) counters[c.name] = c.value;
+  Json histograms = Json::object();
+  for (const HistogramFigure& h : u.histograms) histograms[h.name] = {{"buckets", h.buckets}, {"sum", h.sum}};
+  Json resources = Json::object();
+  for (const ResourceFigure& r : u.resources) {
+    switch (r.kind) {
+      case hw::Resource::Kind::kRate: resources[r.name] = {{"kind", "rate"}, {"least_cycles", r.cycles}}; break;
+      case hw::Resource::Kind::kLoss: resources[r.name] = {{"kind", "loss"}, {"lost_cycles", r.cycles}}; break;
+      case hw::Resource::Kind::kPlaces: resources[r.name] = {{"kind", "places"}, {"full_cycles", r.cycles}}; break;
+    }
+  }
+  return {{"cycles", u.cycles},
+          {"use", use_of(u)},
+          {"busy", u.busy},
+          {"waiting", u.waiting},
+          {"starved", u.starved},
+          {"blocked", u.blocked},
+          {"idle", u.idle},
+          {"resources", std::move(resources)},
+          {"waits", std::move(waits)},
+          {"counters", std::move(counters)},
+          {"histograms", std::move(histograms)}};
+}
+
+/// Unit and definition of every counter, once a kind of unit.
+Json definitions_json(const Figures& f) {
+  Json all = Json::object();
+  for (const UnitFigures& u : f.units) {
+    Json& kind = all[std::string(without_number(u.path))];
+    if (!kind.is_null()) continue;
+    kind = Json::object();
+    for (const CounterFigure& c : u.counters) kind[c.name] = {{"unit", c.unit}, {"definition", c.definition}};
+    for (const HistogramFigure& h : u.histograms) kind[h.name] = {{"unit", h.unit}, {"definition", h.definition}};
+  }
+  return all;
+}
+
+Json checks_json(const Figures& f) {
+  Json all = Json::array();
+  for (const Check& c : f.checks) {
+    all.push_back({{"law", c.law},
+                   {"left", {{"name", c.left_name}, {"value", c.left}}},
+                   {"right", {{"name", c.right_name}, {"value", c.right}}},
+                   {"holds", c.holds()}});
+  }
+  return all;
+}
+
+/// What holds the frame up: what each resource's doubling is expected to gain, and all uses, from a thousandth and a hundredth on.
+Json limit_json(const Figures& f) {
+  const Limiter limiter = find_limiter(f);
+  if (limiter.kind == Limiter::Kind::kNothing) return nullptr;
+  const Sensitivity s = sensitivity(f);
+  Json uses = Json::object(), full = Json::object(), gains = Json::object();
+  for (const ResourceUse& use : s.uses) {
+    if (use.use >= 0.01) (use.places ? full : uses)[use.name] = use.use;
+  }
+  for (const Gain& gain : s.gains) {
+    if (gain.share >= 0.001) gains[gain.resource] = gain.share;
+  }
+  return {{"kind", limiter_kind_name(limiter.kind)},
+          {"name", limiter.name},
+          {"resource", limiter.resource},
+          {"share", limiter.share},
+          {"walk", limiter.walk},
+          {"text", limiter.text},
+          {"gains", std::move(gains)},
+          {"uses", std::move(uses)},
+          {"full", std::move(full)},
+          {"waiting", s.waiting}};
+}
+
+Json host_json(const Figures& f) {
+  const HostFigures& h = f.host;
+  return {{"load_s", h.load_s},
+          {"build_s", h.build_s},
+          {"simulate_s", h.simulate_s},
+          {"simulate_cpu_s", h.simulate_cpu_s},
+          {"wall_s", h.wall_s},
+          {"fragments_per_s", h.fragments_per_s},
+          {"cycles_per_s", if_timed(f, h.cycles_per_s)},
+          {"peak_rss_mib", h.peak_rss_mib},
+          {"actions", h.actions}};
+}
+
+}  // namespace
+
+std::string machine_json(const MachineConfig& machine) {
+  Json parameters = Json::object(), changed = Json::object();
+  for (const auto& [path, group] : machine.groups()) {
+    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->literal());
+  }
+  for (const MachineConfig::Change& c : machine.changes())
+    changed[c.path] = {{"value", Json::parse(c.value)}, {"base", Json::parse(c.base_value)}};
+  const Json all = {
+      {"name", machine.name}, {"base", machine.base()}, {"changed", std::move(changed)}, {"parameters", std::move(parameters)}};
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string report_json(const ReportSubject& s) {
+  const Figures& f = s.figures;
+  Json units = Json::object(), bandwidth = Json::object(), left_out = Json::array();
+  for (const UnitFigures& u : f.units) units[u.path] = unit_json(u);
+  for (const ClientFigures& c : f.bandwidth) bandwidth[c.name] = {{"read_bytes", c.read_bytes}, {"write_bytes", c.write_bytes}};
+  for (const LeftOut& l : f.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
+  const Json document = {{"schema", kFiguresSchema},
+                         {"scene", f.scene},
+                         {"fidelity", f.fidelity},
+                         {"window_cycles", f.window_cycles},
+                         {"machine", Json::parse(machine_json(s.machine))},
+                         {"frame", frame_json(s)},
+                         {"notes", notes_on(f)},
+                         {"units", std::move(units)},
+                         {"counter_definitions", definitions_json(f)},
+                         {"limit", limit_json(f)},
+                         {"bandwidth", std::move(bandwidth)},
+                         {"checks", checks_json(f)},
+                         {"left_out", std::move(left_out)},
+                         {"host", host_json(f)}};
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,200 @@
+#include "pipeline/report/sensitivity.h"
+
+#include "pipeline/report/report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+/// How bounds of like length add up: infinity would be perfect overlap, 1 none. [M: `quadrille experiment limits`]
+constexpr double kNorm = 12;
+/// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between them it is shared. Where places are full, somebody waits for
+/// one, and the bounds of units have to reach further; a link's own bound counts its places. [M: the same]
+struct Reach {
+  double waiting, work;
+};
+constexpr Reach kReach{0.35, 0.75}, kReachWithFullPlaces{0.5, 0.95};
+/// Slices are joined until they are no shorter than this, and no more than so many: within a batch or a tile units take turns, and that is no phase.
+constexpr double kShortestSlice = 4000;
+constexpr std::size_t kMostSlices = 24;
+/// From this part of a slice on, places that are all taken hold it up.
+constexpr double kTaken = 0.5;
+
+/// From up- to downstream: who is full because of a full place further on waits for that.
+constexpr std::array<std::string_view, 17> kPlacesDownstream{"command_processor.draws_in_flight",
+                                                             "vertex_fetch.batch_slots",
+                                                             "triangle_setup.triangle_slots",
+                                                             "depth.tiles_in_flight",
+                                                             "warp_packer.warp_slots",
+                                                             "core.register_rows",
+                                                             "core.warp_slots",
+                                                             "rop.warps_in_flight",
+                                                             "texture.groups_in_flight",
+                                                             "vertex_fetch.cache_misses",
+                                                             "depth.cache_misses",
+                                                             "rop.cache_misses",
+                                                             "texture.cache_misses",
+                                                             "scan_out.lines_in_flight",
+                                                             "l2.cache_misses",
+                                                             "memory.write_queue",
+                                                             "memory.queue_depth"};
+
+/// What a slice of the frame took of a bound, and of each resource of it.
+struct Bound {
+  std::vector<double> use;                        ///< by slice, of the busiest unit
+  std::map<std::string, std::vector<double>> of;  ///< by resource
+};
+
+class Slices {
+ public:
+  explicit Slices(const Figures& f) {
+    const auto cycles = static_cast<double>(f.frame.cycles);
+    if (f.slice_cycles > 0) {
+      while (static_cast<double>(joined_) * f.slice_cycles < std::max(kShortestSlice, cycles / kMostSlices)) ++joined_;
+      slice_ = static_cast<double>(joined_) * f.slice_cycles;
+    } else slice_ = cycles;
+    count_ = static_cast<std::size_t>(std::ceil(cycles / slice_));
+    for (std::size_t s = 0; s < count_; ++s) lengths_.push_back(std::min(slice_, cycles - static_cast<double>(s) * slice_));
+    for (const UnitFigures& unit : f.units) add(unit, cycles);
+    for (const LinkFigures& link : f.links) add(link);
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] double length(std::size_t s) const { return lengths_[s]; }
+  [[nodiscard]] const std::map<std::string, Bound>& rates() const { return rates_; }
+  [[nodiscard]] const std::map<std::string, std::vector<double>>& places() const { return places_; }
+
+ private:
+  [[nodiscard]] std::vector<double> parts(const ResourceFigure& r, double per_cycle) const {
+    std::vector<double> part(count_, 0);
+    double before = 0;
+    if (r.at_end_of.empty() && lengths_[0] > 0) part[0] = std::clamp(r.cycles / (lengths_[0] * per_cycle), 0.0, 1.0);
+    if (r.at_end_of.empty()) return part;
+    for (std::size_t s = 0; s < count_; ++s) {
+      const double until = r.at_end_of[std::min(r.at_end_of.size(), (s + 1) * joined_) - 1];
+      if (lengths_[s] > 0) part[s] = std::clamp((until - before) / (lengths_[s] * per_cycle), 0.0, 1.0);
+      before = until;
+    }
+    return part;
+  }
+  void add(const UnitFigures& unit, double frame_cycles) {
+    const std::string kind(without_number(unit.path));
+    const double per_cycle = frame_cycles > 0 ? static_cast<double>(unit.cycles) / frame_cycles : 1;
+    std::map<std::string, Bound> mine;
+    for (const ResourceFigure& r : unit.resources) {
+      const std::string name = kind + "." + r.name;
+      const std::vector<double> part = parts(r, per_cycle);
+      if (r.kind == hw::Resource::Kind::kPlaces) {
+        std::vector<double>& most = places_[name];
+        most.resize(count_, 0);
+        for (std::size_t s = 0; s < count_; ++s) most[s] = std::max(most[s], part[s]);
+        continue;
+      }
+      Bound& bound = mine[r.serial.empty() ? name : kind + "." + r.serial];
+      bound.use.resize(count_, 0);
+      for (std::size_t s = 0; s < count_; ++s) bound.use[s] += part[s];
+      bound.of[name] = part;
+    }
+    for (auto& [name, bound] : mine) merge(rates_[name], bound);
+  }
+  /// The busiest unit of a kind counts, slice by slice.
+  void merge(Bound& all, const Bound& one) const {
+    all.use.resize(count_, -1);
+    for (const auto& [name, part] : one.of) all.of[name].resize(count_, 0);
+    for (std::size_t s = 0; s < count_; ++s) {
+      if (one.use[s] <= all.use[s]) continue;
+      all.use[s] = one.use[s];
+      for (const auto& [name, part] : one.of) all.of[name][s] = part[s];
+    }
+  }
+  void add(const LinkFigures& link) {
+    Bound& bound = rates_[link.key];
+    if (bound.use.empty() || bound.use[0] < link.use) bound.use.assign(count_, link.use);
+    bound.of[link.key] = bound.use;
+  }
+
+  std::size_t joined_ = 1, count_ = 1;
+  double slice_ = 0;
+  std::vector<double> lengths_;
+  std::map<std::string, Bound> rates_;
+  std::map<std::string, std::vector<double>> places_;
+};
+
+/// The full places of a slice that are furthest downstream; empty if none.
+std::string_view full_places(const Slices& slices, std::size_t s) {
+  for (auto name = kPlacesDownstream.rbegin(); name != kPlacesDownstream.rend(); ++name) {
+    const auto found = slices.places().find(std::string(*name));
+    if (found != slices.places().end() && found->second[s] >= kTaken) return *name;
+  }
+  return {};
+}
+
+void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double>& gains, double& waiting_cycles) {
+  double sum = 0;
+  for (const auto& [name, bound] : slices.rates()) sum += std::pow(bound.use[s], kNorm);
+  const double reach = std::pow(sum, 1 / kNorm), length = slices.length(s);
+  const std::string_view full = full_places(slices, s);
+  const auto greatest = std::ranges::max_element(slices.rates(), {}, [s](const auto& r) { return r.second.use[s]; });
+  const Reach& between = full.empty() || greatest->first.starts_with("link.") ? kReach : kReachWithFullPlaces;
+  const double work = std::clamp((reach - between.waiting) / (between.work - between.waiting), 0.0, 1.0);
+  for (const auto& [name, bound] : slices.rates()) {
+    for (const auto& [resource, part] : bound.of) {
+      const double rest = sum - std::pow(bound.use[s], kNorm) + std::pow(bound.use[s] - part[s] / 2, kNorm);
+      if (reach > 0) gains[resource] += length * work * (1 - std::pow(std::max(0.0, rest), 1 / kNorm) / reach);
+    }
+  }
+  if (full.empty()) waiting_cycles += length * (1 - work);
+  else gains[std::string(full)] += length * (1 - work) * (1 - std::max(0.5, std::min(1.0, reach)));
+}
+
+}  // namespace
+
+double use_of(const UnitFigures& unit) {
+  std::map<std::string, double> bounds;
+  for (const ResourceFigure& r : unit.resources)
+    if (r.kind == hw::Resource::Kind::kRate) bounds[r.serial.empty() ? r.name : r.serial] += r.cycles;
+  double most = 0;
+  for (const auto& [name, cycles] : bounds) most = std::max(most, cycles);
+  return unit.cycles > 0 ? most / static_cast<double>(unit.cycles) : 0;
+}
+
+SpeedOfLight speed_of_light(const Figures& f) {
+  SpeedOfLight light;
+  const auto consider = [&](double use, const std::string& resource) {
+    const double cycles = use * static_cast<double>(f.frame.cycles);
+    if (cycles > light.cycles) light = {cycles, resource};
+  };
+  for (const UnitFigures& unit : f.units) consider(use_of(unit), std::string(without_number(unit.path)));
+  for (const LinkFigures& link : f.links) consider(link.use, link.key);
+  return light;
+}
+
+Sensitivity sensitivity(const Figures& f) {
+  Sensitivity result;
+  if (f.units.empty() || f.frame.cycles <= 0) return result;
+  const Slices slices(f);
+  std::map<std::string, double> gains;
+  double waiting = 0;
+  for (std::size_t s = 0; s < slices.count(); ++s) add_slice(slices, s, gains, waiting);
+  const auto cycles = static_cast<double>(f.frame.cycles);
+  for (const auto& [resource, gain] : gains) result.gains.push_back({resource, gain, gain / cycles});
+  std::ranges::stable_sort(result.gains, std::ranges::greater{}, &Gain::cycles);
+  const auto mean = [&](const std::vector<double>& part) {
+    double sum = 0;
+    for (std::size_t s = 0; s < slices.count(); ++s) sum += part[s] * slices.length(s);
+    return sum / cycles;
+  };
+  for (const auto& [name, bound] : slices.rates())
+    for (const auto& [resource, part] : bound.of) result.uses.push_back({resource, mean(part), false});
+  for (const auto& [name, part] : slices.places()) result.uses.push_back({name, mean(part), true});
+  std::ranges::stable_sort(result.uses,
+                           [](const ResourceUse& a, const ResourceUse& b) { return a.places != b.places ? b.places : a.use > b.use; });
+  result.waiting = waiting / cycles;
+  return result;
+}
+
+}  // namespace quadrille::pipeline

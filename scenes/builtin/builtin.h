@@ -1,0 +1,36 @@
+/// The scenes that this project makes itself: geometry and textures by code, no files.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/data/scene_data.h"
+
+namespace quadrille::scenes {
+
+struct BuiltinScene {
+  std::string_view name;         ///< without the `builtin:`
+  std::string_view description;  ///< one line
+};
+[[nodiscard]] const std::vector<BuiltinScene>& builtin_scenes();
+/// "; did you mean 'builtin:quad'?" for a name that is none, to go on with after what is wrong; empty when none is near.
+[[nodiscard]] std::string meant_builtin(std::string_view name);
+
+/// Builds the scene `name` (without `builtin:`) as it is at `time`, in seconds. Throws `UserError` that lists the legal names.
+[[nodiscard]] SceneData build_builtin(const std::string& name, double time = 0);
+/// Seconds that its animation takes; 0: nothing moves. Throws as `build_builtin`.
+[[nodiscard]] double builtin_length(const std::string& name);
+
+// One function a scene; the descriptions are in builtin.cpp.
+[[nodiscard]] SceneData build_triangle();
+[[nodiscard]] SceneData build_quad();
+[[nodiscard]] SceneData build_cubes();
+[[nodiscard]] SceneData build_overdraw();
+[[nodiscard]] SceneData build_fill();
+[[nodiscard]] SceneData build_materials();
+[[nodiscard]] SceneData build_courtyard();
+[[nodiscard]] SceneData build_flag(double time);
+inline constexpr double kFlagSeconds = 2;
+
+}  // namespace quadrille::scenes

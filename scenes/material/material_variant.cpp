@@ -1,0 +1,165 @@
+#include "scenes/material/material_variant.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include <glm/common.hpp>
+
+#include "scenes/material/shader_sources.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::array<const char*, kTextureSlots> kSlotNames{
+    "BASE_COLOR", "METALLIC_ROUGHNESS",  "NORMAL",           "OCCLUSION",   "EMISSIVE",        "SPECULAR",     "SPECULAR_COLOR",
+    "CLEARCOAT",  "CLEARCOAT_ROUGHNESS", "CLEARCOAT_NORMAL", "SHEEN_COLOR", "SHEEN_ROUGHNESS", "TRANSMISSION", "THICKNESS"};
+constexpr std::array<const char*, kSemantics> kAttributeDefines{"", "HAS_NORMAL", "HAS_TANGENT", "HAS_UV0", "HAS_UV1", "HAS_COLOR"};
+
+constexpr std::size_t at(Semantic semantic) { return static_cast<std::size_t>(semantic); }
+constexpr std::size_t at(TextureSlot slot) { return static_cast<std::size_t>(slot); }
+
+bool emits(const Material& m) { return m.emissive != glm::vec3(0); }
+
+/// Is the occlusion in the red channel of the very texture that holds metallic and roughness, read at the same place?
+bool shares_occlusion(const Material& m) {
+  const TextureUse& a = m.texture(TextureSlot::kMetallicRoughness);
+  const TextureUse& b = m.texture(TextureSlot::kOcclusion);
+  return a.image >= 0 && a.image == b.image && a.sampler == b.sampler && a.uv_set == b.uv_set && a.transformed == b.transformed &&
+         a.u_row == b.u_row && a.v_row == b.v_row;
+}
+
+/// Does the layer that the texture belongs to exist?
+bool has_layer(const MaterialLayers& layers, TextureSlot slot) {
+  switch (slot) {
+    case TextureSlot::kBaseColor:
+    case TextureSlot::kMetallicRoughness:
+    case TextureSlot::kNormal:
+    case TextureSlot::kOcclusion:
+    case TextureSlot::kEmissive: return true;
+    case TextureSlot::kSpecular: return layers.specular && !layers.specular_glossiness;
+    case TextureSlot::kSpecularColor: return layers.specular;
+    case TextureSlot::kClearcoat:
+    case TextureSlot::kClearcoatRoughness:
+    case TextureSlot::kClearcoatNormal: return layers.coats();
+    case TextureSlot::kSheenColor:
+    case TextureSlot::kSheenRoughness: return layers.sheens();
+    case TextureSlot::kTransmission:
+    case TextureSlot::kThickness: return layers.transmits();
+  }
+  return false;
+}
+
+bool wants_texture(const Material& m, std::size_t slot, ShaderSet set) {
+  const bool base_color = slot == at(TextureSlot::kBaseColor);
+  if (!has_layer(m.layers, static_cast<TextureSlot>(slot))) return false;
+  switch (set) {
+    case ShaderSet::kUser: return true;
+    case ShaderSet::kVisibility: return base_color && m.alpha == AlphaMode::kMask;
+    case ShaderSet::kMaterial: break;
+  }
+  if (m.unlit) return base_color;
+  if (slot == at(TextureSlot::kEmissive)) return emits(m);
+  return slot != at(TextureSlot::kOcclusion) || !shares_occlusion(m);
+}
+
+/// Decides which textures are sampled, and by that which texture coordinates are needed. A texture whose coordinates the primitive lacks is left out.
+void choose_textures(Variant& v, const Material& m, const Primitive& p, ShaderSet set) {
+  for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+    const TextureUse& use = m.textures[slot];
+    const std::size_t uv = at(use.uv_set == 0 ? Semantic::kUv0 : Semantic::kUv1);
+    if (use.image < 0 || p.attributes[uv] < 0 || !wants_texture(m, slot, set)) continue;
+    v.textures[slot] = v.attributes[uv] = true;
+    const std::string name = fmt::format("v_uv{}", use.uv_set);
+    v.defines.push_back(
+        fmt::format("{}_UV {}", kSlotNames[slot],
+                    use.transformed ? fmt::format("transform{}_uv({}, {})", slot < kBaseTextureSlots ? "" : "_layer", slot, name) : name));
+  }
+}
+
+void choose_attributes(Variant& v, const Material& m, const Primitive& p, ShaderSet set) {
+  const auto use = [&](Semantic s) { v.attributes[at(s)] = p.attributes[at(s)] >= 0; };
+  use(Semantic::kPosition);
+  const bool reads_color = set != ShaderSet::kVisibility || m.alpha == AlphaMode::kMask;
+  if (reads_color) use(Semantic::kColor);
+  const bool lit = set == ShaderSet::kMaterial && !m.unlit;
+  if (lit || set == ShaderSet::kUser) {
+    v.defines.emplace_back("NEEDS_POSITION");
+    use(Semantic::kNormal);
+  }
+  // Tangents without normals mean nothing. [glTF2.0 #meshes-overview]
+  const bool normal_map = v.textures[at(TextureSlot::kNormal)] || v.textures[at(TextureSlot::kClearcoatNormal)];
+  const bool tangents = v.attributes[at(Semantic::kNormal)] && (set == ShaderSet::kUser || normal_map);
+  if (tangents) use(Semantic::kTangent);
+  if (set == ShaderSet::kUser) {
+    use(Semantic::kUv0);
+    use(Semantic::kUv1);
+  }
+}
+
+void choose_layers(Variant& v, const MaterialLayers& layers) {
+  if (!layers.any()) return;
+  v.defines.emplace_back("LAYERS");
+  if (layers.specular) v.defines.emplace_back("SPECULAR");
+  if (layers.specular_glossiness) v.defines.emplace_back("SPECULAR_GLOSSINESS");
+  if (layers.coats()) v.defines.emplace_back("CLEARCOAT");
+  if (layers.sheens()) v.defines.emplace_back("SHEEN");
+  if (layers.transmits()) v.defines.emplace_back("TRANSMISSION");
+}
+
+void choose_modes(Variant& v, const Material& m, ShaderSet set) {
+  if (m.alpha == AlphaMode::kMask) v.defines.emplace_back("ALPHA_MASK");
+  if (set == ShaderSet::kVisibility) return;
+  if (m.alpha == AlphaMode::kBlend) v.defines.emplace_back("ALPHA_BLEND");
+  if (m.unlit) v.defines.emplace_back("UNLIT");
+  if (m.unlit) return;
+  choose_layers(v, m.layers);
+  if (m.double_sided) v.defines.emplace_back("DOUBLE_SIDED");
+  if (emits(m)) v.defines.emplace_back("EMISSIVE");
+  if (v.textures[at(TextureSlot::kMetallicRoughness)] && !v.textures[at(TextureSlot::kOcclusion)] && shares_occlusion(m)) {
+    v.defines.emplace_back("OCCLUSION_IN_METALLIC_ROUGHNESS");
+  }
+}
+
+}  // namespace
+
+Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set) {
+  Variant v;
+  choose_textures(v, material, primitive, set);
+  choose_attributes(v, material, primitive, set);
+  choose_modes(v, material, set);
+  for (std::size_t i = 1; i < kSemantics; ++i) {
+    if (v.attributes[i]) v.defines.emplace_back(kAttributeDefines[i]);
+  }
+  if (set == ShaderSet::kMaterial && primitive.partial_normals && v.attributes[at(Semantic::kNormal)])
+    v.defines.emplace_back("PARTIAL_NORMALS");
+  return v;
+}
+
+std::string_view material_shader_name(traces::ShaderStage stage) {
+  return stage == traces::ShaderStage::kVertex ? "material.vert" : "material.frag";
+}
+
+std::string material_shader_glsl(traces::ShaderStage stage) {
+  const std::string interface(kInterfaceGlsl);
+  if (stage == traces::ShaderStage::kVertex) return interface + std::string(kPoseGlsl) + std::string(kMaterialVert);
+  return interface + std::string(kMaterialGlsl) + std::string(kLayersGlsl) + std::string(kMaterialFrag);
+}
+
+std::vector<std::string> material_shader_defines(traces::ShaderStage stage, const Variant& variant,
+                                                 const std::vector<std::string>& frame_defines) {
+  if (stage == traces::ShaderStage::kFragment) {
+    std::vector<std::string> defines = frame_defines;
+    defines.insert(defines.end(), variant.defines.begin(), variant.defines.end());
+    return defines;
+  }
+  std::vector<std::string> defines{frame_defines.front()};
+  std::ranges::copy_if(variant.defines, std::back_inserter(defines),
+                       [](const std::string& define) { return define.starts_with("HAS_") || define == "NEEDS_POSITION"; });
+  if (variant.instanced) defines.emplace_back("INSTANCED");
+  defines.insert(defines.end(), variant.pose_defines.begin(), variant.pose_defines.end());
+  return defines;
+}
+
+}  // namespace quadrille::scenes

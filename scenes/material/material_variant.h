@@ -1,0 +1,42 @@
+/// One shader source for all materials, compiled once for each set of features that occurs.
+///
+/// A variant is decided by what the material asks for and what the primitive has. It is spelled as a list of preprocessor defines, which is also its
+/// identity: materials with the same defines share their shaders.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/data/scene_data.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::scenes {
+
+struct Variant {
+  std::array<bool, kSemantics> attributes{};   ///< vertex streams that the shaders read
+  std::array<bool, kTextureSlots> textures{};  ///< texture slots that the fragment shader samples
+  std::vector<std::string> defines;            ///< of both stages
+  bool instanced = false;                      ///< the vertex shader takes its matrices from streams that advance by instance
+  std::vector<std::string> pose_defines;       ///< of the materials' vertex shader (scenes/record/pose_streams.h)
+  friend bool operator==(const Variant&, const Variant&) = default;
+};
+
+/// Which shaders a frame uses: the materials' own, the triangle-id shader, or the user's.
+enum class ShaderSet : std::uint8_t { kMaterial, kVisibility, kUser };
+
+/// The variant for a material on a primitive. For `kUser` everything that the two offer is read.
+[[nodiscard]] Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set);
+
+/// What a stage of the materials' shaders is called in messages and in streams.
+[[nodiscard]] std::string_view material_shader_name(traces::ShaderStage stage);
+/// Its GLSL, the same for all variants.
+[[nodiscard]] std::string material_shader_glsl(traces::ShaderStage stage);
+/// The defines that make a variant of it, in order. The vertex shader looks at streams only, and of the frame (`frame_defines` of scenes/material/frame_block.h) at the
+/// size of the array of lights, so that it is shared among more materials.
+[[nodiscard]] std::vector<std::string> material_shader_defines(traces::ShaderStage stage, const Variant& variant,
+                                                               const std::vector<std::string>& frame_defines);
+
+}  // namespace quadrille::scenes

@@ -1,0 +1,10 @@
+/// The texts of scenes/material/shaders/, put into the program when it is built.
+#pragma once
+
+#include <string_view>
+
+namespace quadrille::scenes {
+
+extern const std::string_view kInterfaceGlsl, kPoseGlsl, kMaterialGlsl, kLayersGlsl, kMaterialVert, kMaterialFrag, kVisibilityFrag;
+
+}  // namespace quadrille::scenes

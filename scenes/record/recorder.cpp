@@ -1,0 +1,296 @@
+#include "scenes/record/recorder.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include <glm/ext/vector_double3.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "models/base/error.h"
+#include "scenes/material/frame_block.h"
+#include "scenes/record/host_pose.h"
+#include "scenes/view/exposure.h"
+#include "traces/trace_file.h"
+
+namespace quadrille::scenes {
+namespace {
+
+constexpr std::size_t kMaxPosedBytes = std::size_t{3} << 28;  // 768 MiB
+static_assert(offsetof(DrawConstants, draw_id) == 112 && offsetof(DrawConstants, handedness) + 4 == kDrawConstantBytes);
+
+const traces::BlendState kOver{true,
+                               traces::BlendFactor::kSrcAlpha,
+                               traces::BlendFactor::kOneMinusSrcAlpha,
+                               traces::BlendFactor::kOne,
+                               traces::BlendFactor::kOneMinusSrcAlpha,
+                               traces::BlendOp::kAdd,
+                               traces::BlendOp::kAdd,
+                               0xf};
+
+/// The colour comes multiplied by how much of what lies behind it hides.
+const traces::BlendState kPremultiplied{true,
+                                        traces::BlendFactor::kOne,
+                                        traces::BlendFactor::kOneMinusSrcAlpha,
+                                        traces::BlendFactor::kOne,
+                                        traces::BlendFactor::kOneMinusSrcAlpha,
+                                        traces::BlendOp::kAdd,
+                                        traces::BlendOp::kAdd,
+                                        0xf};
+
+}  // namespace
+
+bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::mat3(world))) < 0; }
+
+// By cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its normals). With the longest column one long, squares in
+// the shader neither vanish nor overflow.
+std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored) {
+  const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
+  std::array<glm::dvec3, 3> columns{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
+  const double longest = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
+  const double scale = (mirrored ? -1.0 : 1.0) / (longest > 0 ? longest : 1.0);
+  return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0), glm::vec4(columns[2] * scale, 0)};
+}
+
+Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
+    : scene_(scene),
+      seen_(make_view(scene, options)),
+      range_(needed_range(PlacedScene(scene), seen_)),
+      moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
+      placed_(moved_ ? PlacedScene(scene, *moved_) : PlacedScene(scene)),
+      options_(range_ ? moved(options, *range_) : options),
+      view_(range_ ? make_view(placed_, options_) : seen_),
+      exposure_(scenes::exposure(placed_, options_)),
+      lights_(frame_lights(placed_, view_, exposure_)),
+      shaders_(options, frame_defines(view_, lights_), stream_.shaders),
+      bound_(kVertexSlot + kLocations, traces::EndPass{}) {}
+
+traces::CommandStream Recorder::record() {
+  stream_.name = scene_.name;
+  stream_.targets.push_back({options_.width, options_.height,
+                             options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
+                             scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
+  record_arrays();
+  record_textures();
+  const glm::vec3& back = scene_.background;
+  const std::array<float, 4> clear =
+      options_.visibility ? std::array<float, 4>{0, 0, 0, 0} : std::array<float, 4>{back.r, back.g, back.b, 1};
+  stream_.commands.emplace_back(traces::BeginPass{0, clear, 1});
+  stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width), static_cast<float>(options_.height), 0, 1});
+  stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
+  record_frame_set();
+  for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
+  stream_.commands.emplace_back(traces::EndPass{});
+  return std::move(stream_);
+}
+
+std::vector<std::size_t> Recorder::draw_order() const {
+  std::vector<std::size_t> order;
+  std::vector<std::pair<float, std::size_t>> blended;  // distance along the view direction, instance
+  for (std::size_t i = 0; i < placed_.at.instances.size(); ++i) {
+    const Primitive& primitive = scene_.primitives[placed_.at.instances[i].primitive];
+    if (!scene_.materials[static_cast<std::size_t>(primitive.material)].see_through()) {
+      order.push_back(i);
+      continue;
+    }
+    const Bounds box = placed_.box(placed_.at.instances[i]);
+    blended.emplace_back(box.empty() ? 0.0F : glm::dot(view_.eye - box.center(), view_.toward_viewer), i);
+  }
+  std::ranges::stable_sort(blended, std::ranges::greater{}, &std::pair<float, std::size_t>::first);
+  for (const auto& [distance, i] : blended) order.push_back(i);
+  return order;
+}
+
+void Recorder::record_arrays() {
+  std::vector<bool> deltas(scene_.arrays.size());
+  for (const Primitive& primitive : scene_.primitives) {
+    for (const MorphTarget& target : primitive.targets) {
+      for (const int array : target.deltas) {
+        if (array >= 0) deltas[static_cast<std::size_t>(array)] = true;
+      }
+    }
+  }
+  array_buffers_.assign(scene_.arrays.size(), traces::kNone);
+  for (std::size_t i = 0; i < scene_.arrays.size(); ++i) {
+    if (!deltas[i]) (void)array_buffer(static_cast<int>(i));  // of morph targets, those with weight are recorded when a draw reads them
+  }
+}
+
+traces::Index Recorder::array_buffer(int array) {
+  traces::Index& buffer = array_buffers_[static_cast<std::size_t>(array)];
+  if (buffer == traces::kNone) {
+    buffer = static_cast<traces::Index>(stream_.buffers.size());
+    stream_.buffers.push_back({scene_.arrays[static_cast<std::size_t>(array)].name, scene_.arrays[static_cast<std::size_t>(array)].data});
+  }
+  return buffer;
+}
+
+traces::Index Recorder::pose_set(const std::vector<std::byte>& block) {
+  const auto [entry, added] = pose_sets_.try_emplace({reinterpret_cast<const char*>(block.data()), block.size()},
+                                                     static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  if (!added) return entry->second;
+  const auto buffer = static_cast<traces::Index>(stream_.buffers.size());
+  stream_.buffers.push_back({"pose", block});
+  stream_.descriptor_sets.push_back({{{0, buffer, 0, static_cast<std::uint32_t>(block.size())}}, {}});
+  return entry->second;
+}
+
+void Recorder::add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer) {
+  geometry.streams.emplace_back(location, buffer);
+  geometry.formats.push_back(array.format);
+}
+
+Recorder::Geometry Recorder::geometry(const Instance& instance) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  Geometry g;
+  g.variant = variant(primitive);
+  g.mirrored =
+      mirrors(glm::mat4(instance.copies < 0 ? instance.world : placed_.at.copies[static_cast<std::size_t>(instance.copies)].front()));
+  for (std::uint32_t i = 0; i < kSemantics; ++i) {
+    if (!g.variant.attributes[i]) continue;
+    add_stream(g, i, scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])], array_buffer(primitive.attributes[i]));
+  }
+  if (instance.pose >= 0) pose(instance, g);
+  return g;
+}
+
+/// Adds what the shader poses with, or puts what the host has posed in the place of the mesh's own streams.
+void Recorder::pose(const Instance& instance, Geometry& g) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  const Pose& pose = scene_.poses[static_cast<std::size_t>(instance.pose)];
+  const bool on_host = !options_.vertex_shader.empty() || instance.copies >= 0;  // copies have their matrices where a pose has its streams
+  g.mirrored = g.mirrored != pose.mirrored;
+  PoseStreams plan = choose_pose_streams(primitive, pose, g.variant.attributes, on_host);
+  g.variant.pose_defines = std::move(plan.defines);
+  for (const PoseStream& s : plan.streams)
+    add_stream(g, s.location, scene_.arrays[static_cast<std::size_t>(s.array)], array_buffer(s.array));
+  if (!plan.block.empty()) g.pose_set = pose_set(plan.block);
+  if (!plan.morph_on_host && !plan.skin_on_host) return;
+  const PosedStreams& posed = posed_streams(instance, plan.skin_on_host);
+  for (std::size_t i = 0; i < g.streams.size(); ++i) {
+    const std::uint32_t location = g.streams[i].first;
+    if (location >= kSemantics || posed[location].second == traces::kNone) continue;
+    g.formats[i] = posed[location].first;
+    g.streams[i].second = posed[location].second;
+  }
+}
+
+const Recorder::PosedStreams& Recorder::posed_streams(const Instance& instance, bool skinned) {
+  const auto [entry, added] = posed_streams_.try_emplace({instance.primitive, instance.pose, skinned});
+  if (!added) return entry->second;
+  const auto arrays =
+      pose_on_host(scene_, scene_.primitives[instance.primitive], scene_.poses[static_cast<std::size_t>(instance.pose)], skinned);
+  const Variant& read = variant(scene_.primitives[instance.primitive]);
+  for (std::size_t i = 0; i < kSemantics; ++i) {
+    entry->second[i].second = traces::kNone;
+    if (!read.attributes[i] || !arrays[i]) continue;
+    posed_bytes_ += arrays[i]->data.size();
+    if (posed_bytes_ > kMaxPosedBytes)
+      throw user_error("{}: vertices posed by the host take more than {} bytes", scene_.name, kMaxPosedBytes);
+    entry->second[i] = {arrays[i]->format, static_cast<traces::Index>(stream_.buffers.size())};
+    stream_.buffers.push_back({arrays[i]->name, arrays[i]->data});
+  }
+  return entry->second;
+}
+
+void Recorder::record_frame_set() {
+  const auto block = static_cast<traces::Index>(stream_.buffers.size());
+  stream_.buffers.push_back({"frame", frame_block(scene_, view_, lights_, exposure_)});
+  const auto set = static_cast<traces::Index>(stream_.descriptor_sets.size());
+  stream_.descriptor_sets.push_back({{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
+  stream_.commands.emplace_back(traces::BindDescriptorSet{kFrameSet, set});
+}
+
+namespace {
+
+/// Three rows of the model matrix, then three columns of the normal matrix, 16 bytes each.
+void add_copy_streams(traces::Pipeline& p) {
+  constexpr std::uint32_t kVectorBytes = 16;
+  p.bindings.push_back({kCopiesBinding, 6 * kVectorBytes, true});
+  for (std::uint32_t i = 0; i < 6; ++i)
+    p.attributes.push_back({kCopiesBinding + i, kCopiesBinding,
+                            i < 3 ? traces::Format::kR32G32B32A32Float : traces::Format::kR32G32B32Float, i * kVectorBytes});
+}
+
+}  // namespace
+
+traces::Index Recorder::pipeline(const Primitive& primitive, const Material& material, const Geometry& g) {
+  traces::Pipeline p;
+  p.vertex_shader = shaders_.vertex(g.variant);
+  p.fragment_shader = shaders_.fragment(g.variant);
+  for (std::size_t i = 0; i < g.streams.size(); ++i) {
+    p.bindings.push_back({g.streams[i].first, traces::format_bytes(g.formats[i]), false});
+    p.attributes.push_back({g.streams[i].first, g.streams[i].first, g.formats[i], 0});
+  }
+  if (g.variant.instanced) add_copy_streams(p);
+  const bool blended = material.see_through() && !options_.visibility;
+  p.topology = primitive.topology;
+  p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
+  p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
+  p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend), traces::CompareOp::kLess};
+  if (blended) p.blend = material.layers.transmits() ? kPremultiplied : kOver;
+  const auto found = std::ranges::find_if(stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
+  if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());
+  p.name = "pipeline " + std::to_string(stream_.pipelines.size());
+  stream_.pipelines.push_back(std::move(p));
+  return static_cast<traces::Index>(stream_.pipelines.size() - 1);
+}
+
+void Recorder::bind_once(const traces::Command& command, std::size_t slot) {
+  if (bound_[slot] == command) return;
+  bound_[slot] = command;
+  stream_.commands.push_back(command);
+}
+
+void Recorder::bind_geometry(const Primitive& primitive, const Geometry& g) {
+  if (g.pose_set != traces::kNone) bind_once(traces::BindDescriptorSet{kPoseSet, g.pose_set}, kPoseSlot);
+  for (const auto& [location, buffer] : g.streams) bind_once(traces::BindVertexBuffer{location, buffer, 0}, kVertexSlot + location);
+  if (primitive.indices >= 0) bind_once(traces::BindIndexBuffer{array_buffer(primitive.indices), 0, primitive.index_type}, kIndexSlot);
+}
+
+void Recorder::push_constants(const glm::mat4& world, bool mirrored) {
+  const DrawConstants constants{world, normal_matrix(world, mirrored), draws_, triangles_, mirrored ? -1.0F : 1.0F};
+  std::vector<std::byte> bytes(kDrawConstantBytes);
+  std::memcpy(bytes.data(), &constants, bytes.size());
+  stream_.commands.emplace_back(traces::PushConstants{0, std::move(bytes)});
+}
+
+void Recorder::record_instance(const Instance& instance) {
+  if (instance.copies >= 0) return record_copies(instance, geometry(instance));
+  if (instance.pose >= 0) {
+    const Geometry g = geometry(instance);
+    bind(instance, g);
+    return record_draw(instance, g, glm::mat4(instance.world), 1);
+  }
+  const glm::mat4 world(instance.world);
+  const auto [entry, added] = states_.try_emplace({instance.primitive, mirrors(world)});
+  if (added) entry->second = states(instance, geometry(instance));
+  bind(scene_.primitives[instance.primitive], entry->second);
+  record_draw(instance, entry->second.geometry, world, 1);
+}
+
+Recorder::States Recorder::states(const Instance& instance, Geometry g) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  States s;
+  s.pipeline = pipeline(primitive, scene_.materials[static_cast<std::size_t>(primitive.material)], g);
+  s.material_set = material_set(primitive.material, g.variant);
+  s.geometry = std::move(g);
+  return s;
+}
+
+void Recorder::bind(const Primitive& primitive, const States& states) {
+  bind_once(traces::BindPipeline{states.pipeline}, kPipelineSlot);
+  bind_once(traces::BindDescriptorSet{kMaterialSet, states.material_set}, kSetSlot);
+  bind_geometry(primitive, states.geometry);
+}
+
+void Recorder::record_draw(const Instance& instance, const Geometry& g, const glm::mat4& world, std::uint32_t copies) {
+  const Primitive& primitive = scene_.primitives[instance.primitive];
+  push_constants(world, g.mirrored);
+  stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, copies, 0, instance.label});
+  ++draws_;
+  triangles_ += traces::triangle_count(primitive.topology, primitive.count) * copies;
+}
+
+}  // namespace quadrille::scenes

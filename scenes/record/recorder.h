@@ -1,0 +1,136 @@
+/// Turns a scene and a view into commands: the part of a renderer that a driver sees.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "scenes/data/scene_data.h"
+#include "scenes/data/scene_options.h"
+#include "scenes/material/shader_library.h"
+#include "scenes/record/pose_streams.h"
+#include "scenes/view/camera.h"
+#include "scenes/view/world_range.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::scenes {
+
+/// Push constants of every draw (`PerDraw` of scenes/material/shaders/interface.glsl).
+struct DrawConstants {
+  glm::mat4 model{1};
+  std::array<glm::vec4, 3> normal_matrix{};  ///< columns of a mat3, 16 bytes apart
+  std::uint32_t draw_id = 0, first_triangle = 0;
+  float handedness = 1;
+};
+inline constexpr std::size_t kDrawConstantBytes = 124;
+
+/// Does the matrix turn front faces into back faces?
+[[nodiscard]] bool mirrors(const glm::mat4& world);
+/// Inverse transpose of the upper 3x3, scaled so that its longest column is one long: columns, 16 bytes apart. `mirrored`: it turns front faces into back
+/// faces, by itself or with the pose of its mesh.
+[[nodiscard]] std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored);
+
+// Slots of the bound state: pipeline, material set, index buffer, pose set, then a vertex stream for each location.
+inline constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kPoseSlot = 3, kVertexSlot = 4, kLocations = 16;
+inline constexpr std::uint32_t kFrameSet = 0, kMaterialSet = 1, kPoseSet = 2;
+/// Vertex binding and first location of an instanced draw's matrices.
+inline constexpr std::uint32_t kCopiesBinding = 10;
+
+/// Records one frame.
+class Recorder {
+ public:
+  Recorder(const SceneData& scene, const SceneOptions& options);
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  [[nodiscard]] traces::CommandStream record();
+  [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled(); }
+  [[nodiscard]] float exposure() const { return exposure_; }
+
+ private:
+  struct TextureKey {
+    int image = 0;
+    bool srgb = false;
+    auto operator<=>(const TextureKey&) const = default;  // NOLINT(modernize-use-nullptr): the comparison with zero that it stands for
+  };
+
+  /// What one draw reads: the variant of its shaders, and its vertex streams by location.
+  struct Geometry {
+    Variant variant;
+    std::vector<std::pair<std::uint32_t, traces::Index>> streams;  ///< location, buffer
+    std::vector<traces::Format> formats;                           ///< of the streams
+    traces::Index pose_set = traces::kNone;
+    bool mirrored = false;
+  };
+
+  /// What a draw binds.
+  struct States {
+    Geometry geometry;
+    traces::Index pipeline = traces::kNone, material_set = traces::kNone;
+  };
+
+  /// What the host has posed: format and buffer by semantic; kNone: the mesh's own.
+  using PosedStreams = std::array<std::pair<traces::Format, traces::Index>, kSemantics>;
+
+  /// Indices into the scene's instances: opaque and masked ones in scene order, then blended ones back to front.
+  [[nodiscard]] std::vector<std::size_t> draw_order() const;
+  void record_arrays();
+  void record_textures();
+  /// Unpacks images and makes their mip chains, on all cores; they follow what the stream holds.
+  void add_textures(const std::vector<TextureKey>& keys);
+  void leave_out_unread(Variant& variant);
+  void record_frame_set();
+  void record_instance(const Instance& instance);
+  /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their triangles apart or is not ours.
+  void record_copies(const Instance& instance, Geometry geometry);
+  void record_draw(const Instance& instance, const Geometry& geometry, const glm::mat4& world, std::uint32_t copies);
+  /// The matrices of its copies, from back to front where `sorted`.
+  [[nodiscard]] std::vector<glm::mat4> ordered_copies(const Instance& instance, bool sorted) const;
+  [[nodiscard]] traces::Index copies_buffer(const Instance& instance, bool sorted, bool mirrored);
+  [[nodiscard]] Geometry geometry(const Instance& instance);
+  void pose(const Instance& instance, Geometry& geometry);
+  [[nodiscard]] const PosedStreams& posed_streams(const Instance& instance, bool skinned);
+  void add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer);
+  [[nodiscard]] traces::Index array_buffer(int array);
+  [[nodiscard]] traces::Index pose_set(const std::vector<std::byte>& block);
+  void bind(const Instance& instance, const Geometry& geometry) { bind(scene_.primitives[instance.primitive], states(instance, geometry)); }
+  [[nodiscard]] States states(const Instance& instance, Geometry geometry);
+  void bind(const Primitive& primitive, const States& states);
+  void bind_geometry(const Primitive& primitive, const Geometry& geometry);
+  void push_constants(const glm::mat4& world, bool mirrored);
+  void bind_once(const traces::Command& command, std::size_t slot);
+  [[nodiscard]] traces::Index pipeline(const Primitive& primitive, const Material& material, const Geometry& geometry);
+  [[nodiscard]] traces::Index material_set(int material, const Variant& variant);
+  [[nodiscard]] traces::Index material_block(int material);
+  [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
+  [[nodiscard]] const Variant& variant(const Primitive& primitive);
+
+  const SceneData& scene_;
+  View seen_;                        ///< of the world as it is
+  std::optional<WorldRange> range_;  ///< how the world was moved, if it had to be
+  std::optional<Placements> moved_;  ///< and what moved with it
+  PlacedScene placed_;
+  SceneOptions options_;
+  View view_;
+  float exposure_ = 1;
+  std::vector<Light> lights_;
+  traces::CommandStream stream_;
+  ShaderLibrary shaders_;
+  std::map<TextureKey, traces::Index> textures_;
+  std::map<std::tuple<int, std::array<bool, kSemantics>, bool>, Variant> variants_;  ///< by material, available attributes, partial normals
+  std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
+  std::map<int, traces::Index> material_blocks_;
+  std::map<std::pair<std::uint32_t, bool>, States>
+      states_;                                      ///< of instances neither posed nor copied, by primitive and whether they mirror
+  std::map<int, traces::Index> copies_buffers_;     ///< by `Instance::copies`, where their order is the scene's
+  std::vector<traces::Index> array_buffers_;        ///< by array of the scene; kNone: not recorded
+  std::map<std::string, traces::Index> pose_sets_;  ///< by the block's bytes
+  std::map<std::tuple<std::uint32_t, int, bool>, PosedStreams> posed_streams_;  ///< by primitive, pose, and whether the host skins too
+  std::vector<traces::Command> bound_;                                          ///< what each slot holds, to leave out repeated binds
+  std::size_t posed_bytes_ = 0;                                                 ///< by the host
+  std::uint32_t draws_ = 0, triangles_ = 0;
+};
+
+}  // namespace quadrille::scenes

@@ -1,0 +1,165 @@
+/// The part of the recorder that materials need: uniform blocks, textures with their mip chains, samplers, and the sets that bind them.
+#include <algorithm>
+#include <cstring>
+#include <set>
+
+#include "scenes/data/parallel.h"
+#include "scenes/image/mip_chain.h"
+#include "scenes/material/spirv_bindings.h"
+#include "scenes/record/recorder.h"
+#include "scenes/view/exposure.h"
+
+namespace quadrille::scenes {
+namespace {
+
+/// `Material` of scenes/material/shaders/material.glsl, std140.
+struct MaterialBlock {
+  glm::vec4 base_color, emissive, factors;
+  std::array<glm::vec4, 2 * kBaseTextureSlots> uv_rows;
+};
+
+/// What follows it where the material has layers.
+struct LayerBlock {
+  glm::vec4 specular, clearcoat, sheen, transmission;
+  std::array<glm::vec4, 2 * (kTextureSlots - kBaseTextureSlots)> uv_rows;
+};
+
+MaterialBlock material_values(const Material& m, float exposure) {
+  MaterialBlock block{m.base_color,
+                      glm::vec4(exposed(m.emissive, exposure), m.alpha_cutoff),
+                      {m.metallic, m.roughness, m.normal_scale, m.occlusion_strength},
+                      {}};
+  for (std::size_t slot = 0; slot < kBaseTextureSlots; ++slot) {
+    block.uv_rows[2 * slot] = glm::vec4(m.textures[slot].u_row, 0);
+    block.uv_rows[2 * slot + 1] = glm::vec4(m.textures[slot].v_row, 0);
+  }
+  return block;
+}
+
+LayerBlock layer_values(const Material& m) {
+  const MaterialLayers& l = m.layers;
+  LayerBlock block{glm::vec4(l.specular_color, l.specular_weight),
+                   glm::vec4(l.clearcoat, l.clearcoat_roughness, l.clearcoat_normal_scale, 0),
+                   glm::vec4(l.sheen_color, l.sheen_roughness),
+                   glm::vec4(l.absorption, l.transmission),
+                   {}};
+  for (std::size_t slot = kBaseTextureSlots; slot < kTextureSlots; ++slot) {
+    const std::size_t row = 2 * (slot - kBaseTextureSlots);
+    block.uv_rows[row] = glm::vec4(m.textures[slot].u_row, 0);
+    block.uv_rows[row + 1] = glm::vec4(m.textures[slot].v_row, 0);
+  }
+  return block;
+}
+
+template <class T>
+std::vector<std::byte> bytes_of(const T& value) {
+  std::vector<std::byte> bytes(sizeof(T));
+  std::memcpy(bytes.data(), &value, sizeof(T));
+  return bytes;
+}
+
+bool is_srgb(std::size_t slot) {
+  const auto role = static_cast<TextureSlot>(slot);
+  return role == TextureSlot::kBaseColor || role == TextureSlot::kEmissive || role == TextureSlot::kSpecularColor ||
+         role == TextureSlot::kSheenColor;
+}
+
+}  // namespace
+
+const Variant& Recorder::variant(const Primitive& primitive) {
+  std::array<bool, kSemantics> available{};
+  for (std::size_t i = 0; i < kSemantics; ++i) available[i] = primitive.attributes[i] >= 0;
+  const auto [entry, added] = variants_.try_emplace({primitive.material, available, primitive.partial_normals});
+  if (added) {
+    entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive, shaders_.set());
+    if (shaders_.set() == ShaderSet::kUser && options_.leave_out) leave_out_unread(entry->second);
+  }
+  return entry->second;
+}
+
+/// A shader of the user's is offered every texture of a material; most look at few.
+void Recorder::leave_out_unread(Variant& v) {
+  std::set<std::uint32_t> read;
+  for (const traces::Index shader : {shaders_.vertex(v), shaders_.fragment(v)})
+    read.merge(mentioned_bindings(stream_.shaders[shader].spirv, kMaterialSet));
+  for (std::size_t slot = 0; slot < kTextureSlots; ++slot)
+    v.textures[slot] = v.textures[slot] && read.contains(static_cast<std::uint32_t>(1 + slot));
+}
+
+void Recorder::add_textures(const std::vector<TextureKey>& keys) {
+  std::set<int> sources;
+  for (const TextureKey& key : keys) sources.insert(key.image);
+  const std::vector<int> packed(sources.begin(), sources.end());
+  parallel_for(packed.size(), [&](std::size_t i) { (void)scene_.images[static_cast<std::size_t>(packed[i])].pixels(); });
+  const std::size_t first = stream_.images.size();
+  stream_.images.resize(first + keys.size());
+  parallel_for(keys.size(), [&](std::size_t i) {
+    const SceneImage& source = scene_.images[static_cast<std::size_t>(keys[i].image)];
+    const Rgba8Image& image = source.pixels();
+    stream_.images[first + i] = {source.name(),
+                                 keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm,
+                                 image.width,
+                                 image.height,
+                                 full_chain_levels(image.width, image.height),
+                                 build_mip_chain(image, keys[i].srgb)};
+  });
+}
+
+void Recorder::record_textures() {
+  std::set<TextureKey> used;
+  for (const Instance& instance : placed_.at.instances) {
+    const Primitive& primitive = scene_.primitives[instance.primitive];
+    const Variant& v = variant(primitive);
+    for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+      if (v.textures[slot])
+        used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image, is_srgb(slot)});
+    }
+  }
+  const std::vector<TextureKey> keys(used.begin(), used.end());
+  add_textures(keys);
+  for (std::size_t i = 0; i < keys.size(); ++i) textures_[keys[i]] = static_cast<traces::Index>(i);
+  if (options_.leave_out) return;
+  std::vector<TextureKey> unread;
+  for (int i = 0; i < static_cast<int>(scene_.images.size()); ++i) {
+    if (!used.contains({i, false}) && !used.contains({i, true})) unread.push_back({i, false});
+  }
+  add_textures(unread);
+}
+
+traces::Index Recorder::sampler(const traces::Sampler& wanted) {
+  const auto found = std::ranges::find(stream_.samplers, wanted);
+  if (found == stream_.samplers.end()) {
+    stream_.samplers.push_back(wanted);
+    return static_cast<traces::Index>(stream_.samplers.size() - 1);
+  }
+  return static_cast<traces::Index>(found - stream_.samplers.begin());
+}
+
+traces::Index Recorder::material_block(int material) {
+  const auto [entry, added] = material_blocks_.try_emplace(material, static_cast<traces::Index>(stream_.buffers.size()));
+  if (added) {
+    const Material& m = scene_.materials[static_cast<std::size_t>(material)];
+    std::vector<std::byte> block = bytes_of(material_values(m, exposure_));
+    const std::vector<std::byte> layers = m.layers.any() ? bytes_of(layer_values(m)) : std::vector<std::byte>();
+    block.insert(block.end(), layers.begin(), layers.end());
+    stream_.buffers.push_back({"material " + m.name, std::move(block)});
+  }
+  return entry->second;
+}
+
+traces::Index Recorder::material_set(int material, const Variant& v) {
+  const auto [entry, added] =
+      material_sets_.try_emplace({material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  if (!added) return entry->second;
+  const traces::Index block = material_block(material);
+  traces::DescriptorSet set{{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers[block].data.size())}}, {}};
+  for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
+    if (!v.textures[slot]) continue;
+    const TextureUse& use = scene_.materials[static_cast<std::size_t>(material)].textures[slot];
+    set.textures.push_back({static_cast<std::uint32_t>(1 + slot), textures_.at({use.image, is_srgb(slot)}), sampler(use.sampler)});
+  }
+  stream_.descriptor_sets.push_back(std::move(set));
+  return entry->second;
+}
+
+}  // namespace quadrille::scenes
