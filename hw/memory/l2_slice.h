@@ -105,7 +105,7 @@ class L2Slice final : public Unit {
   Miss* fetch(Tick now, std::uint32_t client, const MemoryRequest& request);
   [[nodiscard]] int place(Tick now, std::uint32_t line);
   void write_back(Tick now, std::uint32_t line, std::uint8_t sectors);
-  void write_back_block(Tick now, std::uint32_t line);
+  void write_back_block(Tick now, std::uint32_t victim);
   void send_to_memory(Tick now);
   void take_fill(Tick now);
   void answer(Tick at, std::uint32_t client, const MemoryResponse& token);

@@ -3,6 +3,7 @@
 #include "hw/frame/laws.h"
 
 #include "models/raster/interpolate.h"
+#include "models/raster/quad_place.h"
 #include "models/rop/depth.h"
 #include "models/rop/tile_in_frame.h"
 
@@ -37,8 +38,6 @@ bool asks_for_less(const DrawState& draw) {
 
 int quads_in(std::uint64_t coverage) { return std::popcount(models::quads_of(coverage)); }
 
-std::uint32_t tile_of(std::uint16_t pixel) { return pixel / static_cast<std::uint32_t>(models::kTileSize); }
-
 /// Of the tile's pixels in the frame. Those outside keep the clear depth for ever; with them no tile that the frame cuts would be hidden.
 float greatest_depth(const float* depths, const models::SurfaceLayout& surface, std::uint32_t tile_x, std::uint32_t tile_y) {
   const auto left = [](std::uint32_t size, std::uint32_t tile) {
@@ -48,8 +47,6 @@ float greatest_depth(const float* depths, const models::SurfaceLayout& surface, 
   const bool whole = width >= models::kTileSize && height >= models::kTileSize;
   return whole ? models::tile_max(depths) : models::tile_max_within(depths, models::pixels_within(width, height));
 }
-
-int quad_in_tile(const WarpSlot::Quad& quad) { return 4 * ((quad.y % models::kTileSize) / 2) + (quad.x % models::kTileSize) / 2; }
 
 }  // namespace
 
@@ -217,8 +214,9 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
     for (int q = 0; q < warp.quads; ++q) {
       if (((warp.alive >> (4 * q)) & 0xf) == 0) continue;
       const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-      const std::uint8_t sector = sectors_of_quads(1u << quad_in_tile(quad));
-      if (!cache_.acquire(tile_of(quad.x), tile_of(quad.y), {.read = sector}, (number & ~kLateBit) | kLateBit, entry.missing,
+      const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
+      const std::uint8_t sector = sectors_of_quads(1u << place.quad);
+      if (!cache_.acquire(place.tile_x, place.tile_y, {.read = sector}, (number & ~kLateBit) | kLateBit, entry.missing,
                           entry.done[static_cast<std::size_t>(q)], port_)) {
         return false;
       }
@@ -321,7 +319,8 @@ bool DepthUnit::test_late(Tick now) {
     const std::uint64_t lanes = (warp.alive >> (4 * q)) & 0xf;
     if (lanes == 0) continue;
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-    if (!cache_.write(tile_of(quad.x), tile_of(quad.y), std::bit_cast<SectorPixels>(lanes << 4 * quad_in_tile(quad)), port_)) {
+    const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
+    if (!cache_.write(place.tile_x, place.tile_y, std::bit_cast<SectorPixels>(lanes << place.first_pixel()), port_)) {
       late_.front().acquired = false;
       stalled_ = !cache_.idle();
       return false;
@@ -344,13 +343,13 @@ bool DepthUnit::test_late(Tick now) {
 
 models::LaneMask DepthUnit::test_quad(const DrawState& draw, const WarpSlot& warp, int q, Tick now) {
   const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-  const std::uint32_t tx = tile_of(quad.x);
-  const std::uint32_t ty = tile_of(quad.y);
+  const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
+  const std::uint32_t tx = place.tile_x, ty = place.tile_y;
   --late_in_flight_[tile_number(tx, ty)];
   const models::LaneMask lanes = (warp.alive >> (4 * q)) & 0xf;
   if (lanes == 0) return 0;
   alignas(32) float incoming[models::kTilePixels] = {};
-  const int first = 4 * quad_in_tile(quad);
+  const int first = place.first_pixel();
   std::copy_n(warp.depth.begin() + 4 * q, 4, incoming + first);
   float* const stored = depths(tx, ty);
   const std::uint64_t survivors = models::depth_test(draw.depth_compare, stored, incoming, std::uint64_t{lanes} << first);

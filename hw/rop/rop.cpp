@@ -1,6 +1,7 @@
 #include "hw/rop/rop.h"
 
 #include "hw/frame/laws.h"
+#include "models/raster/quad_place.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,16 +13,6 @@ namespace {
 constexpr std::uint32_t kFenceTag = 0xffffffffu;
 
 /// The part of a tile that one quad of a warp covers.
-struct QuadPlace {
-  std::uint32_t tile_x = 0, tile_y = 0;
-  int quad = 0;  ///< 0..15 within the tile
-};
-
-QuadPlace place_of(const WarpSlot::Quad& quad) {
-  constexpr std::uint32_t kSize = models::kTileSize;
-  return {quad.x / kSize, quad.y / kSize, static_cast<int>(4 * ((quad.y % kSize) / 2) + (quad.x % kSize) / 2)};
-}
-
 models::LaneMask lanes_of(const WarpSlot& warp, int q) { return (warp.alive >> (4 * q)) & 0xf; }
 
 /// Live pixels of a warp in one tile.
@@ -36,7 +27,8 @@ int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads
   for (int q = 0; q < warp.quads; ++q) {
     const models::LaneMask lanes = lanes_of(warp, q);
     if (lanes == 0) continue;
-    const QuadPlace place = place_of(warp.quad[static_cast<std::size_t>(q)]);
+    const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+    const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
     int i = 0;
     while (i < count &&
            (tiles[static_cast<std::size_t>(i)].tile_x != place.tile_x || tiles[static_cast<std::size_t>(i)].tile_y != place.tile_y))
@@ -290,12 +282,13 @@ int Rop::write_colors(const WarpSlot& warp) {
     const models::LaneMask lanes = lanes_of(warp, q);
     if (lanes == 0) continue;
     ++quads;
-    const QuadPlace place = place_of(warp.quad[static_cast<std::size_t>(q)]);
+    const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+    const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
     float rgba[4][4];
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[c].begin() + 4 * q, 4, rgba[c]);
     auto* const tile =
         reinterpret_cast<std::uint32_t*>(device_.write(pass.color.tile_address(place.tile_x, place.tile_y), models::kTileBytes).data());
-    models::blend_quad(draw.blend, pass.color_format, rgba, tile + 4 * place.quad, lanes);
+    models::blend_quad(draw.blend, pass.color_format, rgba, tile + place.first_pixel(), lanes);
   }
   const bool blends = models::reads_destination(draw.blend);
   if (blends) stats_.blended += static_cast<std::uint64_t>(std::popcount(warp.alive));

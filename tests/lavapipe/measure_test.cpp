@@ -21,7 +21,7 @@ namespace quadrille::lavapipe {
 namespace {
 
 constexpr std::uint32_t kWidth = 256, kHeight = 192;
-constexpr MeasureOptions kStatisticsAlone{.times = false};
+MeasureOptions statistics_alone() { return {.times = false}; }
 
 struct Pair {
   PassStatistics ours, theirs;
@@ -39,7 +39,7 @@ std::vector<Pair> both(const std::string& name) {
     WARN("skipped: " << error.what());
     return {};
   }
-  const Measurement theirs = measure_all(*device, experiment, kStatisticsAlone, [](const std::string&) {});
+  const Measurement theirs = measure_all(*device, experiment, statistics_alone(), [](const std::string&) {});
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < experiment.front().points.size(); ++i) {
     pairs.push_back(

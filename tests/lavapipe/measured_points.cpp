@@ -127,6 +127,7 @@ std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string
 
 MeasuredExperiment scene_experiment(const std::vector<std::string>& scenes, std::uint32_t width, std::uint32_t height) {
   MeasuredExperiment e{"scenes", "scene", {}};
+  e.points.reserve(scenes.size());
   for (const std::string& scene : scenes) {
     const std::string name = scene.starts_with("builtin:") ? scene.substr(8) : std::filesystem::path(scene).stem().string();
     e.points.push_back({name, static_cast<double>(e.points.size() + 1), {}, [=] { return load(scene, {width, height}); }});
