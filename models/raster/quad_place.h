@@ -16,7 +16,7 @@ struct QuadPlace {
 /// `x`, `y`: the quad's upper left pixel, both even.
 [[nodiscard]] constexpr QuadPlace place_of_quad(std::uint32_t x, std::uint32_t y) {
   constexpr std::uint32_t kSize = kTileSize;
-  return {x / kSize, y / kSize, static_cast<int>(4 * ((y % kSize) / 2) + (x % kSize) / 2)};
+  return {x / kSize, y / kSize, tile_entry(static_cast<int>(x % kSize), static_cast<int>(y % kSize)) / 4};
 }
 
 }  // namespace quadrille::models

@@ -39,15 +39,13 @@ void write_traces(const std::string& folder, const std::vector<MeasuredExperimen
   if (!std::filesystem::is_directory(folder, error)) throw user_error("--traces: {}: not a folder", folder);
   for (const MeasuredExperiment& e : experiments) {
     for (const Point& p : e.points)
-      traces::write_trace(p.stream(), (std::filesystem::path(folder) / (e.name + "_" + p.name + ".qtrace")).string());
+      traces::write_trace(p.stream(), (std::filesystem::path(folder) / (file_name(e, p) + ".qtrace")).string());
   }
 }
 
 void run(const Arguments& a) {
   const auto [width, height] = parse_target_size(a.size);
-  if (!a.scenes.empty() && !a.experiments.empty()) throw user_error("--scene: not together with an experiment ({})", a.experiments.front());
-  const std::vector<MeasuredExperiment> experiments =
-      a.scenes.empty() ? chosen_experiments(a.experiments, width, height) : std::vector{scene_experiment(a.scenes, width, height)};
+  const std::vector<MeasuredExperiment> experiments = chosen_points(a.experiments, a.scenes, width, height);
   if (a.list) {
     fmt::print("{}", listed(experiments));
     return;

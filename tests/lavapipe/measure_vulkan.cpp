@@ -82,7 +82,7 @@ Measurement measure_all(const VulkanDevice& device, const std::vector<MeasuredEx
       if (!options.pictures.empty()) {
         const VulkanFrame frame(device, stream);
         frame.submit();
-        save_picture(std::filesystem::path(options.pictures) / (e.name + "_" + p.name + ".ppm"), frame.read_back());
+        save_picture(std::filesystem::path(options.pictures) / (file_name(e, p) + ".ppm"), frame.read_back());
       }
       point.name = p.name;
       point.x = p.x;

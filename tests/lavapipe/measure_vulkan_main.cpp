@@ -42,14 +42,12 @@ void declare(CLI::App& app, Arguments& a) {
 
 int run(const Arguments& a) {
   const auto [width, height] = parse_target_size(a.size);
-  const std::vector<MeasuredExperiment> experiments =
-      a.scenes.empty() ? chosen_experiments(a.experiments, width, height) : std::vector{scene_experiment(a.scenes, width, height)};
+  const std::vector<MeasuredExperiment> experiments = chosen_points(a.experiments, a.scenes, width, height);
   if (a.list) {
     fmt::print("{}", listed(experiments));
     return 0;
   }
   if (a.no_times && a.no_statistics) throw user_error("--no-times with --no-statistics leaves nothing to measure");
-  if (!a.scenes.empty() && !a.experiments.empty()) throw user_error("--scene: not together with an experiment ({})", a.experiments.front());
   std::error_code error;
   if (!a.pictures.empty() && !std::filesystem::is_directory(a.pictures, error))
     throw user_error("--pictures: {}: not a folder", a.pictures);

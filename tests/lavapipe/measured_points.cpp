@@ -105,6 +105,16 @@ traces::CommandStream load(const std::string& scene, Frame f) {
   return scenes::load_scene(scene, options);
 }
 
+MeasuredExperiment scene_experiment(const std::vector<std::string>& scenes, Frame f) {
+  MeasuredExperiment e{"scenes", "scene", {}};
+  e.points.reserve(scenes.size());
+  for (const std::string& scene : scenes) {
+    const std::string name = scene.starts_with("builtin:") ? scene.substr(8) : std::filesystem::path(scene).stem().string();
+    e.points.push_back({name, static_cast<double>(e.points.size() + 1), {}, [=] { return load(scene, f); }});
+  }
+  return e;
+}
+
 }  // namespace
 
 std::vector<MeasuredExperiment> measured_experiments(std::uint32_t width, std::uint32_t height) {
@@ -125,14 +135,17 @@ std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string
   return all;
 }
 
-MeasuredExperiment scene_experiment(const std::vector<std::string>& scenes, std::uint32_t width, std::uint32_t height) {
-  MeasuredExperiment e{"scenes", "scene", {}};
-  e.points.reserve(scenes.size());
-  for (const std::string& scene : scenes) {
-    const std::string name = scene.starts_with("builtin:") ? scene.substr(8) : std::filesystem::path(scene).stem().string();
-    e.points.push_back({name, static_cast<double>(e.points.size() + 1), {}, [=] { return load(scene, {width, height}); }});
-  }
-  return e;
+std::vector<MeasuredExperiment> chosen_points(const std::vector<std::string>& names, const std::vector<std::string>& scenes,
+                                              std::uint32_t width, std::uint32_t height) {
+  if (scenes.empty()) return chosen_experiments(names, width, height);
+  if (!names.empty()) throw user_error("--scene: not together with an experiment ({})", names.front());
+  return {scene_experiment(scenes, {width, height})};
+}
+
+std::string file_name(const MeasuredExperiment& experiment, const Point& point) {
+  std::string name = experiment.name + "_" + point.name;
+  std::ranges::replace(name, ' ', '_');
+  return name;
 }
 
 std::string listed(const std::vector<MeasuredExperiment>& experiments) {

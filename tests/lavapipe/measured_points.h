@@ -31,8 +31,12 @@ struct MeasuredExperiment {
 /// Those named, in the order of all; no name: all. Throws `UserError` for a name that there is not.
 [[nodiscard]] std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string>& names, std::uint32_t width,
                                                                  std::uint32_t height);
-/// Frames of scenes (builtin:NAME, glTF files, or traces, which have a size of their own) as one experiment, a point each, loaded when it is its turn.
-[[nodiscard]] MeasuredExperiment scene_experiment(const std::vector<std::string>& scenes, std::uint32_t width, std::uint32_t height);
+/// The experiments named, or, where scenes are given instead (builtin:NAME, glTF files, or traces, which have a size of their own), one of them: a point each,
+/// loaded when it is its turn. Throws `UserError` also for both.
+[[nodiscard]] std::vector<MeasuredExperiment> chosen_points(const std::vector<std::string>& names, const std::vector<std::string>& scenes,
+                                                            std::uint32_t width, std::uint32_t height);
+/// Of a file about a point, without ending: "setup-rate_off_screen".
+[[nodiscard]] std::string file_name(const MeasuredExperiment& experiment, const Point& point);
 /// The experiments and their points, a line each.
 [[nodiscard]] std::string listed(const std::vector<MeasuredExperiment>& experiments);
 

@@ -33,6 +33,16 @@ refused() {
 [ "$(head -c4 "$scratch/shapes.png" | tail -c3)" = PNG ] || fails "no picture"
 grep -q '| back-to-front | 1 | 1 | 1 |' "$scratch/table" || { cat "$scratch/table"; fails "a curve does not begin with 1"; }
 
+# Each point as a trace, and the picture that the driver draws of it.
+"$simulated" --size 64x48 --traces "$scratch" setup-rate
+[ -s "$scratch/setup-rate_off_screen.qtrace" ] || fails "no trace"
+"$folder/measure_gpu" --device llvmpipe --repeats 1 --scene "$scratch/setup-rate_one_pixel.qtrace" --pictures "$scratch" --out "$measured" -q
+picture=$scratch/scenes_setup-rate_one_pixel.ppm
+[ "$(head -c 12 "$picture")" = "P6
+64 48
+255" ] && [ "$(wc -c <"$picture")" = $((13 + 3 * 64 * 48)) ] || fails "no picture of 64x48"
+[ "$(tail -c 3 "$picture" | od -An -tu1 | tr -s ' ')" = ' 204 102 51' ] || fails "the last pixel is not of the triangles' colour"
+
 refused "$folder/measure_gpu" --device 'no such card'
 refused "$scripts/measure_gpu" --prepare
 refused "$scripts/measure_gpu" --prepare "$scratch/other" --program /no/program

@@ -105,6 +105,15 @@ TEST_CASE("l1_cache: a line under way serves all who ask for it, and is a hit af
         "pending; pending; pending; ready 1; ready 2; ready 3; hit; | r3/3 r3/4 | dirty 0");
 }
 
+TEST_CASE("l1_cache: every look-up is a hit, merged or a miss, and a place for a write is a hit") {
+  const CacheBench::Setup s{{{0, read(3, 0x3, 1)}, {1, read(3, 0x1, 2)}, {60, read(3, 0x3, 3)}, {61, claim(4, 0)}, {62, kFlush}}};
+  CHECK(run<CacheBench>(s, [](const CacheBench& b) {
+          const L1CacheStats& c = b.unit->cache.stats();
+          return fmt::format("requests {} hits {} merged {} misses {}", c.requests.value(), c.hits.value(), c.merged.value(),
+                             c.misses.value());
+        }) == "requests 4 hits 2 merged 1 misses 1");
+}
+
 TEST_CASE("l1_cache: no free way, or no free entry for a miss, is a stall") {
   CHECK(seen({{0, read(1, 0xf, 1)}, {1, read(2, 0xf, 2)}, {60, read(2, 0xf, 2)}}, {.lines = 1, .ways = 1, .misses = 4}) ==
         "pending; stall; ready 1; pending; ready 2; | r1/f r2/f | dirty 0");
