@@ -122,8 +122,12 @@ bool decode_webp(const void* bytes, std::size_t size, std::uint64_t max_bytes, Q
 }
 
 /// OpenImageIO tries a file's first bytes before it opens it, and its DDS reader then does not go back: that one is named instead.
+/// One file is opened at a time: while OpenImageIO 2.4 reads a colour profile, it writes to a table that all threads share.
+/// Pixels are decoded outside of the lock.
 std::unique_ptr<OIIO::ImageInput> open_input(const std::string& format, const OIIO::ImageSpec& config, OIIO::Filesystem::IOProxy* proxy,
                                              std::string& error) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
   if (format != "dds") {
     auto input = OIIO::ImageInput::open("image." + format, &config, proxy);
     if (!input) error = OIIO::geterror();

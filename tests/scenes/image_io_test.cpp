@@ -1,9 +1,14 @@
 #include "scenes/image/image_io.h"
 
 #include <array>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ctime>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "models/base/error.h"
 #include "tests/scenes/gltf_text.h"
@@ -20,6 +25,83 @@ Rgba8Image gradient(std::uint32_t width, std::uint32_t height) {
     for (std::uint32_t c = 0; c < 4; ++c) image.pixels.push_back(static_cast<std::uint8_t>(i * (c + 3) + 17 * c));
   }
   return image;
+}
+
+void append_big_endian(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+void put_big_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes[at++] = static_cast<std::uint8_t>(value >> shift);
+}
+
+/// An ICC colour profile of a display whose table names `tags` tags that no standard knows, from `first_tag` on.
+std::vector<std::uint8_t> color_profile(std::uint32_t first_tag, std::uint32_t tags) {
+  constexpr std::size_t kHeader = 128;
+  constexpr std::uint32_t kTagBytes = 12;
+  std::vector<std::uint8_t> profile(kHeader);
+  append_big_endian(profile, tags);
+  const auto data = static_cast<std::uint32_t>(profile.size()) + kTagBytes * tags;
+  for (std::uint32_t i = 0; i < tags; ++i) {
+    append_big_endian(profile, first_tag + i);
+    append_big_endian(profile, data);
+    append_big_endian(profile, 12);
+  }
+  profile.resize(data + 12);
+  put_big_endian(profile, 0, static_cast<std::uint32_t>(profile.size()));
+  put_big_endian(profile, 8, 0x02400000);   // version 2.4
+  put_big_endian(profile, 12, 0x6d6e7472);  // "mntr", a display
+  put_big_endian(profile, 16, 0x52474220);  // "RGB "
+  put_big_endian(profile, 20, 0x58595a20);  // "XYZ "
+  put_big_endian(profile, 36, 0x61637370);  // "acsp"
+  put_big_endian(profile, 68, 0x0000f6d6);  // the white point of D50: x, y, z
+  put_big_endian(profile, 72, 0x00010000);
+  put_big_endian(profile, 76, 0x0000d32d);
+  return profile;
+}
+
+/// The CRC-32 of a PNG's chunk: its name and its data.
+std::uint32_t crc_of_chunk(std::span<const std::uint8_t> bytes) {
+  std::uint32_t crc = ~0U;
+  for (const std::uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xedb88320U : 0);
+  }
+  return ~crc;
+}
+
+/// `data` of less than 64 KiB as a zlib stream of one block that is stored, not compressed.
+std::vector<std::uint8_t> stored_zlib(const std::vector<std::uint8_t>& data) {
+  const auto size = static_cast<std::uint32_t>(data.size());
+  std::vector<std::uint8_t> stream{0x78, 0x01, 0x01};
+  for (const std::uint32_t word : {size, ~size}) {
+    stream.push_back(static_cast<std::uint8_t>(word));
+    stream.push_back(static_cast<std::uint8_t>(word >> 8));
+  }
+  std::uint32_t sum = 1, sum_of_sums = 0;  // Adler-32
+  for (const std::uint8_t byte : data) {
+    stream.push_back(byte);
+    sum = (sum + byte) % 65521;
+    sum_of_sums = (sum_of_sums + sum) % 65521;
+  }
+  append_big_endian(stream, sum_of_sums << 16 | sum);
+  return stream;
+}
+
+/// The PNG file with a colour profile behind its header.
+std::vector<std::byte> with_profile(const std::vector<std::byte>& png, const std::vector<std::uint8_t>& profile) {
+  constexpr std::size_t kBehindHeader = 33;
+  std::vector<std::uint8_t> chunk{'i', 'C', 'C', 'P', 'p', 0, 0};
+  const std::vector<std::uint8_t> stream = stored_zlib(profile);
+  chunk.insert(chunk.end(), stream.begin(), stream.end());
+  std::vector<std::uint8_t> inserted;
+  append_big_endian(inserted, static_cast<std::uint32_t>(chunk.size() - 4));
+  inserted.insert(inserted.end(), chunk.begin(), chunk.end());
+  append_big_endian(inserted, crc_of_chunk(chunk));
+  std::vector<std::byte> file(png.begin(), png.begin() + kBehindHeader);
+  for (const std::uint8_t byte : inserted) file.push_back(std::byte{byte});
+  file.insert(file.end(), png.begin() + kBehindHeader, png.end());
+  return file;
 }
 
 /// The image has this size, and this colour everywhere.
@@ -80,6 +162,27 @@ TEST_CASE("image_io: a file holds its picture and no date, so that writing it ag
     CHECK(file.find(after) == std::string::npos);
     CHECK(file.find("tIME") == std::string::npos);  // a PNG's date is seven binary bytes behind this
   }
+}
+
+TEST_CASE("image_io: images with colour profiles are decoded by several threads at once") {
+  constexpr std::uint32_t kThreads = 4, kImages = 8, kTags = 400;
+  const TempGltf folder("", "a.png");
+  const Rgba8Image image = gradient(5, 3);
+  save_png(folder.path(), image);
+  const std::vector<std::byte> plain = traces::read_whole_file(folder.path(), 1 << 20);
+  std::atomic<std::uint32_t> right = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (std::uint32_t t = 0; t < kThreads; ++t) {
+      threads.emplace_back([&, t] {
+        for (std::uint32_t i = 0; i < kImages; ++i) {
+          const std::uint32_t first_tag = 0x20000000 + (t * kImages + i) * kTags;
+          right += decode_image(with_profile(plain, color_profile(first_tag, kTags)), "a.png").pixels == image.pixels ? 1 : 0;
+        }
+      });
+    }
+  }
+  CHECK(right == kThreads * kImages);
 }
 
 TEST_CASE("image_io: every truncation of a PNG is refused with its name") {
