@@ -6,17 +6,16 @@
 
 namespace quadrille::hw {
 
-CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                                   int partitions, QuietLog& quiet)
-    : Unit(name, Kind::kChooser, clock),
+CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const UnitContext& context, const Params& params, QuietLog& quiet)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
+      frame_(context.frame),
       quiet_log_(quiet),
-      retired_by_(static_cast<std::size_t>(partitions)) {
+      retired_by_(static_cast<std::size_t>(context.machine.partitions)) {
   add_initiation_rate("draw_clk");
   add_places("draws_in_flight", [this] { return step_ == Step::kDraw && all_in_flight(); });
-  for (int i = 0; i < partitions; ++i) { retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply); }
-  if (frame.passes.empty()) step_ = Step::kDone;
+  for (int i = 0; i < context.machine.partitions; ++i) { retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply); }
+  if (frame_.passes.empty()) step_ = Step::kDone;
 }
 
 std::string CommandProcessor::state_text() const {

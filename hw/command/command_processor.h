@@ -12,6 +12,7 @@
 #include "hw/base/param.h"
 #include "hw/frame/frame.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 
 namespace quadrille::hw {
 
@@ -30,8 +31,7 @@ class CommandProcessor final : public Unit {
     Counter passes{*this, "passes", "pass", "Passes begun"};
   };
 
-  CommandProcessor(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, int partitions,
-                   QuietLog& quiet);
+  CommandProcessor(sc_core::sc_module_name name, const UnitContext& context, const Params& params, QuietLog& quiet);
 
   FifoInGroup<RetireToken> retire_in;
   FifoIn<ReleaseToken> scan_done_in{*this, "scan_done_in", LinkRole::kReply};

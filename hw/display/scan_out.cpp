@@ -4,9 +4,12 @@
 
 namespace quadrille::hw {
 
-ScanOut::ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                 const models::DeviceMemory& memory, int slices)
-    : Unit(name, Kind::kChooser, clock), params_(params), frame_(frame), device_(memory), port_(*this, stats_, slices) {
+ScanOut::ScanOut(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
+    : Unit(name, Kind::kChooser, context.clock),
+      params_(params),
+      frame_(context.frame),
+      device_(context.memory),
+      port_(*this, stats_, context.machine.channels) {
   add_initiation_rate("rate");
   add_places("lines_in_flight", [this] { return in_flight_ >= params_.lines_in_flight; });
 }

@@ -7,6 +7,7 @@
 
 #include "hw/base/param.h"
 #include "hw/frame/frame.h"
+#include "hw/frame/unit_context.h"
 #include "hw/memory/memory_port.h"
 
 namespace quadrille::hw {
@@ -20,8 +21,7 @@ class ScanOut final : public Unit {
     Counter lines{*this, "lines", "line", "Lines of 128 bytes read"};
   };
   using CounterParts = Parts<MemoryPortStats>;
-  ScanOut(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const models::DeviceMemory& memory,
-          int slices);
+  ScanOut(sc_core::sc_module_name name, const UnitContext& context, const Params& params);
 
   FifoIn<ScanToken> scan_in{*this, "scan_in"};
   FifoOut<ReleaseToken> done_out{*this, "done_out", LinkRole::kReply};

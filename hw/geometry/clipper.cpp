@@ -6,9 +6,14 @@
 
 namespace quadrille::hw {
 
-Clipper::Clipper(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                 const Store<BatchSlot>& batches, Store<ClippedPiece>& pieces)
-    : Unit(name, Kind::kFixedOrder, clock), params_(params), frame_(frame), batches_(batches), pieces_(pieces), rate_(clock) {
+Clipper::Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Store<BatchSlot>& batches,
+                 Store<ClippedPiece>& pieces)
+    : Unit(name, Kind::kFixedOrder, context.clock),
+      params_(params),
+      frame_(context.frame),
+      batches_(batches),
+      pieces_(pieces),
+      rate_(context.clock) {
   add_initiation_rate("rate");
 }
 

@@ -10,6 +10,7 @@
 #include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 
 namespace quadrille::hw {
 
@@ -36,7 +37,7 @@ class Clipper final : public Unit {
     Counter not_finite{*this, "not_finite", "triangle", "Triangles dropped because a position is NaN or infinite"};
     Counter pieces{*this, "pieces", "triangle", "Triangles that cutting produced and passed on"};
   };
-  Clipper(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const Store<BatchSlot>& batches,
+  Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Store<BatchSlot>& batches,
           Store<ClippedPiece>& pieces);
 
   FifoIn<PrimitiveToken> primitive_in{*this, "primitive_in"};

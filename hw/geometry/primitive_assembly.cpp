@@ -4,15 +4,15 @@
 
 namespace quadrille::hw {
 
-PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const Params& params, const Clock& clock,
-                                     const Store<BatchSlot>& batches, int cores)
-    : Unit(name, Kind::kChooser, clock),
+PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                                     const Store<BatchSlot>& batches)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       batches_(batches),
       shaded_(static_cast<std::size_t>(batches.size()), false),
-      rate_(clock) {
+      rate_(context.clock) {
   add_initiation_rate("rate");
-  for (int i = 0; i < cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
+  for (int i = 0; i < context.machine.cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 
 std::string PrimitiveAssembly::state_text() const { return fmt::format("triangle {} of the batch at its head", next_triangle_); }

@@ -11,6 +11,7 @@
 #include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 
 namespace quadrille::hw {
 
@@ -27,7 +28,7 @@ class PrimitiveAssembly final : public Unit {
     Counter vertices{*this, "vertices", "vertex", "Shaded vertices in those batches"};
     Counter triangles{*this, "triangles", "triangle", "Triangles handed to the clipper"};
   };
-  PrimitiveAssembly(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Store<BatchSlot>& batches, int cores);
+  PrimitiveAssembly(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Store<BatchSlot>& batches);
 
   FifoIn<BatchToken> batch_in{*this, "batch_in"};
   FifoInGroup<VertexDoneToken> done_in;

@@ -1,26 +1,25 @@
 #include "hw/geometry/triangle_setup.h"
 
 #include "hw/frame/laws.h"
+#include "hw/frame/varyings.h"
 
 #include <algorithm>
 #include <bit>
 
 namespace quadrille::hw {
 
-TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                                     const Store<BatchSlot>& batches, const Store<ClippedPiece>& pieces, TriangleStore& triangles,
-                                     int partitions)
-    : Unit(name, Kind::kChooser, clock),
+TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
-      batches_(batches),
-      pieces_(pieces),
-      triangles_(triangles),
-      retired_by_(static_cast<std::size_t>(partitions)),
-      rate_(clock) {
+      frame_(context.frame),
+      batches_(stores.batches),
+      pieces_(stores.pieces),
+      triangles_(stores.triangles),
+      retired_by_(static_cast<std::size_t>(context.machine.partitions)),
+      rate_(context.clock) {
   add_initiation_rate("rate");
   add_places("triangle_slots", [this] { return sequence_ - retired_ >= triangles_.size(); });
-  for (int i = 0; i < partitions; ++i) { sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply); }
+  for (int i = 0; i < context.machine.partitions; ++i) { sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply); }
 }
 
 std::string TriangleSetupUnit::state_text() const {
@@ -85,20 +84,6 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   gather_varyings(corners, draw.varyings(), slot.varyings);
   triangle_out.push(now, {TokenKind::kWork, token.index, sequence_++});
   return true;
-}
-
-void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components, std::vector<float>& out) {
-  out.resize(static_cast<std::size_t>(3 * components));
-  for (int c = 0; c < components; ++c) {
-    const auto value = [&](std::size_t i) {
-      return std::bit_cast<float>((*corners[i].rows)[static_cast<std::size_t>(models::kFirstVaryingOutput + c)][corners[i].lane]);
-    };
-    const float a0 = value(0);
-    float* const at = out.data() + 3 * c;
-    at[0] = a0;
-    at[1] = value(1) - a0;
-    at[2] = value(2) - a0;
-  }
 }
 
 void TriangleSetupUnit::audit(Audit& audit) const {

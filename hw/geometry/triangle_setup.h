@@ -11,6 +11,7 @@
 #include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 
 namespace quadrille::hw {
 
@@ -42,8 +43,13 @@ class TriangleSetupUnit final : public Unit {
     Counter offscreen{*this, "offscreen", "triangle", "Triangles whose pixels are outside the scissor"};
     Counter no_sample{*this, "no_sample", "triangle", "Triangles whose bounds hold no pixel centre"};
   };
-  TriangleSetupUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                    const Store<BatchSlot>& batches, const Store<ClippedPiece>& pieces, TriangleStore& triangles, int partitions);
+  /// What the unit reads, and the ring of triangles that it fills.
+  struct Stores {
+    const Store<BatchSlot>& batches;
+    const Store<ClippedPiece>& pieces;
+    TriangleStore& triangles;
+  };
+  TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores);
 
   FifoIn<ClippedToken> clipped_in{*this, "clipped_in"};
   FifoInGroup<ReleaseToken> sync_in;
@@ -76,13 +82,5 @@ class TriangleSetupUnit final : public Unit {
   WorkRate rate_;
   Tick free_ = 0;
 };
-
-/// Outputs of a shaded vertex: a lane of its batch's rows.
-struct CornerOutputs {
-  const std::vector<models::LaneWords>* rows = nullptr;
-  std::uint8_t lane = 0;
-};
-/// Fills a triangle slot's varyings, 3 floats a component: a0, a1 - a0, a2 - a0 of the corners.
-void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components, std::vector<float>& out);
 
 }  // namespace quadrille::hw

@@ -6,14 +6,13 @@
 
 namespace quadrille::hw {
 
-VertexFetch::VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                         const models::DeviceMemory& memory, Store<BatchSlot>& batches, int slices)
-    : Unit(name, Kind::kChooser, clock),
+VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<BatchSlot>& batches)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
-      device_(memory),
+      frame_(context.frame),
+      device_(context.memory),
       batches_(batches),
-      port_(*this, stats_, slices),
+      port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses),
       reuse_(params.reuse, params.batch_vertices, params.reuse_entries),
       slots_(batches.size()) {

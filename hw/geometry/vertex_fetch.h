@@ -12,6 +12,7 @@
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
+#include "hw/frame/unit_context.h"
 #include "hw/geometry/batch_slots.h"
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
@@ -68,8 +69,7 @@ class VertexFetch final : public Unit {
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
 
-  VertexFetch(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-              const models::DeviceMemory& memory, Store<BatchSlot>& batches, int slices);
+  VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<BatchSlot>& batches);
 
   FifoIn<DrawToken> draw_in{*this, "draw_in"};
   FifoIn<ReleaseToken> release_in{*this, "release_in", LinkRole::kReply};

@@ -21,16 +21,16 @@ std::string port_name(const std::string& client, std::string_view side) {
 }
 }  // namespace
 
-L2Slice::L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<Client>& clients, int slices)
-    : Unit(name, Kind::kChooser, clock),
+L2Slice::L2Slice(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const std::vector<Client>& clients)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       tags_(static_cast<std::uint32_t>(params.cache_lines.value()), static_cast<std::uint32_t>(params.cache_ways.value()),
-            static_cast<std::uint32_t>(slices)),
+            static_cast<std::uint32_t>(context.machine.channels)),
       misses_(static_cast<std::size_t>(params.cache_misses.value())),
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
       answers_(clients.size()),
       answering_((clients.size() + 63) / 64, 0),
-      interleave_(static_cast<std::uint32_t>(slices)) {
+      interleave_(static_cast<std::uint32_t>(context.machine.channels)) {
   add_initiation_rate("rate");
   add_places("cache_misses", [this] { return free_misses_.empty(); });
   for (const auto& [client, kind] : clients) {

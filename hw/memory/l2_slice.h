@@ -11,6 +11,7 @@
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 #include "models/cache/tag_array.h"
 #include "models/memory/interleave.h"
 
@@ -59,7 +60,7 @@ class L2Slice final : public Unit {
     MemoryClient kind = MemoryClient::kVertexFetch;
   };
   /// `slices` of the machine, this one among them.
-  L2Slice(sc_core::sc_module_name name, const Params& params, const Clock& clock, const std::vector<Client>& clients, int slices);
+  L2Slice(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const std::vector<Client>& clients);
 
   FifoInGroup<MemoryRequest> request_in;
   std::vector<std::unique_ptr<FifoOut<MemoryResponse>>> response_out;

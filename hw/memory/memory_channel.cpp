@@ -73,10 +73,10 @@ Histogram& MemoryChannel::Stats::latency(MemoryClient client) {
   return latency_write_back;
 }
 
-MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const Params& params, const Clock& clock, int channels)
-    : Unit(name, Kind::kChooser, clock),
+MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      interleave_(static_cast<std::uint32_t>(channels)),
+      interleave_(static_cast<std::uint32_t>(context.machine.channels)),
       stats_(std::make_unique<Stats>()),
       controller_(params.controller()) {
   add_rate(

@@ -9,6 +9,7 @@
 #include "hw/base/queue.h"
 #include "hw/base/unit.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 #include "models/memory/dram/controller.h"
 #include "models/memory/interleave.h"
 
@@ -24,7 +25,7 @@ class MemoryChannel final : public Unit {
  public:
   struct Params;
   struct Stats;
-  MemoryChannel(sc_core::sc_module_name name, const Params& params, const Clock& clock, int channels);
+  MemoryChannel(sc_core::sc_module_name name, const UnitContext& context, const Params& params);
   ~MemoryChannel() override;
 
   FifoIn<MemoryRequest> request_in{*this, "request_in"};

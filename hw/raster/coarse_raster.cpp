@@ -12,16 +12,15 @@ namespace {
 bool lowers_depth(models::CompareOp op) { return op == models::CompareOp::kLess || op == models::CompareOp::kLessOrEqual; }
 }  // namespace
 
-CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                           const TriangleStore& triangles, int partitions)
-    : Unit(name, Kind::kChooser, clock),
+CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
+      frame_(context.frame),
       triangles_(triangles),
       sync_interval_(std::max<std::uint64_t>(1, triangles.size() / static_cast<std::uint64_t>(params.reports.value()))),
-      rate_(clock) {
+      rate_(context.clock) {
   add_initiation_rate("tests_per_clk");
-  for (int i = 0; i < partitions; ++i) { hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply); }
+  for (int i = 0; i < context.machine.partitions; ++i) { hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply); }
 }
 
 std::string CoarseRaster::state_text() const { return fmt::format("triangle {} of draw {}", triangle_, draw_); }

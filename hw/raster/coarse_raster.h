@@ -12,6 +12,7 @@
 #include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 #include "models/raster/coarse.h"
 
 #include <optional>
@@ -48,8 +49,7 @@ class CoarseRaster final : public Unit {
     Counter tiles_hidden{*this, "tiles_hidden", "tile", "Tiles dropped by Hi-Z"};
     Counter hiz_updates{*this, "hiz_updates", "update", "Hi-Z updates taken in"};
   };
-  CoarseRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, const TriangleStore& triangles,
-               int partitions);
+  CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles);
 
   FifoIn<TriangleToken> triangle_in{*this, "triangle_in"};
   FifoInGroup<HiZToken> hiz_in;

@@ -9,11 +9,10 @@
 
 namespace quadrille::hw {
 
-FineRaster::FineRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const TriangleStore& triangles,
-                       int partitions)
-    : Unit(name, Kind::kFixedOrder, clock), params_(params), triangles_(triangles), rate_(clock) {
+FineRaster::FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles)
+    : Unit(name, Kind::kFixedOrder, context.clock), params_(params), triangles_(triangles), rate_(context.clock) {
   add_initiation_rate("quads_per_clk");
-  for (int i = 0; i < partitions; ++i) {
+  for (int i = 0; i < context.machine.partitions; ++i) {
     coverage_out.push_back(std::make_unique<FifoOut<CoverageToken>>(*this, fmt::format("coverage_out_{}", i).c_str()));
   }
 }

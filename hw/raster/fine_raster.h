@@ -10,6 +10,7 @@
 #include "hw/base/work_rate.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 
 namespace quadrille::hw {
 
@@ -33,7 +34,7 @@ class FineRaster final : public Unit {
     Counter quads{*this, "quads", "quad", "Quads with a covered pixel"};
     Counter fragments{*this, "fragments", "fragment", "Covered pixels"};
   };
-  FineRaster(sc_core::sc_module_name name, const Params& params, const Clock& clock, const TriangleStore& triangles, int partitions);
+  FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles);
 
   FifoIn<TileToken> tile_in{*this, "tile_in"};
   std::vector<std::unique_ptr<FifoOut<CoverageToken>>> coverage_out;

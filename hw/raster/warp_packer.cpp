@@ -8,8 +8,8 @@
 
 namespace quadrille::hw {
 
-WarpPacker::WarpPacker(sc_core::sc_module_name name, const Params& params, const Clock& clock, Store<WarpSlot>& warps, int partition)
-    : Unit(name, Kind::kChooser, clock), params_(params), warps_(warps), partition_(static_cast<std::uint16_t>(partition)) {
+WarpPacker::WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps)
+    : Unit(name, Kind::kChooser, context.clock), params_(params), warps_(warps), partition_(static_cast<std::uint16_t>(context.number)) {
   add_initiation_rate("quads_per_clk");
   add_places("warp_slots", [this] { return opened_ - retired_ >= warps_.size(); });
 }

@@ -10,6 +10,7 @@
 #include "hw/base/unit.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 
 namespace quadrille::hw {
 
@@ -37,7 +38,7 @@ class WarpPacker final : public Unit {
     Counter partial_warps{*this, "partial_warps", "warp", "Warps launched with fewer than 8 quads"};
     Counter timeouts{*this, "timeouts", "warp", "Warps launched because no input came"};
   };
-  WarpPacker(sc_core::sc_module_name name, const Params& params, const Clock& clock, Store<WarpSlot>& warps, int partition);
+  WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
   FifoIn<ReleaseToken> release_in{*this, "release_in", LinkRole::kReply};

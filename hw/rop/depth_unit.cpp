@@ -50,19 +50,19 @@ float greatest_depth(const float* depths, const models::SurfaceLayout& surface, 
 
 }  // namespace
 
-DepthUnit::DepthUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                     models::DeviceMemory& memory, models::DeviceMemory::Owner owner, const TriangleStore& triangles,
-                     Store<WarpSlot>& warps, int partition, int partitions, int slices)
-    : Unit(name, Kind::kChooser, clock),
+DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles,
+                     Store<WarpSlot>& warps)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
-      device_(memory),
+      frame_(context.frame),
+      device_(context.memory),
       triangles_(triangles),
       warps_(warps),
-      partition_(static_cast<std::uint32_t>(partition)),
-      partitions_(static_cast<std::uint32_t>(partitions)),
-      port_(*this, stats_, slices),
-      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner) {
+      partition_(static_cast<std::uint32_t>(context.number)),
+      partitions_(static_cast<std::uint32_t>(context.machine.partitions)),
+      port_(*this, stats_, context.machine.channels),
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
+             surface_writer(SurfaceKind::kDepth, context.number)) {
   add_initiation_rate("quads_per_clk");
   add_places("tiles_in_flight", [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
   add_places("cache_misses", [this] { return cache_.full(); });

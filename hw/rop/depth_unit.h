@@ -13,6 +13,7 @@
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
+#include "hw/frame/unit_context.h"
 #include "hw/rop/surface_cache.h"
 
 namespace quadrille::hw {
@@ -44,9 +45,8 @@ class DepthUnit final : public Unit {
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
-  DepthUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
-            models::DeviceMemory::Owner owner, const TriangleStore& triangles, Store<WarpSlot>& warps, int partition, int partitions,
-            int slices);
+  DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles,
+            Store<WarpSlot>& warps);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};

@@ -42,22 +42,22 @@ int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads
 
 }  // namespace
 
-Rop::Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
-         models::DeviceMemory::Owner owner, Store<WarpSlot>& warps, int partition, int partitions, int cores, int slices)
-    : Unit(name, Kind::kChooser, clock),
+Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
-      device_(memory),
+      frame_(context.frame),
+      device_(context.memory),
       warps_(warps),
-      partition_(static_cast<std::uint32_t>(partition)),
-      partitions_(static_cast<std::uint32_t>(partitions)),
-      port_(*this, stats_, slices),
-      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, memory, owner),
+      partition_(static_cast<std::uint32_t>(context.number)),
+      partitions_(static_cast<std::uint32_t>(context.machine.partitions)),
+      port_(*this, stats_, context.machine.channels),
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
+             surface_writer(SurfaceKind::kColor, context.number)),
       shaded_(static_cast<std::size_t>(warps.size()), false) {
   add_initiation_rate("quads_per_clk");
   add_places("warps_in_flight", [this] { return acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value()); });
   add_places("cache_misses", [this] { return cache_.full(); });
-  for (int i = 0; i < cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
+  for (int i = 0; i < context.machine.cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 
 std::string Rop::state_text() const {

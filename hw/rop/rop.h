@@ -11,6 +11,7 @@
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
+#include "hw/frame/unit_context.h"
 #include "hw/rop/surface_cache.h"
 
 namespace quadrille::hw {
@@ -36,8 +37,7 @@ class Rop final : public Unit {
     Counter draws{*this, "draws", "draw", "Draws retired"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
-  Rop(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, models::DeviceMemory& memory,
-      models::DeviceMemory::Owner owner, Store<WarpSlot>& warps, int partition, int partitions, int cores, int slices);
+  Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps);
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
   FifoInGroup<FragmentDoneToken> done_in;

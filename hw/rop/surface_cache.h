@@ -37,6 +37,13 @@ struct SurfaceCacheStats {
   Counter cleared_tiles, clear_hits, clear_writes;
 };
 
+/// The surfaces that a partition writes through a cache.
+enum class SurfaceKind : std::uint8_t { kDepth, kColor };
+/// Who may write a line of memory while it is dirty: the cache of that surface in that partition.
+[[nodiscard]] constexpr models::DeviceMemory::Owner surface_writer(SurfaceKind surface, int partition) {
+  return static_cast<models::DeviceMemory::Owner>(1 + 2 * partition + (surface == SurfaceKind::kColor ? 1 : 0));
+}
+
 class SurfaceCache {
  public:
   SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory, models::DeviceMemory::Owner owner);

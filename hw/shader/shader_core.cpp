@@ -1,8 +1,7 @@
 #include "hw/shader/shader_core.h"
 
 #include "hw/frame/laws.h"
-
-#include "models/raster/interpolate.h"
+#include "hw/frame/varyings.h"
 
 #include <algorithm>
 #include <bit>
@@ -43,16 +42,15 @@ Simd::Cycle first_end(const std::vector<Simd>& simds) {
 
 }  // namespace
 
-ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots,
-                       Store<BatchSlot>& batches, std::vector<Store<WarpSlot>*> warps, const TriangleStore& triangles, bool textured)
-    : Unit(name, Kind::kChooser, clock),
+ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores, bool textured)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
-      slots_(slots),
-      batches_(batches),
-      warps_(std::move(warps)),
-      triangles_(triangles),
-      fragment_rows_(hungriest_fragment_program(frame)),
+      frame_(context.frame),
+      slots_(stores.slots),
+      batches_(stores.batches),
+      warps_(stores.warps),
+      triangles_(stores.triangles),
+      fragment_rows_(hungriest_fragment_program(context.frame)),
       free_rows_(params.register_rows),
       issue_timing_(issue_timing(params)),
       simds_(static_cast<std::size_t>(params.simds.value()), Simd(params.scheduler)),
@@ -72,7 +70,7 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const Params& params, const
     texture_out = std::make_unique<FifoOut<TextureToken>>(*this, "texture_out");
     texture_in = std::make_unique<FifoIn<TextureToken>>(*this, "texture_in", LinkRole::kReply);
   }
-  for (std::uint64_t i = slots.size(); i-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(i));
+  for (std::uint64_t i = stores.slots.size(); i-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(i));
 }
 
 std::string ShaderCore::state_text() const {
@@ -275,17 +273,6 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
   --simd_warps_[slot.simd];
   free_rows_ += slot.warp.program->num_regs;
   free_slots_.push_back(index);
-}
-
-void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, models::FragmentInputs& inputs) {
-  for (int q = 0; q < models::kWarpQuads; ++q) {
-    const WarpSlot::Quad& quad = work.quad[static_cast<std::size_t>(std::min(q, work.quads - 1))];
-    const TriangleSlot& triangle = triangles[quad.triangle];
-    inputs.varyings[static_cast<std::size_t>(q)] = triangle.varyings.data();
-    if (q >= work.quads) continue;
-    models::interpolate_quad(triangle.setup, quad.x, quad.y, q, inputs);
-    for (std::size_t i = 0; i < 4; ++i) inputs.primitive_id[4 * static_cast<std::size_t>(q) + i] = triangle.primitive;
-  }
 }
 
 void ShaderCore::audit(Audit& audit) const {

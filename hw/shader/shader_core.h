@@ -13,6 +13,7 @@
 #include "hw/base/queue.h"
 #include "hw/base/unit.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 #include "hw/shader/core_slots.h"
 #include "hw/shader/simd.h"
 #include "models/shader/timing.h"
@@ -71,8 +72,15 @@ class ShaderCore final : public Unit {
     Counter operand_waits{*this, "operand_waits", "clk",
                           "Cycles in which a clause, alone on its SIMD, would wait for its own results, summed over clauses"};
   };
-  ShaderCore(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame, Store<CoreSlot>& slots,
-             Store<BatchSlot>& batches, std::vector<Store<WarpSlot>*> warps, const TriangleStore& triangles, bool textured);
+  /// Where the core finds its warps, and their batches and triangles.
+  struct Stores {
+    Store<CoreSlot>& slots;  ///< the core's own
+    Store<BatchSlot>& batches;
+    std::vector<Store<WarpSlot>*> warps;  ///< by partition
+    const TriangleStore& triangles;
+  };
+  /// `textured`: it has ports to a texture unit.
+  ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores, bool textured);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
@@ -138,8 +146,5 @@ class ShaderCore final : public Unit {
   std::vector<Completion> completions_;
   Tick accept_free_ = 0;
 };
-
-/// The inputs of a fragment warp: planes of its quads' triangles at their pixels. Quads that are not used repeat the last one's varyings.
-void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, models::FragmentInputs& inputs);
 
 }  // namespace quadrille::hw

@@ -8,14 +8,14 @@
 
 namespace quadrille::hw {
 
-WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const Params& params, const Clock& clock, int partitions, int cores)
-    : Unit(name, Kind::kChooser, clock), params_(params), loads_(static_cast<std::size_t>(cores), 0) {
+WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
+    : Unit(name, Kind::kChooser, context.clock), params_(params), loads_(static_cast<std::size_t>(context.machine.cores), 0) {
   add_initiation_rate("rate");
-  for (int p = 0; p < partitions; ++p) {
+  for (int p = 0; p < context.machine.partitions; ++p) {
     fragment_in.add(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream);
   }
-  for (int i = 0; i <= partitions; ++i) load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
-  for (int c = 0; c < cores; ++c) {
+  for (int i = 0; i <= context.machine.partitions; ++i) load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
+  for (int c = 0; c < context.machine.cores; ++c) {
     vertex_out.push_back(
         std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("vertex_out_{}", c).c_str(), LinkRole::kFlow, kVertexStream));
     fragment_out.push_back(

@@ -11,6 +11,7 @@
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 
 namespace quadrille::hw {
 
@@ -37,7 +38,7 @@ class WorkDistributor final : public Unit {
     Counter vertex_warps{*this, "vertex_warps", "warp", "Vertex batches handed to cores"};
     Counter fragment_warps{*this, "fragment_warps", "warp", "Fragment warps handed to cores"};
   };
-  WorkDistributor(sc_core::sc_module_name name, const Params& params, const Clock& clock, int partitions, int cores);
+  WorkDistributor(sc_core::sc_module_name name, const UnitContext& context, const Params& params);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};

@@ -7,14 +7,13 @@
 
 namespace quadrille::hw {
 
-TextureUnit::TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-                         const models::DeviceMemory& memory, Store<CoreSlot>& slots, int slices)
-    : Unit(name, Kind::kChooser, clock),
+TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<CoreSlot>& slots)
+    : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      frame_(frame),
-      device_(memory),
+      frame_(context.frame),
+      device_(context.memory),
       slots_(slots),
-      port_(*this, stats_, slices),
+      port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {
   add_initiation_rate("address");
   add_rate("filter", [this] { return static_cast<double>(stats_.bilinear_quads.value()) / params_.filter_quads_per_clk; });

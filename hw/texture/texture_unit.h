@@ -11,6 +11,7 @@
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
+#include "hw/frame/unit_context.h"
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 #include "hw/shader/core_slots.h"
@@ -42,8 +43,7 @@ class TextureUnit final : public Unit {
     Counter groups_answered{*this, "groups_answered", "group", "Groups whose texels went back"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
-  TextureUnit(sc_core::sc_module_name name, const Params& params, const Clock& clock, const Frame& frame,
-              const models::DeviceMemory& memory, Store<CoreSlot>& slots, int slices);
+  TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<CoreSlot>& slots);
 
   FifoIn<TextureToken> request_in{*this, "request_in"};
   FifoOut<TextureToken> response_out{*this, "response_out", LinkRole::kReply};

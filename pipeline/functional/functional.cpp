@@ -1,7 +1,7 @@
 #include "pipeline/functional/functional.h"
 
-#include "hw/geometry/triangle_setup.h"
-#include "hw/shader/shader_core.h"
+#include "hw/frame/varyings.h"
+#include "models/base/error.h"
 #include "models/geometry/post_transform.h"
 #include "models/raster/coarse.h"
 #include "models/raster/fine.h"

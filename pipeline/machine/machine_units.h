@@ -21,8 +21,12 @@ class Machine::Maker {
 #undef QUADRILLE_MAKE
 
  private:
-  [[nodiscard]] const hw::Frame& frame() const { return m_.frame_.frame; }
-  [[nodiscard]] models::DeviceMemory& memory() const { return m_.frame_.memory; }
+  [[nodiscard]] hw::UnitContext context(int number) const {
+    return {m_.clock_, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
+  }
+  [[nodiscard]] hw::UnitContext context_at_memory_clock(int number) const {
+    return {m_.memory_clock_, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
+  }
 
   Machine& m_;
   const MachineConfig& c_;

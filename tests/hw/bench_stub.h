@@ -5,6 +5,7 @@
 #pragma once
 
 #include "hw/base/dispatcher.h"
+#include "hw/frame/unit_context.h"
 #include "hw/memory/memory_port.h"
 #include "tests/hw/contract.h"
 
@@ -189,7 +190,11 @@ class Bench : public contract::Specimen {
     return true;
   }
 
+  /// What the machine would tell the unit: one of each neighbour unless `machine` says more.
+  [[nodiscard]] UnitContext context(MachineCounts machine = {}, int number = 0) { return {clock, frame, device, machine, number}; }
   const Clock clock{1'000'000'000};
+  Frame frame;
+  models::DeviceMemory device;
 
  private:
   static constexpr LinkSpec kWide{.depth = 64, .width = 8};

@@ -28,7 +28,7 @@ struct CommandBench final : Bench {
     }
     params.draw_clk.set(s.draw_clk);
     params.draws_in_flight.set(s.in_flight);
-    unit = std::make_unique<CommandProcessor>("unit", params, clock, frame, 2, quiet);
+    unit = std::make_unique<CommandProcessor>("unit", context({.partitions = 2}), params, quiet);
     add(*unit);
     feed(unit->retire_in[0], s.retire_0);
     feed(unit->retire_in[1], s.retire_1);
@@ -39,7 +39,6 @@ struct CommandBench final : Bench {
   }
   [[nodiscard]] bool finished() const override { return Bench::finished() && unit->finished(); }
   QuietLog quiet;
-  Frame frame;
   CommandProcessor::Params params;
   std::unique_ptr<CommandProcessor> unit;
   StubSink<DrawToken>* issued = nullptr;

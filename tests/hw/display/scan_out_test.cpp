@@ -18,19 +18,17 @@ struct ScanBench final : Bench {
   };
   ScanBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     PassState pass;
-    (void)memory.allocate(256);
-    pass.color = models::allocate_surface(memory, 16, 8);  // two tiles: four lines, from line 2 on
+    (void)device.allocate(256);
+    pass.color = models::allocate_surface(device, 16, 8);  // two tiles: four lines, from line 2 on
     frame.passes = {pass};
-    if (s.dirty) memory.mark_dirty(pass.color.base / models::kLineBytes + 3, 1);
+    if (s.dirty) device.mark_dirty(pass.color.base / models::kLineBytes + 3, 1);
     params.lines_in_flight.set(s.lines_in_flight);
-    unit = std::make_unique<ScanOut>("unit", params, clock, frame, memory, 1);
+    unit = std::make_unique<ScanOut>("unit", context(), params);
     add(*unit);
     feed(unit->scan_in, s.scans);
     done = &drain<ReleaseToken>(unit->done_out, [](const ReleaseToken& t) { return t.slot; });
     stub = &serve(unit->memory_port(), s.latency);
   }
-  models::DeviceMemory memory;
-  Frame frame;
   ScanOut::Params params;
   std::unique_ptr<ScanOut> unit;
   StubSink<ReleaseToken>* done = nullptr;

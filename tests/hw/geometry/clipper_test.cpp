@@ -38,7 +38,7 @@ struct ClipBench final : Bench {
     triangle(kNan, {0.5f, nan, 0.5f}, 0);
     params.clip_clk.set(s.clip_clk);
     params.triangles_per_clk.set(s.triangles_per_clk);
-    unit = std::make_unique<Clipper>("unit", params, clock, frame, batches, pieces);
+    unit = std::make_unique<Clipper>("unit", context(), params, batches, pieces);
     add(*unit);
     feed(unit->primitive_in, s.primitives);
     sink = &drain<ClippedToken>(
@@ -53,7 +53,6 @@ struct ClipBench final : Bench {
       for (std::size_t c = 0; c < 4; ++c) batches[0].outputs[c][3 * shape + i] = std::bit_cast<std::uint32_t>(position[c]);
     }
   }
-  Frame frame;
   Clipper::Params params;
   Store<BatchSlot> batches;
   Store<ClippedPiece> pieces;

@@ -29,7 +29,7 @@ struct AssemblyBench final : Bench {
     store[1].lanes = 3;
     store[2].lanes = 1;
     store[3].triangles = {{{{0, 0}, {0, 2}, {0, 3}}, 20}};
-    unit = std::make_unique<PrimitiveAssembly>("unit", params, clock, store, 2);
+    unit = std::make_unique<PrimitiveAssembly>("unit", context({.cores = 2}), params, store);
     add(*unit);
     feed(unit->batch_in, s.batches);
     feed(unit->done_in[0], s.done_0);

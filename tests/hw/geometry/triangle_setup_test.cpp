@@ -39,7 +39,8 @@ struct SetupBench final : Bench {
     piece(4, {0, 0}, {0, 64}, {64, 0});
     params.drawn_per_clk.set(s.drawn_per_clk);
     params.culled_per_clk.set(s.culled_per_clk);
-    unit = std::make_unique<TriangleSetupUnit>("unit", params, clock, frame, batches, pieces, triangles, 2);
+    unit = std::make_unique<TriangleSetupUnit>("unit", context({.partitions = 2}), params,
+                                               TriangleSetupUnit::Stores{batches, pieces, triangles});
     add(*unit);
     feed(unit->clipped_in, s.pieces);
     feed(unit->sync_in[0], s.sync_0);
@@ -56,7 +57,6 @@ struct SetupBench final : Bench {
     pieces[slot].weights = models::whole_triangle_weights();
   }
   models::Program program;
-  Frame frame;
   TriangleSetupUnit::Params params;
   Store<BatchSlot> batches;
   Store<ClippedPiece> pieces;

@@ -81,7 +81,6 @@ struct CacheBench final : Bench {
     add(*unit);
     memory = &serve(unit->port, kLatency);
   }
-  models::DeviceMemory device;
   std::unique_ptr<CacheUser> unit;
   StubMemory* memory = nullptr;
 };

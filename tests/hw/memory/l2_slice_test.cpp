@@ -25,8 +25,8 @@ struct L2Bench final : Bench {
     params.hit_clk.set(s.hit_clk);
     params.write_back.parse(s.write_back);
     params.write_back_lines.set(8);
-    unit = std::make_unique<L2Slice>(
-        "unit", params, clock, std::vector<L2Slice::Client>{{"one", MemoryClient::kVertexFetch}, {"many_7", MemoryClient::kTexture}}, 1);
+    unit = std::make_unique<L2Slice>("unit", context(), params,
+                                     std::vector<L2Slice::Client>{{"one", MemoryClient::kVertexFetch}, {"many_7", MemoryClient::kTexture}});
     add(*unit);
     feed(unit->request_in[0], s.client_0);
     feed(unit->request_in[1], s.client_1);

@@ -42,7 +42,7 @@ struct ChannelBench final : Bench {
                                       {"write_drain", "off"}})
       params.find(name)->parse(value);
     params.queue_depth.set(s.queue_depth);
-    unit = std::make_unique<MemoryChannel>("unit", params, clock, 1);
+    unit = std::make_unique<MemoryChannel>("unit", context(), params);
     add(*unit);
     feed(unit->request_in, s.requests);
     sink = &drain<MemoryResponse>(

@@ -35,7 +35,7 @@ struct CoarseBench final : Bench {
     params.tiles_per_clk.set(s.tiles_per_clk);
     params.reports.set(s.reports);
     params.hiz.set(s.use_hiz);
-    unit = std::make_unique<CoarseRaster>("unit", params, clock, frame, store, 1);
+    unit = std::make_unique<CoarseRaster>("unit", context(), params, store);
     add(*unit);
     feed(unit->triangle_in, s.triangles);
     feed(unit->hiz_in[0], s.hiz);
@@ -64,7 +64,6 @@ struct CoarseBench final : Bench {
     }
   }
   models::Program program;
-  Frame frame;
   CoarseRaster::Params params;
   TriangleStore store;
   std::unique_ptr<CoarseRaster> unit;

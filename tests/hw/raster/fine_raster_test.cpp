@@ -28,7 +28,7 @@ struct FineBench final : Bench {
     store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 8}, {1, 0}});
     params.quads_per_clk.set(s.rate);
     params.tiles_per_clk.set(s.tiles_per_clk);
-    unit = std::make_unique<FineRaster>("unit", params, clock, store, s.partitions);
+    unit = std::make_unique<FineRaster>("unit", context({.partitions = s.partitions}), params, store);
     add(*unit);
     feed(unit->tile_in, s.tiles);
     for (auto& out : unit->coverage_out) {

@@ -21,7 +21,7 @@ struct PackerBench final : Bench {
     params.quads_per_clk.set(s.rate);
     params.patience_clk.set(s.patience);
     params.launch_clk.set(s.launch);
-    unit = std::make_unique<WarpPacker>("unit", params, clock, warps, 3);
+    unit = std::make_unique<WarpPacker>("unit", context({.partitions = 4}, 3), params, warps);
     add(*unit);
     feed(unit->coverage_in, s.coverage);
     feed(unit->release_in, s.releases);

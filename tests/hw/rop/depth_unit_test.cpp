@@ -39,7 +39,7 @@ struct DepthBench final : Bench {
       if (i < 4) fill(warps[i], static_cast<float>(i + 1) / 8);
     }
     set_cache(params, s.lines, s.ways, s.misses);
-    unit = std::make_unique<DepthUnit>("unit", params, clock, frame, device, 1, triangles, warps, 0, 1, 1);
+    unit = std::make_unique<DepthUnit>("unit", context(), params, triangles, warps);
     add(*unit);
     feed(unit->coverage_in, s.coverage);
     feed(unit->late_in, s.late);
@@ -67,8 +67,6 @@ struct DepthBench final : Bench {
     return all;
   }
   models::Program program;
-  models::DeviceMemory device;
-  Frame frame;
   DepthUnit::Params params;
   TriangleStore triangles;
   Store<WarpSlot> warps;

@@ -31,7 +31,7 @@ struct RopBench final : Bench {
     frame.draws = {draw};
     for (std::uint32_t i = 0; i < 4; ++i) fill(warps[i], i, s);
     set_cache(params, s.lines, s.ways, s.misses);
-    unit = std::make_unique<Rop>("unit", params, clock, frame, device, 1, warps, 0, 1, 1, 1);
+    unit = std::make_unique<Rop>("unit", context(), params, warps);
     add(*unit);
     feed(unit->order_in, s.order);
     feed(unit->done_in[0], s.done);
@@ -63,8 +63,6 @@ struct RopBench final : Bench {
     return std::hash<std::string>{}(bytes);
   }
   [[nodiscard]] std::uint64_t digest() const override { return Bench::digest() ^ image(); }
-  models::DeviceMemory device;
-  Frame frame;
   Rop::Params params;
   Store<WarpSlot> warps;
   std::unique_ptr<Rop> unit;

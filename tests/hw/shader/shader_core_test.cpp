@@ -54,8 +54,7 @@ struct CoreBench final : Bench {
     params.scheduler.set(s.scheduler);
     params.warp_slots.set(s.warp_slots);
     params.register_rows.set(s.rows);
-    unit = std::make_unique<ShaderCore>("unit", params, clock, frame, slots, batches, std::vector<Store<WarpSlot>*>{&warps}, triangles,
-                                        s.textured);
+    unit = std::make_unique<ShaderCore>("unit", context(), params, ShaderCore::Stores{slots, batches, {&warps}, triangles}, s.textured);
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in, s.fragment);
@@ -68,7 +67,6 @@ struct CoreBench final : Bench {
     feed(*unit->texture_in, s.texels);
   }
   models::Program vertex_program, fragment_program;
-  Frame frame;
   ShaderCore::Params params;
   Store<CoreSlot> slots;
   Store<BatchSlot> batches;

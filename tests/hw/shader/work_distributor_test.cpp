@@ -23,7 +23,7 @@ struct DistributorBench final : Bench {
   DistributorBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     params.policy.set(s.policy);
     params.block_tiles.set(s.block_tiles);
-    unit = std::make_unique<WorkDistributor>("unit", params, clock, 2, static_cast<int>(s.cores.size()));
+    unit = std::make_unique<WorkDistributor>("unit", context({.cores = static_cast<int>(s.cores.size()), .partitions = 2}), params);
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in[0], s.fragment_0);

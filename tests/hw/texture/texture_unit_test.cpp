@@ -40,15 +40,13 @@ struct TextureBench final : Bench {
     params.groups_in_flight.set(s.groups);
     set_cache(params, s.lines, s.ways, s.misses);
     params.filter_clk.set(s.filter_clk);
-    unit = std::make_unique<TextureUnit>("unit", params, clock, frame, device, slots, 1);
+    unit = std::make_unique<TextureUnit>("unit", context(), params, slots);
     add(*unit);
     feed(unit->request_in, s.requests);
     sink = &drain<TextureToken>(
         unit->response_out, [](const TextureToken& t) { return t.slot; }, s.pace, s.out);
     memory = &serve(unit->memory_port(), kMemory);
   }
-  models::DeviceMemory device;
-  Frame frame;
   TextureUnit::Params params;
   Store<CoreSlot> slots;
   std::unique_ptr<TextureUnit> unit;

@@ -1,0 +1,33 @@
+/// What the machine tells every unit that it makes: its clock, the frame and the memory, and the unit's place among its neighbours.
+#pragma once
+
+#include "hw/base/clock.h"
+#include "hw/frame/frame.h"
+#include "models/memory/device_memory.h"
+
+namespace quadrille::hw {
+
+/// How often units stand that others have a port or a part for.
+struct MachineCounts {
+  int cores = 1;
+  int partitions = 1;
+  int channels = 1;  ///< of memory, each with a slice of the L2 cache
+};
+
+/// Given to a unit's constructor. What it refers to outlives the unit.
+struct UnitContext {
+  const Clock& clock;  ///< the unit's own
+  const Frame& frame;
+  models::DeviceMemory& memory;
+  MachineCounts machine;
+  int number = 0;  ///< of the unit among those of its kind: 0 where it stands once, else that of its core, partition or channel
+
+  /// Of a unit that has no link to memory in this machine.
+  [[nodiscard]] UnitContext without_memory() const {
+    UnitContext context = *this;
+    context.machine.channels = 0;
+    return context;
+  }
+};
+
+}  // namespace quadrille::hw
