@@ -33,7 +33,10 @@ endif()
 # quadrille_library(NAME SOURCES...): a static library of the tree, included as "folder/file.h" from the root.
 function(quadrille_library name)
   add_library(${name} STATIC ${ARGN})
-  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/quadrille>)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  # What includes the headers computes as the library does.
+  target_compile_options(${name} INTERFACE $<INSTALL_INTERFACE:-march=x86-64-v3> $<INSTALL_INTERFACE:-ffp-contract=off>)
   target_link_libraries(${name} PRIVATE quadrille_warnings)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()
