@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/command.h"
 #include "cli/image_files.h"
 #include "cli/process.h"
@@ -63,6 +65,12 @@ void RenderJob::add_to(CLI::App& command) {
           ->type_name("W"),
       command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")
           ->type_name("N"),
+      command
+          .add_option(
+              "--detail", detail,
+              "draws: what each draw did, how long it took and what limited it, in --stats and as a table; tiles: counts by squares of "
+              "the screen, in --stats. Same picture, same cycles")
+          ->type_name("draws,tiles"),
       units_option_};
   command.add_flag("--alpha", alpha, "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
   command.add_flag("-q,--quiet", quiet, "prints no table");
@@ -97,6 +105,21 @@ std::int64_t RenderJob::window_cycles() const {
   return cycles;
 }
 
+pipeline::DetailOptions RenderJob::details() const {
+  pipeline::DetailOptions chosen;
+  if (!detail) return chosen;
+  for (std::size_t at = 0; at <= detail->size();) {
+    const std::size_t end = std::min(detail->find(',', at), detail->size());
+    const std::string word = detail->substr(at, end - at);
+    if (word != "draws" && word != "tiles") throw user_error("--detail: {} not in {{draws,tiles}}", word.empty() ? "an empty word" : word);
+    (word == "draws" ? chosen.draws : chosen.tiles) = true;
+    at = end + 1;
+  }
+  if (chosen.tiles && !stats) throw user_error("--detail: tiles are in the JSON alone; add --stats F.json");
+  if (frames.wanted() && !stats) throw user_error("--detail: with --frames each frame is one row; add --stats F.json for its details");
+  return chosen;
+}
+
 RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) const {
   const hw::Clock clock(static_cast<std::int64_t>(config.gpu.clock_mhz * 1e6));
   hw::RunLimits limits;
@@ -104,7 +127,7 @@ RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) con
     const std::int64_t cycles = parse_whole(*max_cycles, "--max-cycles", 1, kMaxCycles);
     if (cycles < hw::kNever / (clock.period() + 1)) limits.max_time = clock.edge(cycles);  // beyond that it is later than time goes
   }
-  return {config, std::move(limits), clock, clock.edge(window_cycles())};
+  return {config, std::move(limits), clock, clock.edge(window_cycles()), details()};
 }
 
 int RenderJob::run() {
@@ -130,8 +153,9 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
   const pipeline::MachineOptions options{.driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
                                          .window = setting.window,
                                          .leave_out = leave_out == "auto"};
-  pipeline::RenderedFrame frame = fidelity == "functional" ? pipeline::render_functional_frame(stream, setting.config.precision())
-                                                           : pipeline::render_exact(stream, setting.config, options, limits);
+  pipeline::RenderedFrame frame = fidelity == "functional"
+                                      ? pipeline::render_functional_frame(stream, setting.config.precision())
+                                      : pipeline::render_exact(stream, setting.config, options, limits, setting.detail);
   std::vector<pipeline::LeftOut>& left_out_of_frame = frame.figures.left_out;
   left_out_of_frame.insert(left_out_of_frame.begin(), loaded.left_out.begin(), loaded.left_out.end());
   progress.show("writing");

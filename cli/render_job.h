@@ -19,6 +19,7 @@ struct RenderJob {
   FrameArguments frames;  ///< of `render` alone
   std::optional<std::string> out, depth, stats, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
+  std::optional<std::string> detail;  ///< words, with commas between them
   bool alpha = false, quiet = false;
 
   /// Adds every option but those of the scene.
@@ -33,6 +34,7 @@ struct RenderJob {
     hw::RunLimits limits;
     hw::Clock clock;
     hw::Tick window = 0;
+    pipeline::DetailOptions detail;
   };
   /// Where one frame's files go.
   struct Outputs {
@@ -44,6 +46,8 @@ struct RenderJob {
   void check_options_meant() const;
   /// The window in cycles; 0 for an exact run. Throws `UserError` when it does not go with the other arguments.
   [[nodiscard]] std::int64_t window_cycles() const;
+  /// Throws `UserError` for a word that is none, and for details that nothing would show.
+  [[nodiscard]] pipeline::DetailOptions details() const;
   [[nodiscard]] Setting setting(const pipeline::MachineConfig& config) const;
   /// Draws a frame and writes its pictures.
   [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting, const Outputs& outputs) const;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <chrono>
 
+#include "pipeline/report/detail_log.h"
 #include "pipeline/report/host_cost.h"
 
 namespace quadrille::pipeline {
@@ -70,19 +71,21 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
 }
 
 RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config, const MachineOptions& options,
-                           const hw::RunLimits& limits) {
+                           const hw::RunLimits& limits, DetailOptions detail) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
   build_frame(stream, config.precision(), frame, options.leave_out);
   Machine machine(config, frame, options);
+  std::optional<DetailLog> log;
+  if (detail.any()) log.emplace(machine, frame, detail);
   const double build_s = seconds_since(start);
   const auto simulate = Clock::now();
   const double cpu = cpu_seconds();
   machine.run(limits);
   const double simulate_s = seconds_since(simulate);
   const double simulate_cpu_s = cpu_seconds() - cpu;
-  out.figures = collect_figures(machine, frame);
+  out.figures = collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt);
   out.figures.scene = stream.name;
   if (options.window > 0) {
     out.figures.fidelity = "approximate";

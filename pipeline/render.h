@@ -26,8 +26,9 @@ struct RenderedFrame {
 [[nodiscard]] RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision,
                                                     const TriangleObserver& observer = {});
 
-/// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream or the machine cannot do.
+/// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream or the machine cannot do. `detail`: what the figures tell
+/// of single draws and parts of the screen; it changes nothing else.
 [[nodiscard]] RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config,
-                                         const MachineOptions& options = {}, const hw::RunLimits& limits = {});
+                                         const MachineOptions& options = {}, const hw::RunLimits& limits = {}, DetailOptions detail = {});
 
 }  // namespace quadrille::pipeline

@@ -1,6 +1,8 @@
 /// Counters of units. A counter is declared once, with name, unit and definition, and is its own storage; reports, JSON and documentation walk the group.
 #pragma once
 
+#include "hw/base/work_log.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -43,7 +45,24 @@ class StatGroup {
   void add(Counter& c);
   void add(Histogram& h);
 
+  /// What is counted from here on is for this draw, `kNoDraw` if for none, and, where one is known, for this tile of 8x8 pixels of its target.
+  void working_for(std::uint32_t draw) {
+    if (log_ != nullptr) log_->turn_to({draw, kNoTile});
+  }
+  void working_for(std::uint32_t draw, std::uint32_t tile_x, std::uint32_t tile_y) {
+    if (log_ != nullptr) log_->turn_to({draw, tile_at(tile_x, tile_y)});
+  }
+  /// The same draw, but for this tile.
+  void working_at(std::uint32_t tile_x, std::uint32_t tile_y) {
+    if (log_ != nullptr) log_->turn_to({log_->now().draw, tile_at(tile_x, tile_y)});
+  }
+  /// Null while nobody asks for which draw anything was counted.
+  [[nodiscard]] WorkLog* log() const { return log_; }
+  /// Before the run. A log changes no count, so a group that one may but read can have one.
+  void keep_log(WorkLog& log) const { log_ = &log; }
+
  private:
+  mutable WorkLog* log_ = nullptr;
   std::vector<Statistic*> all_;
   std::vector<Counter*> counters_;
   std::vector<Histogram*> histograms_;
@@ -63,6 +82,8 @@ class Counter final : public Statistic {
     return *this;
   }
   [[nodiscard]] std::uint64_t value() const { return value_; }
+  /// Where it is kept; for a log.
+  [[nodiscard]] const std::uint64_t& storage() const { return value_; }
 
  private:
   std::uint64_t value_ = 0;

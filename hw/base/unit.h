@@ -146,6 +146,8 @@ class Unit : public sc_core::sc_module {
   void set_quiet_log(const QuietLog& log) { quiet_ = &log; }
 
   [[nodiscard]] std::int64_t busy_cycles() const { return to_cycles(busy_); }
+  /// The span behind `busy_cycles`, where it is kept; for a log of whom the unit was busy for.
+  [[nodiscard]] const std::int64_t& busy_storage() const { return busy_; }
   [[nodiscard]] std::int64_t waiting_cycles() const { return to_cycles(waiting_); }
   [[nodiscard]] std::int64_t starved_cycles() const { return to_cycles(starved_); }
   [[nodiscard]] std::int64_t blocked_cycles() const { return to_cycles(blocked_); }

@@ -55,6 +55,7 @@ void CommandProcessor::take_retirements(Tick now) {
   const std::uint32_t all = *std::min_element(retired_by_.begin(), retired_by_.end());
   stats_.draws_retired += all - retired_;
   retired_ = all;
+  retired_at_.resize(all, now);
   if (step_ == Step::kWaitFlush && flushes_ == static_cast<int>(retire_in.size())) {
     flushes_ = 0;
     render_end_ = now;
@@ -66,6 +67,7 @@ void CommandProcessor::take_retirements(Tick now) {
 
 void CommandProcessor::issue(Tick now) {
   const PassState& pass = frame_.passes[std::min<std::size_t>(pass_, frame_.passes.size() - 1)];
+  stats_.working_for(step_ == Step::kDraw || step_ == Step::kDrawEnd ? draw_ : kNoDraw);
   switch (step_) {
     case Step::kPassBegin:
       quiet_log_.add(quiet_since_, now);
@@ -76,6 +78,7 @@ void CommandProcessor::issue(Tick now) {
     case Step::kDraw:
       draw_out.push(now, {TokenKind::kWork, draw_});
       ++stats_.draws;
+      issued_at_.push_back(now);
       free_ = after(now, params_.draw_clk);
       occupy(now, params_.draw_clk);
       step_ = Step::kDrawEnd;

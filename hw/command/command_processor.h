@@ -49,6 +49,9 @@ class CommandProcessor final : public Unit {
   /// Tick at which the last pass was flushed, and at which the last image was read.
   [[nodiscard]] Tick render_end() const { return render_end_; }
   [[nodiscard]] Tick end() const { return end_; }
+  /// By draw: tick at which it was issued, and at which every partition had retired it.
+  [[nodiscard]] const std::vector<Tick>& issued_at() const { return issued_at_; }
+  [[nodiscard]] const std::vector<Tick>& retired_at() const { return retired_at_; }
 
  private:
   enum class Step : std::uint8_t { kPassBegin, kDraw, kDrawEnd, kPassEnd, kWaitFlush, kScan, kWaitScan, kDone };
@@ -69,6 +72,7 @@ class CommandProcessor final : public Unit {
   Tick quiet_since_ = 0, render_end_ = 0, end_ = 0;
   std::vector<std::uint32_t> retired_by_;  ///< draws retired, by partition
   std::uint32_t retired_ = 0;              ///< draws retired everywhere
+  std::vector<Tick> issued_at_, retired_at_;
   int flushes_ = 0;
 };
 

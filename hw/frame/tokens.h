@@ -6,6 +6,7 @@
 ///   kSync      all tiles of the triangles before `sequence` have passed (their slots may be reused once retired)
 #pragma once
 
+#include "hw/base/work_log.h"
 #include "models/geometry/post_transform.h"
 
 #include <cstdint>
@@ -13,6 +14,11 @@
 namespace quadrille::hw {
 
 enum class TokenKind : std::uint8_t { kWork, kBatchEnd, kDrawEnd, kPassBegin, kPassEnd, kSync };
+
+/// The draw that a token of this kind and index belongs to; the bounds of a pass belong to none.
+[[nodiscard]] constexpr std::uint32_t draw_of(TokenKind kind, std::uint32_t index) {
+  return kind == TokenKind::kPassBegin || kind == TokenKind::kPassEnd ? kNoDraw : index;
+}
 
 /// Command processor -> vertex fetch: draw it, or a pass boundary (then `index` is the pass).
 struct DrawToken {
@@ -147,6 +153,7 @@ struct MemoryRequest {
   std::uint8_t sectors = 0;
   Kind kind = Kind::kRead;
   MemoryClient client = MemoryClient::kVertexFetch;  ///< written by the L2 slice
+  std::uint32_t draw = kNoDraw;                      ///< for the figures alone: on whose behalf
 };
 struct MemoryResponse {
   std::uint32_t line = 0;

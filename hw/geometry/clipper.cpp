@@ -26,6 +26,7 @@ void Clipper::spend(Tick now, std::int64_t cost) {
 
 void Clipper::act(Tick now) {
   const PrimitiveToken& token = primitive_in.front();
+  stats_.working_for(draw_of(token.kind, token.index));
   if (next_piece_ == 0 && token.kind == TokenKind::kWork) return take_triangle(now);
   spend(now, WorkRate::cost(params_.triangles_per_clk));
   if (next_piece_ > 0) return emit_piece(now, next_piece_);

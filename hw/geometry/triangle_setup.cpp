@@ -51,6 +51,7 @@ void TriangleSetupUnit::take_syncs(Tick now) {
 
 void TriangleSetupUnit::work(Tick now) {
   const ClippedToken token = clipped_in.pop(now);
+  stats_.working_for(draw_of(token.kind, token.index));
   std::int64_t cost = WorkRate::cost(params_.culled_per_clk);
   if (token.kind == TokenKind::kWork) {
     if (set_up(now, token)) cost = WorkRate::cost(params_.drawn_per_clk);

@@ -77,6 +77,7 @@ void VertexFetch::build(Tick now) {
   if (next_line_ < lines_.size()) return look_up(now);
   if (drawing_) return form_batch(now);
   const DrawToken token = draw_in.pop(now);
+  stats_.working_for(draw_of(token.kind, token.index));
   if (token.kind == TokenKind::kWork) {
     start_draw(token.index);
   } else {

@@ -26,6 +26,7 @@ L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses)
     : tags_(static_cast<std::uint32_t>(lines), static_cast<std::uint32_t>(ways)),
       misses_(static_cast<std::size_t>(misses)),
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
+      group_(stats),
       stats_(stats) {
   for (std::size_t i = misses_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
 }
@@ -66,12 +67,27 @@ L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::u
 int L1Cache::place(std::uint32_t line, MemoryPort& port) {
   const models::TagArray::Allocation got = tags_.allocate(line);
   if (got.slot == models::TagArray::kNone || parts_.empty()) return got.slot;
-  write_back(got.victim.line, got.victim.dirty, std::exchange(parts_[static_cast<std::size_t>(got.slot)], 0), port);
+  write_back(got.slot, got.victim.line, got.victim.dirty, port);
   return got.slot;
 }
 
-void L1Cache::write_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port) {
+void L1Cache::write_back(int slot, std::uint32_t line, std::uint8_t sectors, MemoryPort& port) {
+  const std::uint32_t parts = parts_.empty() ? 0 : std::exchange(parts_[static_cast<std::size_t>(slot)], 0);
   if (sectors == 0 && parts == 0) return;
+  WorkLog* const log = group_.log();
+  if (log == nullptr) return send_back(line, sectors, parts, port);
+  const Work now = log->now();
+  log->turn_to(writers_[static_cast<std::size_t>(slot)]);
+  send_back(line, sectors, parts, port);
+  log->turn_to(now);
+}
+
+void L1Cache::note_writer(int slot) {
+  writers_.resize(static_cast<std::size_t>(tags_.slots()));
+  writers_[static_cast<std::size_t>(slot)] = group_.log()->now();
+}
+
+void L1Cache::send_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port) {
   if (sectors != 0) port.write(line, sectors);
   if (parts != 0) port.write_part(line, sectors_with_any(parts));
   memory_->mark_clean(line);
@@ -103,6 +119,7 @@ void L1Cache::write(std::uint32_t line, std::uint32_t words) {
   const models::TagArray::Line& held = tags_.at(slot);
   std::uint32_t& parts = parts_[static_cast<std::size_t>(slot)];
   if (held.dirty == 0 && parts == 0) memory_->mark_dirty(line, owner_);
+  if (group_.log() != nullptr) note_writer(slot);
   parts |= words;
   // Those under way become whole when they arrive.
   const auto whole = static_cast<std::uint8_t>((held.valid | sectors_with_all(parts)) & ~held.pending);
@@ -113,7 +130,7 @@ void L1Cache::flush(MemoryPort& port) {
   QUADRILLE_CHECK(idle(), "flush with {} misses under way", misses_.size() - free_.size());
   for (int slot = 0; slot < tags_.slots(); ++slot) {
     const models::TagArray::Line& held = tags_.at(slot);
-    write_back(held.line, held.dirty, parts_.empty() ? 0 : std::exchange(parts_[static_cast<std::size_t>(slot)], 0), port);
+    write_back(slot, held.line, held.dirty, port);
     tags_.clean(slot);
   }
   tags_.invalidate_all();

@@ -5,6 +5,8 @@
 ///
 /// A sector that is written in part is not read first: a mask keeps which of its words (of 4 bytes) were written. It becomes whole when the others are written
 /// too, or when someone reads it and the rest is fetched; else it leaves as it is, and the level below completes it.
+///
+/// In a unit that keeps a log of its work (hw/base/work_log.h), a line that is written back counts for whom it was written last, whoever takes its place.
 #pragma once
 
 #include "hw/memory/memory_port.h"
@@ -78,7 +80,9 @@ class L1Cache {
   int place(std::uint32_t line, MemoryPort& port);
   /// Sectors became whole: what was written of them in parts is in them now.
   void complete(int slot, std::uint8_t sectors);
-  void write_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port);
+  void write_back(int slot, std::uint32_t line, std::uint8_t sectors, MemoryPort& port);
+  void send_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port);
+  void note_writer(int slot);
 
   models::TagArray tags_;
   models::DeviceMemory* memory_ = nullptr;
@@ -86,6 +90,8 @@ class L1Cache {
   std::vector<Miss> misses_;
   std::vector<std::uint32_t> free_;
   std::vector<int> miss_of_slot_;
+  StatGroup& group_;
+  std::vector<Work> writers_;         ///< by slot: for whom a dirty line was written last, while the unit keeps a log
   std::vector<std::uint32_t> parts_;  ///< by slot: words written of sectors that are not whole; empty in a cache that does not write
   L1CacheStats stats_;
 };

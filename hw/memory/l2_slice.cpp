@@ -95,6 +95,7 @@ void L2Slice::send_answers(Tick now) {
 
 void L2Slice::look_up(Tick now, std::uint32_t client) {
   const MemoryRequest request = request_in[client].front();
+  stats_.working_for(request.draw);
   bool taken = true;
   switch (request.kind) {
     case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
@@ -174,7 +175,8 @@ L2Slice::Miss* L2Slice::fetch(Tick now, std::uint32_t client, const MemoryReques
     tags_.mark_pending(slot, missing);
     miss.pending |= missing;
     stats_.fill_bytes += bytes_of(missing);
-    to_memory_.push_back({after(now, params_.hit_clk), {request.line, tag, missing, MemoryRequest::Kind::kRead, client_kinds_[client]}});
+    to_memory_.push_back(
+        {after(now, params_.hit_clk), {request.line, tag, missing, MemoryRequest::Kind::kRead, client_kinds_[client], request.draw}});
   } else {
     ++stats_.merged;
   }

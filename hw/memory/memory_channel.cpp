@@ -146,6 +146,7 @@ void MemoryChannel::note_occupancy(std::int64_t cycle) {
 
 void MemoryChannel::take(Tick now, std::int64_t cycle) {
   const MemoryRequest request = request_in.pop(now);
+  stats_->working_for(request.draw);
   const bool write = request.kind == MemoryRequest::Kind::kWrite;
   const auto bytes = models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(request.sectors));
   note_occupancy(cycle);

@@ -10,11 +10,16 @@
 namespace quadrille::hw {
 
 MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices)
-    : stats_(stats), interleave_(static_cast<std::uint32_t>(std::max(slices, 1))) {
+    : group_(stats), stats_(stats), interleave_(static_cast<std::uint32_t>(std::max(slices, 1))) {
   for (int i = 0; i < slices; ++i) {
     request_out.push_back(std::make_unique<FifoOut<MemoryRequest>>(owner, fmt::format("memory_out_{}", i).c_str(), LinkRole::kReply));
     response_in.add(owner, fmt::format("memory_in_{}", i).c_str(), LinkRole::kReply);
   }
+}
+
+void MemoryPort::queue(const MemoryRequest& request) {
+  queue_.push_back({request, interleave_.member_of(request.line)});
+  if (const WorkLog* log = group_.log()) queue_.back().request.draw = log->now().draw;
 }
 
 void MemoryPort::read(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag) {

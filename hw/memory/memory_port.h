@@ -60,8 +60,9 @@ class MemoryPort {
     std::uint32_t slice = 0;
   };
   void queue_write(std::uint32_t line, std::uint8_t sectors, MemoryRequest::Kind kind);
-  void queue(const MemoryRequest& request) { queue_.push_back({request, interleave_.member_of(request.line)}); }
+  void queue(const MemoryRequest& request);
 
+  const StatGroup& group_;
   MemoryPortStats stats_;
   models::Interleave interleave_;
   Queue<Queued> queue_;

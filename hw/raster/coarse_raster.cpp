@@ -66,6 +66,7 @@ void CoarseRaster::spend(Tick now, std::int64_t cost) {
 
 void CoarseRaster::take_token(Tick now) {
   const TriangleToken token = triangle_in.pop(now);
+  stats_.working_for(draw_of(token.kind, token.index));
   if (token.kind == TokenKind::kWork) {
     if (stats_.triangles.value() == 0 || token.index != draw_) note_direction(frame_.draw(token.index));
     draw_ = token.index;
@@ -117,10 +118,15 @@ void CoarseRaster::look_ahead() {
   if (walk_.next(tile)) ahead_ = tile;
 }
 
+void CoarseRaster::drop(const models::TileHit& tile) {
+  stats_.working_for(draw_, static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y));
+  ++stats_.tiles_hidden;
+}
+
 void CoarseRaster::walk(Tick now) {
   std::optional<models::TileHit> found;
   while (ahead_ && !found) {
-    if (hidden(*ahead_)) ++stats_.tiles_hidden;
+    if (hidden(*ahead_)) drop(*ahead_);
     else found = ahead_;
     look_ahead();
   }

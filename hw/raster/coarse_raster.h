@@ -73,6 +73,7 @@ class CoarseRaster final : public Unit {
   void walk(Tick now);
   void begin_pass(std::uint32_t pass);
   [[nodiscard]] bool hidden(const models::TileHit& tile) const;
+  void drop(const models::TileHit& tile);
   void note_direction(const DrawState& draw);
 
   const Params& params_;

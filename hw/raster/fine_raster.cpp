@@ -30,6 +30,7 @@ Wake FineRaster::next() const {
 
 void FineRaster::act(Tick now) {
   const TileToken tile = tile_in.pop(now);
+  stats_.working_for(draw_of(tile.kind, tile.index));
   if (tile.kind == TokenKind::kWork) return rasterize(now, tile);
   for (auto& out : coverage_out) out->push(now, {tile.kind, false, 0, 0, tile.index, tile.triangle, 0});
   free_ = rate_.charge(now, WorkRate::kCycle);

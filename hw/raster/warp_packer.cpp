@@ -68,6 +68,7 @@ void WarpPacker::work(Tick now) {
 
 void WarpPacker::take_boundary(Tick now) {
   const CoverageToken token = coverage_in.pop(now);
+  stats_.working_for(draw_of(token.kind, token.index));
   if (token.kind == TokenKind::kSync && open_) {
     sync_ = token.triangle;
   } else {
@@ -79,6 +80,7 @@ void WarpPacker::take_boundary(Tick now) {
 
 void WarpPacker::take_quads(Tick now) {
   const CoverageToken& token = coverage_in.front();
+  stats_.working_for(token.index, token.tile_x, token.tile_y);
   const std::uint64_t slot = (open_ ? opened_ - 1 : opened_) % warps_.size();
   WarpSlot& warp = warps_[slot];
   if (!open_) {

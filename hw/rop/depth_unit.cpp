@@ -199,6 +199,7 @@ void DepthUnit::acquire_waiting(Tick now) {
 }
 
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
+  stats_.working_for(draw_of(entry.token.kind, entry.token.index));
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.index).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
     if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, {.read = sectors}, number & ~kLateBit, entry.missing, entry.done, port_))
@@ -211,6 +212,7 @@ bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
 bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
   if (entry.token.kind == TokenKind::kWork) {
     const WarpSlot& warp = warps_[entry.token.slot];
+    stats_.working_for(warp.draw);
     for (int q = 0; q < warp.quads; ++q) {
       if (((warp.alive >> (4 * q)) & 0xf) == 0) continue;
       const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
@@ -239,6 +241,8 @@ void DepthUnit::begin_pass(std::uint32_t pass) {
 
 void DepthUnit::test_early(Tick now) {
   CoverageToken token = early_.front().token;
+  if (token.kind == TokenKind::kWork) stats_.working_for(token.index, token.tile_x, token.tile_y);
+  else stats_.working_for(draw_of(token.kind, token.index));
   int cycles = 1;
   if (token.kind == TokenKind::kPassBegin) begin_pass(token.index);
   if (token.kind == TokenKind::kWork) {
@@ -307,6 +311,7 @@ void DepthUnit::send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y) {
 bool DepthUnit::test_late(Tick now) {
   const LateToken token = late_.front().token;
   if (token.kind == TokenKind::kPassEnd) {
+    stats_.working_for(kNoDraw);
     cache_.flush(port_, false);
     flush_ = Flush::kDraining;
     late_.pop_front();
@@ -314,6 +319,7 @@ bool DepthUnit::test_late(Tick now) {
     return true;
   }
   WarpSlot& warp = warps_[token.slot];
+  stats_.working_for(warp.draw);
   const DrawState& draw = frame_.draw(warp.draw);
   for (int q = 0; q < warp.quads && draw.depth_write; ++q) {
     const std::uint64_t lanes = (warp.alive >> (4 * q)) & 0xf;

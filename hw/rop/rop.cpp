@@ -149,6 +149,7 @@ void Rop::take_inputs(Tick now) {
 
 void Rop::take_late(Tick now) {
   if (late_in.pop(now).kind == TokenKind::kPassEnd) {
+    stats_.working_for(kNoDraw);
     cache_.flush(port_, true);
     flush_ = Flush::kDraining;
     return;
@@ -186,6 +187,7 @@ void Rop::acquire(Tick now) {
 
 bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
   const WarpSlot& warp = warps_[entry.token.slot];
+  stats_.working_for(warp.draw);
   const bool blends = models::reads_destination(frame_.draw(warp.draw).blend);
   std::array<TileTouch, models::kWarpQuads> tiles;
   const int count = touched_tiles(warp, tiles);
@@ -214,6 +216,7 @@ void Rop::retire(Tick now) {
   int cycles = 1;
   if (entry.token.kind == TokenKind::kWork) {
     const WarpSlot& warp = warps_[entry.token.slot];
+    stats_.working_for(warp.draw);
     if (!claim_colors(warp)) {  // a line was evicted since, and there is no place for it before the next fill
       claim_stalled_ = true;
       return;
@@ -225,7 +228,6 @@ void Rop::retire(Tick now) {
     stats_.discarded += discarded;
     if (warp.late) stats_.late_discarded += discarded;
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
-    stats_.written += static_cast<std::uint64_t>(live);
     cycles = write_colors(warp);
     shaded_[entry.token.slot] = false;
     release_out.push(now, {entry.token.slot, 0});
@@ -243,6 +245,7 @@ void Rop::retire(Tick now) {
 }
 
 void Rop::retire_boundary(Tick now, const Entry& entry) {
+  stats_.working_for(draw_of(entry.token.kind, entry.token.index));
   switch (entry.token.kind) {
     case TokenKind::kPassBegin: {
       pass_ = entry.token.index;
@@ -284,6 +287,8 @@ int Rop::write_colors(const WarpSlot& warp) {
     ++quads;
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
+    stats_.working_at(place.tile_x, place.tile_y);
+    stats_.written += static_cast<std::uint64_t>(std::popcount(lanes));
     float rgba[4][4];
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[c].begin() + 4 * q, 4, rgba[c]);
     auto* const tile =

@@ -13,7 +13,7 @@ constexpr unsigned kMaterialized = 1, kAcquired = 4;
 
 SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory,
                            models::DeviceMemory::Owner owner)
-    : cache_(stats, lines, ways, misses), memory_(memory), stats_(stats) {
+    : cache_(stats, lines, ways, misses), memory_(memory), group_(stats), stats_(stats) {
   cache_.own_dirty_lines(memory, owner);
 }
 
@@ -46,6 +46,7 @@ bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::
 
 bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes, std::uint32_t waiter, int& missing,
                            std::uint8_t& done, MemoryPort& port) {
+  group_.working_at(tile_x, tile_y);
   if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, done, port)) return false;
   for (int half = 0; half < 2; ++half) {
     if ((done & (kAcquired << half)) != 0) continue;
@@ -65,6 +66,7 @@ bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const Sec
 }
 
 bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels, MemoryPort& port) {
+  group_.working_at(tile_x, tile_y);
   for (std::size_t half = 0; half < 2; ++half) {
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
     std::uint32_t words = 0;  // a pixel is one

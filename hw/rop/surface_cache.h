@@ -75,6 +75,7 @@ class SurfaceCache {
 
   L1Cache cache_;
   models::DeviceMemory& memory_;
+  StatGroup& group_;
   SurfaceCacheStats stats_;
   models::SurfaceLayout surface_;
   std::vector<bool> cleared_;  ///< by tile

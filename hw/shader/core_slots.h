@@ -13,6 +13,7 @@ struct CoreSlot {
   std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseTextures> texels;
   std::uint32_t draw = 0, store_slot = 0;
   std::uint16_t partition = 0;
+  std::uint16_t tile_x = 0, tile_y = 0;  ///< fragment stage: of the warp's first quad
   bool vertex_stage = false;
   std::uint16_t simd = 0;                                  ///< where its clauses issue
   models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues

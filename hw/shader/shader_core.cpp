@@ -169,12 +169,15 @@ void ShaderCore::take_texels(Tick now) {
 
 void ShaderCore::accept(Tick now, FifoIn<WarpToken>& in, bool vertex) {
   const WarpToken token = in.pop(now);
+  stats_.working_for(token.draw);
   const std::uint32_t index = free_slots_.back();
   free_slots_.pop_back();
   CoreSlot& slot = slots_[index];
   slot.draw = token.draw;
   slot.store_slot = token.slot;
   slot.partition = token.partition;
+  slot.tile_x = token.tile_x;
+  slot.tile_y = token.tile_y;
   slot.vertex_stage = vertex;
   give_simd(slot);
   if (vertex) launch_vertex(slot);
@@ -228,6 +231,7 @@ void ShaderCore::issue(Tick now) {
   const std::uint32_t index = ready_.front().slot;
   ready_.pop_front();
   CoreSlot& slot = slots_[index];
+  stats_.working_for(slot.draw);
   warp_clock_.restart(timing_of(*slot.warp.program), slot.warp.program->num_regs);
   const models::ClauseResult result = models::run_clause(slot.warp, warp_clock_);
   const models::ClauseCost& cost = result.cost;

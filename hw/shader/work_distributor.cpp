@@ -95,6 +95,7 @@ std::size_t WorkDistributor::choose(Tick now, const Outputs& outputs, std::size_
 }
 
 void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core, std::size_t& turn) {
+  stats_.working_for(in.front().draw);
   outputs[core]->push(now, in.pop(now));
   ++loads_[core];
   turn = (core + 1) % outputs.size();

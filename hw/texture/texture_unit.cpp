@@ -95,6 +95,8 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group, 
 
 void TextureUnit::take(Tick now) {
   const TextureToken token = request_in.pop(now);
+  if (token.vertex_stage) stats_.working_for(token.draw);
+  else stats_.working_for(token.draw, slots_[token.slot].tile_x, slots_[token.slot].tile_y);
   lines_.clear();
   next_line_ = 0;
   Group group{token};

@@ -95,12 +95,13 @@ std::vector<ClientFigures> bandwidth(const Machine& m) {
 }
 
 /// All laws that a unit or the frame named: those of the pipeline in its order, then others.
-std::vector<Check> checks_of(const Machine& m, const DeviceFrame& frame) {
+std::vector<Check> checks_of(const Machine& m, const DeviceFrame& frame, const std::optional<Detail>& detail) {
   hw::Audit audit;
   for (const hw::Unit* unit : m.units()) unit->audit(audit);
   audit.right(hw::laws::kDrawsOfFrame, frame.frame.draws.size());
   if (!frame.frame.passes.empty()) audit.right(hw::laws::kScanOut, frame.frame.passes.back().color.bytes());
   audit.left(hw::laws::kDirtyLines, frame.memory.dirty_lines());
+  if (detail) detail->audit(audit);
   const auto place = [](const hw::Audit::Sides& sides) { return std::ranges::find(hw::laws::kAll, sides.law) - hw::laws::kAll.begin(); };
   std::vector<hw::Audit::Sides> all = audit.all();
   std::ranges::stable_sort(all, {}, place);
@@ -142,8 +143,9 @@ Fates fates_of(const Machine& m) {
 
 }  // namespace
 
-Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
+Figures collect_figures(const Machine& m, const DeviceFrame& frame, std::optional<Detail> detail) {
   Figures f;
+  f.detail = std::move(detail);
   using Core = hw::ShaderCore::Stats;
   f.frame.cycles = m.clock().edges_before(m.end());
   f.frame.render_cycles = m.clock().edges_before(m.one<hw::CommandProcessor>().render_end());
@@ -164,7 +166,7 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame) {
   }
   for (std::size_t i = 0; i < m.links().size(); ++i) f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));
   f.bandwidth = bandwidth(m);
-  f.checks = checks_of(m, frame);
+  f.checks = checks_of(m, frame, f.detail);
   // The counted work at its peak rates fits into the frame.
   const auto light = static_cast<std::int64_t>(std::ceil(speed_of_light(f).cycles - 1e-6));
   f.checks.push_back({"cycles are not below the least time of the counted work", "frame.cycles below frame.least_cycles", "none",

@@ -3,9 +3,11 @@
 
 #include "pipeline/functional/fates.h"
 #include "pipeline/machine/machine.h"
+#include "pipeline/report/detail.h"
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -105,6 +107,7 @@ struct Figures {
   std::vector<ClientFigures> bandwidth;
   std::vector<Check> checks;
   std::vector<LeftOut> left_out;
+  std::optional<Detail> detail;  ///< only where it was asked for
   HostFigures host;
   [[nodiscard]] bool checks_hold() const;
 };
@@ -112,7 +115,7 @@ struct Figures {
 /// Bytes that the memory channels moved, read and written. 0 when not simulated.
 [[nodiscard]] std::uint64_t memory_bytes(const Figures& figures);
 
-/// Reads the figures of a machine that has run. `host` is left to the caller.
-[[nodiscard]] Figures collect_figures(const Machine& machine, const DeviceFrame& frame);
+/// Reads the figures of a machine that has run, with the detail that was kept. `host` is left to the caller.
+[[nodiscard]] Figures collect_figures(const Machine& machine, const DeviceFrame& frame, std::optional<Detail> detail = {});
 
 }  // namespace quadrille::pipeline

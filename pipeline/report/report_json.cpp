@@ -117,6 +117,64 @@ Json limit_json(const Figures& f) {
           {"waiting", s.waiting}};
 }
 
+/// Counts of a draw, in their groups.
+Json counts_json(const DrawFigures& draw) {
+  Json groups = Json::object();
+  for (std::size_t i = 0; i < kReportedDrawCounts; ++i)
+    groups[std::string(draw_counts()[i].group)][std::string(draw_counts()[i].key)] = draw.counts[i];
+  return groups;
+}
+
+/// Of the kinds that worked for it.
+template <class Cycles>
+Json by_kind(const std::vector<std::string>& kinds, const std::vector<Cycles>& cycles) {
+  Json all = Json::object();
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    if (cycles[k] > 0) all[kinds[k]] = cycles[k];
+  return all;
+}
+
+Json draw_json(const Detail& d, const DrawFigures& draw) {
+  Json all = {{"label", draw.label},
+              {"pass", draw.pass},
+              {"issued", draw.issued},
+              {"retired", draw.retired},
+              {"cycles_in_flight", draw.in_flight()}};
+  all.update(counts_json(draw));
+  const DrawLimiter limiter = d.limiter(draw);
+  all["busy"] = by_kind(d.kinds, draw.busy);
+  all["work"] = by_kind(d.kinds, draw.work);
+  all["limiter"] = {{"kind", limiter.kind()}, {"unit", limiter.unit}, {"work_cycles", limiter.work}, {"share", limiter.share}};
+  return all;
+}
+
+Json tiles_json(const TileFigures& tiles) {
+  Json all = {{"width", tiles.width}, {"height", tiles.height}, {"tile_pixels", tiles.pixels}};
+  Json outside = Json::object();
+  for (std::size_t i = 0; i < kTileCounts; ++i) {
+    const std::string key(tile_counts()[i].key);
+    std::vector<std::uint64_t> counts = tiles.counts[i];
+    outside[key] = counts.back();
+    counts.pop_back();
+    all[key] = std::move(counts);
+  }
+  all["outside_tiles"] = std::move(outside);
+  return all;
+}
+
+/// Adds what was asked for.
+void add_detail(Json& document, const std::optional<Detail>& detail) {
+  if (!detail) return;
+  if (detail->wanted.draws) {
+    Json draws = Json::array();
+    for (const DrawFigures& draw : detail->draws) draws.push_back(draw_json(*detail, draw));
+    document["draws"] = std::move(draws);
+    document["outside_draws"] = counts_json(detail->outside_draws);
+    document["outside_draws"]["busy"] = by_kind(detail->kinds, detail->outside_draws.busy);
+  }
+  if (detail->wanted.tiles) document["tiles"] = tiles_json(detail->tiles);
+}
+
 Json host_json(const Figures& f) {
   const HostFigures& h = f.host;
   return {{"load_s", h.load_s},
@@ -150,20 +208,21 @@ std::string report_json(const ReportSubject& s) {
   for (const UnitFigures& u : f.units) units[u.path] = unit_json(u);
   for (const ClientFigures& c : f.bandwidth) bandwidth[c.name] = {{"read_bytes", c.read_bytes}, {"write_bytes", c.write_bytes}};
   for (const LeftOut& l : f.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
-  const Json document = {{"schema", kFiguresSchema},
-                         {"scene", f.scene},
-                         {"fidelity", f.fidelity},
-                         {"window_cycles", f.window_cycles},
-                         {"machine", Json::parse(machine_json(s.machine))},
-                         {"frame", frame_json(s)},
-                         {"notes", notes_on(f)},
-                         {"units", std::move(units)},
-                         {"counter_definitions", definitions_json(f)},
-                         {"limit", limit_json(f)},
-                         {"bandwidth", std::move(bandwidth)},
-                         {"checks", checks_json(f)},
-                         {"left_out", std::move(left_out)},
-                         {"host", host_json(f)}};
+  Json document = {{"schema", kFiguresSchema},
+                   {"scene", f.scene},
+                   {"fidelity", f.fidelity},
+                   {"window_cycles", f.window_cycles},
+                   {"machine", Json::parse(machine_json(s.machine))},
+                   {"frame", frame_json(s)},
+                   {"notes", notes_on(f)},
+                   {"units", std::move(units)},
+                   {"counter_definitions", definitions_json(f)},
+                   {"limit", limit_json(f)},
+                   {"bandwidth", std::move(bandwidth)},
+                   {"checks", checks_json(f)},
+                   {"left_out", std::move(left_out)}};
+  add_detail(document, f.detail);
+  document["host"] = host_json(f);
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -177,6 +177,37 @@ std::string checks_text(const Figures& f) {
   return fmt::format("\nCHECKS  {} of {} laws hold\n{}", holding, f.checks.size(), failed_checks(f));
 }
 
+/// The draws that were in flight longest, in as many lines.
+constexpr std::size_t kDearestDraws = 10;
+
+std::string limiter_text(const DrawLimiter& l) {
+  if (l.unit.empty()) return "latency";
+  const std::string work = fmt::format("{} works for {:.0f} cycles, {:.1f} %", l.unit, l.work, 100 * l.share);
+  return l.latency() ? fmt::format("latency ({})", work) : work;
+}
+
+std::string draws_text(const Figures& f) {
+  if (!f.detail || !f.detail->wanted.draws || f.detail->draws.empty()) return "";
+  const Detail& d = *f.detail;
+  std::vector<const DrawFigures*> dearest;
+  for (const DrawFigures& draw : d.draws) dearest.push_back(&draw);
+  std::ranges::stable_sort(dearest, std::ranges::greater{}, &DrawFigures::in_flight);
+  dearest.resize(std::min(dearest.size(), kDearestDraws));
+  std::string out = fmt::format(
+      "\nDRAWS  the {} of {} that were in flight longest; draws overlap. Limiter: the unit with most work, if that is half of the time\n"
+      "  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n",
+      dearest.size(), d.draws.size(), "draw", "label", "pass", "cycles", "triangles", "drawn", "fragments", "limiter");
+  for (const DrawFigures* draw : dearest) {
+    std::string label = draw->label;
+    if (label.size() > 39) label = label.substr(0, 36) + "...";
+    out +=
+        fmt::format("  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n", draw - d.draws.data(), label, draw->pass,
+                    grouped(static_cast<std::uint64_t>(draw->in_flight())), grouped(draw->of(DrawCount::kTrianglesIn)),
+                    grouped(draw->of(DrawCount::kTrianglesDrawn)), grouped(draw->of(DrawCount::kShaded)), limiter_text(d.limiter(*draw)));
+  }
+  return out;
+}
+
 std::string left_out_text(const Figures& f) {
   if (f.left_out.empty()) return "";
   std::string out = "\nLEFT OUT  what this frame does not need\n";
@@ -224,7 +255,8 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
   return frame_text(subject) + notes_text(subject.figures) + units_text(subject, rows) + limit_text(subject.figures) +
-         bandwidth_text(subject) + checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
+         bandwidth_text(subject) + draws_text(subject.figures) + checks_text(subject.figures) + left_out_text(subject.figures) +
+         host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

@@ -1,0 +1,216 @@
+/// Which counters make a draw's or a tile's figures, and the laws of their sums.
+#include "pipeline/report/detail.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+/// A law that holds for each draw by itself, between counts of different units.
+struct DrawLaw {
+  hw::Law law;
+  std::vector<DrawCount> left, right;
+};
+
+const std::vector<DrawLaw>& draw_laws() {
+  using enum DrawCount;
+  static const std::vector<DrawLaw> laws{
+      {{"each draw: vertices fetched = vertices shaded", "draws that differ", "none"}, {kVerticesFetched}, {kVerticesShaded}},
+      {{"each draw: vertices shaded = vertices assembled", "draws that differ", "none"}, {kVerticesShaded}, {kVerticesAssembled}},
+      {{"each draw: triangles fetched = triangles assembled", "draws that differ", "none"}, {kTrianglesFetched}, {kTrianglesIn}},
+      {{"each draw: triangles assembled = triangles to clip", "draws that differ", "none"}, {kTrianglesIn}, {kTrianglesClipped}},
+      {{"each draw: triangles kept = triangles walked", "draws that differ", "none"}, {kTrianglesDrawn}, {kTrianglesWalked}},
+      {{"each draw: fragments covered = killed early + packed", "draws that differ", "none"}, {kCovered}, {kKilledEarly, kPacked}},
+      {{"each draw: fragments packed = fragments shaded", "draws that differ", "none"}, {kPacked}, {kShaded}},
+      {{"each draw: fragments shaded = fragments at the ROP", "draws that differ", "none"}, {kShaded}, {kAtRop}},
+      {{"each draw: fragments shaded = discarded + killed late + written", "draws that differ", "none"},
+       {kShaded},
+       {kDiscarded, kKilledLate, kWritten}},
+      {{"each draw: texture requests sent = answered", "draws that differ", "none"}, {kTextureSent}, {kTextureTaken}},
+      {{"each draw: requests of clients = requests looked up in L2", "draws that differ", "none"}, {kClientRequests}, {kL2Requests}},
+      {{"each draw: bytes filled into L2 = bytes read from memory", "draws that differ", "none"}, {kFillBytes}, {kMemoryReadBytes}}};
+  return laws;
+}
+
+constexpr hw::Law kBusyOfDraws{"busy cycles for draws and for none = of the units", "draws.busy + outside_draws.busy", "units.busy"};
+
+std::uint64_t sum(const DrawFigures& draw, const std::vector<DrawCount>& counts) {
+  std::uint64_t sum = 0;
+  for (const DrawCount c : counts) sum += draw.of(c);
+  return sum;
+}
+
+}  // namespace
+
+const std::array<DetailCount, kDrawCounts>& draw_counts() {
+  static const std::array<DetailCount, kDrawCounts> counts{{
+      {"triangles",
+       "in",
+       {{"primitive_assembly", "triangles"}},
+       {"triangles of draws and of none = of the frame", "draws.triangles.in + outside_draws", "primitive_assembly.triangles"}},
+      {"triangles",
+       "drawn",
+       {{"triangle_setup", "kept"}},
+       {"triangles drawn of draws and of none = of the frame", "draws.triangles.drawn + outside_draws", "triangle_setup.kept"}},
+      {"vertices",
+       "shaded",
+       {{"core", "vertices"}},
+       {"vertices shaded for draws and for none = for the frame", "draws.vertices.shaded + outside_draws", "core.vertices"}},
+      {"fragments",
+       "covered",
+       {{"fine_raster", "fragments"}},
+       {"fragments covered of draws and of none = of the frame", "draws.fragments.covered + outside_draws", "fine_raster.fragments"}},
+      {"fragments",
+       "shaded",
+       {{"core", "fragments"}},
+       {"fragments shaded of draws and of none = of the frame", "draws.fragments.shaded + outside_draws", "core.fragments"}},
+      {"fragments",
+       "killed_early",
+       {{"depth", "early_killed"}},
+       {"fragments killed early of draws and of none = of the frame", "draws.fragments.killed_early + outside_draws",
+        "depth.early_killed"}},
+      {"fragments",
+       "killed_late",
+       {{"depth", "late_killed"}},
+       {"fragments killed late of draws and of none = of the frame", "draws.fragments.killed_late + outside_draws", "depth.late_killed"}},
+      {"fragments",
+       "discarded",
+       {{"rop", "discarded"}},
+       {"fragments discarded of draws and of none = of the frame", "draws.fragments.discarded + outside_draws", "rop.discarded"}},
+      {"fragments",
+       "written",
+       {{"rop", "written"}},
+       {"fragments written of draws and of none = of the frame", "draws.fragments.written + outside_draws", "rop.written"}},
+      {"texture",
+       "samples",
+       {{"texture", "lanes"}},
+       {"samples for draws and for none = for the frame", "draws.texture.samples + outside_draws", "texture.lanes"}},
+      {"texture",
+       "texels",
+       {{"texture", "texels"}},
+       {"texels for draws and for none = for the frame", "draws.texture.texels + outside_draws", "texture.texels"}},
+      {"texture",
+       "cache_misses",
+       {{"texture", "cache_misses"}},
+       {"texture misses for draws and for none = for the frame", "draws.texture.cache_misses + outside_draws", "texture.cache_misses"}},
+      {"bytes",
+       "vertex_fetch",
+       {{"vertex_fetch", "read_bytes"}, {"vertex_fetch", "write_bytes"}},
+       {"bytes of vertex fetch for draws and for none = for the frame", "draws.bytes.vertex_fetch + outside_draws",
+        "vertex_fetch.read_bytes + write_bytes"}},
+      {"bytes",
+       "texture",
+       {{"texture", "read_bytes"}, {"texture", "write_bytes"}},
+       {"bytes of textures for draws and for none = for the frame", "draws.bytes.texture + outside_draws",
+        "texture.read_bytes + write_bytes"}},
+      {"bytes",
+       "depth",
+       {{"depth", "read_bytes"}, {"depth", "write_bytes"}},
+       {"bytes of depth for draws and for none = for the frame", "draws.bytes.depth + outside_draws", "depth.read_bytes + write_bytes"}},
+      {"bytes",
+       "color",
+       {{"rop", "read_bytes"}, {"rop", "write_bytes"}},
+       {"bytes of colour for draws and for none = for the frame", "draws.bytes.color + outside_draws", "rop.read_bytes + write_bytes"}},
+      {"bytes",
+       "memory",
+       {{"memory", "read_bytes"}, {"memory", "write_bytes"}},
+       {"bytes of memory for draws and for none = for the frame", "draws.bytes.memory + outside_draws", "memory.read_bytes + write_bytes"}},
+      {"", "", {{"vertex_fetch", "vertices"}}, {}},
+      {"", "", {{"primitive_assembly", "vertices"}}, {}},
+      {"", "", {{"vertex_fetch", "triangles"}}, {}},
+      {"", "", {{"clipper", "triangles"}}, {}},
+      {"", "", {{"coarse_raster", "triangles"}}, {}},
+      {"", "", {{"warp_packer", "fragments"}}, {}},
+      {"", "", {{"rop", "fragments_in"}}, {}},
+      {"", "", {{"core", "texture_instructions"}}, {}},
+      {"", "", {{"texture", "requests"}}, {}},
+      {"", "", {{"texture", "bilinear_quads"}}, {}},
+      {"",
+       "",
+       {{"core", "simd_busy"}},
+       {"cycles of SIMD units for draws and for none = for the frame", "draws.busy.core + outside_draws", "core.simd_busy"}},
+      {"",
+       "",
+       {{"vertex_fetch", "memory_reads"},
+        {"vertex_fetch", "memory_writes"},
+        {"texture", "memory_reads"},
+        {"texture", "memory_writes"},
+        {"depth", "memory_reads"},
+        {"depth", "memory_writes"},
+        {"rop", "memory_reads"},
+        {"rop", "memory_writes"},
+        {"scan_out", "memory_reads"},
+        {"scan_out", "memory_writes"}},
+       {}},
+      {"", "", {{"l2", "requests"}}, {}},
+      {"", "", {{"l2", "fill_bytes"}}, {}},
+      {"", "", {{"memory", "read_bytes"}}, {}},
+  }};
+  return counts;
+}
+
+const std::array<DetailCount, kTileCounts>& tile_counts() {
+  static const std::array<DetailCount, kTileCounts> counts{{
+      {"",
+       "fragments_shaded",
+       {{"warp_packer", "fragments"}},
+       {"fragments of tiles and of none = shaded", "tiles.fragments_shaded + outside_tiles", "core.fragments"},
+       {{"core", "fragments"}}},
+      {"",
+       "fragments_killed_early",
+       {{"depth", "early_killed"}},
+       {"fragments killed early of tiles and of none = of the frame", "tiles.fragments_killed_early + outside_tiles",
+        "depth.early_killed"}},
+      {"",
+       "tiles_hidden",
+       {{"coarse_raster", "tiles_hidden"}},
+       {"tiles hidden by Hi-Z of tiles and of none = of the frame", "tiles.tiles_hidden + outside_tiles", "coarse_raster.tiles_hidden"}},
+      {"",
+       "fragments_written",
+       {{"rop", "written"}},
+       {"fragments written of tiles and of none = of the frame", "tiles.fragments_written + outside_tiles", "rop.written"}},
+      {"",
+       "texture_cache_misses",
+       {{"texture", "cache_misses"}},
+       {"texture misses of tiles and of none = of the frame", "tiles.texture_cache_misses + outside_tiles", "texture.cache_misses"}},
+      {"",
+       "bytes",
+       {{"depth", "read_bytes"}, {"depth", "write_bytes"}, {"rop", "read_bytes"}, {"rop", "write_bytes"}},
+       {"bytes of depth and colour of tiles and of none = of the frame", "tiles.bytes + outside_tiles",
+        "depth.read_bytes + write_bytes + rop.read_bytes + write_bytes"}},
+  }};
+  return counts;
+}
+
+DrawLimiter Detail::limiter(const DrawFigures& draw) const {
+  const auto most = std::ranges::max_element(draw.work);
+  if (most == draw.work.end() || *most <= 0) return {};
+  const auto cycles = static_cast<double>(std::max<std::int64_t>(1, draw.in_flight()));
+  return {kinds[static_cast<std::size_t>(most - draw.work.begin())], *most, *most / cycles};
+}
+
+void Detail::audit(hw::Audit& audit) const {
+  std::vector<const DrawFigures*> all{&outside_draws};
+  for (const DrawFigures& draw : draws) all.push_back(&draw);
+  for (std::size_t i = 0; i < kDrawCounts; ++i) {
+    const hw::Law& law = draw_counts()[i].law;
+    if (law.text.empty()) continue;
+    for (const DrawFigures* draw : all) audit.left(law, draw->counts[i]);
+    audit.right(law, draw_totals[i]);
+  }
+  for (const DrawLaw& l : draw_laws()) {
+    const auto differs = [&](const DrawFigures* draw) { return sum(*draw, l.left) != sum(*draw, l.right); };
+    audit.both(l.law, static_cast<std::uint64_t>(std::ranges::count_if(all, differs)), 0);
+  }
+  for (const DrawFigures* draw : all)
+    audit.left(kBusyOfDraws, static_cast<std::uint64_t>(std::accumulate(draw->busy.begin(), draw->busy.end(), std::int64_t{0})));
+  audit.right(kBusyOfDraws, static_cast<std::uint64_t>(busy_total));
+  for (std::size_t i = 0; i < kTileCounts; ++i) {
+    for (const std::uint64_t n : tiles.counts[i]) audit.left(tile_counts()[i].law, n);
+    audit.right(tile_counts()[i].law, tile_totals[i]);
+  }
+}
+
+}  // namespace quadrille::pipeline

@@ -1,0 +1,139 @@
+#include "pipeline/report/detail_log.h"
+
+#include "pipeline/report/report.h"
+
+#include <algorithm>
+
+namespace quadrille::pipeline {
+
+namespace {
+
+constexpr std::string_view kCores = "core", kTextures = "texture", kMemory = "memory";
+
+std::string kind_of(const hw::Unit& unit) { return std::string(without_number(unit.name())); }
+
+hw::ScreenCells screen_of(const hw::Frame& frame) {
+  hw::ScreenCells screen;
+  if (frame.passes.empty()) return screen;
+  const hw::PassState& shown = frame.passes.back();
+  const auto cells = [&](std::uint32_t tiles) { return (tiles + screen.tiles - 1) / screen.tiles; };
+  screen.first_draw = shown.first_draw;
+  screen.draws = shown.draws;
+  screen.columns = cells(shown.color.tiles_x);
+  screen.rows = cells(shown.color.tiles_y);
+  return screen;
+}
+
+const hw::Counter& counter_of(const hw::Unit& unit, std::string_view name) {
+  const auto& all = unit.stats()->counters();
+  const auto found = std::ranges::find(all, name, &hw::Counter::name);
+  QUADRILLE_CHECK(found != all.end(), "{} has no counter {}", unit.name(), name);
+  return **found;
+}
+
+/// Those of `names` that this kind of unit has.
+template <class Visit>
+void visit_counters(std::string_view kind, const std::vector<CounterName>& names, const Visit& visit) {
+  for (const CounterName& name : names)
+    if (name.kind == kind) visit(name.counter);
+}
+
+}  // namespace
+
+DetailLog::DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted)
+    : machine_(machine), frame_(frame), screen_(screen_of(frame.frame)) {
+  detail_.wanted = wanted;
+  for (const hw::Unit* unit : machine.units())
+    if (unit->stats() != nullptr) add(*unit);
+}
+
+void DetailLog::add(const hw::Unit& unit) {
+  LoggedUnit u;
+  u.unit = &unit;
+  const std::string kind = kind_of(unit);
+  const auto known = std::ranges::find(detail_.kinds, kind);
+  u.kind = static_cast<std::size_t>(known - detail_.kinds.begin());
+  if (known == detail_.kinds.end()) detail_.kinds.push_back(kind);
+  u.log = std::make_unique<hw::WorkLog>(static_cast<std::uint32_t>(frame_.frame.draws.size()), screen_);
+  for (std::size_t i = 0; i < kDrawCounts; ++i) {
+    visit_counters(kind, draw_counts()[i].counters, [&](std::string_view name) {
+      u.draws.push_back({i, u.log->by_draw(counter_of(unit, name).storage())});
+    });
+  }
+  for (std::size_t i = 0; i < kTileCounts; ++i) {
+    visit_counters(kind, tile_counts()[i].counters, [&](std::string_view name) {
+      u.tiles.push_back({i, u.log->by_cell(counter_of(unit, name).storage())});
+    });
+  }
+  u.busy = u.log->by_draw(unit.busy_storage());
+  unit.stats()->keep_log(*u.log);
+  units_.push_back(std::move(u));
+}
+
+// The units of other kinds than these are busy for as long as their work takes at their peak rate.
+double DetailLog::work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts, std::int64_t busy) const {
+  const MachineConfig& config = machine_.config();
+  const auto count = [&](DrawCount c) { return static_cast<double>(counts[static_cast<std::size_t>(c)]); };
+  if (kind == kCores) return count(DrawCount::kSimdBusy) / config.core.simds;
+  if (kind == kMemory) return count(DrawCount::kMemoryBytes) * config.gpu.channels / peak_memory_bytes_per_cycle(config);
+  if (kind == kTextures) return std::max(static_cast<double>(busy), count(DrawCount::kBilinearQuads) / config.texture.filter_quads_per_clk);
+  return static_cast<double>(busy);
+}
+
+void DetailLog::collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const {
+  std::array<std::uint64_t, kDrawCounts> counts{};
+  for (const Column& c : u.draws) counts[c.count] += u.log->of_draw(c.column, row);
+  const std::string& kind = detail_.kinds[u.kind];
+  std::int64_t busy = u.unit->to_cycles(static_cast<std::int64_t>(u.log->of_draw(u.busy, row)));
+  for (std::size_t i = 0; i < kDrawCounts; ++i) draw.counts[i] += counts[i];
+  draw.work[u.kind] = std::max(draw.work[u.kind], work_of(kind, counts, busy));
+  // Several draws are on the SIMD units of a core, and in the queue of a memory channel, at a time.
+  if (kind == kCores) busy = static_cast<std::int64_t>(counts[static_cast<std::size_t>(DrawCount::kSimdBusy)]);
+  if (kind != kMemory) draw.busy[u.kind] += busy;
+}
+
+void DetailLog::collect_tiles(const LoggedUnit& u, TileFigures& tiles) const {
+  for (const Column& c : u.tiles)
+    for (std::uint32_t cell = 0; cell <= screen_.count(); ++cell) tiles.counts[c.count][cell] += u.log->of_cell(c.column, cell);
+}
+
+Detail DetailLog::collect() {
+  const auto draws = static_cast<std::uint32_t>(frame_.frame.draws.size());
+  const auto& commands = machine_.one<hw::CommandProcessor>();
+  Detail d = detail_;
+  const auto blank = [&](DrawFigures draw) {
+    draw.busy.assign(d.kinds.size(), 0);
+    draw.work.assign(d.kinds.size(), 0);
+    return draw;
+  };
+  for (std::uint32_t i = 0; i < draws; ++i) {
+    const hw::DrawState& state = frame_.frame.draws[i];
+    d.draws.push_back(blank({.label = state.label,
+                             .pass = state.pass,
+                             .issued = machine_.clock().edges_before(commands.issued_at()[i]),
+                             .retired = machine_.clock().edges_before(commands.retired_at()[i])}));
+  }
+  d.outside_draws = blank({.label = "outside_draws"});
+  d.tiles.width = screen_.columns;
+  d.tiles.height = screen_.rows;
+  d.tiles.pixels = screen_.tiles * models::kTileSize;
+  for (auto& counts : d.tiles.counts) counts.assign(std::size_t{screen_.count()} + 1, 0);
+  for (const LoggedUnit& u : units_) {
+    u.log->settle();
+    for (std::uint32_t i = 0; i < draws; ++i) collect_draw(u, i, d.draws[i]);
+    collect_draw(u, draws, d.outside_draws);
+    collect_tiles(u, d.tiles);
+    const std::string& kind = d.kinds[u.kind];
+    const auto value = [&](std::uint64_t& total) { return [&](std::string_view name) { total += counter_of(*u.unit, name).value(); }; };
+    for (std::size_t i = 0; i < kDrawCounts; ++i) visit_counters(kind, draw_counts()[i].counters, value(d.draw_totals[i]));
+    for (std::size_t i = 0; i < kTileCounts; ++i) {
+      const DetailCount& count = tile_counts()[i];
+      visit_counters(kind, count.total.empty() ? count.counters : count.total, value(d.tile_totals[i]));
+    }
+    if (kind != kMemory && kind != kCores) d.busy_total += u.unit->busy_cycles();
+  }
+  d.busy_total += static_cast<std::int64_t>(d.draw_totals[static_cast<std::size_t>(DrawCount::kSimdBusy)]);
+  return d;
+}
+
+}  // namespace quadrille::pipeline

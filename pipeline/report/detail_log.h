@@ -1,0 +1,44 @@
+/// Keeps, while a machine runs, for which draw and which part of the screen its units count; afterwards, the figures of that.
+#pragma once
+
+#include "hw/base/work_log.h"
+#include "pipeline/machine/machine.h"
+#include "pipeline/report/detail.h"
+
+#include <memory>
+#include <vector>
+
+namespace quadrille::pipeline {
+
+class DetailLog {
+ public:
+  /// Gives every unit of the machine a log. Before the run; the machine lives longer than this or is not run any more.
+  DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted);
+  /// After the run.
+  [[nodiscard]] Detail collect();
+
+ private:
+  struct Column {
+    std::size_t count = 0, column = 0;  ///< which count, and where the log keeps a counter of it
+  };
+  struct LoggedUnit {
+    const hw::Unit* unit = nullptr;
+    std::size_t kind = 0;
+    std::unique_ptr<hw::WorkLog> log;
+    std::vector<Column> draws, tiles;
+    std::size_t busy = 0;  ///< column
+  };
+  void add(const hw::Unit& unit);
+  void collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const;
+  void collect_tiles(const LoggedUnit& u, TileFigures& tiles) const;
+  /// GPU cycles of a unit's work for one draw at its peak rates.
+  [[nodiscard]] double work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts, std::int64_t busy) const;
+
+  const Machine& machine_;
+  const DeviceFrame& frame_;
+  Detail detail_;
+  hw::ScreenCells screen_;
+  std::vector<LoggedUnit> units_;
+};
+
+}  // namespace quadrille::pipeline
