@@ -6,6 +6,14 @@
 
 namespace quadrille::hw {
 
+namespace {
+
+std::uint64_t index_address(const DrawState& draw, std::uint32_t position) {
+  return draw.index_address + std::uint64_t{position} * draw.index_bytes;
+}
+
+}  // namespace
+
 VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<BatchSlot>& batches)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
@@ -95,15 +103,18 @@ void VertexFetch::start_draw(std::uint32_t draw) {
   drawing_ = frame_.draw(draw).triangles() > 0 && frame_.draw(draw).instances > 0;
 }
 
-std::uint32_t VertexFetch::vertex_number(std::uint32_t position) {
+std::uint32_t VertexFetch::vertex_number(std::uint32_t position) const {
+  const DrawState& draw = frame_.draw(draw_);
+  if (!draw.indexed) return draw.first_vertex + position;
+  std::uint32_t index = 0;
+  std::memcpy(&index, device_.read(index_address(draw, position), draw.index_bytes).data(), draw.index_bytes);
+  return index + static_cast<std::uint32_t>(draw.vertex_offset);
+}
+
+void VertexFetch::fetch_index(std::uint32_t position) {
   const DrawState& draw = frame_.draw(draw_);
   ++indices_;
-  if (!draw.indexed) return draw.first_vertex + position;
-  const std::uint64_t address = draw.index_address + std::uint64_t{position} * draw.index_bytes;
-  touch_bytes(address, draw.index_bytes);
-  std::uint32_t index = 0;
-  std::memcpy(&index, device_.read(address, draw.index_bytes).data(), draw.index_bytes);
-  return index + static_cast<std::uint32_t>(draw.vertex_offset);
+  if (draw.indexed) touch_bytes(index_address(draw, position), draw.index_bytes);
 }
 
 void VertexFetch::touch_bytes(std::uint64_t address, std::uint32_t bytes) {
@@ -160,7 +171,8 @@ void VertexFetch::form_batch(Tick now) {
   while (triangle_ < draw.triangles() && batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value())) {
     const auto corner = models::triangle_vertices(draw.topology, triangle_);
     const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]), vertex_number(corner[2])};
-    if (!reuse_.fits(vertex)) break;
+    if (!reuse_.fits(vertex)) break;  // it is the first of the next batch, which pays for its indices
+    for (const std::uint32_t position : corner) fetch_index(position);
     BatchSlot::Triangle triangle{{}, triangle_};
     for (std::size_t i = 0; i < 3; ++i) {
       triangle.corner[i] = reuse_.place(vertex[i]);

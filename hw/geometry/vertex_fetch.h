@@ -106,7 +106,10 @@ class VertexFetch final : public Unit {
   void leave(Tick now);
   void start_draw(std::uint32_t draw);
   void form_batch(Tick now);
-  [[nodiscard]] std::uint32_t vertex_number(std::uint32_t position);
+  /// The vertex at a position of the draw's list.
+  [[nodiscard]] std::uint32_t vertex_number(std::uint32_t position) const;
+  /// Counts the index at a position, and its bytes among the look-ups of this batch.
+  void fetch_index(std::uint32_t position);
   void fetch_attributes(BatchSlot& batch);
   void touch_bytes(std::uint64_t address, std::uint32_t bytes);
   /// Number of a line among the look-ups of this batch; adds it if it is new.

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdio>
 #include <optional>
-#include <set>
 
 #include "models/base/error.h"
 #include "studies/experiments/triangle_work.h"
@@ -48,32 +47,10 @@ std::vector<Pair> both(const std::string& name) {
   return pairs;
 }
 
-constexpr std::size_t kBatchVertices = 32, kBatchTriangles = 32;  ///< of the default machine
-
-/// The machine reads the indices of a triangle that has no room in its batch again for the next one. How often that happens:
-std::uint64_t triangles_without_room(const studies::experiments::TriangleMesh& mesh) {
-  std::uint64_t without = 0;
-  std::size_t triangles = 0;
-  std::set<std::uint32_t> vertices;
-  for (const auto& triangle : mesh.triangles) {
-    std::set<std::uint32_t> with = vertices;
-    with.insert(triangle.begin(), triangle.end());
-    const bool full = triangles == kBatchTriangles, no_room = !full && with.size() > kBatchVertices;
-    if (no_room) ++without;
-    if (full || no_room) {
-      with = {triangle.begin(), triangle.end()};
-      triangles = 0;
-    }
-    vertices = std::move(with);
-    ++triangles;
-  }
-  return without;
-}
-
 /// What means the same to every driver.
 void check_equal(const Pair& p) {
   CHECK(p.theirs.input_vertices == 3 * p.mesh.triangles.size());
-  CHECK(p.ours.input_vertices == p.theirs.input_vertices + 3 * triangles_without_room(p.mesh));
+  CHECK(p.ours.input_vertices == p.theirs.input_vertices);
   CHECK(p.theirs.input_primitives == p.ours.input_primitives);
   CHECK(p.theirs.clipping_invocations == p.ours.clipping_invocations);
   CHECK(p.theirs.clipping_primitives == p.ours.clipping_primitives);
