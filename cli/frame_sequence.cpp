@@ -252,7 +252,10 @@ SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& fr
                                          : fmt::format("{} frames around the scene", plan.frames);
   const std::vector<std::string> notes = plan_notes(plan, file);
   tables.print(fmt::format("FRAMES  {}, {}, {}\n{}{}", scene.scene, over, about, note_rows(notes), head()));
-  if (plan.frames > 1) (void)file.record(plan.moment(0));  // unpacks here, once, the images that the frames' processes will sample
+  if (plan.frames > 1) {  // unpacks here, once, the images that the frames' processes may sample
+    (void)file.record(plan.moment(0));
+    file.unpack_images();
+  }
   Sequence sequence(plan, tables);
   std::vector<studies::ChildWork> works;
   works.reserve(static_cast<std::size_t>(plan.frames));

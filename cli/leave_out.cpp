@@ -43,7 +43,7 @@ int run_leave_out(const LeaveOutArguments& a) {
   for (const SceneArguments& one : all) {
     const auto load = [&one](bool leave_out) {
       SceneArguments wanted = one;
-      wanted.leave_out = leave_out;
+      wanted.leave_out = wanted.keep_packed = leave_out;
       SceneArguments::Loaded loaded = wanted.load();
       return studies::LoadedScene{std::move(loaded.stream), std::move(loaded.left_out)};
     };

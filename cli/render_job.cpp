@@ -9,7 +9,7 @@
 #include "cli/process.h"
 #include "models/base/error.h"
 #include "models/base/say.h"
-#include "pipeline/report/host_cost.h"
+#include "pipeline/driver/host_cost.h"
 #include "pipeline/report/report.h"
 #include "scenes/image/image_io.h"
 
@@ -131,7 +131,7 @@ RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) con
 }
 
 int RenderJob::run() {
-  scene.leave_out = leave_out == "auto";
+  scene.leave_out = scene.keep_packed = leave_out == "auto";
   scene.check();
   frames.check();
   check_options_meant();

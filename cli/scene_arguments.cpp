@@ -134,6 +134,7 @@ scenes::SceneOptions SceneArguments::options() const {
   if (at) options.at = parse_point(*at, "--at");
   if (camera && (eye || at)) throw user_error("--camera: not together with --eye or --at");
   options.leave_out = leave_out;
+  options.keep_packed = keep_packed;
   options.vertex_shader = vert.value_or("");
   options.fragment_shader = frag.value_or("");
   return options;
@@ -171,7 +172,7 @@ traces::CommandStream SceneArguments::load_visibility() const {
 SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes::Moment& moment) const {
   Loaded loaded{file.record(moment), {}};
   if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
-  if (const std::size_t packed = file.packed_images(); packed > 0)
+  if (const std::size_t packed = file.unused_images(); packed > 0)
     loaded.left_out.push_back({"images", "no shader of the frame samples them", fmt::format("{} images of the file stay packed", packed)});
   const std::size_t shaders = loaded.stream.shaders.size();
   if (leave_out && shaders > 0 && file.compiled_shaders() == 0)

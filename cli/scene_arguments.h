@@ -20,6 +20,8 @@ struct SceneArguments {
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, vert, frag;
 
   bool leave_out = true;  ///< false: also load what no shader of the frame samples; set by the commands that offer it
+  bool keep_packed =
+      false;  ///< textures are unpacked by the machine, when it samples them; set by the commands that run one on the frame alone
 
   /// Adds SCENE and the options that choose the view and the shaders.
   void add_to(CLI::App& command);

@@ -3,8 +3,8 @@
 #include <bit>
 #include <chrono>
 
+#include "pipeline/driver/host_cost.h"
 #include "pipeline/report/detail_log.h"
-#include "pipeline/report/host_cost.h"
 
 namespace quadrille::pipeline {
 
@@ -32,6 +32,29 @@ FrameImage read_image(const DeviceFrame& frame) {
   return image;
 }
 
+/// Times a run on a frame, without what bringing its textures took.
+class RunTimer {
+ public:
+  explicit RunTimer(const TextureFills& fills) : fills_(fills) {}
+  void stop(HostFigures& host) const {
+    host.unpack_s = fills_.seconds();
+    host.simulate_s = seconds_since(start_) - (fills_.seconds() - unpacked_);
+    host.simulate_cpu_s = cpu_seconds() - cpu_ - (fills_.cpu_seconds() - unpacked_cpu_);
+  }
+
+ private:
+  const TextureFills& fills_;
+  Clock::time_point start_ = Clock::now();
+  double cpu_ = cpu_seconds(), unpacked_ = fills_.seconds(), unpacked_cpu_ = fills_.cpu_seconds();
+};
+
+void note_pending(const DeviceFrame& frame, std::vector<LeftOut>& left_out) {
+  const auto [textures, texels] = frame.fills.pending();
+  if (textures == 0) return;
+  left_out.push_back({"texels", "no fragment or vertex of the frame samples the textures",
+                      fmt::format("{} textures, {} texels stay where they are", textures, texels)});
+}
+
 void finish_host(HostFigures& host, const FrameFigures& frame) {
   host.peak_rss_mib = peak_rss_mib();
   if (host.simulate_s <= 0) return;
@@ -47,15 +70,15 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   const auto start = Clock::now();
   DeviceFrame frame(std::uint64_t{4} << 30);
   build_frame(stream, precision, frame);
-  out.figures.host.build_s = seconds_since(start);
-  const auto simulate = Clock::now();
-  const double cpu = cpu_seconds();
+  HostFigures& host = out.figures.host;
+  host.build_s = seconds_since(start) - frame.fills.seconds();
+  const RunTimer timer(frame.fills);
   const FunctionalCounts counts = render_functional(frame.frame, frame.memory, observer);
-  out.figures.host.simulate_s = seconds_since(simulate);
-  out.figures.host.simulate_cpu_s = cpu_seconds() - cpu;
+  timer.stop(host);
   out.figures.fidelity = "functional";
   out.figures.scene = stream.name;
   out.figures.left_out = frame.left_out;
+  note_pending(frame, out.figures.left_out);
   FrameFigures& f = out.figures.frame;
   f.draws = frame.frame.draws.size();
   f.triangles = counts.triangles;
@@ -65,7 +88,7 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   f.helper_lanes = counts.helper_lanes;
   f.fragments_written = counts.fragments_written;
   f.fates = counts.fates;
-  finish_host(out.figures.host, f);
+  finish_host(host, f);
   out.image = read_image(frame);
   return out;
 }
@@ -79,21 +102,21 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
   if (detail.any()) log.emplace(machine, frame, detail);
-  const double build_s = seconds_since(start);
-  const auto simulate = Clock::now();
-  const double cpu = cpu_seconds();
+  const double build_s = seconds_since(start) - frame.fills.seconds();
+  const RunTimer timer(frame.fills);
   machine.run(limits);
-  const double simulate_s = seconds_since(simulate);
-  const double simulate_cpu_s = cpu_seconds() - cpu;
+  HostFigures host;
+  timer.stop(host);
+  host.build_s = build_s;
   out.figures = collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt);
+  host.actions = out.figures.host.actions;
+  out.figures.host = host;
+  note_pending(frame, out.figures.left_out);
   out.figures.scene = stream.name;
   if (options.window > 0) {
     out.figures.fidelity = "approximate";
     out.figures.window_cycles = machine.clock().edges_before(options.window);
   }
-  out.figures.host.build_s = build_s;
-  out.figures.host.simulate_s = simulate_s;
-  out.figures.host.simulate_cpu_s = simulate_cpu_s;
   finish_host(out.figures.host, out.figures.frame);
   out.image = read_image(frame);
   return out;

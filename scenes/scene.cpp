@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "models/base/error.h"
 #include "scenes/builtin/builtin.h"
+#include "scenes/data/parallel.h"
 #include "scenes/gltf/loader.h"
 #include "scenes/record/recorder.h"
 
@@ -41,6 +43,7 @@ struct Scene::Parts {
   double length = 0;
   std::optional<GltfScene> file;
   std::size_t compiled_shaders = 0;
+  std::set<int> images;  ///< of the file's scene, that shaders of recorded frames can sample
   float exposure = 1;
 };
 
@@ -72,11 +75,13 @@ bool Scene::animated() const { return parts_->animated; }
 double Scene::length() const { return parts_->length; }
 bool Scene::repeats() const { return parts_->animated && !parts_->file; }
 
-std::size_t Scene::packed_images() const {
-  if (!parts_->file) return 0;
+std::size_t Scene::unused_images() const { return parts_->file ? parts_->file->image_count() - parts_->images.size() : 0; }
+
+void Scene::unpack_images() {
+  if (!parts_->file) return;
   const std::vector<SceneImage>& images = parts_->file->data().images;
-  return parts_->file->image_count() -
-         static_cast<std::size_t>(std::ranges::count_if(images, [](const SceneImage& i) { return !i.packed(); }));
+  const std::vector<int> used(parts_->images.begin(), parts_->images.end());
+  parallel_for(used.size(), [&](std::size_t i) { (void)images[static_cast<std::size_t>(used[i])].pixels(); });
 }
 
 float Scene::exposure() const { return parts_->exposure; }
@@ -97,6 +102,7 @@ traces::CommandStream Scene::record(const Moment& moment) {
   Recorder recorder(scene, options);
   traces::CommandStream stream = recorder.record();
   parts_->compiled_shaders += recorder.compiled_shaders();
+  parts_->images.insert(recorder.images().begin(), recorder.images().end());
   parts_->exposure = recorder.exposure();
   traces::validate(stream);
   if (parts_->file) parts_->file->print_notes();

@@ -34,8 +34,10 @@ class Scene {
   [[nodiscard]] traces::CommandStream record(const Moment& moment);
   /// The exposure of the last frame.
   [[nodiscard]] float exposure() const;
-  /// Images of the file that no frame recorded so far had to unpack.
-  [[nodiscard]] std::size_t packed_images() const;
+  /// Images of the file that no shader of a frame recorded so far can sample.
+  [[nodiscard]] std::size_t unused_images() const;
+  /// Unpacks, once and on all cores, the images that shaders of the frames recorded so far can sample. Throws `UserError`.
+  void unpack_images();
   /// Shaders that were compiled from GLSL for the frames recorded so far; the others came with the program (scenes/material/shader_pack.h), or as SPIR-V.
   [[nodiscard]] std::size_t compiled_shaders() const;
 

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "models/base/error.h"
+#include "pipeline/driver/host_cost.h"
 #include "pipeline/render.h"
-#include "pipeline/report/host_cost.h"
 #include "pipeline/report/report.h"
 #include "studies/child_run.h"
 

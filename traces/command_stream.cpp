@@ -1,5 +1,7 @@
-/// Properties of formats. Sizes and component counts follow the names. [VK1.3 #formats-definition]
+/// Properties of formats and images. Sizes and component counts follow the names. [VK1.3 #formats-definition]
 #include "traces/command_stream.h"
+
+#include <algorithm>
 
 namespace quadrille::traces {
 
@@ -48,5 +50,25 @@ int format_components(Format format) {
 }
 
 bool is_integer_format(Format format) { return format == Format::kR8G8B8A8Uint || format == Format::kR16G16B16A16Uint; }
+
+std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
+  return std::uint64_t{4} * std::max(1u, image.width >> level) * std::max(1u, image.height >> level);
+}
+
+std::uint64_t texel_bytes(const Image& image) {
+  std::uint64_t bytes = 0;
+  for (std::uint32_t level = 0; level < image.levels; ++level) bytes += level_bytes(image, level);
+  return bytes;
+}
+
+void unpack(Image& image) {
+  if (!image.packed) return;
+  std::vector<std::byte> texels;
+  texels.reserve(texel_bytes(image));
+  (*image.packed)(
+      [&](std::uint32_t /*level*/, std::span<const std::byte> level) { texels.insert(texels.end(), level.begin(), level.end()); });
+  image.texels = std::move(texels);
+  image.packed = nullptr;
+}
 
 }  // namespace quadrille::traces

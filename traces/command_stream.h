@@ -8,6 +8,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -53,14 +56,25 @@ struct Buffer {
   friend bool operator==(const Buffer&, const Buffer&) = default;
 };
 
+/// Takes the texels of one mip level, as in `Image::texels`. They are gone after the call.
+using LevelSink = std::function<void(std::uint32_t level, std::span<const std::byte> texels)>;
+/// Makes all levels of an image, finest first, and hands each to the sink. Throws `UserError`. Any number of times.
+using UnpackTexels = std::function<void(const LevelSink&)>;
+
 /// A 2D texture: all mip levels, finest first, rows top to bottom, tightly packed. Level i is max(1, width >> i) by max(1, height >> i).
 struct Image {
   std::string name;
   Format format = Format::kR8G8B8A8Unorm;
   std::uint32_t width = 1, height = 1, levels = 1;
   std::vector<std::byte> texels;
+  std::shared_ptr<const UnpackTexels> packed{};  ///< instead of `texels`, for a machine that asks for what it samples; null: they are there
   friend bool operator==(const Image&, const Image&) = default;
 };
+/// Bytes of a level's texels, and of all levels'.
+[[nodiscard]] std::uint64_t level_bytes(const Image& image, std::uint32_t level);
+[[nodiscard]] std::uint64_t texel_bytes(const Image& image);
+/// Puts the texels of a packed image into `texels`. Throws `UserError`.
+void unpack(Image& image);
 
 enum class Filter : std::uint8_t { kNearest, kLinear };
 enum class Wrap : std::uint8_t { kRepeat, kMirroredRepeat, kClampToEdge };

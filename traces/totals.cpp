@@ -37,7 +37,7 @@ std::uint32_t triangle_count(Topology topology, std::uint32_t count) {
 StreamTotals stream_totals(const CommandStream& stream) {
   StreamTotals totals;
   for (const Buffer& buffer : stream.buffers) totals.buffer_bytes += buffer.data.size();
-  for (const Image& image : stream.images) totals.image_bytes += image.texels.size();
+  for (const Image& image : stream.images) totals.image_bytes += texel_bytes(image);
   Counter counter{stream, totals};
   for (const Command& command : stream.commands) std::visit(counter, command);
   return totals;

@@ -130,6 +130,7 @@ class Parser {
 }  // namespace
 
 std::vector<std::byte> encode_trace(const CommandStream& stream) {
+  for (const Image& image : stream.images) QUADRILLE_CHECK(!image.packed, "image '{}' is packed", image.name);
   std::vector<std::byte> bytes;
   const FileHeader header{kMagic, kTraceVersion, static_cast<std::uint32_t>(kChunkTags.size())};
   append(bytes, &header, sizeof(header));

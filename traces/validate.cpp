@@ -39,10 +39,7 @@ void check_image(const Image& image, std::size_t index) {
     throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels, image.width, image.height,
                      full_chain);
   }
-  std::uint64_t bytes = 0;
-  for (std::uint32_t level = 0; level < image.levels; ++level) {
-    bytes += std::uint64_t{4} * std::max(1u, image.width >> level) * std::max(1u, image.height >> level);
-  }
+  const std::uint64_t bytes = image.packed ? 0 : texel_bytes(image);
   if (image.texels.size() != bytes) {
     throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index, image.name, image.texels.size(),
                      image.width, image.height, image.levels, bytes);

@@ -1,4 +1,5 @@
-/// What the machine executes: passes and draws with all their state resolved to addresses, programs and constants. Immutable while it runs.
+/// What the machine executes: passes and draws with all their state resolved to addresses, programs and constants. Immutable while it runs: texels that come
+/// when they are first sampled (`TextureState::fill`) come before anyone can have read them.
 ///
 /// The driver (pipeline/) makes it from a command stream before the machine is elaborated. Tokens name a draw by its index here, so state is versioned by
 /// draw and no unit has to be told of a state change.
@@ -15,6 +16,7 @@
 #include "models/rop/depth.h"
 #include "models/shader/warp.h"
 #include "models/texture/sample.h"
+#include "models/texture/texture_fill.h"
 
 #include <string>
 #include <vector>
@@ -33,6 +35,11 @@ struct AttributeFetch {
 struct TextureState {
   models::TextureView view;
   models::SamplerState sampler;
+  models::TextureFill* fill = nullptr;  ///< null: the texels lie in device memory
+  /// Call it between `plan_texture` and `filter_texture`.
+  void need_texels(const models::TexturePlan& plan) const {
+    if (fill != nullptr && plan.line_count > 0) fill->need();
+  }
 };
 
 struct DrawState {

@@ -77,6 +77,7 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group, 
     const models::TextureRequest& request = slot.warp.textures[static_cast<std::size_t>(i)];
     const TextureState& texture = textures[request.binding];
     models::plan_texture(texture.view, texture.sampler, request, frame_.precision, plan_);
+    texture.need_texels(plan_);
     // Values are the same whenever they are computed: textures do not change within a pass. Only presence in the cache takes time.
     models::filter_texture(plan_, device_, slot.texels[static_cast<std::size_t>(i)]);
     lines_.insert(lines_.end(), plan_.lines.begin(), plan_.lines.begin() + plan_.line_count);

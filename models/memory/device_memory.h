@@ -2,13 +2,16 @@
 ///
 /// Caches keep tags and state, never data. So that a missed flush is seen all the same, a cache that holds a line dirty is noted here as
 /// its owner, and whoever reads that line from below it breaks an invariant.
+///
+/// What nobody writes costs the host nothing: large blocks come from the host zeroed, page by page, at the first touch.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <span>
-#include <vector>
 
 namespace quadrille::models {
 
@@ -27,12 +30,9 @@ class DeviceMemory {
   /// Address of `bytes` new zeroed bytes, aligned to `alignment` (a power of two; at least a line, so that no two objects share one).
   /// Throws `UserError` when the device's memory does not hold them. Spans and pointers taken earlier become invalid.
   std::uint64_t allocate(std::uint64_t bytes, std::uint64_t alignment = kLineBytes);
-  [[nodiscard]] std::uint64_t size() const { return bytes_.size(); }
+  [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Makes room on the host for `bytes` in all, so that later allocations move nothing. Optional.
-  void reserve(std::uint64_t bytes) {
-    bytes_.reserve(bytes < limit_ ? bytes : limit_);
-    owner_.reserve((bytes < limit_ ? bytes : limit_) / kLineBytes);
-  }
+  void reserve(std::uint64_t bytes);
 
   /// Views of [address, address + bytes); outside of what was allocated is an internal error.
   [[nodiscard]] std::span<std::byte> write(std::uint64_t address, std::uint64_t bytes);
@@ -49,8 +49,8 @@ class DeviceMemory {
     std::memcpy(write(address, sizeof(T)).data(), &value, sizeof(T));
   }
   /// First byte; for inner loops that checked their range.
-  [[nodiscard]] const std::byte* data() const { return bytes_.data(); }
-  [[nodiscard]] std::byte* data() { return bytes_.data(); }
+  [[nodiscard]] const std::byte* data() const { return bytes_.get(); }
+  [[nodiscard]] std::byte* data() { return bytes_.get(); }
 
   /// `line` = address / kLineBytes. A line has at most one owner: a second one is an internal error.
   void mark_dirty(std::uint64_t line, Owner owner);
@@ -62,9 +62,19 @@ class DeviceMemory {
   [[nodiscard]] std::uint64_t dirty_lines() const { return dirty_lines_; }
 
  private:
+  struct Freed {
+    void operator()(void* block) const { std::free(block); }
+  };
+  template <class T>
+  using Block = std::unique_ptr<T[], Freed>;
+
+  [[nodiscard]] std::uint64_t lines() const { return size_ / kLineBytes; }
+  void grow(std::uint64_t capacity);
+
   std::uint64_t limit_;
-  std::vector<std::byte> bytes_;
-  std::vector<Owner> owner_;
+  std::uint64_t size_ = 0, capacity_ = 0;  ///< bytes, in whole lines
+  Block<std::byte> bytes_;
+  Block<Owner> owner_;  ///< by line
   std::uint64_t dirty_lines_ = 0;
 };
 

@@ -4,8 +4,17 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace quadrille::models {
+namespace {
+
+/// Bytes of a level as it comes: without what tiling adds.
+std::uint64_t level_bytes(const TextureLayout& layout, std::uint32_t level) {
+  return 4 * static_cast<std::uint64_t>(layout.width[level]) * static_cast<std::uint64_t>(layout.height[level]);
+}
+
+}  // namespace
 
 TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels) {
   if (width < 1 || height < 1 || width > kMaxTextureSize || height > kMaxTextureSize) {
@@ -31,28 +40,44 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
   return layout;
 }
 
+TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width, std::uint32_t height, std::uint32_t levels) {
+  TextureView view{0, format, make_texture_layout(width, height, levels)};
+  view.base = memory.allocate(view.layout.bytes);
+  return view;
+}
+
+void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level, std::span<const std::byte> texels) {
+  constexpr std::size_t kRun = 16;  // a sector's row of four texels is contiguous
+  const TextureLayout& layout = view.layout;
+  QUADRILLE_CHECK(level < layout.levels && texels.size() == level_bytes(layout, level), "level {} of {} with {} bytes", level,
+                  layout.levels, texels.size());
+  std::byte* const tiled = memory.write(view.base, layout.bytes).data();
+  const auto w = static_cast<std::uint32_t>(layout.width[level]), h = static_cast<std::uint32_t>(layout.height[level]);
+  const std::byte* source = texels.data();
+  for (std::uint32_t y = 0; y < h; ++y) {
+    std::byte* const row = tiled + 4 * std::size_t{layout.texel_index(level, 0, y)};
+    std::uint32_t x = 0;
+    for (; x + 4 <= w; x += 4, source += kRun) std::memcpy(row + 4 * std::size_t{TextureLayout::x_part(x)}, source, kRun);
+    const std::size_t rest = 4 * std::size_t{w - x};
+    std::memcpy(row + 4 * std::size_t{TextureLayout::x_part(x)}, source, rest);
+    source += rest;
+  }
+}
+
 TextureView upload_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width, std::uint32_t height, std::uint32_t levels,
                            std::span<const std::byte> texels) {
-  TextureView view{0, format, make_texture_layout(width, height, levels)};
+  const TextureLayout layout = make_texture_layout(width, height, levels);
   std::uint64_t expected = 0;
-  for (std::uint32_t level = 0; level < levels; ++level)
-    expected += 4 * static_cast<std::uint64_t>(view.layout.width[level]) * static_cast<std::uint64_t>(view.layout.height[level]);
+  for (std::uint32_t level = 0; level < levels; ++level) expected += level_bytes(layout, level);
   if (texels.size() != expected) {
     throw user_error("texture of {} x {} texels with {} levels: {} bytes of texels, {} are needed", width, height, levels, texels.size(),
                      expected);
   }
-  view.base = memory.allocate(view.layout.bytes);
-  std::byte* const tiled = memory.write(view.base, view.layout.bytes).data();
-  const std::byte* source = texels.data();
+  const TextureView view = allocate_texture(memory, format, width, height, levels);
   for (std::uint32_t level = 0; level < levels; ++level) {
-    const auto w = static_cast<std::uint32_t>(view.layout.width[level]), h = static_cast<std::uint32_t>(view.layout.height[level]);
-    for (std::uint32_t y = 0; y < h; ++y) {
-      for (std::uint32_t x = 0; x < w; x += 4) {  // a sector's row of four texels is contiguous
-        const std::size_t run = 4 * std::size_t{std::min(4u, w - x)};
-        std::memcpy(tiled + 4 * std::size_t{view.layout.texel_index(level, x, y)}, source, run);
-        source += run;
-      }
-    }
+    const std::uint64_t size = level_bytes(layout, level);
+    tile_level(memory, view, level, texels.first(size));
+    texels = texels.subspan(size);
   }
   return view;
 }

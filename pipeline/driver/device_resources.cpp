@@ -7,8 +7,8 @@
 
 namespace quadrille::pipeline {
 
-DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory)
-    : stream_(stream), memory_(memory), buffers_(stream.buffers.size()), textures_(stream.images.size()) {
+DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory, TextureFills& fills)
+    : stream_(stream), memory_(memory), fills_(fills), buffers_(stream.buffers.size()), textures_(stream.images.size()) {
   std::uint64_t bytes = 0;
   const auto add = [&bytes](std::uint64_t size) { bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes; };
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
@@ -29,19 +29,21 @@ std::uint64_t DeviceResources::buffer(traces::Index index) {
   return *address;
 }
 
-const models::TextureView& DeviceResources::texture(traces::Index image) {
-  std::optional<models::TextureView>& view = textures_[image];
-  if (!view) {
+const DeviceResources::Texture& DeviceResources::texture(traces::Index image) {
+  std::optional<Texture>& texture = textures_[image];
+  if (!texture) {
     const traces::Image& i = stream_.images[image];
-    view = models::upload_texture(memory_, static_cast<models::TexelFormat>(i.format), i.width, i.height, i.levels, i.texels);
-    texture_bytes_ += view->layout.bytes;
+    const auto format = static_cast<models::TexelFormat>(i.format);
+    const models::TextureView view = models::allocate_texture(memory_, format, i.width, i.height, i.levels);
+    texture = {view, &fills_.add(i, view)};
+    texture_bytes_ += view.layout.bytes;
   }
-  return *view;
+  return *texture;
 }
 
 void DeviceResources::place_rest() {
   for (traces::Index i = 0; i < buffers_.size(); ++i) (void)buffer(i);
-  for (traces::Index i = 0; i < textures_.size(); ++i) (void)texture(i);
+  for (traces::Index i = 0; i < textures_.size(); ++i) texture(i).fill->need();
 }
 
 DeviceResources::Unplaced DeviceResources::unplaced_images() const {
@@ -49,7 +51,7 @@ DeviceResources::Unplaced DeviceResources::unplaced_images() const {
   for (std::size_t i = 0; i < textures_.size(); ++i) {
     if (textures_[i]) continue;
     ++unplaced.images;
-    unplaced.bytes += stream_.images[i].texels.size();
+    unplaced.bytes += traces::texel_bytes(stream_.images[i]);
   }
   return unplaced;
 }

@@ -1,4 +1,5 @@
 /// Buffers and images of a command stream in device memory: each is placed when it is first asked for, so that what nothing reads takes no memory.
+/// A texture gets its address then, and its texels when something first samples it: they are unpacked, tiled and forgotten.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +9,7 @@
 
 #include "models/memory/device_memory.h"
 #include "models/texture/layout.h"
+#include "pipeline/driver/texture_fills.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::pipeline {
@@ -15,11 +17,15 @@ namespace quadrille::pipeline {
 class DeviceResources {
  public:
   /// Takes room for everything in the stream, its render targets too, so that growing never copies what is there.
-  DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory);
+  DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory, TextureFills& fills);
   /// Address of a buffer's first byte; it is aligned to a line.
   [[nodiscard]] std::uint64_t buffer(traces::Index index);
-  [[nodiscard]] const models::TextureView& texture(traces::Index image);
-  /// Places what nobody asked for, behind all else, so that no address depends on it.
+  struct Texture {
+    models::TextureView view;
+    models::TextureFill* fill = nullptr;
+  };
+  [[nodiscard]] const Texture& texture(traces::Index image);
+  /// Places what nobody asked for, behind all else, so that no address depends on it, and brings all texels. Throws `UserError`.
   void place_rest();
 
   [[nodiscard]] std::uint64_t buffer_bytes() const { return buffer_bytes_; }
@@ -32,8 +38,9 @@ class DeviceResources {
  private:
   const traces::CommandStream& stream_;
   models::DeviceMemory& memory_;
+  TextureFills& fills_;
   std::vector<std::optional<std::uint64_t>> buffers_;
-  std::vector<std::optional<models::TextureView>> textures_;
+  std::vector<std::optional<Texture>> textures_;
   std::uint64_t buffer_bytes_ = 0, texture_bytes_ = 0;
 };
 

@@ -32,7 +32,7 @@ static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) == static_cas
 class FrameBuilder {
  public:
   FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out)
-      : stream_(stream), out_(out), resources_(stream, out.memory) {
+      : stream_(stream), out_(out), resources_(stream, out.memory, out.fills) {
     out.frame.precision = precision;
   }
 
@@ -241,9 +241,11 @@ class FrameBuilder {
       const traces::TextureDescriptor& bound = texture(program, use.set, use.binding);
       const traces::Sampler& s = stream_.samplers[bound.sampler];
       const traces::Image& image = stream_.images[bound.image];
-      states.push_back({resources_.texture(bound.image),
+      const DeviceResources::Texture& texture = resources_.texture(bound.image);
+      states.push_back({texture.view,
                         {static_cast<models::Filter>(s.mag), static_cast<models::Filter>(s.min), static_cast<models::Filter>(s.mip),
-                         static_cast<models::Wrap>(s.wrap_u), static_cast<models::Wrap>(s.wrap_v), s.lod_bias, s.min_lod, s.max_lod}});
+                         static_cast<models::Wrap>(s.wrap_u), static_cast<models::Wrap>(s.wrap_v), s.lod_bias, s.min_lod, s.max_lod},
+                        texture.fill});
       sizes.push_back({image.width, image.height, image.levels});
     }
   }

@@ -1,10 +1,11 @@
 /// The driver: turns a command stream into what the machine executes. Allocates device memory, uploads and tiles, compiles shaders, resolves state by draw.
 ///
-/// Only what some draw reads is uploaded and compiled in; what was left out is listed with the reason.
+/// Only what some draw reads is uploaded and compiled in; what was left out is listed with the reason. A texture's texels come when something samples them.
 #pragma once
 
 #include "hw/frame/frame.h"
 #include "pipeline/compiler/compile.h"
+#include "pipeline/driver/texture_fills.h"
 #include "traces/command_stream.h"
 
 #include <deque>
@@ -20,10 +21,11 @@ struct LeftOut {
 
 /// A frame with the memory and programs it refers to. Not movable: the frame points into it.
 struct DeviceFrame {
-  explicit DeviceFrame(std::uint64_t memory_limit) : memory(memory_limit) {}
+  explicit DeviceFrame(std::uint64_t memory_limit) : memory(memory_limit), fills(memory) {}
   DeviceFrame(const DeviceFrame&) = delete;
   DeviceFrame& operator=(const DeviceFrame&) = delete;
   models::DeviceMemory memory;
+  TextureFills fills;
   std::deque<CompiledPipeline> programs;
   hw::Frame frame;
   std::vector<LeftOut> left_out;
@@ -34,8 +36,9 @@ struct DeviceFrame {
   [[nodiscard]] bool blends() const;
 };
 
-/// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all else, so that no address depends on it.
-/// Throws `UserError` for a shader that does not compile, a stage interface that does not match, or memory that does not fit.
+/// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all else, so that no address depends on it,
+/// and all texels come now.
+/// The stream must live as long as `out` is run. Throws `UserError` for a shader that does not compile, a stage interface that does not match, or memory that does not fit.
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out, bool leave_out = true);
 
 }  // namespace quadrille::pipeline

@@ -27,6 +27,7 @@ void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures,
       const models::TextureRequest& request = warp.textures[static_cast<std::size_t>(i)];
       const hw::TextureState& texture = textures[request.binding];
       models::plan_texture(texture.view, texture.sampler, request, precision, plan);
+      texture.need_texels(plan);
       models::filter_texture(plan, memory, rgba);
       models::write_texture_result(warp, request, rgba);
     }

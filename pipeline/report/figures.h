@@ -92,6 +92,8 @@ struct FrameFigures {
 
 struct HostFigures {
   double load_s = 0, build_s = 0, simulate_s = 0, wall_s = 0;
+  double unpack_s =
+      0;  ///< unpacking and tiling the textures that something sampled, which interrupts the simulation; in none of the others but `wall_s`
   double simulate_cpu_s = 0;  ///< processor time of the simulation: what `simulate_s` is on a machine with nothing else to do
   double fragments_per_s = 0, cycles_per_s = 0, peak_rss_mib = 0;
   std::uint64_t actions = 0;

@@ -179,6 +179,7 @@ Json host_json(const Figures& f) {
   const HostFigures& h = f.host;
   return {{"load_s", h.load_s},
           {"build_s", h.build_s},
+          {"unpack_s", h.unpack_s},
           {"simulate_s", h.simulate_s},
           {"simulate_cpu_s", h.simulate_cpu_s},
           {"wall_s", h.wall_s},

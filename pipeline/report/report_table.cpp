@@ -225,6 +225,7 @@ std::string host_text(const Figures& f) {
   }
   return "\nHOST  what the simulation cost here\n" +
          row("seconds", {fmt::format("load {:.3f}", h.load_s), fmt::format("build {:.3f}", h.build_s),
+                         fmt::format("unpack textures {:.3f}", h.unpack_s),
                          fmt::format("simulate {:.3f} ({:.3f} of processor time)", h.simulate_s, h.simulate_cpu_s),
                          fmt::format("whole process {:.3f}", h.wall_s)}) +
          row("speed", speed) + row("memory", {fmt::format("{:.0f} MiB at most", h.peak_rss_mib)});

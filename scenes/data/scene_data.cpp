@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "models/base/error.h"
+
 namespace quadrille::scenes {
 
 float Bounds::radius() const { return empty() ? 0.0F : 0.5F * glm::length(high - low); }
@@ -91,6 +93,17 @@ Bounds PlacedScene::bounds() const {
   Bounds all;
   visit_boxes([&](const Bounds& one) { all.add(one); });
   return all;
+}
+
+SceneImage::Source SceneImage::source() const {
+  if (!packed()) return [pixels = pixels_] { return pixels; };
+  return [name = name_, size = size(), unpack = unpack_] {
+    auto pixels = std::make_shared<const Rgba8Image>(unpack());
+    if (pixels->width != size.width || pixels->height != size.height)
+      throw user_error("image '{}': its picture is {}x{}, its header says {}x{}", name, pixels->width, pixels->height, size.width,
+                       size.height);
+    return pixels;
+  };
 }
 
 }  // namespace quadrille::scenes

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -99,24 +100,37 @@ inline constexpr std::size_t kBaseTextureSlots = 5, kTextureSlots = 14;
 /// A picture that is unpacked when it is first looked at: what no shader of a frame samples stays packed.
 class SceneImage {
  public:
-  SceneImage(std::string name, Rgba8Image pixels) : name_(std::move(name)), pixels_(std::move(pixels)) {}
-  /// `unpack` throws `UserError`.
-  SceneImage(std::string name, std::function<Rgba8Image()> unpack) : name_(std::move(name)), unpack_(std::move(unpack)) {}
+  struct Size {
+    std::uint32_t width = 0, height = 0;
+  };
+  using Unpack = std::function<Rgba8Image()>;
+  using Source = std::function<std::shared_ptr<const Rgba8Image>()>;
+
+  SceneImage(std::string name, Rgba8Image pixels)
+      : name_(std::move(name)), size_({pixels.width, pixels.height}), pixels_(std::make_shared<const Rgba8Image>(std::move(pixels))) {}
+  /// `unpack` throws `UserError`; any number of times, on any thread. `size`: what the pixels will have; none: they have to be unpacked to know it.
+  SceneImage(std::string name, std::optional<Size> size, Unpack unpack) : name_(std::move(name)), size_(size), unpack_(std::move(unpack)) {}
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] bool packed() const { return unpack_ != nullptr; }
-  /// Not for two threads at a time.
-  [[nodiscard]] const Rgba8Image& pixels() const {
-    if (unpack_) {
-      pixels_ = unpack_();
-      unpack_ = nullptr;
-    }
-    return pixels_;
+  [[nodiscard]] bool packed() const { return pixels_ == nullptr; }
+  /// Unpacks the image where its size is not known otherwise.
+  [[nodiscard]] Size size() const {
+    if (!size_) size_ = {pixels().width, pixels().height};
+    return *size_;
   }
+  /// Unpacks the image once, for good. Not for two threads at a time.
+  [[nodiscard]] const Rgba8Image& pixels() const {
+    if (!pixels_) pixels_ = std::make_shared<const Rgba8Image>(unpack_());
+    return *pixels_;
+  }
+  /// What brings the pixels when the scene is gone: those that are unpacked now, or a copy that is unpacked at each call. Throws `UserError`, also when they have
+  /// another size than the image said.
+  [[nodiscard]] Source source() const;
 
  private:
   std::string name_;
-  mutable Rgba8Image pixels_;
-  mutable std::function<Rgba8Image()> unpack_;
+  mutable std::optional<Size> size_;
+  Unpack unpack_;
+  mutable std::shared_ptr<const Rgba8Image> pixels_;  ///< null: packed
 };
 
 struct TextureUse {

@@ -23,7 +23,8 @@ struct SceneOptions {
   std::optional<double> orbit;         ///< part of a turn by which the camera is carried around the scene's centre
   std::optional<double> exposure = 1;  ///< times the scene's light (scenes/view/exposure.h); none: chosen by it
   bool visibility = false;             ///< draw triangle ids instead of colours (see `triangle_id_color`)
-  bool leave_out = true;  ///< false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
+  bool leave_out = true;     ///< false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
+  bool keep_packed = false;  ///< record textures packed, for a machine that unpacks those that it samples (`traces::Image::packed`)
   std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
 };
 

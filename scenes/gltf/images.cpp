@@ -15,6 +15,12 @@ constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
                         kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 31;
 
+/// Of the formats whose picture always has the size that the header checked here says: others have windows, cubes and frames.
+std::optional<SceneImage::Size> picture_size(const ImageHeader& header) {
+  const bool sure = header.format == ImageFormat::kPng || header.format == ImageFormat::kJpeg;
+  return sure ? std::optional(SceneImage::Size{header.width, header.height}) : std::nullopt;
+}
+
 }  // namespace
 
 ImageReader::ImageReader(const GltfFile& file) : file_(file), file_room_(kMaxFileBytes) {
@@ -36,7 +42,7 @@ SceneImage ImageReader::read(std::size_t index) {
   if (pixels_ > kFreePixels + kPixelsAByte * bytes_)
     fail(index, fmt::format("the images up to here are {} pixels in {} bytes of files; legal are {} and {} more a byte", pixels_, bytes_,
                             kFreePixels, kPixelsAByte));
-  return {image_name(index), [bytes = encoded.bytes, place] { return decode_image(*bytes, place); }};
+  return {image_name(index), picture_size(encoded.header), [bytes = encoded.bytes, place] { return decode_image(*bytes, place); }};
 }
 
 void ImageReader::fail(std::size_t index, const std::string& reason) const {

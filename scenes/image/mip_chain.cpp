@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 namespace quadrille::scenes {
 namespace {
@@ -151,16 +152,24 @@ std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
 }
 
-std::vector<std::byte> build_mip_chain(const Rgba8Image& image, bool srgb) {
-  std::vector<std::byte> chain(image.pixels.size());
-  std::ranges::transform(image.pixels, chain.begin(), [](std::uint8_t v) { return std::byte{v}; });
+void visit_mip_chain(const Rgba8Image& image, bool srgb, const traces::LevelSink& sink) {
+  sink(0, std::as_bytes(std::span(image.pixels)));
   FloatLevel level{image.width, image.height, {}};
-  while (level.width > 1 || level.height > 1) {
+  std::vector<std::byte> codes;
+  for (std::uint32_t number = 1; level.width > 1 || level.height > 1; ++number) {
     level = level.texels.empty() ? shrink_image(image, srgb) : shrink_level(level);
-    const std::size_t start = chain.size();
-    chain.resize(start + level.texels.size());
-    encode(level, srgb, &chain[start]);
+    codes.resize(level.texels.size());
+    encode(level, srgb, codes.data());
+    sink(number, codes);
   }
+}
+
+std::vector<std::byte> build_mip_chain(const Rgba8Image& image, bool srgb) {
+  std::vector<std::byte> chain;
+  chain.reserve(image.pixels.size() / 3 * 4 + 256);  // a third for the levels, and their rounding
+  visit_mip_chain(image, srgb, [&](std::uint32_t /*level*/, std::span<const std::byte> texels) {
+    chain.insert(chain.end(), texels.begin(), texels.end());
+  });
   return chain;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scenes/image/image_io.h"
+#include "traces/command_stream.h"
 
 namespace quadrille::scenes {
 
@@ -16,6 +17,8 @@ namespace quadrille::scenes {
 [[nodiscard]] std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height);
 /// All levels of `image`, finest first, tightly packed RGBA8. With `srgb`, r, g and b are decoded before and encoded after filtering; alpha is linear always.
 [[nodiscard]] std::vector<std::byte> build_mip_chain(const Rgba8Image& image, bool srgb);
+/// The same, level by level; only one is held at a time.
+void visit_mip_chain(const Rgba8Image& image, bool srgb, const traces::LevelSink& sink);
 
 /// [VK1.3 #data-format-srgb] transfer functions, on 0..1.
 [[nodiscard]] double srgb_to_linear(double encoded);

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -48,6 +49,8 @@ class Recorder {
   [[nodiscard]] traces::CommandStream record();
   [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled(); }
   [[nodiscard]] float exposure() const { return exposure_; }
+  /// Images of the scene that a shader of the recorded frame can sample.
+  [[nodiscard]] const std::set<int>& images() const { return images_; }
 
  private:
   struct TextureKey {
@@ -78,8 +81,9 @@ class Recorder {
   [[nodiscard]] std::vector<std::size_t> draw_order() const;
   void record_arrays();
   void record_textures();
-  /// Unpacks images and makes their mip chains, on all cores; they follow what the stream holds.
+  /// Adds textures behind what the stream holds: packed, or unpacked with their mip chains, on all cores.
   void add_textures(const std::vector<TextureKey>& keys);
+  void unpack_images(const std::vector<TextureKey>& keys);
   void leave_out_unread(Variant& variant);
   void record_frame_set();
   void record_instance(const Instance& instance);
@@ -119,6 +123,7 @@ class Recorder {
   traces::CommandStream stream_;
   ShaderLibrary shaders_;
   std::map<TextureKey, traces::Index> textures_;
+  std::set<int> images_;                                                             ///< of `textures_`
   std::map<std::tuple<int, std::array<bool, kSemantics>, bool>, Variant> variants_;  ///< by material, available attributes, partial normals
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;

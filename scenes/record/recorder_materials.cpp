@@ -87,22 +87,25 @@ void Recorder::leave_out_unread(Variant& v) {
 }
 
 void Recorder::add_textures(const std::vector<TextureKey>& keys) {
+  const auto source = [this](const TextureKey& key) -> const SceneImage& { return scene_.images[static_cast<std::size_t>(key.image)]; };
+  if (!options_.keep_packed) unpack_images(keys);
+  const std::size_t first = stream_.images.size();
+  for (const TextureKey& key : keys) {
+    const SceneImage::Size size = source(key).size();
+    const auto format = key.srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm;
+    const auto packed = std::make_shared<const traces::UnpackTexels>(
+        [pixels = source(key).source(), srgb = key.srgb](const traces::LevelSink& sink) { visit_mip_chain(*pixels(), srgb, sink); });
+    stream_.images.push_back({source(key).name(), format, size.width, size.height, full_chain_levels(size.width, size.height), {}, packed});
+  }
+  if (options_.keep_packed) return;
+  parallel_for(keys.size(), [&](std::size_t i) { traces::unpack(stream_.images[first + i]); });
+}
+
+void Recorder::unpack_images(const std::vector<TextureKey>& keys) {
   std::set<int> sources;
   for (const TextureKey& key : keys) sources.insert(key.image);
   const std::vector<int> packed(sources.begin(), sources.end());
   parallel_for(packed.size(), [&](std::size_t i) { (void)scene_.images[static_cast<std::size_t>(packed[i])].pixels(); });
-  const std::size_t first = stream_.images.size();
-  stream_.images.resize(first + keys.size());
-  parallel_for(keys.size(), [&](std::size_t i) {
-    const SceneImage& source = scene_.images[static_cast<std::size_t>(keys[i].image)];
-    const Rgba8Image& image = source.pixels();
-    stream_.images[first + i] = {source.name(),
-                                 keys[i].srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm,
-                                 image.width,
-                                 image.height,
-                                 full_chain_levels(image.width, image.height),
-                                 build_mip_chain(image, keys[i].srgb)};
-  });
 }
 
 void Recorder::record_textures() {
@@ -116,6 +119,7 @@ void Recorder::record_textures() {
     }
   }
   const std::vector<TextureKey> keys(used.begin(), used.end());
+  for (const TextureKey& key : keys) images_.insert(key.image);
   add_textures(keys);
   for (std::size_t i = 0; i < keys.size(); ++i) textures_[keys[i]] = static_cast<traces::Index>(i);
   if (options_.leave_out) return;

@@ -51,7 +51,7 @@ std::vector<std::byte> bytes_of(std::span<const T> values) {
 }
 
 traces::Image checks() {
-  traces::Image image{"checks", traces::Format::kR8G8B8A8Unorm, kTextureSide, kTextureSide, 1, {}};
+  traces::Image image{"checks", traces::Format::kR8G8B8A8Unorm, kTextureSide, kTextureSide, 1, {}, nullptr};
   for (std::uint32_t i = 0; i < kTextureSide * kTextureSide; ++i) {
     const bool light = ((i / kTextureSide / 4) + (i % kTextureSide / 4)) % 2 == 0;
     for (int c = 0; c < 4; ++c) image.texels.push_back(static_cast<std::byte>(c == 3 || light ? 255 : 110));

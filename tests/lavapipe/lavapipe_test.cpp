@@ -104,7 +104,7 @@ TEST_CASE("lavapipe: the nearer triangle wins whatever the order, and its depth 
 }
 
 TEST_CASE("lavapipe: a texture drawn one texel a pixel arrives unchanged") {
-  traces::Image texture{"texture", Format::kR8G8B8A8Unorm, 8, 8, 1, {}};
+  traces::Image texture{"texture", Format::kR8G8B8A8Unorm, 8, 8, 1, {}, nullptr};
   for (unsigned i = 0; i < 4 * 64; ++i) texture.texels.push_back(static_cast<std::byte>(i * 37 + 11));
   const auto image = render(HandMadeStream(8, 8, Format::kR8G8B8A8Unorm, Format::kUndefined)
                                 .shaders(pass_through_vertex_shader(), R"(#version 450
@@ -122,7 +122,7 @@ void main() { color = texture(image, v_value); })")
 }
 
 TEST_CASE("lavapipe: a minified texture is read from the mip level of its footprint") {
-  traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 32, 32, 6, {}};
+  traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 32, 32, 6, {}, nullptr};
   for (unsigned level = 0; level < 6; ++level)
     texture.texels.insert(texture.texels.end(), std::size_t{4} << (2 * (5 - level)), static_cast<std::byte>(40 * level));
   const auto image = render(HandMadeStream(8, 8, Format::kR8G8B8A8Unorm, Format::kUndefined)

@@ -119,7 +119,7 @@ TEST_CASE("lavapipe numerics: every derivative is the fine one") {
 TEST_CASE("lavapipe numerics: level of detail is half the piecewise linear logarithm of the squared footprint, once a quad") {
   Inputs inputs(5);
   for (std::size_t i = 0; i < inputs.a.size(); ++i) inputs.a[i] *= std::exp2(-static_cast<float>(i / 4 % 8));
-  traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 256, 128, 9, {}};
+  traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 256, 128, 9, {}, nullptr};
   for (unsigned level = 0; level < 9; ++level)
     texture.texels.resize(texture.texels.size() + std::size_t{4} * std::max(1u, 256u >> level) * std::max(1u, 128u >> level));
   const std::string coordinates =

@@ -92,7 +92,7 @@ traces::Pipeline random_pipeline(RandomSource& random, traces::Index fragment) {
 }
 
 void add_texture(RandomSource& random, traces::CommandStream& stream) {
-  traces::Image image{"noise", traces::Format::kR8G8B8A8Srgb, 32, 16, 6, {}};
+  traces::Image image{"noise", traces::Format::kR8G8B8A8Srgb, 32, 16, 6, {}, nullptr};
   std::size_t texels = 0;
   for (std::uint32_t l = 0; l < image.levels; ++l) texels += std::size_t{std::max(1u, image.width >> l)} * std::max(1u, image.height >> l);
   for (std::size_t i = 0; i < 4 * texels; ++i) image.texels.push_back(static_cast<std::byte>(random.integer(0, 255)));

@@ -171,7 +171,7 @@ TEST_CASE("world range: the nearest copy decides, not the box around all copies"
 TEST_CASE("world range: a scene that is moved is not copied, and its images are unpacked once for all frames") {
   SceneData scene = build_cubes();
   int unpacked = 0;
-  scene.images[0] = SceneImage("counted", [&] {
+  scene.images[0] = SceneImage("counted", std::nullopt, [&] {
     ++unpacked;
     return Rgba8Image{2, 2, std::vector<std::uint8_t>(16, 200)};
   });

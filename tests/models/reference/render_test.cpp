@@ -203,7 +203,7 @@ TEST_CASE("render: a textured plane picks the mip level of its scale") {
   for (const double scale : {1.0, 2.0, 3.0, 4.0, 6.5}) {  // texels a pixel
     TestFrame frame(16, 16);
     frame.pipeline(fragment);
-    traces::Image image{"levels", traces::Format::kR8G8B8A8Unorm, 128, 128, 8, {}};
+    traces::Image image{"levels", traces::Format::kR8G8B8A8Unorm, 128, 128, 8, {}, nullptr};
     for (std::uint32_t l = 0; l < 8; ++l)
       image.texels.insert(image.texels.end(), std::size_t{4} * (128u >> l) * (128u >> l), static_cast<std::byte>(l * 30));
     frame.stream.images.push_back(image);

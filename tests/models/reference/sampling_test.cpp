@@ -16,7 +16,7 @@ namespace {
 /// Level l has texels of red = x, green = y, blue = l * 16, alpha 255.
 traces::Image ramp(std::uint32_t width, std::uint32_t height, std::uint32_t levels,
                    traces::Format format = traces::Format::kR8G8B8A8Unorm) {
-  traces::Image image{"ramp", format, width, height, levels, {}};
+  traces::Image image{"ramp", format, width, height, levels, {}, nullptr};
   for (std::uint32_t l = 0; l < levels; ++l) {
     for (std::uint32_t y = 0; y < std::max(1u, height >> l); ++y) {
       for (std::uint32_t x = 0; x < std::max(1u, width >> l); ++x) {
@@ -133,7 +133,7 @@ TEST_CASE("sampling: magnification and minification use their own filters") {
 }
 
 TEST_CASE("sampling: sRGB texels are decoded before they are filtered, alpha is linear") {
-  traces::Image image{"two", traces::Format::kR8G8B8A8Srgb, 2, 1, 1, {}};
+  traces::Image image{"two", traces::Format::kR8G8B8A8Srgb, 2, 1, 1, {}, nullptr};
   for (const int value : {0, 0, 0, 0, 255, 188, 128, 255}) image.texels.push_back(static_cast<std::byte>(value));
   const Texel middle = sample_texture({&image, &kSmooth, nullptr}, 0.5, 0.5, 0, 0);
   CHECK(middle[0] == Approx(0.5));

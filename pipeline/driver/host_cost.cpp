@@ -1,4 +1,4 @@
-#include "pipeline/report/host_cost.h"
+#include "pipeline/driver/host_cost.h"
 
 #include <sys/resource.h>
 

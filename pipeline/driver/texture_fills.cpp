@@ -1,0 +1,46 @@
+#include "pipeline/driver/texture_fills.h"
+
+#include <chrono>
+
+#include "pipeline/driver/host_cost.h"
+
+namespace quadrille::pipeline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void tile_all(models::DeviceMemory& memory, const models::TextureView& view, const traces::Image& image) {
+  std::span<const std::byte> rest = image.texels;
+  for (std::uint32_t level = 0; level < image.levels; ++level) {
+    const std::uint64_t bytes = traces::level_bytes(image, level);
+    models::tile_level(memory, view, level, rest.first(bytes));
+    rest = rest.subspan(bytes);
+  }
+}
+
+}  // namespace
+
+models::TextureFill& TextureFills::add(const traces::Image& image, const models::TextureView& view) {
+  const auto tile = [this, view, packed = image.packed, unpacked = &image] {
+    const Clock::time_point start = Clock::now();
+    const double cpu = pipeline::cpu_seconds();
+    if (packed)
+      (*packed)([&](std::uint32_t level, std::span<const std::byte> texels) { models::tile_level(memory_, view, level, texels); });
+    else tile_all(memory_, view, *unpacked);
+    seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
+    cpu_seconds_ += pipeline::cpu_seconds() - cpu;
+  };
+  return entries_.emplace_back(models::TextureFill(tile), traces::texel_bytes(image) / 4).fill;
+}
+
+TextureFills::Pending TextureFills::pending() const {
+  Pending pending;
+  for (const Entry& entry : entries_) {
+    if (!entry.fill.pending()) continue;
+    ++pending.textures;
+    pending.texels += entry.texels;
+  }
+  return pending;
+}
+
+}  // namespace quadrille::pipeline
