@@ -47,14 +47,17 @@ class StatGroup {
 
   /// What is counted from here on is for this draw, `kNoDraw` if for none, and, where one is known, for this tile of 8x8 pixels of its target.
   void working_for(std::uint32_t draw) {
-    if (log_ != nullptr) log_->turn_to({draw, kNoTile});
+    if (log_ != nullptr) [[unlikely]]
+      log_->turn_to({draw, kNoTile});
   }
   void working_for(std::uint32_t draw, std::uint32_t tile_x, std::uint32_t tile_y) {
-    if (log_ != nullptr) log_->turn_to({draw, tile_at(tile_x, tile_y)});
+    if (log_ != nullptr) [[unlikely]]
+      log_->turn_to({draw, tile_at(tile_x, tile_y)});
   }
   /// The same draw, but for this tile.
   void working_at(std::uint32_t tile_x, std::uint32_t tile_y) {
-    if (log_ != nullptr) log_->turn_to({log_->now().draw, tile_at(tile_x, tile_y)});
+    if (log_ != nullptr) [[unlikely]]
+      log_->turn_to({log_->now().draw, tile_at(tile_x, tile_y)});
   }
   /// Null while nobody asks for which draw anything was counted.
   [[nodiscard]] WorkLog* log() const { return log_; }

@@ -46,12 +46,10 @@ class WorkLog {
   std::size_t by_cell(const std::uint64_t& count) { return cell_rows_.add(count, screen_.count() + 1); }
 
   /// What is counted from here on is for `work`.
-  void turn_to(Work work) {
-    if (work != now_) change(work);
-  }
+  void turn_to(Work work);
   [[nodiscard]] Work now() const { return now_; }
   /// Adds what was counted since the latest turn; then the rows add up to the counts.
-  void settle() { change(now_, true); }
+  void settle();
 
   /// `draw` or `cell`: their number for what belongs to none.
   [[nodiscard]] std::uint64_t of_draw(std::size_t column, std::uint32_t draw) const { return draw_rows_.at(draw, column); }
@@ -85,14 +83,6 @@ class WorkLog {
   };
 
   [[nodiscard]] std::uint32_t row_of(std::uint32_t draw) const { return draw < draws_ ? draw : draws_; }
-  void change(Work work, bool settle = false) {
-    const std::uint32_t cell = screen_.cell_of(work);
-    if (settle || work.draw != now_.draw) draw_rows_.note(row_of(now_.draw));
-    if (settle || cell != cell_) cell_rows_.note(cell_);
-    now_ = work;
-    cell_ = cell;
-  }
-
   std::uint32_t draws_;
   ScreenCells screen_;
   Work now_;

@@ -119,7 +119,8 @@ void L1Cache::write(std::uint32_t line, std::uint32_t words) {
   const models::TagArray::Line& held = tags_.at(slot);
   std::uint32_t& parts = parts_[static_cast<std::size_t>(slot)];
   if (held.dirty == 0 && parts == 0) memory_->mark_dirty(line, owner_);
-  if (group_.log() != nullptr) note_writer(slot);
+  if (group_.log() != nullptr) [[unlikely]]
+    note_writer(slot);
   parts |= words;
   // Those under way become whole when they arrive.
   const auto whole = static_cast<std::uint8_t>((held.valid | sectors_with_all(parts)) & ~held.pending);

@@ -17,11 +17,6 @@ MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices)
   }
 }
 
-void MemoryPort::queue(const MemoryRequest& request) {
-  queue_.push_back({request, interleave_.member_of(request.line)});
-  if (const WorkLog* log = group_.log()) queue_.back().request.draw = log->now().draw;
-}
-
 void MemoryPort::read(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag) {
   ++stats_.reads;
   stats_.read_bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(sectors));

@@ -60,7 +60,11 @@ class MemoryPort {
     std::uint32_t slice = 0;
   };
   void queue_write(std::uint32_t line, std::uint8_t sectors, MemoryRequest::Kind kind);
-  void queue(const MemoryRequest& request);
+  void queue(MemoryRequest request) {
+    if (const WorkLog* log = group_.log(); log != nullptr) [[unlikely]]
+      request.draw = log->now().draw;
+    queue_.push_back({request, interleave_.member_of(request.line)});
+  }
 
   const StatGroup& group_;
   MemoryPortStats stats_;

@@ -240,3 +240,26 @@ TEST_CASE("a frame's time is given with scan-out and where that overlaps the nex
   CHECK(frame.at("period_cycles") == std::max(drawing, scan_out));
   CHECK_THAT(run.out, Catch::Contains("frames/s one after another") && Catch::Contains("frames/s where scan-out overlaps the next frame"));
 }
+
+TEST_CASE("details of draws and tiles add up to the frame, in JSON and table, and change neither") {
+  const ScratchFolder folder;
+  const json plain = stats(folder, "builtin:overdraw", {"--out", "a.png"});
+  json detailed = stats(folder, "builtin:overdraw", {"--out", "b.png", "--detail", "draws,tiles"});
+  require_equal_pictures(folder, "a.png", "b.png");
+  CHECK(detailed.at("frame") == plain.at("frame"));
+  CHECK(detailed.at("units") == plain.at("units"));
+  CHECK_FALSE(plain.contains("draws"));
+  CHECK_FALSE(plain.contains("tiles"));
+  REQUIRE(detailed.at("draws").size() == 16);
+  std::uint64_t shaded = detailed.at("outside_draws").at("fragments").at("shaded"), tiled = 0;
+  for (const json& draw : detailed.at("draws")) shaded += draw.at("fragments").at("shaded").get<std::uint64_t>();
+  const json& tiles = detailed.at("tiles");
+  for (const json& n : tiles.at("fragments_shaded")) tiled += n.get<std::uint64_t>();
+  CHECK(shaded == plain.at("frame").at("fragments_shaded"));
+  CHECK(tiled == plain.at("frame").at("fragments_shaded"));
+  CHECK(tiles.at("bytes").size() == tiles.at("width").get<std::size_t>() * tiles.at("height").get<std::size_t>());
+  const std::string table = render(folder, "builtin:overdraw", {"--detail", "draws"}).out;
+  CHECK_THAT(table, Catch::Contains("\nDRAWS  the 10 of 16 that were in flight longest"));
+  CHECK_THAT(render(folder, "builtin:overdraw", {}).out, !Catch::Contains("DRAWS"));
+  CHECK_FALSE(stats(folder, "builtin:triangle", {"--detail", "draws"}).contains("tiles"));
+}
