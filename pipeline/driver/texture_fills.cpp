@@ -30,7 +30,8 @@ models::TextureFill& TextureFills::add(const traces::Image& image, const models:
     seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
     cpu_seconds_ += pipeline::cpu_seconds() - cpu;
   };
-  return entries_.emplace_back(models::TextureFill(tile), traces::texel_bytes(image) / 4).fill;
+  entries_.push_back({models::TextureFill(tile), traces::texel_bytes(image) / 4});
+  return entries_.back().fill;
 }
 
 TextureFills::Pending TextureFills::pending() const {

@@ -87,7 +87,7 @@ hw::Fifo<T>& link(const Machine& machine, std::string_view name) {
 }  // namespace
 
 TEST_CASE("detail: with and without it pixels, cycles and figures are the same, and all laws hold") {
-  for (const std::uint64_t seed : {3, 5, 8}) {
+  for (const std::uint64_t seed : {3U, 5U, 8U}) {
     const traces::CommandStream stream = test::random_stream(seed);
     MachineConfig config;
     if (seed == 8) config.rop.cache_lines.set(16);  // lines are evicted
