@@ -26,8 +26,8 @@ void Clipper::spend(Tick now, std::int64_t cost) {
 
 void Clipper::act(Tick now) {
   const PrimitiveToken& token = primitive_in.front();
-  stats_.working_for(draw_of(token.kind, token.index));
   if (next_piece_ == 0 && token.kind == TokenKind::kWork) return take_triangle(now);
+  if (next_piece_ == 0) stats_.working_for(draw_of(token.kind, token.index));
   spend(now, WorkRate::cost(params_.triangles_per_clk));
   if (next_piece_ > 0) return emit_piece(now, next_piece_);
   clipped_out.push(now, {token.kind, token.index, token.slot, 0, {}, 0});
@@ -41,6 +41,7 @@ void Clipper::take_triangle(Tick now) {
     const auto& [slot, lane] = token.corner[i];
     for (int c = 0; c < 4; ++c) position[i][c] = std::bit_cast<float>(batches_[slot].outputs[static_cast<std::size_t>(c)][lane]);
   }
+  stats_.working_for(token.index);
   ++stats_.triangles;
   const models::ClipOutcome outcome = models::clip_triangle(position, frame_.draw(token.index).clip, polygon_);
   spend(now, outcome == models::ClipOutcome::kClipped ? params_.clip_clk * WorkRate::kCycle : WorkRate::cost(params_.triangles_per_clk));

@@ -38,7 +38,7 @@ void PrimitiveAssembly::act(Tick now) {
 
 void PrimitiveAssembly::emit(Tick now) {
   const BatchToken head = batch_in.front();
-  stats_.working_for(draw_of(head.kind, head.index));
+  if (next_triangle_ == 0) stats_.working_for(draw_of(head.kind, head.index));
   free_ = rate_.charge(now, WorkRate::cost(params_.triangles_per_clk));
   occupy(now, rate_.cycles());
   if (head.kind != TokenKind::kWork) {

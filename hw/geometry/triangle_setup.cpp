@@ -51,7 +51,6 @@ void TriangleSetupUnit::take_syncs(Tick now) {
 
 void TriangleSetupUnit::work(Tick now) {
   const ClippedToken token = clipped_in.pop(now);
-  stats_.working_for(draw_of(token.kind, token.index));
   std::int64_t cost = WorkRate::cost(params_.culled_per_clk);
   if (token.kind == TokenKind::kWork) {
     if (set_up(now, token)) cost = WorkRate::cost(params_.drawn_per_clk);
@@ -60,7 +59,10 @@ void TriangleSetupUnit::work(Tick now) {
   } else {
     triangle_out.push(now, {token.kind, token.index, sequence_});
   }
-  if (token.kind != TokenKind::kWork) cost = std::min(cost, WorkRate::kCycle);
+  if (token.kind != TokenKind::kWork) {
+    stats_.working_for(draw_of(token.kind, token.index));
+    cost = std::min(cost, WorkRate::kCycle);
+  }
   free_ = rate_.charge(now, cost);
   occupy(now, rate_.cycles());
 }
@@ -69,6 +71,7 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   const DrawState& draw = frame_.draw(token.index);
   const ClippedPiece& piece = pieces_[token.piece];
   TriangleSlot& slot = triangles_[sequence_];
+  stats_.working_for(token.index);
   ++stats_.triangles;
   switch (models::setup_triangle(piece.vertices, piece.weights, draw.setup, slot.setup)) {
     case models::SetupOutcome::kKept: break;

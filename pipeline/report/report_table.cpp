@@ -199,7 +199,7 @@ std::string draws_text(const Figures& f) {
       dearest.size(), d.draws.size(), "draw", "label", "pass", "cycles", "triangles", "drawn", "fragments", "limiter");
   for (const DrawFigures* draw : dearest) {
     std::string label = draw->label;
-    if (label.size() > 39) label = label.substr(0, 36) + "...";
+    if (label.size() > 39) label = "..." + label.substr(label.size() - 36);  // the end tells draws apart
     out +=
         fmt::format("  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n", draw - d.draws.data(), label, draw->pass,
                     grouped(static_cast<std::uint64_t>(draw->in_flight())), grouped(draw->of(DrawCount::kTrianglesIn)),

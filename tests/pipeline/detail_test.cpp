@@ -118,6 +118,23 @@ TEST_CASE("detail: squares of the screen hold the fragments of their pixels") {
   CHECK(told("builtin:fill", tell) == "3x2 of 32: " + all + " | " + all);
 }
 
+TEST_CASE("detail: work of a pass that is not shown has no place on the screen") {
+  const std::string text = hw::contract::in_child([] {
+    traces::CommandStream stream = test::random_stream(5);
+    const std::vector<traces::Command> once = stream.commands;
+    stream.commands.insert(stream.commands.end(), once.begin(), once.end());
+    const RenderedFrame frame = render_exact(stream, MachineConfig(), {}, {}, kBoth);
+    const Detail& d = *frame.figures.detail;
+    std::uint64_t hidden = 0, shown = 0;
+    for (const DrawFigures& draw : d.draws) (draw.pass == 0 ? hidden : shown) += draw.of(DrawCount::kShaded);
+    const auto& cells = d.tiles.counts[static_cast<std::size_t>(TileCount::kShaded)];
+    const std::uint64_t placed = std::accumulate(cells.begin(), cells.end() - 1, std::uint64_t{0});
+    return failed_checks(frame.figures) +
+           fmt::format("{} {} {}", hidden > 0 && hidden == cells.back(), shown == placed, d.draws.back().pass);
+  });
+  CHECK(text == "true true 1");
+}
+
 TEST_CASE("detail: what is written back counts for the draw that wrote it last, and the rest for none") {
   // Every line of the target is written by all eight layers and stays in the cache until the flush.
   const auto tell = [](const Detail& d) {
