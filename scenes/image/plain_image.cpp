@@ -17,6 +17,9 @@ constexpr std::size_t kRgba = 4;
 
 // ---- PNG ----
 
+/// A chunk that says nothing about pixels as they are stored, and that many files have in a form that libpng warns about.
+constexpr png_byte kColorProfile[] = "iCCP";
+
 void png_fails(png_structp png, png_const_charp /*text*/) { png_longjmp(png, 1); }
 
 struct PngReader {
@@ -48,6 +51,7 @@ bool read_png(PngReader& reader, const ImageHeader& header, std::uint8_t* pixels
   const png_structp png = reader.png;
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, &reader, PngReader::take);
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, kColorProfile, 1);
   png_read_info(png, reader.info);
   const bool usual = png_get_image_width(png, reader.info) == header.width && png_get_image_height(png, reader.info) == header.height &&
                      png_get_bit_depth(png, reader.info) <= 8 && png_get_interlace_type(png, reader.info) == PNG_INTERLACE_NONE;
