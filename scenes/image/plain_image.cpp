@@ -9,6 +9,7 @@
 
 #include <jpeglib.h>  // after <cstdio>, whose types it uses
 #include <png.h>
+#include <zlib.h>
 
 namespace quadrille::scenes {
 namespace {
@@ -100,7 +101,7 @@ bool write_png(PngWriter& writer, const Rgba8Image& image) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_write_fn(png, &writer, PngWriter::put, nullptr);
   png_set_compression_level(png, kCompressionLevel);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
+  png_set_compression_strategy(png, Z_DEFAULT_STRATEGY);
   png_set_IHDR(png, writer.info, image.width, image.height, 8, PNG_COLOR_TYPE_RGB_ALPHA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
                PNG_FILTER_TYPE_DEFAULT);
   png_set_oFFs(png, writer.info, 0, 0, PNG_OFFSET_PIXEL);
