@@ -98,7 +98,7 @@ TEST_CASE("texture fill: an image that cannot be unpacked ends the run with its 
   CHECK_NOTHROW(pipeline::render_functional_frame(broken(looking_away()), {}));
 }
 
-TEST_CASE("texture fill: packed and unpacked streams hold the same; a trace holds texels") {
+TEST_CASE("texture fill: packed and unpacked streams hold the same, and a trace holds texels") {
   traces::CommandStream packed = scenes::load_scene("builtin:cubes", small(true));
   const traces::CommandStream whole = scenes::load_scene("builtin:cubes", small(false));
   CHECK(traces::stream_totals(packed).image_bytes == traces::stream_totals(whole).image_bytes);
