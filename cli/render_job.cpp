@@ -193,7 +193,7 @@ int RenderJob::run_frames(const Setting& setting) const {
     frame.figures.host.wall_s = whole.seconds();
     return pipeline::report_json({frame.figures, setting.config, frame.image.width, frame.image.height});
   };
-  if (out || depth) scenes::open_image_module();
+  if ((out && out->ends_with(".exr")) || (depth && depth->ends_with(".exr"))) scenes::open_image_module();
   const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();
   const std::string how = setting.window > 0 ? fmt::format("approximate (window of {} cycles)", window_cycles()) : fidelity;
   const std::string about = fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.title(), how);

@@ -112,7 +112,8 @@ class SceneImage {
   SceneImage(std::string name, std::optional<Size> size, Unpack unpack) : name_(std::move(name)), size_(size), unpack_(std::move(unpack)) {}
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] bool packed() const { return pixels_ == nullptr; }
-  /// Unpacks the image where its size is not known otherwise.
+  [[nodiscard]] bool knows_size() const { return size_.has_value(); }
+  /// Unpacks the image where its size is not known otherwise. Not for two threads at a time.
   [[nodiscard]] Size size() const {
     if (!size_) size_ = {pixels().width, pixels().height};
     return *size_;

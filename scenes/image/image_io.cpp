@@ -11,6 +11,7 @@
 #include "models/base/error.h"
 #include "scenes/image/image_header.h"
 #include "scenes/image/image_module.h"
+#include "scenes/image/plain_image.h"
 #include "traces/whole_file.h"
 
 namespace quadrille::scenes {
@@ -88,6 +89,12 @@ void encode(const std::string& path, const void* pixels, std::uint32_t width, st
 void open_image_module() { (void)module(); }
 
 Rgba8Image decode_image(std::span<const std::byte> bytes, const std::string& name) {
+  const ImageHeader header = check_image_header(bytes, name);
+  if (std::optional<Rgba8Image> plain = decode_plain_image(bytes, header)) return std::move(*plain);
+  return decode_any_image(bytes, name);
+}
+
+Rgba8Image decode_any_image(std::span<const std::byte> bytes, const std::string& name) {
   const QuadrilleImage raw = decode(bytes, name, false);
   const Held held(raw.data);
   const auto* pixels = static_cast<const std::uint8_t*>(raw.data);
@@ -103,10 +110,15 @@ FloatImage load_float_image(const std::string& path) {
   return {raw.width, raw.height, raw.channels, {samples, samples + raw.size / sizeof(float)}};
 }
 
+void save_png_by_module(const std::string& path, const Rgba8Image& image) {
+  encode(path, image.pixels.data(), image.width, image.height, 4, false);
+}
+
 void save_png(const std::string& path, const Rgba8Image& image) {
   QUADRILLE_CHECK(image.pixels.size() == std::size_t{4} * image.width * image.height, "{}x{} with {} bytes", image.width, image.height,
                   image.pixels.size());
-  encode(path, image.pixels.data(), image.width, image.height, 4, false);
+  if (const auto file = image.pixels.empty() ? std::nullopt : encode_plain_png(image)) traces::write_whole_file(path, *file);
+  else save_png_by_module(path, image);
 }
 
 void save_exr(const std::string& path, const FloatImage& image) {

@@ -83,6 +83,7 @@ class Recorder {
   void record_textures();
   /// Adds textures behind what the stream holds: packed, or unpacked with their mip chains, on all cores.
   void add_textures(const std::vector<TextureKey>& keys);
+  /// All of them, or where they may stay packed those that do not know their size.
   void unpack_images(const std::vector<TextureKey>& keys);
   void leave_out_unread(Variant& variant);
   void record_frame_set();

@@ -88,7 +88,7 @@ void Recorder::leave_out_unread(Variant& v) {
 
 void Recorder::add_textures(const std::vector<TextureKey>& keys) {
   const auto source = [this](const TextureKey& key) -> const SceneImage& { return scene_.images[static_cast<std::size_t>(key.image)]; };
-  if (!options_.keep_packed) unpack_images(keys);
+  unpack_images(keys);
   const std::size_t first = stream_.images.size();
   for (const TextureKey& key : keys) {
     const SceneImage::Size size = source(key).size();
@@ -104,8 +104,11 @@ void Recorder::add_textures(const std::vector<TextureKey>& keys) {
 void Recorder::unpack_images(const std::vector<TextureKey>& keys) {
   std::set<int> sources;
   for (const TextureKey& key : keys) sources.insert(key.image);
-  const std::vector<int> packed(sources.begin(), sources.end());
-  parallel_for(packed.size(), [&](std::size_t i) { (void)scene_.images[static_cast<std::size_t>(packed[i])].pixels(); });
+  const std::vector<int> images(sources.begin(), sources.end());
+  parallel_for(images.size(), [&](std::size_t i) {
+    const SceneImage& image = scene_.images[static_cast<std::size_t>(images[i])];
+    if (!options_.keep_packed || !image.knows_size()) (void)image.pixels();
+  });
 }
 
 void Recorder::record_textures() {

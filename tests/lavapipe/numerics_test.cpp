@@ -72,8 +72,8 @@ void main() {
 template <class Expected>
 std::optional<std::size_t> equal_bits(const std::string& expression, Expected expected) {
   const Inputs inputs(7);
-  const auto image =
-      render(bits_of(expression, inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4)}, {}).finish());
+  const auto image = render(
+      bits_of(expression, inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4), nullptr}, {}).finish());
   if (!image) return std::nullopt;
   std::size_t equal = 0;
   for (std::size_t i = 0; i < kInputs; ++i)
@@ -107,8 +107,9 @@ TEST_CASE("lavapipe numerics: mix is a (1 - t) + b t, and fma rounds twice") {
 
 TEST_CASE("lavapipe numerics: every derivative is the fine one") {
   const Inputs inputs(7);
-  const auto image =
-      render(bits_of("dFdxCoarse(a.x)", inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4)}, {}).finish());
+  const auto image = render(bits_of("dFdxCoarse(a.x)", inputs)
+                                .texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4), nullptr}, {})
+                                .finish());
   if (!image) return;
   for (std::size_t i = 0; i < kInputs; ++i) {
     const std::size_t left = i & ~std::size_t{1};

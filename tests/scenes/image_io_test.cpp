@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "models/base/error.h"
+#include "scenes/image/image_header.h"
+#include "scenes/image/plain_image.h"
 #include "tests/scenes/gltf_text.h"
 #include "traces/whole_file.h"
 
@@ -177,12 +179,89 @@ TEST_CASE("image_io: images with colour profiles are decoded by several threads 
       threads.emplace_back([&, t] {
         for (std::uint32_t i = 0; i < kImages; ++i) {
           const std::uint32_t first_tag = 0x20000000 + (t * kImages + i) * kTags;
-          right += decode_image(with_profile(plain, color_profile(first_tag, kTags)), "a.png").pixels == image.pixels ? 1 : 0;
+          right += decode_any_image(with_profile(plain, color_profile(first_tag, kTags)), "a.png").pixels == image.pixels ? 1 : 0;
         }
       });
     }
   }
   CHECK(right == kThreads * kImages);
+}
+
+TEST_CASE("image_io: a PNG of any kind has the pixels that OpenImageIO gives it") {
+  struct Kind {
+    int color_type, bits, channels;
+    bool keyed;  ///< a colour, or the first entry of the palette, is transparent
+  };
+  constexpr std::array kKinds{Kind{0, 1, 1, false}, Kind{0, 2, 1, true},  Kind{0, 8, 1, false}, Kind{0, 8, 1, true},
+                              Kind{4, 8, 2, false}, Kind{2, 8, 3, false}, Kind{2, 8, 3, true},  Kind{6, 8, 4, false},
+                              Kind{3, 1, 1, false}, Kind{3, 4, 1, true},  Kind{3, 8, 1, true},  Kind{2, 16, 3, false}};
+  constexpr std::uint32_t kWidth = 13, kHeight = 5;
+  for (const Kind& kind : kKinds) {
+    std::vector<std::uint8_t> file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    const auto chunk = [&](const char* name, const std::vector<std::uint8_t>& data) {
+      std::vector<std::uint8_t> body(name, name + 4);
+      body.insert(body.end(), data.begin(), data.end());
+      append_big_endian(file, static_cast<std::uint32_t>(data.size()));
+      file.insert(file.end(), body.begin(), body.end());
+      append_big_endian(file, crc_of_chunk(body));
+    };
+    std::vector<std::uint8_t> header;
+    append_big_endian(header, kWidth);
+    append_big_endian(header, kHeight);
+    header.insert(header.end(), {static_cast<std::uint8_t>(kind.bits), static_cast<std::uint8_t>(kind.color_type), 0, 0, 0});
+    chunk("IHDR", header);
+    if (kind.color_type == 3) {
+      std::vector<std::uint8_t> palette;
+      for (int i = 0; i < 3 << kind.bits; ++i) palette.push_back(static_cast<std::uint8_t>(i * 37));
+      chunk("PLTE", palette);
+    }
+    if (kind.keyed)
+      chunk("tRNS", kind.color_type == 3 ? std::vector<std::uint8_t>{77, 9} : std::vector<std::uint8_t>(2 * kind.channels, 0));
+    const std::uint32_t row = (kWidth * static_cast<std::uint32_t>(kind.channels * kind.bits) + 7) / 8;
+    std::vector<std::uint8_t> rows;
+    for (std::uint32_t y = 0; y < kHeight; ++y) {
+      rows.push_back(0);
+      for (std::uint32_t i = 0; i < row; ++i) rows.push_back(static_cast<std::uint8_t>(y == 0 && i < 6 ? 0 : (y * row + i) * 29));
+    }
+    chunk("IDAT", stored_zlib(rows));
+    chunk("IEND", {});
+    const auto bytes = std::as_bytes(std::span(file));
+    INFO("colour type " << kind.color_type << ", " << kind.bits << " bits, keyed " << kind.keyed);
+    const Rgba8Image any = decode_any_image(bytes, "a.png");
+    CHECK(decode_image(bytes, "a.png").pixels == any.pixels);
+    const auto plain = decode_plain_image(bytes, check_image_header(bytes, "a.png"));
+    CHECK(plain.has_value() == (kind.bits <= 8));
+    if (plain) CHECK(plain->pixels == any.pixels);
+  }
+}
+
+TEST_CASE("image_io: what the plain reader cannot read without a warning is left to OpenImageIO, with its words") {
+  const TempGltf scratch("");
+  const std::string path = scratch.path() + ".png";
+  save_png(path, gradient(40, 30));
+  const std::vector<std::byte> good = traces::read_whole_file(path, 1 << 20);
+  for (std::size_t at = 60; at < good.size(); at += 7) {
+    std::vector<std::byte> bad = good;
+    bad[at] ^= std::byte{0x20};
+    const auto result = [&](auto&& decode) -> std::string {
+      try {
+        const Rgba8Image image = decode(bad, "a.png");
+        return {reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size()};
+      } catch (const UserError& error) { return error.what(); }
+    };
+    INFO("byte " << at);
+    CHECK((result(decode_image) == result(decode_any_image)));
+  }
+}
+
+TEST_CASE("image_io: a PNG is written with the bytes that OpenImageIO gives it") {
+  const TempGltf scratch("");
+  for (const auto& [width, height] : {std::pair{1U, 1U}, {7U, 300U}, {640U, 361U}}) {
+    const std::string plain = scratch.path() + ".plain.png", module = scratch.path() + ".module.png";
+    save_png(plain, gradient(width, height));
+    save_png_by_module(module, gradient(width, height));
+    CHECK((traces::read_whole_file(plain, 1 << 24) == traces::read_whole_file(module, 1 << 24)));
+  }
 }
 
 TEST_CASE("image_io: every truncation of a PNG is refused with its name") {

@@ -31,7 +31,8 @@ class Dice {
 };
 
 Image random_image(Dice& dice) {
-  Image image{dice.name(), dice.coin() ? Format::kR8G8B8A8Unorm : Format::kR8G8B8A8Srgb, 1 + dice.below(9), 1 + dice.below(9), 1, {}};
+  Image image{dice.name(), dice.coin() ? Format::kR8G8B8A8Unorm : Format::kR8G8B8A8Srgb, 1 + dice.below(9), 1 + dice.below(9), 1, {},
+              nullptr};
   image.levels = 1 + dice.below(static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height))));
   std::size_t bytes = 0;
   for (std::uint32_t i = 0; i < image.levels; ++i)
@@ -97,7 +98,7 @@ CommandStream small_stream() {
   s.buffers = {{"vertices", std::vector<std::byte>(36)},
                {"indices", {std::byte{0}, std::byte{1}, std::byte{2}}},
                {"uniforms", std::vector<std::byte>(64)}};
-  s.images = {{"white", Format::kR8G8B8A8Srgb, 2, 1, 2, std::vector<std::byte>(12, std::byte{255})}};
+  s.images = {{"white", Format::kR8G8B8A8Srgb, 2, 1, 2, std::vector<std::byte>(12, std::byte{255}), nullptr}};
   s.samplers = {Sampler{}};
   s.shaders = {{"v", ShaderStage::kVertex, {kSpirvMagic, 0, 0, 0, 0}}, {"f", ShaderStage::kFragment, {kSpirvMagic, 0, 0, 0, 0}}};
   s.pipelines = {{"p", 0, 1, {{0, 12, false}}, {{0, 0, Format::kR32G32B32Float, 0}}, {}, {}, {}, {}, {true, true, CompareOp::kLess}, {}}};
