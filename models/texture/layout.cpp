@@ -64,22 +64,19 @@ void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t lev
   }
 }
 
-TextureView upload_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width, std::uint32_t height, std::uint32_t levels,
-                           std::span<const std::byte> texels) {
-  const TextureLayout layout = make_texture_layout(width, height, levels);
+void tile_texture(DeviceMemory& memory, const TextureView& view, std::span<const std::byte> texels) {
+  const TextureLayout& layout = view.layout;
   std::uint64_t expected = 0;
-  for (std::uint32_t level = 0; level < levels; ++level) expected += level_bytes(layout, level);
+  for (std::uint32_t level = 0; level < layout.levels; ++level) expected += level_bytes(layout, level);
   if (texels.size() != expected) {
-    throw user_error("texture of {} x {} texels with {} levels: {} bytes of texels, {} are needed", width, height, levels, texels.size(),
-                     expected);
+    throw user_error("texture of {} x {} texels with {} levels: {} bytes of texels, {} are needed", layout.width[0], layout.height[0],
+                     layout.levels, texels.size(), expected);
   }
-  const TextureView view = allocate_texture(memory, format, width, height, levels);
-  for (std::uint32_t level = 0; level < levels; ++level) {
+  for (std::uint32_t level = 0; level < layout.levels; ++level) {
     const std::uint64_t size = level_bytes(layout, level);
     tile_level(memory, view, level, texels.first(size));
     texels = texels.subspan(size);
   }
-  return view;
 }
 
 }  // namespace quadrille::models

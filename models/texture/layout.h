@@ -49,15 +49,13 @@ struct TextureView {
   }
 };
 
-/// Allocates a texture of zeros; `tile_level` brings its texels.
+/// Allocates a texture of zeros; `tile_level` and `tile_texture` bring its texels.
 [[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width, std::uint32_t height,
                                            std::uint32_t levels);
 /// Tiles one level: rows top to bottom, tightly packed. Another number of texels than the level has is an internal error.
 void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level, std::span<const std::byte> texels);
 
-/// Allocates a texture and tiles `texels` into it: all levels, finest first, rows top to bottom, tightly packed. Throws `UserError` when
-/// `texels` has another size than the levels need.
-[[nodiscard]] TextureView upload_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width, std::uint32_t height,
-                                         std::uint32_t levels, std::span<const std::byte> texels);
+/// Tiles all levels: finest first, each as `tile_level` takes it. Throws `UserError` when `texels` has another size than the levels need.
+void tile_texture(DeviceMemory& memory, const TextureView& view, std::span<const std::byte> texels);
 
 }  // namespace quadrille::models

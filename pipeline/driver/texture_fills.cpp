@@ -9,15 +9,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void tile_all(models::DeviceMemory& memory, const models::TextureView& view, const traces::Image& image) {
-  std::span<const std::byte> rest = image.texels;
-  for (std::uint32_t level = 0; level < image.levels; ++level) {
-    const std::uint64_t bytes = traces::level_bytes(image, level);
-    models::tile_level(memory, view, level, rest.first(bytes));
-    rest = rest.subspan(bytes);
-  }
-}
-
 }  // namespace
 
 models::TextureFill& TextureFills::add(const traces::Image& image, const models::TextureView& view) {
@@ -26,7 +17,7 @@ models::TextureFill& TextureFills::add(const traces::Image& image, const models:
     const double cpu = pipeline::cpu_seconds();
     if (packed)
       (*packed)([&](std::uint32_t level, std::span<const std::byte> texels) { models::tile_level(memory_, view, level, texels); });
-    else tile_all(memory_, view, *unpacked);
+    else models::tile_texture(memory_, view, unpacked->texels);
     seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
     cpu_seconds_ += pipeline::cpu_seconds() - cpu;
   };

@@ -69,7 +69,7 @@ Machine::Maker::Made<hw::L2Slice> Machine::Maker::make(Kind<hw::L2Slice> /*kind*
 }
 
 Machine::Maker::Made<hw::MemoryChannel> Machine::Maker::make(Kind<hw::MemoryChannel> /*kind*/, const char* name, int i) const {
-  return std::make_unique<hw::MemoryChannel>(name, context_at_memory_clock(i), c_.memory);
+  return std::make_unique<hw::MemoryChannel>(name, context(i, m_.memory_clock_), c_.memory);
 }
 
 Machine::Maker::Made<hw::ScanOut> Machine::Maker::make(Kind<hw::ScanOut> /*kind*/, const char* name, int i) const {

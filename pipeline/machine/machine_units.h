@@ -21,11 +21,9 @@ class Machine::Maker {
 #undef QUADRILLE_MAKE
 
  private:
-  [[nodiscard]] hw::UnitContext context(int number) const {
-    return {m_.clock_, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
-  }
-  [[nodiscard]] hw::UnitContext context_at_memory_clock(int number) const {
-    return {m_.memory_clock_, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
+  [[nodiscard]] hw::UnitContext context(int number) const { return context(number, m_.clock_); }
+  [[nodiscard]] hw::UnitContext context(int number, const hw::Clock& clock) const {
+    return {clock, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
   }
 
   Machine& m_;

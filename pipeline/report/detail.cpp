@@ -14,23 +14,23 @@ struct DrawLaw {
   std::vector<DrawCount> left, right;
 };
 
+constexpr hw::Law of_each_draw(std::string_view text) { return {text, "draws that differ", "none"}; }
+
 const std::vector<DrawLaw>& draw_laws() {
   using enum DrawCount;
   static const std::vector<DrawLaw> laws{
-      {{"each draw: vertices fetched = vertices shaded", "draws that differ", "none"}, {kVerticesFetched}, {kVerticesShaded}},
-      {{"each draw: vertices shaded = vertices assembled", "draws that differ", "none"}, {kVerticesShaded}, {kVerticesAssembled}},
-      {{"each draw: triangles fetched = triangles assembled", "draws that differ", "none"}, {kTrianglesFetched}, {kTrianglesIn}},
-      {{"each draw: triangles assembled = triangles to clip", "draws that differ", "none"}, {kTrianglesIn}, {kTrianglesClipped}},
-      {{"each draw: triangles kept = triangles walked", "draws that differ", "none"}, {kTrianglesDrawn}, {kTrianglesWalked}},
-      {{"each draw: fragments covered = killed early + packed", "draws that differ", "none"}, {kCovered}, {kKilledEarly, kPacked}},
-      {{"each draw: fragments packed = fragments shaded", "draws that differ", "none"}, {kPacked}, {kShaded}},
-      {{"each draw: fragments shaded = fragments at the ROP", "draws that differ", "none"}, {kShaded}, {kAtRop}},
-      {{"each draw: fragments shaded = discarded + killed late + written", "draws that differ", "none"},
-       {kShaded},
-       {kDiscarded, kKilledLate, kWritten}},
-      {{"each draw: texture requests sent = answered", "draws that differ", "none"}, {kTextureSent}, {kTextureTaken}},
-      {{"each draw: requests of clients = requests looked up in L2", "draws that differ", "none"}, {kClientRequests}, {kL2Requests}},
-      {{"each draw: bytes filled into L2 = bytes read from memory", "draws that differ", "none"}, {kFillBytes}, {kMemoryReadBytes}}};
+      {of_each_draw("each draw: vertices fetched = vertices shaded"), {kVerticesFetched}, {kVerticesShaded}},
+      {of_each_draw("each draw: vertices shaded = vertices assembled"), {kVerticesShaded}, {kVerticesAssembled}},
+      {of_each_draw("each draw: triangles fetched = triangles assembled"), {kTrianglesFetched}, {kTrianglesIn}},
+      {of_each_draw("each draw: triangles assembled = triangles to clip"), {kTrianglesIn}, {kTrianglesClipped}},
+      {of_each_draw("each draw: triangles kept = triangles walked"), {kTrianglesDrawn}, {kTrianglesWalked}},
+      {of_each_draw("each draw: fragments covered = killed early + packed"), {kCovered}, {kKilledEarly, kPacked}},
+      {of_each_draw("each draw: fragments packed = fragments shaded"), {kPacked}, {kShaded}},
+      {of_each_draw("each draw: fragments shaded = fragments at the ROP"), {kShaded}, {kAtRop}},
+      {of_each_draw("each draw: fragments shaded = discarded + killed late + written"), {kShaded}, {kDiscarded, kKilledLate, kWritten}},
+      {of_each_draw("each draw: texture requests sent = answered"), {kTextureSent}, {kTextureTaken}},
+      {of_each_draw("each draw: requests of clients = requests looked up in L2"), {kClientRequests}, {kL2Requests}},
+      {of_each_draw("each draw: bytes filled into L2 = bytes read from memory"), {kFillBytes}, {kMemoryReadBytes}}};
   return laws;
 }
 

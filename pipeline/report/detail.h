@@ -54,11 +54,12 @@ enum class DrawCount : std::uint8_t {
   kFillBytes,
   kMemoryReadBytes
 };
-inline constexpr std::size_t kDrawCounts = 32, kReportedDrawCounts = 17;
+inline constexpr auto kReportedDrawCounts = static_cast<std::size_t>(DrawCount::kVerticesFetched);
+inline constexpr auto kDrawCounts = static_cast<std::size_t>(DrawCount::kMemoryReadBytes) + 1;
 
 /// What is counted by part of the screen.
 enum class TileCount : std::uint8_t { kShaded, kKilledEarly, kTilesHidden, kWritten, kTextureMisses, kBytes };
-inline constexpr std::size_t kTileCounts = 6;
+inline constexpr auto kTileCounts = static_cast<std::size_t>(TileCount::kBytes) + 1;
 
 /// A counter of a kind of unit.
 struct CounterName {

@@ -111,7 +111,8 @@ struct TextureScene {
     for (std::uint32_t size = 1024; size >= 1; size /= 2) {
       for (std::uint32_t i = 0; i < size * size * 4; ++i) texels.push_back(static_cast<std::byte>(random()));
     }
-    view = upload_texture(memory, format, 1024, 1024, 11, texels);
+    view = allocate_texture(memory, format, 1024, 1024, 11);
+    tile_texture(memory, view, texels);
     const float step = texels_per_pixel / 1024.0f, c = 0.8f * step, s = 0.6f * step;
     for (int warp = 0; warp < 512; ++warp) {
       TextureRequest r;

@@ -1,7 +1,5 @@
 /// The laws are worth something only if they break: each case loses something on a wire on purpose and finds the law that notices.
-#include "pipeline/report/figures.h"
-#include "tests/hw/contract.h"
-#include "tests/pipeline/random_stream.h"
+#include "tests/pipeline/broken_laws.h"
 
 #include <catch2/catch.hpp>
 
@@ -10,35 +8,8 @@
 using namespace quadrille;
 using namespace quadrille::pipeline;
 
-namespace {
-
-template <class T>
-hw::Fifo<T>& link(const Machine& machine, std::string_view name) {
-  for (const auto& l : machine.links()) {
-    if (static_cast<const sc_core::sc_object&>(*l).basename() == name) return dynamic_cast<hw::Fifo<T>&>(*l);
-  }
-  throw std::runtime_error("no such link");
-}
-
-/// Runs the default machine with a fault; gives the broken laws, one a line.
-std::string broken_laws(const std::function<void(const Machine&)>& inject) {
-  return hw::contract::in_child([&] {
-    const traces::CommandStream stream = test::random_stream(5);
-    MachineConfig config;
-    DeviceFrame frame(std::uint64_t{1} << 30);
-    build_frame(stream, config.precision(), frame);
-    Machine machine(config, frame, {});
-    inject(machine);
-    machine.run({});
-    std::string lines;
-    for (const Check& c : collect_figures(machine, frame).checks) {
-      if (!c.holds()) lines += c.law + "\n";
-    }
-    return lines;
-  });
-}
-
-}  // namespace
+using test::broken_laws;
+using test::link;
 
 TEST_CASE("conservation: an intact machine breaks no law") {
   CHECK(broken_laws([](const Machine&) {}).empty());

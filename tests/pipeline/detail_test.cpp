@@ -13,10 +13,13 @@
 #include "pipeline/report/report.h"
 #include "scenes/scene.h"
 #include "tests/hw/contract.h"
+#include "tests/pipeline/broken_laws.h"
 #include "tests/pipeline/random_stream.h"
 
 using namespace quadrille;
 using namespace quadrille::pipeline;
+
+using test::link;
 
 namespace {
 
@@ -57,31 +60,6 @@ std::string values(const Detail& d, DrawCount count) {
   std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return fmt::format("{} ", fmt::join(all, ","));
-}
-
-/// Runs a random frame with a fault on a link; gives the broken laws, one a line.
-std::string broken_laws(const std::function<void(const Machine&)>& inject) {
-  return hw::contract::in_child([&] {
-    const traces::CommandStream stream = test::random_stream(5);
-    MachineConfig config;
-    DeviceFrame frame(std::uint64_t{1} << 30);
-    build_frame(stream, config.precision(), frame);
-    Machine machine(config, frame, {});
-    DetailLog log(machine, frame, kBoth);
-    inject(machine);
-    machine.run({});
-    std::string lines;
-    for (const Check& c : collect_figures(machine, frame, log.collect()).checks)
-      if (!c.holds()) lines += c.law + "\n";
-    return lines;
-  });
-}
-
-template <class T>
-hw::Fifo<T>& link(const Machine& machine, std::string_view name) {
-  for (const auto& l : machine.links())
-    if (static_cast<const sc_core::sc_object&>(*l).basename() == name) return dynamic_cast<hw::Fifo<T>&>(*l);
-  throw std::runtime_error("no such link");
 }
 
 }  // namespace
@@ -180,17 +158,21 @@ TEST_CASE("detail: a draw that nobody worked for, or for a short time, is limite
 }
 
 TEST_CASE("detail: work that is charged to another draw is noticed") {
-  const std::string requests = broken_laws([](const Machine& machine) {
-    link<hw::MemoryRequest>(machine, "vertex_fetch_to_l2_0").inject_fault([n = 0](hw::MemoryRequest& r) mutable {
-      if (++n == 3) r.draw = r.draw == 0 ? 1 : 0;
-    });
-  });
+  const std::string requests = test::broken_laws(
+      [](const Machine& machine) {
+        link<hw::MemoryRequest>(machine, "vertex_fetch_to_l2_0").inject_fault([n = 0](hw::MemoryRequest& r) mutable {
+          if (++n == 3) r.draw = r.draw == 0 ? 1 : 0;
+        });
+      },
+      kBoth);
   CHECK(requests == "each draw: requests of clients = requests looked up in L2\n");
-  const std::string fills = broken_laws([](const Machine& machine) {
-    link<hw::MemoryRequest>(machine, "l2_to_memory_0").inject_fault([n = 0](hw::MemoryRequest& r) mutable {
-      if (r.kind == hw::MemoryRequest::Kind::kRead && ++n == 3) r.draw = hw::kNoDraw;
-    });
-  });
+  const std::string fills = test::broken_laws(
+      [](const Machine& machine) {
+        link<hw::MemoryRequest>(machine, "l2_to_memory_0").inject_fault([n = 0](hw::MemoryRequest& r) mutable {
+          if (r.kind == hw::MemoryRequest::Kind::kRead && ++n == 3) r.draw = hw::kNoDraw;
+        });
+      },
+      kBoth);
   CHECK(fills == "each draw: bytes filled into L2 = bytes read from memory\n");
 }
 

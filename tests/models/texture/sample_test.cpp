@@ -68,7 +68,9 @@ std::array<LaneFloats, 4> sampled(const TextureView& view, const SamplerState& s
 }
 
 TextureView upload(DeviceMemory& memory, const PlainTexture& t) {
-  return upload_texture(memory, t.format, t.width, t.height, t.levels, t.texels);
+  const TextureView view = allocate_texture(memory, t.format, t.width, t.height, t.levels);
+  tile_texture(memory, view, t.texels);
+  return view;
 }
 
 constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 9> kSizes{
