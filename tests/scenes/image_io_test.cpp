@@ -216,7 +216,8 @@ TEST_CASE("image_io: a PNG of any kind has the pixels that OpenImageIO gives it"
       chunk("PLTE", palette);
     }
     if (kind.keyed)
-      chunk("tRNS", kind.color_type == 3 ? std::vector<std::uint8_t>{77, 9} : std::vector<std::uint8_t>(2 * kind.channels, 0));
+      chunk("tRNS", kind.color_type == 3 ? std::vector<std::uint8_t>{77, 9}
+                                         : std::vector<std::uint8_t>(2 * static_cast<std::size_t>(kind.channels), 0));
     const std::uint32_t row = (kWidth * static_cast<std::uint32_t>(kind.channels * kind.bits) + 7) / 8;
     std::vector<std::uint8_t> rows;
     for (std::uint32_t y = 0; y < kHeight; ++y) {
