@@ -106,6 +106,7 @@ std::vector<Check> checks_of(const Machine& m, const DeviceFrame& frame, const s
   std::vector<hw::Audit::Sides> all = audit.all();
   std::ranges::stable_sort(all, {}, place);
   std::vector<Check> checks;
+  checks.reserve(all.size());
   for (const hw::Audit::Sides& s : all)
     checks.push_back({std::string(s.law->text), std::string(s.law->left), std::string(s.law->right), s.left, s.right});
   return checks;

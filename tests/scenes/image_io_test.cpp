@@ -211,8 +211,8 @@ TEST_CASE("image_io: a PNG of any kind has the pixels that OpenImageIO gives it"
     header.insert(header.end(), {static_cast<std::uint8_t>(kind.bits), static_cast<std::uint8_t>(kind.color_type), 0, 0, 0});
     chunk("IHDR", header);
     if (kind.color_type == 3) {
-      std::vector<std::uint8_t> palette;
-      for (int i = 0; i < 3 << kind.bits; ++i) palette.push_back(static_cast<std::uint8_t>(i * 37));
+      std::vector<std::uint8_t> palette(std::size_t{3} << kind.bits);
+      for (std::size_t i = 0; i < palette.size(); ++i) palette[i] = static_cast<std::uint8_t>(i * 37);
       chunk("PLTE", palette);
     }
     if (kind.keyed)

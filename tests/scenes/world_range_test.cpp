@@ -54,7 +54,7 @@ TEST_CASE("world range: an object far away is recorded around the eye") {
   const auto range = needed_range(scene, options);
   REQUIRE(range);
   CHECK(range->scale == 1);
-  const Placements near = moved(scene, *range);
+  const Placements near = moved(static_cast<const Placements&>(scene), *range);
   CHECK(glm::length(make_view({scene, near}, options).eye) < 100);
   options.at = glm::vec3(1e7F, -1e7F, 1e7F);
   CHECK(glm::dvec3(*moved(options, *range).at) == glm::dvec3(near.instances[0].world[3]));
@@ -77,7 +77,7 @@ TEST_CASE("world range: cameras and lights move with the world, and light stays 
   const auto range = needed_range(scene, SceneOptions{});
   REQUIRE(range);
   CHECK(range->origin == glm::vec3(0));
-  const Placements m = moved(scene, *range);
+  const Placements m = moved(static_cast<const Placements&>(scene), *range);
   const auto s = static_cast<float>(range->scale);
   CHECK(m.lights[0].position.x == 0x1p60F * s);
   CHECK(m.lights[0].color.r == Approx(0x1p60F * s * (0x1p60F * s)));

@@ -44,7 +44,7 @@ struct FineBench final : Bench {
 };
 
 /// Visible to the unit at cycle 1, one after the other.
-FineBench::Setup tiles_of(std::vector<TileToken> tokens, int rate = 4) {
+FineBench::Setup tiles_of(const std::vector<TileToken>& tokens, int rate = 4) {
   FineBench::Setup s;
   for (const TileToken& t : tokens) s.tiles.push_back({0, t});
   s.rate = rate;

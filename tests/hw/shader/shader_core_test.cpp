@@ -80,6 +80,7 @@ struct CoreBench final : Bench {
 
 std::vector<Timed<WarpToken>> work(std::uint32_t first, int count) {
   std::vector<Timed<WarpToken>> all;
+  all.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) all.push_back({0, {0, first + static_cast<std::uint32_t>(i), 0}});
   return all;
 }

@@ -44,6 +44,7 @@ struct DistributorBench final : Bench {
 
 std::vector<Timed<WarpToken>> warps(std::uint32_t first, int count, std::int64_t apart = 0) {
   std::vector<Timed<WarpToken>> all;
+  all.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) all.push_back({i * apart, {0, first + static_cast<std::uint32_t>(i), 0}});
   return all;
 }

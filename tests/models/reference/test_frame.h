@@ -63,7 +63,7 @@ class TestFrame {
     stream.commands.push_back(draw);
   }
 
-  [[nodiscard]] Result render(Options options = {}) const { return reference::render(stream, options); }
+  [[nodiscard]] Result render(const Options& options = {}) const { return reference::render(stream, options); }
 
   traces::CommandStream stream;
 };

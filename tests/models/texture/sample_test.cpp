@@ -49,7 +49,8 @@ TextureRequest random_request(RandomSource& random, std::uint32_t width, std::ui
     const float dx = random.real(-1, 1) * step, dy = random.real(-1, 1) * step, ex = random.real(-1, 1) * step,
                 ey = random.real(-1, 1) * step;
     for (std::size_t pixel = 0; pixel < 4; ++pixel) {
-      const auto x = static_cast<float>(pixel % 2), y = static_cast<float>(pixel / 2);
+      const std::size_t column = pixel % 2, row = pixel / 2;
+      const auto x = static_cast<float>(column), y = static_cast<float>(row);
       r.u[4 * quad + pixel] = u0 + (x * dx + y * ex) / static_cast<float>(width);
       r.v[4 * quad + pixel] = v0 + (x * dy + y * ey) / static_cast<float>(height);
       r.lod[4 * quad + pixel] = random.real(-2, 6);

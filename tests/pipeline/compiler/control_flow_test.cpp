@@ -284,7 +284,8 @@ TEST_CASE("control flow: derivatives are differences within the quad") {
   const RunOutput out =
       run_snippet("float f = gl_FragCoord.x * gl_FragCoord.x + 3.0 * gl_FragCoord.y; color = vec4(dFdx(f), dFdy(f), fwidth(f), 0);", input);
   for (int lane = 0; lane < models::kWarpLanes; ++lane) {
-    const float x = 10.5f + 2.0f * static_cast<float>(lane / 4);
+    const int quad = lane / 4;
+    const float x = 10.5f + 2.0f * static_cast<float>(quad);
     const float dx = (x + 1) * (x + 1) - x * x;
     CHECK(out.color[static_cast<std::size_t>(lane)] == Vec4{dx, 3.0f, dx + 3.0f, 0.0f});
   }
