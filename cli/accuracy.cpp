@@ -33,7 +33,8 @@ std::vector<std::int64_t> parse_windows(const std::string& text) {
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t to = std::min(text.find(',', from), text.size());
     windows.push_back(parse_whole(text.substr(from, to - from), "--windows", 1, kMaxWindow));
-    if (std::ranges::count(windows, windows.back()) > 1) throw user_error("--windows: {} is there twice", windows.back());
+    if (std::ranges::count(windows, windows.back()) > 1)
+      throw user_error("--windows: {} is there twice", windows.back());
     from = to + 1;
   }
   return windows;
@@ -54,7 +55,8 @@ void check_outputs(const AccuracyArguments& a) {
   if (a.plot) check_output("--plot", *a.plot, {".svg", ".png"});
   if (a.precision_plot) check_output("--precision-plot", *a.precision_plot, {".svg", ".png"});
   check_distinct({{"--json", a.json}, {"--plot", a.plot}, {"--precision-plot", a.precision_plot}});
-  if (a.precision_plot && a.no_precision) throw user_error("--precision-plot: not together with --no-precision");
+  if (a.precision_plot && a.no_precision)
+    throw user_error("--precision-plot: not together with --no-precision");
   if (a.plot) studies::require_gnuplot("--plot");
   if (a.precision_plot) studies::require_gnuplot("--precision-plot");
 }
@@ -91,7 +93,8 @@ int run_accuracy(const AccuracyArguments& a) {
 }  // namespace
 
 void add_accuracy(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand("accuracy", "Measures error against run time: windows of look-ahead, and precisions.");
+  CLI::App* command = app.add_subcommand(
+      "accuracy", "Measures error against run time: windows of look-ahead, and precisions.");
   const auto a = std::make_shared<AccuracyArguments>();
   command->add_option("SCENE", a->scenes, "scenes as for render; each has its tables")->required();
   a->view.add_view_to(*command, kDefaultSize);
@@ -99,12 +102,20 @@ void add_accuracy(CLI::App& app, Command& chosen) {
   command->add_option("--windows", a->windows, "the windows to measure, in cycles beyond the exact bound")
       ->type_name("W,W,...")
       ->capture_default_str();
-  command->add_option("--repeat", a->repeat, "runs of each setting; they take turns")->type_name("N")->capture_default_str();
-  command->add_flag("--no-precision", a->no_precision, "leaves out the table of sub-pixel, sub-texel and level-of-detail bits");
-  command->add_option("--json", a->json, "writes all that was measured as JSON (docs/accuracy.md); - is standard output")
+  command->add_option("--repeat", a->repeat, "runs of each setting; they take turns")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--no-precision", a->no_precision,
+                    "leaves out the table of sub-pixel, sub-texel and level-of-detail bits");
+  command
+      ->add_option("--json", a->json,
+                   "writes all that was measured as JSON (docs/accuracy.md); - is standard output")
       ->type_name("F.json|-");
-  command->add_option("--plot", a->plot, "draws error against run time, a line a scene (needs gnuplot)")->type_name("F.svg|F.png");
-  command->add_option("--precision-plot", a->precision_plot, "draws the picture's error against bits (needs gnuplot)")
+  command->add_option("--plot", a->plot, "draws error against run time, a line a scene (needs gnuplot)")
+      ->type_name("F.svg|F.png");
+  command
+      ->add_option("--precision-plot", a->precision_plot,
+                   "draws the picture's error against bits (needs gnuplot)")
       ->type_name("F.svg|F.png");
   command->footer(
       R"(Every run is a process of its own. Compared are: functional (values only), exact, and each window, whose figures are approximate.

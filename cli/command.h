@@ -1,4 +1,5 @@
-/// A subcommand of the program: it registers its options, and hands over what to run when it was the one chosen.
+/// A subcommand of the program: it registers its options, and hands over what to run when it was the one
+/// chosen.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,7 +8,8 @@
 
 namespace quadrille::cli {
 
-/// Exit codes. A user's mistake and a failed check are told apart, so that a script can tell a wrong flag from a wrong machine.
+/// Exit codes. A user's mistake and a failed check are told apart, so that a script can tell a wrong flag
+/// from a wrong machine.
 inline constexpr int kDone = 0, kFailed = 1, kUserError = 2, kInternalError = 3;
 
 using Command = std::function<int()>;

@@ -18,7 +18,8 @@ std::shared_ptr<const hw::StatGroup> declared(hw::Parts<OfParts...> /*parts*/) {
 
 template <class Unit>
 std::shared_ptr<const hw::StatGroup> counters_of() {
-  if constexpr (requires { typename Unit::CounterParts; }) return declared<typename Unit::Stats>(typename Unit::CounterParts());
+  if constexpr (requires { typename Unit::CounterParts; })
+    return declared<typename Unit::Stats>(typename Unit::CounterParts());
   else return declared<typename Unit::Stats>(hw::Parts<>());
 }
 
@@ -26,7 +27,9 @@ std::shared_ptr<const hw::StatGroup> counters_of() {
 
 std::vector<UnitCounters> counter_catalogue() {
   std::vector<UnitCounters> all;
-  pipeline::visit_unit_kinds([&]<class Unit>() { all.push_back({pipeline::UnitKind<Unit>::name, counters_of<Unit>()}); });
+  pipeline::visit_unit_kinds([&]<class Unit>() {
+    all.push_back({pipeline::UnitKind<Unit>::name, counters_of<Unit>()});
+  });
   return all;
 }
 

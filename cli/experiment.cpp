@@ -36,8 +36,11 @@ std::vector<const experiments::Experiment*> chosen_of(const std::vector<std::str
   for (const std::string& name : names) {
     const auto found = std::ranges::find(all, name);
     if (found == all.end())
-      throw user_error("there is no experiment '{}'; there are: {}{}", name, fmt::join(all, ", "), did_you_mean(name, all));
-    if (std::ranges::find(chosen, &experiments::experiments()[static_cast<std::size_t>(found - all.begin())]) != chosen.end())
+      throw user_error("there is no experiment '{}'; there are: {}{}", name, fmt::join(all, ", "),
+                       did_you_mean(name, all));
+    if (std::ranges::find(chosen,
+                          &experiments::experiments()[static_cast<std::size_t>(found - all.begin())]) !=
+        chosen.end())
       throw user_error("experiment: '{}' is named twice", name);
     chosen.push_back(&experiments::experiments()[static_cast<std::size_t>(found - all.begin())]);
   }
@@ -57,7 +60,8 @@ experiments::Setting setting_of(const experiments::Experiment& e, const Experime
     setting.scenes.emplace_back(fs::path(name).stem().string(), [scene] {
       traces::CommandStream stream = scene.load().stream;
       const auto draws = [](const traces::Command& c) { return std::holds_alternative<traces::Draw>(c); };
-      if (std::ranges::none_of(stream.commands, draws)) throw user_error("{}: draws nothing: no figure comes of that", scene.scene);
+      if (std::ranges::none_of(stream.commands, draws))
+        throw user_error("{}: draws nothing: no figure comes of that", scene.scene);
       return stream;
     });
   }
@@ -111,16 +115,20 @@ int run_experiments(const ExperimentArguments& a) {
 }  // namespace
 
 void add_experiment(CLI::App& app, Command& chosen) {
-  CLI::App* command =
-      app.add_subcommand("experiment", "Runs what others measured on the simulated machine, and holds it to the published figures.");
+  CLI::App* command = app.add_subcommand(
+      "experiment",
+      "Runs what others measured on the simulated machine, and holds it to the published figures.");
   const auto arguments = std::make_shared<ExperimentArguments>();
   command->add_option("NAME", arguments->names, "experiments (default: all; --list names them)");
   command->add_flag("--list", arguments->list, "prints their names and titles, and runs none");
-  command->add_option("--scene", arguments->scenes, "a scene or trace to draw instead of the experiment's own; may be given several times")
+  command
+      ->add_option("--scene", arguments->scenes,
+                   "a scene or trace to draw instead of the experiment's own; may be given several times")
       ->type_name("SCENE")
       ->expected(1)
       ->take_all();
-  command->add_option("--size", arguments->size, "of the pictures (default: the experiment's own)")->type_name("WxH");
+  command->add_option("--size", arguments->size, "of the pictures (default: the experiment's own)")
+      ->type_name("WxH");
   command->add_option("--out", arguments->out, "writes a page and a plot of each there")->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "processes at a time (default 2)")->type_name("N");
   command->footer(R"(Exit code 1 when a figure lies outside its band.

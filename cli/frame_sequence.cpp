@@ -35,13 +35,15 @@ struct Plan {
   }
 };
 
-Plan make_plan(const FrameArguments& arguments, const scenes::SceneOptions& options, const scenes::Scene& scene) {
+Plan make_plan(const FrameArguments& arguments, const scenes::SceneOptions& options,
+               const scenes::Scene& scene) {
   Plan plan;
   plan.frames = parse_whole(*arguments.frames, "--frames", 1, kMaxFrames);
   plan.animated = scene.animated() && scene.length() > 0;
   plan.orbit = arguments.orbit || !plan.animated;
   plan.start = options.time.value_or(0);
-  if (arguments.fps && !plan.animated) throw user_error("--fps: the scene has no animation; its frames are a turn around it");
+  if (arguments.fps && !plan.animated)
+    throw user_error("--fps: the scene has no animation; its frames are a turn around it");
   if (arguments.fps) {
     plan.step = 1 / parse_number(*arguments.fps, "--fps", 1 / kMaxFps, kMaxFps);
   } else if (plan.animated) {
@@ -56,8 +58,9 @@ std::vector<std::string> plan_notes(const Plan& plan, const scenes::Scene& scene
   std::int64_t late = 0;
   while (late < plan.frames && plan.moment(plan.frames - 1 - late).time > scene.length()) ++late;
   if (late == 0) return {};
-  return {fmt::format("the last {} of {} frames are after the animation's end at {:g} s and show its last pose", late, plan.frames,
-                      scene.length())};
+  return {
+      fmt::format("the last {} of {} frames are after the animation's end at {:g} s and show its last pose",
+                  late, plan.frames, scene.length())};
 }
 
 /// What the limiter names, and its share.
@@ -65,22 +68,28 @@ std::string limit_text(const Json& limit) {
   if (limit.is_null()) return "-";
   const std::string kind = limit["kind"], name = limit["name"];
   const bool part_of_time =
-      name != "scan_out" && (kind == "work" || kind == "latency");  // scan-out's share is the part of the frame after all else
-  return fmt::format("{}{} {:.1f}", part_of_time ? kind + " of " : "", name, 100 * limit["share"].get<double>());
+      name != "scan_out" &&
+      (kind == "work" || kind == "latency");  // scan-out's share is the part of the frame after all else
+  return fmt::format("{}{} {:.1f}", part_of_time ? kind + " of " : "", name,
+                     100 * limit["share"].get<double>());
 }
 
 std::string head() {
-  return fmt::format("  {:>6}{:>10}{:>8}{:>13}{:>10}{:>12}{:>8}{:>12}{:>13}{:>11}  {}\n", "frame", "time s", "turn", "cycles", "ms",
-                     "scan-out ms", "draws", "triangles", "fragments", "memory MB", "what limits it, %");
+  return fmt::format("  {:>6}{:>10}{:>8}{:>13}{:>10}{:>12}{:>8}{:>12}{:>13}{:>11}  {}\n", "frame", "time s",
+                     "turn", "cycles", "ms", "scan-out ms", "draws", "triangles", "fragments", "memory MB",
+                     "what limits it, %");
 }
 
 std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
   const Json& f = figures["frame"];
   const scenes::Moment moment = plan.moment(number);
   const bool timed = !f["cycles"].is_null();
-  const auto number_or_dash = [](bool given, const std::string& text) { return given ? text : std::string("-"); };
-  std::string out = fmt::format("  {:>6} {:>9}{:>8}", number, number_or_dash(plan.animated, fmt::format("{:.3f}", moment.time)),
-                                number_or_dash(moment.orbit.has_value(), fmt::format("{:.3f}", moment.orbit.value_or(0))));
+  const auto number_or_dash = [](bool given, const std::string& text) {
+    return given ? text : std::string("-");
+  };
+  std::string out = fmt::format(
+      "  {:>6} {:>9}{:>8}", number, number_or_dash(plan.animated, fmt::format("{:.3f}", moment.time)),
+      number_or_dash(moment.orbit.has_value(), fmt::format("{:.3f}", moment.orbit.value_or(0))));
   if (timed) {
     const double cycles = f["cycles"].get<double>();
     const double per_ms = f["clock_mhz"].get<double>() * 1e3;
@@ -89,10 +98,11 @@ std::string row(std::int64_t number, const Plan& plan, const Json& figures) {
   } else {
     out += fmt::format("{:>13}{:>10}{:>12}", "-", "-", "-");
   }
-  out += fmt::format("{:>8}{:>12}{:>13}", f["draws"].get<std::uint64_t>(), f["triangles"].get<std::uint64_t>(),
-                     f["fragments_shaded"].get<std::uint64_t>());
+  out += fmt::format("{:>8}{:>12}{:>13}", f["draws"].get<std::uint64_t>(),
+                     f["triangles"].get<std::uint64_t>(), f["fragments_shaded"].get<std::uint64_t>());
   if (!timed) return out + fmt::format("{:>11}  -\n", "-");
-  return out + fmt::format("{:>11.3f}  {}\n", f["memory_bytes"].get<double>() * 1e-6, limit_text(figures["limit"]));
+  return out +
+         fmt::format("{:>11.3f}  {}\n", f["memory_bytes"].get<double>() * 1e-6, limit_text(figures["limit"]));
 }
 
 std::string note_rows(const std::vector<std::string>& notes) {
@@ -106,16 +116,19 @@ std::string broken_laws(std::int64_t number, const Json& figures) {
   std::string text;
   for (const Json& check : figures["checks"]) {
     if (!check["holds"].get<bool>())
-      text += fmt::format("quadrille: frame {}: its figures contradict each other: {}\n", number, check["law"].get<std::string>());
+      text += fmt::format("quadrille: frame {}: its figures contradict each other: {}\n", number,
+                          check["law"].get<std::string>());
   }
   return text;
 }
 
-/// What a row of frames takes: one after another, and where the scan-out of each overlaps the drawing of the next. Two targets take turns: a frame is drawn when the
-/// one before it is drawn and the target that it draws into, which the one before that is shown from, is free. Neither slows the other in memory.
+/// What a row of frames takes: one after another, and where the scan-out of each overlaps the drawing of the
+/// next. Two targets take turns: a frame is drawn when the one before it is drawn and the target that it
+/// draws into, which the one before that is shown from, is free. Neither slows the other in memory.
 class DisplayQueue {
  public:
-  /// When the next frame is drawn and shown, in cycles since the first began to be drawn; null when it was not timed.
+  /// When the next frame is drawn and shown, in cycles since the first began to be drawn; null when it was
+  /// not timed.
   Json add(const Json& frame) {
     if (frame["cycles"].is_null()) return nullptr;
     const std::int64_t cycles = frame["cycles"], drawing = frame["render_cycles"];
@@ -132,10 +145,12 @@ class DisplayQueue {
   [[nodiscard]] std::string text() const {
     if (frames_ == 0) return "";
     const auto rate = [this](std::int64_t cycles) {
-      return fmt::format("{} cycles, {:.1f} frames/s", cycles, 1e6 * clock_mhz_ * frames_ / static_cast<double>(cycles));
+      return fmt::format("{} cycles, {:.1f} frames/s", cycles,
+                         1e6 * clock_mhz_ * frames_ / static_cast<double>(cycles));
     };
-    return fmt::format("  all: {} one after another; {} where the scan-out of each overlaps the drawing of the next\n",
-                       rate(one_after_another_), rate(shown_));
+    return fmt::format(
+        "  all: {} one after another; {} where the scan-out of each overlaps the drawing of the next\n",
+        rate(one_after_another_), rate(shown_));
   }
   [[nodiscard]] Json json() const {
     if (frames_ == 0) return nullptr;
@@ -195,19 +210,26 @@ class Sequence {
 
 void FrameArguments::add_to(CLI::App& command) {
   command
-      .add_option(
-          "--frames", frames,
-          "draws N frames over the scene's animation, or around the scene if it has none; the names of --out and --depth then need #, "
-          "as in frame_####.png")
+      .add_option("--frames", frames,
+                  "draws N frames over the scene's animation, or around the scene if it has none; the names "
+                  "of --out and --depth then need #, "
+                  "as in frame_####.png")
       ->type_name("N");
-  command.add_option("--fps", fps, "with --frames: frames a second of the animation (default: N frames over its whole length)")
+  command
+      .add_option("--fps", fps,
+                  "with --frames: frames a second of the animation (default: N frames over its whole length)")
       ->type_name("F");
   command.add_flag("--orbit", orbit,
-                   "with --frames: carries the camera once around the scene (the scene moves too if --time or --animation is given)");
-  command.add_option("--jobs", jobs, "with --frames: frames at a time, each in a process of its own (default 1)")->type_name("N");
+                   "with --frames: carries the camera once around the scene (the scene moves too if --time "
+                   "or --animation is given)");
+  command
+      .add_option("--jobs", jobs, "with --frames: frames at a time, each in a process of its own (default 1)")
+      ->type_name("N");
 }
 
-int FrameArguments::job_count() const { return jobs ? static_cast<int>(parse_whole(*jobs, "--jobs", 1, kMaxJobs)) : 1; }
+int FrameArguments::job_count() const {
+  return jobs ? static_cast<int>(parse_whole(*jobs, "--jobs", 1, kMaxJobs)) : 1;
+}
 
 void FrameArguments::check() const {
   if (frames) {
@@ -226,7 +248,9 @@ void check_pattern(std::string_view flag, const std::string& pattern) {
   const std::size_t first = name.find('#');
   const std::size_t end = first == std::string::npos ? first : name.find_first_not_of('#', first);
   if (first == std::string::npos || (end != std::string::npos && name.find('#', end) != std::string::npos))
-    throw user_error("{}: {}: with --frames the name needs one run of # for the frame's number, as in frame_####.png", flag, pattern);
+    throw user_error(
+        "{}: {}: with --frames the name needs one run of # for the frame's number, as in frame_####.png",
+        flag, pattern);
 }
 
 std::string numbered(const std::string& pattern, std::int64_t frame) {
@@ -237,8 +261,8 @@ std::string numbered(const std::string& pattern, std::int64_t frame) {
   return (path.parent_path() / name).string();
 }
 
-SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about, const Tables& tables,
-                           const DrawFrame& draw) {
+SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames,
+                           const std::string& about, const Tables& tables, const DrawFrame& draw) {
   if (scene.is_trace()) throw user_error("--frames: {} is a trace, which holds one frame", scene.scene);
   scenes::SceneOptions options = scene.options();
   const bool moves = !frames.orbit || frames.fps || options.time || !options.animation.empty();
@@ -248,7 +272,8 @@ SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& fr
   scenes::Scene file(scene.scene, options);
   const Plan plan = make_plan(frames, options, file);
   progress.clear();
-  const std::string over = plan.animated ? fmt::format("{} frames over {:g} s", plan.frames, plan.step * static_cast<double>(plan.frames))
+  const std::string over = plan.animated ? fmt::format("{} frames over {:g} s", plan.frames,
+                                                       plan.step * static_cast<double>(plan.frames))
                                          : fmt::format("{} frames around the scene", plan.frames);
   const std::vector<std::string> notes = plan_notes(plan, file);
   tables.print(fmt::format("FRAMES  {}, {}, {}\n{}{}", scene.scene, over, about, note_rows(notes), head()));
@@ -266,7 +291,8 @@ SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& fr
     Json figures = Json::parse(studies::output_of(run, fmt::format("frame {}", i)));
     progress.clear();
     sequence.add(static_cast<std::int64_t>(i), std::move(figures));
-    if (sequence.size() < plan.frames) progress.show(fmt::format("frame {} of {}", sequence.size(), plan.frames));
+    if (sequence.size() < plan.frames)
+      progress.show(fmt::format("frame {} of {}", sequence.size(), plan.frames));
   });
   progress.clear();
   tables.print(sequence.queue().text());

@@ -1,4 +1,5 @@
-/// Many frames of one scene: `quadrille render --frames N`. Each frame is a process of its own; this one reads the scene once and collects the rows.
+/// Many frames of one scene: `quadrille render --frames N`. Each frame is a process of its own; this one
+/// reads the scene once and collects the rows.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -25,12 +26,14 @@ struct FrameArguments {
   [[nodiscard]] bool wanted() const { return frames.has_value(); }
 };
 
-/// `frame_####.png` with the number of a frame in the place of the signs, which stand for at least that many digits.
+/// `frame_####.png` with the number of a frame in the place of the signs, which stand for at least that many
+/// digits.
 [[nodiscard]] std::string numbered(const std::string& pattern, std::int64_t frame);
 /// Throws `UserError` that starts with `flag` when a file's name has no `#`, or several runs of them.
 void check_pattern(std::string_view flag, const std::string& pattern);
 
-/// Draws frame `number` from its commands, writes its files, and returns its figures as JSON. Runs in the frame's own process.
+/// Draws frame `number` from its commands, writes its files, and returns its figures as JSON. Runs in the
+/// frame's own process.
 using DrawFrame = std::function<std::string(const SceneArguments::Loaded& frame, std::int64_t number)>;
 
 struct SequenceResult {
@@ -38,8 +41,10 @@ struct SequenceResult {
   std::string json;  ///< all frames' figures, schema `quadrille-frames-1`
 };
 
-/// Draws all frames, printing a row for each; the rows come in order, however many processes draw. Throws `UserError` that names the frame.
-[[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames, const std::string& about,
-                                         const Tables& tables, const DrawFrame& draw);
+/// Draws all frames, printing a row for each; the rows come in order, however many processes draw. Throws
+/// `UserError` that names the frame.
+[[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames,
+                                         const std::string& about, const Tables& tables,
+                                         const DrawFrame& draw);
 
 }  // namespace quadrille::cli

@@ -27,7 +27,8 @@ std::string lower_extension(const std::string& path) {
 
 constexpr std::uint32_t kOpaque = 0xff000000u;
 
-scenes::Rgba8Image bytes_of(std::uint32_t width, std::uint32_t height, const std::vector<std::uint32_t>& rgba) {
+scenes::Rgba8Image bytes_of(std::uint32_t width, std::uint32_t height,
+                            const std::vector<std::uint32_t>& rgba) {
   scenes::Rgba8Image out{width, height, std::vector<std::uint8_t>(rgba.size() * 4)};
   std::memcpy(out.pixels.data(), rgba.data(), out.pixels.size());
   return out;
@@ -53,7 +54,8 @@ scenes::FloatImage linear_values(const pipeline::FrameImage& image, bool srgb, b
 }
 
 std::uint8_t unorm(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(std::isnan(value) ? 0.0F : value, 0.0F, 1.0F) * 255.0F));
+  return static_cast<std::uint8_t>(
+      std::lround(std::clamp(std::isnan(value) ? 0.0F : value, 0.0F, 1.0F) * 255.0F));
 }
 
 /// Grey by depth, stretched over the depths that the picture has.
@@ -76,19 +78,25 @@ std::string joined(const std::vector<std::string>& extensions) {
 
 bool is_exr(const std::string& path) { return lower_extension(path) == ".exr"; }
 
-void check_output(std::string_view flag, const std::string& path, const std::vector<std::string>& extensions) {
+void check_output(std::string_view flag, const std::string& path,
+                  const std::vector<std::string>& extensions) {
   if (std::ranges::find(extensions, lower_extension(path)) == extensions.end()) {
     throw user_error("{}: {}: the name has to end in {}", flag, path, joined(extensions));
   }
-  constexpr std::size_t kMaxNameBytes = 200;  // a file system allows 255, and the name it has while it is written is longer
+  // a file system allows 255, and the name it has while it is written is longer
+  constexpr std::size_t kMaxNameBytes = 200;
   const std::size_t name_bytes = fs::path(path).filename().string().size();
-  if (name_bytes > kMaxNameBytes) throw user_error("{}: the file's name has {} bytes; legal are {}", flag, name_bytes, kMaxNameBytes);
+  if (name_bytes > kMaxNameBytes)
+    throw user_error("{}: the file's name has {} bytes; legal are {}", flag, name_bytes, kMaxNameBytes);
   std::error_code failure;
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, failure)) throw user_error("{}: {}: there is no folder {}", flag, path, folder.string());
-  if (access(folder.c_str(), W_OK | X_OK) != 0) throw user_error("{}: {}: no permission to write into {}", flag, path, folder.string());
+  if (!fs::is_directory(folder, failure))
+    throw user_error("{}: {}: there is no folder {}", flag, path, folder.string());
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw user_error("{}: {}: no permission to write into {}", flag, path, folder.string());
   if (!fs::exists(path, failure)) return;
-  if (!fs::is_regular_file(path, failure)) throw user_error("{}: {}: exists and is not a plain file", flag, path);
+  if (!fs::is_regular_file(path, failure))
+    throw user_error("{}: {}: exists and is not a plain file", flag, path);
   if (access(path.c_str(), W_OK) != 0) throw user_error("{}: {}: exists and is write-protected", flag, path);
 }
 
@@ -96,7 +104,8 @@ bool is_standard_output(const std::string& path) { return path == "-"; }
 
 void check_json_output(std::string_view flag, const std::string& path) {
   if (is_standard_output(path)) return;
-  if (lower_extension(path) != ".json") throw user_error("{}: {}: the name has to end in .json, or be - for standard output", flag, path);
+  if (lower_extension(path) != ".json")
+    throw user_error("{}: {}: the name has to end in .json, or be - for standard output", flag, path);
   check_output(flag, path, {".json"});
 }
 
@@ -104,7 +113,8 @@ void check_distinct(const std::vector<std::pair<std::string_view, std::optional<
   const auto place = [](const std::string& path) { return fs::weakly_canonical(fs::absolute(path)); };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!outputs[i].second || !outputs[j].second || place(*outputs[i].second) != place(*outputs[j].second)) continue;
+      if (!outputs[i].second || !outputs[j].second || place(*outputs[i].second) != place(*outputs[j].second))
+        continue;
       throw user_error("{} and {}: both name {}", outputs[j].first, outputs[i].first, *outputs[i].second);
     }
   }
@@ -146,7 +156,9 @@ CodedImage read_coded(const std::string& path) {
   out = {image.width, image.height, {}};
   out.rgba.reserve(std::size_t{image.width} * image.height);
   for (std::size_t p = 0; p < image.pixels.size(); p += image.channels) {
-    const auto code = [&](std::size_t c) { return std::uint32_t{models::encode_srgb8(image.pixels[p + (image.channels < 3 ? 0 : c)])}; };
+    const auto code = [&](std::size_t c) {
+      return std::uint32_t{models::encode_srgb8(image.pixels[p + (image.channels < 3 ? 0 : c)])};
+    };
     const std::uint32_t alpha = image.channels == 4 ? unorm(image.pixels[p + 3]) : 255;
     out.rgba.push_back(code(0) | code(1) << 8 | code(2) << 16 | alpha << 24);
   }

@@ -47,25 +47,33 @@ int run_leave_out(const LeaveOutArguments& a) {
       SceneArguments::Loaded loaded = wanted.load();
       return studies::LoadedScene{std::move(loaded.stream), std::move(loaded.left_out)};
     };
-    results.push_back(
-        studies::measure_leave_out({one.scene, load}, machine, repeat, [&](const std::string& what) { progress.show(what); }));
+    results.push_back(studies::measure_leave_out({one.scene, load}, machine, repeat,
+                                                 [&](const std::string& what) { progress.show(what); }));
   }
   progress.clear();
   Tables(true, a.json).print(studies::leave_out_table(results, machine));
   if (a.json) write_text(*a.json, studies::leave_out_json(results, machine));
-  return std::ranges::all_of(results, [](const studies::LeaveOutResult& r) { return r.contradiction.empty(); }) ? kDone : kFailed;
+  return std::ranges::all_of(results,
+                             [](const studies::LeaveOutResult& r) { return r.contradiction.empty(); })
+             ? kDone
+             : kFailed;
 }
 
 }  // namespace
 
 void add_leave_out(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand("leave-out", "Measures what leaving out saves, and checks that it changes nothing else.");
+  CLI::App* command = app.add_subcommand(
+      "leave-out", "Measures what leaving out saves, and checks that it changes nothing else.");
   const auto a = std::make_shared<LeaveOutArguments>();
   command->add_option("SCENE", a->scenes, "scenes as for render; each has its row")->required();
   a->view.add_view_to(*command, kDefaultSize);
   a->machine.add_to(*command);
-  command->add_option("--repeat", a->repeat, "runs of each side; they take turns")->type_name("N")->capture_default_str();
-  command->add_option("--json", a->json, "writes all that was measured as JSON (docs/leave_out.md); - is standard output")
+  command->add_option("--repeat", a->repeat, "runs of each side; they take turns")
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--json", a->json,
+                   "writes all that was measured as JSON (docs/leave_out.md); - is standard output")
       ->type_name("F.json|-");
   command->footer(
       R"(Every run is a process of its own, from the file to the picture: --leave-out none beside --leave-out auto. Ends with 1 when they disagree.

@@ -5,10 +5,14 @@
 namespace quadrille::cli {
 
 void MachineArguments::add_to(CLI::App& command) {
-  command.add_option("--machine", machine, "a machine by name (quadrille machines lists them) or a .toml file")
+  command
+      .add_option("--machine", machine, "a machine by name (quadrille machines lists them) or a .toml file")
       ->type_name("NAME|FILE.toml")
       ->capture_default_str();
-  command.add_option("--set", settings, "sets a parameter after the machine is loaded; may be given again (quadrille describe lists all)")
+  command
+      .add_option(
+          "--set", settings,
+          "sets a parameter after the machine is loaded; may be given again (quadrille describe lists all)")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
@@ -19,7 +23,8 @@ void MachineArguments::apply(pipeline::MachineConfig& config) const {
   config.begin_layer();
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) throw user_error("--set: '{}' is not KEY=VALUE, as in gpu.cores=8", setting);
+    if (equals == std::string::npos)
+      throw user_error("--set: '{}' is not KEY=VALUE, as in gpu.cores=8", setting);
     config.set(setting.substr(0, equals), setting.substr(equals + 1), "--set");
   }
   config.check();

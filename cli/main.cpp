@@ -51,12 +51,14 @@ const CLI::App& recognised(const CLI::App& app) {
 
 /// "quadrille trace record"
 std::string command_line_of(const CLI::App& app, const CLI::App& command) {
-  return &app == &command ? app.get_name() : command_line_of(app, *command.get_parent()) + " " + command.get_name();
+  return &app == &command ? app.get_name()
+                          : command_line_of(app, *command.get_parent()) + " " + command.get_name();
 }
 
 std::vector<std::string> subcommands_of(const CLI::App& command) {
   std::vector<std::string> names;
-  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; })) names.push_back(sub->get_name());
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(sub->get_name());
   return names;
 }
 
@@ -69,7 +71,8 @@ std::vector<std::string> flags_of(const CLI::App& command) {
   return names;
 }
 
-/// The first word of the command line that nothing takes, in the order in which they were typed; none when all are taken.
+/// The first word of the command line that nothing takes, in the order in which they were typed; none when
+/// all are taken.
 std::optional<std::string> first_unknown(const CLI::App& app, std::span<char* const> words) {
   const std::vector<std::string> unknown = app.remaining(true);
   for (const char* word : words) {
@@ -81,14 +84,17 @@ std::optional<std::string> first_unknown(const CLI::App& app, std::span<char* co
 /// What is wrong with a word that nothing takes, and what it may have been meant to be.
 std::string unknown_text(const CLI::App& command, const std::string& word) {
   if (word.starts_with('-') && word.size() > 1)
-    return fmt::format("unknown option '{}'{}", word, did_you_mean(word.substr(0, word.find('=')), flags_of(command)));
+    return fmt::format("unknown option '{}'{}", word,
+                       did_you_mean(word.substr(0, word.find('=')), flags_of(command)));
   const std::vector<std::string> subs = subcommands_of(command);
   if (subs.empty()) return fmt::format("unexpected argument '{}'", word);
   const std::string meant = did_you_mean(word, subs);
-  return fmt::format("unknown subcommand '{}'{}", word, meant.empty() ? fmt::format("; there are {}", fmt::join(subs, ", ")) : meant);
+  return fmt::format("unknown subcommand '{}'{}", word,
+                     meant.empty() ? fmt::format("; there are {}", fmt::join(subs, ", ")) : meant);
 }
 
-/// What is wrong with a command line, as one line. A word that nothing takes is named before what is missing: it is often the reason.
+/// What is wrong with a command line, as one line. A word that nothing takes is named before what is missing:
+/// it is often the reason.
 int refuse(const CLI::App& app, std::span<char* const> words, const CLI::ParseError& error) {
   const CLI::App& command = recognised(app);
   const std::optional<std::string> unknown = first_unknown(app, words);
@@ -128,11 +134,13 @@ int run(int argc, char** argv) {
     const int code = chosen();
     flush_output();
     return code;
-  } catch (const CLI::ParseError& error) { return refuse(app, {argv + 1, argv + argc}, error); } catch (const UserError& error) {
-    return fail(kUserError, error.what());
-  } catch (const std::bad_alloc&) {
+  } catch (const CLI::ParseError& error) {
+    return refuse(app, {argv + 1, argv + argc}, error);
+  } catch (const UserError& error) { return fail(kUserError, error.what()); } catch (const std::bad_alloc&) {
     return fail(kUserError, "out of memory; try a smaller --size, or a machine with less gpu.memory_mib");
-  } catch (const std::system_error& error) { return output_lost(error); } catch (const std::exception& error) {
+  } catch (const std::system_error& error) {
+    return output_lost(error);
+  } catch (const std::exception& error) {
     return fail(kInternalError, fmt::format("internal error: {}", error.what()));
   }
 }

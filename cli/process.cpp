@@ -21,10 +21,12 @@ constexpr double kRefreshSeconds = 0.1;
 
 bool pipes_end_us = false;  // SIGPIPE was not ignored when the program started
 
-/// Takes the numbers of closed standard streams. What is open for reading only fails a write, as a closed one does.
+/// Takes the numbers of closed standard streams. What is open for reading only fails a write, as a closed one
+/// does.
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", O_RDONLY);  // the lowest free number
+    // the lowest free number
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) (void)open("/dev/null", O_RDONLY);
   }
 }
 
@@ -41,7 +43,8 @@ void start_process() {
 void flush_output() {
   errno = 0;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), "standard output cannot be written");
+    throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(),
+                            "standard output cannot be written");
 }
 
 void end_by_pipe() {
@@ -83,7 +86,8 @@ void Progress::show_cycles(std::int64_t cycles) {
   if (elapsed < next_ + kRefreshSeconds) return;
   next_ = elapsed;
   const double millions = static_cast<double>(cycles) * 1e-6;
-  show(fmt::format("simulating: {:.2f} million cycles, {:.1f} s, {:.2f} million cycles a second", millions, elapsed, millions / elapsed));
+  show(fmt::format("simulating: {:.2f} million cycles, {:.1f} s, {:.2f} million cycles a second", millions,
+                   elapsed, millions / elapsed));
 }
 
 void Progress::clear() {

@@ -7,8 +7,8 @@
 namespace quadrille::cli {
 
 void add_render(CLI::App& app, Command& chosen) {
-  CLI::App* command =
-      app.add_subcommand("render", "Renders a frame, or several: the picture, its cycles, and where every unit's time went.");
+  CLI::App* command = app.add_subcommand(
+      "render", "Renders a frame, or several: the picture, its cycles, and where every unit's time went.");
   const auto job = std::make_shared<RenderJob>();
   job->scene.add_to(*command);
   job->add_to(*command);

@@ -38,46 +38,59 @@ void note_host(pipeline::Figures& figures, double load_s) {
 
 void RenderJob::add_to(CLI::App& command) {
   machine.add_to(command);
-  command.add_option("--out", out, "writes the picture: .png as stored, .exr as linear floats")->type_name("F.png|F.exr");
-  command.add_option("--depth", depth, "writes the depths: .exr as they are, .png as grey, nearest white")->type_name("F.exr|F.png");
+  command.add_option("--out", out, "writes the picture: .png as stored, .exr as linear floats")
+      ->type_name("F.png|F.exr");
+  command.add_option("--depth", depth, "writes the depths: .exr as they are, .png as grey, nearest white")
+      ->type_name("F.exr|F.png");
   command
       .add_option("--stats", stats,
-                  "writes all figures as JSON (docs/figures.md); - is standard output, and the table then goes to standard error")
+                  "writes all figures as JSON (docs/figures.md); - is standard output, and the table then "
+                  "goes to standard error")
       ->type_name("F.json|-");
-  command.add_option("--fidelity", fidelity, "exact: the machine, cycle by cycle; functional: the same picture without time")
+  command
+      .add_option("--fidelity", fidelity,
+                  "exact: the machine, cycle by cycle; functional: the same picture without time")
       ->check(CLI::IsMember({"exact", "functional"}))
       ->capture_default_str();
   command
-      .add_option("--leave-out", leave_out,
-                  "auto: units that the frame does not need are not built; none: all are. Same picture, same cycles")
+      .add_option(
+          "--leave-out", leave_out,
+          "auto: units that the frame does not need are not built; none: all are. Same picture, same cycles")
       ->check(CLI::IsMember({"auto", "none"}))
       ->capture_default_str();
   units_option_ = command.add_option("--units", units, "rows of the table: folded by kind, or all units")
                       ->check(CLI::IsMember({"folded", "all"}))
                       ->capture_default_str();
   machine_options_ = {
-      command.add_option("--driver", driver, "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
+      command
+          .add_option("--driver", driver,
+                      "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
           ->check(CLI::IsMember({"dispatcher", "native"}))
           ->capture_default_str(),
       command
           .add_option("--window", window,
-                      "how many cycles units may be simulated ahead of the exact bound: 0 is exact, more is faster and approximate")
+                      "how many cycles units may be simulated ahead of the exact bound: 0 is exact, more is "
+                      "faster and approximate")
           ->type_name("W"),
-      command.add_option("--max-cycles", max_cycles, "gives up, and says who waits for whom, when the frame is not done by this cycle")
+      command
+          .add_option("--max-cycles", max_cycles,
+                      "gives up, and says who waits for whom, when the frame is not done by this cycle")
           ->type_name("N"),
       command
-          .add_option(
-              "--detail", detail,
-              "draws: what each draw did, how long it took and what limited it, in --stats and as a table; tiles: counts by squares of "
-              "the screen, in --stats. Same picture, same cycles")
+          .add_option("--detail", detail,
+                      "draws: what each draw did, how long it took and what limited it, in --stats and as a "
+                      "table; tiles: counts by squares of "
+                      "the screen, in --stats. Same picture, same cycles")
           ->type_name("draws,tiles"),
       units_option_};
-  command.add_flag("--alpha", alpha, "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
+  command.add_flag("--alpha", alpha,
+                   "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
   command.add_flag("-q,--quiet", quiet, "prints no table");
 }
 
 void RenderJob::check_outputs() const {
-  const auto check = [&](std::string_view flag, const std::optional<std::string>& path, const std::vector<std::string>& extensions) {
+  const auto check = [&](std::string_view flag, const std::optional<std::string>& path,
+                         const std::vector<std::string>& extensions) {
     if (!path) return;
     if (frames.wanted()) check_pattern(flag, *path);
     check_output(flag, frames.wanted() ? numbered(*path, 0) : *path, extensions);
@@ -91,7 +104,9 @@ void RenderJob::check_outputs() const {
 void RenderJob::check_options_meant() const {
   for (const CLI::Option* option : machine_options_) {
     if (fidelity == "functional" && option->count() > 0)
-      throw user_error("{0}: a functional run has no units and no cycles; leave --fidelity functional or {0} out", option->get_name());
+      throw user_error(
+          "{0}: a functional run has no units and no cycles; leave --fidelity functional or {0} out",
+          option->get_name());
   }
   if (frames.wanted() && units_option_->count() > 0)
     throw user_error("--units: with --frames each frame is one row; --stats has the figures of every unit");
@@ -101,7 +116,8 @@ std::int64_t RenderJob::window_cycles() const {
   if (!window) return 0;
   const std::int64_t cycles = parse_whole(*window, "--window", 0, kMaxWindow);
   if (driver == "native" && cycles > 0)
-    throw user_error("--window: the native driver is always exact; --window {} is for the dispatcher", cycles);
+    throw user_error("--window: the native driver is always exact; --window {} is for the dispatcher",
+                     cycles);
   return cycles;
 }
 
@@ -111,12 +127,14 @@ pipeline::DetailOptions RenderJob::details() const {
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());
     const std::string word = detail->substr(at, end - at);
-    if (word != "draws" && word != "tiles") throw user_error("--detail: {} not in {{draws,tiles}}", word.empty() ? "an empty word" : word);
+    if (word != "draws" && word != "tiles")
+      throw user_error("--detail: {} not in {{draws,tiles}}", word.empty() ? "an empty word" : word);
     (word == "draws" ? chosen.draws : chosen.tiles) = true;
     at = end + 1;
   }
   if (chosen.tiles && !stats) throw user_error("--detail: tiles are in the JSON alone; add --stats F.json");
-  if (frames.wanted() && !stats) throw user_error("--detail: with --frames each frame is one row; add --stats F.json for its details");
+  if (frames.wanted() && !stats)
+    throw user_error("--detail: with --frames each frame is one row; add --stats F.json for its details");
   return chosen;
 }
 
@@ -125,7 +143,8 @@ RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) con
   hw::RunLimits limits;
   if (max_cycles) {
     const std::int64_t cycles = parse_whole(*max_cycles, "--max-cycles", 1, kMaxCycles);
-    if (cycles < hw::kNever / (clock.period() + 1)) limits.max_time = clock.edge(cycles);  // beyond that it is later than time goes
+    // beyond that it is later than time goes
+    if (cycles < hw::kNever / (clock.period() + 1)) limits.max_time = clock.edge(cycles);
   }
   return {config, std::move(limits), clock, clock.edge(window_cycles()), details()};
 }
@@ -142,24 +161,29 @@ int RenderJob::run() {
   return frames.wanted() ? run_frames(chosen) : run_one(chosen);
 }
 
-pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, const Setting& setting, const Outputs& outputs) const {
+pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, const Setting& setting,
+                                        const Outputs& outputs) const {
   const traces::CommandStream& stream = loaded.stream;
   const traces::RenderTarget target = shown_target(stream);
-  if (depth && target.depth == traces::Format::kUndefined) throw user_error("--depth: {} has no depth attachment", scene.scene);
+  if (depth && target.depth == traces::Format::kUndefined)
+    throw user_error("--depth: {} has no depth attachment", scene.scene);
   Progress progress;
   progress.show("compiling shaders, building the machine");
   hw::RunLimits limits = setting.limits;
   limits.progress = [&](hw::Tick now) { progress.show_cycles(setting.clock.edges_before(now)); };
-  const pipeline::MachineOptions options{.driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
-                                         .window = setting.window,
-                                         .leave_out = leave_out == "auto"};
-  pipeline::RenderedFrame frame = fidelity == "functional"
-                                      ? pipeline::render_functional_frame(stream, setting.config.precision())
-                                      : pipeline::render_exact(stream, setting.config, options, limits, setting.detail);
+  const pipeline::MachineOptions options{
+      .driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
+      .window = setting.window,
+      .leave_out = leave_out == "auto"};
+  pipeline::RenderedFrame frame =
+      fidelity == "functional"
+          ? pipeline::render_functional_frame(stream, setting.config.precision())
+          : pipeline::render_exact(stream, setting.config, options, limits, setting.detail);
   std::vector<pipeline::LeftOut>& left_out_of_frame = frame.figures.left_out;
   left_out_of_frame.insert(left_out_of_frame.begin(), loaded.left_out.begin(), loaded.left_out.end());
   progress.show("writing");
-  if (outputs.out) write_color(*outputs.out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
+  if (outputs.out)
+    write_color(*outputs.out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
   if (outputs.depth) write_depth(*outputs.depth, frame.image);
   return frame;
 }
@@ -176,7 +200,9 @@ int RenderJob::run_one(const Setting& setting) const {
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
   if (stats) write_text(*stats, pipeline::report_json(subject));
-  Tables(!quiet, stats).print(pipeline::report_table(subject, units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
+  Tables(!quiet, stats)
+      .print(pipeline::report_table(subject,
+                                    units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
   if (figures.checks_hold()) return kDone;
   say("quadrille: the figures contradict each other\n" + pipeline::failed_checks(figures));
   return kFailed;
@@ -195,8 +221,10 @@ int RenderJob::run_frames(const Setting& setting) const {
   };
   if ((out && out->ends_with(".exr")) || (depth && depth->ends_with(".exr"))) scenes::open_image_module();
   const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();
-  const std::string how = setting.window > 0 ? fmt::format("approximate (window of {} cycles)", window_cycles()) : fidelity;
-  const std::string about = fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.title(), how);
+  const std::string how =
+      setting.window > 0 ? fmt::format("approximate (window of {} cycles)", window_cycles()) : fidelity;
+  const std::string about =
+      fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.title(), how);
   const SequenceResult result = draw_frames(scene, frames, about, Tables(!quiet, stats), draw_one);
   if (stats) write_text(*stats, result.json);
   return result.exit_code;

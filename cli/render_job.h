@@ -24,7 +24,8 @@ struct RenderJob {
 
   /// Adds every option but those of the scene.
   void add_to(CLI::App& command);
-  /// Checks all arguments, loads, renders, writes the files and prints the table. Returns the exit code; throws `UserError`.
+  /// Checks all arguments, loads, renders, writes the files and prints the table. Returns the exit code;
+  /// throws `UserError`.
   int run();
 
  private:
@@ -44,18 +45,21 @@ struct RenderJob {
   void check_outputs() const;
   /// Throws `UserError` for an option that would change nothing.
   void check_options_meant() const;
-  /// The window in cycles; 0 for an exact run. Throws `UserError` when it does not go with the other arguments.
+  /// The window in cycles; 0 for an exact run. Throws `UserError` when it does not go with the other
+  /// arguments.
   [[nodiscard]] std::int64_t window_cycles() const;
   /// Throws `UserError` for a word that is none, and for details that nothing would show.
   [[nodiscard]] pipeline::DetailOptions details() const;
   [[nodiscard]] Setting setting(const pipeline::MachineConfig& config) const;
   /// Draws a frame and writes its pictures.
-  [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting, const Outputs& outputs) const;
+  [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting,
+                                             const Outputs& outputs) const;
   [[nodiscard]] int run_one(const Setting& setting) const;
   [[nodiscard]] int run_frames(const Setting& setting) const;
 
   const CLI::Option* units_option_ = nullptr;
-  std::vector<const CLI::Option*> machine_options_;  ///< of the machine's units and cycles, which a functional run has none of
+  /// of the machine's units and cycles, which a functional run has none of
+  std::vector<const CLI::Option*> machine_options_;
 };
 
 }  // namespace quadrille::cli

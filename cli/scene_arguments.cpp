@@ -36,13 +36,15 @@ std::optional<double> parse_exposure(std::string_view text) {
   double factor = 0;
   if (text == "auto") return std::nullopt;
   if (!read_number(text, factor) || !(factor >= scenes::kLeastExposure && factor <= scenes::kMostExposure))
-    throw user_error("--exposure: '{}' is neither a number within {}..{} nor auto", text, scenes::kLeastExposure, scenes::kMostExposure);
+    throw user_error("--exposure: '{}' is neither a number within {}..{} nor auto", text,
+                     scenes::kLeastExposure, scenes::kMostExposure);
   return factor;
 }
 
 }  // namespace
 
-std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least, std::int64_t most) {
+std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least,
+                         std::int64_t most) {
   std::int64_t value = 0;
   if (!read_number(text, value) || value < least || value > most) {
     if (most == std::numeric_limits<std::int64_t>::max())
@@ -62,9 +64,12 @@ double parse_number(std::string_view text, std::string_view flag, double least, 
 std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text, std::string_view flag) {
   const std::size_t x = text.find('x');
   std::uint32_t width = 0, height = 0;
-  const bool numbers = x != std::string_view::npos && read_number(text.substr(0, x), width) && read_number(text.substr(x + 1), height);
-  if (!numbers || width < 1 || height < 1 || width > scenes::kMaxImageSide || height > scenes::kMaxImageSide) {
-    throw user_error("{}: '{}' is not WIDTHxHEIGHT with sides of 1..{} pixels, as in 1920x1080", flag, text, scenes::kMaxImageSide);
+  const bool numbers = x != std::string_view::npos && read_number(text.substr(0, x), width) &&
+                       read_number(text.substr(x + 1), height);
+  if (!numbers || width < 1 || height < 1 || width > scenes::kMaxImageSide ||
+      height > scenes::kMaxImageSide) {
+    throw user_error("{}: '{}' is not WIDTHxHEIGHT with sides of 1..{} pixels, as in 1920x1080", flag, text,
+                     scenes::kMaxImageSide);
   }
   return {width, height};
 }
@@ -75,7 +80,8 @@ glm::vec3 parse_point(std::string_view text, std::string_view flag) {
   bool good = true;
   for (int i = 0; i < 3; ++i) {
     const std::size_t comma = i < 2 ? rest.find(',') : rest.size();
-    good = good && comma != std::string_view::npos && read_number(rest.substr(0, comma), point[i]) && std::isfinite(point[i]);
+    good = good && comma != std::string_view::npos && read_number(rest.substr(0, comma), point[i]) &&
+           std::isfinite(point[i]);
     if (!good) break;
     rest.remove_prefix(std::min(rest.size(), comma + 1));
   }
@@ -84,45 +90,65 @@ glm::vec3 parse_point(std::string_view text, std::string_view flag) {
 }
 
 void SceneArguments::add_to(CLI::App& command) {
-  command.add_option("SCENE", scene, "a .gltf or .glb file, a .qtrace file, or builtin:NAME (quadrille scenes lists them)")->required();
+  command
+      .add_option("SCENE", scene,
+                  "a .gltf or .glb file, a .qtrace file, or builtin:NAME (quadrille scenes lists them)")
+      ->required();
   add_view_to(command, "1920x1080");
 }
 
 void SceneArguments::add_view_to(CLI::App& command, const std::string& default_size) {
-  command.add_option("--size", size, "size of the picture in pixels, 1..16384 a side (default " + default_size + ")")->type_name("WxH");
-  command.add_option("--scene", scene_choice, "which scene of the file, by number from 0 or by name (default: the file's own)")
+  command
+      .add_option("--size", size,
+                  "size of the picture in pixels, 1..16384 a side (default " + default_size + ")")
+      ->type_name("WxH");
+  command
+      .add_option("--scene", scene_choice,
+                  "which scene of the file, by number from 0 or by name (default: the file's own)")
       ->type_name("N|NAME");
   command
-      .add_option(
-          "--camera", camera,
-          "which camera of the scene, by number from 0 or by name (default: the first that is placed, else one that frames the scene)")
+      .add_option("--camera", camera,
+                  "which camera of the scene, by number from 0 or by name (default: the first that is "
+                  "placed, else one that frames the scene)")
       ->type_name("N|NAME");
   command.add_option("--eye", eye, "a camera of your own stands here, in world units")->type_name("X,Y,Z");
   command.add_option("--at", at, "and looks there")->type_name("X,Y,Z");
-  command.add_option("--time", time, "poses the scene by its animation, S seconds after its start (default: at rest)")->type_name("S");
-  command.add_option("--animation", animation, "which animation, by number from 0 or by name, or all of them at once (default: the first)")
+  command
+      .add_option("--time", time,
+                  "poses the scene by its animation, S seconds after its start (default: at rest)")
+      ->type_name("S");
+  command
+      .add_option("--animation", animation,
+                  "which animation, by number from 0 or by name, or all of them at once (default: the first)")
       ->type_name("N|NAME|all");
   command
       .add_option("--exposure", exposure,
-                  "factor of the light that the file states in lux and candela, and of what its materials emit (default: 1); auto: chosen "
+                  "factor of the light that the file states in lux and candela, and of what its materials "
+                  "emit (default: 1); auto: chosen "
                   "so that a "
                   "white wall is almost white, and printed")
       ->type_name("X|auto");
-  command.add_option("--vert", vert, "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")
+  command
+      .add_option("--vert", vert,
+                  "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")
       ->type_name("F");
   command.add_option("--frag", frag, "fragment shader for all materials, as for --vert")->type_name("F");
 }
 
-void SceneArguments::add_trace_to(CLI::App& command) { command.add_option("TRACE", scene, "a .qtrace file")->required(); }
+void SceneArguments::add_trace_to(CLI::App& command) {
+  command.add_option("TRACE", scene, "a .qtrace file")->required();
+}
 
 bool SceneArguments::is_trace() const { return extension_of(scene) == ".qtrace"; }
 
 scenes::SceneOptions SceneArguments::options() const {
   scenes::SceneOptions options;
   if (size) std::tie(options.width, options.height) = parse_size(*size, "--size");
-  // A negative number is neither a number of a camera nor likely its name; the list of the file's own says what there is.
+  // A negative number is neither a number of a camera nor likely its name; the list of the file's own says
+  // what there is.
   options.camera_name = camera.value_or("");
-  for (const auto& [flag, text] : {std::pair{"--camera", &camera}, {"--scene", &scene_choice}, {"--animation", &animation}})
+  for (const auto& [flag, text] :
+       {std::pair{"--camera", &camera}, {"--scene", &scene_choice}, {"--animation", &animation}})
     if (*text && (*text)->empty()) throw user_error("{}: neither a number nor a name", flag);
   for (const auto& [flag, file] : {std::pair{"--vert", &vert}, {"--frag", &frag}})
     if (*file && (*file)->empty()) throw user_error("{}: the name of the file is empty", flag);
@@ -144,7 +170,8 @@ void SceneArguments::check() const {
   if (is_trace()) {
     if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag) {
       throw user_error(
-          "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, --eye, --at, --time, --animation, "
+          "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, "
+          "--eye, --at, --time, --animation, "
           "--exposure, --vert and --frag are for scenes",
           scene);
     }
@@ -153,8 +180,10 @@ void SceneArguments::check() const {
   (void)options();
   const std::string extension = extension_of(scene);
   if (scene.starts_with("builtin:") || extension == ".gltf" || extension == ".glb") return;
-  throw user_error("{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the names){}", scene,
-                   scenes::meant_builtin(scene.substr(scene.rfind(':') + 1)));
+  throw user_error(
+      "{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the "
+      "names){}",
+      scene, scenes::meant_builtin(scene.substr(scene.rfind(':') + 1)));
 }
 
 void SceneArguments::check_there() const {
@@ -173,11 +202,12 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
   Loaded loaded{file.record(moment), {}};
   if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
   if (const std::size_t packed = file.unused_images(); packed > 0)
-    loaded.left_out.push_back({"images", "no shader of the frame samples them", fmt::format("{} images of the file stay packed", packed)});
+    loaded.left_out.push_back({"images", "no shader of the frame samples them",
+                               fmt::format("{} images of the file stay packed", packed)});
   const std::size_t shaders = loaded.stream.shaders.size();
   if (leave_out && shaders > 0 && file.compiled_shaders() == 0)
-    loaded.left_out.push_back(
-        {"GLSL compiler", "all shaders of the frame are at hand as SPIR-V", fmt::format("compiling {} shaders", shaders)});
+    loaded.left_out.push_back({"GLSL compiler", "all shaders of the frame are at hand as SPIR-V",
+                               fmt::format("compiling {} shaders", shaders)});
   return loaded;
 }
 

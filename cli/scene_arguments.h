@@ -19,19 +19,23 @@ struct SceneArguments {
   std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, vert, frag;
 
-  bool leave_out = true;  ///< false: also load what no shader of the frame samples; set by the commands that offer it
-  bool keep_packed =
-      false;  ///< textures are unpacked by the machine, when it samples them; set by the commands that run one on the frame alone
+  /// false: also load what no shader of the frame samples; set by the commands that offer it
+  bool leave_out = true;
+  /// textures are unpacked by the machine, when it samples them; set by the commands that run one on the
+  /// frame alone
+  bool keep_packed = false;
 
   /// Adds SCENE and the options that choose the view and the shaders.
   void add_to(CLI::App& command);
-  /// Adds those options alone, for a command that takes several scenes. `default_size` is what its help names.
+  /// Adds those options alone, for a command that takes several scenes. `default_size` is what its help
+  /// names.
   void add_view_to(CLI::App& command, const std::string& default_size);
   /// Adds SCENE alone, for a trace, which has its view and shaders in it.
   void add_trace_to(CLI::App& command);
   /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
   void check() const;
-  /// Checks that the file, or the built-in scene, is there: for a command that measures several, before it measures the first. Throws `UserError`.
+  /// Checks that the file, or the built-in scene, is there: for a command that measures several, before it
+  /// measures the first. Throws `UserError`.
   void check_there() const;
   struct Loaded {
     traces::CommandStream stream;
@@ -49,12 +53,14 @@ struct SceneArguments {
 };
 
 /// "1920x1080", each side 1..16384. Throws `UserError` naming `flag`.
-[[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text, std::string_view flag);
+[[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_size(std::string_view text,
+                                                                 std::string_view flag);
 /// "X,Y,Z": three finite numbers. Throws `UserError` naming `flag`.
 [[nodiscard]] glm::vec3 parse_point(std::string_view text, std::string_view flag);
 /// A number within [least, most]. Throws `UserError` naming `flag`.
 [[nodiscard]] double parse_number(std::string_view text, std::string_view flag, double least, double most);
 /// A whole number within [least, most]. Throws `UserError` naming `flag`.
-[[nodiscard]] std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least, std::int64_t most);
+[[nodiscard]] std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least,
+                                       std::int64_t most);
 
 }  // namespace quadrille::cli

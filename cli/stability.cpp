@@ -27,7 +27,8 @@ struct StabilityArguments {
 };
 
 void print_list(std::span<const stability::Case* const> cases) {
-  for (const stability::Case* c : cases) fmt::print("{:<28}{}{}\n", c->name, c->purpose, c->slow ? " (slow)" : "");
+  for (const stability::Case* c : cases)
+    fmt::print("{:<28}{}{}\n", c->name, c->purpose, c->slow ? " (slow)" : "");
 }
 
 void make_folder(const std::string& folder) {
@@ -44,7 +45,9 @@ std::string seen_from(const std::string& page, const std::string& folder) {
 std::string picture_of(const StabilityArguments& arguments, const std::string& name) {
   return (fs::path(*arguments.out) / (name + ".png")).string();
 }
-std::string contact_of(const StabilityArguments& arguments) { return (fs::path(*arguments.out) / "contact.html").string(); }
+std::string contact_of(const StabilityArguments& arguments) {
+  return (fs::path(*arguments.out) / "contact.html").string();
+}
 
 void write_pictures(const StabilityArguments& arguments, std::span<const stability::CaseResult> results) {
   for (const stability::CaseResult& r : results) {
@@ -60,9 +63,11 @@ int run_stability(const StabilityArguments& arguments) {
   const std::int64_t jobs = arguments.jobs ? parse_whole(*arguments.jobs, "--jobs", 1, 64) : 2;
   if (arguments.json) check_json_output("--json", *arguments.json);
   if (arguments.page) check_output("--page", *arguments.page, {".md"});
-  if (arguments.page && !arguments.out) throw user_error("--page: it shows the pictures of --out, which is missing");
+  if (arguments.page && !arguments.out)
+    throw user_error("--page: it shows the pictures of --out, which is missing");
   if (arguments.list) {
-    if (arguments.out || arguments.json || arguments.page) throw user_error("--list: runs no case, so there is nothing to write");
+    if (arguments.out || arguments.json || arguments.page)
+      throw user_error("--list: runs no case, so there is nothing to write");
     print_list(cases);
     return kDone;
   }
@@ -75,10 +80,13 @@ int run_stability(const StabilityArguments& arguments) {
   const Tables tables(true, arguments.json);
   const Stopwatch watch;
   const std::vector<stability::CaseResult> results = stability::run_cases(
-      cases, static_cast<int>(jobs), [&](const auto& result) { tables.print(stability::case_text(result, arguments.all)); });
+      cases, static_cast<int>(jobs),
+      [&](const auto& result) { tables.print(stability::case_text(result, arguments.all)); });
   if (arguments.out) write_pictures(arguments, results);
   if (arguments.json) write_text(*arguments.json, stability::results_json(results));
-  if (arguments.page) write_text(*arguments.page, stability::results_markdown(results, seen_from(*arguments.page, *arguments.out)));
+  if (arguments.page)
+    write_text(*arguments.page,
+               stability::results_markdown(results, seen_from(*arguments.page, *arguments.out)));
   tables.print(fmt::format("{}{:.0f} s\n", stability::verdict_text(results), watch.seconds()));
   const bool hold = std::ranges::all_of(results, [](const stability::CaseResult& r) { return r.holds(); });
   return hold ? kDone : kFailed;
@@ -87,16 +95,26 @@ int run_stability(const StabilityArguments& arguments) {
 }  // namespace
 
 void add_stability(CLI::App& app, Command& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "stability", "Runs the catalogue of stiff and extreme cases: each with a picture, what must hold, and what was measured.");
+  CLI::App* command = app.add_subcommand("stability",
+                                         "Runs the catalogue of stiff and extreme cases: each with a "
+                                         "picture, what must hold, and what was measured.");
   const auto arguments = std::make_shared<StabilityArguments>();
-  command->add_option("CASE", arguments->patterns, "names of cases; * and ? match as in a shell (default: all)");
+  command->add_option("CASE", arguments->patterns,
+                      "names of cases; * and ? match as in a shell (default: all)");
   command->add_flag("--list", arguments->list, "prints the cases' names and purposes, and runs none");
   command->add_flag("--quick", arguments->quick, "leaves out the cases that take more than a few seconds");
-  command->add_flag("--all", arguments->all, "prints what every case must hold to as well, even where it holds");
-  command->add_option("--out", arguments->out, "writes each case's picture there, and contact.html to look at them")->type_name("DIR");
-  command->add_option("--json", arguments->json, "writes all results as JSON; - is standard output")->type_name("F.json|-");
-  command->add_option("--page", arguments->page, "writes them as a page of documentation, with the pictures of --out")->type_name("F.md");
+  command->add_flag("--all", arguments->all,
+                    "prints what every case must hold to as well, even where it holds");
+  command
+      ->add_option("--out", arguments->out,
+                   "writes each case's picture there, and contact.html to look at them")
+      ->type_name("DIR");
+  command->add_option("--json", arguments->json, "writes all results as JSON; - is standard output")
+      ->type_name("F.json|-");
+  command
+      ->add_option("--page", arguments->page,
+                   "writes them as a page of documentation, with the pictures of --out")
+      ->type_name("F.md");
   command->add_option("--jobs", arguments->jobs, "processes at a time (default 2)")->type_name("N");
   command->footer(R"(Exit code 1 when anything does not hold.
 Examples:

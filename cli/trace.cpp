@@ -50,7 +50,8 @@ void add_info(CLI::App& trace, Command& chosen) {
 }
 
 void add_replay(CLI::App& trace, Command& chosen) {
-  CLI::App* command = trace.add_subcommand("replay", "Renders a trace: the same as quadrille render F.qtrace.");
+  CLI::App* command =
+      trace.add_subcommand("replay", "Renders a trace: the same as quadrille render F.qtrace.");
   const auto job = std::make_shared<RenderJob>();
   job->scene.add_trace_to(*command);
   job->add_to(*command);

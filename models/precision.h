@@ -1,5 +1,5 @@
-/// Precisions of the fixed-function units that a machine may choose; all other widths are fixed by the numeric contract
-/// (docs/architecture.md).
+/// Precisions of the fixed-function units that a machine may choose; all other widths are fixed by the
+/// numeric contract (docs/architecture.md).
 #pragma once
 
 namespace quadrille::models {
@@ -8,8 +8,9 @@ struct Precision {
   int subpixel_bits = 8;  ///< fractional bits of window positions, 4..12
   int subtexel_bits = 8;  ///< fractional bits of a texel coordinate: weights of the bilinear filter, 1..8
   int lod_bits = 8;       ///< fractional bits of the level of detail: weight between mip levels, 1..8
-  bool linear_log2 =
-      false;  ///< the level of detail's log2 is linear between powers of two, as cheap hardware has it: up to 0.043 levels low
+  /// the level of detail's log2 is linear between powers of two, as cheap hardware has it: up to 0.043 levels
+  /// low
+  bool linear_log2 = false;
 };
 
 }  // namespace quadrille::models

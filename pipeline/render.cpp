@@ -12,7 +12,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 FrameImage read_image(const DeviceFrame& frame) {
   FrameImage image;
@@ -93,8 +95,8 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   return out;
 }
 
-RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config, const MachineOptions& options,
-                           const hw::RunLimits& limits, DetailOptions detail) {
+RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config,
+                           const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);

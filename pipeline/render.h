@@ -1,4 +1,5 @@
-/// One frame from a command stream to an image and, when timed, its figures. What the program, the tests and the comparisons call.
+/// One frame from a command stream to an image and, when timed, its figures. What the program, the tests and
+/// the comparisons call.
 #pragma once
 
 #include "pipeline/functional/functional.h"
@@ -22,13 +23,17 @@ struct RenderedFrame {
   Figures figures;
 };
 
-/// Values only, no time: the same image as `render_exact`, bit for bit. `figures` holds the frame's counts, the host times and what was left out.
-[[nodiscard]] RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision,
+/// Values only, no time: the same image as `render_exact`, bit for bit. `figures` holds the frame's counts,
+/// the host times and what was left out.
+[[nodiscard]] RenderedFrame render_functional_frame(const traces::CommandStream& stream,
+                                                    const models::Precision& precision,
                                                     const TriangleObserver& observer = {});
 
-/// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream or the machine cannot do. `detail`: what the figures tell
-/// of single draws and parts of the screen; it changes nothing else.
+/// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream
+/// or the machine cannot do. `detail`: what the figures tell of single draws and parts of the screen; it
+/// changes nothing else.
 [[nodiscard]] RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config,
-                                         const MachineOptions& options = {}, const hw::RunLimits& limits = {}, DetailOptions detail = {});
+                                         const MachineOptions& options = {}, const hw::RunLimits& limits = {},
+                                         DetailOptions detail = {});
 
 }  // namespace quadrille::pipeline

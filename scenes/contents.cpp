@@ -14,7 +14,8 @@ SceneContents builtin_contents(const std::string& name) {
   SceneContents contents;
   contents.scenes.emplace_back();
   const double length = builtin_length(name);
-  for (const Camera& camera : build_builtin(name).cameras) contents.cameras.push_back({camera.name, camera.perspective});
+  for (const Camera& camera : build_builtin(name).cameras)
+    contents.cameras.push_back({camera.name, camera.perspective});
   if (length > 0) contents.animations.push_back({"", length, 0});
   return contents;
 }

@@ -22,8 +22,8 @@ struct SceneContents {
   std::vector<AnimationEntry> animations;
 };
 
-/// Lists a glTF file (.gltf, .glb) or `builtin:NAME`. Its buffers are read, and what is compressed in them is expanded; meshes are not checked and images not
-/// opened. Throws `UserError` with file, place and reason.
+/// Lists a glTF file (.gltf, .glb) or `builtin:NAME`. Its buffers are read, and what is compressed in them is
+/// expanded; meshes are not checked and images not opened. Throws `UserError` with file, place and reason.
 [[nodiscard]] SceneContents scene_contents(const std::string& file_or_builtin);
 
 }  // namespace quadrille::scenes

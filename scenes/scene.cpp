@@ -16,21 +16,27 @@ namespace {
 
 constexpr std::string_view kBuiltinPrefix = "builtin:";
 constexpr std::uint32_t kMaxTargetSide = 16384;
-constexpr std::uint32_t kIdFactor =
-    2654435761u;  // odd, so multiplication is a bijection [P: Knuth, The Art of Computer Programming 3, §6.4]
+// odd, so multiplication is a bijection [P: Knuth, The Art of Computer Programming 3, §6.4]
+constexpr std::uint32_t kIdFactor = 2654435761u;
 constexpr std::uint32_t kIdFactorInverse = 244002641u;  // kIdFactor * kIdFactorInverse = 1 mod 2^32
 static_assert(kIdFactor * kIdFactorInverse == 1u);
 
-bool finite(const std::optional<glm::vec3>& v) { return !v || (std::isfinite(v->x) && std::isfinite(v->y) && std::isfinite(v->z)); }
+bool finite(const std::optional<glm::vec3>& v) {
+  return !v || (std::isfinite(v->x) && std::isfinite(v->y) && std::isfinite(v->z));
+}
 
 void check(const SceneOptions& options) {
-  if (options.width == 0 || options.height == 0 || options.width > kMaxTargetSide || options.height > kMaxTargetSide) {
-    throw user_error("size: {}x{} is outside 1x1 .. {}x{}", options.width, options.height, kMaxTargetSide, kMaxTargetSide);
+  if (options.width == 0 || options.height == 0 || options.width > kMaxTargetSide ||
+      options.height > kMaxTargetSide) {
+    throw user_error("size: {}x{} is outside 1x1 .. {}x{}", options.width, options.height, kMaxTargetSide,
+                     kMaxTargetSide);
   }
   if (options.exposure && !(*options.exposure >= kLeastExposure && *options.exposure <= kMostExposure))
     throw user_error("exposure: {} is outside {}..{}", *options.exposure, kLeastExposure, kMostExposure);
-  if (options.time && !std::isfinite(*options.time)) throw user_error("time: {} is not a number of seconds", *options.time);
-  if (!finite(options.eye) || !finite(options.at)) throw user_error("camera: eye and point looked at are finite numbers");
+  if (options.time && !std::isfinite(*options.time))
+    throw user_error("time: {} is not a number of seconds", *options.time);
+  if (!finite(options.eye) || !finite(options.at))
+    throw user_error("camera: eye and point looked at are finite numbers");
 }
 
 }  // namespace
@@ -47,7 +53,8 @@ struct Scene::Parts {
   float exposure = 1;
 };
 
-Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options) : parts_(std::make_unique<Parts>()) {
+Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options)
+    : parts_(std::make_unique<Parts>()) {
   check(options);
   parts_->options = options;
   parts_->name = file_or_builtin;
@@ -56,14 +63,16 @@ Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options) : 
     parts_->builtin = file_or_builtin.substr(kBuiltinPrefix.size());
     parts_->length = builtin_length(parts_->builtin);
     parts_->animated = animated && parts_->length > 0;
-    if (!options.scene.empty()) throw user_error("{}: a built-in scene is one scene; there is no other to choose", file_or_builtin);
+    if (!options.scene.empty())
+      throw user_error("{}: a built-in scene is one scene; there is no other to choose", file_or_builtin);
     const bool there = parts_->length > 0 && (options.animation == "0" || options.animation == "all");
     if (!options.animation.empty() && !there)
-      throw user_error("{}: animation '{}' does not exist; animations: {}", file_or_builtin, options.animation.substr(0, 60),
-                       parts_->length > 0 ? "0" : "none");
+      throw user_error("{}: animation '{}' does not exist; animations: {}", file_or_builtin,
+                       options.animation.substr(0, 60), parts_->length > 0 ? "0" : "none");
     return;
   }
-  parts_->file.emplace(file_or_builtin, GltfChoice{options.scene, animated, options.animation, options.leave_out});
+  parts_->file.emplace(file_or_builtin,
+                       GltfChoice{options.scene, animated, options.animation, options.leave_out});
   parts_->animated = parts_->file->animated();
   parts_->length = parts_->file->length();
 }
@@ -75,7 +84,9 @@ bool Scene::animated() const { return parts_->animated; }
 double Scene::length() const { return parts_->length; }
 bool Scene::repeats() const { return parts_->animated && !parts_->file; }
 
-std::size_t Scene::unused_images() const { return parts_->file ? parts_->file->image_count() - parts_->images.size() : 0; }
+std::size_t Scene::unused_images() const {
+  return parts_->file ? parts_->file->image_count() - parts_->images.size() : 0;
+}
 
 void Scene::unpack_images() {
   if (!parts_->file) return;

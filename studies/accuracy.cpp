@@ -28,9 +28,14 @@ constexpr Precise kPrecisions[] = {{"subpixel_bits", &models::Precision::subpixe
                                    {"lod_bits", &models::Precision::lod_bits, 1, 8}};
 
 bool equal(const MachineCost& a, const MachineCost& b) {
-  const auto same_unit = [](const UnitBusy& x, const UnitBusy& y) { return x.path == y.path && x.percent == y.percent; };
-  const auto same_client = [](const ClientBytes& x, const ClientBytes& y) { return x.name == y.name && x.bytes == y.bytes; };
-  return a.cycles == b.cycles && a.memory_bytes == b.memory_bytes && std::ranges::equal(a.units, b.units, same_unit) &&
+  const auto same_unit = [](const UnitBusy& x, const UnitBusy& y) {
+    return x.path == y.path && x.percent == y.percent;
+  };
+  const auto same_client = [](const ClientBytes& x, const ClientBytes& y) {
+    return x.name == y.name && x.bytes == y.bytes;
+  };
+  return a.cycles == b.cycles && a.memory_bytes == b.memory_bytes &&
+         std::ranges::equal(a.units, b.units, same_unit) &&
          std::ranges::equal(a.clients, b.clients, same_client);
 }
 
@@ -79,7 +84,8 @@ class Study {
     for (const std::int64_t window : options_.windows) settings.push_back({window, {}});
     out_.settings.resize(settings.size());
     for (std::size_t i = 0; i < settings.size(); ++i) out_.settings[i].setting = settings[i];
-    in_turns(settings, "windows", [&](std::size_t i, TimedRun run) { keep(out_.settings[i], std::move(run)); });
+    in_turns(settings, "windows",
+             [&](std::size_t i, TimedRun run) { keep(out_.settings[i], std::move(run)); });
   }
 
   void keep(SettingResult& result, TimedRun run) {
@@ -146,15 +152,18 @@ class Study {
     if (!scene_.visibility) return;
     const std::vector<std::uint8_t>& other = other_triangles(precision);
     result.same_triangle = image_error(image, ideal_, other);
-    result.other_triangle_percent = 100.0 * static_cast<double>(std::ranges::count(other, 1)) / static_cast<double>(other.size());
+    result.other_triangle_percent =
+        100.0 * static_cast<double>(std::ranges::count(other, 1)) / static_cast<double>(other.size());
   }
 
-  /// By pixel: 1 where another triangle is seen than the reference shows. Texture precisions move the edges of cut-outs, and so count too.
+  /// By pixel: 1 where another triangle is seen than the reference shows. Texture precisions move the edges
+  /// of cut-outs, and so count too.
   const std::vector<std::uint8_t>& other_triangles(const models::Precision& p) {
     const auto [place, fresh] = other_triangles_.try_emplace({p.subpixel_bits, p.subtexel_bits, p.lod_bits});
     if (!fresh) return place->second;
     const Pixels seen = run_timed(*scene_.visibility, machine_, {std::nullopt, p}).color;
-    for (std::size_t i = 0; i < seen.size(); ++i) place->second.push_back(seen[i] != ideal_triangles_[i] ? 1 : 0);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      place->second.push_back(seen[i] != ideal_triangles_[i] ? 1 : 0);
     return place->second;
   }
 
@@ -164,12 +173,14 @@ class Study {
   SceneAccuracy out_;
   std::vector<Pixels> images_;
   Pixels ideal_, ideal_triangles_;
-  std::map<std::array<int, 3>, std::vector<std::uint8_t>> other_triangles_;  ///< by the bits of the three precisions
+  /// by the bits of the three precisions
+  std::map<std::array<int, 3>, std::vector<std::uint8_t>> other_triangles_;
 };
 
 }  // namespace
 
-SceneAccuracy measure_accuracy(const StudyScene& scene, const pipeline::MachineConfig& machine, const AccuracyOptions& options) {
+SceneAccuracy measure_accuracy(const StudyScene& scene, const pipeline::MachineConfig& machine,
+                               const AccuracyOptions& options) {
   return Study(scene, machine, options).run();
 }
 

@@ -1,7 +1,9 @@
-/// Error against run time: what each setting of the fidelity dial costs the host, and how far off its figures and its picture are.
+/// Error against run time: what each setting of the fidelity dial costs the host, and how far off its figures
+/// and its picture are.
 ///
-/// Every run is a process of its own; the settings take turns, so that a drift of the host meets all of them. Figures do not vary between runs of a setting
-/// (that is checked), host times do, so they are given as order statistics of processor time. docs/accuracy.md reads the result.
+/// Every run is a process of its own; the settings take turns, so that a drift of the host meets all of them.
+/// Figures do not vary between runs of a setting (that is checked), host times do, so they are given as order
+/// statistics of processor time. docs/accuracy.md reads the result.
 #pragma once
 
 #include <functional>
@@ -17,7 +19,8 @@ namespace quadrille::studies {
 struct StudyScene {
   std::string name;  ///< as given by the user
   traces::CommandStream stream;
-  std::optional<traces::CommandStream> visibility;  ///< the same frame in the colours of its triangles; a trace has none
+  /// the same frame in the colours of its triangles; a trace has none
+  std::optional<traces::CommandStream> visibility;
 };
 
 struct AccuracyOptions {
@@ -41,16 +44,18 @@ struct PrecisionResult {
   std::string parameter;  ///< "subpixel_bits", "subtexel_bits", "lod_bits"
   int bits = 0;
   std::vector<double> cpu_s;
-  ImageError all;                                ///< against the ideal reference, all pixels
-  std::optional<ImageError> same_triangle;       ///< only those that show the same triangle as the reference
-  std::optional<double> other_triangle_percent;  ///< of all pixels: they show another triangle, or one of the two shows none
+  ImageError all;                           ///< against the ideal reference, all pixels
+  std::optional<ImageError> same_triangle;  ///< only those that show the same triangle as the reference
+  /// of all pixels: they show another triangle, or one of the two shows none
+  std::optional<double> other_triangle_percent;
 };
 
 struct SceneAccuracy {
   std::string name;
   std::uint32_t width = 0, height = 0;
-  std::vector<SettingResult> settings;     ///< functional, exact, then the windows as given
-  std::vector<ImageError> images;          ///< of each distinct picture, against the ideal reference; the first is that of `exact`
+  std::vector<SettingResult> settings;  ///< functional, exact, then the windows as given
+  /// of each distinct picture, against the ideal reference; the first is that of `exact`
+  std::vector<ImageError> images;
   std::vector<PrecisionResult> precision;  ///< empty when not asked for
 };
 

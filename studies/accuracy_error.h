@@ -13,8 +13,9 @@ namespace quadrille::studies {
 /// Relative errors in percent; infinite where the exact figure is 0 and the other is not.
 struct CostError {
   double cycles_percent = 0;
-  double busy_mean_points = 0, busy_max_points = 0;  ///< percentage points of utilisation, over all units, without sign
-  std::string worst_unit;                            ///< of `busy_max_points`; empty when no unit differs
+  /// percentage points of utilisation, over all units, without sign
+  double busy_mean_points = 0, busy_max_points = 0;
+  std::string worst_unit;  ///< of `busy_max_points`; empty when no unit differs
   double memory_percent = 0;
   double client_max_percent = 0;  ///< the largest without its sign
   std::string worst_client;       ///< empty when no client differs
@@ -34,7 +35,8 @@ struct ImageError {
 };
 
 /// Compares the pixels whose `left_out` entry is 0; an empty `left_out` leaves out none.
-[[nodiscard]] ImageError image_error(std::span<const std::uint32_t> image, std::span<const std::uint32_t> ideal,
+[[nodiscard]] ImageError image_error(std::span<const std::uint32_t> image,
+                                     std::span<const std::uint32_t> ideal,
                                      std::span<const std::uint8_t> left_out = {});
 
 }  // namespace quadrille::studies

@@ -43,7 +43,10 @@ Json cost_json(const MachineCost& cost) {
   Json busy = Json::object(), clients = Json::object();
   for (const UnitBusy& u : cost.units) busy[u.path] = u.percent;
   for (const ClientBytes& c : cost.clients) clients[c.name] = c.bytes;
-  return {{"cycles", cost.cycles}, {"memory_bytes", cost.memory_bytes}, {"client_bytes", clients}, {"busy_percent", busy}};
+  return {{"cycles", cost.cycles},
+          {"memory_bytes", cost.memory_bytes},
+          {"client_bytes", clients},
+          {"busy_percent", busy}};
 }
 
 Json setting_json(const SettingResult& s) {
@@ -60,12 +63,13 @@ Json setting_json(const SettingResult& s) {
 }
 
 Json precision_json(const PrecisionResult& p) {
-  return {{"parameter", "gpu." + p.parameter},
-          {"bits", p.bits},
-          {"all_pixels", image_json(p.all)},
-          {"same_triangle", p.same_triangle ? image_json(*p.same_triangle) : Json(nullptr)},
-          {"other_triangle_percent", p.other_triangle_percent ? Json(*p.other_triangle_percent) : Json(nullptr)},
-          {"cpu_s", times_json(p.cpu_s)}};
+  return {
+      {"parameter", "gpu." + p.parameter},
+      {"bits", p.bits},
+      {"all_pixels", image_json(p.all)},
+      {"same_triangle", p.same_triangle ? image_json(*p.same_triangle) : Json(nullptr)},
+      {"other_triangle_percent", p.other_triangle_percent ? Json(*p.other_triangle_percent) : Json(nullptr)},
+      {"cpu_s", times_json(p.cpu_s)}};
 }
 
 Json scene_json(const SceneAccuracy& scene) {
@@ -82,7 +86,9 @@ Json scene_json(const SceneAccuracy& scene) {
 std::string accuracy_json(std::span<const SceneAccuracy> scenes, const pipeline::MachineConfig& machine) {
   Json all = Json::array();
   for (const SceneAccuracy& scene : scenes) all.push_back(scene_json(scene));
-  const Json document = {{"schema", kAccuracySchema}, {"machine", Json::parse(pipeline::machine_json(machine))}, {"scenes", all}};
+  const Json document = {{"schema", kAccuracySchema},
+                         {"machine", Json::parse(pipeline::machine_json(machine))},
+                         {"scenes", all}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -40,7 +40,8 @@ void send(int pipe, std::string_view bytes) {
   }
 }
 
-/// In the child: whatever ends `parent`, a signal included, ends this process too, by a signal that it can use to remove what it was writing.
+/// In the child: whatever ends `parent`, a signal included, ends this process too, by a signal that it can
+/// use to remove what it was writing.
 void end_with(pid_t parent) {
   for (const int number : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS, SIGTERM, SIGINT})
     signal(number, SIG_DFL);  // handlers are the parent's
@@ -49,7 +50,8 @@ void end_with(pid_t parent) {
   if (getppid() != parent) _exit(0);  // it ended before the call
 }
 
-[[noreturn]] void work_and_exit(int pipe, const std::function<std::string()>& work, const ChildLimits& limits) {
+[[noreturn]] void work_and_exit(int pipe, const std::function<std::string()>& work,
+                                const ChildLimits& limits) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
   char said = kSaidDone;
   std::string output;
@@ -93,7 +95,8 @@ Child start_child(const ChildWork& work, std::size_t number) {
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw user_error("cannot start a run: {}", std::strerror(errno));
   std::fflush(nullptr);  // what is buffered would be written twice
   const auto start = Clock::now();
-  // Until the child has put its own ways of ending in the place of its parent's, the signal that ends it waits.
+  // Until the child has put its own ways of ending in the place of its parent's, the signal that ends it
+  // waits.
   sigset_t ending, before;
   sigemptyset(&ending);
   sigaddset(&ending, SIGTERM);
@@ -125,7 +128,9 @@ bool receive(Child& child) {
   return true;
 }
 
-double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
 
 ChildEnd end_of(char said) {
   if (said == kSaidDone) return ChildEnd::kDone;
@@ -148,8 +153,9 @@ ChildRun finish_child(const Child& child, bool in_time, int signal = SIGKILL) {
     run.output = fmt::format("still running after {:g} s", child.limits.seconds);
   } else if (WIFSIGNALED(status) || child.bytes.empty()) {
     run.end = ChildEnd::kCrashed;
-    run.output = WIFSIGNALED(status) ? fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                                     : fmt::format("left with exit code {}", WEXITSTATUS(status));
+    run.output = WIFSIGNALED(status)
+                     ? fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))
+                     : fmt::format("left with exit code {}", WEXITSTATUS(status));
   } else {
     run.end = end_of(child.bytes.front());
     run.output = child.bytes.substr(1);
@@ -186,7 +192,9 @@ std::string output_of(const ChildRun& run, const std::string& about) {
   switch (run.end) {
     case ChildEnd::kDone: return run.output;
     case ChildEnd::kRefused:
-    case ChildEnd::kTimedOut: throw UserError(run.output.starts_with(about + ":") ? run.output : fmt::format("{}: {}", about, run.output));
+    case ChildEnd::kTimedOut:
+      throw UserError(run.output.starts_with(about + ":") ? run.output
+                                                          : fmt::format("{}: {}", about, run.output));
     case ChildEnd::kFailed:
     case ChildEnd::kCrashed: break;
   }
@@ -200,14 +208,16 @@ ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimit
   return run;
 }
 
-void run_in_children(std::span<const ChildWork> works, int jobs, const std::function<void(std::size_t, const ChildRun&)>& done) {
+void run_in_children(std::span<const ChildWork> works, int jobs,
+                     const std::function<void(std::size_t, const ChildRun&)>& done) {
   /// Children that still run when an exception passes are ended.
   struct Running : std::vector<Child> {
     Running() = default;
     Running(const Running&) = delete;
     Running& operator=(const Running&) = delete;
     ~Running() {
-      for (const Child& child : *this) (void)finish_child(child, false, SIGTERM);  // which leaves it time to remove what it was writing
+      // which leaves it time to remove what it was writing
+      for (const Child& child : *this) (void)finish_child(child, false, SIGTERM);
     }
   } children;
   std::vector<pollfd> ready;

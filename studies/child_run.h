@@ -1,7 +1,8 @@
 /// A piece of work in a process of its own: what every study runs its frames with.
 ///
-/// SystemC elaborates once in a process, a hostile file may take all memory, and host times mean something only when runs do not share a heap. The child is
-/// forked, works under limits, and hands back a string; its end is one of a few known ways, never the parent's end. The parent's end, however, is the child's: none
+/// SystemC elaborates once in a process, a hostile file may take all memory, and host times mean something
+/// only when runs do not share a heap. The child is forked, works under limits, and hands back a string; its
+/// end is one of a few known ways, never the parent's end. The parent's end, however, is the child's: none
 /// outlives a program that was interrupted.
 #pragma once
 
@@ -24,7 +25,8 @@ enum class ChildEnd : std::uint8_t {
 
 struct ChildLimits {
   double seconds = 600;
-  std::uint64_t memory_bytes = 0;  ///< of address space; 0: no limit. (Sanitizers reserve terabytes: give none in a sanitized build.)
+  /// of address space; 0: no limit. (Sanitizers reserve terabytes: give none in a sanitized build.)
+  std::uint64_t memory_bytes = 0;
 };
 
 struct ChildRun {
@@ -34,11 +36,13 @@ struct ChildRun {
   double peak_rss_mib = 0;  ///< of the child, with what it inherited resident
 };
 
-/// Runs `work` in a forked child. Call it with no other thread running. Throws `UserError` when the host cannot fork.
+/// Runs `work` in a forked child. Call it with no other thread running. Throws `UserError` when the host
+/// cannot fork.
 [[nodiscard]] ChildRun run_in_child(const std::function<std::string()>& work, const ChildLimits& limits = {});
 
-/// What the work returned. Throws `UserError` when it was refused or ran out of time, `std::runtime_error` when it failed or crashed. `about` leads the message,
-/// which keeps its lines: a machine that cannot progress says who waits for whom in a table.
+/// What the work returned. Throws `UserError` when it was refused or ran out of time, `std::runtime_error`
+/// when it failed or crashed. `about` leads the message, which keeps its lines: a machine that cannot
+/// progress says who waits for whom in a table.
 [[nodiscard]] std::string output_of(const ChildRun& run, const std::string& about);
 
 /// A piece of work for `run_in_children`.
@@ -46,7 +50,9 @@ struct ChildWork {
   std::function<std::string()> work;
   ChildLimits limits;
 };
-/// Runs all works, up to `jobs` children at a time, in their order; `done(i, run)` is called here, as each ends.
-void run_in_children(std::span<const ChildWork> works, int jobs, const std::function<void(std::size_t, const ChildRun&)>& done);
+/// Runs all works, up to `jobs` children at a time, in their order; `done(i, run)` is called here, as each
+/// ends.
+void run_in_children(std::span<const ChildWork> works, int jobs,
+                     const std::function<void(std::size_t, const ChildRun&)>& done);
 
 }  // namespace quadrille::studies

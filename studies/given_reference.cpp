@@ -19,7 +19,8 @@ ref::GivenTriangle given(const pipeline::RasterizedTriangle& t) {
 
 }  // namespace
 
-MachineAndReference render_with_reference(const traces::CommandStream& stream, const models::Precision& precision) {
+MachineAndReference render_with_reference(const traces::CommandStream& stream,
+                                          const models::Precision& precision) {
   ref::Options options;
   options.mode = ref::Mode::kGiven;
   options.precision = {precision.subpixel_bits, precision.subtexel_bits, precision.lod_bits};

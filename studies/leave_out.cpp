@@ -31,12 +31,16 @@ std::string run_once(const LeaveOutScene& scene, const pipeline::MachineConfig& 
   const double start = pipeline::cpu_seconds();
   const LoadedScene scene_read = scene.load(leave_out);
   const double loaded = pipeline::cpu_seconds();
-  const pipeline::RenderedFrame frame = pipeline::render_exact(scene_read.stream, machine, {.leave_out = leave_out});
+  const pipeline::RenderedFrame frame =
+      pipeline::render_exact(scene_read.stream, machine, {.leave_out = leave_out});
   const double end = pipeline::cpu_seconds();
-  if (!frame.figures.checks_hold()) throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(frame.figures));
-  Json figures = Json::parse(pipeline::report_json({frame.figures, machine, frame.image.width, frame.image.height}));
+  if (!frame.figures.checks_hold())
+    throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(frame.figures));
+  Json figures =
+      Json::parse(pipeline::report_json({frame.figures, machine, frame.image.width, frame.image.height}));
   Json left_out = Json::array();
-  for (const pipeline::LeftOut& l : scene_read.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
+  for (const pipeline::LeftOut& l : scene_read.left_out)
+    left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
   for (const Json& l : figures.at("left_out")) left_out.push_back(l);
   for (const char* key : {"host", "left_out", "machine", "counter_definitions", "scene"}) figures.erase(key);
   const double simulate = frame.figures.host.simulate_cpu_s;
@@ -62,12 +66,15 @@ LeaveOutRun parsed(const std::string& output, const ChildRun& child) {
   run.image = json.at("image").get<std::string>();
   run.figures = json.at("figures").get<std::string>();
   for (const Json& l : json.at("left_out"))
-    run.left_out.push_back({l.at("what").get<std::string>(), l.at("why").get<std::string>(), l.at("saved").get<std::string>()});
+    run.left_out.push_back(
+        {l.at("what").get<std::string>(), l.at("why").get<std::string>(), l.at("saved").get<std::string>()});
   return run;
 }
 
-LeaveOutRun run_in_process(const LeaveOutScene& scene, const pipeline::MachineConfig& machine, bool leave_out) {
-  const ChildRun child = run_in_child([&] { return run_once(scene, machine, leave_out); }, {.seconds = kLongestRunSeconds});
+LeaveOutRun run_in_process(const LeaveOutScene& scene, const pipeline::MachineConfig& machine,
+                           bool leave_out) {
+  const ChildRun child =
+      run_in_child([&] { return run_once(scene, machine, leave_out); }, {.seconds = kLongestRunSeconds});
   return parsed(output_of(child, scene.name), child);
 }
 
@@ -101,7 +108,8 @@ std::string unit_disagreement(const Json& complete, const Json& reduced) {
 std::string bandwidth_disagreement(const Json& complete, const Json& reduced) {
   for (const auto& [client, bytes] : complete.items()) {
     const auto other = reduced.find(client);
-    const bool same = other == reduced.end() ? bytes.at("read_bytes") == 0 && bytes.at("write_bytes") == 0 : *other == bytes;
+    const bool same = other == reduced.end() ? bytes.at("read_bytes") == 0 && bytes.at("write_bytes") == 0
+                                             : *other == bytes;
     if (!same) return fmt::format("{} moved other bytes", client);
   }
   return "";
@@ -118,24 +126,28 @@ Spread spread_over(const std::vector<LeaveOutRun>& runs, double LeaveOutRun::*me
 
 std::string disagreement(const LeaveOutRun& complete, const LeaveOutRun& reduced) {
   if (complete.image != reduced.image) return "the pictures differ";
-  if (complete.cycles != reduced.cycles) return fmt::format("{} cycles with everything, {} with less", complete.cycles, reduced.cycles);
+  if (complete.cycles != reduced.cycles)
+    return fmt::format("{} cycles with everything, {} with less", complete.cycles, reduced.cycles);
   const Json a = Json::parse(complete.figures), b = Json::parse(reduced.figures);
   if (a.at("frame") != b.at("frame")) return "the frame's figures differ";
   if (std::string units = unit_disagreement(a.at("units"), b.at("units")); !units.empty()) return units;
   return bandwidth_disagreement(a.at("bandwidth"), b.at("bandwidth"));
 }
 
-LeaveOutResult measure_leave_out(const LeaveOutScene& scene, const pipeline::MachineConfig& machine, int repeat,
-                                 const std::function<void(const std::string&)>& progress) {
+LeaveOutResult measure_leave_out(const LeaveOutScene& scene, const pipeline::MachineConfig& machine,
+                                 int repeat, const std::function<void(const std::string&)>& progress) {
   LeaveOutResult result;
   result.name = scene.name;
   for (int round = 0; round < repeat; ++round) {
-    for (const std::size_t side : round_order(2, static_cast<std::size_t>(round), static_cast<std::size_t>(repeat))) {
+    for (const std::size_t side :
+         round_order(2, static_cast<std::size_t>(round), static_cast<std::size_t>(repeat))) {
       if (progress)
-        progress(fmt::format("{}: run {} of {}, {}", scene.name, round + 1, repeat, side == 0 ? "everything" : "what is needed"));
+        progress(fmt::format("{}: run {} of {}, {}", scene.name, round + 1, repeat,
+                             side == 0 ? "everything" : "what is needed"));
       (side == 0 ? result.everything : result.needed).push_back(run_in_process(scene, machine, side == 1));
     }
-    if (result.contradiction.empty()) result.contradiction = disagreement(result.everything.back(), result.needed.back());
+    if (result.contradiction.empty())
+      result.contradiction = disagreement(result.everything.back(), result.needed.back());
   }
   result.everything_s = spread_over(result.everything, &LeaveOutRun::total_s);
   result.needed_s = spread_over(result.needed, &LeaveOutRun::total_s);
@@ -146,27 +158,34 @@ LeaveOutResult measure_leave_out(const LeaveOutScene& scene, const pipeline::Mac
   return result;
 }
 
-std::string leave_out_table(const std::vector<LeaveOutResult>& results, const pipeline::MachineConfig& machine) {
+std::string leave_out_table(const std::vector<LeaveOutResult>& results,
+                            const pipeline::MachineConfig& machine) {
   std::string out = fmt::format(
-      "LEAVE OUT  machine {}, {} runs of each side; processor time of the whole process, medians and half the distance between "
+      "LEAVE OUT  machine {}, {} runs of each side; processor time of the whole process, medians and half "
+      "the distance between "
       "quartiles\n\n",
       machine.title(), results.front().everything.size());
-  out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>9} {:>7} {:>7} {:>8}  {}\n", "scene", "cycles", "everything s", "needed s",
-                     "speed-up", "in run", "MiB", "needed", "same picture, cycles and counts");
+  out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>9} {:>7} {:>7} {:>8}  {}\n", "scene", "cycles",
+                     "everything s", "needed s", "speed-up", "in run", "MiB", "needed",
+                     "same picture, cycles and counts");
   for (const LeaveOutResult& r : results) {
     const auto seconds = [](const Spread& s) {
       return fmt::format("{:.3f} +-{:.3f}", s.median, 0.5 * (s.upper_quartile - s.lower_quartile));
     };
-    out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>8.2f}x {:>6.2f}x {:>7.0f} {:>8.0f}  {}{}\n", r.name, r.needed.front().cycles,
-                       seconds(r.everything_s), seconds(r.needed_s), r.speed_up(),
-                       r.everything_simulate_s.median / r.needed_simulate_s.median, r.everything_mib.median, r.needed_mib.median,
-                       r.contradiction.empty() ? "yes" : "NO: " + r.contradiction, r.slower() ? ", SLOWER" : "");
-    for (const pipeline::LeftOut& l : r.needed.front().left_out) out += fmt::format("      {}: {} ({})\n", l.what, l.why, l.saved);
+    out += fmt::format("  {:<34} {:>11} {:>15} {:>15} {:>8.2f}x {:>6.2f}x {:>7.0f} {:>8.0f}  {}{}\n", r.name,
+                       r.needed.front().cycles, seconds(r.everything_s), seconds(r.needed_s), r.speed_up(),
+                       r.everything_simulate_s.median / r.needed_simulate_s.median, r.everything_mib.median,
+                       r.needed_mib.median, r.contradiction.empty() ? "yes" : "NO: " + r.contradiction,
+                       r.slower() ? ", SLOWER" : "");
+    for (const pipeline::LeftOut& l : r.needed.front().left_out)
+      out += fmt::format("      {}: {} ({})\n", l.what, l.why, l.saved);
   }
-  return out + "\n  in run: the same ratio for the simulation alone, without loading, compiling and elaborating\n";
+  return out +
+         "\n  in run: the same ratio for the simulation alone, without loading, compiling and elaborating\n";
 }
 
-std::string leave_out_json(const std::vector<LeaveOutResult>& results, const pipeline::MachineConfig& machine) {
+std::string leave_out_json(const std::vector<LeaveOutResult>& results,
+                           const pipeline::MachineConfig& machine) {
   const auto runs_json = [](const std::vector<LeaveOutRun>& runs) {
     Json all = Json::array();
     for (const LeaveOutRun& r : runs) {
@@ -181,7 +200,8 @@ std::string leave_out_json(const std::vector<LeaveOutResult>& results, const pip
   Json scenes = Json::array();
   for (const LeaveOutResult& r : results) {
     Json left_out = Json::array();
-    for (const pipeline::LeftOut& l : r.needed.front().left_out) left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
+    for (const pipeline::LeftOut& l : r.needed.front().left_out)
+      left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
     scenes.push_back({{"scene", r.name},
                       {"cycles", r.needed.front().cycles},
                       {"agrees", r.contradiction.empty()},
@@ -191,8 +211,9 @@ std::string leave_out_json(const std::vector<LeaveOutResult>& results, const pip
                       {"needed", runs_json(r.needed)},
                       {"left_out", std::move(left_out)}});
   }
-  const Json document{
-      {"schema", kLeaveOutSchema}, {"machine", Json::parse(pipeline::machine_json(machine))}, {"scenes", std::move(scenes)}};
+  const Json document{{"schema", kLeaveOutSchema},
+                      {"machine", Json::parse(pipeline::machine_json(machine))},
+                      {"scenes", std::move(scenes)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -28,7 +28,8 @@ class ScratchFolder {
     std::error_code error;
     std::string pattern = (fs::temp_directory_path(error) / "quadrille-plot-XXXXXX").string();
     if (error || mkdtemp(pattern.data()) == nullptr)
-      throw user_error("{}: cannot make a folder for the plot there; TMPDIR says where", error ? "the folder of TMPDIR" : pattern);
+      throw user_error("{}: cannot make a folder for the plot there; TMPDIR says where",
+                       error ? "the folder of TMPDIR" : pattern);
     path_ = pattern;
   }
   ~ScratchFolder() {
@@ -75,7 +76,8 @@ void require_gnuplot(const std::string& flag) {
     }
     from = to + 1;
   }
-  throw user_error("{}: gnuplot draws the plots and is not installed (Debian's package is gnuplot-nox)", flag);
+  throw user_error("{}: gnuplot draws the plots and is not installed (Debian's package is gnuplot-nox)",
+                   flag);
 }
 
 void draw_plot(const std::string& path, const std::string& commands) {
@@ -83,8 +85,9 @@ void draw_plot(const std::string& path, const std::string& commands) {
   const fs::path drawn = folder.path() / "plot";
   const traces::Unfinished listed_folder(folder.path().string()), listed_plot(drawn.string()),
       listed_words((folder.path() / "said").string());
-  const std::string all =
-      terminal_for(path) + fmt::format("set output '{}'\nset encoding utf8\n", drawn.string()) + commands + "\nunset output\n";
+  const std::string all = terminal_for(path) +
+                          fmt::format("set output '{}'\nset encoding utf8\n", drawn.string()) + commands +
+                          "\nunset output\n";
   if (!run_gnuplot(folder.path(), all) || !fs::exists(drawn) || fs::file_size(drawn) == 0) {
     std::string said;
     for (const std::byte b : traces::read_whole_file((folder.path() / "said").string(), kMaxPlotBytes))

@@ -1,4 +1,5 @@
-/// One measured run: a frame drawn in a process of its own, with what it cost the host, what it cost the machine, and the picture.
+/// One measured run: a frame drawn in a process of its own, with what it cost the host, what it cost the
+/// machine, and the picture.
 #pragma once
 
 #include <cstdint>
@@ -38,14 +39,17 @@ struct MachineCost {
 };
 
 struct TimedRun {
-  double cpu_s = 0, wall_s = 0;     ///< of the simulation alone: loading, compiling and elaborating are not in it
+  /// of the simulation alone: loading, compiling and elaborating are not in it
+  double cpu_s = 0, wall_s = 0;
   std::optional<MachineCost> cost;  ///< none of a functional run
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint32_t> color;  ///< RGBA8 as stored, red in the low byte
 };
 
-/// Runs once. Throws `UserError` with what the run was refused for, and `std::runtime_error` when it failed or broke a law.
-[[nodiscard]] TimedRun run_timed(const traces::CommandStream& stream, const pipeline::MachineConfig& machine, const RunSetting& setting);
+/// Runs once. Throws `UserError` with what the run was refused for, and `std::runtime_error` when it failed
+/// or broke a law.
+[[nodiscard]] TimedRun run_timed(const traces::CommandStream& stream, const pipeline::MachineConfig& machine,
+                                 const RunSetting& setting);
 
 /// The parts of the figures that errors are taken of.
 [[nodiscard]] MachineCost machine_cost(const pipeline::Figures& figures);

@@ -49,7 +49,9 @@ int format_components(Format format) {
   return 0;
 }
 
-bool is_integer_format(Format format) { return format == Format::kR8G8B8A8Uint || format == Format::kR16G16B16A16Uint; }
+bool is_integer_format(Format format) {
+  return format == Format::kR8G8B8A8Uint || format == Format::kR16G16B16A16Uint;
+}
 
 std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
   return std::uint64_t{4} * std::max(1u, image.width >> level) * std::max(1u, image.height >> level);
@@ -65,8 +67,9 @@ void unpack(Image& image) {
   if (!image.packed) return;
   std::vector<std::byte> texels;
   texels.reserve(texel_bytes(image));
-  (*image.packed)(
-      [&](std::uint32_t /*level*/, std::span<const std::byte> level) { texels.insert(texels.end(), level.begin(), level.end()); });
+  (*image.packed)([&](std::uint32_t /*level*/, std::span<const std::byte> level) {
+    texels.insert(texels.end(), level.begin(), level.end());
+  });
   image.texels = std::move(texels);
   image.packed = nullptr;
 }

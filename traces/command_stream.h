@@ -1,8 +1,11 @@
-/// The command stream: everything a frame needs, at the level of Vulkan's objects, and nothing of where it came from.
+/// The command stream: everything a frame needs, at the level of Vulkan's objects, and nothing of where it
+/// came from.
 ///
-/// Objects (buffers, images, samplers, shaders, pipelines, descriptor sets, render targets) live in tables and are named by their index; commands refer to
-/// them. A scene is turned into a `CommandStream`, a trace file holds one, the machine, the reference renderer and the Vulkan comparison execute one.
-/// Conventions are Vulkan's: clip space 0 <= z <= w, y down, column-major matrices, std140 uniform blocks, counter-clockwise as stated by the pipeline.
+/// Objects (buffers, images, samplers, shaders, pipelines, descriptor sets, render targets) live in tables
+/// and are named by their index; commands refer to them. A scene is turned into a `CommandStream`, a trace
+/// file holds one, the machine, the reference renderer and the Vulkan comparison execute one. Conventions are
+/// Vulkan's: clip space 0 <= z <= w, y down, column-major matrices, std140 uniform blocks, counter-clockwise
+/// as stated by the pipeline.
 #pragma once
 
 #include <array>
@@ -58,16 +61,19 @@ struct Buffer {
 
 /// Takes the texels of one mip level, as in `Image::texels`. They are gone after the call.
 using LevelSink = std::function<void(std::uint32_t level, std::span<const std::byte> texels)>;
-/// Makes all levels of an image, finest first, and hands each to the sink. Throws `UserError`. Any number of times.
+/// Makes all levels of an image, finest first, and hands each to the sink. Throws `UserError`. Any number of
+/// times.
 using UnpackTexels = std::function<void(const LevelSink&)>;
 
-/// A 2D texture: all mip levels, finest first, rows top to bottom, tightly packed. Level i is max(1, width >> i) by max(1, height >> i).
+/// A 2D texture: all mip levels, finest first, rows top to bottom, tightly packed. Level i is max(1, width >>
+/// i) by max(1, height >> i).
 struct Image {
   std::string name;
   Format format = Format::kR8G8B8A8Unorm;
   std::uint32_t width = 1, height = 1, levels = 1;
   std::vector<std::byte> texels;
-  std::shared_ptr<const UnpackTexels> packed{};  ///< instead of `texels`, for a machine that asks for what it samples; null: they are there
+  /// instead of `texels`, for a machine that asks for what it samples; null: they are there
+  std::shared_ptr<const UnpackTexels> packed{};
   friend bool operator==(const Image&, const Image&) = default;
 };
 /// Bytes of a level's texels, and of all levels'.
@@ -95,8 +101,18 @@ struct Shader {
 
 enum class Topology : std::uint8_t { kTriangleList, kTriangleStrip, kTriangleFan };
 enum class CullMode : std::uint8_t { kNone, kFront, kBack };
-enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };  ///< as Vulkan: by signed area in framebuffer coordinates (y down)
-enum class CompareOp : std::uint8_t { kNever, kLess, kEqual, kLessOrEqual, kGreater, kNotEqual, kGreaterOrEqual, kAlways };
+/// as Vulkan: by signed area in framebuffer coordinates (y down)
+enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };
+enum class CompareOp : std::uint8_t {
+  kNever,
+  kLess,
+  kEqual,
+  kLessOrEqual,
+  kGreater,
+  kNotEqual,
+  kGreaterOrEqual,
+  kAlways
+};
 enum class BlendFactor : std::uint8_t {
   kZero,
   kOne,
@@ -111,7 +127,8 @@ enum class BlendFactor : std::uint8_t {
 };
 enum class BlendOp : std::uint8_t { kAdd, kSubtract, kReverseSubtract, kMin, kMax };
 
-inline constexpr Index kNone = 0xffffffffu;  ///< an index that names nothing (declared after the enumerations, whose kNone it would shadow)
+/// an index that names nothing (declared after the enumerations, whose kNone it would shadow)
+inline constexpr Index kNone = 0xffffffffu;
 
 struct VertexBinding {
   std::uint32_t binding = 0, stride = 0;
@@ -131,7 +148,8 @@ struct DepthState {
 };
 struct BlendState {
   bool enable = false;
-  BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne, dst_alpha = BlendFactor::kZero;
+  BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne,
+              dst_alpha = BlendFactor::kZero;
   BlendOp color = BlendOp::kAdd, alpha = BlendOp::kAdd;
   std::uint8_t write_mask = 0xf;  ///< bit 0 red .. bit 3 alpha
   friend bool operator==(const BlendState&, const BlendState&) = default;
@@ -221,7 +239,8 @@ struct SetScissor {
   std::uint32_t width = 0, height = 0;
   friend bool operator==(const SetScissor&, const SetScissor&) = default;
 };
-/// Indexed when `indexed`: `first` is the first index, `vertex_offset` is added to each; otherwise `first` is the first vertex. No primitive restart.
+/// Indexed when `indexed`: `first` is the first index, `vertex_offset` is added to each; otherwise `first` is
+/// the first vertex. No primitive restart.
 struct Draw {
   bool indexed = false;
   std::uint32_t count = 0, first = 0;
@@ -230,8 +249,8 @@ struct Draw {
   std::string label;
   friend bool operator==(const Draw&, const Draw&) = default;
 };
-using Command = std::variant<BeginPass, EndPass, BindPipeline, BindDescriptorSet, BindVertexBuffer, BindIndexBuffer, PushConstants,
-                             SetViewport, SetScissor, Draw>;
+using Command = std::variant<BeginPass, EndPass, BindPipeline, BindDescriptorSet, BindVertexBuffer,
+                             BindIndexBuffer, PushConstants, SetViewport, SetScissor, Draw>;
 
 struct CommandStream {
   std::string name;
@@ -248,7 +267,8 @@ struct CommandStream {
 
 inline constexpr std::uint32_t kMaxPushConstantBytes = 256;
 
-/// Checks every reference, range and size, so that nothing that executes the stream has to. Throws `UserError` naming the object or command.
+/// Checks every reference, range and size, so that nothing that executes the stream has to. Throws
+/// `UserError` naming the object or command.
 void validate(const CommandStream& stream);
 
 }  // namespace quadrille::traces

@@ -25,7 +25,9 @@ struct Counter {
   void operator()(const Other&) const {}
 };
 
-std::string megabytes(std::uint64_t bytes) { return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20)); }
+std::string megabytes(std::uint64_t bytes) {
+  return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
 
 }  // namespace
 
@@ -47,16 +49,19 @@ std::string trace_info(const CommandStream& stream) {
   const StreamTotals totals = stream_totals(stream);
   std::string text = fmt::format("trace '{}'\n", stream.name);
   for (const RenderTarget& target : stream.targets) {
-    text +=
-        fmt::format("  target     {}x{}, {}, {}\n", target.width, target.height, target.color == Format::kR8G8B8A8Srgb ? "sRGB" : "UNORM",
-                    target.depth == Format::kUndefined ? "no depth" : "32-bit depth");
+    text += fmt::format("  target     {}x{}, {}, {}\n", target.width, target.height,
+                        target.color == Format::kR8G8B8A8Srgb ? "sRGB" : "UNORM",
+                        target.depth == Format::kUndefined ? "no depth" : "32-bit depth");
   }
   text += fmt::format("  buffers    {:6} {}\n", stream.buffers.size(), megabytes(totals.buffer_bytes));
   text += fmt::format("  images     {:6} {}\n", stream.images.size(), megabytes(totals.image_bytes));
-  text += fmt::format("  samplers   {:6}\n  shaders    {:6}\n", stream.samplers.size(), stream.shaders.size());
-  text += fmt::format("  pipelines  {:6}\n  sets       {:6}\n", stream.pipelines.size(), stream.descriptor_sets.size());
+  text +=
+      fmt::format("  samplers   {:6}\n  shaders    {:6}\n", stream.samplers.size(), stream.shaders.size());
+  text += fmt::format("  pipelines  {:6}\n  sets       {:6}\n", stream.pipelines.size(),
+                      stream.descriptor_sets.size());
   text += fmt::format("  commands   {:6}\n  passes     {:6}\n", stream.commands.size(), totals.passes);
-  text += fmt::format("  draws      {:6}\n  triangles  {:6}\n  vertices   {:6}\n", totals.draws, totals.triangles, totals.vertices);
+  text += fmt::format("  draws      {:6}\n  triangles  {:6}\n  vertices   {:6}\n", totals.draws,
+                      totals.triangles, totals.vertices);
   return text;
 }
 

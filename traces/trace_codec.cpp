@@ -10,9 +10,11 @@
 namespace quadrille::traces {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the trace file is little-endian and is copied as it lies in memory");
+static_assert(std::endian::native == std::endian::little,
+              "the trace file is little-endian and is copied as it lies in memory");
 
-constexpr std::uint64_t kMaxElements = std::uint64_t{1} << 23;  // of one table: bounds what a hostile count can make us allocate
+// of one table: bounds what a hostile count can make us allocate
+constexpr std::uint64_t kMaxElements = std::uint64_t{1} << 23;
 
 class Writer {
  public:
@@ -70,7 +72,8 @@ class Reader {
     std::uint8_t byte = 0;
     copy(&byte, 1);
     if (byte > static_cast<std::uint8_t>(last))
-      throw user_error("{}: byte {} is {}; the largest value there is {}", place_, at_ - 1, byte, static_cast<int>(last));
+      throw user_error("{}: byte {} is {}; the largest value there is {}", place_, at_ - 1, byte,
+                       static_cast<int>(last));
     value = static_cast<E>(byte);
   }
   template <class T>
@@ -86,7 +89,8 @@ class Reader {
   template <class T, class F>
   void table(std::vector<T>& values, F&& element) {
     const std::uint64_t count = length(1);
-    if (count > kMaxElements) throw user_error("{}: {} elements, the limit is {}", place_, count, kMaxElements);
+    if (count > kMaxElements)
+      throw user_error("{}: {} elements, the limit is {}", place_, count, kMaxElements);
     values.clear();
     for (std::uint64_t i = 0; i < count; ++i) element(values.emplace_back());
   }
@@ -96,16 +100,19 @@ class Reader {
   [[nodiscard]] const std::string& place() const { return place_; }
 
  private:
-  /// Reads a count and makes sure that so many elements of `size` bytes can still follow, before anyone allocates for them.
+  /// Reads a count and makes sure that so many elements of `size` bytes can still follow, before anyone
+  /// allocates for them.
   std::uint64_t length(std::size_t size) {
     std::uint64_t count = 0;
     number(count);
     if (count > (bytes_.size() - at_) / size)
-      throw user_error("{}: {} elements are announced at byte {} where {} bytes remain", place_, count, at_ - 8, bytes_.size() - at_);
+      throw user_error("{}: {} elements are announced at byte {} where {} bytes remain", place_, count,
+                       at_ - 8, bytes_.size() - at_);
     return count;
   }
   void copy(void* target, std::size_t size) {
-    if (size > bytes_.size() - at_) throw user_error("{}: ends at byte {}, inside a value", place_, bytes_.size());
+    if (size > bytes_.size() - at_)
+      throw user_error("{}: ends at byte {}, inside a value", place_, bytes_.size());
     if (size > 0) std::memcpy(target, bytes_.data() + at_, size);
     at_ += size;
   }
@@ -150,7 +157,8 @@ void transfer(A& a, Shader& v) {
 template <class A>
 void transfer(A& a, BlendState& v) {
   numbers(a, v.enable);
-  for (BlendFactor* factor : {&v.src_color, &v.dst_color, &v.src_alpha, &v.dst_alpha}) a.choice(*factor, BlendFactor::kOneMinusDstAlpha);
+  for (BlendFactor* factor : {&v.src_color, &v.dst_color, &v.src_alpha, &v.dst_alpha})
+    a.choice(*factor, BlendFactor::kOneMinusDstAlpha);
   for (BlendOp* op : {&v.color, &v.alpha}) a.choice(*op, BlendOp::kMax);
   numbers(a, v.write_mask);
 }
@@ -245,7 +253,8 @@ void transfer(A& a, Command& v) {
   auto kind = static_cast<std::uint8_t>(v.index());
   a.number(kind);
   if constexpr (A::kReads) {
-    if (kind >= std::variant_size_v<Command>) throw user_error("{}: command kind {} is unknown", a.place(), kind);
+    if (kind >= std::variant_size_v<Command>)
+      throw user_error("{}: command kind {} is unknown", a.place(), kind);
     emplace(v, kind);
   }
   std::visit([&](auto& command) { fields(a, command); }, v);
@@ -276,7 +285,8 @@ std::vector<std::byte> encode_chunk(const CommandStream& stream, Chunk chunk) {
   return writer.take();
 }
 
-void decode_chunk(CommandStream& stream, Chunk chunk, std::span<const std::byte> payload, const std::string& place) {
+void decode_chunk(CommandStream& stream, Chunk chunk, std::span<const std::byte> payload,
+                  const std::string& place) {
   Reader reader(payload, place);
   transfer(reader, stream, chunk);
   reader.finish();

@@ -16,8 +16,10 @@ namespace quadrille::traces {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'\x89', 'Q', 'T', 'R',
-                                     'A',    'C', 'E', '\n'};  // the first byte shows transfers that are not 8-bit clean
-constexpr int kCompression = 1;  // zstd level: most of a trace is texels, which gain little from more [G: quick to write matters more]
+                                     // the first byte shows transfers that are not 8-bit clean
+                                     'A', 'C', 'E', '\n'};
+// zstd level: most of a trace is texels, which gain little from more [G: quick to write matters more]
+constexpr int kCompression = 1;
 
 struct FileHeader {
   std::array<char, 8> magic;
@@ -51,7 +53,8 @@ void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
 void append_chunk(std::vector<std::byte>& bytes, const CommandStream& stream, Chunk chunk) {
   const std::vector<std::byte> payload = encode_chunk(stream, chunk);
   std::vector<std::byte> packed(ZSTD_compressBound(payload.size()));
-  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), payload.data(), payload.size(), kCompression);
+  const std::size_t size =
+      ZSTD_compress(packed.data(), packed.size(), payload.data(), payload.size(), kCompression);
   QUADRILLE_CHECK(!ZSTD_isError(size), "zstd: {}", ZSTD_getErrorName(size));
   ChunkHeader header{{}, 0, size, payload.size(), 0};
   std::memcpy(header.tag.data(), kChunkTags[static_cast<std::size_t>(chunk)], header.tag.size());
@@ -87,9 +90,11 @@ class Parser {
     const auto header = take<FileHeader>(name_);
     if (header.magic != kMagic) refuse_other_file(name_);
     if (header.version != kTraceVersion)
-      throw user_error("{}: trace version {}; this program reads version {}", name_, header.version, kTraceVersion);
+      throw user_error("{}: trace version {}; this program reads version {}", name_, header.version,
+                       kTraceVersion);
     if (header.chunks != kChunkTags.size())
-      throw user_error("{}: {} chunks; version {} has {}", name_, header.chunks, kTraceVersion, kChunkTags.size());
+      throw user_error("{}: {} chunks; version {} has {}", name_, header.chunks, kTraceVersion,
+                       kChunkTags.size());
   }
 
   void read_chunk(CommandStream& stream, Chunk chunk) {
@@ -103,22 +108,29 @@ class Parser {
 
   void check(const ChunkHeader& header, Chunk chunk, const std::string& place) {
     const std::string_view tag = kChunkTags[static_cast<std::size_t>(chunk)];
-    if (std::string_view(header.tag.data(), header.tag.size()) != tag) throw user_error("{}: another chunk is in its place", place);
+    if (std::string_view(header.tag.data(), header.tag.size()) != tag)
+      throw user_error("{}: another chunk is in its place", place);
     if (header.stored_bytes > bytes_.size())
-      throw user_error("{}: {} bytes are announced where {} remain", place, header.stored_bytes, bytes_.size());
+      throw user_error("{}: {} bytes are announced where {} remain", place, header.stored_bytes,
+                       bytes_.size());
     if (header.decoded_bytes > kMaxTraceBytes - decoded_)
-      throw user_error("{}: decodes to {} bytes; a trace may take {}", place, header.decoded_bytes, kMaxTraceBytes);
+      throw user_error("{}: decodes to {} bytes; a trace may take {}", place, header.decoded_bytes,
+                       kMaxTraceBytes);
     decoded_ += header.decoded_bytes;
-    if (checksum(header, bytes_.data()) != header.checksum) throw user_error("{}: its checksum does not match; the file is damaged", place);
+    if (checksum(header, bytes_.data()) != header.checksum)
+      throw user_error("{}: its checksum does not match; the file is damaged", place);
   }
 
   std::vector<std::byte> unpack(const ChunkHeader& header, const std::string& place) {
     if (ZSTD_getFrameContentSize(bytes_.data(), header.stored_bytes) != header.decoded_bytes)
       throw user_error("{}: its two sizes disagree", place);
     std::vector<std::byte> payload(header.decoded_bytes);
-    const std::size_t size = ZSTD_decompress(payload.data(), payload.size(), bytes_.data(), header.stored_bytes);
-    if (ZSTD_isError(size)) throw user_error("{}: cannot be decompressed: {}", place, ZSTD_getErrorName(size));
-    if (size != payload.size()) throw user_error("{}: decompresses to {} bytes instead of {}", place, size, payload.size());
+    const std::size_t size =
+        ZSTD_decompress(payload.data(), payload.size(), bytes_.data(), header.stored_bytes);
+    if (ZSTD_isError(size))
+      throw user_error("{}: cannot be decompressed: {}", place, ZSTD_getErrorName(size));
+    if (size != payload.size())
+      throw user_error("{}: decompresses to {} bytes instead of {}", place, size, payload.size());
     return payload;
   }
 
@@ -146,11 +158,15 @@ CommandStream decode_trace(std::span<const std::byte> bytes, const std::string& 
   return stream;
 }
 
-void write_trace(const CommandStream& stream, const std::string& path) { write_whole_file(path, encode_trace(stream)); }
+void write_trace(const CommandStream& stream, const std::string& path) {
+  write_whole_file(path, encode_trace(stream));
+}
 
 CommandStream read_trace(const std::string& path) {
   const auto look = [&](std::span<const std::byte> beginning) {
-    if (beginning.size() >= sizeof(FileHeader) && std::memcmp(beginning.data(), kMagic.data(), kMagic.size()) != 0) refuse_other_file(path);
+    if (beginning.size() >= sizeof(FileHeader) &&
+        std::memcmp(beginning.data(), kMagic.data(), kMagic.size()) != 0)
+      refuse_other_file(path);
   };
   return decode_trace(read_whole_file(path, kMaxTraceBytes, look), path);
 }

@@ -1,8 +1,9 @@
 /// The trace file (`.qtrace`): one `CommandStream` on disk, with version and checksums.
 ///
-/// A header (magic, version, number of chunks) is followed by chunks, one for each object table and one for the commands. A chunk names itself, says its
-/// stored and its decoded size, carries an XXH3 checksum of what is stored and holds a zstd-compressed payload. docs/trace_format.md has every field.
-/// A file is written whole or not at all; a file that is damaged anywhere is refused with the chunk and the reason.
+/// A header (magic, version, number of chunks) is followed by chunks, one for each object table and one for
+/// the commands. A chunk names itself, says its stored and its decoded size, carries an XXH3 checksum of what
+/// is stored and holds a zstd-compressed payload. docs/trace_format.md has every field. A file is written
+/// whole or not at all; a file that is damaged anywhere is refused with the chunk and the reason.
 #pragma once
 
 #include <cstddef>
@@ -16,15 +17,18 @@
 namespace quadrille::traces {
 
 inline constexpr std::uint32_t kTraceVersion = 1;
-/// The most that one decoded trace may take; declared sizes above it are refused before anything is allocated.
+/// The most that one decoded trace may take; declared sizes above it are refused before anything is
+/// allocated.
 inline constexpr std::uint64_t kMaxTraceBytes = std::uint64_t{2} << 30;
 
 /// The bytes of a trace file that holds `stream`. Same stream, same bytes.
 [[nodiscard]] std::vector<std::byte> encode_trace(const CommandStream& stream);
-/// Reads what `encode_trace` wrote and validates it. `name` is used in errors. Throws `UserError` with name, chunk and reason on any defect.
+/// Reads what `encode_trace` wrote and validates it. `name` is used in errors. Throws `UserError` with name,
+/// chunk and reason on any defect.
 [[nodiscard]] CommandStream decode_trace(std::span<const std::byte> bytes, const std::string& name);
 
-/// Writes `stream` to `path` by way of a temporary file beside it. Throws `UserError` when the file cannot be written.
+/// Writes `stream` to `path` by way of a temporary file beside it. Throws `UserError` when the file cannot be
+/// written.
 void write_trace(const CommandStream& stream, const std::string& path);
 /// Reads and validates the trace at `path`. Throws `UserError` with file, chunk and reason.
 [[nodiscard]] CommandStream read_trace(const std::string& path);

@@ -1,6 +1,8 @@
-/// The gate of the command stream: objects are checked here, commands by the walk in validate_draws.h, so that whatever executes a stream may trust it.
+/// The gate of the command stream: objects are checked here, commands by the walk in validate_draws.h, so
+/// that whatever executes a stream may trust it.
 ///
-/// Rules are Vulkan's valid-usage rules, made stricter where that spares every executor a case; limits are the ones below.
+/// Rules are Vulkan's valid-usage rules, made stricter where that spares every executor a case; limits are
+/// the ones below.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,44 +15,53 @@
 namespace quadrille::traces {
 namespace {
 
-constexpr std::uint32_t kMaxSide = 16384;            // texels or pixels [VK1.3 #limits-maxImageDimension2D]
-constexpr std::uint32_t kMaxVertexSlots = 16;        // bindings and locations [VK1.3 #limits-required: maxVertexInputBindings]
-constexpr std::uint32_t kMaxStride = 2048;           // bytes [VK1.3 #limits-required: maxVertexInputBindingStride]
-constexpr std::uint32_t kMaxAttributeOffset = 2047;  // bytes [VK1.3 #limits-required: maxVertexInputAttributeOffset]
-constexpr std::uint32_t kMaxUniformRange = 65536;    // bytes
-constexpr std::uint32_t kUniformAlignment = 16;      // bytes
+constexpr std::uint32_t kMaxSide = 16384;  // texels or pixels [VK1.3 #limits-maxImageDimension2D]
+// bindings and locations [VK1.3 #limits-required: maxVertexInputBindings]
+constexpr std::uint32_t kMaxVertexSlots = 16;
+// bytes [VK1.3 #limits-required: maxVertexInputBindingStride]
+constexpr std::uint32_t kMaxStride = 2048;
+// bytes [VK1.3 #limits-required: maxVertexInputAttributeOffset]
+constexpr std::uint32_t kMaxAttributeOffset = 2047;
+constexpr std::uint32_t kMaxUniformRange = 65536;  // bytes
+constexpr std::uint32_t kUniformAlignment = 16;    // bytes
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 
 bool is_color_image(Format f) { return f == Format::kR8G8B8A8Unorm || f == Format::kR8G8B8A8Srgb; }
-bool is_vertex_format(Format f) { return f != Format::kUndefined && f != Format::kD32Float && !is_color_image(f); }
+bool is_vertex_format(Format f) {
+  return f != Format::kUndefined && f != Format::kD32Float && !is_color_image(f);
+}
 
 void check_side(const char* what, std::size_t index, std::uint32_t width, std::uint32_t height) {
   if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide) {
-    throw user_error("{} {}: size {}x{} is outside 1x1 .. {}x{}", what, index, width, height, kMaxSide, kMaxSide);
+    throw user_error("{} {}: size {}x{} is outside 1x1 .. {}x{}", what, index, width, height, kMaxSide,
+                     kMaxSide);
   }
 }
 
 void check_image(const Image& image, std::size_t index) {
   check_side("image", index, image.width, image.height);
   if (!is_color_image(image.format))
-    throw user_error("image {} '{}': its format is not one of a texture (R8G8B8A8 UNORM or SRGB)", index, image.name);
+    throw user_error("image {} '{}': its format is not one of a texture (R8G8B8A8 UNORM or SRGB)", index,
+                     image.name);
   const auto full_chain = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
   if (image.levels == 0 || image.levels > full_chain) {
-    throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels, image.width, image.height,
-                     full_chain);
+    throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels,
+                     image.width, image.height, full_chain);
   }
   const std::uint64_t bytes = image.packed ? 0 : texel_bytes(image);
   if (image.texels.size() != bytes) {
-    throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index, image.name, image.texels.size(),
-                     image.width, image.height, image.levels, bytes);
+    throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index,
+                     image.name, image.texels.size(), image.width, image.height, image.levels, bytes);
   }
 }
 
 void check_sampler(const Sampler& sampler, std::size_t index) {
   if (!std::isfinite(sampler.lod_bias) || std::abs(sampler.lod_bias) > 16)
     throw user_error("sampler {}: lod bias {} is outside -16..16", index, sampler.lod_bias);
-  if (!std::isfinite(sampler.min_lod) || !std::isfinite(sampler.max_lod) || sampler.min_lod > sampler.max_lod) {
-    throw user_error("sampler {}: lod range {}..{} is not an interval", index, sampler.min_lod, sampler.max_lod);
+  if (!std::isfinite(sampler.min_lod) || !std::isfinite(sampler.max_lod) ||
+      sampler.min_lod > sampler.max_lod) {
+    throw user_error("sampler {}: lod range {}..{} is not an interval", index, sampler.min_lod,
+                     sampler.max_lod);
   }
 }
 
@@ -59,39 +70,43 @@ void check_shader(const Shader& shader, std::size_t index) {
     throw user_error("shader {} '{}': its words are not SPIR-V", index, shader.name);
 }
 
-void check_stage(const CommandStream& stream, const Pipeline& pipeline, std::size_t index, Index shader, ShaderStage stage,
-                 const char* stage_name) {
+void check_stage(const CommandStream& stream, const Pipeline& pipeline, std::size_t index, Index shader,
+                 ShaderStage stage, const char* stage_name) {
   if (shader >= stream.shaders.size()) {
-    throw user_error("pipeline {} '{}': {} shader {} does not exist ({} shaders)", index, pipeline.name, stage_name, shader,
-                     stream.shaders.size());
+    throw user_error("pipeline {} '{}': {} shader {} does not exist ({} shaders)", index, pipeline.name,
+                     stage_name, shader, stream.shaders.size());
   }
   if (stream.shaders[shader].stage != stage)
-    throw user_error("pipeline {} '{}': shader {} is not a {} shader", index, pipeline.name, shader, stage_name);
+    throw user_error("pipeline {} '{}': shader {} is not a {} shader", index, pipeline.name, shader,
+                     stage_name);
 }
 
 void check_vertex_input(const Pipeline& pipeline, std::size_t index) {
   std::set<std::uint32_t> bindings, locations;
   for (const auto& b : pipeline.bindings) {
     if (b.binding >= kMaxVertexSlots)
-      throw user_error("pipeline {} '{}': vertex binding {} is outside 0..15", index, pipeline.name, b.binding);
+      throw user_error("pipeline {} '{}': vertex binding {} is outside 0..15", index, pipeline.name,
+                       b.binding);
     if (!bindings.insert(b.binding).second)
       throw user_error("pipeline {} '{}': vertex binding {} is given twice", index, pipeline.name, b.binding);
     if (b.stride > kMaxStride)
-      throw user_error("pipeline {} '{}': binding {} has stride {}, the limit is {}", index, pipeline.name, b.binding, b.stride,
-                       kMaxStride);
+      throw user_error("pipeline {} '{}': binding {} has stride {}, the limit is {}", index, pipeline.name,
+                       b.binding, b.stride, kMaxStride);
   }
   for (const auto& a : pipeline.attributes) {
-    if (a.location >= kMaxVertexSlots) throw user_error("pipeline {} '{}': location {} is outside 0..15", index, pipeline.name, a.location);
+    if (a.location >= kMaxVertexSlots)
+      throw user_error("pipeline {} '{}': location {} is outside 0..15", index, pipeline.name, a.location);
     if (!locations.insert(a.location).second)
       throw user_error("pipeline {} '{}': location {} is given twice", index, pipeline.name, a.location);
     if (!bindings.contains(a.binding))
-      throw user_error("pipeline {} '{}': location {} reads binding {}, which is not declared", index, pipeline.name, a.location,
-                       a.binding);
+      throw user_error("pipeline {} '{}': location {} reads binding {}, which is not declared", index,
+                       pipeline.name, a.location, a.binding);
     if (!is_vertex_format(a.format))
-      throw user_error("pipeline {} '{}': location {} has a format that is not one of an attribute", index, pipeline.name, a.location);
+      throw user_error("pipeline {} '{}': location {} has a format that is not one of an attribute", index,
+                       pipeline.name, a.location);
     if (a.offset > kMaxAttributeOffset)
-      throw user_error("pipeline {} '{}': location {} has offset {}, the limit is {}", index, pipeline.name, a.location, a.offset,
-                       kMaxAttributeOffset);
+      throw user_error("pipeline {} '{}': location {} has offset {}, the limit is {}", index, pipeline.name,
+                       a.location, a.offset, kMaxAttributeOffset);
   }
 }
 
@@ -100,7 +115,8 @@ void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::
   check_stage(stream, pipeline, index, pipeline.fragment_shader, ShaderStage::kFragment, "fragment");
   check_vertex_input(pipeline, index);
   if (pipeline.blend.write_mask > 0xf)
-    throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name, pipeline.blend.write_mask);
+    throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,
+                     pipeline.blend.write_mask);
 }
 
 void check_uniform(const CommandStream& stream, std::size_t set, const UniformBinding& u) {
@@ -108,17 +124,20 @@ void check_uniform(const CommandStream& stream, std::size_t set, const UniformBi
     throw user_error("descriptor set {} binding {}: buffer {} does not exist", set, u.binding, u.buffer);
   const std::uint64_t size = stream.buffers[u.buffer].data.size();
   if (u.range == 0 || u.range > kMaxUniformRange || std::uint64_t{u.offset} + u.range > size) {
-    throw user_error("descriptor set {} binding {}: bytes {}+{} are not within buffer {} of {} bytes (at most {})", set, u.binding,
-                     u.offset, u.range, u.buffer, size, kMaxUniformRange);
+    throw user_error(
+        "descriptor set {} binding {}: bytes {}+{} are not within buffer {} of {} bytes (at most {})", set,
+        u.binding, u.offset, u.range, u.buffer, size, kMaxUniformRange);
   }
   if (u.offset % kUniformAlignment != 0)
-    throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set, u.binding, u.offset, kUniformAlignment);
+    throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set, u.binding,
+                     u.offset, kUniformAlignment);
 }
 
 void check_descriptors(const CommandStream& stream, const DescriptorSet& descriptors, std::size_t set) {
   std::set<std::uint32_t> bindings;
   const auto claim = [&](std::uint32_t binding) {
-    if (!bindings.insert(binding).second) throw user_error("descriptor set {}: binding {} is given twice", set, binding);
+    if (!bindings.insert(binding).second)
+      throw user_error("descriptor set {}: binding {} is given twice", set, binding);
   };
   for (const auto& u : descriptors.uniforms) {
     claim(u.binding);
@@ -126,7 +145,8 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
   }
   for (const auto& t : descriptors.textures) {
     claim(t.binding);
-    if (t.image >= stream.images.size()) throw user_error("descriptor set {} binding {}: image {} does not exist", set, t.binding, t.image);
+    if (t.image >= stream.images.size())
+      throw user_error("descriptor set {} binding {}: image {} does not exist", set, t.binding, t.image);
     if (t.sampler >= stream.samplers.size())
       throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
   }
@@ -134,7 +154,8 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
 
 void check_target(const RenderTarget& target, std::size_t index) {
   check_side("render target", index, target.width, target.height);
-  if (!is_color_image(target.color)) throw user_error("render target {}: its colour format is not R8G8B8A8 UNORM or SRGB", index);
+  if (!is_color_image(target.color))
+    throw user_error("render target {}: its colour format is not R8G8B8A8 UNORM or SRGB", index);
   if (target.depth != Format::kUndefined && target.depth != Format::kD32Float)
     throw user_error("render target {}: its depth format is not D32 or none", index);
 }
@@ -146,7 +167,8 @@ void validate(const CommandStream& stream) {
   for (std::size_t i = 0; i < stream.samplers.size(); ++i) check_sampler(stream.samplers[i], i);
   for (std::size_t i = 0; i < stream.shaders.size(); ++i) check_shader(stream.shaders[i], i);
   for (std::size_t i = 0; i < stream.pipelines.size(); ++i) check_pipeline(stream, stream.pipelines[i], i);
-  for (std::size_t i = 0; i < stream.descriptor_sets.size(); ++i) check_descriptors(stream, stream.descriptor_sets[i], i);
+  for (std::size_t i = 0; i < stream.descriptor_sets.size(); ++i)
+    check_descriptors(stream, stream.descriptor_sets[i], i);
   for (std::size_t i = 0; i < stream.targets.size(); ++i) check_target(stream.targets[i], i);
   CommandWalk(stream).run();
 }

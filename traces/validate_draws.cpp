@@ -1,4 +1,5 @@
-/// The command half of `validate`: pass nesting, bound state, and every byte that a draw would fetch, found by scanning the indices it uses.
+/// The command half of `validate`: pass nesting, bound state, and every byte that a draw would fetch, found
+/// by scanning the indices it uses.
 #include "traces/validate_draws.h"
 
 #include <algorithm>
@@ -12,10 +13,14 @@ namespace quadrille::traces {
 namespace {
 
 constexpr float kMaxViewportSide = 16384;
-constexpr float kViewportBounds = 32768;                                // [VK1.3 #limits-required: viewportBoundsRange]
-constexpr std::uint64_t kMaxVertexReferences = std::uint64_t{1} << 32;  // of a whole stream: a bound on the work that one file can ask for
+// [VK1.3 #limits-required: viewportBoundsRange]
+constexpr float kViewportBounds = 32768;
+// of a whole stream: a bound on the work that one file can ask for
+constexpr std::uint64_t kMaxVertexReferences = std::uint64_t{1} << 32;
 
-std::uint32_t index_bytes(IndexType type) { return type == IndexType::kUint8 ? 1 : type == IndexType::kUint16 ? 2 : 4; }
+std::uint32_t index_bytes(IndexType type) {
+  return type == IndexType::kUint8 ? 1 : type == IndexType::kUint16 ? 2 : 4;
+}
 
 template <class T>
 std::pair<std::uint32_t, std::uint32_t> scan(const std::byte* data, std::uint32_t count) {
@@ -43,10 +48,12 @@ void CommandWalk::run() {
 
 void CommandWalk::visit(const BeginPass& c) {
   if (target_ != kNone) throw user_error("command {}: a render pass begins inside another", at_);
-  if (c.target >= stream_.targets.size()) throw user_error("command {}: render target {} does not exist", at_, c.target);
+  if (c.target >= stream_.targets.size())
+    throw user_error("command {}: render target {} does not exist", at_, c.target);
   if (!std::ranges::all_of(c.clear_color, [](float v) { return std::isfinite(v); }))
     throw user_error("command {}: the clear colour is not finite", at_);
-  if (!within(c.clear_depth, 0, 1)) throw user_error("command {}: clear depth {} is outside 0..1", at_, c.clear_depth);
+  if (!within(c.clear_depth, 0, 1))
+    throw user_error("command {}: clear depth {} is outside 0..1", at_, c.clear_depth);
   target_ = c.target;
   ++passes_;
 }
@@ -57,47 +64,59 @@ void CommandWalk::visit(const EndPass&) {
 }
 
 void CommandWalk::visit(const BindPipeline& c) {
-  if (c.pipeline >= stream_.pipelines.size()) throw user_error("command {}: pipeline {} does not exist", at_, c.pipeline);
+  if (c.pipeline >= stream_.pipelines.size())
+    throw user_error("command {}: pipeline {} does not exist", at_, c.pipeline);
   pipeline_ = c.pipeline;
 }
 
 void CommandWalk::visit(const BindDescriptorSet& c) {
-  if (c.set >= kMaxDescriptorSets) throw user_error("command {}: descriptor set number {} is outside 0..3", at_, c.set);
-  if (c.descriptors >= stream_.descriptor_sets.size()) throw user_error("command {}: descriptor set {} does not exist", at_, c.descriptors);
+  if (c.set >= kMaxDescriptorSets)
+    throw user_error("command {}: descriptor set number {} is outside 0..3", at_, c.set);
+  if (c.descriptors >= stream_.descriptor_sets.size())
+    throw user_error("command {}: descriptor set {} does not exist", at_, c.descriptors);
 }
 
 void CommandWalk::visit(const BindVertexBuffer& c) {
-  if (c.binding >= kMaxVertexBindings) throw user_error("command {}: vertex binding {} is outside 0..15", at_, c.binding);
-  if (c.buffer >= stream_.buffers.size()) throw user_error("command {}: buffer {} does not exist", at_, c.buffer);
+  if (c.binding >= kMaxVertexBindings)
+    throw user_error("command {}: vertex binding {} is outside 0..15", at_, c.binding);
+  if (c.buffer >= stream_.buffers.size())
+    throw user_error("command {}: buffer {} does not exist", at_, c.buffer);
   const std::uint64_t size = stream_.buffers[c.buffer].data.size();
-  if (c.offset > size) throw user_error("command {}: offset {} is beyond buffer {} of {} bytes", at_, c.offset, c.buffer, size);
+  if (c.offset > size)
+    throw user_error("command {}: offset {} is beyond buffer {} of {} bytes", at_, c.offset, c.buffer, size);
   vertex_streams_[c.binding] = {c.buffer, c.offset};
 }
 
 void CommandWalk::visit(const BindIndexBuffer& c) {
-  if (c.buffer >= stream_.buffers.size()) throw user_error("command {}: index buffer {} does not exist", at_, c.buffer);
+  if (c.buffer >= stream_.buffers.size())
+    throw user_error("command {}: index buffer {} does not exist", at_, c.buffer);
   const std::uint64_t size = stream_.buffers[c.buffer].data.size();
-  if (c.offset > size) throw user_error("command {}: offset {} is beyond index buffer {} of {} bytes", at_, c.offset, c.buffer, size);
+  if (c.offset > size)
+    throw user_error("command {}: offset {} is beyond index buffer {} of {} bytes", at_, c.offset, c.buffer,
+                     size);
   if (c.offset % index_bytes(c.type) != 0)
-    throw user_error("command {}: index offset {} is not a multiple of {} bytes", at_, c.offset, index_bytes(c.type));
+    throw user_error("command {}: index offset {} is not a multiple of {} bytes", at_, c.offset,
+                     index_bytes(c.type));
   indices_ = c;
 }
 
 void CommandWalk::visit(const PushConstants& c) {
-  if (c.data.empty() || c.data.size() % 4 != 0 || c.offset % 4 != 0 || c.data.size() > kMaxPushConstantBytes ||
-      c.offset > kMaxPushConstantBytes - c.data.size()) {
-    throw user_error("command {}: push constants of bytes {}+{}; they are whole words within {} bytes", at_, c.offset, c.data.size(),
-                     kMaxPushConstantBytes);
+  if (c.data.empty() || c.data.size() % 4 != 0 || c.offset % 4 != 0 ||
+      c.data.size() > kMaxPushConstantBytes || c.offset > kMaxPushConstantBytes - c.data.size()) {
+    throw user_error("command {}: push constants of bytes {}+{}; they are whole words within {} bytes", at_,
+                     c.offset, c.data.size(), kMaxPushConstantBytes);
   }
 }
 
 void CommandWalk::visit(const SetViewport& c) {
-  const bool place = within(c.x, -kViewportBounds, kViewportBounds) && within(c.y, -kViewportBounds, kViewportBounds);
-  const bool size = c.width > 0 && c.width <= kMaxViewportSide && c.height != 0 && within(c.height, -kMaxViewportSide, kMaxViewportSide);
+  const bool place =
+      within(c.x, -kViewportBounds, kViewportBounds) && within(c.y, -kViewportBounds, kViewportBounds);
+  const bool size = c.width > 0 && c.width <= kMaxViewportSide && c.height != 0 &&
+                    within(c.height, -kMaxViewportSide, kMaxViewportSide);
   if (!place || !size || !within(c.x + c.width, -kViewportBounds, kViewportBounds) ||
       !within(c.y + c.height, -kViewportBounds, kViewportBounds)) {
-    throw user_error("command {}: viewport {},{} {}x{} is not within {} pixels, or empty", at_, c.x, c.y, c.width, c.height,
-                     kMaxViewportSide);
+    throw user_error("command {}: viewport {},{} {}x{} is not within {} pixels, or empty", at_, c.x, c.y,
+                     c.width, c.height, kMaxViewportSide);
   }
   if (!within(c.min_depth, 0, 1) || !within(c.max_depth, 0, 1))
     throw user_error("command {}: viewport depth {}..{} is outside 0..1", at_, c.min_depth, c.max_depth);
@@ -114,8 +133,9 @@ void CommandWalk::check_scissor() const {
   const std::uint64_t right = static_cast<std::uint64_t>(scissor_->x) + scissor_->width;
   const std::uint64_t bottom = static_cast<std::uint64_t>(scissor_->y) + scissor_->height;
   if (right > target.width || bottom > target.height) {
-    throw user_error("command {}: draw with scissor {},{} {}x{} outside the target of {}x{}", at_, scissor_->x, scissor_->y,
-                     scissor_->width, scissor_->height, target.width, target.height);
+    throw user_error("command {}: draw with scissor {},{} {}x{} outside the target of {}x{}", at_,
+                     scissor_->x, scissor_->y, scissor_->width, scissor_->height, target.width,
+                     target.height);
   }
 }
 
@@ -146,8 +166,8 @@ std::pair<std::uint32_t, std::uint32_t> CommandWalk::index_range(const Draw& dra
   const std::uint64_t begin = indices_.offset + draw.first * size;
   const std::uint64_t bytes = draw.count * size;
   if (begin > data.size() || bytes > data.size() - begin) {
-    throw user_error("command {}: indices {}+{} reach beyond index buffer {} of {} bytes", at_, draw.first, draw.count, indices_.buffer,
-                     data.size());
+    throw user_error("command {}: indices {}+{} reach beyond index buffer {} of {} bytes", at_, draw.first,
+                     draw.count, indices_.buffer, data.size());
   }
   const auto [entry, added] = index_ranges_.try_emplace({indices_.buffer, begin, indices_.type, draw.count});
   if (added) {
@@ -168,23 +188,27 @@ CommandWalk::VertexRange CommandWalk::vertex_range(const Draw& draw) {
     return {draw.first, last};
   }
   const auto [low, high] = index_range(draw);
-  const std::int64_t first = std::int64_t{low} + draw.vertex_offset, last = std::int64_t{high} + draw.vertex_offset;
+  const std::int64_t first = std::int64_t{low} + draw.vertex_offset,
+                     last = std::int64_t{high} + draw.vertex_offset;
   if (first < 0 || last > 0xffffffff)
     throw user_error("command {}: vertices {}..{} (index plus offset) do not fit 32 bits", at_, first, last);
   return {static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(last)};
 }
 
-void CommandWalk::check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices,
-                                  VertexRange instances) const {
+void CommandWalk::check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute,
+                                  VertexRange vertices, VertexRange instances) const {
   const auto binding = std::ranges::find(pipeline.bindings, attribute.binding, &VertexBinding::binding);
   const VertexStream& source = vertex_streams_[attribute.binding];
-  if (source.buffer == kNone) throw user_error("command {}: draw without a vertex buffer at binding {}", at_, attribute.binding);
+  if (source.buffer == kNone)
+    throw user_error("command {}: draw without a vertex buffer at binding {}", at_, attribute.binding);
   const std::uint64_t last = binding->per_instance ? instances.last : vertices.last;
   const std::uint64_t size = stream_.buffers[source.buffer].data.size();
-  const std::uint64_t end = source.offset + last * binding->stride + attribute.offset + format_bytes(attribute.format);
+  const std::uint64_t end =
+      source.offset + last * binding->stride + attribute.offset + format_bytes(attribute.format);
   if (end > size) {
     throw user_error("command {}: {} {} at location {} ends at byte {} of buffer {}, which has {}", at_,
-                     binding->per_instance ? "instance" : "vertex", last, attribute.location, end, source.buffer, size);
+                     binding->per_instance ? "instance" : "vertex", last, attribute.location, end,
+                     source.buffer, size);
   }
 }
 
@@ -194,9 +218,11 @@ void CommandWalk::visit(const Draw& c) {
   count_vertices(c);
   const VertexRange vertices = vertex_range(c);
   const VertexRange instances{c.first_instance, std::uint64_t{c.first_instance} + c.instances - 1};
-  if (instances.last > 0xffffffffu) throw user_error("command {}: instance number {} does not fit 32 bits", at_, instances.last);
+  if (instances.last > 0xffffffffu)
+    throw user_error("command {}: instance number {} does not fit 32 bits", at_, instances.last);
   const Pipeline& pipeline = stream_.pipelines[pipeline_];
-  for (const VertexAttribute& attribute : pipeline.attributes) check_attribute(pipeline, attribute, vertices, instances);
+  for (const VertexAttribute& attribute : pipeline.attributes)
+    check_attribute(pipeline, attribute, vertices, instances);
 }
 
 }  // namespace quadrille::traces

@@ -1,4 +1,5 @@
-/// Walks the commands as an executor would, keeping the bound state, and refuses the first command that an executor could not carry out.
+/// Walks the commands as an executor would, keeping the bound state, and refuses the first command that an
+/// executor could not carry out.
 #pragma once
 
 #include <array>
@@ -46,7 +47,8 @@ class CommandWalk {
   void count_vertices(const Draw& draw);
   [[nodiscard]] VertexRange vertex_range(const Draw& draw);
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> index_range(const Draw& draw);
-  void check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices, VertexRange instances) const;
+  void check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices,
+                       VertexRange instances) const;
 
   const CommandStream& stream_;
   std::size_t at_ = 0;  ///< command index, for messages
@@ -57,8 +59,10 @@ class CommandWalk {
   BindIndexBuffer indices_;
   std::optional<SetViewport> viewport_;
   std::optional<SetScissor> scissor_;
-  std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t>, std::pair<std::uint32_t, std::uint32_t>>
-      index_ranges_;  ///< scanned once
+  std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t>,
+           /// scanned once
+           std::pair<std::uint32_t, std::uint32_t>>
+      index_ranges_;
 };
 
 }  // namespace quadrille::traces

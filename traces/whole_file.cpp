@@ -20,7 +20,8 @@ constexpr std::uintmax_t kBeginning = 64;
 
 }  // namespace
 
-std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t limit, const LookAtBeginning& look) {
+std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t limit,
+                                       const LookAtBeginning& look) {
   std::error_code failure;
   if (!std::filesystem::exists(path, failure)) throw user_error("{}: no such file", path);
   if (!std::filesystem::is_regular_file(path, failure)) throw user_error("{}: not a regular file", path);
@@ -36,7 +37,8 @@ std::vector<std::byte> read_whole_file(const std::string& path, std::uint64_t li
     file.seekg(0);
   }
   std::vector<std::byte> bytes(size);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size))) throw user_error("{}: cannot be read", path);
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
+    throw user_error("{}: cannot be read", path);
   return bytes;
 }
 

@@ -1,4 +1,5 @@
-/// The unit of this folder behind our fine rasteriser, with a source and a sink; the cycles are those that arithmetic gives.
+/// The unit of this folder behind our fine rasteriser, with a source and a sink; the cycles are those that
+/// arithmetic gives.
 #include <fmt/format.h>
 
 #include "hw/base/dispatcher.h"
@@ -16,7 +17,9 @@ class Source final : public hw::Unit {
  public:
   Source(sc_core::sc_module_name name, const hw::Clock& clock) : Unit(name, Kind::kFixedOrder, clock) {}
   hw::FifoOut<hw::TileToken> out{*this, "out"};
-  [[nodiscard]] hw::Wake next() const override { return sent_ == kTiles ? hw::Wake(hw::kNever) : hw::Wake().output(out); }
+  [[nodiscard]] hw::Wake next() const override {
+    return sent_ == kTiles ? hw::Wake(hw::kNever) : hw::Wake().output(out);
+  }
   void act(hw::Tick now) override {
     out.push(now, {.fully_covered = true, .tile_x = static_cast<std::uint16_t>(sent_)});
     ++sent_;
@@ -68,13 +71,13 @@ int sc_main(int /*count*/, char** /*arguments*/) {
   census.coverage_in.bind(covered);
   census.coverage_out.bind(counted);
   sink.in.bind(counted);
-  for (hw::Unit* unit :
-       {static_cast<hw::Unit*>(&source), static_cast<hw::Unit*>(&raster), static_cast<hw::Unit*>(&census), static_cast<hw::Unit*>(&sink)})
+  for (hw::Unit* unit : {static_cast<hw::Unit*>(&source), static_cast<hw::Unit*>(&raster),
+                         static_cast<hw::Unit*>(&census), static_cast<hw::Unit*>(&sink)})
     driver.add(*unit);
 
   driver.run({});
   const std::int64_t cycles = clock.edges_before(sink.last) - clock.edges_before(sink.first);
-  fmt::print("{} tiles, {} of them full; {} cycles from the first to the last, {} by arithmetic\n", sink.taken,
-             census.stats()->full.value(), cycles, 8 * (kTiles - 1));
+  fmt::print("{} tiles, {} of them full; {} cycles from the first to the last, {} by arithmetic\n",
+             sink.taken, census.stats()->full.value(), cycles, 8 * (kTiles - 1));
   return sink.taken == kTiles && census.stats()->full.value() == kTiles && cycles == 8 * (kTiles - 1) ? 0 : 1;
 }

@@ -8,7 +8,8 @@ namespace quadrille::hw {
 
 TileCensus::TileCensus(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
     : Unit(name, Kind::kFixedOrder, context.clock), params_(params), rate_(context.clock) {
-  add_initiation_rate("tiles_per_clk");  // doubling this parameter doubles the rate: the limit of a frame is found from that
+  // doubling this parameter doubles the rate: the limit of a frame is found from that
+  add_initiation_rate("tiles_per_clk");
 }
 
 Wake TileCensus::next() const { return Wake(free_).input(coverage_in).output(coverage_out); }
@@ -26,7 +27,8 @@ void TileCensus::act(Tick now) {
 
 std::vector<Facet> TileCensus::row() const {
   const std::uint64_t tiles = stats_.small.value() + stats_.middle.value() + stats_.full.value();
-  return {share("small", stats_.small, tiles), share("middle", stats_.middle, tiles), share("full", stats_.full, tiles)};
+  return {share("small", stats_.small, tiles), share("middle", stats_.middle, tiles),
+          share("full", stats_.full, tiles)};
 }
 
 }  // namespace quadrille::hw

@@ -16,7 +16,9 @@ namespace quadrille::hw {
 class TileCensus final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<double> tiles_per_clk{*this, "tiles_per_clk", 1, "tile/clk", {0.01, 1}, "Tiles counted a cycle. [G: as the fine rasteriser]"};
+    Param<double> tiles_per_clk{*this,     "tiles_per_clk",
+                                1,         "tile/clk",
+                                {0.01, 1}, "Tiles counted a cycle. [G: as the fine rasteriser]"};
   };
   struct Stats : StatGroup {
     Counter small{*this, "small", "tile", "Tiles with one to four covered quads"};

@@ -1,4 +1,5 @@
-/// A memory channel of Quadrille in a SystemC model of your own: a client reads lines in an order of its choice, and a thread of SystemC watches the clock.
+/// A memory channel of Quadrille in a SystemC model of your own: a client reads lines in an order of its
+/// choice, and a thread of SystemC watches the clock.
 #include <fmt/format.h>
 
 #include <memory>
@@ -88,10 +89,13 @@ int sc_main(int /*count*/, char** /*arguments*/) {
   std::vector<Side> sides;
   for (const auto& [name, lines] : {std::pair{"in_order", in_order}, {"far_apart", far_apart}}) {
     Side side;
-    side.channel = std::make_unique<hw::MemoryChannel>(fmt::format("{}_channel", name).c_str(), context, params);
+    side.channel =
+        std::make_unique<hw::MemoryChannel>(fmt::format("{}_channel", name).c_str(), context, params);
     side.client = std::make_unique<Client>(fmt::format("{}_client", name).c_str(), clock, lines);
-    side.requests = std::make_unique<hw::Fifo<hw::MemoryRequest>>(fmt::format("{}_requests", name).c_str(), hw::LinkSpec{.depth = 16});
-    side.answers = std::make_unique<hw::Fifo<hw::MemoryResponse>>(fmt::format("{}_answers", name).c_str(), hw::LinkSpec{.depth = 16});
+    side.requests = std::make_unique<hw::Fifo<hw::MemoryRequest>>(fmt::format("{}_requests", name).c_str(),
+                                                                  hw::LinkSpec{.depth = 16});
+    side.answers = std::make_unique<hw::Fifo<hw::MemoryResponse>>(fmt::format("{}_answers", name).c_str(),
+                                                                  hw::LinkSpec{.depth = 16});
     side.client->request_out.bind(*side.requests);
     side.channel->request_in.bind(*side.requests);
     side.channel->response_out.bind(*side.answers);
@@ -120,6 +124,7 @@ int sc_main(int /*count*/, char** /*arguments*/) {
     results.push_back(result);
   }
   // A row that stays open serves many lines; one that changes at each line serves one.
-  const bool right = results[0].row_hits > 0.8 && results[1].row_hits < 0.2 && results[1].cycles > results[0].cycles && watch.ticks == 4;
+  const bool right = results[0].row_hits > 0.8 && results[1].row_hits < 0.2 &&
+                     results[1].cycles > results[0].cycles && watch.ticks == 4;
   return right ? 0 : 1;
 }

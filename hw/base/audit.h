@@ -1,6 +1,8 @@
-/// Laws of conservation: two counts of the same thing, taken from different events, mostly by different units.
+/// Laws of conservation: two counts of the same thing, taken from different events, mostly by different
+/// units.
 ///
-/// Each unit adds what it counted to the sides that concern it (`Unit::audit`). Summed over a machine both sides have to be equal.
+/// Each unit adds what it counted to the sides that concern it (`Unit::audit`). Summed over a machine both
+/// sides have to be equal.
 #pragma once
 
 #include <algorithm>

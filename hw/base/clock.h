@@ -9,14 +9,17 @@
 
 namespace quadrille::hw {
 
-/// A point in simulated time, in femtoseconds since the start. 2^63 fs is two and a half hours of device time.
+/// A point in simulated time, in femtoseconds since the start. 2^63 fs is two and a half hours of device
+/// time.
 using Tick = std::int64_t;
 inline constexpr Tick kNever = std::numeric_limits<Tick>::max();
 
-/// A clock domain. Edge k is at floor(k * 10^15 / frequency_hz), so any frequency keeps its long-run rate exactly.
+/// A clock domain. Edge k is at floor(k * 10^15 / frequency_hz), so any frequency keeps its long-run rate
+/// exactly.
 ///
-/// The functions divide by nothing: the period is a whole part and a 64-bit binary fraction rounded up, which gives the exact floor for every k below
-/// 2^64 / denominator; beyond that (only frequencies with a huge reduced denominator, after seconds of device time) 128-bit arithmetic takes over.
+/// The functions divide by nothing: the period is a whole part and a 64-bit binary fraction rounded up, which
+/// gives the exact floor for every k below 2^64 / denominator; beyond that (only frequencies with a huge
+/// reduced denominator, after seconds of device time) 128-bit arithmetic takes over.
 class Clock {
  public:
   explicit Clock(std::int64_t frequency_hz = 1'000'000'000) : hz_(frequency_hz) {
@@ -44,7 +47,8 @@ class Clock {
   }
   /// Index of the first edge at or after `t` >= 0; equally the number of edges in [0, t).
   [[nodiscard]] std::int64_t edges_before(Tick t) const {
-    auto k = static_cast<std::int64_t>(static_cast<double>(t) * per_tick_);  // at most one or two off; the loops make it exact
+    // at most one or two off; the loops make it exact
+    auto k = static_cast<std::int64_t>(static_cast<double>(t) * per_tick_);
     while (k > 0 && edge(k - 1) >= t) --k;
     while (edge(k) < t) ++k;
     return k;
@@ -52,18 +56,22 @@ class Clock {
   /// The first edge at or after `t`; kNever stays kNever.
   [[nodiscard]] Tick align(Tick t) const { return t == kNever ? kNever : edge(edges_before(t)); }
   /// The edge `cycles` after the edge `t`. `t` must be an edge.
-  [[nodiscard]] Tick after(Tick t, std::int64_t cycles) const { return uniform() ? t + cycles * whole_ : after_uneven(t, cycles); }
+  [[nodiscard]] Tick after(Tick t, std::int64_t cycles) const {
+    return uniform() ? t + cycles * whole_ : after_uneven(t, cycles);
+  }
   /// Edges in [from, to).
   [[nodiscard]] std::int64_t cycles(Tick from, Tick to) const;
   friend bool operator==(const Clock& a, const Clock& b) { return a.hz_ == b.hz_; }
 
  private:
   __extension__ using Wide = unsigned __int128;
-  [[nodiscard]] Tick after_uneven(Tick t, std::int64_t cycles) const;  // out of line, to keep the common case short
+  // out of line, to keep the common case short
+  [[nodiscard]] Tick after_uneven(Tick t, std::int64_t cycles) const;
   static constexpr std::int64_t kFemto = 1'000'000'000'000'000;
   std::int64_t hz_;
-  Tick whole_ = 0;              ///< whole femtoseconds of the period
-  std::uint64_t fraction_ = 0;  ///< the rest of the period in units of 2^-64 fs, rounded up; 0 for a uniform clock
+  Tick whole_ = 0;  ///< whole femtoseconds of the period
+  /// the rest of the period in units of 2^-64 fs, rounded up; 0 for a uniform clock
+  std::uint64_t fraction_ = 0;
   std::int64_t exact_below_ = std::numeric_limits<std::int64_t>::max();
   double per_tick_ = 0;  ///< cycles a femtosecond
 };

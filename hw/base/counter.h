@@ -1,4 +1,5 @@
-/// Counters of units. A counter is declared once, with name, unit and definition, and is its own storage; reports, JSON and documentation walk the group.
+/// Counters of units. A counter is declared once, with name, unit and definition, and is its own storage;
+/// reports, JSON and documentation walk the group.
 #pragma once
 
 #include "hw/base/work_log.h"
@@ -45,7 +46,8 @@ class StatGroup {
   void add(Counter& c);
   void add(Histogram& h);
 
-  /// What is counted from here on is for this draw, `kNoDraw` if for none, and, where one is known, for this tile of 8x8 pixels of its target.
+  /// What is counted from here on is for this draw, `kNoDraw` if for none, and, where one is known, for this
+  /// tile of 8x8 pixels of its target.
   void working_for(std::uint32_t draw) {
     if (log_ != nullptr) [[unlikely]]
       log_->turn_to({draw, kNoTile});
@@ -73,7 +75,8 @@ class StatGroup {
 
 class Counter final : public Statistic {
  public:
-  Counter(StatGroup& group, std::string_view name, std::string_view unit, std::string_view definition) : Statistic(name, unit, definition) {
+  Counter(StatGroup& group, std::string_view name, std::string_view unit, std::string_view definition)
+      : Statistic(name, unit, definition) {
     group.add(*this);
   }
   Counter& operator++() {
@@ -92,11 +95,13 @@ class Counter final : public Statistic {
   std::uint64_t value_ = 0;
 };
 
-/// Names the parts of a unit that register counters of their own with its group: `using CounterParts = Parts<MemoryPortStats>`.
+/// Names the parts of a unit that register counters of their own with its group: `using CounterParts =
+/// Parts<MemoryPortStats>`.
 template <class... Stats>
 struct Parts {};
 
-/// How often a quantity had which size: bucket 0 counts zeros, bucket k > 0 counts sizes from 2^(k-1) to 2^k - 1.
+/// How often a quantity had which size: bucket 0 counts zeros, bucket k > 0 counts sizes from 2^(k-1) to 2^k
+/// - 1.
 class Histogram final : public Statistic {
  public:
   static constexpr std::size_t kBuckets = 48;
@@ -111,7 +116,9 @@ class Histogram final : public Statistic {
   [[nodiscard]] const std::array<std::uint64_t, kBuckets>& buckets() const { return buckets_; }
   /// Of all sizes noted.
   [[nodiscard]] std::uint64_t sum() const { return sum_; }
-  [[nodiscard]] std::uint64_t count() const { return std::accumulate(buckets_.begin(), buckets_.end(), std::uint64_t{0}); }
+  [[nodiscard]] std::uint64_t count() const {
+    return std::accumulate(buckets_.begin(), buckets_.end(), std::uint64_t{0});
+  }
 
  private:
   std::array<std::uint64_t, kBuckets> buckets_{};

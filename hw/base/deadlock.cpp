@@ -1,4 +1,5 @@
-/// The report on a machine in which nothing can act any more: the graph of who waits for whom, and the shortest cycle in it.
+/// The report on a machine in which nothing can act any more: the graph of who waits for whom, and the
+/// shortest cycle in it.
 #include "hw/base/driver.h"
 
 #include <algorithm>
@@ -11,7 +12,9 @@ namespace {
 
 bool is_output(const PortBase& port) { return port.direction() == PortBase::Direction::kOut; }
 bool is_full(const PortBase& port) { return is_output(port) && port.fifo().room() == kNever; }
-const Unit* peer(const PortBase& port) { return is_output(port) ? port.fifo().consumer() : port.fifo().producer(); }
+const Unit* peer(const PortBase& port) {
+  return is_output(port) ? port.fifo().consumer() : port.fifo().producer();
+}
 
 /// The ports a stuck unit waits for: full outputs, and the empty input that its `next()` names.
 std::vector<const PortBase*> waits_of(const Unit& unit) {
@@ -31,8 +34,9 @@ std::string waiting_line(const Unit& unit, Tick now) {
   for (std::size_t i = 0; i < waits.size(); ++i) {
     const FifoBase& link = waits[i]->fifo();
     line += fmt::format("{} {} {} (port {}, {} of {} slots taken, {} {})", i == 0 ? "" : " and",
-                        is_output(*waits[i]) ? "room in" : "a token in", link.path(), waits[i]->name(), link.occupancy(), link.spec().depth,
-                        is_output(*waits[i]) ? "to" : "from", peer(*waits[i])->name());
+                        is_output(*waits[i]) ? "room in" : "a token in", link.path(), waits[i]->name(),
+                        link.occupancy(), link.spec().depth, is_output(*waits[i]) ? "to" : "from",
+                        peer(*waits[i])->name());
   }
   if (const std::string state = unit.state_text(); !state.empty()) line += "; it holds " + state;
   return line + '\n';
@@ -53,7 +57,8 @@ std::vector<const PortBase*> shortest_cycle(const Unit* start) {
         continue;
       }
       std::vector<const PortBase*> cycle;
-      for (const Unit* u = start; cycle.empty() || u != start; u = &came_by.at(u)->owner()) cycle.insert(cycle.begin(), came_by.at(u));
+      for (const Unit* u = start; cycle.empty() || u != start; u = &came_by.at(u)->owner())
+        cycle.insert(cycle.begin(), came_by.at(u));
       return cycle;
     }
   }
@@ -81,14 +86,18 @@ std::string cycle_text(const std::vector<const PortBase*>& cycle) {
   text += fmt::format(" {}\n", cycle.front()->owner().name());
   const PortBase* blamed = nullptr;
   for (const PortBase* p : cycle) {
-    if (is_full(*p) && (blamed == nullptr || p->fifo().spec().depth < blamed->fifo().spec().depth)) blamed = p;
+    if (is_full(*p) && (blamed == nullptr || p->fifo().spec().depth < blamed->fifo().spec().depth))
+      blamed = p;
   }
   if (blamed != nullptr) {
-    text += fmt::format("to blame: link {} is full; raise its depth ({} now), or let {} reserve a place before it sends\n",
-                        blamed->fifo().path(), blamed->fifo().spec().depth, blamed->owner().name());
+    text += fmt::format(
+        "to blame: link {} is full; raise its depth ({} now), or let {} reserve a place before it sends\n",
+        blamed->fifo().path(), blamed->fifo().spec().depth, blamed->owner().name());
   } else {
-    text += fmt::format("to blame: no link of the cycle is full, so a token was dropped or never sent; {} waits for one in link {}\n",
-                        cycle.front()->owner().name(), cycle.front()->fifo().path());
+    text += fmt::format(
+        "to blame: no link of the cycle is full, so a token was dropped or never sent; {} waits for one in "
+        "link {}\n",
+        cycle.front()->owner().name(), cycle.front()->fifo().path());
   }
   return text;
 }
@@ -100,10 +109,11 @@ std::string leftover_text(const std::vector<Unit*>& units) {
     const PortBase* cause = unit->next().cause();
     for (const PortBase* port : unit->ports()) {
       if (is_output(*port) || port->fifo().occupancy() == 0) continue;
-      text += fmt::format("to blame: link {} holds {} tokens that {} does not take", port->fifo().path(), port->fifo().occupancy(),
-                          unit->name());
+      text += fmt::format("to blame: link {} holds {} tokens that {} does not take", port->fifo().path(),
+                          port->fifo().occupancy(), unit->name());
       if (cause != nullptr && cause != port)
-        text += fmt::format("; it waits for {} of link {} by {}", cause->name(), cause->fifo().path(), peer(*cause)->name());
+        text += fmt::format("; it waits for {} of link {} by {}", cause->name(), cause->fifo().path(),
+                            peer(*cause)->name());
       text += '\n';
     }
   }
@@ -120,7 +130,8 @@ std::string waiting_report(const std::vector<Unit*>& units, Tick now) {
 
 std::string deadlock_report(const std::vector<Unit*>& units, Tick now) {
   std::string text =
-      fmt::format("nothing can act after {} fs; {} tokens lie in links; ", now, tokens_in_links(units)) + waiting_report(units, now);
+      fmt::format("nothing can act after {} fs; {} tokens lie in links; ", now, tokens_in_links(units)) +
+      waiting_report(units, now);
   const auto cycle = blamed_cycle(units);
   return text + (cycle.empty() ? leftover_text(units) : cycle_text(cycle));
 }

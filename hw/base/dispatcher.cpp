@@ -13,10 +13,12 @@ namespace quadrille::hw {
 
 namespace {
 
-/// Rounds in one activation of the SC_METHOD; between activations SystemC's time catches up and progress is reported.
+/// Rounds in one activation of the SC_METHOD; between activations SystemC's time catches up and progress is
+/// reported.
 constexpr int kRoundsPerActivation = 1 << 14;
 
-/// With a window: so many calls without a surprise lengthen a chooser's slack by a cycle. More calls: smaller errors, less gained. [M: docs/accuracy.md]
+/// With a window: so many calls without a surprise lengthen a chooser's slack by a cycle. More calls: smaller
+/// errors, less gained. [M: docs/accuracy.md]
 constexpr Tick kCallsACycle = 4;
 
 Tick saturating_add(Tick a, Tick b) { return a > kNever - b ? kNever : a + b; }
@@ -27,7 +29,8 @@ struct Earliest {
   Tick first = kNever, second = kNever;  ///< equal when two choosers share the earliest time
 };
 
-/// The two smallest times, in lanes that the compiler makes one vector of. The number of times is a multiple of `kLanes`.
+/// The two smallest times, in lanes that the compiler makes one vector of. The number of times is a multiple
+/// of `kLanes`.
 Earliest earliest_of(const std::vector<Tick>& times) {
   std::array<Tick, kLanes> first, second;
   first.fill(kNever);
@@ -48,8 +51,9 @@ Earliest earliest_of(const std::vector<Tick>& times) {
   return e;
 }
 
-/// Which of up to 64 choosers may act: bit i where times[i] is less than reach[i] after `first`, and not after `limit`. `n` is a multiple of `kLanes`. In vectors
-/// and without branches: who is among them is as good as random.
+/// Which of up to 64 choosers may act: bit i where times[i] is less than reach[i] after `first`, and not
+/// after `limit`. `n` is a multiple of `kLanes`. In vectors and without branches: who is among them is as
+/// good as random.
 std::uint64_t able_among(const Tick* times, const Tick* reach, std::size_t n, Tick first, Tick limit) {
   std::uint64_t able = 0;
   for (std::size_t i = 0; i < n; i += kLanes) {
@@ -57,7 +61,9 @@ std::uint64_t able_among(const Tick* times, const Tick* reach, std::size_t n, Ti
     const __m256i bound = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(reach + i));
     const __m256i near = _mm256_cmpgt_epi64(bound, _mm256_sub_epi64(time, _mm256_set1_epi64x(first)));
     const __m256i late = _mm256_cmpgt_epi64(time, _mm256_set1_epi64x(limit));
-    able |= static_cast<std::uint64_t>(_mm256_movemask_pd(_mm256_castsi256_pd(_mm256_andnot_si256(late, near)))) << i;
+    able |=
+        static_cast<std::uint64_t>(_mm256_movemask_pd(_mm256_castsi256_pd(_mm256_andnot_si256(late, near))))
+        << i;
   }
   return able;
 }
@@ -89,7 +95,8 @@ std::vector<std::vector<Dispatcher::Neighbour>> Dispatcher::surprisers() const {
   std::unordered_map<const Unit*, std::uint32_t> number;
   for (const Unit* unit : units_) number.emplace(unit, static_cast<std::uint32_t>(number.size()));
   std::vector<std::vector<Neighbour>> all(units_.size());
-  std::vector<std::size_t> place(units_.size());  // of a neighbour in the list being made; valid where `owner` says so
+  // of a neighbour in the list being made; valid where `owner` says so
+  std::vector<std::size_t> place(units_.size());
   std::vector<const Unit*> owner(units_.size());
   for (std::size_t i = 0; i < units_.size(); ++i) {
     for (const PortBase* port : units_[i]->ports()) {
@@ -109,11 +116,13 @@ std::vector<std::vector<Dispatcher::Neighbour>> Dispatcher::surprisers() const {
   return all;
 }
 
-/// Dijkstra's algorithm against the flow of surprises, until the nearest other chooser and the shortest way back are known. A fixed-order unit adds no time of
-/// its own: it may act in the very tick that enables it.
-Dispatcher::Reach Dispatcher::reach_of(std::size_t chooser, const std::vector<std::vector<Neighbour>>& surprisers) const {
+/// Dijkstra's algorithm against the flow of surprises, until the nearest other chooser and the shortest way
+/// back are known. A fixed-order unit adds no time of its own: it may act in the very tick that enables it.
+Dispatcher::Reach Dispatcher::reach_of(std::size_t chooser,
+                                       const std::vector<std::vector<Neighbour>>& surprisers) const {
   Tick others = kNever;
-  std::vector<Tick> nearest(units_.size(), kNever);  // the shortest way known to each unit; to the chooser itself a round trip
+  // the shortest way known to each unit; to the chooser itself a round trip
+  std::vector<Tick> nearest(units_.size(), kNever);
   using Entry = std::pair<Tick, std::size_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   open.emplace(0, chooser);
@@ -126,7 +135,8 @@ Dispatcher::Reach Dispatcher::reach_of(std::size_t chooser, const std::vector<st
       const Tick there = saturating_add(distance, n.latency);
       if (there >= nearest[n.unit]) continue;
       nearest[n.unit] = there;
-      if (n.unit != chooser && units_[n.unit]->unit_kind() == Unit::Kind::kChooser) others = std::min(others, there);
+      if (n.unit != chooser && units_[n.unit]->unit_kind() == Unit::Kind::kChooser)
+        others = std::min(others, there);
       open.emplace(there, n.unit);
     }
   }
@@ -141,7 +151,8 @@ void Dispatcher::step() {
   }
   if (!alive) return;  // SystemC runs out of events and sc_start returns
   const Tick floor = earliest_of(times_).first;
-  if (limits_.progress && floor != kNever) limits_.progress(floor);  // never: whoever acts next was marked in the last round
+  // never: whoever acts next was marked in the last round
+  if (limits_.progress && floor != kNever) limits_.progress(floor);
   const auto now = static_cast<Tick>(sc_core::sc_time_stamp().value());
   const Tick ahead = floor == kNever || floor <= now ? 1 : floor - now;
   sc_core::next_trigger(sc_core::sc_time::from_value(static_cast<sc_dt::uint64>(ahead)));
@@ -185,7 +196,8 @@ void Dispatcher::run_ahead(Unit& unit) const {
 }
 
 bool Dispatcher::round() {
-  const Earliest earliest = earliest_of(times_);  // before anyone acts: what they do from here on is never earlier than these
+  // before anyone acts: what they do from here on is never earlier than these
+  const Earliest earliest = earliest_of(times_);
   if (earliest.first > limits_.max_time) return false;
   for (std::size_t base = 0; base < times_.size(); base += 64) {
     const std::size_t n = std::min<std::size_t>(64, times_.size() - base);
@@ -194,7 +206,8 @@ bool Dispatcher::round() {
       const std::size_t k = base + static_cast<std::size_t>(std::countr_zero(able));
       const Tick time = times_[k];
       const Tick others = time == earliest.first ? earliest.second : earliest.first;
-      run_chooser(k, std::min(saturating_add(others, reach_[k]), saturating_add(time, choosers_[k].round_trip)));
+      run_chooser(k,
+                  std::min(saturating_add(others, reach_[k]), saturating_add(time, choosers_[k].round_trip)));
     }
   }
   return true;
@@ -202,7 +215,8 @@ bool Dispatcher::round() {
 
 void Dispatcher::run_chooser(std::size_t k, Tick bound) {
   Chooser& c = choosers_[k];
-  // What others did in this round shows at the bound or later: it changes no action before it, and the last question below sees it.
+  // What others did in this round shows at the bound or later: it changes no action before it, and the last
+  // question below sees it.
   *c.mark_word &= ~c.mark_bit;
   do {
     c.unit->perform(c.wake);

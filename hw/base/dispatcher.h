@@ -1,12 +1,16 @@
-/// The default driver: one SC_METHOD that advances all units, each as far ahead as conservative look-ahead allows, and SystemC's time with them.
+/// The default driver: one SC_METHOD that advances all units, each as far ahead as conservative look-ahead
+/// allows, and SystemC's time with them.
 ///
-/// Fixed-order units run until a FIFO stops them. Once all have run dry only choosers can start anything, so a chooser k may act at t only if, for every chooser
-/// j, t < time(j) + distance(j, k): the distance is the shortest sum of latencies from j to k through the machine, tokens forward and credits back, and for
-/// j = k the shortest round trip. Nothing simulated later can then become visible to it at or before t.
+/// Fixed-order units run until a FIFO stops them. Once all have run dry only choosers can start anything, so
+/// a chooser k may act at t only if, for every chooser j, t < time(j) + distance(j, k): the distance is the
+/// shortest sum of latencies from j to k through the machine, tokens forward and credits back, and for j = k
+/// the shortest round trip. Nothing simulated later can then become visible to it at or before t.
 ///
-/// `window` lets each chooser go beyond that bound, at most so far; the figures are then approximate. A token that comes in time for a tick which the chooser
-/// has left behind is served late, so each chooser learns how far it may go: its slack is halved by such a surprise and grows slowly without one
-/// [P: Chiu and Jain 1989]. Every unit's own time still never runs backwards and no token is seen before its time, so pixels and laws do not depend on the window.
+/// `window` lets each chooser go beyond that bound, at most so far; the figures are then approximate. A token
+/// that comes in time for a tick which the chooser has left behind is served late, so each chooser learns how
+/// far it may go: its slack is halved by such a surprise and grows slowly without one [P: Chiu and Jain
+/// 1989]. Every unit's own time still never runs backwards and no token is seen before its time, so pixels
+/// and laws do not depend on the window.
 #pragma once
 
 #include "hw/base/driver.h"
@@ -41,7 +45,8 @@ class Dispatcher final : public Driver {
   };
   /// Who can surprise each unit. Of several links between two units only the quickest counts.
   [[nodiscard]] std::vector<std::vector<Neighbour>> surprisers() const;
-  [[nodiscard]] Reach reach_of(std::size_t chooser, const std::vector<std::vector<Neighbour>>& surprisers) const;
+  [[nodiscard]] Reach reach_of(std::size_t chooser,
+                               const std::vector<std::vector<Neighbour>>& surprisers) const;
   void step();
   /// Runs marked fixed-order units until none can act, then asks marked choosers again.
   void settle();
@@ -59,8 +64,10 @@ class Dispatcher final : public Driver {
   std::vector<Chooser> choosers_;
   std::vector<std::size_t> chooser_of_;       ///< unit index -> chooser index; only for choosers
   std::vector<std::uint64_t> chooser_marks_;  ///< which bits of `touched_` are choosers'
-  std::vector<Tick> times_;                   ///< choosers_[i].wake.at(), contiguous for the scans; padded with kNever
-  std::vector<Tick> reach_;                   ///< by chooser: smallest distance from any other chooser, and its slack; padded
+  /// choosers_[i].wake.at(), contiguous for the scans; padded with kNever
+  std::vector<Tick> times_;
+  /// by chooser: smallest distance from any other chooser, and its slack; padded
+  std::vector<Tick> reach_;
 };
 
 }  // namespace quadrille::hw

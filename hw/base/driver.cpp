@@ -7,7 +7,8 @@ namespace quadrille::hw {
 
 namespace {
 
-/// SystemC's time unit must be set before the first `sc_time`, and asking for it makes one: so it is set without asking.
+/// SystemC's time unit must be set before the first `sc_time`, and asking for it makes one: so it is set
+/// without asking.
 void use_femtoseconds() {
   static const bool once = (sc_core::sc_set_time_resolution(1, sc_core::SC_FS), true);
   (void)once;
@@ -31,7 +32,8 @@ RunEnd Driver::run(const RunLimits& limits) {
   prepare();
   sc_core::sc_start();
   if (failure_) std::rethrow_exception(failure_);
-  const bool more = std::any_of(units_.begin(), units_.end(), [](const Unit* unit) { return unit->next().at() != kNever; });
+  const bool more =
+      std::any_of(units_.begin(), units_.end(), [](const Unit* unit) { return unit->next().at() != kNever; });
   return more ? RunEnd::kTimeLimit : RunEnd::kQuiescent;
 }
 

@@ -1,7 +1,8 @@
 /// What both drivers share: the units of a machine, the marks they leave, and how a run ends.
 ///
-/// `Dispatcher` (default) advances all units inside one SC_METHOD; `NativeDriver` gives each unit its own SC_METHOD and event on SystemC's scheduler, for
-/// people who embed units in their own SystemC models. Both produce the same cycles; tests hold them to it.
+/// `Dispatcher` (default) advances all units inside one SC_METHOD; `NativeDriver` gives each unit its own
+/// SC_METHOD and event on SystemC's scheduler, for people who embed units in their own SystemC models. Both
+/// produce the same cycles; tests hold them to it.
 #pragma once
 
 #include "hw/base/unit.h"
@@ -15,7 +16,8 @@
 namespace quadrille::hw {
 
 enum class RunEnd : std::uint8_t {
-  kQuiescent,  ///< no unit can act any more: the work is done, or the machine is deadlocked (`deadlock_report`)
+  /// no unit can act any more: the work is done, or the machine is deadlocked (`deadlock_report`)
+  kQuiescent,
   kTimeLimit,
 };
 
@@ -32,7 +34,8 @@ class Driver : public sc_core::sc_module {
   /// Adds a unit; the order must not matter (tests shuffle it).
   void add(Unit& unit) { units_.push_back(&unit); }
   [[nodiscard]] const std::vector<Unit*>& units() const { return units_; }
-  /// Runs until nothing can act or the limit is met. Call once, instead of `sc_start`. Throws what an action throws.
+  /// Runs until nothing can act or the limit is met. Call once, instead of `sc_start`. Throws what an action
+  /// throws.
   RunEnd run(const RunLimits& limits);
   /// Total actions performed by all units.
   [[nodiscard]] std::uint64_t actions() const;
@@ -44,7 +47,8 @@ class Driver : public sc_core::sc_module {
  protected:
   /// Ports, links and marks are ready, every unit is marked; create processes here.
   virtual void prepare() = 0;
-  /// Does the work of a process. What it throws ends the run and leaves `run`: SystemC would make an error of its own of it, and of its kind.
+  /// Does the work of a process. What it throws ends the run and leaves `run`: SystemC would make an error of
+  /// its own of it, and of its kind.
   template <class Work>
   void guard(const Work& work) {
     if (failure_) return;
@@ -64,13 +68,15 @@ class Driver : public sc_core::sc_module {
 /// Every link of a machine's units, once: by consumer.
 [[nodiscard]] std::vector<FifoBase*> links_of(const std::vector<Unit*>& units);
 
-/// Tokens that lie in the links of these units. Not 0 after a quiescent run: somebody waits for what will never come.
+/// Tokens that lie in the links of these units. Not 0 after a quiescent run: somebody waits for what will
+/// never come.
 [[nodiscard]] std::int64_t tokens_in_links(const std::vector<Unit*>& units);
 
 /// Who waits for whom at tick `now`: one line a waiting unit.
 [[nodiscard]] std::string waiting_report(const std::vector<Unit*>& units, Tick now);
-/// Who waits for whom when nothing can act: one line a waiting unit, the shortest cycle of waiting, and the FIFO to blame; without a cycle, the tokens that
-/// nobody takes and what their consumers wait for. `now` is the tick of the latest action.
+/// Who waits for whom when nothing can act: one line a waiting unit, the shortest cycle of waiting, and the
+/// FIFO to blame; without a cycle, the tokens that nobody takes and what their consumers wait for. `now` is
+/// the tick of the latest action.
 [[nodiscard]] std::string deadlock_report(const std::vector<Unit*>& units, Tick now);
 
 }  // namespace quadrille::hw

@@ -1,4 +1,5 @@
-/// What a unit shows of itself in its row of the table: counts, shares, means and rates, made of its counters.
+/// What a unit shows of itself in its row of the table: counts, shares, means and rates, made of its
+/// counters.
 #pragma once
 
 #include "hw/base/counter.h"
@@ -27,8 +28,14 @@ inline double number(const Counter& counter) { return static_cast<double>(counte
 inline double number(std::integral auto n) { return static_cast<double>(n); }
 
 Facet count(std::string_view label, const auto& value) { return {label, Facet::Kind::kCount, number(value)}; }
-Facet share(std::string_view label, const auto& value, const auto& of) { return {label, Facet::Kind::kShare, number(value), number(of)}; }
-Facet mean(std::string_view label, const auto& value, const auto& of) { return {label, Facet::Kind::kMean, number(value), number(of)}; }
-inline Facet rate(std::string_view label, const Counter& value, double peak) { return {label, Facet::Kind::kRate, number(value), 0, peak}; }
+Facet share(std::string_view label, const auto& value, const auto& of) {
+  return {label, Facet::Kind::kShare, number(value), number(of)};
+}
+Facet mean(std::string_view label, const auto& value, const auto& of) {
+  return {label, Facet::Kind::kMean, number(value), number(of)};
+}
+inline Facet rate(std::string_view label, const Counter& value, double peak) {
+  return {label, Facet::Kind::kRate, number(value), 0, peak};
+}
 
 }  // namespace quadrille::hw

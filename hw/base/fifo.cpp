@@ -7,17 +7,19 @@
 namespace quadrille::hw {
 
 namespace {
-/// Cycles a token needs to cross between two clock domains, on top of the link's latency: a two-flop synchroniser. [P: Ginosar 2011, two-flop synchronizer]
+/// Cycles a token needs to cross between two clock domains, on top of the link's latency: a two-flop
+/// synchroniser. [P: Ginosar 2011, two-flop synchronizer]
 constexpr int kCrossingCycles = 2;
 }  // namespace
 
 FifoBase::FifoBase(const char* name, const LinkSpec& spec, std::size_t token_bytes)
     : sc_core::sc_object(name), depth_(spec.depth), width_(spec.width), spec_(spec) {
   QUADRILLE_CHECK(spec.depth >= 1 && spec.width >= 1 && spec.latency >= 1 && spec.credit_latency >= 1,
-                  "link {}: depth {}, width {}, latency {}, credit latency {}", name, spec.depth, spec.width, spec.latency,
-                  spec.credit_latency);
+                  "link {}: depth {}, width {}, latency {}, credit latency {}", name, spec.depth, spec.width,
+                  spec.latency, spec.credit_latency);
   storage_ = std::make_unique<std::byte[]>(stamp_bytes(depth_) +
-                                           static_cast<std::size_t>(depth_) * token_bytes);  // zeroes: every slot is free from tick 0 on
+                                           static_cast<std::size_t>(depth_) *
+                                               token_bytes);  // zeroes: every slot is free from tick 0 on
 }
 
 void FifoBase::bind_producer(Unit& unit) {
@@ -33,7 +35,8 @@ void FifoBase::bind_consumer(Unit& unit) {
 bool FifoBase::crosses_clocks() const { return !(producer_->clock() == consumer_->clock()); }
 
 void FifoBase::elaborate() {
-  QUADRILLE_CHECK(producer_ != nullptr && consumer_ != nullptr, "link {} lacks a producer or a consumer", path());
+  QUADRILLE_CHECK(producer_ != nullptr && consumer_ != nullptr, "link {} lacks a producer or a consumer",
+                  path());
   if (crosses_clocks()) {
     spec_.latency += kCrossingCycles;
     spec_.credit_latency += kCrossingCycles;

@@ -1,8 +1,11 @@
-/// The only way units meet: bounded FIFOs with a depth, a width and a latency each way, and the ports that bind to them.
+/// The only way units meet: bounded FIFOs with a depth, a width and a latency each way, and the ports that
+/// bind to them.
 ///
-/// A token pushed at tick t is visible to the consumer `latency` consumer cycles later; a slot freed at t is usable by the producer `credit_latency` producer
-/// cycles later. Entries carry their ready tick and slots their release tick, so either end may be simulated ahead of the other and still see what it would
-/// have seen at its own time. Full rate needs depth >= width * (latency + credit_latency); a shallower FIFO is legal and slower.
+/// A token pushed at tick t is visible to the consumer `latency` consumer cycles later; a slot freed at t is
+/// usable by the producer `credit_latency` producer cycles later. Entries carry their ready tick and slots
+/// their release tick, so either end may be simulated ahead of the other and still see what it would have
+/// seen at its own time. Full rate needs depth >= width * (latency + credit_latency); a shallower FIFO is
+/// legal and slower.
 #pragma once
 
 #include "hw/base/clock.h"
@@ -17,7 +20,8 @@ namespace quadrille::hw {
 
 class Unit;
 
-/// What a link owns. Cycles are of the receiving side's clock: the consumer's for `latency`, the producer's for `credit_latency`.
+/// What a link owns. Cycles are of the receiving side's clock: the consumer's for `latency`, the producer's
+/// for `credit_latency`.
 struct LinkSpec {
   int depth = 4;           ///< tokens
   int width = 1;           ///< tokens a producer cycle
@@ -25,21 +29,25 @@ struct LinkSpec {
   int credit_latency = 1;  ///< cycles, at least 1
 };
 
-/// Does a token of this link carry work of a draw onward, or only answer the unit's own request? Decides what "idle" means (Unit).
+/// Does a token of this link carry work of a draw onward, or only answer the unit's own request? Decides what
+/// "idle" means (Unit).
 enum class LinkRole : std::uint8_t { kFlow, kReply };
 
 /// Timing half of a FIFO: who may push and pop when. Knows nothing of the payload.
 ///
-/// Each slot has one time stamp: when its token becomes visible while it holds one, when it may be filled again while it holds none. `ready_` and `room_` keep
-/// what either end asks for, so that asking is one load; a peer is marked only when its answer changes (empty to not empty, full to not full).
+/// Each slot has one time stamp: when its token becomes visible while it holds one, when it may be filled
+/// again while it holds none. `ready_` and `room_` keep what either end asks for, so that asking is one load;
+/// a peer is marked only when its answer changes (empty to not empty, full to not full).
 class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
  public:
   FifoBase(const char* name, const LinkSpec& spec, std::size_t token_bytes);
 
   // Producer's side.
-  /// Earliest tick at which the next push may happen; kNever while every slot holds a token that was not popped.
+  /// Earliest tick at which the next push may happen; kNever while every slot holds a token that was not
+  /// popped.
   [[nodiscard]] Tick room() const { return room_; }
-  /// Slots that the producer may fill at `now` (ignores the width). For choosers, inside `act`: no mark follows when it changes.
+  /// Slots that the producer may fill at `now` (ignores the width). For choosers, inside `act`: no mark
+  /// follows when it changes.
   [[nodiscard]] int free_slots(Tick now) const;
 
   // Consumer's side.
@@ -57,13 +65,17 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   [[nodiscard]] Unit* producer() const { return producer_; }
   [[nodiscard]] Unit* consumer() const { return consumer_; }
   [[nodiscard]] std::string path() const { return sc_core::sc_object::name(); }
-  /// Smallest time between a push and its visibility, and between a pop and its credit: the look-ahead this link gives.
+  /// Smallest time between a push and its visibility, and between a pop and its credit: the look-ahead this
+  /// link gives.
   [[nodiscard]] Tick forward_lookahead() const { return forward_; }
   [[nodiscard]] Tick credit_lookahead() const { return credit_; }
   /// The link joins two clock domains and pays for synchronisers each way.
   [[nodiscard]] bool crosses_clocks() const;
-  /// A steady flow of `width` tokens a cycle fits: depth >= width * (latency + credit latency), with both ends on one clock.
-  [[nodiscard]] bool full_rate() const { return spec_.depth >= spec_.width * (spec_.latency + spec_.credit_latency); }
+  /// A steady flow of `width` tokens a cycle fits: depth >= width * (latency + credit latency), with both
+  /// ends on one clock.
+  [[nodiscard]] bool full_rate() const {
+    return spec_.depth >= spec_.width * (spec_.latency + spec_.credit_latency);
+  }
   void bind_producer(Unit& unit);
   void bind_consumer(Unit& unit);
   /// Sets bit `bit` of `word` whenever a token arrives while none is held.
@@ -113,10 +125,14 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   [[nodiscard]] std::byte* tokens() const { return storage_.get() + stamp_bytes(depth_); }
 
  private:
-  [[nodiscard]] std::uint32_t wrap(std::uint32_t i) const { return i + 1 == static_cast<std::uint32_t>(depth_) ? 0 : i + 1; }
+  [[nodiscard]] std::uint32_t wrap(std::uint32_t i) const {
+    return i + 1 == static_cast<std::uint32_t>(depth_) ? 0 : i + 1;
+  }
   [[nodiscard]] Tick* stamps() const { return reinterpret_cast<Tick*>(storage_.get()); }
   [[nodiscard]] static Tick later(Tick a, Tick b) { return a > b ? a : b; }
-  [[nodiscard]] static std::size_t stamp_bytes(int depth) { return (static_cast<std::size_t>(depth) * sizeof(Tick) + 15) / 16 * 16; }
+  [[nodiscard]] static std::size_t stamp_bytes(int depth) {
+    return (static_cast<std::size_t>(depth) * sizeof(Tick) + 15) / 16 * 16;
+  }
   [[nodiscard]] Tick crossed_push(Tick now) const;
   [[nodiscard]] Tick crossed_pop(Tick now) const;
   [[nodiscard]] Tick crossed_cycle(Tick now) const;
@@ -129,7 +145,8 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   std::unique_ptr<std::byte[]> storage_;  ///< `depth` stamps, then `depth` tokens
   std::uint32_t head_ = 0, tail_ = 0;
   int count_ = 0, depth_ = 0;
-  Tick forward_step_ = 0, credit_step_ = 0;  ///< the latencies in ticks, where both ends share a clock with equal cycles; else 0
+  /// the latencies in ticks, where both ends share a clock with equal cycles; else 0
+  Tick forward_step_ = 0, credit_step_ = 0;
   int width_ = 1;
   int burst_ = 0;  ///< pushes at tick `last_push_`
   Tick last_push_ = -1, last_pop_ = 0;
@@ -189,7 +206,8 @@ class Fifo final : public FifoBase {
 class PortBase {
  public:
   enum class Direction : std::uint8_t { kIn, kOut };
-  /// `stream` groups ports of a unit whose flows do not mix: an output's tokens come only from inputs of the same stream (0: from any).
+  /// `stream` groups ports of a unit whose flows do not mix: an output's tokens come only from inputs of the
+  /// same stream (0: from any).
   PortBase(Unit& owner, const char* name, Direction direction, LinkRole role, int stream);
   virtual ~PortBase() = default;
   PortBase(const PortBase&) = delete;

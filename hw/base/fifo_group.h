@@ -1,5 +1,5 @@
-/// Inputs of one kind, one a peer, of a unit that serves many: the links mark arrivals in a bit set, so that looking for work costs nothing for those that are
-/// empty.
+/// Inputs of one kind, one a peer, of a unit that serves many: the links mark arrivals in a bit set, so that
+/// looking for work costs nothing for those that are empty.
 #pragma once
 
 #include "hw/base/unit.h"
@@ -22,15 +22,16 @@ class FifoInGroup {
   /// Adds the next input; before elaboration. Its index is the number of those added before.
   void add(Unit& owner, const char* name, LinkRole role = LinkRole::kFlow, int stream = 0) {
     const std::size_t i = ports_.size();
-    QUADRILLE_CHECK(i < 64 * marks_.size(), "{} has more than {} inputs of a kind", owner.name(), 64 * marks_.size());
+    QUADRILLE_CHECK(i < 64 * marks_.size(), "{} has more than {} inputs of a kind", owner.name(),
+                    64 * marks_.size());
     ports_.push_back(std::make_unique<FifoIn<T>>(owner, name, role, stream));
     ports_.back()->mark_arrivals(marks_[i / 64], static_cast<int>(i % 64));
   }
   [[nodiscard]] std::size_t size() const { return ports_.size(); }
   [[nodiscard]] FifoIn<T>& operator[](std::size_t i) const { return *ports_[i]; }
 
-  /// The earliest of actions that need `own` and any one input; the first input wins ties. Never, for want of the first input, while none holds a
-  /// token; never, for want of nothing, of an empty group.
+  /// The earliest of actions that need `own` and any one input; the first input wins ties. Never, for want of
+  /// the first input, while none holds a token; never, for want of nothing, of an empty group.
   [[nodiscard]] Wake earliest(const Wake& own = Wake()) const {
     if (ports_.empty()) return Wake(kNever);
     Wake first = Wake::never(*ports_[0]);
@@ -40,7 +41,8 @@ class FifoInGroup {
     });
     return first;
   }
-  /// Calls `visit(index, input)` for the inputs that hold a token, visible or on its way, in order from `start` on and around; until it returns true.
+  /// Calls `visit(index, input)` for the inputs that hold a token, visible or on its way, in order from
+  /// `start` on and around; until it returns true.
   template <class Visit>
   bool visit_holding(std::size_t start, Visit&& visit) const {
     return visit_range(start, ports_.size(), visit) || visit_range(0, start, visit);
@@ -74,7 +76,8 @@ class FifoInGroup {
   }
 
   std::vector<std::unique_ptr<FifoIn<T>>> ports_;
-  /// A bit an input: set when it gets a first token, cleared when it is found empty. Links point at them; the widest machine has 194 clients of an L2 slice.
+  /// A bit an input: set when it gets a first token, cleared when it is found empty. Links point at them; the
+  /// widest machine has 194 clients of an L2 slice.
   mutable std::array<std::uint64_t, 4> marks_{};
 };
 

@@ -13,7 +13,8 @@ void NativeDriver::prepare() {
     options.spawn_method();
     options.set_sensitivity(events_.back().get());
     options.dont_initialize();
-    sc_core::sc_spawn([this, i] { guard([this, i] { step(i); }); }, fmt::format("unit_{}", i).c_str(), &options);
+    sc_core::sc_spawn([this, i] { guard([this, i] { step(i); }); }, fmt::format("unit_{}", i).c_str(),
+                      &options);
   }
   wake_touched();
 }
@@ -33,7 +34,8 @@ void NativeDriver::wake_touched() {
       const Tick at = units_[i]->wake().at();
       events_[i]->cancel();
       if (at > limits_.max_time) continue;
-      events_[i]->notify(sc_core::sc_time::from_value(static_cast<sc_dt::uint64>(at > now() ? at - now() : 0)));
+      events_[i]->notify(
+          sc_core::sc_time::from_value(static_cast<sc_dt::uint64>(at > now() ? at - now() : 0)));
     }
     touched_[w] = 0;
   }

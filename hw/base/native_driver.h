@@ -1,4 +1,5 @@
-/// The plain SystemC driver: one SC_METHOD and one event a unit, SystemC's own scheduler. Slower than the dispatcher, same cycles.
+/// The plain SystemC driver: one SC_METHOD and one event a unit, SystemC's own scheduler. Slower than the
+/// dispatcher, same cycles.
 #pragma once
 
 #include "hw/base/driver.h"

@@ -37,7 +37,8 @@ std::vector<std::string_view> Param<T>::words() const {
 template <class T>
 void Param<T>::set(T value) {
   if constexpr (!std::is_same_v<T, bool>) {
-    if (!(value >= range_.min && value <= range_.max)) throw user_error("{} is out of range; legal: {}", value, legal_text());
+    if (!(value >= range_.min && value <= range_.max))
+      throw user_error("{} is out of range; legal: {}", value, legal_text());
   }
   value_ = value;
 }
@@ -51,7 +52,8 @@ void Param<T>::parse(std::string_view text) {
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size()) {
-      throw user_error("'{}' is not {}; legal: {}", text, std::is_same_v<T, double> ? "a number" : "a whole number", legal_text());
+      throw user_error("'{}' is not {}; legal: {}", text,
+                       std::is_same_v<T, double> ? "a number" : "a whole number", legal_text());
     }
     set(value);
   }

@@ -1,4 +1,5 @@
-/// Parameters of units. One line declares name, default, unit, range and reason; the loader, `--set` and `quadrille describe` walk the group.
+/// Parameters of units. One line declares name, default, unit, range and reason; the loader, `--set` and
+/// `quadrille describe` walk the group.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,8 @@ struct ParamRange {
   T max = std::numeric_limits<T>::max();
 };
 
-/// What more of a parameter does to the cycles of a frame: `quadrille experiment parameters` holds each to it.
+/// What more of a parameter does to the cycles of a frame: `quadrille experiment parameters` holds each to
+/// it.
 enum class Effect : std::uint8_t {
   kFaster,    ///< more of it is never slower
   kSlower,    ///< more of it is never faster
@@ -53,7 +55,8 @@ class ParamBase {
   /// Value and default as TOML and JSON write them: words in quotes.
   [[nodiscard]] virtual std::string literal() const { return value_text(); }
   [[nodiscard]] virtual std::string default_literal() const { return default_text(); }
-  /// Reads a value. Throws `UserError` (without file or key, which the caller adds) when it is not a legal value.
+  /// Reads a value. Throws `UserError` (without file or key, which the caller adds) when it is not a legal
+  /// value.
   virtual void parse(std::string_view text) = 0;
 
  private:
@@ -61,7 +64,8 @@ class ParamBase {
   Effect effect_;
 };
 
-/// The parameters of one unit. Not copyable: a unit keeps a reference to the group that the configuration owns.
+/// The parameters of one unit. Not copyable: a unit keeps a reference to the group that the configuration
+/// owns.
 class ParamGroup {
  public:
   ParamGroup() = default;
@@ -77,11 +81,12 @@ class ParamGroup {
 
 template <class T>
 class Param final : public ParamBase {
-  static_assert(std::is_same_v<T, int> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, double> || std::is_same_v<T, bool>);
+  static_assert(std::is_same_v<T, int> || std::is_same_v<T, std::int64_t> || std::is_same_v<T, double> ||
+                std::is_same_v<T, bool>);
 
  public:
-  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, ParamRange<T> range, std::string_view reason,
-        Effect effect = Effect::kFaster)
+  Param(ParamGroup& group, std::string_view name, T value, std::string_view unit, ParamRange<T> range,
+        std::string_view reason, Effect effect = Effect::kFaster)
       : ParamBase(name, unit, reason, effect), value_(value), default_(value), range_(range) {
     group.add(*this);
   }
@@ -90,7 +95,9 @@ class Param final : public ParamBase {
       : ParamBase(name, unit, reason, effect), value_(value), default_(value) {
     group.add(*this);
   }
-  operator T() const { return value_; }  // NOLINT(google-explicit-constructor): a parameter reads as its value
+  operator T() const {
+    return value_;
+  }  // NOLINT(google-explicit-constructor): a parameter reads as its value
   [[nodiscard]] T value() const { return value_; }
   [[nodiscard]] const ParamRange<T>& range() const { return range_; }
   void set(T value);
@@ -105,17 +112,21 @@ class Param final : public ParamBase {
   ParamRange<T> range_;
 };
 
-/// A parameter that is one word of a list: which policy, which kind. `E` is an enumeration whose values count from 0 in the order of the words.
+/// A parameter that is one word of a list: which policy, which kind. `E` is an enumeration whose values count
+/// from 0 in the order of the words.
 template <class E>
 class Choice final : public ParamBase {
   static_assert(std::is_enum_v<E>);
 
  public:
-  Choice(ParamGroup& group, std::string_view name, E value, std::initializer_list<std::string_view> words, std::string_view reason)
+  Choice(ParamGroup& group, std::string_view name, E value, std::initializer_list<std::string_view> words,
+         std::string_view reason)
       : ParamBase(name, "", reason, Effect::kTradeOff), value_(value), default_(value), words_(words) {
     group.add(*this);
   }
-  operator E() const { return value_; }  // NOLINT(google-explicit-constructor): a parameter reads as its value
+  operator E() const {
+    return value_;
+  }  // NOLINT(google-explicit-constructor): a parameter reads as its value
   [[nodiscard]] E value() const { return value_; }
   void set(E value) { value_ = value; }
   [[nodiscard]] std::string value_text() const override { return std::string(word(value_)); }

@@ -1,5 +1,6 @@
-/// The queue inside a unit: what waits between two of its actions, in order. A ring that grows when it is full and keeps its memory, so that a steady flow
-/// allocates nothing and an unused queue costs nothing (a machine of many units has tens of thousands of them).
+/// The queue inside a unit: what waits between two of its actions, in order. A ring that grows when it is
+/// full and keeps its memory, so that a steady flow allocates nothing and an unused queue costs nothing (a
+/// machine of many units has tens of thousands of them).
 #pragma once
 
 #include <cstddef>

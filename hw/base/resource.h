@@ -1,12 +1,15 @@
-/// What a unit needs to do its work, and how much of it a frame took: the base of its use, of the frame's speed of light and of what limits it.
+/// What a unit needs to do its work, and how much of it a frame took: the base of its use, of the frame's
+/// speed of light and of what limits it.
 ///
-///   rate     work that can be done at so much a cycle: cycles that the counted work takes at that rate. No frame is shorter than that.
-///   loss     cycles in which a rate's resource could not work (a data bus that waits for a row). They are part of what limits the frame, but no work: another order
+///   rate     work that can be done at so much a cycle: cycles that the counted work takes at that rate. No
+///   frame is shorter than that. loss     cycles in which a rate's resource could not work (a data bus that
+///   waits for a row). They are part of what limits the frame, but no work: another order
 ///            of the same work loses others.
 ///   places   a number of things that can be under way: cycles in which all places were taken.
 /// Rates and losses of one `serial` group follow each other on the same resource, so their cycles add up.
 ///
-/// Both are sampled over the frame, so that a frame of unlike phases can be told from an even one: slice i ends at the start of the frame plus (i + 1) slice lengths.
+/// Both are sampled over the frame, so that a frame of unlike phases can be told from an even one: slice i
+/// ends at the start of the frame plus (i + 1) slice lengths.
 #pragma once
 
 #include "hw/base/clock.h"
@@ -22,9 +25,10 @@ struct Resource {
   std::string_view name;
   Kind kind = Kind::kRate;
   std::string_view serial = {};
-  std::function<double(Tick)> cycles = {};  ///< kRate, kLoss: up to a tick that is not before the latest action, of the unit's clock
-  double taken = 0;                         ///< kPlaces: cycles in which it was full, so far
-  std::vector<double> at_end_of = {};       ///< by slice: what it had come to
+  /// kRate, kLoss: up to a tick that is not before the latest action, of the unit's clock
+  std::function<double(Tick)> cycles = {};
+  double taken = 0;                    ///< kPlaces: cycles in which it was full, so far
+  std::vector<double> at_end_of = {};  ///< by slice: what it had come to
   [[nodiscard]] double total(Tick at) const { return kind == Kind::kPlaces ? taken : cycles(at); }
 };
 
@@ -37,10 +41,12 @@ class Resources {
 
   /// Work up to a tick, in cycles of the unit's clock at its peak rate.
   void add_rate(std::string_view name, std::function<double(Tick)> cycles, std::string_view serial = {}) {
-    all_.push_back({.name = name, .kind = Resource::Kind::kRate, .serial = serial, .cycles = std::move(cycles)});
+    all_.push_back(
+        {.name = name, .kind = Resource::Kind::kRate, .serial = serial, .cycles = std::move(cycles)});
   }
   void add_loss(std::string_view name, std::function<double(Tick)> cycles, std::string_view serial) {
-    all_.push_back({.name = name, .kind = Resource::Kind::kLoss, .serial = serial, .cycles = std::move(cycles)});
+    all_.push_back(
+        {.name = name, .kind = Resource::Kind::kLoss, .serial = serial, .cycles = std::move(cycles)});
   }
   /// Are all places taken now?
   void add_places(std::string_view name, std::function<bool()> full) {
@@ -53,7 +59,8 @@ class Resources {
   /// An action follows at `now`; nothing has changed since `since`. Called before every action of a unit.
   void note(Tick now, Tick since, Tick period) {
     for (const Place& place : places_)
-      if (place.full()) all_[place.of].taken += static_cast<double>(now - since) / static_cast<double>(period);
+      if (place.full())
+        all_[place.of].taken += static_cast<double>(now - since) / static_cast<double>(period);
     if (now >= next_slice_) end_slices(now);
   }
   /// The slices up to `end`, of `slice` each, which is at least `slice()` and a power of two times it.

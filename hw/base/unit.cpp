@@ -7,7 +7,8 @@
 
 namespace quadrille::hw {
 
-Unit::Unit(sc_core::sc_module_name name, Kind kind, const Clock& clock) : sc_core::sc_module(name), clock_(clock), kind_(kind) {}
+Unit::Unit(sc_core::sc_module_name name, Kind kind, const Clock& clock)
+    : sc_core::sc_module(name), clock_(clock), kind_(kind) {}
 
 void Unit::attach() {
   for (PortBase* port : ports_) port->attach();
@@ -26,11 +27,14 @@ std::int64_t Unit::quiet_span(Tick from, Tick to) const {
 
 void Unit::charge_wait(Tick until, const PortBase* cause) {
   const std::int64_t all = span(accounted_, until);
-  const std::int64_t quiet = quiet_ != nullptr && quiet_->any_after(accounted_) ? quiet_span(accounted_, until) : 0;
+  const std::int64_t quiet =
+      quiet_ != nullptr && quiet_->any_after(accounted_) ? quiet_span(accounted_, until) : 0;
   idle_ += quiet;
   const std::int64_t waited = all - quiet;
   accounted_ = until;
-  std::int64_t& of = cause == nullptr ? waiting_ : cause->direction() == PortBase::Direction::kIn ? starved_ : blocked_;
+  std::int64_t& of = cause == nullptr                                 ? waiting_
+                     : cause->direction() == PortBase::Direction::kIn ? starved_
+                                                                      : blocked_;
   of += waited;
   if (cause != nullptr) cause->add_wait(waited);
   note_charge(of, cause);
@@ -45,10 +49,12 @@ std::int64_t taken_from(std::int64_t& charge, std::int64_t excess) {
 }
 }  // namespace
 
-// Only a memory channel has so much to do behind the frame's end: it writes back, so what it is charged is its own (docs/deviations.md#D87).
+// Only a memory channel has so much to do behind the frame's end: it writes back, so what it is charged is
+// its own (docs/deviations.md#D87).
 void Unit::take_back_rest(Tick end) {
   const std::int64_t left = taken_from(busy_, taken_from(waiting_, span(end, accounted_)));
-  QUADRILLE_CHECK(left == 0, "{}: {} cycles were charged behind the frame's end to what it waited for", name(), left);
+  QUADRILLE_CHECK(left == 0, "{}: {} cycles were charged behind the frame's end to what it waited for",
+                  name(), left);
   accounted_ = end;
 }
 
@@ -66,7 +72,8 @@ void Unit::take_back_from(Tick end) {
 
 void Unit::close(Tick end, Tick reachable_until) {
   const Tick last_edge = clock_.align(end);
-  take_back_from(last_edge);  // occupations may outlive the frame, and tokens that nobody waits for arrive behind it
+  // occupations may outlive the frame, and tokens that nobody waits for arrive behind it
+  take_back_from(last_edge);
   const Tick reach = std::clamp(clock_.align(reachable_until), accounted_, last_edge);
   if (reach > accounted_) {
     const Wake wake = next();
@@ -76,17 +83,18 @@ void Unit::close(Tick end, Tick reachable_until) {
   accounted_ = last_edge;
   total_ = clock_.edges_before(end);
   finish_stats(end);
-  const std::int64_t busy = busy_cycles(), waiting = waiting_cycles(), starved = starved_cycles(), blocked = blocked_cycles(),
-                     idle = idle_cycles();
+  const std::int64_t busy = busy_cycles(), waiting = waiting_cycles(), starved = starved_cycles(),
+                     blocked = blocked_cycles(), idle = idle_cycles();
   QUADRILLE_CHECK(busy + waiting + starved + blocked + idle == total_,
-                  "{}: busy {} + waiting {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy, waiting, starved, blocked,
-                  idle, total_);
+                  "{}: busy {} + waiting {} + starved {} + blocked {} + idle {} != cycles {}", name(), busy,
+                  waiting, starved, blocked, idle, total_);
 }
 
 namespace {
 
-/// For each unit the latest tick at which a token moved on any flow that leads to it. Links are followed downstream in order of their latest move, the latest
-/// first, each only to where no earlier one came: every flow through a unit is walked once.
+/// For each unit the latest tick at which a token moved on any flow that leads to it. Links are followed
+/// downstream in order of their latest move, the latest first, each only to where no earlier one came: every
+/// flow through a unit is walked once.
 class FlowActivity {
  public:
   explicit FlowActivity(const std::vector<Unit*>& units) {
@@ -119,13 +127,16 @@ class FlowActivity {
       for (const PortBase* output : unit.ports()) {
         if (output->direction() != PortBase::Direction::kOut) continue;
         if (output->stream() != 0 && input.stream() != 0 && output->stream() != input.stream()) continue;
-        if (const auto next = input_of_.find(&output->fifo()); next != input_of_.end()) open.push_back(next->second);
+        if (const auto next = input_of_.find(&output->fifo()); next != input_of_.end())
+          open.push_back(next->second);
       }
     }
   }
 
-  std::unordered_map<const FifoBase*, const PortBase*> input_of_;  ///< inputs that carry a flow, by their link
-  std::set<std::pair<const Unit*, int>> entered_;                  ///< units, and the stream by which they were entered
+  /// inputs that carry a flow, by their link
+  std::unordered_map<const FifoBase*, const PortBase*> input_of_;
+  /// units, and the stream by which they were entered
+  std::set<std::pair<const Unit*, int>> entered_;
   std::unordered_map<const Unit*, Tick> latest_;
 };
 

@@ -1,7 +1,8 @@
 /// A hardware unit: an `sc_module` that answers when it could act next, and acts.
 ///
-/// `next()` gives the earliest tick at which some action is possible, and which port was satisfied last; `act(now)` consumes, computes through `models/` and
-/// produces. Units never call each other: a push or a pop marks the peer, and the driver asks it again. The base class charges every cycle once:
+/// `next()` gives the earliest tick at which some action is possible, and which port was satisfied last;
+/// `act(now)` consumes, computes through `models/` and produces. Units never call each other: a push or a pop
+/// marks the peer, and the driver asks it again. The base class charges every cycle once:
 ///   busy     an initiation slot is in use (`occupy`)
 ///   waiting  for something of its own that is under way: its latency, or a timer
 ///   starved  waiting for an input          blocked  waiting for an output
@@ -19,7 +20,8 @@
 
 namespace quadrille::hw {
 
-/// The answer of `next()`: the earliest tick of an action and what it had to wait for. Build it from the unit's own readiness, then inputs, then outputs.
+/// The answer of `next()`: the earliest tick of an action and what it had to wait for. Build it from the
+/// unit's own readiness, then inputs, then outputs.
 class Wake {
  public:
   /// An action that only needs the unit's own resource, free at `own`.
@@ -39,7 +41,9 @@ class Wake {
     return constrain(port.room(), port, true);
   }
   /// Waits until `t` for something that will arrive through, or be freed by, `port`.
-  Wake& until(Tick t, const PortBase& port) { return constrain(t, port, port.direction() == PortBase::Direction::kOut); }
+  Wake& until(Tick t, const PortBase& port) {
+    return constrain(t, port, port.direction() == PortBase::Direction::kOut);
+  }
 
   /// The same action, but not before `t`: the unit's own state allows none earlier.
   [[nodiscard]] Wake not_before(Tick t) const {
@@ -64,7 +68,8 @@ class Wake {
   }
 
  private:
-  // Plain selections, here and above: which constraint comes last is the least predictable branch of a simulation.
+  // Plain selections, here and above: which constraint comes last is the least predictable branch of a
+  // simulation.
   Wake& constrain(Tick t, const PortBase& port, bool wins_ties) {
     const bool last = t > wait_ - static_cast<Tick>(wins_ties);
     wait_ = last ? t : wait_;
@@ -75,7 +80,8 @@ class Wake {
   const PortBase* cause_ = nullptr;
 };
 
-/// Intervals in which no draw was in flight, recorded by the command processor and shared by all units of a machine.
+/// Intervals in which no draw was in flight, recorded by the command processor and shared by all units of a
+/// machine.
 class QuietLog {
  public:
   struct Interval {
@@ -93,17 +99,20 @@ class QuietLog {
 
 class Unit : public sc_core::sc_module {
  public:
-  /// Fixed-order: what it does next depends only on its own state and on token contents, so it may be simulated ahead until a FIFO stops it.
-  /// Chooser: it sees which input is ready first or whether there is room, so it waits until nothing earlier can still happen.
+  /// Fixed-order: what it does next depends only on its own state and on token contents, so it may be
+  /// simulated ahead until a FIFO stops it. Chooser: it sees which input is ready first or whether there is
+  /// room, so it waits until nothing earlier can still happen.
   enum class Kind : std::uint8_t { kFixedOrder, kChooser };
 
   Unit(sc_core::sc_module_name name, Kind kind, const Clock& clock);
 
   /// Earliest possible action; kNever while it is unknown. Pure: called as often as the driver likes.
   [[nodiscard]] virtual Wake next() const = 0;
-  /// Performs that action. `now` is an edge of the unit's clock: `next().at()`, or the latest action's tick if that is later.
+  /// Performs that action. `now` is an edge of the unit's clock: `next().at()`, or the latest action's tick
+  /// if that is later.
   virtual void act(Tick now) = 0;
-  /// May a window let this chooser run ahead of what can still reach it? Not one that picks the best of all it holds: each late arrival would be a wrong choice.
+  /// May a window let this chooser run ahead of what can still reach it? Not one that picks the best of all
+  /// it holds: each late arrival would be a wrong choice.
   [[nodiscard]] virtual bool may_run_ahead() const { return true; }
   /// One line on what the unit holds, for the deadlock report.
   [[nodiscard]] virtual std::string state_text() const { return {}; }
@@ -115,7 +124,8 @@ class Unit : public sc_core::sc_module {
   /// The frame ended at `end`: counts of time that go on up to there are brought up to date.
   virtual void finish_stats(Tick end) { (void)end; }
 
-  /// What drivers ask: `next()`, but not before the latest action, since the unit's state was another one then.
+  /// What drivers ask: `next()`, but not before the latest action, since the unit's state was another one
+  /// then.
   [[nodiscard]] Wake wake() const { return next().not_before(last_action_); }
   /// Charges the gap before the action, then acts. `wake` is what `wake()` answers now.
   void perform(const Wake& wake) {
@@ -126,7 +136,8 @@ class Unit : public sc_core::sc_module {
     ++actions_;
     act(now);
   }
-  /// Charges what is left up to `end` and closes the accounts; for `close_accounts`. After `reachable_until` no token of a draw was on its way to this unit.
+  /// Charges what is left up to `end` and closes the accounts; for `close_accounts`. After `reachable_until`
+  /// no token of a draw was on its way to this unit.
   void close(Tick end, Tick reachable_until);
 
   [[nodiscard]] Kind unit_kind() const { return kind_; }
@@ -160,7 +171,9 @@ class Unit : public sc_core::sc_module {
   /// Tick of the latest action; -1 before the first.
   [[nodiscard]] Tick last_action() const { return last_action_; }
   /// A span of this unit's accounts in cycles.
-  [[nodiscard]] std::int64_t to_cycles(std::int64_t span) const { return clock_.uniform() ? span / clock_.period() : span; }
+  [[nodiscard]] std::int64_t to_cycles(std::int64_t span) const {
+    return clock_.uniform() ? span / clock_.period() : span;
+  }
 
  protected:
   /// The unit's initiation slot is used for `cycles` from `now` on. Overlapping uses count once.
@@ -172,14 +185,16 @@ class Unit : public sc_core::sc_module {
     note_charge(busy_);
   }
   [[nodiscard]] Tick after(Tick now, std::int64_t cycles) const { return clock_.after(now, cycles); }
-  // What the unit needs for its work, named in its constructor; names are those of the parameters that set them, where one does. The initiation slot is a rate
-  // whose work is the busy cycles.
+  // What the unit needs for its work, named in its constructor; names are those of the parameters that set
+  // them, where one does. The initiation slot is a rate whose work is the busy cycles.
   void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
     resources_.add_rate(
         name, [cycles = std::move(cycles)](Tick) { return cycles(); }, serial);
   }
   /// Of work that goes on between actions: up to a tick that is not before the latest.
-  void add_rate_until(std::string_view name, std::function<double(Tick)> cycles) { resources_.add_rate(name, std::move(cycles)); }
+  void add_rate_until(std::string_view name, std::function<double(Tick)> cycles) {
+    resources_.add_rate(name, std::move(cycles));
+  }
   void add_loss(std::string_view name, std::function<double()> cycles, std::string_view serial) {
     resources_.add_loss(
         name, [cycles = std::move(cycles)](Tick) { return cycles(); }, serial);
@@ -187,11 +202,16 @@ class Unit : public sc_core::sc_module {
   void add_initiation_rate(std::string_view name) {
     add_rate(name, [this] { return static_cast<double>(busy_cycles()); });
   }
-  void add_places(std::string_view name, std::function<bool()> full) { resources_.add_places(name, std::move(full)); }
+  void add_places(std::string_view name, std::function<bool()> full) {
+    resources_.add_places(name, std::move(full));
+  }
 
  private:
-  /// Accounts are kept in spans: ticks where all cycles are equal (no division on the way), cycles elsewhere. Both arguments are edges.
-  [[nodiscard]] std::int64_t span(Tick from, Tick to) const { return clock_.uniform() ? to - from : clock_.cycles(from, to); }
+  /// Accounts are kept in spans: ticks where all cycles are equal (no division on the way), cycles elsewhere.
+  /// Both arguments are edges.
+  [[nodiscard]] std::int64_t span(Tick from, Tick to) const {
+    return clock_.uniform() ? to - from : clock_.cycles(from, to);
+  }
   void charge_gap(const Wake& wake) {
     if (wake.waited_until() > accounted_) charge_wait(wake.waited_until(), wake.cause());
     if (wake.at() > accounted_) {
@@ -201,15 +221,18 @@ class Unit : public sc_core::sc_module {
     }
   }
   void charge_wait(Tick until, const PortBase* cause);
-  /// The latest charges, up to `accounted_`: what lies behind the frame's end is taken back once that is known.
+  /// The latest charges, up to `accounted_`: what lies behind the frame's end is taken back once that is
+  /// known.
   struct Charge {
     Tick to = 0;
     std::int64_t* of = nullptr;
     const PortBase* port = nullptr;
   };
-  static constexpr std::uint32_t kLateCharges =
-      256;  ///< more than a unit has behind the frame's end, but for a memory channel with much to write back
-  void note_charge(std::int64_t& of, const PortBase* port = nullptr) { late_[charges_++ % kLateCharges] = {accounted_, &of, port}; }
+  /// more than a unit has behind the frame's end, but for a memory channel with much to write back
+  static constexpr std::uint32_t kLateCharges = 256;
+  void note_charge(std::int64_t& of, const PortBase* port = nullptr) {
+    late_[charges_++ % kLateCharges] = {accounted_, &of, port};
+  }
   void take_back_from(Tick end);
   void take_back_rest(Tick end);
   /// Span within [from, to) in which no draw was in flight.
@@ -232,8 +255,8 @@ class Unit : public sc_core::sc_module {
   std::vector<PortBase*> ports_;
 };
 
-/// Closes the accounts of all units of a machine: a unit waits until the last tick at which a token of a draw moved on any flow that leads to it, and is idle
-/// from there to `end`.
+/// Closes the accounts of all units of a machine: a unit waits until the last tick at which a token of a draw
+/// moved on any flow that leads to it, and is idle from there to `end`.
 void close_accounts(const std::vector<Unit*>& units, Tick end);
 
 }  // namespace quadrille::hw

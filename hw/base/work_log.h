@@ -1,7 +1,8 @@
 /// For which draw, and for which part of the screen, a unit counted what it counted.
 ///
-/// A unit names the draw that it works for (`StatGroup::working_for`), and what its counters grow by until it names another one is added to that draw's row. A
-/// unit without a log pays for a test. Nothing that a unit decides may depend on its log.
+/// A unit names the draw that it works for (`StatGroup::working_for`), and what its counters grow by until it
+/// names another one is added to that draw's row. A unit without a log pays for a test. Nothing that a unit
+/// decides may depend on its log.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,9 @@ struct Work {
   std::uint32_t tile = kNoTile;  ///< y * 65536 + x
   bool operator==(const Work&) const = default;
 };
-[[nodiscard]] constexpr std::uint32_t tile_at(std::uint32_t tile_x, std::uint32_t tile_y) { return tile_y << 16 | tile_x; }
+[[nodiscard]] constexpr std::uint32_t tile_at(std::uint32_t tile_x, std::uint32_t tile_y) {
+  return tile_y << 16 | tile_x;
+}
 
 /// The screen in square cells of several tiles. Only work of the draws that are on the screen has a cell.
 struct ScreenCells {
@@ -36,12 +39,16 @@ struct ScreenCells {
 
 class WorkLog {
  public:
-  /// Counts by `draws` draws and by the cells of `screen`; what belongs to none goes to a row of its own behind them.
-  WorkLog(std::uint32_t draws, const ScreenCells& screen) : draws_(draws), screen_(screen), cell_(screen.count()) {}
+  /// Counts by `draws` draws and by the cells of `screen`; what belongs to none goes to a row of its own
+  /// behind them.
+  WorkLog(std::uint32_t draws, const ScreenCells& screen)
+      : draws_(draws), screen_(screen), cell_(screen.count()) {}
 
   /// Keeps the growth of `count` by draw, from now on. Returns its column. Before the first turn.
   std::size_t by_draw(const std::uint64_t& count) { return draw_rows_.add(count, draws_ + 1); }
-  std::size_t by_draw(const std::int64_t& count) { return by_draw(reinterpret_cast<const std::uint64_t&>(count)); }
+  std::size_t by_draw(const std::int64_t& count) {
+    return by_draw(reinterpret_cast<const std::uint64_t&>(count));
+  }
   /// The same by cell.
   std::size_t by_cell(const std::uint64_t& count) { return cell_rows_.add(count, screen_.count() + 1); }
 
@@ -52,8 +59,12 @@ class WorkLog {
   void settle();
 
   /// `draw` or `cell`: their number for what belongs to none.
-  [[nodiscard]] std::uint64_t of_draw(std::size_t column, std::uint32_t draw) const { return draw_rows_.at(draw, column); }
-  [[nodiscard]] std::uint64_t of_cell(std::size_t column, std::uint32_t cell) const { return cell_rows_.at(cell, column); }
+  [[nodiscard]] std::uint64_t of_draw(std::size_t column, std::uint32_t draw) const {
+    return draw_rows_.at(draw, column);
+  }
+  [[nodiscard]] std::uint64_t of_cell(std::size_t column, std::uint32_t cell) const {
+    return cell_rows_.at(cell, column);
+  }
 
  private:
   /// A row of sums for each draw or cell, a column for each count.
@@ -71,7 +82,9 @@ class WorkLog {
         c.noted = *c.count;
       }
     }
-    [[nodiscard]] std::uint64_t at(std::size_t row, std::size_t column) const { return sums_[row * counts_.size() + column]; }
+    [[nodiscard]] std::uint64_t at(std::size_t row, std::size_t column) const {
+      return sums_[row * counts_.size() + column];
+    }
 
    private:
     struct Count {

@@ -6,7 +6,8 @@
 
 namespace quadrille::hw {
 
-CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const UnitContext& context, const Params& params, QuietLog& quiet)
+CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const UnitContext& context,
+                                   const Params& params, QuietLog& quiet)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -14,12 +15,15 @@ CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const UnitConte
       retired_by_(static_cast<std::size_t>(context.machine.partitions)) {
   add_initiation_rate("draw_clk");
   add_places("draws_in_flight", [this] { return step_ == Step::kDraw && all_in_flight(); });
-  for (int i = 0; i < context.machine.partitions; ++i) { retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply); }
+  for (int i = 0; i < context.machine.partitions; ++i) {
+    retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply);
+  }
   if (frame_.passes.empty()) step_ = Step::kDone;
 }
 
 std::string CommandProcessor::state_text() const {
-  return fmt::format("pass {} of {}, {} draws issued, {} retired", pass_, frame_.passes.size(), draw_, retired_);
+  return fmt::format("pass {} of {}, {} draws issued, {} retired", pass_, frame_.passes.size(), draw_,
+                     retired_);
 }
 
 Wake CommandProcessor::retire_wake() const { return retire_in.earliest(); }
@@ -113,6 +117,8 @@ void CommandProcessor::audit(Audit& audit) const {
   audit.left(laws::kDraws, stats_.draws.value() * retire_in.size());
 }
 
-std::vector<Facet> CommandProcessor::row() const { return {count("draws", stats_.draws), count("passes", stats_.passes)}; }
+std::vector<Facet> CommandProcessor::row() const {
+  return {count("draws", stats_.draws), count("passes", stats_.passes)};
+}
 
 }  // namespace quadrille::hw

@@ -1,11 +1,13 @@
-/// Command processor: walks the frame's passes and draws, keeps a bounded number of draws in flight, and sets barriers between passes.
+/// Command processor: walks the frame's passes and draws, keeps a bounded number of draws in flight, and sets
+/// barriers between passes.
 ///
 /// In    retire_in[p]  draw retired in partition p, or pass flushed there
 ///       scan_done_in  the image was read
 /// Out   draw_out      draws and pass boundaries, in order
 ///       scan_out      show a pass's target
-/// Time  `draw_clk` cycles a draw; waits while `draws_in_flight` draws are not retired everywhere; a pass ends when all partitions have flushed
-/// Not modelled: fetching and parsing the command buffer itself (docs/deviations.md#D1)
+/// Time  `draw_clk` cycles a draw; waits while `draws_in_flight` draws are not retired everywhere; a pass
+/// ends when all partitions have flushed Not modelled: fetching and parsing the command buffer itself
+/// (docs/deviations.md#D1)
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -19,11 +21,17 @@ namespace quadrille::hw {
 class CommandProcessor final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> draw_clk{*this,          "draw_clk",   16,
-                        "clk/draw",     {1, 1 << 20}, "Cycles to issue a draw's state and launch it. [G: a few register writes a draw]",
+    Param<int> draw_clk{*this,
+                        "draw_clk",
+                        16,
+                        "clk/draw",
+                        {1, 1 << 20},
+                        "Cycles to issue a draw's state and launch it. [G: a few register writes a draw]",
                         Effect::kSlower};
-    Param<int> draws_in_flight{*this,  "draws_in_flight", 32,
-                               "draw", {1, 65536},        "Draws whose state is kept at a time. [G: context slots of the front end]"};
+    Param<int> draws_in_flight{
+        *this,      "draws_in_flight",
+        32,         "draw",
+        {1, 65536}, "Draws whose state is kept at a time. [G: context slots of the front end]"};
   };
   struct Stats : StatGroup {
     Counter draws{*this, "draws", "draw", "Draws issued"};
@@ -31,7 +39,8 @@ class CommandProcessor final : public Unit {
     Counter passes{*this, "passes", "pass", "Passes begun"};
   };
 
-  CommandProcessor(sc_core::sc_module_name name, const UnitContext& context, const Params& params, QuietLog& quiet);
+  CommandProcessor(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                   QuietLog& quiet);
 
   FifoInGroup<RetireToken> retire_in;
   FifoIn<ReleaseToken> scan_done_in{*this, "scan_done_in", LinkRole::kReply};
@@ -54,10 +63,21 @@ class CommandProcessor final : public Unit {
   [[nodiscard]] const std::vector<Tick>& retired_at() const { return retired_at_; }
 
  private:
-  enum class Step : std::uint8_t { kPassBegin, kDraw, kDrawEnd, kPassEnd, kWaitFlush, kScan, kWaitScan, kDone };
+  enum class Step : std::uint8_t {
+    kPassBegin,
+    kDraw,
+    kDrawEnd,
+    kPassEnd,
+    kWaitFlush,
+    kScan,
+    kWaitScan,
+    kDone
+  };
   [[nodiscard]] Wake issue_wake() const;
   /// As many draws are under way as may be.
-  [[nodiscard]] bool all_in_flight() const { return draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value()); }
+  [[nodiscard]] bool all_in_flight() const {
+    return draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value());
+  }
   [[nodiscard]] Wake retire_wake() const;
   void take_retirements(Tick now);
   void issue(Tick now);

@@ -14,11 +14,14 @@ ScanOut::ScanOut(sc_core::sc_module_name name, const UnitContext& context, const
   add_places("lines_in_flight", [this] { return in_flight_ >= params_.lines_in_flight; });
 }
 
-std::string ScanOut::state_text() const { return fmt::format("{} lines left, {} under way", end_line_ - next_line_, in_flight_); }
+std::string ScanOut::state_text() const {
+  return fmt::format("{} lines left, {} under way", end_line_ - next_line_, in_flight_);
+}
 
 Wake ScanOut::ask_wake() const {
   if (!scanning_) return Wake(free_).input(scan_in);
-  if (next_line_ < end_line_) return in_flight_ < params_.lines_in_flight ? Wake(free_) : Wake::never(port_.response_in[0]);
+  if (next_line_ < end_line_)
+    return in_flight_ < params_.lines_in_flight ? Wake(free_) : Wake::never(port_.response_in[0]);
   return in_flight_ == 0 ? Wake(free_).output(done_out) : Wake::never(port_.response_in[0]);
 }
 
@@ -37,7 +40,8 @@ void ScanOut::act(Tick now) {
       end_line_ = next_line_ + static_cast<std::uint32_t>(surface.bytes() / models::kLineBytes);
       scanning_ = true;
     } else if (next_line_ < end_line_) {
-      device_.check_readable(std::uint64_t{next_line_} * models::kLineBytes, models::kLineBytes, models::DeviceMemory::kClean);
+      device_.check_readable(std::uint64_t{next_line_} * models::kLineBytes, models::kLineBytes,
+                             models::DeviceMemory::kClean);
       port_.read(next_line_++, 0xf, 0);
       ++in_flight_;
       ++stats_.lines;

@@ -1,4 +1,5 @@
-/// Scan-out: reads the finished colour surface through the L2 cache, as a display would, after the colour caches were flushed.
+/// Scan-out: reads the finished colour surface through the L2 cache, as a display would, after the colour
+/// caches were flushed.
 ///
 /// In    scan_in    show the target of this pass       Out   done_out  all of it was read
 /// Mem   every line of the surface, in order
@@ -15,7 +16,8 @@ namespace quadrille::hw {
 class ScanOut final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> lines_in_flight{*this, "lines_in_flight", 128, "line", {1, 65536}, "Lines under way. [G: bandwidth times latency]"};
+    Param<int> lines_in_flight{*this,  "lines_in_flight", 128,
+                               "line", {1, 65536},        "Lines under way. [G: bandwidth times latency]"};
   };
   struct Stats : StatGroup {
     Counter lines{*this, "lines", "line", "Lines of 128 bytes read"};

@@ -1,8 +1,9 @@
-/// What the machine executes: passes and draws with all their state resolved to addresses, programs and constants. Immutable while it runs: texels that come
-/// when they are first sampled (`TextureState::fill`) come before anyone can have read them.
+/// What the machine executes: passes and draws with all their state resolved to addresses, programs and
+/// constants. Immutable while it runs: texels that come when they are first sampled (`TextureState::fill`)
+/// come before anyone can have read them.
 ///
-/// The driver (pipeline/) makes it from a command stream before the machine is elaborated. Tokens name a draw by its index here, so state is versioned by
-/// draw and no unit has to be told of a state change.
+/// The driver (pipeline/) makes it from a command stream before the machine is elaborated. Tokens name a draw
+/// by its index here, so state is versioned by draw and no unit has to be told of a state change.
 #pragma once
 
 #include "models/geometry/assembly.h"
@@ -23,13 +24,15 @@
 
 namespace quadrille::hw {
 
-/// One vertex attribute the vertex program reads: where it comes from and which rows of the warp's inputs it feeds.
+/// One vertex attribute the vertex program reads: where it comes from and which rows of the warp's inputs it
+/// feeds.
 struct AttributeFetch {
   std::uint64_t address = 0;  ///< of vertex (or instance) 0
   std::uint32_t stride = 0;   ///< bytes
   models::AttributeFormat format = models::AttributeFormat::kR32G32B32Float;
   bool per_instance = false;
-  std::array<int, 4> input_row{-1, -1, -1, -1};  ///< row of the warp's inputs for each component; -1: not read
+  /// row of the warp's inputs for each component; -1: not read
+  std::array<int, 4> input_row{-1, -1, -1, -1};
 };
 
 struct TextureState {

@@ -1,5 +1,5 @@
-/// Bounded stores that hold the bulk behind tokens. A slot belongs to the unit that holds its token; the owner named here hands slots out and gets them back
-/// by release tokens, so that no unit looks into another.
+/// Bounded stores that hold the bulk behind tokens. A slot belongs to the unit that holds its token; the
+/// owner named here hands slots out and gets them back by release tokens, so that no unit looks into another.
 #pragma once
 
 #include "hw/frame/frame.h"
@@ -9,7 +9,8 @@
 
 namespace quadrille::hw {
 
-/// A vertex batch: inputs written by vertex fetch, outputs by a core, read by primitive assembly, clipper and set-up. Owner: vertex fetch.
+/// A vertex batch: inputs written by vertex fetch, outputs by a core, read by primitive assembly, clipper and
+/// set-up. Owner: vertex fetch.
 struct BatchSlot {
   std::uint32_t draw = 0;
   int lanes = 0;
@@ -68,7 +69,9 @@ class Store {
 class TriangleStore {
  public:
   explicit TriangleStore(std::size_t slots) : slots_(slots) {}
-  [[nodiscard]] TriangleSlot& operator[](std::uint64_t sequence) { return slots_[static_cast<std::size_t>(sequence % slots_.size())]; }
+  [[nodiscard]] TriangleSlot& operator[](std::uint64_t sequence) {
+    return slots_[static_cast<std::size_t>(sequence % slots_.size())];
+  }
   [[nodiscard]] const TriangleSlot& operator[](std::uint64_t sequence) const {
     return slots_[static_cast<std::size_t>(sequence % slots_.size())];
   }

@@ -1,9 +1,12 @@
-/// Tokens: what travels through the FIFOs. Small and trivially copyable; bulk stays in a store (stores.h) and travels as a slot number.
+/// Tokens: what travels through the FIFOs. Small and trivially copyable; bulk stays in a store (stores.h) and
+/// travels as a slot number.
 ///
-/// Geometry and raster tokens carry in-band markers, so that "everything before this point has passed" needs no other channel:
+/// Geometry and raster tokens carry in-band markers, so that "everything before this point has passed" needs
+/// no other channel:
 ///   kDrawEnd   the last token of a draw            kPassEnd  the last token of a pass: flush
 ///   kBatchEnd  the last triangle of a vertex batch (its slot may be reused)
-///   kSync      all tiles of the triangles before `sequence` have passed (their slots may be reused once retired)
+///   kSync      all tiles of the triangles before `sequence` have passed (their slots may be reused once
+///   retired)
 #pragma once
 
 #include "hw/base/work_log.h"
@@ -65,7 +68,8 @@ struct ClippedToken {
   std::uint32_t piece = 0;  ///< slot in the ring of clipped pieces
 };
 
-/// Set-up -> coarse rasteriser. `triangle` is a sequence number; its slot in the triangle store is the remainder by the store's size.
+/// Set-up -> coarse rasteriser. `triangle` is a sequence number; its slot in the triangle store is the
+/// remainder by the store's size.
 struct TriangleToken {
   TokenKind kind = TokenKind::kWork;
   std::uint32_t index = 0;  ///< draw or pass
@@ -91,7 +95,8 @@ struct CoverageToken {
   std::uint64_t coverage = 0;  ///< quad-major
 };
 
-/// Warp packer -> ROP: what retires next, in order. kWork: the warp in `slot`; `sync` (if not 0) may be reported when it has retired.
+/// Warp packer -> ROP: what retires next, in order. kWork: the warp in `slot`; `sync` (if not 0) may be
+/// reported when it has retired.
 struct OrderToken {
   TokenKind kind = TokenKind::kWork;
   std::uint32_t index = 0;
@@ -104,7 +109,8 @@ struct FragmentDoneToken {
   std::uint32_t slot = 0;
 };
 
-/// ROP <-> late port of the depth unit: test the warp in this slot (the survivors are written to it), or (kPassEnd) flush.
+/// ROP <-> late port of the depth unit: test the warp in this slot (the survivors are written to it), or
+/// (kPassEnd) flush.
 struct LateToken {
   TokenKind kind = TokenKind::kWork;
   std::uint32_t slot = 0;
@@ -139,8 +145,8 @@ struct TextureToken {
 /// On whose behalf memory is accessed.
 enum class MemoryClient : std::uint8_t { kVertexFetch, kTexture, kDepth, kColor, kScanOut, kWriteBack };
 
-/// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer. Writes are not answered; a fence is, once all
-/// requests of its client before it have been taken in.
+/// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer.
+/// Writes are not answered; a fence is, once all requests of its client before it have been taken in.
 struct MemoryRequest {
   enum class Kind : std::uint8_t {
     kRead,

@@ -1,4 +1,5 @@
-/// What the machine tells every unit that it makes: its clock, the frame and the memory, and the unit's place among its neighbours.
+/// What the machine tells every unit that it makes: its clock, the frame and the memory, and the unit's place
+/// among its neighbours.
 #pragma once
 
 #include "hw/base/clock.h"
@@ -20,7 +21,8 @@ struct UnitContext {
   const Frame& frame;
   models::DeviceMemory& memory;
   MachineCounts machine;
-  int number = 0;  ///< of the unit among those of its kind: 0 where it stands once, else that of its core, partition or channel
+  /// of the unit among those of its kind: 0 where it stands once, else that of its core, partition or channel
+  int number = 0;
 
   /// Of a unit that has no link to memory in this machine.
   [[nodiscard]] UnitContext without_memory() const {

@@ -11,7 +11,8 @@ void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components
   out.resize(static_cast<std::size_t>(3 * components));
   for (int c = 0; c < components; ++c) {
     const auto value = [&](std::size_t i) {
-      return std::bit_cast<float>((*corners[i].rows)[static_cast<std::size_t>(models::kFirstVaryingOutput + c)][corners[i].lane]);
+      return std::bit_cast<float>(
+          (*corners[i].rows)[static_cast<std::size_t>(models::kFirstVaryingOutput + c)][corners[i].lane]);
     };
     const float a0 = value(0);
     float* const at = out.data() + 3 * c;
@@ -21,14 +22,16 @@ void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components
   }
 }
 
-void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, models::FragmentInputs& inputs) {
+void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles,
+                          models::FragmentInputs& inputs) {
   for (int q = 0; q < models::kWarpQuads; ++q) {
     const WarpSlot::Quad& quad = work.quad[static_cast<std::size_t>(std::min(q, work.quads - 1))];
     const TriangleSlot& triangle = triangles[quad.triangle];
     inputs.varyings[static_cast<std::size_t>(q)] = triangle.varyings.data();
     if (q >= work.quads) continue;
     models::interpolate_quad(triangle.setup, quad.x, quad.y, q, inputs);
-    for (std::size_t i = 0; i < 4; ++i) inputs.primitive_id[4 * static_cast<std::size_t>(q) + i] = triangle.primitive;
+    for (std::size_t i = 0; i < 4; ++i)
+      inputs.primitive_id[4 * static_cast<std::size_t>(q) + i] = triangle.primitive;
   }
 }
 

@@ -1,4 +1,5 @@
-/// From the outputs of three vertices to the inputs of a fragment warp: rules without time, which the functional run uses too.
+/// From the outputs of three vertices to the inputs of a fragment warp: rules without time, which the
+/// functional run uses too.
 #pragma once
 
 #include "hw/frame/stores.h"
@@ -17,7 +18,9 @@ struct CornerOutputs {
 /// Fills a triangle slot's varyings, 3 floats a component: a0, a1 - a0, a2 - a0 of the corners.
 void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components, std::vector<float>& out);
 
-/// The inputs of a fragment warp: planes of its quads' triangles at their pixels. Quads that are not used repeat the last one's varyings.
-void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, models::FragmentInputs& inputs);
+/// The inputs of a fragment warp: planes of its quads' triangles at their pixels. Quads that are not used
+/// repeat the last one's varyings.
+void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles,
+                          models::FragmentInputs& inputs);
 
 }  // namespace quadrille::hw

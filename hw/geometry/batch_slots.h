@@ -1,6 +1,8 @@
-/// Which slots of the batch store may be used again: those whose own triangles have passed set-up, and all later triangles that name their vertices.
+/// Which slots of the batch store may be used again: those whose own triangles have passed set-up, and all
+/// later triangles that name their vertices.
 ///
-/// Set-up releases batches in the order in which they were formed, so a batch is known by its number, and what is released by one count.
+/// Set-up releases batches in the order in which they were formed, so a batch is known by its number, and
+/// what is released by one count.
 #pragma once
 
 #include "models/geometry/post_transform.h"
@@ -26,7 +28,8 @@ class BatchSlots {
 
  private:
   std::uint64_t taken_ = 0, released_ = 0;  ///< batches so far
-  std::vector<std::uint64_t> last_use_;     ///< by slot: number of the last batch that names it, counted from 1
+  /// by slot: number of the last batch that names it, counted from 1
+  std::vector<std::uint64_t> last_use_;
   std::vector<std::uint32_t> free_, held_;
 };
 

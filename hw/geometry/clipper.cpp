@@ -6,8 +6,8 @@
 
 namespace quadrille::hw {
 
-Clipper::Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Store<BatchSlot>& batches,
-                 Store<ClippedPiece>& pieces)
+Clipper::Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                 const Store<BatchSlot>& batches, Store<ClippedPiece>& pieces)
     : Unit(name, Kind::kFixedOrder, context.clock),
       params_(params),
       frame_(context.frame),
@@ -39,12 +39,15 @@ void Clipper::take_triangle(Tick now) {
   std::array<glm::vec4, 3> position;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& [slot, lane] = token.corner[i];
-    for (int c = 0; c < 4; ++c) position[i][c] = std::bit_cast<float>(batches_[slot].outputs[static_cast<std::size_t>(c)][lane]);
+    for (int c = 0; c < 4; ++c)
+      position[i][c] = std::bit_cast<float>(batches_[slot].outputs[static_cast<std::size_t>(c)][lane]);
   }
   stats_.working_for(token.index);
   ++stats_.triangles;
-  const models::ClipOutcome outcome = models::clip_triangle(position, frame_.draw(token.index).clip, polygon_);
-  spend(now, outcome == models::ClipOutcome::kClipped ? params_.clip_clk * WorkRate::kCycle : WorkRate::cost(params_.triangles_per_clk));
+  const models::ClipOutcome outcome =
+      models::clip_triangle(position, frame_.draw(token.index).clip, polygon_);
+  spend(now, outcome == models::ClipOutcome::kClipped ? params_.clip_clk * WorkRate::kCycle
+                                                      : WorkRate::cost(params_.triangles_per_clk));
   switch (outcome) {
     case models::ClipOutcome::kInside: ++stats_.passed; return emit_piece(now, 1);
     case models::ClipOutcome::kClipped:
@@ -66,12 +69,17 @@ void Clipper::emit_piece(Tick now, int i) {
   bool valid = true;
   for (std::size_t k = 0; k < 3; ++k) {
     const models::ClipVertex& v = polygon_.vertices[static_cast<std::size_t>(corner[k])];
-    valid = models::to_window(v.position, draw.viewport, frame_.precision.subpixel_bits, piece.vertices[k]) && valid;
+    valid = models::to_window(v.position, draw.viewport, frame_.precision.subpixel_bits, piece.vertices[k]) &&
+            valid;
     piece.weights[k] = {v.b1, v.b2};
   }
   QUADRILLE_CHECK(valid, "{}: a clipped vertex of draw {} has no window position", name(), token.index);
-  clipped_out.push(
-      now, {TokenKind::kWork, token.index, token.slot, token.primitive, {token.corner[0], token.corner[1], token.corner[2]}, ring_});
+  clipped_out.push(now, {TokenKind::kWork,
+                         token.index,
+                         token.slot,
+                         token.primitive,
+                         {token.corner[0], token.corner[1], token.corner[2]},
+                         ring_});
   ring_ = ring_ + 1 == pieces_.size() ? 0 : ring_ + 1;
   next_piece_ = i + 2 < polygon_.count ? i + 1 : 0;
   if (next_piece_ == 0) (void)primitive_in.pop(now);
@@ -79,8 +87,9 @@ void Clipper::emit_piece(Tick now, int i) {
 
 void Clipper::audit(Audit& audit) const {
   audit.right(laws::kTrianglesAssembled, stats_.triangles.value());
-  audit.both(laws::kTrianglesClipped, stats_.triangles.value(),
-             stats_.passed.value() + stats_.clipped.value() + stats_.rejected.value() + stats_.not_finite.value());
+  audit.both(
+      laws::kTrianglesClipped, stats_.triangles.value(),
+      stats_.passed.value() + stats_.clipped.value() + stats_.rejected.value() + stats_.not_finite.value());
   audit.left(laws::kPieces, stats_.passed.value() + stats_.pieces.value());
 }
 

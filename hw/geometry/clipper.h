@@ -1,8 +1,10 @@
-/// Clipper: rejects triangles outside the view volume, cuts those that cross its near, far or guard-band planes, and applies the viewport transform.
+/// Clipper: rejects triangles outside the view volume, cuts those that cross its near, far or guard-band
+/// planes, and applies the viewport transform.
 ///
 /// In    primitive_in  triangles as lanes of a shaded batch; boundaries
 /// Out   clipped_out   triangles and pieces with window positions; boundaries
-/// Time  `triangles_per_clk` triangles a cycle; a cut one `clip_clk` cycles, and then its pieces as many a cycle; a boundary takes the place of a triangle
+/// Time  `triangles_per_clk` triangles a cycle; a cut one `clip_clk` cycles, and then its pieces as many a
+/// cycle; a boundary takes the place of a triangle
 #pragma once
 
 #include "hw/base/param.h"
@@ -17,16 +19,20 @@ namespace quadrille::hw {
 class Clipper final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> triangles_per_clk{
-        *this,
-        "triangles_per_clk",
-        1,
-        "triangle/clk",
-        {1, 64},
-        "Triangles judged, or pieces handed on, a cycle; for more than one handed on link.clipper_to_setup.width must be as "
-        "much. [G: one geometry engine]"};
-    Param<int> clip_clk{*this,          "clip_clk", 12,
-                        "clk/triangle", {1, 4096},  "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]",
+    Param<int> triangles_per_clk{*this,
+                                 "triangles_per_clk",
+                                 1,
+                                 "triangle/clk",
+                                 {1, 64},
+                                 "Triangles judged, or pieces handed on, a cycle; for more than one handed "
+                                 "on link.clipper_to_setup.width must be as "
+                                 "much. [G: one geometry engine]"};
+    Param<int> clip_clk{*this,
+                        "clip_clk",
+                        12,
+                        "clk/triangle",
+                        {1, 4096},
+                        "Cycles to cut a triangle by the planes it crosses. [G: a few cycles a plane]",
                         Effect::kSlower};
   };
   struct Stats : StatGroup {
@@ -34,11 +40,12 @@ class Clipper final : public Unit {
     Counter passed{*this, "passed", "triangle", "Triangles wholly inside, passed on"};
     Counter clipped{*this, "clipped", "triangle", "Triangles cut"};
     Counter rejected{*this, "rejected", "triangle", "Triangles of which nothing is left"};
-    Counter not_finite{*this, "not_finite", "triangle", "Triangles dropped because a position is NaN or infinite"};
+    Counter not_finite{*this, "not_finite", "triangle",
+                       "Triangles dropped because a position is NaN or infinite"};
     Counter pieces{*this, "pieces", "triangle", "Triangles that cutting produced and passed on"};
   };
-  Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Store<BatchSlot>& batches,
-          Store<ClippedPiece>& pieces);
+  Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+          const Store<BatchSlot>& batches, Store<ClippedPiece>& pieces);
 
   FifoIn<PrimitiveToken> primitive_in{*this, "primitive_in"};
   FifoOut<ClippedToken> clipped_out{*this, "clipped_out"};

@@ -4,8 +4,8 @@
 
 namespace quadrille::hw {
 
-PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                                     const Store<BatchSlot>& batches)
+PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const UnitContext& context,
+                                     const Params& params, const Store<BatchSlot>& batches)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       batches_(batches),
@@ -15,21 +15,27 @@ PrimitiveAssembly::PrimitiveAssembly(sc_core::sc_module_name name, const UnitCon
   for (int i = 0; i < context.machine.cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 
-std::string PrimitiveAssembly::state_text() const { return fmt::format("triangle {} of the batch at its head", next_triangle_); }
+std::string PrimitiveAssembly::state_text() const {
+  return fmt::format("triangle {} of the batch at its head", next_triangle_);
+}
 
 Wake PrimitiveAssembly::emit_wake() const {
   Wake wake = Wake(free_).input(batch_in);
   if (batch_in.ready() == kNever) return wake;
   const BatchToken& head = batch_in.front();
-  if (head.kind == TokenKind::kWork && batches_[head.slot].lanes > 0 && !shaded_[head.slot]) return Wake::never(done_in[0]);
+  if (head.kind == TokenKind::kWork && batches_[head.slot].lanes > 0 && !shaded_[head.slot])
+    return Wake::never(done_in[0]);
   return wake.output(primitive_out);
 }
 
-Wake PrimitiveAssembly::next() const { return Wake::sooner(emit_wake(), done_in.earliest(Wake().output(load_out))); }
+Wake PrimitiveAssembly::next() const {
+  return Wake::sooner(emit_wake(), done_in.earliest(Wake().output(load_out)));
+}
 
 void PrimitiveAssembly::act(Tick now) {
   done_in.visit_holding(0, [&](std::size_t core, FifoIn<VertexDoneToken>& in) {
-    for (; in.ready_at(now) && load_out.room_at(now); load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
+    for (; in.ready_at(now) && load_out.room_at(now);
+         load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
       shaded_[in.pop(now).slot] = true;
     return false;
   });
@@ -49,7 +55,8 @@ void PrimitiveAssembly::emit(Tick now) {
   const BatchSlot& batch = batches_[head.slot];
   if (next_triangle_ < batch.triangles.size()) {
     const BatchSlot::Triangle& t = batch.triangles[next_triangle_++];
-    primitive_out.push(now, {TokenKind::kWork, head.index, head.slot, t.primitive, {t.corner[0], t.corner[1], t.corner[2]}});
+    primitive_out.push(
+        now, {TokenKind::kWork, head.index, head.slot, t.primitive, {t.corner[0], t.corner[1], t.corner[2]}});
     ++stats_.triangles;
     return;
   }

@@ -18,17 +18,21 @@ namespace quadrille::hw {
 class PrimitiveAssembly final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> triangles_per_clk{
-        *this,   "triangles_per_clk",
-        1,       "triangle/clk",
-        {1, 64}, "Triangles handed on a cycle; more than link.assembly_to_clipper.width has no effect. [G: one geometry engine]"};
+    Param<int> triangles_per_clk{*this,
+                                 "triangles_per_clk",
+                                 1,
+                                 "triangle/clk",
+                                 {1, 64},
+                                 "Triangles handed on a cycle; more than link.assembly_to_clipper.width has "
+                                 "no effect. [G: one geometry engine]"};
   };
   struct Stats : StatGroup {
     Counter batches{*this, "batches", "batch", "Shaded batches taken apart"};
     Counter vertices{*this, "vertices", "vertex", "Shaded vertices in those batches"};
     Counter triangles{*this, "triangles", "triangle", "Triangles handed to the clipper"};
   };
-  PrimitiveAssembly(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Store<BatchSlot>& batches);
+  PrimitiveAssembly(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                    const Store<BatchSlot>& batches);
 
   FifoIn<BatchToken> batch_in{*this, "batch_in"};
   FifoInGroup<VertexDoneToken> done_in;

@@ -8,7 +8,8 @@
 
 namespace quadrille::hw {
 
-TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores)
+TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context,
+                                     const Params& params, const Stores& stores)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -19,7 +20,9 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitCon
       rate_(context.clock) {
   add_initiation_rate("rate");
   add_places("triangle_slots", [this] { return sequence_ - retired_ >= triangles_.size(); });
-  for (int i = 0; i < context.machine.partitions; ++i) { sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply); }
+  for (int i = 0; i < context.machine.partitions; ++i) {
+    sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply);
+  }
 }
 
 std::string TriangleSetupUnit::state_text() const {
@@ -30,7 +33,8 @@ Wake TriangleSetupUnit::work_wake() const {
   if (sequence_ - retired_ >= triangles_.size()) return Wake::never(sync_in[0]);
   Wake wake = Wake(free_).input(clipped_in);
   if (clipped_in.ready() == kNever) return wake;
-  return clipped_in.front().kind == TokenKind::kBatchEnd ? wake.output(release_out) : wake.output(triangle_out);
+  return clipped_in.front().kind == TokenKind::kBatchEnd ? wake.output(release_out)
+                                                         : wake.output(triangle_out);
 }
 
 Wake TriangleSetupUnit::next() const { return Wake::sooner(work_wake(), sync_in.earliest()); }
@@ -84,7 +88,8 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   slot.draw = token.index;
   slot.primitive = token.primitive;
   std::array<CornerOutputs, 3> corners;
-  for (std::size_t i = 0; i < 3; ++i) corners[i] = {&batches_[token.corner[i].slot].outputs, token.corner[i].lane};
+  for (std::size_t i = 0; i < 3; ++i)
+    corners[i] = {&batches_[token.corner[i].slot].outputs, token.corner[i].lane};
   gather_varyings(corners, draw.varyings(), slot.varyings);
   triangle_out.push(now, {TokenKind::kWork, token.index, sequence_++});
   return true;
@@ -93,13 +98,15 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
 void TriangleSetupUnit::audit(Audit& audit) const {
   audit.right(laws::kPieces, stats_.triangles.value());
   audit.both(laws::kTrianglesSetUp, stats_.triangles.value(),
-             stats_.kept.value() + stats_.culled.value() + stats_.zero_area.value() + stats_.offscreen.value() + stats_.no_sample.value());
+             stats_.kept.value() + stats_.culled.value() + stats_.zero_area.value() +
+                 stats_.offscreen.value() + stats_.no_sample.value());
   audit.left(laws::kTrianglesWalked, stats_.kept.value());
 }
 
 std::vector<Facet> TriangleSetupUnit::row() const {
   return {share("kept", stats_.kept, stats_.triangles), share("culled", stats_.culled, stats_.triangles),
-          share("no area", stats_.zero_area, stats_.triangles), share("off screen", stats_.offscreen, stats_.triangles),
+          share("no area", stats_.zero_area, stats_.triangles),
+          share("off screen", stats_.offscreen, stats_.triangles),
           share("no sample", stats_.no_sample, stats_.triangles)};
 }
 

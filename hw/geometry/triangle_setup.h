@@ -1,8 +1,11 @@
-/// Triangle set-up: edge functions, bounds and planes of each triangle, culling, and the triangle store that bounds how far geometry runs ahead.
+/// Triangle set-up: edge functions, bounds and planes of each triangle, culling, and the triangle store that
+/// bounds how far geometry runs ahead.
 ///
-/// In    clipped_in     triangles with window positions; boundaries      sync_in[p]  triangles before a sequence number are retired in partition p
-/// Out   triangle_out   kept triangles and boundaries                    release_out  a vertex batch may be reused
-/// Time  `drawn_per_clk` triangles a cycle that are kept, `culled_per_clk` that are not; a boundary takes the place of a culled one, a cycle at most; waits while the triangle
+/// In    clipped_in     triangles with window positions; boundaries      sync_in[p]  triangles before a
+/// sequence number are retired in partition p Out   triangle_out   kept triangles and boundaries
+/// release_out  a vertex batch may be reused Time  `drawn_per_clk` triangles a cycle that are kept,
+/// `culled_per_clk` that are not; a boundary takes the place of a culled one, a cycle at most; waits while
+/// the triangle
 ///       store is full
 #pragma once
 
@@ -23,17 +26,20 @@ class TriangleSetupUnit final : public Unit {
                                 1,
                                 "triangle/clk",
                                 {0.001, 64},
-                                "Triangles set up a cycle that are kept: 0.5 is two cycles each. More than 1 needs width on the links from "
+                                "Triangles set up a cycle that are kept: 0.5 is two cycles each. More than 1 "
+                                "needs width on the links from "
                                 "link.assembly_to_clipper to link.coarse_to_fine. [G: one triangle a cycle]"};
-    Param<double> culled_per_clk{*this,
-                                 "culled_per_clk",
-                                 1,
-                                 "triangle/clk",
-                                 {0.001, 64},
-                                 "Triangles a cycle that are culled. More than 1 needs width on link.assembly_to_clipper and "
-                                 "link.clipper_to_setup. [G: one triangle a cycle]"};
-    Param<int> triangle_slots{*this,      "triangle_slots", 1024,
-                              "triangle", {1, 1 << 20},     "Triangles between set-up and their last retired fragment. [G]"};
+    Param<double> culled_per_clk{
+        *this,
+        "culled_per_clk",
+        1,
+        "triangle/clk",
+        {0.001, 64},
+        "Triangles a cycle that are culled. More than 1 needs width on link.assembly_to_clipper and "
+        "link.clipper_to_setup. [G: one triangle a cycle]"};
+    Param<int> triangle_slots{*this,        "triangle_slots",
+                              1024,         "triangle",
+                              {1, 1 << 20}, "Triangles between set-up and their last retired fragment. [G]"};
   };
   struct Stats : StatGroup {
     Counter triangles{*this, "triangles", "triangle", "Triangles taken in"};
@@ -49,7 +55,8 @@ class TriangleSetupUnit final : public Unit {
     const Store<ClippedPiece>& pieces;
     TriangleStore& triangles;
   };
-  TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores);
+  TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                    const Stores& stores);
 
   FifoIn<ClippedToken> clipped_in{*this, "clipped_in"};
   FifoInGroup<ReleaseToken> sync_in;

@@ -14,7 +14,8 @@ std::uint64_t index_address(const DrawState& draw, std::uint32_t position) {
 
 }  // namespace
 
-VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<BatchSlot>& batches)
+VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                         Store<BatchSlot>& batches)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -30,7 +31,8 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& contex
 }
 
 std::string VertexFetch::state_text() const {
-  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_, triangle_, pending_.size(), slots_.free());
+  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_, triangle_,
+                     pending_.size(), slots_.free());
 }
 
 Wake VertexFetch::build_wake() const {
@@ -118,13 +120,15 @@ void VertexFetch::fetch_index(std::uint32_t position) {
 }
 
 void VertexFetch::touch_bytes(std::uint64_t address, std::uint32_t bytes) {
-  for (std::uint64_t a = address / models::kSectorBytes; a <= (address + bytes - 1) / models::kSectorBytes; ++a) {
+  for (std::uint64_t a = address / models::kSectorBytes; a <= (address + bytes - 1) / models::kSectorBytes;
+       ++a) {
     const auto sector = static_cast<std::uint8_t>(1u << (a % models::kLineSectors));
     lines_[touched_line(static_cast<std::uint32_t>(a / models::kLineSectors))].sectors |= sector;
   }
 }
 
-/// Vertices lie one after the other, and their next attribute in the same lines in the same order: so most often it is the line touched last, or the next one.
+/// Vertices lie one after the other, and their next attribute in the same lines in the same order: so most
+/// often it is the line touched last, or the next one.
 std::size_t VertexFetch::touched_line(std::uint32_t line) {
   const auto is_it = [line](const Line& l) { return l.line == line; };
   const auto found_here = [&] { return last_touched_ < lines_.size() && is_it(lines_[last_touched_]); };
@@ -149,7 +153,8 @@ void VertexFetch::fetch_attributes(BatchSlot& batch) {
       models::decode_attribute(fetch.format, device_.read(address, bytes).data(), value);
       for (std::size_t c = 0; c < 4; ++c) {
         if (fetch.input_row[c] < 0) continue;
-        batch.attributes[static_cast<std::size_t>(fetch.input_row[c])][static_cast<std::size_t>(lane)] = value[c];
+        batch.attributes[static_cast<std::size_t>(fetch.input_row[c])][static_cast<std::size_t>(lane)] =
+            value[c];
       }
     }
   }
@@ -168,9 +173,11 @@ void VertexFetch::form_batch(Tick now) {
   fetches_ = 0;
   indices_ = 0;
   reuse_.start_batch(slot);
-  while (triangle_ < draw.triangles() && batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value())) {
+  while (triangle_ < draw.triangles() &&
+         batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value())) {
     const auto corner = models::triangle_vertices(draw.topology, triangle_);
-    const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]), vertex_number(corner[2])};
+    const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]),
+                                              vertex_number(corner[2])};
     if (!reuse_.fits(vertex)) break;  // it is the first of the next batch, which pays for its indices
     for (const std::uint32_t position : corner) fetch_index(position);
     BatchSlot::Triangle triangle{{}, triangle_};
@@ -202,7 +209,8 @@ void VertexFetch::form_batch(Tick now) {
   ++stats_.batches;
   stats_.triangles += batch.triangles.size();
   const auto per = [](std::uint32_t work, int rate) { return (static_cast<int>(work) + rate - 1) / rate; };
-  const int cycles = std::max({1, per(indices_, params_.indices_per_clk), per(fetches_, params_.attributes_per_clk)});
+  const int cycles =
+      std::max({1, per(indices_, params_.indices_per_clk), per(fetches_, params_.attributes_per_clk)});
   free_ = after(now, cycles);
   occupy(now, cycles);
   pending_.push_back({TokenKind::kWork, draw_, slot, 0, free_});
@@ -221,7 +229,9 @@ void VertexFetch::look_up(Tick now) {
   pending_.back().ready = std::max(pending_.back().ready, now);
 }
 
-bool VertexFetch::shades(const Pending& head) const { return head.kind == TokenKind::kWork && batches_[head.slot].lanes > 0; }
+bool VertexFetch::shades(const Pending& head) const {
+  return head.kind == TokenKind::kWork && batches_[head.slot].lanes > 0;
+}
 
 void VertexFetch::leave(Tick now) {
   const Pending head = pending_.front();
@@ -239,7 +249,8 @@ void VertexFetch::audit(Audit& audit) const {
 }
 
 std::vector<Facet> VertexFetch::row() const {
-  return {rate("indices", stats_.indices, params_.indices_per_clk), mean("indices/vertex", stats_.indices, stats_.vertices),
+  return {rate("indices", stats_.indices, params_.indices_per_clk),
+          mean("indices/vertex", stats_.indices, stats_.vertices),
           rate("attributes", stats_.attribute_fetches, params_.attributes_per_clk),
           share("cache hit", cache_.stats().hits, cache_.stats().requests)};
 }

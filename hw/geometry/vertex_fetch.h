@@ -1,11 +1,14 @@
-/// Vertex fetch: reads indices and attributes through its cache, finds reused vertices, and forms batches of up to 32 vertices to shade.
+/// Vertex fetch: reads indices and attributes through its cache, finds reused vertices, and forms batches of
+/// up to 32 vertices to shade.
 ///
 /// In    draw_in      draws and pass boundaries     release_in  a batch slot is free again
-/// Out   warp_out     a batch to shade              batch_out   its triangles, in draw order; pass and draw boundaries
-/// Mem   indices and attributes, 128-byte lines in 32-byte sectors
-/// Time  `indices_per_clk` indices and `attributes_per_clk` attribute fetches a cycle, whichever takes longer; a batch leaves when its lines have arrived
-/// Reuse  by batch, through a FIFO of vertices, or not at all (models/geometry/post_transform.h). Under the FIFO the outputs of a batch stay in its slot while
-///       a vertex of it is remembered or a triangle on its way names one; the oldest are forgotten rather than that they hold the last slot.
+/// Out   warp_out     a batch to shade              batch_out   its triangles, in draw order; pass and draw
+/// boundaries Mem   indices and attributes, 128-byte lines in 32-byte sectors
+/// Time  `indices_per_clk` indices and `attributes_per_clk` attribute fetches a cycle, whichever takes
+/// longer; a batch leaves when its lines have arrived Reuse  by batch, through a FIFO of vertices, or not at
+/// all (models/geometry/post_transform.h). Under the FIFO the outputs of a batch stay in its slot while
+///       a vertex of it is remembered or a triangle on its way names one; the oldest are forgotten rather
+///       than that they hold the last slot.
 /// Not modelled: a post-transform store apart from the batches' slots (docs/deviations.md#D2)
 #pragma once
 
@@ -23,17 +26,22 @@ namespace quadrille::hw {
 class VertexFetch final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> indices_per_clk{*this,       "indices_per_clk", 4,
-                               "index/clk", {1, 64},           "Indices looked up a cycle. [G: one triangle a cycle and a little more]"};
-    Param<int> attributes_per_clk{*this, "attributes_per_clk", 8, "fetch/clk", {1, 256}, "Attribute fetches a cycle. [G: 8 address lanes]"};
-    Param<int> batch_slots{*this,   "batch_slots", 32,
-                           "batch", {2, 4096},     "Vertex batches between fetch and set-up. [G: covers shading latency]"};
-    Choice<models::ReusePolicy> reuse{
-        *this,
-        "reuse",
-        models::ReusePolicy::kBatch,
-        {"batch", "fifo", "none"},
-        "A vertex is shaded once a batch, once while a FIFO across batches holds it, or for every corner. [P: Kerbl 2018]"};
+    Param<int> indices_per_clk{
+        *this,   "indices_per_clk",
+        4,       "index/clk",
+        {1, 64}, "Indices looked up a cycle. [G: one triangle a cycle and a little more]"};
+    Param<int> attributes_per_clk{*this,    "attributes_per_clk",
+                                  8,        "fetch/clk",
+                                  {1, 256}, "Attribute fetches a cycle. [G: 8 address lanes]"};
+    Param<int> batch_slots{*this,     "batch_slots",
+                           32,        "batch",
+                           {2, 4096}, "Vertex batches between fetch and set-up. [G: covers shading latency]"};
+    Choice<models::ReusePolicy> reuse{*this,
+                                      "reuse",
+                                      models::ReusePolicy::kBatch,
+                                      {"batch", "fifo", "none"},
+                                      "A vertex is shaded once a batch, once while a FIFO across batches "
+                                      "holds it, or for every corner. [P: Kerbl 2018]"};
     Param<int> batch_vertices{*this,
                               "batch_vertices",
                               32,
@@ -41,27 +49,33 @@ class VertexFetch final : public Unit {
                               {3, 32},
                               "Vertices shaded as one warp, of 32 lanes. [P: Kerbl 2018: a GeForce's batch]",
                               Effect::kTradeOff};
-    Param<int> batch_triangles{*this,
-                               "batch_triangles",
-                               32,
-                               "triangle",
-                               {1, 1024},
-                               "Triangles a batch may name. [P: Kerbl 2018: 32 on a GeForce, 128 on a Radeon]",
-                               Effect::kTradeOff};
-    Param<int> reuse_entries{*this,
-                             "reuse_entries",
-                             32,
-                             "vertex",
-                             {3, 1024},
-                             "Vertices that the FIFO of reuse=fifo holds; no use otherwise. [G: as many as a batch]",
-                             Effect::kTradeOff};
-    Param<int> cache_lines{*this, "cache_lines", 128, "line", {1, 1 << 16}, "Lines of 128 bytes in the vertex cache. [G: 16 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 4, "way", {1, 64}, "Associativity of the vertex cache. [G]", Effect::kTradeOff};
-    Param<int> cache_misses{*this,  "cache_misses", 64,
-                            "line", {1, 4096},      "Lines the vertex cache may have under way. [G: bandwidth times latency]"};
+    Param<int> batch_triangles{
+        *this,
+        "batch_triangles",
+        32,
+        "triangle",
+        {1, 1024},
+        "Triangles a batch may name. [P: Kerbl 2018: 32 on a GeForce, 128 on a Radeon]",
+        Effect::kTradeOff};
+    Param<int> reuse_entries{
+        *this,
+        "reuse_entries",
+        32,
+        "vertex",
+        {3, 1024},
+        "Vertices that the FIFO of reuse=fifo holds; no use otherwise. [G: as many as a batch]",
+        Effect::kTradeOff};
+    Param<int> cache_lines{*this,  "cache_lines", 128,
+                           "line", {1, 1 << 16},  "Lines of 128 bytes in the vertex cache. [G: 16 KiB]"};
+    Param<int> cache_ways{
+        *this, "cache_ways", 4, "way", {1, 64}, "Associativity of the vertex cache. [G]", Effect::kTradeOff};
+    Param<int> cache_misses{
+        *this,  "cache_misses", 64,
+        "line", {1, 4096},      "Lines the vertex cache may have under way. [G: bandwidth times latency]"};
   };
   struct Stats : StatGroup {
-    Counter indices{*this, "indices", "index", "Indices read (vertex numbers, when a draw has no index buffer)"};
+    Counter indices{*this, "indices", "index",
+                    "Indices read (vertex numbers, when a draw has no index buffer)"};
     Counter vertices{*this, "vertices", "vertex", "Vertices put into batches, each to be shaded once"};
     Counter attribute_fetches{*this, "attribute_fetches", "fetch", "Attributes fetched"};
     Counter batches{*this, "batches", "batch", "Vertex batches formed"};
@@ -69,7 +83,8 @@ class VertexFetch final : public Unit {
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
 
-  VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<BatchSlot>& batches);
+  VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+              Store<BatchSlot>& batches);
 
   FifoIn<DrawToken> draw_in{*this, "draw_in"};
   FifoIn<ReleaseToken> release_in{*this, "release_in", LinkRole::kReply};

@@ -15,10 +15,13 @@ std::uint32_t words_of(std::uint8_t sectors) {
 /// Sectors of which at least one of the words is set, or every one.
 std::uint8_t sectors_with_any(std::uint32_t words) {
   std::uint8_t sectors = 0;
-  for (unsigned s = 0; s < 4; ++s) sectors = static_cast<std::uint8_t>(sectors | ((words >> 8 * s & kWordsOfSector) != 0) << s);
+  for (unsigned s = 0; s < 4; ++s)
+    sectors = static_cast<std::uint8_t>(sectors | ((words >> 8 * s & kWordsOfSector) != 0) << s);
   return sectors;
 }
-std::uint8_t sectors_with_all(std::uint32_t words) { return static_cast<std::uint8_t>(~sectors_with_any(~words) & 0xf); }
+std::uint8_t sectors_with_all(std::uint32_t words) {
+  return static_cast<std::uint8_t>(~sectors_with_any(~words) & 0xf);
+}
 
 }  // namespace
 
@@ -31,14 +34,16 @@ L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses)
   for (std::size_t i = misses_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
 }
 
-L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter, MemoryPort& port) {
+L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter,
+                                MemoryPort& port) {
   int slot = tags_.lookup(line);
   if (slot != models::TagArray::kNone && (tags_.at(slot).valid & sectors) == sectors) {
     ++stats_.requests;
     ++stats_.hits;
     return Result::kHit;
   }
-  const bool under_way = slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
+  const bool under_way =
+      slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
   if (!under_way && free_.empty()) return Result::kStall;
   if (slot == models::TagArray::kNone) {
     slot = place(line, port);
@@ -106,7 +111,8 @@ bool L1Cache::claim(std::uint32_t line, std::uint8_t sectors, MemoryPort& port) 
   if (slot == models::TagArray::kNone) return false;
   ++stats_.requests;
   ++stats_.hits;
-  const auto absent = static_cast<models::SectorMask>(sectors & ~(tags_.at(slot).pending | tags_.at(slot).valid));
+  const auto absent =
+      static_cast<models::SectorMask>(sectors & ~(tags_.at(slot).pending | tags_.at(slot).valid));
   tags_.mark_pending(slot, absent);
   tags_.fill(slot, absent);
   complete(slot, absent);

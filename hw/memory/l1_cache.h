@@ -1,12 +1,16 @@
-/// The first-level caches (vertex fetch, texture, depth, colour): tags, misses under way, and who waits for them.
+/// The first-level caches (vertex fetch, texture, depth, colour): tags, misses under way, and who waits for
+/// them.
 ///
-/// One entry of the miss table serves all who want sectors of a line that is under way. Functional data live in `DeviceMemory`; only presence is kept. A
-/// cache that writes names itself as the owner of its dirty lines there, so that a read from below it is noticed.
+/// One entry of the miss table serves all who want sectors of a line that is under way. Functional data live
+/// in `DeviceMemory`; only presence is kept. A cache that writes names itself as the owner of its dirty lines
+/// there, so that a read from below it is noticed.
 ///
-/// A sector that is written in part is not read first: a mask keeps which of its words (of 4 bytes) were written. It becomes whole when the others are written
-/// too, or when someone reads it and the rest is fetched; else it leaves as it is, and the level below completes it.
+/// A sector that is written in part is not read first: a mask keeps which of its words (of 4 bytes) were
+/// written. It becomes whole when the others are written too, or when someone reads it and the rest is
+/// fetched; else it leaves as it is, and the level below completes it.
 ///
-/// In a unit that keeps a log of its work (hw/base/work_log.h), a line that is written back counts for whom it was written last, whoever takes its place.
+/// In a unit that keeps a log of its work (hw/base/work_log.h), a line that is written back counts for whom
+/// it was written last, whoever takes its place.
 #pragma once
 
 #include "hw/memory/memory_port.h"
@@ -22,9 +26,12 @@ struct L1CacheStats {
   explicit L1CacheStats(StatGroup& group)
       : requests{group, "cache_requests", "request", "Look-ups of a line in the first-level cache"},
         hits{group, "cache_hits", "request", "Look-ups that found all their sectors"},
-        merged{group, "cache_merged", "request", "Look-ups that found all their sectors on their way already"},
+        merged{group, "cache_merged", "request",
+               "Look-ups that found all their sectors on their way already"},
         misses{group, "cache_misses", "request", "Look-ups that had to ask the L2 cache for a sector"} {}
-  void audit(Audit& audit, const Law& law) const { audit.both(law, requests.value(), hits.value() + merged.value() + misses.value()); }
+  void audit(Audit& audit, const Law& law) const {
+    audit.both(law, requests.value(), hits.value() + merged.value() + misses.value());
+  }
   Counter requests, hits, merged, misses;
 };
 
@@ -58,10 +65,12 @@ class L1Cache {
     miss_of_slot_[static_cast<std::size_t>(miss.slot)] = -1;
     free_.push_back(response.tag);
   }
-  /// Gives the line a place and makes sectors (there may be none) present without fetching them, because they are about to be overwritten whole. False when no
-  /// way is free: try again after a fill.
+  /// Gives the line a place and makes sectors (there may be none) present without fetching them, because they
+  /// are about to be overwritten whole. False when no way is free: try again after a fill.
   bool claim(std::uint32_t line, std::uint8_t sectors, MemoryPort& port);
-  [[nodiscard]] bool has_place(std::uint32_t line) const { return tags_.find(line) != models::TagArray::kNone; }
+  [[nodiscard]] bool has_place(std::uint32_t line) const {
+    return tags_.find(line) != models::TagArray::kNone;
+  }
   /// Words (bit 0 the first of 32) of a line that has a place were written.
   void write(std::uint32_t line, std::uint32_t words);
   /// Queues all dirty sectors for writing and forgets all lines; nothing may be under way.
@@ -91,8 +100,10 @@ class L1Cache {
   std::vector<std::uint32_t> free_;
   std::vector<int> miss_of_slot_;
   StatGroup& group_;
-  std::vector<Work> writers_;         ///< by slot: for whom a dirty line was written last, while the unit keeps a log
-  std::vector<std::uint32_t> parts_;  ///< by slot: words written of sectors that are not whole; empty in a cache that does not write
+  /// by slot: for whom a dirty line was written last, while the unit keeps a log
+  std::vector<Work> writers_;
+  /// by slot: words written of sectors that are not whole; empty in a cache that does not write
+  std::vector<std::uint32_t> parts_;
   L1CacheStats stats_;
 };
 

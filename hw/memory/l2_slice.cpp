@@ -12,8 +12,11 @@
 namespace quadrille::hw {
 
 namespace {
-std::uint64_t bytes_of(std::uint8_t sectors) { return models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors)); }
-/// `texture_3` has the ports `texture_in_3` and `texture_out_3`: the number stays last, as in all ports of a kind.
+std::uint64_t bytes_of(std::uint8_t sectors) {
+  return models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors));
+}
+/// `texture_3` has the ports `texture_in_3` and `texture_out_3`: the number stays last, as in all ports of a
+/// kind.
 std::string port_name(const std::string& client, std::string_view side) {
   const std::size_t number = client.find_last_not_of("0123456789") + 1;
   if (number == client.size()) return fmt::format("{}_{}", client, side);
@@ -21,10 +24,12 @@ std::string port_name(const std::string& client, std::string_view side) {
 }
 }  // namespace
 
-L2Slice::L2Slice(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const std::vector<Client>& clients)
+L2Slice::L2Slice(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                 const std::vector<Client>& clients)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
-      tags_(static_cast<std::uint32_t>(params.cache_lines.value()), static_cast<std::uint32_t>(params.cache_ways.value()),
+      tags_(static_cast<std::uint32_t>(params.cache_lines.value()),
+            static_cast<std::uint32_t>(params.cache_ways.value()),
             static_cast<std::uint32_t>(context.machine.channels)),
       misses_(static_cast<std::size_t>(params.cache_misses.value())),
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
@@ -36,13 +41,15 @@ L2Slice::L2Slice(sc_core::sc_module_name name, const UnitContext& context, const
   for (const auto& [client, kind] : clients) {
     client_kinds_.push_back(kind);
     request_in.add(*this, port_name(client, "in").c_str());
-    response_out.push_back(std::make_unique<FifoOut<MemoryResponse>>(*this, port_name(client, "out").c_str(), LinkRole::kReply));
+    response_out.push_back(
+        std::make_unique<FifoOut<MemoryResponse>>(*this, port_name(client, "out").c_str(), LinkRole::kReply));
   }
   for (std::size_t i = misses_.size(); i-- > 0;) free_misses_.push_back(static_cast<std::uint32_t>(i));
 }
 
 std::string L2Slice::state_text() const {
-  return fmt::format("{} lines under way, {} requests for the channel", misses_.size() - free_misses_.size(), to_memory_.size());
+  return fmt::format("{} lines under way, {} requests for the channel", misses_.size() - free_misses_.size(),
+                     to_memory_.size());
 }
 
 bool L2Slice::can_look_up() const { return !stalled_ && to_memory_.size() < misses_.size(); }
@@ -57,7 +64,9 @@ Wake L2Slice::next() const {
   wake = Wake::sooner(wake, Wake().input(fill_in));
   if (!to_memory_.empty()) wake = Wake::sooner(wake, Wake(to_memory_.front().at).output(memory_out));
   if (answer_due_ < wake.at())
-    visit_answering([&](std::size_t c) { wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c])); });
+    visit_answering([&](std::size_t c) {
+      wake = Wake::sooner(wake, Wake(answers_[c].front().at).output(*response_out[c]));
+    });
   return wake;
 }
 
@@ -101,7 +110,9 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
     case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
     case MemoryRequest::Kind::kWrite: taken = write(now, request); break;
     case MemoryRequest::Kind::kWritePart: taken = write_part(now, client, request); break;
-    case MemoryRequest::Kind::kFence: answer(after(now, params_.hit_clk), client, {request.line, request.tag, 0}); break;
+    case MemoryRequest::Kind::kFence:
+      answer(after(now, params_.hit_clk), client, {request.line, request.tag, 0});
+      break;
   }
   if (!taken) {
     stalled_ = true;
@@ -125,7 +136,8 @@ int L2Slice::place(Tick now, std::uint32_t line) {
 
 void L2Slice::write_back(Tick now, std::uint32_t line, std::uint8_t sectors) {
   stats_.writeback_bytes += bytes_of(sectors);
-  to_memory_.push_back({after(now, params_.hit_clk), {line, 0, sectors, MemoryRequest::Kind::kWrite, MemoryClient::kWriteBack}});
+  to_memory_.push_back({after(now, params_.hit_clk),
+                        {line, 0, sectors, MemoryRequest::Kind::kWrite, MemoryClient::kWriteBack}});
 }
 
 void L2Slice::write_back_block(Tick now, std::uint32_t victim) {
@@ -158,7 +170,8 @@ bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request)
 
 L2Slice::Miss* L2Slice::fetch(Tick now, std::uint32_t client, const MemoryRequest& request) {
   int slot = tags_.find(request.line);
-  const bool under_way = slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
+  const bool under_way =
+      slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
   if (!under_way && free_misses_.empty()) return nullptr;
   if (slot == models::TagArray::kNone) slot = place(now, request.line);
   if (slot == models::TagArray::kNone) return nullptr;
@@ -169,14 +182,16 @@ L2Slice::Miss* L2Slice::fetch(Tick now, std::uint32_t client, const MemoryReques
   }
   const auto tag = static_cast<std::uint32_t>(miss_of_slot_[static_cast<std::size_t>(slot)]);
   Miss& miss = misses_[tag];
-  const auto missing = static_cast<std::uint8_t>(request.sectors & ~(tags_.at(slot).valid | tags_.at(slot).pending));
+  const auto missing =
+      static_cast<std::uint8_t>(request.sectors & ~(tags_.at(slot).valid | tags_.at(slot).pending));
   if (missing != 0) {
     ++stats_.misses;
     tags_.mark_pending(slot, missing);
     miss.pending |= missing;
     stats_.fill_bytes += bytes_of(missing);
     to_memory_.push_back(
-        {after(now, params_.hit_clk), {request.line, tag, missing, MemoryRequest::Kind::kRead, client_kinds_[client], request.draw}});
+        {after(now, params_.hit_clk),
+         {request.line, tag, missing, MemoryRequest::Kind::kRead, client_kinds_[client], request.draw}});
   } else {
     ++stats_.merged;
   }
@@ -195,7 +210,8 @@ bool L2Slice::write(Tick now, const MemoryRequest& request) {
 
 bool L2Slice::write_part(Tick now, std::uint32_t client, const MemoryRequest& request) {
   const int slot = tags_.lookup(request.line);
-  const auto there = static_cast<std::uint8_t>(slot == models::TagArray::kNone ? 0 : tags_.at(slot).valid & request.sectors);
+  const auto there =
+      static_cast<std::uint8_t>(slot == models::TagArray::kNone ? 0 : tags_.at(slot).valid & request.sectors);
   if (there == request.sectors) return write(now, request);
   Miss* const miss = fetch(now, client, request);
   if (miss == nullptr) return false;
@@ -223,14 +239,17 @@ void L2Slice::answer(Tick at, std::uint32_t client, const MemoryResponse& token)
   stats_.read_bytes += bytes_of(token.sectors);
   Queue<Answer>& queue = answers_[client];
   queue.push_back({at, token});
-  // Misses overtake hits that were looked up later but answer after a fixed latency: keep the queue in order of time.
-  for (std::size_t i = queue.size() - 1; i > 0 && queue[i - 1].at > at; --i) std::swap(queue[i - 1], queue[i]);
+  // Misses overtake hits that were looked up later but answer after a fixed latency: keep the queue in order
+  // of time.
+  for (std::size_t i = queue.size() - 1; i > 0 && queue[i - 1].at > at; --i)
+    std::swap(queue[i - 1], queue[i]);
   answering_[client / 64] |= std::uint64_t{1} << (client % 64);
   answer_due_ = std::min(answer_due_, at);
 }
 
 void L2Slice::audit(Audit& audit) const {
-  audit.both(laws::kL2, stats_.requests.value(), stats_.hits.value() + stats_.merged.value() + stats_.misses.value());
+  audit.both(laws::kL2, stats_.requests.value(),
+             stats_.hits.value() + stats_.merged.value() + stats_.misses.value());
   audit.right(laws::kClientRequests, stats_.requests.value());
   audit.right(laws::kClientReads, stats_.read_bytes.value());
   audit.right(laws::kClientWrites, stats_.write_bytes.value());
@@ -239,8 +258,8 @@ void L2Slice::audit(Audit& audit) const {
 }
 
 std::vector<Facet> L2Slice::row() const {
-  return {count("requests", stats_.requests), share("hit", stats_.hits, stats_.requests), share("merged", stats_.merged, stats_.requests),
-          share("missed", stats_.misses, stats_.requests)};
+  return {count("requests", stats_.requests), share("hit", stats_.hits, stats_.requests),
+          share("merged", stats_.merged, stats_.requests), share("missed", stats_.misses, stats_.requests)};
 }
 
 }  // namespace quadrille::hw

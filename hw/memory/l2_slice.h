@@ -1,9 +1,11 @@
-/// L2 slice: one bank of the shared cache in front of one memory channel. Write-back, write-allocate, sectored.
+/// L2 slice: one bank of the shared cache in front of one memory channel. Write-back, write-allocate,
+/// sectored.
 ///
 /// In    request_in[c]   sectors of a line, from client c      fill_in   a line's sectors from the channel
 /// Out   response_out[c] answers to reads and fences           memory_out  misses and write-backs
 ///       Ports are named for their client: those of texture_3 are texture_in_3 and texture_out_3.
-/// Time  one request a cycle, clients take turns; `hit_clk` after its look-up a hit is answered and a miss goes to the channel, whose fill is answered when it
+/// Time  one request a cycle, clients take turns; `hit_clk` after its look-up a hit is answered and a miss
+/// goes to the channel, whose fill is answered when it
 ///       comes; a line that is under way serves all who ask for it.
 #pragma once
 
@@ -25,17 +27,22 @@ class L2Slice final : public Unit {
   /// How dirty lines leave.
   enum class WriteBack : std::uint8_t { kVictim, kRow };
   struct Params : ParamGroup {
-    Param<int> cache_lines{*this, "cache_lines", 4096, "line", {1, 1 << 24}, "Lines of 128 bytes in a slice. [G: 512 KiB]"};
+    Param<int> cache_lines{*this,  "cache_lines", 4096,
+                           "line", {1, 1 << 24},  "Lines of 128 bytes in a slice. [G: 512 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 16, "way", {1, 64}, "Associativity. [G]", Effect::kTradeOff};
-    Param<int> cache_misses{*this,  "cache_misses", 128,
-                            "line", {1, 65536},     "Lines under way to and from the channel. [G: bandwidth times latency]"};
+    Param<int> cache_misses{
+        *this,  "cache_misses", 128,
+        "line", {1, 65536},     "Lines under way to and from the channel. [G: bandwidth times latency]"};
     Param<int> hit_clk{
-        *this, "hit_clk", 20, "clk", {1, 1 << 20}, "Latency from look-up to answer, or to the channel for a miss. [G]", Effect::kSlower};
-    Choice<WriteBack> write_back{*this,
-                                 "write_back",
-                                 WriteBack::kVictim,
-                                 {"victim", "row"},
-                                 "A dirty victim leaves alone, or with the other dirty lines of its block. [P: Lee 2010]"};
+        *this,          "hit_clk",    20,
+        "clk",          {1, 1 << 20}, "Latency from look-up to answer, or to the channel for a miss. [G]",
+        Effect::kSlower};
+    Choice<WriteBack> write_back{
+        *this,
+        "write_back",
+        WriteBack::kVictim,
+        {"victim", "row"},
+        "A dirty victim leaves alone, or with the other dirty lines of its block. [P: Lee 2010]"};
     Param<int> write_back_lines{*this,
                                 "write_back_lines",
                                 128,
@@ -48,19 +55,22 @@ class L2Slice final : public Unit {
     Counter requests{*this, "requests", "request", "Read and write requests looked up"};
     Counter hits{*this, "hits", "request", "Requests whose sectors were there, and writes of whole sectors"};
     Counter merged{*this, "merged", "request", "Requests whose sectors were on their way already"};
-    Counter misses{*this, "misses", "request", "Requests for which a sector was fetched from the memory channel"};
+    Counter misses{*this, "misses", "request",
+                   "Requests for which a sector was fetched from the memory channel"};
     Counter read_bytes{*this, "read_bytes", "byte", "Bytes answered to clients"};
     Counter write_bytes{*this, "write_bytes", "byte", "Bytes written by clients"};
     Counter fill_bytes{*this, "fill_bytes", "byte", "Bytes read from the memory channel"};
     Counter writeback_bytes{*this, "writeback_bytes", "byte", "Bytes written back to the memory channel"};
-    Counter early_write_backs{*this, "early_write_backs", "line", "Lines written back with a victim of their block"};
+    Counter early_write_backs{*this, "early_write_backs", "line",
+                              "Lines written back with a victim of their block"};
   };
   struct Client {
     std::string name;
     MemoryClient kind = MemoryClient::kVertexFetch;
   };
   /// `slices` of the machine, this one among them.
-  L2Slice(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const std::vector<Client>& clients);
+  L2Slice(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+          const std::vector<Client>& clients);
 
   FifoInGroup<MemoryRequest> request_in;
   std::vector<std::unique_ptr<FifoOut<MemoryResponse>>> response_out;
@@ -102,7 +112,8 @@ class L2Slice final : public Unit {
   bool read(Tick now, std::uint32_t client, const MemoryRequest& request);
   bool write(Tick now, const MemoryRequest& request);
   bool write_part(Tick now, std::uint32_t client, const MemoryRequest& request);
-  /// The entry of a line's misses, with what the request lacks asked of the channel; none when the line has no place now.
+  /// The entry of a line's misses, with what the request lacks asked of the channel; none when the line has
+  /// no place now.
   Miss* fetch(Tick now, std::uint32_t client, const MemoryRequest& request);
   [[nodiscard]] int place(Tick now, std::uint32_t line);
   void write_back(Tick now, std::uint32_t line, std::uint8_t sectors);

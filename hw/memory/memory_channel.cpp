@@ -80,12 +80,13 @@ MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const UnitContext& co
       stats_(std::make_unique<Stats>()),
       controller_(params.controller()) {
   add_rate(
-      "bus", [this] { return bus_cycles(models::BusUse::kRead) + bus_cycles(models::BusUse::kWrite); }, "data bus");
+      "bus", [this] { return bus_cycles(models::BusUse::kRead) + bus_cycles(models::BusUse::kWrite); },
+      "data bus");
   add_loss(
       "rows",
       [this] {
-        return bus_cycles(models::BusUse::kActivation) + bus_cycles(models::BusUse::kTurnaround) + bus_cycles(models::BusUse::kSpacing) +
-               bus_cycles(models::BusUse::kRefresh);
+        return bus_cycles(models::BusUse::kActivation) + bus_cycles(models::BusUse::kTurnaround) +
+               bus_cycles(models::BusUse::kSpacing) + bus_cycles(models::BusUse::kRefresh);
       },
       "data bus");
   add_places("queue_depth", [this] { return !controller_.room(false); });
@@ -97,7 +98,8 @@ MemoryChannel::~MemoryChannel() = default;
 const StatGroup* MemoryChannel::stats() const { return stats_.get(); }
 
 std::string MemoryChannel::state_text() const {
-  return fmt::format("{} reads and {} writes in the queue, {} answers", controller_.held(false), controller_.held(true), answers_.size());
+  return fmt::format("{} reads and {} writes in the queue, {} answers", controller_.held(false),
+                     controller_.held(true), answers_.size());
 }
 
 Wake MemoryChannel::take_wake() const {
@@ -119,7 +121,8 @@ Wake MemoryChannel::next() const {
 
 void MemoryChannel::act(Tick now) {
   const std::int64_t cycle = clock().edges_before(now);
-  while (request_in.ready_at(now) && controller_.room(request_in.front().kind == MemoryRequest::Kind::kWrite)) take(now, cycle);
+  while (request_in.ready_at(now) && controller_.room(request_in.front().kind == MemoryRequest::Kind::kWrite))
+    take(now, cycle);
   if (controller_.next() <= cycle) {
     note_occupancy(cycle);
     done_.clear();
@@ -134,7 +137,8 @@ void MemoryChannel::act(Tick now) {
 }
 
 double MemoryChannel::bus_cycles(models::BusUse use) const {
-  const std::int64_t cycles = bus_at_end_ ? (*bus_at_end_)[static_cast<std::size_t>(use)] : controller_.charged(use);
+  const std::int64_t cycles =
+      bus_at_end_ ? (*bus_at_end_)[static_cast<std::size_t>(use)] : controller_.charged(use);
   return static_cast<double>(cycles) / params_.pseudo_channels;
 }
 
@@ -174,7 +178,8 @@ void MemoryChannel::finish(const models::DramDone& done) {
   if (done.write) return;
   answers_.push_back({clock().edge(done.done), held.answer});
   // Pseudo-channels finish in any order: keep the answers in order of time.
-  for (std::size_t i = answers_.size() - 1; i > 0 && answers_[i - 1].at > answers_[i].at; --i) std::swap(answers_[i - 1], answers_[i]);
+  for (std::size_t i = answers_.size() - 1; i > 0 && answers_[i - 1].at > answers_[i].at; --i)
+    std::swap(answers_[i - 1], answers_[i]);
 }
 
 void MemoryChannel::finish_stats(Tick end) {
@@ -186,12 +191,13 @@ void MemoryChannel::finish_stats(Tick end) {
   stats_->read_bursts += counts.reads;
   stats_->write_bursts += counts.writes;
   stats_->refreshes += counts.refreshes;
-  // Shares of all pseudo-channels in whole cycles of the channel: what a division leaves over goes on to the next use, so that they still add up.
+  // Shares of all pseudo-channels in whole cycles of the channel: what a division leaves over goes on to the
+  // next use, so that they still add up.
   const models::BusAccount::Cycles sums = controller_.bus_cycles(cycles);
   bus_at_end_ = sums;
-  const std::array<Counter*, models::kBusUses> counters{&stats_->bus_read,       &stats_->bus_write,      &stats_->bus_refresh,
-                                                        &stats_->bus_turnaround, &stats_->bus_activation, &stats_->bus_spacing,
-                                                        &stats_->bus_idle};
+  const std::array<Counter*, models::kBusUses> counters{
+      &stats_->bus_read,       &stats_->bus_write,   &stats_->bus_refresh, &stats_->bus_turnaround,
+      &stats_->bus_activation, &stats_->bus_spacing, &stats_->bus_idle};
   const std::int64_t buses = params_.pseudo_channels;
   std::int64_t sum = 0, given = 0;
   for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -206,19 +212,24 @@ void MemoryChannel::audit(Audit& audit) const {
   const Stats& s = *stats_;
   audit.right(laws::kFills, s.read_bytes.value());
   audit.right(laws::kWriteBacks, s.write_bytes.value());
-  audit.both(laws::kRows, s.row_hits.value() + s.row_misses.value() + s.row_conflicts.value(), s.reads.value() + s.writes.value());
+  audit.both(laws::kRows, s.row_hits.value() + s.row_misses.value() + s.row_conflicts.value(),
+             s.reads.value() + s.writes.value());
   audit.both(laws::kDataBus,
-             s.bus_read.value() + s.bus_write.value() + s.bus_refresh.value() + s.bus_turnaround.value() + s.bus_activation.value() +
-                 s.bus_spacing.value() + s.bus_idle.value(),
+             s.bus_read.value() + s.bus_write.value() + s.bus_refresh.value() + s.bus_turnaround.value() +
+                 s.bus_activation.value() + s.bus_spacing.value() + s.bus_idle.value(),
              static_cast<std::uint64_t>(total_cycles()));
 }
 
 std::vector<Facet> MemoryChannel::row() const {
   const Stats& s = *stats_;
-  return {count("accesses", s.reads.value() + s.writes.value()),  share("row hit", s.row_hits, s.reads.value() + s.writes.value()),
-          share("data bus held", s.bus_busy, total_cycles()),     share("refresh", s.bus_refresh, total_cycles()),
-          share("turn-around", s.bus_turnaround, total_cycles()), share("activation", s.bus_activation, total_cycles()),
-          share("spacing", s.bus_spacing, total_cycles()),        mean("in queue", s.queue_occupancy, total_cycles())};
+  return {count("accesses", s.reads.value() + s.writes.value()),
+          share("row hit", s.row_hits, s.reads.value() + s.writes.value()),
+          share("data bus held", s.bus_busy, total_cycles()),
+          share("refresh", s.bus_refresh, total_cycles()),
+          share("turn-around", s.bus_turnaround, total_cycles()),
+          share("activation", s.bus_activation, total_cycles()),
+          share("spacing", s.bus_spacing, total_cycles()),
+          mean("in queue", s.queue_occupancy, total_cycles())};
 }
 
 }  // namespace quadrille::hw

@@ -12,7 +12,8 @@ namespace quadrille::hw {
 MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices)
     : group_(stats), stats_(stats), interleave_(static_cast<std::uint32_t>(std::max(slices, 1))) {
   for (int i = 0; i < slices; ++i) {
-    request_out.push_back(std::make_unique<FifoOut<MemoryRequest>>(owner, fmt::format("memory_out_{}", i).c_str(), LinkRole::kReply));
+    request_out.push_back(std::make_unique<FifoOut<MemoryRequest>>(
+        owner, fmt::format("memory_out_{}", i).c_str(), LinkRole::kReply));
     response_in.add(owner, fmt::format("memory_in_{}", i).c_str(), LinkRole::kReply);
   }
 }
@@ -23,9 +24,13 @@ void MemoryPort::read(std::uint32_t line, std::uint8_t sectors, std::uint32_t ta
   queue({line, tag, sectors, MemoryRequest::Kind::kRead});
 }
 
-void MemoryPort::write(std::uint32_t line, std::uint8_t sectors) { queue_write(line, sectors, MemoryRequest::Kind::kWrite); }
+void MemoryPort::write(std::uint32_t line, std::uint8_t sectors) {
+  queue_write(line, sectors, MemoryRequest::Kind::kWrite);
+}
 
-void MemoryPort::write_part(std::uint32_t line, std::uint8_t sectors) { queue_write(line, sectors, MemoryRequest::Kind::kWritePart); }
+void MemoryPort::write_part(std::uint32_t line, std::uint8_t sectors) {
+  queue_write(line, sectors, MemoryRequest::Kind::kWritePart);
+}
 
 void MemoryPort::queue_write(std::uint32_t line, std::uint8_t sectors, MemoryRequest::Kind kind) {
   ++stats_.writes;
@@ -35,7 +40,8 @@ void MemoryPort::queue_write(std::uint32_t line, std::uint8_t sectors, MemoryReq
 
 void MemoryPort::fence(std::uint32_t tag) {
   // Any line of each slice will do: consecutive lines of a group visit every slice once.
-  for (int i = 0; i < slices(); ++i) queue({static_cast<std::uint32_t>(i), tag, 0, MemoryRequest::Kind::kFence});
+  for (int i = 0; i < slices(); ++i)
+    queue({static_cast<std::uint32_t>(i), tag, 0, MemoryRequest::Kind::kFence});
 }
 
 void MemoryPort::send(Tick now) {

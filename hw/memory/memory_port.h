@@ -1,4 +1,5 @@
-/// A client's side of the memory system: one request link and one answer link to each L2 slice, and a queue of requests that wait for room.
+/// A client's side of the memory system: one request link and one answer link to each L2 slice, and a queue
+/// of requests that wait for room.
 ///
 /// Lines are spread over the slices by models/memory/interleave.h.
 #pragma once
@@ -31,7 +32,8 @@ class MemoryPort {
   void write(std::uint32_t line, std::uint8_t sectors);
   /// Writes a part of each of these sectors. The link carries them whole, with a mask.
   void write_part(std::uint32_t line, std::uint8_t sectors);
-  /// Asks every slice to answer once all earlier requests of this client have been taken in; `answers` counts them.
+  /// Asks every slice to answer once all earlier requests of this client have been taken in; `answers` counts
+  /// them.
   void fence(std::uint32_t tag);
 
   [[nodiscard]] bool queue_empty() const { return queue_.empty(); }

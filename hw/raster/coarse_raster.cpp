@@ -9,21 +9,29 @@
 namespace quadrille::hw {
 
 namespace {
-bool lowers_depth(models::CompareOp op) { return op == models::CompareOp::kLess || op == models::CompareOp::kLessOrEqual; }
+bool lowers_depth(models::CompareOp op) {
+  return op == models::CompareOp::kLess || op == models::CompareOp::kLessOrEqual;
+}
 }  // namespace
 
-CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles)
+CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                           const TriangleStore& triangles)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
       triangles_(triangles),
-      sync_interval_(std::max<std::uint64_t>(1, triangles.size() / static_cast<std::uint64_t>(params.reports.value()))),
+      sync_interval_(
+          std::max<std::uint64_t>(1, triangles.size() / static_cast<std::uint64_t>(params.reports.value()))),
       rate_(context.clock) {
   add_initiation_rate("tests_per_clk");
-  for (int i = 0; i < context.machine.partitions; ++i) { hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply); }
+  for (int i = 0; i < context.machine.partitions; ++i) {
+    hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply);
+  }
 }
 
-std::string CoarseRaster::state_text() const { return fmt::format("triangle {} of draw {}", triangle_, draw_); }
+std::string CoarseRaster::state_text() const {
+  return fmt::format("triangle {} of draw {}", triangle_, draw_);
+}
 
 Wake CoarseRaster::work_wake() const {
   if (walking_ || sync_due_) return Wake(free_).output(tile_out);
@@ -90,24 +98,27 @@ void CoarseRaster::begin_pass(std::uint32_t pass) {
   hiz_trusted_ = true;
   hiz_.clear();
   const auto first = frame_.draws.begin() + state.first_draw;
-  const bool tests = state.has_depth && std::any_of(first, first + state.draws, [](const DrawState& d) { return d.uses_depth(); });
-  if (tests && params_.hiz) hiz_.assign(std::size_t{state.depth.tiles_x} * state.depth.tiles_y, state.clear_depth);
+  const bool tests = state.has_depth && std::any_of(first, first + state.draws,
+                                                    [](const DrawState& d) { return d.uses_depth(); });
+  if (tests && params_.hiz)
+    hiz_.assign(std::size_t{state.depth.tiles_x} * state.depth.tiles_y, state.clear_depth);
 }
 
 void CoarseRaster::note_direction(const DrawState& draw) {
-  if (draw.depth_test && draw.depth_write && !lowers_depth(draw.depth_compare) && draw.depth_compare != models::CompareOp::kNever &&
-      draw.depth_compare != models::CompareOp::kEqual) {
+  if (draw.depth_test && draw.depth_write && !lowers_depth(draw.depth_compare) &&
+      draw.depth_compare != models::CompareOp::kNever && draw.depth_compare != models::CompareOp::kEqual) {
     hiz_trusted_ = false;
   }
-  // A program that writes depth moves fragments away from the triangle's plane; its tiles cannot be judged by it.
-  hiz_usable_ =
-      hiz_trusted_ && !hiz_.empty() && draw.depth_test && lowers_depth(draw.depth_compare) && !draw.fragment_program->writes_depth;
+  // A program that writes depth moves fragments away from the triangle's plane; its tiles cannot be judged by
+  // it.
+  hiz_usable_ = hiz_trusted_ && !hiz_.empty() && draw.depth_test && lowers_depth(draw.depth_compare) &&
+                !draw.fragment_program->writes_depth;
 }
 
 bool CoarseRaster::hidden(const models::TileHit& tile) const {
   if (!hiz_usable_) return false;
-  const float held =
-      hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.tiles_x + static_cast<std::size_t>(tile.tile_x)];
+  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.tiles_x +
+                          static_cast<std::size_t>(tile.tile_x)];
   const float nearest = models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y).min;
   return frame_.draw(draw_).depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
 }
@@ -133,7 +144,8 @@ void CoarseRaster::walk(Tick now) {
   const std::uint64_t tests = walk_.tests() - charged_tests_;
   charged_tests_ = walk_.tests();
   stats_.tiles_tested += tests;
-  spend(now, std::max(WorkRate::cost(params_.tiles_per_clk), WorkRate::cost_of(static_cast<std::int64_t>(tests), params_.tests_per_clk)));
+  spend(now, std::max(WorkRate::cost(params_.tiles_per_clk),
+                      WorkRate::cost_of(static_cast<std::int64_t>(tests), params_.tests_per_clk)));
   if (found) {
     ++stats_.tiles_kept;
     tile_out.push(now, {TokenKind::kWork, found->fully_covered, static_cast<std::uint16_t>(found->tile_x),
@@ -150,7 +162,8 @@ void CoarseRaster::audit(Audit& audit) const {
 }
 
 std::vector<Facet> CoarseRaster::row() const {
-  return {rate("tile tests", stats_.tiles_tested, params_.tests_per_clk), mean("tiles/triangle", stats_.tiles_kept, stats_.triangles),
+  return {rate("tile tests", stats_.tiles_tested, params_.tests_per_clk),
+          mean("tiles/triangle", stats_.tiles_kept, stats_.triangles),
           share("kept", stats_.tiles_kept, stats_.tiles_tested),
           share("Hi-Z hid", stats_.tiles_hidden, stats_.tiles_kept.value() + stats_.tiles_hidden.value())};
 }

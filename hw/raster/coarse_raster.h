@@ -1,10 +1,13 @@
-/// Coarse rasteriser with Hi-Z: finds the 8x8-pixel tiles a triangle touches and drops those that are wholly behind what is there.
+/// Coarse rasteriser with Hi-Z: finds the 8x8-pixel tiles a triangle touches and drops those that are wholly
+/// behind what is there.
 ///
-/// In    triangle_in   set-up triangles; boundaries         hiz_in[p]  a tile's greatest depth became smaller, from the depth unit of partition p
-/// Out   tile_out      tiles of one triangle, row by row; boundaries; now and then a sync for the triangle store
-/// Time  `tests_per_clk` tile tests a cycle and at most one tile out a cycle; waits while tile_out is full
-/// Hi-Z holds, for each tile of the pass, a depth that no stored depth exceeds. It may be late (updates travel by FIFO), which only keeps more. It is
-/// trusted only while every depth write of the pass can but lower depths: a draw that writes with another comparison switches it off until the next clear.
+/// In    triangle_in   set-up triangles; boundaries         hiz_in[p]  a tile's greatest depth became
+/// smaller, from the depth unit of partition p Out   tile_out      tiles of one triangle, row by row;
+/// boundaries; now and then a sync for the triangle store Time  `tests_per_clk` tile tests a cycle and at
+/// most one tile out a cycle; waits while tile_out is full Hi-Z holds, for each tile of the pass, a depth
+/// that no stored depth exceeds. It may be late (updates travel by FIFO), which only keeps more. It is
+/// trusted only while every depth write of the pass can but lower depths: a draw that writes with another
+/// comparison switches it off until the next clear.
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -22,24 +25,25 @@ namespace quadrille::hw {
 class CoarseRaster final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> tests_per_clk{*this, "tests_per_clk", 4, "tile/clk", {1, 64}, "Tile tests a cycle. [G: feeds 16 px/clk]"};
-    Param<int> tiles_per_clk{
-        *this,
-        "tiles_per_clk",
-        1,
-        "tile/clk",
-        {1, 64},
-        "Tiles handed on, or triangles without any, a cycle; more than link.coarse_to_fine.width tiles are not. [G: one raster "
-        "engine]"};
-    Param<int> reports{
-        *this,
-        "reports",
-        8,
-        "report",
-        {1, 1 << 20},
-        "Reports behind which a triangle's slot may be used again, a turn of the triangle store; each takes a cycle. [G: an eighth of "
-        "the store waits]",
-        Effect::kTradeOff};
+    Param<int> tests_per_clk{*this,      "tests_per_clk", 4,
+                             "tile/clk", {1, 64},         "Tile tests a cycle. [G: feeds 16 px/clk]"};
+    Param<int> tiles_per_clk{*this,
+                             "tiles_per_clk",
+                             1,
+                             "tile/clk",
+                             {1, 64},
+                             "Tiles handed on, or triangles without any, a cycle; more than "
+                             "link.coarse_to_fine.width tiles are not. [G: one raster "
+                             "engine]"};
+    Param<int> reports{*this,
+                       "reports",
+                       8,
+                       "report",
+                       {1, 1 << 20},
+                       "Reports behind which a triangle's slot may be used again, a turn of the triangle "
+                       "store; each takes a cycle. [G: an eighth of "
+                       "the store waits]",
+                       Effect::kTradeOff};
     Param<bool> hiz{*this, "hiz", true, "", "Drop tiles that Hi-Z proves hidden."};
   };
   struct Stats : StatGroup {
@@ -49,7 +53,8 @@ class CoarseRaster final : public Unit {
     Counter tiles_hidden{*this, "tiles_hidden", "tile", "Tiles dropped by Hi-Z"};
     Counter hiz_updates{*this, "hiz_updates", "update", "Hi-Z updates taken in"};
   };
-  CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles);
+  CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+               const TriangleStore& triangles);
 
   FifoIn<TriangleToken> triangle_in{*this, "triangle_in"};
   FifoInGroup<HiZToken> hiz_in;

@@ -9,11 +9,16 @@
 
 namespace quadrille::hw {
 
-FineRaster::FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles)
-    : Unit(name, Kind::kFixedOrder, context.clock), params_(params), triangles_(triangles), rate_(context.clock) {
+FineRaster::FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                       const TriangleStore& triangles)
+    : Unit(name, Kind::kFixedOrder, context.clock),
+      params_(params),
+      triangles_(triangles),
+      rate_(context.clock) {
   add_initiation_rate("quads_per_clk");
   for (int i = 0; i < context.machine.partitions; ++i) {
-    coverage_out.push_back(std::make_unique<FifoOut<CoverageToken>>(*this, fmt::format("coverage_out_{}", i).c_str()));
+    coverage_out.push_back(
+        std::make_unique<FifoOut<CoverageToken>>(*this, fmt::format("coverage_out_{}", i).c_str()));
   }
 }
 
@@ -22,7 +27,8 @@ Wake FineRaster::next() const {
   if (tile_in.ready() == kNever) return wake;
   const TileToken& tile = tile_in.front();
   if (tile.kind == TokenKind::kWork) {
-    return wake.output(*coverage_out[models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()))]);
+    return wake.output(*coverage_out[models::partition_of(tile.tile_x, tile.tile_y,
+                                                          static_cast<std::uint32_t>(coverage_out.size()))]);
   }
   for (const auto& out : coverage_out) wake.output(*out);
   return wake;
@@ -39,18 +45,22 @@ void FineRaster::act(Tick now) {
 
 void FineRaster::rasterize(Tick now, const TileToken& tile) {
   const std::uint64_t coverage =
-      tile.fully_covered ? ~std::uint64_t{0} : models::tile_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y);
+      tile.fully_covered ? ~std::uint64_t{0}
+                         : models::tile_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y);
   const int quads = std::popcount(models::quads_of(coverage));
   ++stats_.tiles;
   if (coverage == 0) ++stats_.tiles_empty;
   if (~coverage == 0) ++stats_.tiles_full;
   stats_.quads += static_cast<std::uint64_t>(quads);
   stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));
-  free_ = rate_.charge(now, std::max(WorkRate::cost(params_.tiles_per_clk), WorkRate::cost_of(quads, params_.quads_per_clk)));
+  free_ = rate_.charge(
+      now, std::max(WorkRate::cost(params_.tiles_per_clk), WorkRate::cost_of(quads, params_.quads_per_clk)));
   occupy(now, rate_.cycles());
   if (coverage == 0) return;
-  const std::uint32_t p = models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
-  coverage_out[p]->push(now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});
+  const std::uint32_t p =
+      models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
+  coverage_out[p]->push(
+      now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});
 }
 
 void FineRaster::audit(Audit& audit) const {
@@ -60,8 +70,10 @@ void FineRaster::audit(Audit& audit) const {
 }
 
 std::vector<Facet> FineRaster::row() const {
-  return {rate("quads", stats_.quads, params_.quads_per_clk), mean("fragments/quad", stats_.fragments, stats_.quads),
-          mean("quads/tile", stats_.quads, stats_.tiles), share("full tiles", stats_.tiles_full, stats_.tiles)};
+  return {rate("quads", stats_.quads, params_.quads_per_clk),
+          mean("fragments/quad", stats_.fragments, stats_.quads),
+          mean("quads/tile", stats_.quads, stats_.tiles),
+          share("full tiles", stats_.tiles_full, stats_.tiles)};
 }
 
 }  // namespace quadrille::hw

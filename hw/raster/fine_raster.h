@@ -1,4 +1,5 @@
-/// Fine rasteriser: finds the covered pixels of each tile, exactly, and hands the tile to the partition that owns it.
+/// Fine rasteriser: finds the covered pixels of each tile, exactly, and hands the tile to the partition that
+/// owns it.
 ///
 /// In    tile_in          tiles of one triangle; boundaries
 /// Out   coverage_out[p]  covered tiles of partition p; every boundary to every partition
@@ -17,15 +18,16 @@ namespace quadrille::hw {
 class FineRaster final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Covered quads a cycle. [G: 16 px/clk]"};
-    Param<int> tiles_per_clk{
-        *this,
-        "tiles_per_clk",
-        1,
-        "tile/clk",
-        {1, 64},
-        "Tiles a cycle whose quads would leave room for more; the links to the depth units take link.fine_to_depth.width each. [G: one "
-        "raster engine]"};
+    Param<int> quads_per_clk{*this,      "quads_per_clk", 4,
+                             "quad/clk", {1, 16},         "Covered quads a cycle. [G: 16 px/clk]"};
+    Param<int> tiles_per_clk{*this,
+                             "tiles_per_clk",
+                             1,
+                             "tile/clk",
+                             {1, 64},
+                             "Tiles a cycle whose quads would leave room for more; the links to the depth "
+                             "units take link.fine_to_depth.width each. [G: one "
+                             "raster engine]"};
   };
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in"};
@@ -34,7 +36,8 @@ class FineRaster final : public Unit {
     Counter quads{*this, "quads", "quad", "Quads with a covered pixel"};
     Counter fragments{*this, "fragments", "fragment", "Covered pixels"};
   };
-  FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles);
+  FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+             const TriangleStore& triangles);
 
   FifoIn<TileToken> tile_in{*this, "tile_in"};
   std::vector<std::unique_ptr<FifoOut<CoverageToken>>> coverage_out;

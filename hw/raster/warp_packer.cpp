@@ -8,17 +8,25 @@
 
 namespace quadrille::hw {
 
-WarpPacker::WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps)
-    : Unit(name, Kind::kChooser, context.clock), params_(params), warps_(warps), partition_(static_cast<std::uint16_t>(context.number)) {
+WarpPacker::WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                       Store<WarpSlot>& warps)
+    : Unit(name, Kind::kChooser, context.clock),
+      params_(params),
+      warps_(warps),
+      partition_(static_cast<std::uint16_t>(context.number)) {
   add_initiation_rate("quads_per_clk");
   add_places("warp_slots", [this] { return opened_ - retired_ >= warps_.size(); });
 }
 
-std::string WarpPacker::state_text() const { return fmt::format("{} of {} warp slots in use", opened_ - retired_, warps_.size()); }
+std::string WarpPacker::state_text() const {
+  return fmt::format("{} of {} warp slots in use", opened_ - retired_, warps_.size());
+}
 
 Wake WarpPacker::launch_wake(Tick own) const { return Wake(own).output(warp_out).output(order_out); }
 
-bool WarpPacker::full() const { return open_ && warps_[(opened_ - 1) % warps_.size()].quads == models::kWarpQuads; }
+bool WarpPacker::full() const {
+  return open_ && warps_[(opened_ - 1) % warps_.size()].quads == models::kWarpQuads;
+}
 
 bool WarpPacker::must_launch_first() const {
   if (!open_) return false;
@@ -101,8 +109,9 @@ void WarpPacker::take_quads(Tick now) {
     taken_quads_ |= 1u << q;
     const auto lanes = static_cast<std::uint32_t>(token.coverage >> (4 * q)) & 0xfu;
     warp.covered |= lanes << (4 * warp.quads);
-    warp.quad[static_cast<std::size_t>(warp.quads)] = {token.triangle, static_cast<std::uint16_t>(8 * token.tile_x + 2 * (q & 3)),
-                                                       static_cast<std::uint16_t>(8 * token.tile_y + 2 * (q >> 2))};
+    warp.quad[static_cast<std::size_t>(warp.quads)] = {
+        token.triangle, static_cast<std::uint16_t>(8 * token.tile_x + 2 * (q & 3)),
+        static_cast<std::uint16_t>(8 * token.tile_y + 2 * (q >> 2))};
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(lanes));
     ++warp.quads;
     ++packed;
@@ -124,8 +133,9 @@ void WarpPacker::launch(Tick now) {
   warp.alive = warp.covered;
   ++stats_.warps;
   if (warp.quads < models::kWarpQuads) ++stats_.partial_warps;
-  warp_out.push(now, {warp.draw, static_cast<std::uint32_t>(slot), partition_, static_cast<std::uint16_t>(warp.quad[0].x / 8),
-                      static_cast<std::uint16_t>(warp.quad[0].y / 8)});
+  warp_out.push(
+      now, {warp.draw, static_cast<std::uint32_t>(slot), partition_,
+            static_cast<std::uint16_t>(warp.quad[0].x / 8), static_cast<std::uint16_t>(warp.quad[0].y / 8)});
   order_out.push(now, {TokenKind::kWork, warp.draw, static_cast<std::uint32_t>(slot), sync_});
   open_ = false;
   free_ = params_.launch_clk == 0 ? now : after(now, params_.launch_clk);
@@ -139,7 +149,8 @@ void WarpPacker::audit(Audit& audit) const {
 }
 
 std::vector<Facet> WarpPacker::row() const {
-  return {rate("quads", stats_.quads, params_.quads_per_clk), mean("live lanes/warp", stats_.fragments, stats_.warps),
+  return {rate("quads", stats_.quads, params_.quads_per_clk),
+          mean("live lanes/warp", stats_.fragments, stats_.warps),
           share("partial warps", stats_.partial_warps, stats_.warps)};
 }
 

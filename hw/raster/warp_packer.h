@@ -1,9 +1,10 @@
-/// Fragment warp packer: fills warps of 8 quads from the tiles of one draw, whatever triangles and tiles they come from, and reserves their place in the
-/// reorder buffer of the partition.
+/// Fragment warp packer: fills warps of 8 quads from the tiles of one draw, whatever triangles and tiles they
+/// come from, and reserves their place in the reorder buffer of the partition.
 ///
-/// In    coverage_in  covered samples of a tile after the early depth test; boundaries     release_in  a warp has retired
-/// Out   warp_out     a warp to shade        order_out  what retires next: warps and boundaries, in order
-/// Time  `quads_per_clk` quads a cycle; a partial warp leaves at a boundary, when another draw's tile arrives, or after `patience_clk` cycles without input
+/// In    coverage_in  covered samples of a tile after the early depth test; boundaries     release_in  a warp
+/// has retired Out   warp_out     a warp to shade        order_out  what retires next: warps and boundaries,
+/// in order Time  `quads_per_clk` quads a cycle; a partial warp leaves at a boundary, when another draw's
+/// tile arrives, or after `patience_clk` cycles without input
 #pragma once
 
 #include "hw/base/param.h"
@@ -17,11 +18,16 @@ namespace quadrille::hw {
 class WarpPacker final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads packed a cycle. [G: as the fine rasteriser]"};
-    Param<int> warp_slots{*this,  "warp_slots", 128,
-                          "warp", {1, 65536},   "Reorder buffer: fragment warps of a partition from packing to retirement. [G]"};
-    Param<int> launch_clk{*this,          "launch_clk", 1, "clk", {0, 64}, "Cycles to send a warp off, in which no quad is packed. [G]",
-                          Effect::kSlower};
+    Param<int> quads_per_clk{
+        *this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads packed a cycle. [G: as the fine rasteriser]"};
+    Param<int> warp_slots{
+        *this,      "warp_slots",
+        128,        "warp",
+        {1, 65536}, "Reorder buffer: fragment warps of a partition from packing to retirement. [G]"};
+    Param<int> launch_clk{
+        *this,          "launch_clk", 1,
+        "clk",          {0, 64},      "Cycles to send a warp off, in which no quad is packed. [G]",
+        Effect::kSlower};
     Param<int> patience_clk{*this,
                             "patience_clk",
                             64,
@@ -38,7 +44,8 @@ class WarpPacker final : public Unit {
     Counter partial_warps{*this, "partial_warps", "warp", "Warps launched with fewer than 8 quads"};
     Counter timeouts{*this, "timeouts", "warp", "Warps launched because no input came"};
   };
-  WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps);
+  WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+             Store<WarpSlot>& warps);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
   FifoIn<ReleaseToken> release_in{*this, "release_in", LinkRole::kReply};

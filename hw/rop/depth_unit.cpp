@@ -33,25 +33,29 @@ bool can_raise(const DrawState& draw) {
 }
 
 bool asks_for_less(const DrawState& draw) {
-  return draw.depth_compare == models::CompareOp::kLess || draw.depth_compare == models::CompareOp::kLessOrEqual;
+  return draw.depth_compare == models::CompareOp::kLess ||
+         draw.depth_compare == models::CompareOp::kLessOrEqual;
 }
 
 int quads_in(std::uint64_t coverage) { return std::popcount(models::quads_of(coverage)); }
 
-/// Of the tile's pixels in the frame. Those outside keep the clear depth for ever; with them no tile that the frame cuts would be hidden.
-float greatest_depth(const float* depths, const models::SurfaceLayout& surface, std::uint32_t tile_x, std::uint32_t tile_y) {
+/// Of the tile's pixels in the frame. Those outside keep the clear depth for ever; with them no tile that the
+/// frame cuts would be hidden.
+float greatest_depth(const float* depths, const models::SurfaceLayout& surface, std::uint32_t tile_x,
+                     std::uint32_t tile_y) {
   const auto left = [](std::uint32_t size, std::uint32_t tile) {
     return static_cast<int>(size) - static_cast<int>(tile) * models::kTileSize;
   };
   const int width = left(surface.width, tile_x), height = left(surface.height, tile_y);
   const bool whole = width >= models::kTileSize && height >= models::kTileSize;
-  return whole ? models::tile_max(depths) : models::tile_max_within(depths, models::pixels_within(width, height));
+  return whole ? models::tile_max(depths)
+               : models::tile_max_within(depths, models::pixels_within(width, height));
 }
 
 }  // namespace
 
-DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles,
-                     Store<WarpSlot>& warps)
+DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                     const TriangleStore& triangles, Store<WarpSlot>& warps)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -64,7 +68,8 @@ DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, c
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
              surface_writer(SurfaceKind::kDepth, context.number)) {
   add_initiation_rate("quads_per_clk");
-  add_places("tiles_in_flight", [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
+  add_places("tiles_in_flight",
+             [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
   add_places("cache_misses", [this] { return cache_.full(); });
 }
 
@@ -77,13 +82,15 @@ std::size_t DepthUnit::tile_number(std::uint32_t tile_x, std::uint32_t tile_y) c
 }
 
 float* DepthUnit::depths(std::uint32_t tile_x, std::uint32_t tile_y) {
-  return reinterpret_cast<float*>(device_.write(frame_.passes[pass_].depth.tile_address(tile_x, tile_y), models::kTileBytes).data());
+  return reinterpret_cast<float*>(
+      device_.write(frame_.passes[pass_].depth.tile_address(tile_x, tile_y), models::kTileBytes).data());
 }
 
 // --- When ---
 
 Wake DepthUnit::early_take_wake() const {
-  if (early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value())) return Wake::never(coverage_out);
+  if (early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()))
+    return Wake::never(coverage_out);
   return Wake(take_free_).input(coverage_in);
 }
 
@@ -96,7 +103,8 @@ Wake DepthUnit::early_test_wake() const {
 }
 
 Wake DepthUnit::late_take_wake() const {
-  if (late_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()) || flush_ != Flush::kNone) return Wake::never(late_out);
+  if (late_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()) || flush_ != Flush::kNone)
+    return Wake::never(late_out);
   return Wake().input(late_in);
 }
 
@@ -140,9 +148,13 @@ void DepthUnit::act(Tick now) {
   advance_flush(now);
 }
 
-bool DepthUnit::early_ready(Tick now) const { return !early_.empty() && early_.front().acquired && early_test_wake().at() <= now; }
+bool DepthUnit::early_ready(Tick now) const {
+  return !early_.empty() && early_.front().acquired && early_test_wake().at() <= now;
+}
 
-bool DepthUnit::late_ready(Tick now) const { return !late_.empty() && late_.front().acquired && late_test_wake().at() <= now; }
+bool DepthUnit::late_ready(Tick now) const {
+  return !late_.empty() && late_.front().acquired && late_test_wake().at() <= now;
+}
 
 void DepthUnit::take_answers(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
@@ -202,7 +214,8 @@ bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   stats_.working_for(draw_of(entry.token.kind, entry.token.index));
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.index).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
-    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, {.read = sectors}, number & ~kLateBit, entry.missing, entry.done, port_))
+    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, {.read = sectors}, number & ~kLateBit,
+                        entry.missing, entry.done, port_))
       return false;
   }
   entry.acquired = true;
@@ -218,8 +231,8 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
       const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
       const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
       const std::uint8_t sector = sectors_of_quads(1u << place.quad);
-      if (!cache_.acquire(place.tile_x, place.tile_y, {.read = sector}, (number & ~kLateBit) | kLateBit, entry.missing,
-                          entry.done[static_cast<std::size_t>(q)], port_)) {
+      if (!cache_.acquire(place.tile_x, place.tile_y, {.read = sector}, (number & ~kLateBit) | kLateBit,
+                          entry.missing, entry.done[static_cast<std::size_t>(q)], port_)) {
         return false;
       }
     }
@@ -269,7 +282,8 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
   }
   std::uint32_t& in_flight = late_in_flight_[tile_number(token.tile_x, token.tile_y)];
   token.late = draw.late_depth || in_flight > 0;
-  const bool decidable = !token.late || (lowering_ && asks_for_less(draw) && !draw.fragment_program->writes_depth);
+  const bool decidable =
+      !token.late || (lowering_ && asks_for_less(draw) && !draw.fragment_program->writes_depth);
   float* const stored = depths(token.tile_x, token.tile_y);
   const std::uint64_t covered = token.coverage;
   alignas(32) float incoming[models::kTilePixels];
@@ -278,7 +292,8 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
     token.coverage = models::depth_test(draw.depth_compare, stored, incoming, covered);
   }
   if (!token.late && draw.depth_write && token.coverage != 0) {
-    if (!cache_.write(token.tile_x, token.tile_y, std::bit_cast<SectorPixels>(token.coverage), port_)) return false;
+    if (!cache_.write(token.tile_x, token.tile_y, std::bit_cast<SectorPixels>(token.coverage), port_))
+      return false;
     models::depth_write(stored, incoming, token.coverage);
     send_hiz(now, token.tile_x, token.tile_y);
   }
@@ -305,7 +320,8 @@ void DepthUnit::send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y) {
   }
   known = greatest;
   ++stats_.hiz_sent;
-  hiz_out.push(now, {static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y), pass_, greatest});
+  hiz_out.push(now,
+               {static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y), pass_, greatest});
 }
 
 bool DepthUnit::test_late(Tick now) {
@@ -326,7 +342,8 @@ bool DepthUnit::test_late(Tick now) {
     if (lanes == 0) continue;
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-    if (!cache_.write(place.tile_x, place.tile_y, std::bit_cast<SectorPixels>(lanes << place.first_pixel()), port_)) {
+    if (!cache_.write(place.tile_x, place.tile_y, std::bit_cast<SectorPixels>(lanes << place.first_pixel()),
+                      port_)) {
       late_.front().acquired = false;
       stalled_ = !cache_.idle();
       return false;
@@ -358,7 +375,8 @@ models::LaneMask DepthUnit::test_quad(const DrawState& draw, const WarpSlot& war
   const int first = place.first_pixel();
   std::copy_n(warp.depth.begin() + 4 * q, 4, incoming + first);
   float* const stored = depths(tx, ty);
-  const std::uint64_t survivors = models::depth_test(draw.depth_compare, stored, incoming, std::uint64_t{lanes} << first);
+  const std::uint64_t survivors =
+      models::depth_test(draw.depth_compare, stored, incoming, std::uint64_t{lanes} << first);
   if (draw.depth_write && survivors != 0) {
     models::depth_write(stored, incoming, survivors);
     send_hiz(now, tx, ty);
@@ -378,8 +396,10 @@ void DepthUnit::advance_flush(Tick now) {
 
 void DepthUnit::audit(Audit& audit) const {
   audit.right(laws::kFragmentsCovered, stats_.fragments_in.value());
-  audit.both(laws::kFragmentsTested, stats_.fragments_in.value(), stats_.early_killed.value() + stats_.fragments_out.value());
-  audit.right(laws::kFragmentsDeferredOrNot, stats_.early_tested.value() + stats_.deferred.value() + stats_.untested.value());
+  audit.both(laws::kFragmentsTested, stats_.fragments_in.value(),
+             stats_.early_killed.value() + stats_.fragments_out.value());
+  audit.right(laws::kFragmentsDeferredOrNot,
+              stats_.early_tested.value() + stats_.deferred.value() + stats_.untested.value());
   audit.both(laws::kFragmentsDeferred, stats_.deferred.value(), stats_.late_tested.value());
   audit.left(laws::kFragmentsPassed, stats_.fragments_out.value());
   audit.right(laws::kKilledLate, stats_.late_killed.value());
@@ -389,8 +409,10 @@ void DepthUnit::audit(Audit& audit) const {
 
 std::vector<Facet> DepthUnit::row() const {
   return {rate("fragments", stats_.fragments_in, params_.quads_per_clk * models::kQuadPixels),
-          share("killed early", stats_.early_killed, stats_.fragments_in), share("tested late", stats_.late_tested, stats_.fragments_in),
-          count("killed late", stats_.late_killed), share("cache hit", cache_.stats().hits, cache_.stats().requests)};
+          share("killed early", stats_.early_killed, stats_.fragments_in),
+          share("tested late", stats_.late_tested, stats_.fragments_in),
+          count("killed late", stats_.late_killed),
+          share("cache hit", cache_.stats().hits, cache_.stats().requests)};
 }
 
 }  // namespace quadrille::hw

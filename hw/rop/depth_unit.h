@@ -1,13 +1,16 @@
-/// Depth unit of one screen partition: owns the partition's depth tiles and their cache, and tests fragments before (early) or after (late) shading.
+/// Depth unit of one screen partition: owns the partition's depth tiles and their cache, and tests fragments
+/// before (early) or after (late) shading.
 ///
-/// In    coverage_in  covered samples of a triangle in a tile; boundaries      late_in  shaded warps to test, in order; flush
-/// Out   coverage_out what survives, marked early (tested and written) or late       late_out  tested warps; flushed      hiz_out  a tile's greatest depth fell
-/// Mem   depth tiles; a frame without depth tests needs no links to memory (`slices` = 0)
-/// Time  `quads_per_clk` quads a cycle through either port, one port a cycle, the late one first; waits for the tile's lines
+/// In    coverage_in  covered samples of a triangle in a tile; boundaries      late_in  shaded warps to test,
+/// in order; flush Out   coverage_out what survives, marked early (tested and written) or late       late_out
+/// tested warps; flushed      hiz_out  a tile's greatest depth fell Mem   depth tiles; a frame without depth
+/// tests needs no links to memory (`slices` = 0) Time  `quads_per_clk` quads a cycle through either port, one
+/// port a cycle, the late one first; waits for the tile's lines
 ///
-/// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of the tile in flight. Otherwise the tile goes
-/// late; it is still thinned early where a fragment that fails now would fail at its turn too: all depth writes of the pass so far can but lower depths, and
-/// the test is "less". Late tests arrive in API order, so every pixel sees its tests and writes in that order.
+/// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of
+/// the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
+/// now would fail at its turn too: all depth writes of the pass so far can but lower depths, and the test is
+/// "less". Late tests arrive in API order, so every pixel sees its tests and writes in that order.
 #pragma once
 
 #include "hw/base/param.h"
@@ -21,32 +24,40 @@ namespace quadrille::hw {
 class DepthUnit final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads tested a cycle. [G: as the fine rasteriser]"};
-    Param<int> tiles_in_flight{*this, "tiles_in_flight", 16, "tile", {1, 4096}, "Tiles waiting for their depths. [G: latency to hide]"};
-    Param<int> cache_lines{*this,  "cache_lines", 256,
-                           "line", {1, 1 << 20},  "Lines of 128 bytes in the depth cache; two hold a tile. [G: 32 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the depth cache. [G]", Effect::kTradeOff};
+    Param<int> quads_per_clk{
+        *this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads tested a cycle. [G: as the fine rasteriser]"};
+    Param<int> tiles_in_flight{*this,     "tiles_in_flight",
+                               16,        "tile",
+                               {1, 4096}, "Tiles waiting for their depths. [G: latency to hide]"};
+    Param<int> cache_lines{
+        *this,  "cache_lines", 256,
+        "line", {1, 1 << 20},  "Lines of 128 bytes in the depth cache; two hold a tile. [G: 32 KiB]"};
+    Param<int> cache_ways{
+        *this, "cache_ways", 8, "way", {1, 64}, "Associativity of the depth cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
   };
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in by the early port"};
     Counter fragments_in{*this, "fragments_in", "fragment", "Fragments taken in by the early port"};
-    Counter early_tested{*this, "early_tested", "fragment",
-                         "Fragments whose depth test was settled before shading: killed, or passed and written"};
-    Counter early_killed{*this, "early_killed", "fragment",
-                         "Fragments of those that were killed, also of tiles whose survivors are tested late"};
+    Counter early_tested{
+        *this, "early_tested", "fragment",
+        "Fragments whose depth test was settled before shading: killed, or passed and written"};
+    Counter early_killed{
+        *this, "early_killed", "fragment",
+        "Fragments of those that were killed, also of tiles whose survivors are tested late"};
     Counter fragments_out{*this, "fragments_out", "fragment", "Fragments handed to the warp packer"};
     Counter untested{*this, "untested", "fragment", "Fragments of draws without depth test, passed on"};
-    Counter deferred{*this, "deferred", "fragment",
-                     "Fragments handed on to be tested late. What is taken in is tested early, deferred or untested"};
+    Counter deferred{
+        *this, "deferred", "fragment",
+        "Fragments handed on to be tested late. What is taken in is tested early, deferred or untested"};
     Counter late_tested{*this, "late_tested", "fragment", "Fragments tested after shading"};
     Counter late_killed{*this, "late_killed", "fragment", "Fragments killed after shading"};
     Counter hiz_sent{*this, "hiz_sent", "update", "Hi-Z updates sent"};
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
-  DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const TriangleStore& triangles,
-            Store<WarpSlot>& warps);
+  DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+            const TriangleStore& triangles, Store<WarpSlot>& warps);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
@@ -86,7 +97,8 @@ class DepthUnit final : public Unit {
   void test_early(Tick now);
   [[nodiscard]] bool early_ready(Tick now) const;
   [[nodiscard]] bool late_ready(Tick now) const;
-  /// Thins the token's coverage and decides whether it goes late. False, with nothing changed, when the cache has no place for what it would write.
+  /// Thins the token's coverage and decides whether it goes late. False, with nothing changed, when the cache
+  /// has no place for what it would write.
   [[nodiscard]] bool test_tile(const DrawState& draw, CoverageToken& token, Tick now);
   // Late port.
   [[nodiscard]] Wake late_take_wake() const;
@@ -119,11 +131,12 @@ class DepthUnit final : public Unit {
   std::uint32_t pass_ = 0;
   Queue<EarlyEntry> early_;
   Queue<LateEntry> late_;
-  std::uint32_t first_early_ = 0, first_late_ = 0;  ///< numbers of the fronts; waiters are named by number and port
-  bool stalled_ = false;                            ///< the cache had no place; a fill will make one
-  bool lowering_ = true;                            ///< no draw of the pass so far can raise a depth
-  std::vector<std::uint32_t> late_in_flight_;       ///< quads by tile
-  std::vector<float> known_max_;                    ///< by tile: what Hi-Z was told
+  /// numbers of the fronts; waiters are named by number and port
+  std::uint32_t first_early_ = 0, first_late_ = 0;
+  bool stalled_ = false;                       ///< the cache had no place; a fill will make one
+  bool lowering_ = true;                       ///< no draw of the pass so far can raise a depth
+  std::vector<std::uint32_t> late_in_flight_;  ///< quads by tile
+  std::vector<float> known_max_;               ///< by tile: what Hi-Z was told
   Flush flush_ = Flush::kNone;
   int fences_ = 0;
   Tick free_ = 0, take_free_ = 0;

@@ -30,8 +30,8 @@ int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
     int i = 0;
-    while (i < count &&
-           (tiles[static_cast<std::size_t>(i)].tile_x != place.tile_x || tiles[static_cast<std::size_t>(i)].tile_y != place.tile_y))
+    while (i < count && (tiles[static_cast<std::size_t>(i)].tile_x != place.tile_x ||
+                         tiles[static_cast<std::size_t>(i)].tile_y != place.tile_y))
       ++i;
     if (i == count) tiles[static_cast<std::size_t>(count++)] = {place.tile_x, place.tile_y, {}};
     auto& pixels = tiles[static_cast<std::size_t>(i)].pixels[static_cast<std::size_t>(place.quad / 2)];
@@ -42,7 +42,8 @@ int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads
 
 }  // namespace
 
-Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps)
+Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+         Store<WarpSlot>& warps)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -55,13 +56,15 @@ Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params&
              surface_writer(SurfaceKind::kColor, context.number)),
       shaded_(static_cast<std::size_t>(warps.size()), false) {
   add_initiation_rate("quads_per_clk");
-  add_places("warps_in_flight", [this] { return acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value()); });
+  add_places("warps_in_flight",
+             [this] { return acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value()); });
   add_places("cache_misses", [this] { return cache_.full(); });
   for (int i = 0; i < context.machine.cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 
 std::string Rop::state_text() const {
-  return fmt::format("{} entries in its reorder buffer, {} tested, {} with colours", entries_.size(), awaiting_, acquired_);
+  return fmt::format("{} entries in its reorder buffer, {} tested, {} with colours", entries_.size(),
+                     awaiting_, acquired_);
 }
 
 // --- When ---
@@ -75,7 +78,8 @@ Wake Rop::test_wake() const {
 }
 
 Wake Rop::acquire_wake() const {
-  if (acquired_ >= awaiting_ || acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value())) return Wake(kNever);
+  if (acquired_ >= awaiting_ || acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value()))
+    return Wake(kNever);
   // What follows a pass's begin must find its surface set up.
   if (acquired_ > 0 && entries_[acquired_ - 1].token.kind == TokenKind::kPassBegin) return Wake(kNever);
   return stalled_ ? Wake::never(port_.response_in[0]) : Wake(acquire_free_);
@@ -83,7 +87,9 @@ Wake Rop::acquire_wake() const {
 
 Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
   switch (entry.token.kind) {
-    case TokenKind::kWork: wake.output(release_out); return entry.token.sync != 0 ? wake.output(sync_out) : wake;
+    case TokenKind::kWork:
+      wake.output(release_out);
+      return entry.token.sync != 0 ? wake.output(sync_out) : wake;
     case TokenKind::kSync: return wake.output(sync_out);
     case TokenKind::kDrawEnd: return wake.output(retire_out);
     case TokenKind::kPassEnd: return wake.output(late_out);
@@ -139,7 +145,8 @@ void Rop::take_inputs(Tick now) {
     });
   });
   done_in.visit_holding(0, [&](std::size_t core, FifoIn<FragmentDoneToken>& in) {
-    for (; in.ready_at(now) && load_out.room_at(now); load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
+    for (; in.ready_at(now) && load_out.room_at(now);
+         load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
       shaded_[in.pop(now).slot] = true;
     return false;
   });
@@ -175,7 +182,8 @@ void Rop::test(Tick now) {
 
 void Rop::acquire(Tick now) {
   Entry& entry = entries_[acquired_];
-  if (entry.token.kind == TokenKind::kWork && !acquire_colors(entry, first_entry_ + static_cast<std::uint32_t>(acquired_))) {
+  if (entry.token.kind == TokenKind::kWork &&
+      !acquire_colors(entry, first_entry_ + static_cast<std::uint32_t>(acquired_))) {
     stalled_ = true;
     return;
   }
@@ -200,7 +208,8 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
       std::uint8_t& wish = blends ? wishes.read : whole ? wishes.write : wishes.part;
       wish = static_cast<std::uint8_t>(wish | 1u << s);
     }
-    if (!cache_.acquire(tile.tile_x, tile.tile_y, wishes, number, entry.missing, entry.done[static_cast<std::size_t>(i)], port_))
+    if (!cache_.acquire(tile.tile_x, tile.tile_y, wishes, number, entry.missing,
+                        entry.done[static_cast<std::size_t>(i)], port_))
       return false;
   }
   return true;
@@ -291,8 +300,8 @@ int Rop::write_colors(const WarpSlot& warp) {
     stats_.written += static_cast<std::uint64_t>(std::popcount(lanes));
     float rgba[4][4];
     for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[c].begin() + 4 * q, 4, rgba[c]);
-    auto* const tile =
-        reinterpret_cast<std::uint32_t*>(device_.write(pass.color.tile_address(place.tile_x, place.tile_y), models::kTileBytes).data());
+    auto* const tile = reinterpret_cast<std::uint32_t*>(
+        device_.write(pass.color.tile_address(place.tile_x, place.tile_y), models::kTileBytes).data());
     models::blend_quad(draw.blend, pass.color_format, rgba, tile + place.first_pixel(), lanes);
   }
   const bool blends = models::reads_destination(draw.blend);
@@ -322,8 +331,10 @@ void Rop::audit(Audit& audit) const {
 
 std::vector<Facet> Rop::row() const {
   return {rate("written", stats_.written, params_.quads_per_clk * models::kQuadPixels),
-          share("written", stats_.written, stats_.fragments_in), share("discarded", stats_.discarded, stats_.fragments_in),
-          share("blended", stats_.blended, stats_.written), share("cache hit", cache_.stats().hits, cache_.stats().requests)};
+          share("written", stats_.written, stats_.fragments_in),
+          share("discarded", stats_.discarded, stats_.fragments_in),
+          share("blended", stats_.blended, stats_.written),
+          share("cache hit", cache_.stats().hits, cache_.stats().requests)};
 }
 
 }  // namespace quadrille::hw

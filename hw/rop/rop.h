@@ -1,10 +1,13 @@
-/// ROP of one screen partition: retires fragment warps in order, has late ones tested, blends, and writes colours through its cache.
+/// ROP of one screen partition: retires fragment warps in order, has late ones tested, blends, and writes
+/// colours through its cache.
 ///
-/// In    order_in   what retires next: warps and boundaries      done_in[core]  a warp was shaded     late_in  a warp was tested late; depth is flushed
-/// Out   late_out   test this warp; flush      release_out  a warp slot is free      sync_out  triangles before a sequence number are retired
+/// In    order_in   what retires next: warps and boundaries      done_in[core]  a warp was shaded     late_in
+/// a warp was tested late; depth is flushed Out   late_out   test this warp; flush      release_out  a warp
+/// slot is free      sync_out  triangles before a sequence number are retired
 ///       retire_out draw retired; pass flushed      load_out  a core has done a warp
 /// Mem   colour tiles
-/// Time  `quads_per_clk` quads a cycle (half of that when blending reads the old colour); up to `warps_in_flight` warps wait for their lines
+/// Time  `quads_per_clk` quads a cycle (half of that when blending reads the old colour); up to
+/// `warps_in_flight` warps wait for their lines
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -19,21 +22,29 @@ namespace quadrille::hw {
 class Rop final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> quads_per_clk{*this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads written a cycle. [G: as the fine rasteriser]"};
-    Param<int> warps_in_flight{*this, "warps_in_flight", 16, "warp", {1, 4096}, "Warps waiting for their colours. [G: latency to hide]"};
-    Param<int> cache_lines{*this,  "cache_lines", 256,
-                           "line", {1, 1 << 20},  "Lines of 128 bytes in the colour cache; two hold a tile. [G: 32 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the colour cache. [G]", Effect::kTradeOff};
+    Param<int> quads_per_clk{
+        *this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads written a cycle. [G: as the fine rasteriser]"};
+    Param<int> warps_in_flight{*this,     "warps_in_flight",
+                               16,        "warp",
+                               {1, 4096}, "Warps waiting for their colours. [G: latency to hide]"};
+    Param<int> cache_lines{
+        *this,  "cache_lines", 256,
+        "line", {1, 1 << 20},  "Lines of 128 bytes in the colour cache; two hold a tile. [G: 32 KiB]"};
+    Param<int> cache_ways{
+        *this, "cache_ways", 8, "way", {1, 64}, "Associativity of the colour cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
   };
   struct Stats : StatGroup {
     Counter warps{*this, "warps", "warp", "Warps retired"};
-    Counter fragments_in{*this, "fragments_in", "fragment", "Live fragments of those warps when they were packed"};
+    Counter fragments_in{*this, "fragments_in", "fragment",
+                         "Live fragments of those warps when they were packed"};
     Counter discarded{*this, "discarded", "fragment", "Fragments that their program discarded"};
-    Counter late_discarded{*this, "late_discarded", "fragment", "Fragments of those that would have been tested late"};
+    Counter late_discarded{*this, "late_discarded", "fragment",
+                           "Fragments of those that would have been tested late"};
     Counter late_killed{*this, "late_killed", "fragment", "Fragments that failed the late depth test"};
     Counter written{*this, "written", "fragment", "Fragments written to the target"};
-    Counter blended{*this, "blended", "fragment", "Fragments of those that were combined with the old colour"};
+    Counter blended{*this, "blended", "fragment",
+                    "Fragments of those that were combined with the old colour"};
     Counter draws{*this, "draws", "draw", "Draws retired"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
@@ -41,7 +52,8 @@ class Rop final : public Unit {
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
   FifoInGroup<FragmentDoneToken> done_in;
-  FifoOut<ReleaseToken> load_out{*this, "load_out", LinkRole::kReply};  ///< `slot` is the core that has done a warp
+  /// `slot` is the core that has done a warp
+  FifoOut<ReleaseToken> load_out{*this, "load_out", LinkRole::kReply};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
   FifoOut<LateToken> late_out{*this, "late_out", LinkRole::kReply};
   FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
@@ -94,12 +106,14 @@ class Rop final : public Unit {
   SurfaceCache cache_;
   std::uint32_t pass_ = 0;
   Queue<Entry> entries_;
-  std::uint32_t first_entry_ = 0;          ///< number of entries_.front()
-  std::size_t tested_ = 0, acquired_ = 0;  ///< entries from the front that are past these stages (tested: test sent or not needed)
-  std::size_t awaiting_ = 0;               ///< entries from the front whose late answer is in or not needed
-  std::vector<bool> shaded_;               ///< by warp slot
-  bool stalled_ = false;                   ///< no place for the colours of the next entry; a fill will make one
-  bool claim_stalled_ = false;             ///< the same for the head, whose lines were evicted
+  std::uint32_t first_entry_ = 0;  ///< number of entries_.front()
+  /// entries from the front that are past these stages (tested: test sent or not needed)
+  std::size_t tested_ = 0, acquired_ = 0;
+  std::size_t awaiting_ = 0;  ///< entries from the front whose late answer is in or not needed
+  std::vector<bool> shaded_;  ///< by warp slot
+  /// no place for the colours of the next entry; a fill will make one
+  bool stalled_ = false;
+  bool claim_stalled_ = false;  ///< the same for the head, whose lines were evicted
   Flush flush_ = Flush::kNone;
   int fences_ = 0;
   Tick free_ = 0, test_free_ = 0, acquire_free_ = 0;

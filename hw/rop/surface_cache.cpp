@@ -17,13 +17,15 @@ SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, mo
   cache_.own_dirty_lines(memory, owner);
 }
 
-void SurfaceCache::clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition, std::uint32_t partitions) {
+void SurfaceCache::clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition,
+                         std::uint32_t partitions) {
   surface_ = surface;
   cleared_.assign(std::size_t{surface.tiles_x} * surface.tiles_y, false);
   for (std::uint32_t y = 0; y < surface.tiles_y; ++y) {
     for (std::uint32_t x = 0; x < surface.tiles_x; ++x) {
       if (models::partition_of(x, y, partitions) != partition) continue;
-      auto* const pixels = reinterpret_cast<std::uint32_t*>(memory_.write(surface.tile_address(x, y), models::kTileBytes).data());
+      auto* const pixels = reinterpret_cast<std::uint32_t*>(
+          memory_.write(surface.tile_address(x, y), models::kTileBytes).data());
       std::fill_n(pixels, models::kTilePixels, value);
       cleared_[std::size_t{y} * surface.tiles_x + x] = true;
       ++stats_.cleared_tiles;
@@ -31,7 +33,8 @@ void SurfaceCache::clear(const models::SurfaceLayout& surface, std::uint32_t val
   }
 }
 
-bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t& done, MemoryPort& port) {
+bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t& done,
+                               MemoryPort& port) {
   for (int half = 0; half < 2; ++half) {
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
     if ((done & (kMaterialized << half)) != 0) continue;
@@ -44,10 +47,11 @@ bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::
   return true;
 }
 
-bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes, std::uint32_t waiter, int& missing,
-                           std::uint8_t& done, MemoryPort& port) {
+bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes,
+                           std::uint32_t waiter, int& missing, std::uint8_t& done, MemoryPort& port) {
   group_.working_at(tile_x, tile_y);
-  if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, done, port)) return false;
+  if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, done, port))
+    return false;
   for (int half = 0; half < 2; ++half) {
     if ((done & (kAcquired << half)) != 0) continue;
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
@@ -65,7 +69,8 @@ bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const Sec
   return true;
 }
 
-bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels, MemoryPort& port) {
+bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels,
+                         MemoryPort& port) {
   group_.working_at(tile_x, tile_y);
   for (std::size_t half = 0; half < 2; ++half) {
     const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
@@ -83,7 +88,8 @@ void SurfaceCache::flush(MemoryPort& port, bool write_cleared) {
   for (std::size_t i = 0; i < cleared_.size(); ++i) {
     if (!cleared_[i]) continue;
     if (write_cleared) {
-      const auto line = static_cast<std::uint32_t>((surface_.base + i * models::kTileBytes) / models::kLineBytes);
+      const auto line =
+          static_cast<std::uint32_t>((surface_.base + i * models::kTileBytes) / models::kLineBytes);
       port.write(line, 0xf);
       port.write(line + 1, 0xf);
       ++stats_.clear_writes;

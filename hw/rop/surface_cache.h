@@ -1,7 +1,9 @@
-/// What the depth and the colour unit share: a first-level cache over a surface of 8x8 tiles, with fast clear.
+/// What the depth and the colour unit share: a first-level cache over a surface of 8x8 tiles, with fast
+/// clear.
 ///
-/// A clear writes no memory: it marks tiles, and the first access to a marked tile finds all of it present. What is still marked at a flush is written then
-/// (colour) or stays a mark (depth, which nobody reads after the pass). A tile is two lines of 128 bytes, eight sectors of two quads each.
+/// A clear writes no memory: it marks tiles, and the first access to a marked tile finds all of it present.
+/// What is still marked at a flush is written then (colour) or stays a mark (depth, which nobody reads after
+/// the pass). A tile is two lines of 128 bytes, eight sectors of two quads each.
 #pragma once
 
 #include "hw/memory/l1_cache.h"
@@ -31,7 +33,8 @@ struct SectorWishes {
 
 struct SurfaceCacheStats {
   explicit SurfaceCacheStats(StatGroup& group)
-      : cleared_tiles{group, "fast_cleared_tiles", "tile", "Tiles marked as cleared instead of being written"},
+      : cleared_tiles{group, "fast_cleared_tiles", "tile",
+                      "Tiles marked as cleared instead of being written"},
         clear_hits{group, "clear_hits", "tile", "First accesses to a marked tile, which fetch nothing"},
         clear_writes{group, "clear_writes", "tile", "Marked tiles written out by a flush"} {}
   Counter cleared_tiles, clear_hits, clear_writes;
@@ -41,21 +44,26 @@ struct SurfaceCacheStats {
 enum class SurfaceKind : std::uint8_t { kDepth, kColor };
 /// Who may write a line of memory while it is dirty: the cache of that surface in that partition.
 [[nodiscard]] constexpr models::DeviceMemory::Owner surface_writer(SurfaceKind surface, int partition) {
-  return static_cast<models::DeviceMemory::Owner>(1 + 2 * partition + (surface == SurfaceKind::kColor ? 1 : 0));
+  return static_cast<models::DeviceMemory::Owner>(1 + 2 * partition +
+                                                  (surface == SurfaceKind::kColor ? 1 : 0));
 }
 
 class SurfaceCache {
  public:
-  SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory, models::DeviceMemory::Owner owner);
+  SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory,
+               models::DeviceMemory::Owner owner);
 
   /// Begins a pass on `surface`: fills this partition's tiles with `value` and marks them.
-  void clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition, std::uint32_t partitions);
-  /// Asks for sectors of a tile: those in `read` with their contents, and a place for those in `write`, which will be overwritten whole, and in `part`.
-  /// Adds what is not there yet to `missing` and tells `waiter` of each. False when there is no place now: try again after a fill, with the same `done`,
-  /// which starts at 0 and remembers what was asked for already, so that even a cache of one line gets through.
-  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes, std::uint32_t waiter, int& missing,
-               std::uint8_t& done, MemoryPort& port);
-  /// Pixels of a tile were written. Takes back a line that was evicted since it was acquired; false when there is no place for it now.
+  void clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition,
+             std::uint32_t partitions);
+  /// Asks for sectors of a tile: those in `read` with their contents, and a place for those in `write`, which
+  /// will be overwritten whole, and in `part`. Adds what is not there yet to `missing` and tells `waiter` of
+  /// each. False when there is no place now: try again after a fill, with the same `done`, which starts at 0
+  /// and remembers what was asked for already, so that even a cache of one line gets through.
+  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes, std::uint32_t waiter,
+               int& missing, std::uint8_t& done, MemoryPort& port);
+  /// Pixels of a tile were written. Takes back a line that was evicted since it was acquired; false when
+  /// there is no place for it now.
   bool write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels, MemoryPort& port);
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {

@@ -1,4 +1,5 @@
-/// The warps that live on a core. Shared with the core's texture unit: a slot's requests and results belong to whoever holds its token.
+/// The warps that live on a core. Shared with the core's texture unit: a slot's requests and results belong
+/// to whoever holds its token.
 #pragma once
 
 #include "hw/frame/stores.h"
@@ -17,7 +18,8 @@ struct CoreSlot {
   bool vertex_stage = false;
   std::uint16_t simd = 0;                                  ///< where its clauses issue
   models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues
-  std::uint32_t drain = 0;                                 ///< cycles from that clause's last issue until its results are there
+  /// cycles from that clause's last issue until its results are there
+  std::uint32_t drain = 0;
 };
 
 }  // namespace quadrille::hw

@@ -18,7 +18,9 @@ int hungriest_fragment_program(const Frame& frame) {
 
 /// Cycles by class. A class without results that others read has the latency of its issue.
 models::IssueTiming issue_timing(const ShaderCore::Params& params) {
-  const auto cycles = [](int lanes) { return static_cast<std::uint32_t>((models::kWarpLanes + lanes - 1) / lanes); };
+  const auto cycles = [](int lanes) {
+    return static_cast<std::uint32_t>((models::kWarpLanes + lanes - 1) / lanes);
+  };
   const std::uint32_t plain = cycles(params.simd_lanes);
   models::IssueTiming timing;
   const auto set = [&](models::IssueClass issue_class, std::uint32_t issue, int latency) {
@@ -42,7 +44,8 @@ Simd::Cycle first_end(const std::vector<Simd>& simds) {
 
 }  // namespace
 
-ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores, bool textured)
+ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                       const Stores& stores, bool textured)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -63,8 +66,8 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
   add_places("warp_slots", [this] { return kept_out(true); });
   add_places("register_rows", [this] { return kept_out(false); });
   for (std::size_t p = 0; p < warps_.size(); ++p) {
-    fragment_out.push_back(
-        std::make_unique<FifoOut<FragmentDoneToken>>(*this, fmt::format("fragment_out_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
+    fragment_out.push_back(std::make_unique<FifoOut<FragmentDoneToken>>(
+        *this, fmt::format("fragment_out_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
   }
   if (textured) {
     texture_out = std::make_unique<FifoOut<TextureToken>>(*this, "texture_out");
@@ -74,8 +77,9 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
 }
 
 std::string ShaderCore::state_text() const {
-  return fmt::format("{} of {} warp slots, {} of {} register rows in use, {} warps ready", slots_.size() - free_slots_.size(),
-                     slots_.size(), params_.register_rows - free_rows_, params_.register_rows.value(), ready_.size());
+  return fmt::format("{} of {} warp slots, {} of {} register rows in use, {} warps ready",
+                     slots_.size() - free_slots_.size(), slots_.size(), params_.register_rows - free_rows_,
+                     params_.register_rows.value(), ready_.size());
 }
 
 bool ShaderCore::fits(const models::Program& program, int kept_rows, int kept_slots) const {
@@ -86,7 +90,8 @@ bool ShaderCore::kept_out(bool by_slots) const {
   const auto out = [&](const FifoIn<WarpToken>& in, bool vertex) {
     if (in.ready() == kNever) return false;
     const DrawState& draw = frame_.draw(in.front().draw);
-    if (vertex ? fits(*draw.vertex_program, fragment_rows_, 1) : fits(*draw.fragment_program, 0, 0)) return false;
+    if (vertex ? fits(*draw.vertex_program, fragment_rows_, 1) : fits(*draw.fragment_program, 0, 0))
+      return false;
     return (static_cast<int>(free_slots_.size()) <= (vertex ? 1 : 0)) == by_slots;
   };
   return out(fragment_in, false) || out(vertex_in, true);
@@ -97,7 +102,8 @@ Wake ShaderCore::accept_wake(const FifoIn<WarpToken>& in, bool vertex) const {
   if (in.ready() == kNever) return wake;
   const DrawState& draw = frame_.draw(in.front().draw);
   // What a vertex warp leaves free is enough for one fragment warp, so fragments always drain.
-  const bool room = vertex ? fits(*draw.vertex_program, fragment_rows_, 1) : fits(*draw.fragment_program, 0, 0);
+  const bool room =
+      vertex ? fits(*draw.vertex_program, fragment_rows_, 1) : fits(*draw.fragment_program, 0, 0);
   return room ? wake : Wake(kNever);
 }
 
@@ -137,7 +143,8 @@ Wake ShaderCore::next() const {
   wake = Wake::sooner(wake, accept_wake(fragment_in, false));
   if (texture_in) wake = Wake::sooner(wake, Wake().input(*texture_in));
   if (wake.at() == kNever && wake.cause() == nullptr) {
-    return ready_.empty() && texture_in && free_slots_.size() < slots_.size() ? Wake::never(*texture_in) : Wake::never(fragment_in);
+    return ready_.empty() && texture_in && free_slots_.size() < slots_.size() ? Wake::never(*texture_in)
+                                                                              : Wake::never(fragment_in);
   }
   return wake;
 }
@@ -155,14 +162,16 @@ void ShaderCore::act(Tick now) {
   else if (accept_wake(vertex_in, true).at() <= now) accept(now, vertex_in, true);
   while (issue_wake().at() <= now) issue(now);
   // The SIMDs issue at least until the first of their clauses ends.
-  if (const Simd::Cycle until = first_end(simds_); until != Simd::kNever) occupy(now, until - clock().edges_before(now));
+  if (const Simd::Cycle until = first_end(simds_); until != Simd::kNever)
+    occupy(now, until - clock().edges_before(now));
 }
 
 void ShaderCore::take_texels(Tick now) {
   const std::uint32_t index = texture_in->pop(now).slot;
   CoreSlot& slot = slots_[index];
   for (int i = 0; i < slot.warp.texture_count; ++i) {
-    models::write_texture_result(slot.warp, slot.warp.textures[static_cast<std::size_t>(i)], slot.texels[static_cast<std::size_t>(i)]);
+    models::write_texture_result(slot.warp, slot.warp.textures[static_cast<std::size_t>(i)],
+                                 slot.texels[static_cast<std::size_t>(i)]);
   }
   ready_.push_back({now, index});
 }
@@ -190,7 +199,8 @@ void ShaderCore::accept(Tick now, FifoIn<WarpToken>& in, bool vertex) {
 void ShaderCore::launch_vertex(CoreSlot& slot) {
   const DrawState& draw = frame_.draw(slot.draw);
   BatchSlot& batch = batches_[slot.store_slot];
-  const models::LaneMask lanes = batch.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch.lanes) - 1;
+  const models::LaneMask lanes =
+      batch.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch.lanes) - 1;
   slot.warp.vertex = &batch.inputs;
   slot.warp.fragment = nullptr;
   slot.warp.outputs = batch.outputs.data();
@@ -204,7 +214,8 @@ void ShaderCore::launch_fragment(CoreSlot& slot) {
   const DrawState& draw = frame_.draw(slot.draw);
   const WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
   fill_fragment_inputs(work, triangles_, slot.fragment);
-  const models::LaneMask lanes = work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
+  const models::LaneMask lanes =
+      work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
   slot.warp.vertex = nullptr;
   slot.warp.fragment = &slot.fragment;
   slot.warp.outputs = slot.outputs.data();
@@ -224,7 +235,9 @@ void ShaderCore::give_simd(CoreSlot& slot) {
 
 const models::ProgramTiming& ShaderCore::timing_of(const models::Program& program) {
   const auto found = timings_.find(&program);
-  return found != timings_.end() ? found->second : timings_.emplace(&program, models::ProgramTiming(program, issue_timing_)).first->second;
+  return found != timings_.end()
+             ? found->second
+             : timings_.emplace(&program, models::ProgramTiming(program, issue_timing_)).first->second;
 }
 
 void ShaderCore::issue(Tick now) {
@@ -238,7 +251,8 @@ void ShaderCore::issue(Tick now) {
   slot.end = result.end;
   slot.drain = warp_clock_.drain() - warp_clock_.span();
   simds_[slot.simd].add(clock().edges_before(now), index, warp_clock_.work(), warp_clock_.span());
-  const auto textures = static_cast<std::uint32_t>(result.end == models::ClauseEnd::kTextures ? slot.warp.texture_count : 0);
+  const auto textures =
+      static_cast<std::uint32_t>(result.end == models::ClauseEnd::kTextures ? slot.warp.texture_count : 0);
   ++stats_.clauses;
   stats_.instructions += cost.instructions() + textures;
   stats_.alu += cost.alu + cost.interp + cost.constant + cost.exported;
@@ -253,13 +267,15 @@ void ShaderCore::end_clauses(Tick now) {
   const Simd::Cycle cycle = clock().edges_before(now);
   std::uint32_t index = 0;
   for (Simd& simd : simds_) {
-    while (simd.take_ended(cycle, index)) completions_.push_back({after(now, slots_[index].drain), index, slots_[index].end});
+    while (simd.take_ended(cycle, index))
+      completions_.push_back({after(now, slots_[index].drain), index, slots_[index].end});
   }
 }
 
 void ShaderCore::complete(Tick now, const Completion& done) {
   const CoreSlot& slot = slots_[done.slot];
-  if (done.end == models::ClauseEnd::kTextures) texture_out->push(now, {done.slot, slot.draw, slot.vertex_stage});
+  if (done.end == models::ClauseEnd::kTextures)
+    texture_out->push(now, {done.slot, slot.draw, slot.vertex_stage});
   else retire(now, done.slot);
 }
 
@@ -271,7 +287,9 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
     WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
     work.alive = work.covered & ~slot.warp.killed;
     for (std::size_t c = 0; c < 4; ++c) work.color[c] = std::bit_cast<models::LaneFloats>(slot.outputs[c]);
-    work.depth = slot.warp.program->writes_depth ? std::bit_cast<models::LaneFloats>(slot.outputs[models::kDepthOutput]) : slot.fragment.z;
+    work.depth = slot.warp.program->writes_depth
+                     ? std::bit_cast<models::LaneFloats>(slot.outputs[models::kDepthOutput])
+                     : slot.fragment.z;
     fragment_out[slot.partition]->push(now, {slot.store_slot});
   }
   --simd_warps_[slot.simd];
@@ -290,7 +308,8 @@ void ShaderCore::audit(Audit& audit) const {
 std::vector<Facet> ShaderCore::row() const {
   return {rate("SIMDs held", stats_.simd_busy, params_.simds), count("instructions", stats_.instructions),
           mean("lanes/instruction", stats_.lane_operations, stats_.instructions),
-          share("special function", stats_.sfu, stats_.instructions), share("texture", stats_.texture, stats_.instructions)};
+          share("special function", stats_.sfu, stats_.instructions),
+          share("texture", stats_.texture, stats_.instructions)};
 }
 
 }  // namespace quadrille::hw

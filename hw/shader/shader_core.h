@@ -1,10 +1,13 @@
-/// Unified shader core: runs vertex and fragment warps of 32 lanes, a clause at a time, on several SIMD units.
+/// Unified shader core: runs vertex and fragment warps of 32 lanes, a clause at a time, on several SIMD
+/// units.
 ///
 /// In    vertex_in, fragment_in  warps to run          texture_in  the texels of a warp have been filtered
-/// Out   vertex_out              batch shaded          fragment_out[p]  fragment warp shaded    texture_out  a clause's texture requests
-/// Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes for special functions), and one that reads its result waits for the latency of
-///       its class (models/shader/timing.h); other warps of the SIMD issue meanwhile, as `scheduler` says (hw/shader/simd.h). A warp stays on the SIMD that it
-///       was given, the one with the fewest warps. It needs a slot and its registers; a slot and registers for one fragment warp are never given to vertex
+/// Out   vertex_out              batch shaded          fragment_out[p]  fragment warp shaded    texture_out
+/// a clause's texture requests Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes
+/// for special functions), and one that reads its result waits for the latency of
+///       its class (models/shader/timing.h); other warps of the SIMD issue meanwhile, as `scheduler` says
+///       (hw/shader/simd.h). A warp stays on the SIMD that it was given, the one with the fewest warps. It
+///       needs a slot and its registers; a slot and registers for one fragment warp are never given to vertex
 ///       warps.
 /// Not modelled: instruction and constant caches (docs/deviations.md#D4), register bank conflicts (#D5)
 #pragma once
@@ -25,36 +28,57 @@ namespace quadrille::hw {
 class ShaderCore final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> simds{*this, "simds", 4, "simd", {1, 64}, "SIMD units, each issuing one instruction at a time. [G: 4 schedulers a core]"};
-    Param<int> simd_lanes{*this,  "simd_lanes", 8,
-                          "lane", {1, 32},      "Lanes a SIMD computes a cycle; a warp instruction takes 32 / lanes cycles. [G]"};
-    Param<int> sfu_lanes{*this, "sfu_lanes", 2, "lane", {1, 32}, "Special-function lanes of a SIMD. [G: a quarter of the ALU]"};
+    Param<int> simds{*this,   "simds",
+                     4,       "simd",
+                     {1, 64}, "SIMD units, each issuing one instruction at a time. [G: 4 schedulers a core]"};
+    Param<int> simd_lanes{
+        *this,   "simd_lanes",
+        8,       "lane",
+        {1, 32}, "Lanes a SIMD computes a cycle; a warp instruction takes 32 / lanes cycles. [G]"};
+    Param<int> sfu_lanes{*this,  "sfu_lanes", 2,
+                         "lane", {1, 32},     "Special-function lanes of a SIMD. [G: a quarter of the ALU]"};
     Param<int> alu_clk{*this,
                        "alu_clk",
                        8,
                        "clk",
                        {0, 1 << 16},
-                       "From an arithmetic instruction to one that reads its result. [G: four cycles to go in, four through the pipe]",
+                       "From an arithmetic instruction to one that reads its result. [G: four cycles to go "
+                       "in, four through the pipe]",
                        Effect::kSlower};
-    Param<int> sfu_clk{*this,          "sfu_clk",    20,
-                       "clk",          {0, 1 << 16}, "The same: special functions. [G: sixteen cycles to go in, four through]",
+    Param<int> sfu_clk{*this,
+                       "sfu_clk",
+                       20,
+                       "clk",
+                       {0, 1 << 16},
+                       "The same: special functions. [G: sixteen cycles to go in, four through]",
                        Effect::kSlower};
     Param<int> interp_clk{
-        *this, "interp_clk", 12, "clk", {0, 1 << 16}, "The same: interpolated varyings. [G: planes are read first]", Effect::kSlower};
-    Param<int> const_clk{*this,          "const_clk",  12,
-                         "clk",          {0, 1 << 16}, "The same: constants that a register indexes. [G: as an address and a read]",
+        *this,          "interp_clk", 12,
+        "clk",          {0, 1 << 16}, "The same: interpolated varyings. [G: planes are read first]",
+        Effect::kSlower};
+    Param<int> const_clk{*this,
+                         "const_clk",
+                         12,
+                         "clk",
+                         {0, 1 << 16},
+                         "The same: constants that a register indexes. [G: as an address and a read]",
                          Effect::kSlower};
-    Param<int> branch_clk{*this,          "branch_clk", 4,
-                          "clk",          {0, 1 << 16}, "From control flow to the warp's next instruction. [G: the front end is refilled]",
+    Param<int> branch_clk{*this,
+                          "branch_clk",
+                          4,
+                          "clk",
+                          {0, 1 << 16},
+                          "From control flow to the warp's next instruction. [G: the front end is refilled]",
                           Effect::kSlower};
-    Choice<WarpScheduling> scheduler{
-        *this,
-        "scheduler",
-        WarpScheduling::kRoundRobin,
-        {"oldest", "round_robin"},
-        "Which warp of a SIMD issues when several could: the longest ready, or all in turn. [G: in turn is 0 to 2 % faster on our scenes]"};
+    Choice<WarpScheduling> scheduler{*this,
+                                     "scheduler",
+                                     WarpScheduling::kRoundRobin,
+                                     {"oldest", "round_robin"},
+                                     "Which warp of a SIMD issues when several could: the longest ready, or "
+                                     "all in turn. [G: in turn is 0 to 2 % faster on our scenes]"};
     Param<int> warp_slots{*this, "warp_slots", 32, "warp", {2, 1024}, "Warps resident on the core. [G]"};
-    Param<int> register_rows{*this, "register_rows", 1024, "row", {16, 1 << 20}, "Register rows of 32 words: 1024 are 128 KiB. [G]"};
+    Param<int> register_rows{*this, "register_rows", 1024,
+                             "row", {16, 1 << 20},   "Register rows of 32 words: 1024 are 128 KiB. [G]"};
   };
   struct Stats : StatGroup {
     Counter vertex_warps{*this, "vertex_warps", "warp", "Vertex warps run"};
@@ -64,13 +88,15 @@ class ShaderCore final : public Unit {
     Counter helper_lanes{*this, "helper_lanes", "lane", "Lanes that ran only for derivatives"};
     Counter clauses{*this, "clauses", "clause", "Clauses issued"};
     Counter instructions{*this, "instructions", "instruction", "Warp instructions issued"};
-    Counter alu{*this, "alu_instructions", "instruction", "Warp instructions of the ALU, interpolation, constant and export classes"};
+    Counter alu{*this, "alu_instructions", "instruction",
+                "Warp instructions of the ALU, interpolation, constant and export classes"};
     Counter sfu{*this, "sfu_instructions", "instruction", "Warp instructions of the special-function class"};
     Counter texture{*this, "texture_instructions", "instruction", "Texture requests sent"};
     Counter lane_operations{*this, "lane_operations", "lane", "Lanes executed, summed over instructions"};
     Counter simd_busy{*this, "simd_busy", "clk", "Cycles in which SIMD units issued, summed over the units"};
-    Counter operand_waits{*this, "operand_waits", "clk",
-                          "Cycles in which a clause, alone on its SIMD, would wait for its own results, summed over clauses"};
+    Counter operand_waits{
+        *this, "operand_waits", "clk",
+        "Cycles in which a clause, alone on its SIMD, would wait for its own results, summed over clauses"};
   };
   /// Where the core finds its warps, and their batches and triangles.
   struct Stores {
@@ -80,14 +106,16 @@ class ShaderCore final : public Unit {
     const TriangleStore& triangles;
   };
   /// `textured`: it has ports to a texture unit.
-  ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params, const Stores& stores, bool textured);
+  ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+             const Stores& stores, bool textured);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
   FifoIn<WarpToken> fragment_in{*this, "fragment_in", LinkRole::kFlow, kFragmentStream};
   FifoOut<VertexDoneToken> vertex_out{*this, "vertex_out", LinkRole::kFlow, kVertexStream};
   std::vector<std::unique_ptr<FifoOut<FragmentDoneToken>>> fragment_out;
-  std::unique_ptr<FifoOut<TextureToken>> texture_out;  ///< absent when no program of the frame reads a texture
+  /// absent when no program of the frame reads a texture
+  std::unique_ptr<FifoOut<TextureToken>> texture_out;
   std::unique_ptr<FifoIn<TextureToken>> texture_in;
 
   [[nodiscard]] Wake next() const override;

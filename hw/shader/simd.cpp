@@ -29,14 +29,16 @@ double Simd::issued(Cycle now) const {
   double sum = issued_;
   // A clause that ends within its last cycle has no more to issue.
   for (const Running& clause : running_)
-    sum += std::max(0.0, std::min(clause.left, clause.speed * static_cast<double>(now - now_))) * clause.share;
+    sum +=
+        std::max(0.0, std::min(clause.left, clause.speed * static_cast<double>(now - now_))) * clause.share;
   return sum;
 }
 
 bool Simd::take_ended(Cycle now, std::uint32_t& name) {
   if (next_end_ > now) return false;
   advance(now);
-  const auto ended = std::find_if(running_.begin(), running_.end(), [](const Running& clause) { return clause.left < kRounding; });
+  const auto ended = std::find_if(running_.begin(), running_.end(),
+                                  [](const Running& clause) { return clause.left < kRounding; });
   if (ended == running_.end()) return false;
   name = ended->name;
   running_.erase(ended);
@@ -59,7 +61,8 @@ void Simd::share_out() {
 }
 
 void Simd::share_out_evenly() {
-  // The even share is the level that fills the SIMD: those that can use less than it leave the rest to the others.
+  // The even share is the level that fills the SIMD: those that can use less than it leave the rest to the
+  // others.
   double all = 0;
   for (const Running& clause : running_) all += clause.share;
   double level = 1;

@@ -1,8 +1,10 @@
 /// One SIMD unit of a core: the clauses that issue on it, and how they share its one instruction a turn.
 ///
-/// A clause needs `work` issue cycles, and `span` cycles if it has the SIMD to itself: in the rest it waits for its own results, and other clauses issue. Clauses
-/// proceed at rates: one that has all it can use advances by a cycle of its span a cycle, and uses work / span of the SIMD; the sum is at most one. So a chain of
-/// dependent instructions takes its span however few others run, and enough others fill the SIMD and no more.
+/// A clause needs `work` issue cycles, and `span` cycles if it has the SIMD to itself: in the rest it waits
+/// for its own results, and other clauses issue. Clauses proceed at rates: one that has all it can use
+/// advances by a cycle of its span a cycle, and uses work / span of the SIMD; the sum is at most one. So a
+/// chain of dependent instructions takes its span however few others run, and enough others fill the SIMD and
+/// no more.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +27,8 @@ class Simd {
 
   explicit Simd(WarpScheduling scheduling) : scheduling_(scheduling) {}
 
-  /// A clause begins to issue at `now`; `name` comes back when its last instruction has issued. Cycles do not go back from call to call.
+  /// A clause begins to issue at `now`; `name` comes back when its last instruction has issued. Cycles do not
+  /// go back from call to call.
   void add(Cycle now, std::uint32_t name, std::uint32_t work, std::uint32_t span);
   /// The first cycle in which a clause has issued its last instruction.
   [[nodiscard]] Cycle next_end() const { return next_end_; }

@@ -8,22 +8,28 @@
 
 namespace quadrille::hw {
 
-WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
-    : Unit(name, Kind::kChooser, context.clock), params_(params), loads_(static_cast<std::size_t>(context.machine.cores), 0) {
+WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const UnitContext& context,
+                                 const Params& params)
+    : Unit(name, Kind::kChooser, context.clock),
+      params_(params),
+      loads_(static_cast<std::size_t>(context.machine.cores), 0) {
   add_initiation_rate("rate");
   for (int p = 0; p < context.machine.partitions; ++p) {
     fragment_in.add(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream);
   }
-  for (int i = 0; i <= context.machine.partitions; ++i) load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
+  for (int i = 0; i <= context.machine.partitions; ++i)
+    load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
   for (int c = 0; c < context.machine.cores; ++c) {
-    vertex_out.push_back(
-        std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("vertex_out_{}", c).c_str(), LinkRole::kFlow, kVertexStream));
-    fragment_out.push_back(
-        std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("fragment_out_{}", c).c_str(), LinkRole::kFlow, kFragmentStream));
+    vertex_out.push_back(std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("vertex_out_{}", c).c_str(),
+                                                              LinkRole::kFlow, kVertexStream));
+    fragment_out.push_back(std::make_unique<FifoOut<WarpToken>>(
+        *this, fmt::format("fragment_out_{}", c).c_str(), LinkRole::kFlow, kFragmentStream));
   }
 }
 
-std::string WorkDistributor::state_text() const { return fmt::format("warps out by core: {}", fmt::join(loads_, ", ")); }
+std::string WorkDistributor::state_text() const {
+  return fmt::format("warps out by core: {}", fmt::join(loads_, ", "));
+}
 
 const FifoOut<WarpToken>& WorkDistributor::first_with_room(const Outputs& outputs) {
   const FifoOut<WarpToken>* first = outputs[0].get();
@@ -35,7 +41,8 @@ const FifoOut<WarpToken>& WorkDistributor::first_with_room(const Outputs& output
 
 std::size_t WorkDistributor::core_at(const WarpToken& warp) const {
   const auto side = static_cast<std::uint32_t>(params_.block_tiles.value());
-  return models::partition_of(warp.tile_x / side, warp.tile_y / side, static_cast<std::uint32_t>(fragment_out.size()));
+  return models::partition_of(warp.tile_x / side, warp.tile_y / side,
+                              static_cast<std::uint32_t>(fragment_out.size()));
 }
 
 Wake WorkDistributor::vertex_wake() const {
@@ -57,7 +64,9 @@ Wake WorkDistributor::fragment_wake() const {
   return first;
 }
 
-Wake WorkDistributor::next() const { return Wake::sooner(Wake::sooner(vertex_wake(), fragment_wake()), load_in.earliest()); }
+Wake WorkDistributor::next() const {
+  return Wake::sooner(Wake::sooner(vertex_wake(), fragment_wake()), load_in.earliest());
+}
 
 void WorkDistributor::act(Tick now) {
   load_in.take_ready(now, [&](std::size_t, const ReleaseToken& done) { --loads_[done.slot]; });
@@ -94,7 +103,8 @@ std::size_t WorkDistributor::choose(Tick now, const Outputs& outputs, std::size_
   return best;
 }
 
-void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core, std::size_t& turn) {
+void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core,
+                               std::size_t& turn) {
   stats_.working_for(in.front().draw);
   outputs[core]->push(now, in.pop(now));
   ++loads_[core];

@@ -1,11 +1,14 @@
 /// Work distributor: hands vertex batches and fragment warps to the cores.
 ///
 /// In    vertex_in       batches to shade             fragment_in[p]  warps from the packer of partition p
-///       load_in[p]      a warp of a core is done: from the ROP of partition p; the last from primitive assembly
+///       load_in[p]      a warp of a core is done: from the ROP of partition p; the last from primitive
+///       assembly
 /// Out   vertex_out[c]   to core c                    fragment_out[c]
 /// Time  one vertex and one fragment warp a cycle; partitions take turns
-/// Who   `policy`: in turn; fragments by where they are on the screen; or to the core with the fewest warps, sent and not reported done, which is what is known
-///       here of its load. A core is skipped while it has no room, but under `tile` its warps wait. Batches have no place on the screen and go by load then.
+/// Who   `policy`: in turn; fragments by where they are on the screen; or to the core with the fewest warps,
+/// sent and not reported done, which is what is known
+///       here of its load. A core is skipped while it has no room, but under `tile` its warps wait. Batches
+///       have no place on the screen and go by load then.
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -24,15 +27,17 @@ class WorkDistributor final : public Unit {
                               "policy",
                               WarpPolicy::kLeastLoaded,
                               {"round_robin", "tile", "least_loaded"},
-                              "Which core gets a warp: the next in turn, the one of its part of the screen, or the one with the fewest. "
+                              "Which core gets a warp: the next in turn, the one of its part of the screen, "
+                              "or the one with the fewest. "
                               "[M: warp policies: fewest cycles]"};
-    Param<int> block_tiles{*this,
-                           "block_tiles",
-                           4,
-                           "tile",
-                           {1, 2048},
-                           "policy=tile: side of the squares of 8x8-pixel tiles whose warps go to one core. [G]",
-                           Effect::kTradeOff};
+    Param<int> block_tiles{
+        *this,
+        "block_tiles",
+        4,
+        "tile",
+        {1, 2048},
+        "policy=tile: side of the squares of 8x8-pixel tiles whose warps go to one core. [G]",
+        Effect::kTradeOff};
   };
   struct Stats : StatGroup {
     Counter vertex_warps{*this, "vertex_warps", "warp", "Vertex batches handed to cores"};

@@ -7,7 +7,8 @@
 
 namespace quadrille::hw {
 
-TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<CoreSlot>& slots)
+TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+                         Store<CoreSlot>& slots)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -16,8 +17,11 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& contex
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses) {
   add_initiation_rate("address");
-  add_rate("filter", [this] { return static_cast<double>(stats_.bilinear_quads.value()) / params_.filter_quads_per_clk; });
-  add_places("groups_in_flight", [this] { return groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()); });
+  add_rate("filter", [this] {
+    return static_cast<double>(stats_.bilinear_quads.value()) / params_.filter_quads_per_clk;
+  });
+  add_places("groups_in_flight",
+             [this] { return groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()); });
   add_places("cache_misses", [this] { return cache_.full(); });
 }
 
@@ -27,7 +31,8 @@ std::string TextureUnit::state_text() const {
 
 Wake TextureUnit::address_wake() const {
   if (next_line_ < lines_.size()) return stalled_ ? Wake::never(port_.response_in[0]) : Wake(address_free_);
-  if (groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value())) return Wake::never(response_out);
+  if (groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()))
+    return Wake::never(response_out);
   return Wake(address_free_).input(request_in);
 }
 
@@ -36,7 +41,8 @@ Wake TextureUnit::answer_wake() const {
   const Group& head = groups_.front();
   const bool still_looking_up = groups_.size() == 1 && next_line_ < lines_.size();
   if (head.missing > 0 || still_looking_up) return Wake::never(port_.response_in[0]);
-  return Wake(after(std::max(head.ready, filter_free_), head.filter_cycles + params_.filter_clk)).output(response_out);
+  return Wake(after(std::max(head.ready, filter_free_), head.filter_cycles + params_.filter_clk))
+      .output(response_out);
 }
 
 Wake TextureUnit::next() const {
@@ -69,16 +75,19 @@ void TextureUnit::act(Tick now) {
   port_.send(now);
 }
 
-void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles) {
+void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
+                       std::int64_t& address_cycles) {
   const DrawState& draw = frame_.draw(token.draw);
-  const std::vector<TextureState>& textures = token.vertex_stage ? draw.vertex_textures : draw.fragment_textures;
+  const std::vector<TextureState>& textures =
+      token.vertex_stage ? draw.vertex_textures : draw.fragment_textures;
   std::uint32_t quads = 0;
   for (int i = 0; i < slot.warp.texture_count; ++i) {
     const models::TextureRequest& request = slot.warp.textures[static_cast<std::size_t>(i)];
     const TextureState& texture = textures[request.binding];
     models::plan_texture(texture.view, texture.sampler, request, frame_.precision, plan_);
     texture.need_texels(plan_);
-    // Values are the same whenever they are computed: textures do not change within a pass. Only presence in the cache takes time.
+    // Values are the same whenever they are computed: textures do not change within a pass. Only presence in
+    // the cache takes time.
     models::filter_texture(plan_, device_, slot.texels[static_cast<std::size_t>(i)]);
     lines_.insert(lines_.end(), plan_.lines.begin(), plan_.lines.begin() + plan_.line_count);
     quads += plan_.bilinear_quads;
@@ -88,9 +97,11 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group, 
     stats_.texels += plan_.texels;
   }
   const auto per = [](std::size_t work, int rate) {
-    return static_cast<std::int64_t>((work + static_cast<std::size_t>(rate) - 1) / static_cast<std::size_t>(rate));
+    return static_cast<std::int64_t>((work + static_cast<std::size_t>(rate) - 1) /
+                                     static_cast<std::size_t>(rate));
   };
-  address_cycles = std::max({std::int64_t{1}, per(quads, params_.address_quads_per_clk), per(lines_.size(), params_.tags_per_clk)});
+  address_cycles = std::max(
+      {std::int64_t{1}, per(quads, params_.address_quads_per_clk), per(lines_.size(), params_.tags_per_clk)});
   group.filter_cycles = std::max<std::int64_t>(1, per(quads, params_.filter_quads_per_clk));
 }
 
@@ -132,8 +143,9 @@ void TextureUnit::audit(Audit& audit) const {
 }
 
 std::vector<Facet> TextureUnit::row() const {
-  return {rate("bilinear quads", stats_.bilinear_quads, params_.filter_quads_per_clk), count("requests", stats_.requests),
-          mean("lanes/request", stats_.lanes, stats_.requests), share("cache hit", cache_.stats().hits, cache_.stats().requests),
+  return {rate("bilinear quads", stats_.bilinear_quads, params_.filter_quads_per_clk),
+          count("requests", stats_.requests), mean("lanes/request", stats_.lanes, stats_.requests),
+          share("cache hit", cache_.stats().hits, cache_.stats().requests),
           share("merged", cache_.stats().merged, cache_.stats().requests)};
 }
 

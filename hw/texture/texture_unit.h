@@ -1,11 +1,13 @@
-/// Texture unit of one core: level of detail and addresses, a first-level cache that fetches ahead of the filter, and the filter.
+/// Texture unit of one core: level of detail and addresses, a first-level cache that fetches ahead of the
+/// filter, and the filter.
 ///
 /// In    request_in   the texture requests of one clause (up to 8 warp instructions)
 /// Out   response_out their texels are filtered, in order
 /// Mem   misses of the first-level cache, 128-byte lines in 32-byte sectors
-/// Time  addresses: `address_quads_per_clk` quads and level a cycle, `tags_per_clk` distinct lines a cycle; filter: `filter_quads_per_clk` bilinear quads a
-///       cycle. Requests wait in between for their lines, so a miss delays but does not stop the look-ups behind it. [P: Igehy 1998, prefetching texture
-///       cache]
+/// Time  addresses: `address_quads_per_clk` quads and level a cycle, `tags_per_clk` distinct lines a cycle;
+/// filter: `filter_quads_per_clk` bilinear quads a
+///       cycle. Requests wait in between for their lines, so a miss delays but does not stop the look-ups
+///       behind it. [P: Igehy 1998, prefetching texture cache]
 #pragma once
 
 #include "hw/base/param.h"
@@ -21,29 +23,48 @@ namespace quadrille::hw {
 class TextureUnit final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> address_quads_per_clk{*this, "address_quads_per_clk", 2, "quad/clk", {1, 64}, "Quads and mip levels addressed a cycle. [G]"};
-    Param<int> filter_quads_per_clk{
-        *this, "filter_quads_per_clk", 2, "quad/clk", {1, 64}, "Bilinear quads filtered a cycle. [G: 8 texels x 4 channels]"};
-    Param<int> tags_per_clk{*this, "tags_per_clk", 4, "line/clk", {1, 64}, "Distinct lines looked up a cycle. [G: 4 tag banks]"};
-    Param<int> filter_clk{*this,          "filter_clk", 8,
-                          "clk",          {0, 1 << 16}, "Latency of the filter, paid after the last line of a group arrived. [G]",
+    Param<int> address_quads_per_clk{*this,   "address_quads_per_clk",
+                                     2,       "quad/clk",
+                                     {1, 64}, "Quads and mip levels addressed a cycle. [G]"};
+    Param<int> filter_quads_per_clk{*this,   "filter_quads_per_clk",
+                                    2,       "quad/clk",
+                                    {1, 64}, "Bilinear quads filtered a cycle. [G: 8 texels x 4 channels]"};
+    Param<int> tags_per_clk{*this,      "tags_per_clk", 4,
+                            "line/clk", {1, 64},        "Distinct lines looked up a cycle. [G: 4 tag banks]"};
+    Param<int> filter_clk{*this,
+                          "filter_clk",
+                          8,
+                          "clk",
+                          {0, 1 << 16},
+                          "Latency of the filter, paid after the last line of a group arrived. [G]",
                           Effect::kSlower};
-    Param<int> groups_in_flight{*this,   "groups_in_flight", 32,
-                                "group", {1, 4096},          "Clauses' requests between addresses and filter. [G: latency to hide]"};
-    Param<int> cache_lines{*this, "cache_lines", 256, "line", {1, 1 << 20}, "Lines of 128 bytes in the first-level cache. [G: 32 KiB]"};
-    Param<int> cache_ways{*this, "cache_ways", 8, "way", {1, 64}, "Associativity of the first-level cache. [G]", Effect::kTradeOff};
-    Param<int> cache_misses{*this, "cache_misses", 64, "line", {1, 4096}, "Lines under way. [G: bandwidth times latency]"};
+    Param<int> groups_in_flight{
+        *this,   "groups_in_flight", 32,
+        "group", {1, 4096},          "Clauses' requests between addresses and filter. [G: latency to hide]"};
+    Param<int> cache_lines{*this,  "cache_lines", 256,
+                           "line", {1, 1 << 20},  "Lines of 128 bytes in the first-level cache. [G: 32 KiB]"};
+    Param<int> cache_ways{*this,
+                          "cache_ways",
+                          8,
+                          "way",
+                          {1, 64},
+                          "Associativity of the first-level cache. [G]",
+                          Effect::kTradeOff};
+    Param<int> cache_misses{*this,  "cache_misses", 64,
+                            "line", {1, 4096},      "Lines under way. [G: bandwidth times latency]"};
   };
   struct Stats : StatGroup {
     Counter groups{*this, "groups", "group", "Clauses' request groups taken in"};
     Counter requests{*this, "requests", "request", "Warp texture instructions"};
     Counter lanes{*this, "lanes", "lane", "Lanes that sampled"};
-    Counter bilinear_quads{*this, "bilinear_quads", "quad", "Bilinear quad operations, two a quad for a trilinear one"};
+    Counter bilinear_quads{*this, "bilinear_quads", "quad",
+                           "Bilinear quad operations, two a quad for a trilinear one"};
     Counter texels{*this, "texels", "texel", "Texels read from the cache"};
     Counter groups_answered{*this, "groups_answered", "group", "Groups whose texels went back"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
-  TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<CoreSlot>& slots);
+  TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
+              Store<CoreSlot>& slots);
 
   FifoIn<TextureToken> request_in{*this, "request_in"};
   FifoOut<TextureToken> response_out{*this, "response_out", LinkRole::kReply};

@@ -7,7 +7,8 @@
 namespace quadrille {
 namespace {
 
-constexpr std::size_t kMaxNames = 3, kMaxLetters = 100;  // what is longer is no name of ours with a slip in it
+// what is longer is no name of ours with a slip in it
+constexpr std::size_t kMaxNames = 3, kMaxLetters = 100;
 
 char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
@@ -34,7 +35,8 @@ std::size_t letters_apart(std::string_view a, std::string_view b) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t replaced = last[j - 1] + (small(a[i - 1]) == small(b[j - 1]) ? 0 : 1);
       row[j] = std::min({last[j] + 1, row[j - 1] + 1, replaced});
-      const bool swapped = i > 1 && j > 1 && small(a[i - 1]) == small(b[j - 2]) && small(a[i - 2]) == small(b[j - 1]);
+      const bool swapped =
+          i > 1 && j > 1 && small(a[i - 1]) == small(b[j - 2]) && small(a[i - 2]) == small(b[j - 1]);
       if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
     }
   }
@@ -50,7 +52,8 @@ std::vector<std::string> near_names(std::string_view typed, std::span<const std:
     if (d < least) nearest.clear();
     if (d > least) continue;
     least = d;
-    if (nearest.size() < kMaxNames && std::ranges::find(nearest, name) == nearest.end()) nearest.push_back(name);
+    if (nearest.size() < kMaxNames && std::ranges::find(nearest, name) == nearest.end())
+      nearest.push_back(name);
   }
   return nearest;
 }

@@ -16,7 +16,11 @@ constexpr std::uint32_t kFree = 0xffffffffu;
 }  // namespace
 
 TagArray::TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices)
-    : sets_(ways == 0 ? 0 : lines / ways), ways_(ways), stride_((ways + 7) / 8 * 8), over_slices_(slices), over_sets_(std::max(sets_, 1u)) {
+    : sets_(ways == 0 ? 0 : lines / ways),
+      ways_(ways),
+      stride_((ways + 7) / 8 * 8),
+      over_slices_(slices),
+      over_sets_(std::max(sets_, 1u)) {
   QUADRILLE_CHECK(ways > 0 && lines >= ways && lines % ways == 0, "{} lines of {} ways", lines, ways);
   tags_.assign(std::size_t{sets_} * stride_, kFree);
   used_.assign(lines, 0);
@@ -28,9 +32,11 @@ int TagArray::find(std::uint32_t line) const {
   const std::uint32_t* tags = tags_.data() + std::size_t{set} * stride_;
   const __m256i wanted = _mm256_set1_epi32(static_cast<int>(line));
   for (std::uint32_t way = 0; way < stride_; way += 8) {
-    const __m256i equal = _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(tags + way)), wanted);
+    const __m256i equal =
+        _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(tags + way)), wanted);
     const auto hits = static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(equal)));
-    if (hits != 0) return static_cast<int>(set * ways_ + way + static_cast<std::uint32_t>(std::countr_zero(hits)));
+    if (hits != 0)
+      return static_cast<int>(set * ways_ + way + static_cast<std::uint32_t>(std::countr_zero(hits)));
   }
   return kNone;
 }
@@ -62,7 +68,8 @@ TagArray::Allocation TagArray::allocate(std::uint32_t line) {
 
 void TagArray::fill(int slot, SectorMask sectors) {
   Line& line = state(slot);
-  QUADRILLE_CHECK((sectors & ~line.pending) == 0, "sectors {:#x} of line {} arrive, {:#x} are pending", sectors, line.line, line.pending);
+  QUADRILLE_CHECK((sectors & ~line.pending) == 0, "sectors {:#x} of line {} arrive, {:#x} are pending",
+                  sectors, line.line, line.pending);
   line.pending = static_cast<SectorMask>(line.pending & ~sectors);
   line.valid |= sectors;
 }
@@ -75,14 +82,16 @@ void TagArray::mark_dirty(int slot, SectorMask sectors) {
 
 void TagArray::invalidate_all() {
   for (const Line& line : lines_)
-    QUADRILLE_CHECK(line.dirty == 0 && line.pending == 0, "line {} is dirty {:#x} or pending {:#x}", line.line, line.dirty, line.pending);
+    QUADRILLE_CHECK(line.dirty == 0 && line.pending == 0, "line {} is dirty {:#x} or pending {:#x}",
+                    line.line, line.dirty, line.pending);
   std::ranges::fill(tags_, kFree);
   std::ranges::fill(used_, 0);
   std::ranges::fill(lines_, Line{});
 }
 
 std::uint32_t TagArray::dirty_count() const {
-  return static_cast<std::uint32_t>(std::ranges::count_if(lines_, [](const Line& line) { return line.dirty != 0; }));
+  return static_cast<std::uint32_t>(
+      std::ranges::count_if(lines_, [](const Line& line) { return line.dirty != 0; }));
 }
 
 }  // namespace quadrille::models

@@ -1,9 +1,10 @@
-/// Tags of a set-associative cache with sectored lines and LRU replacement: which lines it holds, in what state. Data stay in
-/// `DeviceMemory`.
+/// Tags of a set-associative cache with sectored lines and LRU replacement: which lines it holds, in what
+/// state. Data stay in `DeviceMemory`.
 ///
-/// A line (128 bytes) has four sectors of 32 bytes, each absent, pending (asked for), valid, or valid and dirty. A line with a pending
-/// sector is never a victim. Lines are spread over any number of sets by memory/interleave.h: consecutive lines go to consecutive sets, so
-/// that a stream evicts in the order in which it came, and strides of powers of two use all sets.
+/// A line (128 bytes) has four sectors of 32 bytes, each absent, pending (asked for), valid, or valid and
+/// dirty. A line with a pending sector is never a victim. Lines are spread over any number of sets by
+/// memory/interleave.h: consecutive lines go to consecutive sets, so that a stream evicts in the order in
+/// which it came, and strides of powers of two use all sets.
 #pragma once
 
 #include "models/memory/interleave.h"
@@ -33,16 +34,16 @@ class TagArray {
     SectorMask valid = 0, dirty = 0, pending = 0;
   };
 
-  /// `lines` in all, `ways` a set; `lines` is a multiple of `ways`. A cache that sees the lines of one slice of `slices` spreads them by
-  /// their numbers within the slice.
+  /// `lines` in all, `ways` a set; `lines` is a multiple of `ways`. A cache that sees the lines of one slice
+  /// of `slices` spreads them by their numbers within the slice.
   TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices = 1);
 
   /// Slot that holds the line, or kNone. Does not change the order of replacement.
   [[nodiscard]] int find(std::uint32_t line) const;
   /// The same, and makes it the most recently used.
   int lookup(std::uint32_t line);
-  /// Takes a slot for a line that is not held: a free way or the least recently used one without a pending sector. All its sectors are
-  /// absent.
+  /// Takes a slot for a line that is not held: a free way or the least recently used one without a pending
+  /// sector. All its sectors are absent.
   Allocation allocate(std::uint32_t line);
 
   [[nodiscard]] const Line& at(int slot) const { return lines_[static_cast<std::size_t>(slot)]; }
@@ -58,14 +59,17 @@ class TagArray {
 
   [[nodiscard]] std::uint32_t sets() const { return sets_; }
   [[nodiscard]] std::uint32_t ways() const { return ways_; }
-  /// Slots run from 0 to slots() - 1; a slot that holds no line has valid = dirty = pending = 0. For flushing.
+  /// Slots run from 0 to slots() - 1; a slot that holds no line has valid = dirty = pending = 0. For
+  /// flushing.
   [[nodiscard]] int slots() const { return static_cast<int>(lines_.size()); }
   /// Lines with a dirty sector.
   [[nodiscard]] std::uint32_t dirty_count() const;
 
  private:
   [[nodiscard]] Line& state(int slot) { return lines_[static_cast<std::size_t>(slot)]; }
-  [[nodiscard]] std::uint32_t set_of(std::uint32_t line) const { return over_sets_.member_of(over_slices_.index_of(line)); }
+  [[nodiscard]] std::uint32_t set_of(std::uint32_t line) const {
+    return over_sets_.member_of(over_slices_.index_of(line));
+  }
 
   std::uint32_t sets_, ways_, stride_;  // stride: ways rounded up to a vector of tags
   Interleave over_slices_, over_sets_;

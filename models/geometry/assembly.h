@@ -14,8 +14,9 @@ enum class Topology : std::uint8_t { kTriangleList, kTriangleStrip, kTriangleFan
   return vertices < 3 ? 0 : vertices - 2;
 }
 
-/// Positions within the draw (0-based) of the vertices of triangle `i`. The first is the provoking vertex, and the order keeps the winding.
-/// [VK1.3 #drawing-triangle-lists, #drawing-triangle-strips, #drawing-triangle-fans]
+/// Positions within the draw (0-based) of the vertices of triangle `i`. The first is the provoking vertex,
+/// and the order keeps the winding. [VK1.3 #drawing-triangle-lists, #drawing-triangle-strips,
+/// #drawing-triangle-fans]
 [[nodiscard]] constexpr std::array<std::uint32_t, 3> triangle_vertices(Topology topology, std::uint32_t i) {
   switch (topology) {
     case Topology::kTriangleList: return {3 * i, 3 * i + 1, 3 * i + 2};

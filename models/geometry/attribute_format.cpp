@@ -18,7 +18,8 @@ void decode_components(const std::byte* source, int count, std::uint32_t out[4])
       out[i] = std::bit_cast<std::uint32_t>(value);
     } else {
       const float scaled = static_cast<float>(value) / static_cast<float>(std::numeric_limits<T>::max());
-      out[i] = std::bit_cast<std::uint32_t>(std::max(scaled, -1.0f));  // the most negative SNORM code is -1 too
+      // the most negative SNORM code is -1 too
+      out[i] = std::bit_cast<std::uint32_t>(std::max(scaled, -1.0f));
     }
   }
 }

@@ -1,4 +1,5 @@
-/// Vertex attribute formats: how bytes in a vertex buffer become the 32-bit words a vertex shader reads. [VK1.3 #fundamentals-fixedconv,
+/// Vertex attribute formats: how bytes in a vertex buffer become the 32-bit words a vertex shader reads.
+/// [VK1.3 #fundamentals-fixedconv,
 /// #fxvertex-input-extraction]
 #pragma once
 
@@ -26,8 +27,9 @@ enum class AttributeFormat : std::uint8_t {
 /// Bytes of one attribute.
 [[nodiscard]] std::uint32_t attribute_bytes(AttributeFormat format);
 
-/// Decodes one attribute from `source` (no alignment asked; `attribute_bytes` bytes are read) to four words: the bits of floats, or unsigned integers
-/// for UINT formats. Components that a float format lacks read as (0, 0, 0, 1). UNORM c / (2^n - 1); SNORM max(c / (2^(n-1) - 1), -1).
+/// Decodes one attribute from `source` (no alignment asked; `attribute_bytes` bytes are read) to four words:
+/// the bits of floats, or unsigned integers for UINT formats. Components that a float format lacks read as
+/// (0, 0, 0, 1). UNORM c / (2^n - 1); SNORM max(c / (2^(n-1) - 1), -1).
 void decode_attribute(AttributeFormat format, const std::byte* source, std::uint32_t out[4]);
 
 }  // namespace quadrille::models

@@ -35,7 +35,8 @@ int VertexReuse::find(std::uint32_t index) const {
 
 bool VertexReuse::fits(const std::array<std::uint32_t, 3>& triangle) const {
   std::ptrdiff_t added = 3;
-  if (policy_ == ReusePolicy::kBatch) added = std::ranges::count_if(triangle, [this](std::uint32_t v) { return find(v) < 0; });
+  if (policy_ == ReusePolicy::kBatch)
+    added = std::ranges::count_if(triangle, [this](std::uint32_t v) { return find(v) < 0; });
   return size_ + added <= batch_vertices_;
 }
 

@@ -1,10 +1,12 @@
-/// Post-transform reuse: which vertices of a draw are shaded, in which batch and lane, and where a triangle finds those that were shaded before.
+/// Post-transform reuse: which vertices of a draw are shaded, in which batch and lane, and where a triangle
+/// finds those that were shaded before.
 ///
 /// A batch of up to 32 vertices is shaded as one warp. Vertices are told apart by index. Three policies:
-///   batch  a vertex is shaded once a batch: a batch carries all that its triangles need. GPUs reuse so [P: Kerbl 2018].
-///   fifo   the vertices shaded last, any of which a later batch's triangle may name: the post-transform cache of older machines
-///   none   every corner is shaded
-/// The counts are those of meshoptimizer's analyser: (n, n, triangles a batch) for batches of n vertices, (entries, 0, 0) for the FIFO.
+///   batch  a vertex is shaded once a batch: a batch carries all that its triangles need. GPUs reuse so [P:
+///   Kerbl 2018]. fifo   the vertices shaded last, any of which a later batch's triangle may name: the
+///   post-transform cache of older machines none   every corner is shaded
+/// The counts are those of meshoptimizer's analyser: (n, n, triangles a batch) for batches of n vertices,
+/// (entries, 0, 0) for the FIFO.
 #pragma once
 
 #include <array>
@@ -27,23 +29,29 @@ class VertexReuse {
  public:
   static constexpr int kLanes = 32;
 
-  /// Batches of at most `batch_vertices` (3 to 32) vertices; under `kFifo`, `entries` vertices are remembered.
-  explicit VertexReuse(ReusePolicy policy = ReusePolicy::kBatch, int batch_vertices = kLanes, int entries = 0);
+  /// Batches of at most `batch_vertices` (3 to 32) vertices; under `kFifo`, `entries` vertices are
+  /// remembered.
+  explicit VertexReuse(ReusePolicy policy = ReusePolicy::kBatch, int batch_vertices = kLanes,
+                       int entries = 0);
   /// Forgets all: vertices of another draw or instance are others.
   void start_draw();
   /// Starts an empty batch that lies in `slot`.
   void start_batch(std::uint32_t slot = 0);
-  /// Does a triangle with these vertices fit into the batch? Each corner whose vertex is at hand is free, any other takes a lane, also where two corners share
-  /// a new vertex: the hardware's rule, since it looks all three up at once. Under `kFifo` the corners at hand may push each other out, so three lanes are asked.
+  /// Does a triangle with these vertices fit into the batch? Each corner whose vertex is at hand is free, any
+  /// other takes a lane, also where two corners share a new vertex: the hardware's rule, since it looks all
+  /// three up at once. Under `kFifo` the corners at hand may push each other out, so three lanes are asked.
   [[nodiscard]] bool fits(const std::array<std::uint32_t, 3>& triangle) const;
-  /// Where the vertex is or, if it is not at hand, will be: it then takes the batch's next lane, which must be there.
+  /// Where the vertex is or, if it is not at hand, will be: it then takes the batch's next lane, which must
+  /// be there.
   VertexPlace place(std::uint32_t index);
   /// Vertices that the batch shades; lanes 0..size()-1 hold `index(lane)`.
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] std::uint32_t index(int lane) const { return indices_[static_cast<std::size_t>(lane)]; }
 
   /// Under `kFifo`: may a later triangle still name a vertex of the batch in `slot`?
-  [[nodiscard]] bool remembers(std::uint32_t slot) const { return slot < remembered_.size() && remembered_[slot] > 0; }
+  [[nodiscard]] bool remembers(std::uint32_t slot) const {
+    return slot < remembered_.size() && remembered_[slot] > 0;
+  }
   /// Slots of which it does.
   [[nodiscard]] int slots_remembered() const { return slots_remembered_; }
   /// Forgets the oldest vertices until those of at most `slots` slots are left: a store that holds no more.

@@ -9,7 +9,8 @@
 namespace quadrille::models {
 namespace {
 
-/// `count` zeroed bytes. `calloc` takes large blocks from the host as they are, where a vector would write its zeros.
+/// `count` zeroed bytes. `calloc` takes large blocks from the host as they are, where a vector would write
+/// its zeros.
 template <class T>
 T* zeroed(std::uint64_t count) {
   static_assert(sizeof(T) == 1);
@@ -43,7 +44,8 @@ std::uint64_t DeviceMemory::allocate(std::uint64_t bytes, std::uint64_t alignmen
   const std::uint64_t address = (size_ + step - 1) & ~(step - 1);
   if (address > limit_ || bytes > limit_ - address) {
     throw user_error(
-        "device memory: {} bytes are asked for at {} but the device has {}; use a smaller scene or target, or give the machine more memory",
+        "device memory: {} bytes are asked for at {} but the device has {}; use a smaller scene or target, "
+        "or give the machine more memory",
         bytes, address, limit_);
   }
   const std::uint64_t end = (address + bytes + kLineBytes - 1) & ~std::uint64_t{kLineBytes - 1};
@@ -53,19 +55,22 @@ std::uint64_t DeviceMemory::allocate(std::uint64_t bytes, std::uint64_t alignmen
 }
 
 std::span<std::byte> DeviceMemory::write(std::uint64_t address, std::uint64_t bytes) {
-  QUADRILLE_CHECK(address <= size_ && bytes <= size_ - address, "write of {} bytes at {:#x}, memory ends at {:#x}", bytes, address, size_);
+  QUADRILLE_CHECK(address <= size_ && bytes <= size_ - address,
+                  "write of {} bytes at {:#x}, memory ends at {:#x}", bytes, address, size_);
   return {bytes_.get() + address, bytes};
 }
 
 std::span<const std::byte> DeviceMemory::read(std::uint64_t address, std::uint64_t bytes) const {
-  QUADRILLE_CHECK(address <= size_ && bytes <= size_ - address, "read of {} bytes at {:#x}, memory ends at {:#x}", bytes, address, size_);
+  QUADRILLE_CHECK(address <= size_ && bytes <= size_ - address,
+                  "read of {} bytes at {:#x}, memory ends at {:#x}", bytes, address, size_);
   return {bytes_.get() + address, bytes};
 }
 
 void DeviceMemory::mark_dirty(std::uint64_t line, Owner owner) {
   QUADRILLE_CHECK(line < lines() && owner != kClean, "line {} of {}, owner {}", line, lines(), owner);
   Owner& current = owner_[line];
-  QUADRILLE_CHECK(current == kClean || current == owner, "line {} is dirty in cache {} and written in cache {}", line, current, owner);
+  QUADRILLE_CHECK(current == kClean || current == owner,
+                  "line {} is dirty in cache {} and written in cache {}", line, current, owner);
   if (current == kClean) ++dirty_lines_;
   current = owner;
 }
@@ -85,8 +90,9 @@ void DeviceMemory::check_readable(std::uint64_t address, std::uint64_t bytes, Ow
   if (bytes == 0) return;
   for (std::uint64_t line = address / kLineBytes; line <= (address + bytes - 1) / kLineBytes; ++line) {
     const Owner owner = dirty_owner(line);
-    QUADRILLE_CHECK(owner == kClean || owner == reader, "line {} is read by {} while cache {} holds it dirty: a flush is missing", line,
-                    reader, owner);
+    QUADRILLE_CHECK(owner == kClean || owner == reader,
+                    "line {} is read by {} while cache {} holds it dirty: a flush is missing", line, reader,
+                    owner);
   }
 }
 

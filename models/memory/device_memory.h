@@ -1,9 +1,10 @@
 /// Simulated device memory: one flat array of bytes at real addresses, and who holds which line dirty.
 ///
-/// Caches keep tags and state, never data. So that a missed flush is seen all the same, a cache that holds a line dirty is noted here as
-/// its owner, and whoever reads that line from below it breaks an invariant.
+/// Caches keep tags and state, never data. So that a missed flush is seen all the same, a cache that holds a
+/// line dirty is noted here as its owner, and whoever reads that line from below it breaks an invariant.
 ///
-/// What nobody writes costs the host nothing: large blocks come from the host zeroed, page by page, at the first touch.
+/// What nobody writes costs the host nothing: large blocks come from the host zeroed, page by page, at the
+/// first touch.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +28,9 @@ class DeviceMemory {
   /// `limit` in bytes: allocating beyond it is a user's error.
   explicit DeviceMemory(std::uint64_t limit = std::uint64_t{4} << 30) : limit_(limit) {}
 
-  /// Address of `bytes` new zeroed bytes, aligned to `alignment` (a power of two; at least a line, so that no two objects share one).
-  /// Throws `UserError` when the device's memory does not hold them. Spans and pointers taken earlier become invalid.
+  /// Address of `bytes` new zeroed bytes, aligned to `alignment` (a power of two; at least a line, so that no
+  /// two objects share one). Throws `UserError` when the device's memory does not hold them. Spans and
+  /// pointers taken earlier become invalid.
   std::uint64_t allocate(std::uint64_t bytes, std::uint64_t alignment = kLineBytes);
   [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Makes room on the host for `bytes` in all, so that later allocations move nothing. Optional.

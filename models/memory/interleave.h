@@ -1,12 +1,16 @@
-/// How addresses and the screen are spread over members that work side by side: lines over L2 slices and over the sets of a cache, tiles over partitions.
+/// How addresses and the screen are spread over members that work side by side: lines over L2 slices and over
+/// the sets of a cache, tiles over partitions.
 ///
-/// Lines are taken in blocks of as many as there are members. Each block has one line for every member, in order but rotated, so that consecutive lines
-/// go to consecutive members, a member's lines keep their order, and all members hold equally many. The rotation is the block's number, scattered: XOR of one
-/// word a bit set, then scaled to the members (a tree of XOR gates and a small multiplier). The words are drawn so that blocks which count up in any
-/// power of two take all rotations in turn; any other stride spreads as if by chance, which no fixed modulus does. How even that is, and where it falls
-/// short of perfect, tests/models/memory/interleave_test.cpp says (docs/deviations.md#D81).
+/// Lines are taken in blocks of as many as there are members. Each block has one line for every member, in
+/// order but rotated, so that consecutive lines go to consecutive members, a member's lines keep their order,
+/// and all members hold equally many. The rotation is the block's number, scattered: XOR of one word a bit
+/// set, then scaled to the members (a tree of XOR gates and a small multiplier). The words are drawn so that
+/// blocks which count up in any power of two take all rotations in turn; any other stride spreads as if by
+/// chance, which no fixed modulus does. How even that is, and where it falls short of perfect,
+/// tests/models/memory/interleave_test.cpp says (docs/deviations.md#D81).
 ///
-/// Tiles of a row go to consecutive partitions; each row begins a few further on, by amounts searched for every count of partitions.
+/// Tiles of a row go to consecutive partitions; each row begins a few further on, by amounts searched for
+/// every count of partitions.
 #pragma once
 
 #include "models/base/error.h"
@@ -23,10 +27,12 @@ extern const std::array<std::array<std::uint32_t, 256>, 4> kScatter;
   return number < 1u << 16 ? low : low ^ kScatter[2][number >> 16 & 255] ^ kScatter[3][number >> 24];
 }
 
-/// Lines over `members`, any number: line <-> (member, index within the member) is a bijection, with index = line / members.
+/// Lines over `members`, any number: line <-> (member, index within the member) is a bijection, with index =
+/// line / members.
 class Interleave {
  public:
-  explicit Interleave(std::uint32_t members) : members_(members), reciprocal_(members < 2 ? 0 : ~std::uint64_t{0} / members + 1) {
+  explicit Interleave(std::uint32_t members)
+      : members_(members), reciprocal_(members < 2 ? 0 : ~std::uint64_t{0} / members + 1) {
     QUADRILLE_CHECK(members > 0, "nothing to interleave over");
   }
 
@@ -58,6 +64,7 @@ class Interleave {
 };
 
 /// Partition, below `partitions` (1 to 64), that owns a tile of 8x8 pixels.
-[[nodiscard]] std::uint32_t partition_of(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t partitions);
+[[nodiscard]] std::uint32_t partition_of(std::uint32_t tile_x, std::uint32_t tile_y,
+                                         std::uint32_t partitions);
 
 }  // namespace quadrille::models

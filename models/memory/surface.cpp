@@ -33,30 +33,34 @@ SurfaceLayout allocate_surface(DeviceMemory& memory, std::uint32_t width, std::u
 
 void fill_surface(DeviceMemory& memory, const SurfaceLayout& surface, std::uint32_t value) {
   const std::span<std::byte> bytes = memory.write(surface.base, surface.bytes());
-  for (std::size_t i = 0; i < bytes.size(); i += sizeof value) std::memcpy(bytes.data() + i, &value, sizeof value);
+  for (std::size_t i = 0; i < bytes.size(); i += sizeof value)
+    std::memcpy(bytes.data() + i, &value, sizeof value);
 }
 
 std::vector<std::uint32_t> detile(const DeviceMemory& memory, const SurfaceLayout& surface) {
   const std::span<const std::byte> bytes = memory.read(surface.base, surface.bytes());
   std::vector<std::uint32_t> pixels(std::size_t{surface.width} * surface.height);
-  for_each_pixel(surface,
-                 [&](std::size_t i, std::uint64_t address) { std::memcpy(&pixels[i], bytes.data() + (address - surface.base), 4); });
+  for_each_pixel(surface, [&](std::size_t i, std::uint64_t address) {
+    std::memcpy(&pixels[i], bytes.data() + (address - surface.base), 4);
+  });
   return pixels;
 }
 
 std::vector<std::uint8_t> detile_rgba8(const DeviceMemory& memory, const SurfaceLayout& surface) {
   const std::vector<std::uint32_t> pixels = detile(memory, surface);
   std::vector<std::uint8_t> bytes(pixels.size() * 4);
-  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(pixels[i / 4] >> (8 * (i % 4)));
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    bytes[i] = static_cast<std::uint8_t>(pixels[i / 4] >> (8 * (i % 4)));
   return bytes;
 }
 
 void entile(DeviceMemory& memory, const SurfaceLayout& surface, std::span<const std::uint32_t> pixels) {
-  QUADRILLE_CHECK(pixels.size() == std::size_t{surface.width} * surface.height, "{} pixels for a surface of {} x {}", pixels.size(),
-                  surface.width, surface.height);
+  QUADRILLE_CHECK(pixels.size() == std::size_t{surface.width} * surface.height,
+                  "{} pixels for a surface of {} x {}", pixels.size(), surface.width, surface.height);
   const std::span<std::byte> bytes = memory.write(surface.base, surface.bytes());
-  for_each_pixel(surface,
-                 [&](std::size_t i, std::uint64_t address) { std::memcpy(bytes.data() + (address - surface.base), &pixels[i], 4); });
+  for_each_pixel(surface, [&](std::size_t i, std::uint64_t address) {
+    std::memcpy(bytes.data() + (address - surface.base), &pixels[i], 4);
+  });
 }
 
 }  // namespace quadrille::models

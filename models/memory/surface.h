@@ -1,5 +1,5 @@
-/// Colour and depth surfaces in device memory: 4 bytes a pixel, 8x8-pixel tiles of 256 bytes, row by row; a tile is quad-major
-/// (raster/tile.h).
+/// Colour and depth surfaces in device memory: 4 bytes a pixel, 8x8-pixel tiles of 256 bytes, row by row; a
+/// tile is quad-major (raster/tile.h).
 ///
 /// A tile is two lines of 128 bytes (its upper and lower half); a sector of 32 bytes is two quads.
 #pragma once
@@ -24,7 +24,8 @@ struct SurfaceLayout {
     return base + (std::uint64_t{ty} * tiles_x + tx) * kTileBytes;
   }
   [[nodiscard]] std::uint64_t pixel_address(std::uint32_t x, std::uint32_t y) const {
-    return tile_address(x / 8, y / 8) + 4 * static_cast<std::uint64_t>(tile_entry(static_cast<int>(x % 8), static_cast<int>(y % 8)));
+    return tile_address(x / 8, y / 8) +
+           4 * static_cast<std::uint64_t>(tile_entry(static_cast<int>(x % 8), static_cast<int>(y % 8)));
   }
 };
 
@@ -35,7 +36,8 @@ void fill_surface(DeviceMemory& memory, const SurfaceLayout& surface, std::uint3
 /// The surface as rows of 32-bit pixels, top to bottom; the bits of a float for a depth surface.
 [[nodiscard]] std::vector<std::uint32_t> detile(const DeviceMemory& memory, const SurfaceLayout& surface);
 /// The surface as rows of RGBA bytes, top to bottom: 4 * width * height bytes.
-[[nodiscard]] std::vector<std::uint8_t> detile_rgba8(const DeviceMemory& memory, const SurfaceLayout& surface);
+[[nodiscard]] std::vector<std::uint8_t> detile_rgba8(const DeviceMemory& memory,
+                                                     const SurfaceLayout& surface);
 /// The reverse of `detile`: `pixels` holds width * height values.
 void entile(DeviceMemory& memory, const SurfaceLayout& surface, std::span<const std::uint32_t> pixels);
 

@@ -17,7 +17,8 @@ struct WorkPolygon {
 };
 
 enum class Cut { kWMin, kNear, kFar, kLeft, kRight, kTop, kBottom };
-constexpr std::array kCuts{Cut::kWMin, Cut::kNear, Cut::kFar, Cut::kLeft, Cut::kRight, Cut::kTop, Cut::kBottom};
+constexpr std::array kCuts{Cut::kWMin,  Cut::kNear, Cut::kFar,   Cut::kLeft,
+                           Cut::kRight, Cut::kTop,  Cut::kBottom};
 constexpr unsigned bit(Cut plane) { return 1u << static_cast<unsigned>(plane); }
 
 /// Distance to a clip plane, positive inside: linear in the vertex.
@@ -34,7 +35,8 @@ double distance(const WorkVertex& v, Cut plane, const ClipState& s) {
   return 0.0;
 }
 
-/// Exactly on the plane, so that window positions and depth stay in range however much the sum of two far ends lost.
+/// Exactly on the plane, so that window positions and depth stay in range however much the sum of two far
+/// ends lost.
 void put_on(Cut plane, const ClipState& s, WorkVertex& v) {
   switch (plane) {
     case Cut::kWMin: v.w = static_cast<double>(kMinClipW); break;
@@ -47,12 +49,14 @@ void put_on(Cut plane, const ClipState& s, WorkVertex& v) {
   }
 }
 
-/// Where the edge from `in` (distance d_in >= 0) to `out` (d_out < 0) crosses a plane. Both ends are weighed: a step from one of them would lose the other when
-/// their magnitudes are far apart.
-WorkVertex crossing(const WorkVertex& in, double d_in, const WorkVertex& out, double d_out, Cut plane, const ClipState& s) {
+/// Where the edge from `in` (distance d_in >= 0) to `out` (d_out < 0) crosses a plane. Both ends are weighed:
+/// a step from one of them would lose the other when their magnitudes are far apart.
+WorkVertex crossing(const WorkVertex& in, double d_in, const WorkVertex& out, double d_out, Cut plane,
+                    const ClipState& s) {
   const double length = d_in - d_out, to_in = -d_out / length, to_out = d_in / length;
   const auto mix = [=](double a, double b) { return a * to_in + b * to_out; };
-  WorkVertex v{mix(in.x, out.x), mix(in.y, out.y), mix(in.z, out.z), mix(in.w, out.w), mix(in.b1, out.b1), mix(in.b2, out.b2)};
+  WorkVertex v{mix(in.x, out.x), mix(in.y, out.y),   mix(in.z, out.z),
+               mix(in.w, out.w), mix(in.b1, out.b1), mix(in.b2, out.b2)};
   put_on(plane, s, v);
   return v;
 }
@@ -70,11 +74,14 @@ void cut(const WorkPolygon& in, Cut plane, const ClipState& state, WorkPolygon& 
   }
 }
 
-bool is_finite(const glm::vec4& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.w); }
+bool is_finite(const glm::vec4& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && std::isfinite(p.w);
+}
 
 /// Bits of the six planes of the view volume that a vertex is outside of.
 unsigned view_outcode(const glm::vec4& p, bool depth_clamp) {
-  unsigned code = (p.x < -p.w ? 1u : 0u) | (p.x > p.w ? 2u : 0u) | (p.y < -p.w ? 4u : 0u) | (p.y > p.w ? 8u : 0u);
+  unsigned code =
+      (p.x < -p.w ? 1u : 0u) | (p.x > p.w ? 2u : 0u) | (p.y < -p.w ? 4u : 0u) | (p.y > p.w ? 8u : 0u);
   if (!depth_clamp) code |= (p.z < 0.0f ? 16u : 0u) | (p.z > p.w ? 32u : 0u);
   return code;
 }
@@ -90,7 +97,8 @@ unsigned cut_code(const WorkVertex& v, const ClipState& state) {
 }
 
 ClipVertex narrow(const WorkVertex& v) {
-  return {glm::vec4(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), static_cast<float>(v.w)),
+  return {glm::vec4(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
+                    static_cast<float>(v.w)),
           static_cast<float>(v.b1), static_cast<float>(v.b2)};
 }
 
@@ -107,9 +115,12 @@ ClipState make_clip_state(const Viewport& viewport, bool depth_clamp, int subpix
   return state;
 }
 
-ClipOutcome clip_triangle(const std::array<glm::vec4, 3>& position, const ClipState& state, ClippedPolygon& out) {
-  if (!is_finite(position[0]) || !is_finite(position[1]) || !is_finite(position[2])) return ClipOutcome::kNotFinite;
-  const unsigned outside = view_outcode(position[0], state.depth_clamp) & view_outcode(position[1], state.depth_clamp) &
+ClipOutcome clip_triangle(const std::array<glm::vec4, 3>& position, const ClipState& state,
+                          ClippedPolygon& out) {
+  if (!is_finite(position[0]) || !is_finite(position[1]) || !is_finite(position[2]))
+    return ClipOutcome::kNotFinite;
+  const unsigned outside = view_outcode(position[0], state.depth_clamp) &
+                           view_outcode(position[1], state.depth_clamp) &
                            view_outcode(position[2], state.depth_clamp);
   if (outside != 0) return ClipOutcome::kRejected;
 
@@ -127,14 +138,16 @@ ClipOutcome clip_triangle(const std::array<glm::vec4, 3>& position, const ClipSt
   out.count = 3;
   if (any == 0) return ClipOutcome::kInside;
   if (all != 0) return ClipOutcome::kRejected;
-  // Every new vertex lies between two old ones, so a plane that no original vertex is outside of needs no cut.
+  // Every new vertex lies between two old ones, so a plane that no original vertex is outside of needs no
+  // cut.
   for (const Cut plane : kCuts) {
     if ((any & bit(plane)) == 0) continue;
     cut(polygon, plane, state, other);
     std::swap(polygon, other);
     if (polygon.count < 3) return ClipOutcome::kRejected;
   }
-  for (int i = 0; i < polygon.count; ++i) out.vertices[static_cast<std::size_t>(i)] = narrow(polygon.vertices[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < polygon.count; ++i)
+    out.vertices[static_cast<std::size_t>(i)] = narrow(polygon.vertices[static_cast<std::size_t>(i)]);
   out.count = polygon.count;
   return ClipOutcome::kClipped;
 }

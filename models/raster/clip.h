@@ -1,10 +1,11 @@
 /// Clipping of a triangle in homogeneous clip space. [VK1.3 #vertexpostproc-clipping]
 ///
-/// Order of decisions: a vertex that is not finite discards the triangle; a triangle wholly outside one plane of the view volume is
-/// rejected; then it is cut by w >= kMinClipW and, unless depth is clamped, by 0 <= z <= w. The sides of the view volume do not cut (the
-/// scissor does that later); only a triangle with a vertex beyond the guard band is cut there, so that window positions fit their grid. A
-/// cut is computed from the inside vertex to the outside one, in double, from that edge's two end points alone: two triangles that share
-/// the edge get the same point.
+/// Order of decisions: a vertex that is not finite discards the triangle; a triangle wholly outside one plane
+/// of the view volume is rejected; then it is cut by w >= kMinClipW and, unless depth is clamped, by 0 <= z
+/// <= w. The sides of the view volume do not cut (the scissor does that later); only a triangle with a vertex
+/// beyond the guard band is cut there, so that window positions fit their grid. A cut is computed from the
+/// inside vertex to the outside one, in double, from that edge's two end points alone: two triangles that
+/// share the edge get the same point.
 #pragma once
 
 #include "models/raster/viewport.h"
@@ -16,15 +17,16 @@
 
 namespace quadrille::models {
 
-/// Smallest w that is kept. [G: below the near plane of any world that a float can hold, far enough above the least normal float that w and 1 / w are both
-/// normal, with all their bits]
+/// Smallest w that is kept. [G: below the near plane of any world that a float can hold, far enough above the
+/// least normal float that w and 1 / w are both normal, with all their bits]
 inline constexpr float kMinClipW = 0x1p-120f;
 /// Three vertices, and one more for each of seven planes.
 inline constexpr int kMaxClipVertices = 10;
 
 struct ClipVertex {
   glm::vec4 position{0};
-  float b1 = 0, b2 = 0;  ///< weights of the original triangle's second and third vertex (the first has 1 - b1 - b2)
+  /// weights of the original triangle's second and third vertex (the first has 1 - b1 - b2)
+  float b1 = 0, b2 = 0;
 };
 
 /// A convex polygon; its triangles are the fan (0, i, i + 1), i = 1 .. count - 2.
@@ -50,6 +52,7 @@ struct ClipState {
 [[nodiscard]] ClipState make_clip_state(const Viewport& viewport, bool depth_clamp, int subpixel_bits);
 
 /// Clips one triangle. `out` is written when the outcome is kInside or kClipped.
-[[nodiscard]] ClipOutcome clip_triangle(const std::array<glm::vec4, 3>& position, const ClipState& state, ClippedPolygon& out);
+[[nodiscard]] ClipOutcome clip_triangle(const std::array<glm::vec4, 3>& position, const ClipState& state,
+                                        ClippedPolygon& out);
 
 }  // namespace quadrille::models

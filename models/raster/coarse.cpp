@@ -67,8 +67,11 @@ bool TileWalk::next(TileHit& hit) {
   ++tests_;
   hit.tile_x = x_++;
   hit.tile_y = y_;
-  hit.fully_covered = hit.tile_x >= full_x0_ && hit.tile_x < full_x1_ && hit.tile_y >= full_y0_ && hit.tile_y < full_y1_;
-  for (std::size_t i = 0; i < 3 && hit.fully_covered; ++i) { hit.fully_covered = edges_[i].at(hit.tile_x, hit.tile_y) + worst_[i] >= 0; }
+  hit.fully_covered =
+      hit.tile_x >= full_x0_ && hit.tile_x < full_x1_ && hit.tile_y >= full_y0_ && hit.tile_y < full_y1_;
+  for (std::size_t i = 0; i < 3 && hit.fully_covered; ++i) {
+    hit.fully_covered = edges_[i].at(hit.tile_x, hit.tile_y) + worst_[i] >= 0;
+  }
   return true;
 }
 

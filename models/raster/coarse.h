@@ -1,9 +1,10 @@
 /// Coarse rasterisation: the 8x8-pixel tiles that a triangle touches, row by row, left to right.
 ///
-/// A tile is kept unless all its pixels are outside one edge (exact for each edge, at the pixel of the tile that is deepest inside).
-/// Along a row the kept tiles are one interval, found by a division an edge; so the walk costs what it keeps, however large the triangle.
-/// What the hardware is charged (`tests`) is the same walk done by testing: every kept tile, and one failing tile where a row's interval
-/// ends short of the bounding box on either side; a row without tiles costs one.
+/// A tile is kept unless all its pixels are outside one edge (exact for each edge, at the pixel of the tile
+/// that is deepest inside). Along a row the kept tiles are one interval, found by a division an edge; so the
+/// walk costs what it keeps, however large the triangle. What the hardware is charged (`tests`) is the same
+/// walk done by testing: every kept tile, and one failing tile where a row's interval ends short of the
+/// bounding box on either side; a row without tiles costs one.
 #pragma once
 
 #include "models/raster/triangle_setup.h"
@@ -31,10 +32,12 @@ class TileWalk {
  private:
   void enter_row();
 
-  std::array<EdgeFunction, 3> edges_;                                   // stepped by tiles
-  std::array<std::int64_t, 3> best_{}, worst_{};                        // what the best and the worst pixel of a tile add to its first one
-  std::int32_t first_x_ = 0, last_x_ = -1, last_y_ = -1;                // tiles of the bounding box
-  std::int32_t full_x0_ = 0, full_y0_ = 0, full_x1_ = 0, full_y1_ = 0;  // tiles that lie wholly within the bounds
+  std::array<EdgeFunction, 3> edges_;  // stepped by tiles
+  // what the best and the worst pixel of a tile add to its first one
+  std::array<std::int64_t, 3> best_{}, worst_{};
+  std::int32_t first_x_ = 0, last_x_ = -1, last_y_ = -1;  // tiles of the bounding box
+  // tiles that lie wholly within the bounds
+  std::int32_t full_x0_ = 0, full_y0_ = 0, full_x1_ = 0, full_y1_ = 0;
   std::int32_t x_ = 0, row_last_x_ = -1, y_ = 0;
   std::uint64_t tests_ = 0;
 };

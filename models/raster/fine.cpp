@@ -15,7 +15,8 @@ constexpr TrimMasks make_trim_masks() {
   TrimMasks m;
   for (int first = 0; first <= 8; ++first) {
     for (int entry = 0; entry < kTilePixels; ++entry) {
-      if (entry_x(entry) >= first) m.columns_from[static_cast<std::size_t>(first)] |= std::uint64_t{1} << entry;
+      if (entry_x(entry) >= first)
+        m.columns_from[static_cast<std::size_t>(first)] |= std::uint64_t{1} << entry;
       if (entry_y(entry) >= first) m.rows_from[static_cast<std::size_t>(first)] |= std::uint64_t{1} << entry;
     }
   }
@@ -29,11 +30,13 @@ std::uint64_t pixels_within(const PixelRect& bounds, int px, int py) {
          (kTrim.rows_from[at(bounds.y0 - py)] & ~kTrim.rows_from[at(bounds.y1 - py)]);
 }
 
-/// Pixels outside one edge, when every value in the tile fits 32 bits: eight pixels (two quads) a step, the sign bit decides.
+/// Pixels outside one edge, when every value in the tile fits 32 bits: eight pixels (two quads) a step, the
+/// sign bit decides.
 std::uint64_t outside_edge_32(std::int32_t corner, std::int32_t a, std::int32_t b) {
   const __m256i x = _mm256_setr_epi32(0, 1, 0, 1, 2, 3, 2, 3), y = _mm256_setr_epi32(0, 0, 1, 1, 0, 0, 1, 1);
   const __m256i va = _mm256_set1_epi32(a), vb = _mm256_set1_epi32(b);
-  __m256i left = _mm256_add_epi32(_mm256_set1_epi32(corner), _mm256_add_epi32(_mm256_mullo_epi32(va, x), _mm256_mullo_epi32(vb, y)));
+  __m256i left = _mm256_add_epi32(_mm256_set1_epi32(corner),
+                                  _mm256_add_epi32(_mm256_mullo_epi32(va, x), _mm256_mullo_epi32(vb, y)));
   const __m256i four_right = _mm256_slli_epi32(va, 2), two_down = _mm256_add_epi32(vb, vb);
   std::uint64_t outside = 0;
   for (int row = 0; row < 4; ++row) {
@@ -64,14 +67,18 @@ std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_
   std::uint64_t covered = pixels_within(triangle.bounds, px, py);
   for (const EdgeFunction& edge : triangle.edges) {
     const std::int64_t corner = edge.at(px, py);
-    const std::int64_t lowest = corner + kReach * (std::min<std::int64_t>(edge.a, 0) + std::min<std::int64_t>(edge.b, 0));
-    const std::int64_t highest = corner + kReach * (std::max<std::int64_t>(edge.a, 0) + std::max<std::int64_t>(edge.b, 0));
+    const std::int64_t lowest =
+        corner + kReach * (std::min<std::int64_t>(edge.a, 0) + std::min<std::int64_t>(edge.b, 0));
+    const std::int64_t highest =
+        corner + kReach * (std::max<std::int64_t>(edge.a, 0) + std::max<std::int64_t>(edge.b, 0));
     if (lowest >= 0) continue;
     if (highest < 0) return 0;
-    // The edge crosses the tile, so lowest < 0 <= highest and no value is further from zero than highest - lowest.
+    // The edge crosses the tile, so lowest < 0 <= highest and no value is further from zero than highest -
+    // lowest.
     const bool narrow = highest - lowest <= INT32_MAX;
     covered &=
-        ~(narrow ? outside_edge_32(static_cast<std::int32_t>(corner), static_cast<std::int32_t>(edge.a), static_cast<std::int32_t>(edge.b))
+        ~(narrow ? outside_edge_32(static_cast<std::int32_t>(corner), static_cast<std::int32_t>(edge.a),
+                                   static_cast<std::int32_t>(edge.b))
                  : outside_edge_64(corner, edge.a, edge.b));
   }
   return covered;

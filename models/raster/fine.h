@@ -7,8 +7,8 @@
 
 namespace quadrille::models {
 
-/// Coverage of the tile (8 * tile_x, 8 * tile_y) by the triangle, within its bounds; quad-major bits (tile.h). Exact; top-left rule on
-/// shared edges. [VK1.3 #primsrast-polygons-basic]
+/// Coverage of the tile (8 * tile_x, 8 * tile_y) by the triangle, within its bounds; quad-major bits
+/// (tile.h). Exact; top-left rule on shared edges. [VK1.3 #primsrast-polygons-basic]
 [[nodiscard]] std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_y);
 
 }  // namespace quadrille::models

@@ -1,9 +1,9 @@
 /// Evaluating a triangle's planes at pixel centres: depths of a tile, and the inputs of a fragment warp.
 ///
-/// There is one depth function: depth = clamp(float(z plane in double), z_min, z_max). The early test, the late test, Hi-Z and
-/// FragCoord.z all use it, bit for bit. z_min and z_max are the triangle's own range, so the clamp moves a covered pixel by rounding
-/// errors only (and depth clamp comes for free). 1 / w and the perspective weights may be anything on helper pixels beyond a triangle's
-/// horizon.
+/// There is one depth function: depth = clamp(float(z plane in double), z_min, z_max). The early test, the
+/// late test, Hi-Z and FragCoord.z all use it, bit for bit. z_min and z_max are the triangle's own range, so
+/// the clamp moves a covered pixel by rounding errors only (and depth clamp comes for free). 1 / w and the
+/// perspective weights may be anything on helper pixels beyond a triangle's horizon.
 #pragma once
 
 #include "models/raster/triangle_setup.h"
@@ -17,12 +17,13 @@ void tile_depths(const TriangleSetup& triangle, int tile_x, int tile_y, float ou
 struct DepthBounds {
   float min = 0, max = 0;
 };
-/// Smallest and greatest depth at the pixels of a tile that are within the triangle's bounds: contains every covered pixel's depth. Not
-/// only close: every rounding in the depth function is monotonic, so the corner pixels bound all others.
+/// Smallest and greatest depth at the pixels of a tile that are within the triangle's bounds: contains every
+/// covered pixel's depth. Not only close: every rounding in the depth function is monotonic, so the corner
+/// pixels bound all others.
 [[nodiscard]] DepthBounds tile_depth_bounds(const TriangleSetup& triangle, int tile_x, int tile_y);
 
-/// Fills lanes 4 * slot .. 4 * slot + 3 of a fragment warp with the quad whose top-left pixel is (quad_x, quad_y): x, y, z, inv_w,
-/// persp_1/2, linear_1/2 and front_facing.
+/// Fills lanes 4 * slot .. 4 * slot + 3 of a fragment warp with the quad whose top-left pixel is (quad_x,
+/// quad_y): x, y, z, inv_w, persp_1/2, linear_1/2 and front_facing.
 void interpolate_quad(const TriangleSetup& triangle, int quad_x, int quad_y, int slot, FragmentInputs& out);
 
 }  // namespace quadrille::models

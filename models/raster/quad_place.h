@@ -1,4 +1,5 @@
-/// Where a quad of the window lies: its tile, and its number there. Pixel i of quad q is pixel 4 q + i of the tile (models/raster/tile.h).
+/// Where a quad of the window lies: its tile, and its number there. Pixel i of quad q is pixel 4 q + i of the
+/// tile (models/raster/tile.h).
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,9 @@
-/// The 8x8-pixel tile: the unit that the rasteriser, Hi-Z, the depth and colour units and the surfaces in memory share.
+/// The 8x8-pixel tile: the unit that the rasteriser, Hi-Z, the depth and colour units and the surfaces in
+/// memory share.
 ///
-/// All 64-entry arrays and masks of a tile are *quad-major*: entry 4 * quad + pixel, where quad = 4 * (y / 2) + x / 2 (0..15) and pixel =
-/// 2 * (y & 1) + (x & 1), x and y within the tile. The four pixels of a quad are therefore adjacent, as they are in a fragment warp.
+/// All 64-entry arrays and masks of a tile are *quad-major*: entry 4 * quad + pixel, where quad = 4 * (y / 2)
+/// + x / 2 (0..15) and pixel = 2 * (y & 1) + (x & 1), x and y within the tile. The four pixels of a quad are
+/// therefore adjacent, as they are in a fragment warp.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +16,9 @@ inline constexpr int kTilePixels = 64;
 inline constexpr int kTileQuads = 16;
 
 /// Entry of the pixel (x, y) of a tile, x and y in 0..7.
-[[nodiscard]] constexpr int tile_entry(int x, int y) { return 16 * (y / 2) + 4 * (x / 2) + 2 * (y & 1) + (x & 1); }
+[[nodiscard]] constexpr int tile_entry(int x, int y) {
+  return 16 * (y / 2) + 4 * (x / 2) + 2 * (y & 1) + (x & 1);
+}
 /// Position within its tile (0..7) of an entry.
 [[nodiscard]] constexpr int entry_x(int entry) { return 2 * ((entry >> 2) & 3) + (entry & 1); }
 [[nodiscard]] constexpr int entry_y(int entry) { return 2 * (entry >> 4) + ((entry >> 1) & 1); }

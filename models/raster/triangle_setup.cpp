@@ -10,7 +10,8 @@ struct Point {
   std::int64_t x, y;
 };
 
-/// The edge from a to b of a triangle whose inside is where the value is positive (clockwise on the screen, y down).
+/// The edge from a to b of a triangle whose inside is where the value is positive (clockwise on the screen, y
+/// down).
 EdgeFunction make_edge(const Point& a, const Point& b, int subpixel_bits) {
   EdgeFunction edge;
   edge.a = a.y - b.y;
@@ -32,14 +33,17 @@ struct PlaneFitter {
   }
 };
 
-void fit_planes(const std::array<WindowVertex, 3>& v, const std::array<glm::vec2, 3>& weights, std::int64_t area2, const SetupState& state,
-                TriangleSetup& out) {
+void fit_planes(const std::array<WindowVertex, 3>& v, const std::array<glm::vec2, 3>& weights,
+                std::int64_t area2, const SetupState& state, TriangleSetup& out) {
   const double unit = 1.0 / static_cast<double>(1 << state.subpixel_bits);
   const auto pixels = [unit](std::int64_t fixed) { return static_cast<double>(fixed) * unit; };
-  const PlaneFitter fit{pixels(std::int64_t{v[1].x} - v[0].x), pixels(std::int64_t{v[1].y} - v[0].y), pixels(std::int64_t{v[2].x} - v[0].x),
-                        pixels(std::int64_t{v[2].y} - v[0].y), 1.0 / (static_cast<double>(area2) * unit * unit)};
+  const PlaneFitter fit{pixels(std::int64_t{v[1].x} - v[0].x), pixels(std::int64_t{v[1].y} - v[0].y),
+                        pixels(std::int64_t{v[2].x} - v[0].x), pixels(std::int64_t{v[2].y} - v[0].y),
+                        1.0 / (static_cast<double>(area2) * unit * unit)};
   const auto fit_weighted = [&](auto component) {
-    const auto value = [&](std::size_t i) { return static_cast<double>(component(weights[i])) * static_cast<double>(v[i].inv_w); };
+    const auto value = [&](std::size_t i) {
+      return static_cast<double>(component(weights[i])) * static_cast<double>(v[i].inv_w);
+    };
     return fit(value(0), value(1), value(2));
   };
   out.ref_x = pixels(v[0].x);
@@ -52,7 +56,8 @@ void fit_planes(const std::array<WindowVertex, 3>& v, const std::array<glm::vec2
   out.linear_2 = fit(weights[0].y, weights[1].y, weights[2].y);
 
   const auto [low, high] = std::minmax({v[0].z, v[1].z, v[2].z});
-  const float range_low = std::min(state.min_depth, state.max_depth), range_high = std::max(state.min_depth, state.max_depth);
+  const float range_low = std::min(state.min_depth, state.max_depth),
+              range_high = std::max(state.min_depth, state.max_depth);
   out.z_min = std::clamp(low, range_low, range_high);
   out.z_max = std::clamp(high, range_low, range_high);
 }
@@ -62,18 +67,21 @@ PixelRect centres_within(const std::array<WindowVertex, 3>& v, int subpixel_bits
   const auto [x_low, x_high] = std::minmax({v[0].x, v[1].x, v[2].x});
   const auto [y_low, y_high] = std::minmax({v[0].y, v[1].y, v[2].y});
   const std::int32_t half = 1 << (subpixel_bits - 1);
-  const auto first = [&](std::int32_t low) { return (low - half + 2 * half - 1) >> subpixel_bits; };  // ceil((low - half) / 2^s)
+  // ceil((low - half) / 2^s)
+  const auto first = [&](std::int32_t low) { return (low - half + 2 * half - 1) >> subpixel_bits; };
   const auto end = [&](std::int32_t high) { return ((high - half) >> subpixel_bits) + 1; };
   return {first(x_low), first(y_low), end(x_high), end(y_high)};
 }
 
 }  // namespace
 
-SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices, const std::array<glm::vec2, 3>& weights, const SetupState& state,
+SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices,
+                            const std::array<glm::vec2, 3>& weights, const SetupState& state,
                             TriangleSetup& out) {
   std::array<Point, 3> p;
   for (std::size_t i = 0; i < 3; ++i) p[i] = {vertices[i].x, vertices[i].y};
-  // Twice the signed area, positive when clockwise on the screen; Vulkan's area has the opposite sign. [VK1.3 #primsrast-polygons-basic]
+  // Twice the signed area, positive when clockwise on the screen; Vulkan's area has the opposite sign. [VK1.3
+  // #primsrast-polygons-basic]
   const std::int64_t area2 = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
   if (area2 == 0) return SetupOutcome::kZeroArea;
   const bool front = (area2 < 0) == (state.front == FrontFace::kCounterClockwise);

@@ -1,10 +1,11 @@
-/// Triangle set-up: from three window vertices to edge functions, bounds and plane equations; everything the rasteriser asks about a
-/// triangle.
+/// Triangle set-up: from three window vertices to edge functions, bounds and plane equations; everything the
+/// rasteriser asks about a triangle.
 ///
-/// Edge functions are exact. With vertices on the 2^-s grid, E(x, y) = a (x - xi) + b (y - yi) is an integer, and at pixel centres it
-/// steps by multiples of 2^s; dividing by 2^s and rounding down keeps its sign, so `origin + a * px + b * py >= 0` decides pixel (px, py)
-/// with the top-left rule folded into `origin`. [VK1.3 #primsrast-polygons-basic] Planes are in double from the snapped positions,
-/// relative to the first vertex: depth, 1 / w and the barycentric weights are each one rounding away from the exact plane, whatever the
+/// Edge functions are exact. With vertices on the 2^-s grid, E(x, y) = a (x - xi) + b (y - yi) is an integer,
+/// and at pixel centres it steps by multiples of 2^s; dividing by 2^s and rounding down keeps its sign, so
+/// `origin + a * px + b * py >= 0` decides pixel (px, py) with the top-left rule folded into `origin`. [VK1.3
+/// #primsrast-polygons-basic] Planes are in double from the snapped positions, relative to the first vertex:
+/// depth, 1 / w and the barycentric weights are each one rounding away from the exact plane, whatever the
 /// size of the triangle.
 #pragma once
 
@@ -21,8 +22,8 @@ namespace quadrille::models {
 enum class CullMode : std::uint8_t { kNone, kFront, kBack };
 enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };
 
-/// Inside: origin + a * px + b * py >= 0, at the centre of pixel (px, py). |a|, |b| < 2^30; values fit 62 bits for pixels within the
-/// window grid.
+/// Inside: origin + a * px + b * py >= 0, at the centre of pixel (px, py). |a|, |b| < 2^30; values fit 62
+/// bits for pixels within the window grid.
 struct EdgeFunction {
   std::int64_t origin = 0, a = 0, b = 0;
   [[nodiscard]] std::int64_t at(std::int64_t px, std::int64_t py) const { return origin + a * px + b * py; }
@@ -35,12 +36,14 @@ struct Plane {
 
 struct TriangleSetup {
   std::array<EdgeFunction, 3> edges;
-  PixelRect bounds;             ///< pixels that may be covered: bounding box of the triangle within the scissor
+  /// pixels that may be covered: bounding box of the triangle within the scissor
+  PixelRect bounds;
   double ref_x = 0, ref_y = 0;  ///< reference point, pixels
   Plane z, inv_w;               ///< window depth, 1 / w
   Plane persp_1, persp_2;       ///< weight of the second and third vertex, divided by w
   Plane linear_1, linear_2;     ///< the weights themselves, linear in the window
-  float z_min = 0, z_max = 0;   ///< depths are limited to this: range of the vertices' depths within the viewport's
+  /// depths are limited to this: range of the vertices' depths within the viewport's
+  float z_min = 0, z_max = 0;
   bool front_facing = false;
 };
 
@@ -61,13 +64,16 @@ enum class SetupOutcome : std::uint8_t {
   kNoSample     ///< its bounding box holds no pixel centre
 };
 
-/// Sets up one triangle. `weights` holds (b1, b2) of each vertex: (0,0) (1,0) (0,1) for a triangle that was not clipped. `out` is written
-/// when kept. The checks run in the order kZeroArea, kCulledFace, kNoSample, kOffscreen. Weights that are "linear" are those of the
-/// clipped piece's corners.
-[[nodiscard]] SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices, const std::array<glm::vec2, 3>& weights,
-                                          const SetupState& state, TriangleSetup& out);
+/// Sets up one triangle. `weights` holds (b1, b2) of each vertex: (0,0) (1,0) (0,1) for a triangle that was
+/// not clipped. `out` is written when kept. The checks run in the order kZeroArea, kCulledFace, kNoSample,
+/// kOffscreen. Weights that are "linear" are those of the clipped piece's corners.
+[[nodiscard]] SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices,
+                                          const std::array<glm::vec2, 3>& weights, const SetupState& state,
+                                          TriangleSetup& out);
 
 /// (b1, b2) of a triangle that was not clipped.
-[[nodiscard]] inline std::array<glm::vec2, 3> whole_triangle_weights() { return {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)}; }
+[[nodiscard]] inline std::array<glm::vec2, 3> whole_triangle_weights() {
+  return {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)};
+}
 
 }  // namespace quadrille::models

@@ -36,12 +36,14 @@ bool to_window(const glm::vec4& clip, const Viewport& viewport, int subpixel_bit
   return snap(x, subpixel_bits, out.x) && snap(y, subpixel_bits, out.y);
 }
 
-PixelRect drawable_rect(const Viewport& viewport, const PixelRect& scissor, std::uint32_t target_width, std::uint32_t target_height) {
+PixelRect drawable_rect(const Viewport& viewport, const PixelRect& scissor, std::uint32_t target_width,
+                        std::uint32_t target_height) {
   const double x0 = viewport.x, x1 = x0 + static_cast<double>(viewport.width);
   const double y0 = viewport.y, y1 = y0 + static_cast<double>(viewport.height);
   if (!std::isfinite(x0 + x1 + y0 + y1)) return {};
-  const PixelRect view{first_centre(std::min(x0, x1), target_width), first_centre(std::min(y0, y1), target_height),
-                       first_centre(std::max(x0, x1), target_width), first_centre(std::max(y0, y1), target_height)};
+  const PixelRect view{
+      first_centre(std::min(x0, x1), target_width), first_centre(std::min(y0, y1), target_height),
+      first_centre(std::max(x0, x1), target_width), first_centre(std::max(y0, y1), target_height)};
   return intersect(view, scissor);
 }
 

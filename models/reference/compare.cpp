@@ -12,7 +12,9 @@ namespace {
 
 int channel(std::uint32_t rgba, std::size_t c) { return static_cast<int>((rgba >> (8 * c)) & 0xffu); }
 
-int channel_difference(std::uint32_t a, std::uint32_t b, std::size_t c) { return std::abs(channel(a, c) - channel(b, c)); }
+int channel_difference(std::uint32_t a, std::uint32_t b, std::size_t c) {
+  return std::abs(channel(a, c) - channel(b, c));
+}
 
 int largest_difference(std::uint32_t a, std::uint32_t b, std::size_t channels) {
   if (a == b) return 0;
@@ -31,7 +33,8 @@ void check_sizes(ImageView a, ImageView b, std::size_t excluded) {
 }
 
 /// Counts the pixels that are off in each 8x8 block.
-void count_blocks(ImageView a, ImageView b, std::span<const std::uint8_t> excluded, std::size_t channels, ImageDifference& out) {
+void count_blocks(ImageView a, ImageView b, std::span<const std::uint8_t> excluded, std::size_t channels,
+                  ImageDifference& out) {
   std::uint64_t worst = 0;
   for (std::uint32_t top = 0; top < a.height; top += kBlockSide) {
     for (std::uint32_t left = 0; left < a.width; left += kBlockSide) {
@@ -51,7 +54,9 @@ void count_blocks(ImageView a, ImageView b, std::span<const std::uint8_t> exclud
   }
 }
 
-double ratio(std::uint64_t part, std::uint64_t whole) { return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole); }
+double ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
 
 /// Blue, green, yellow, red: piecewise linear in the logarithm of the difference.
 std::uint32_t heat(int lsb) {
@@ -59,14 +64,17 @@ std::uint32_t heat(int lsb) {
     double at;
     std::array<double, 3> rgb;
   };
-  constexpr std::array<Stop, 4> kStops{{{0, {40, 80, 255}}, {3, {0, 200, 60}}, {4.5, {255, 230, 0}}, {6, {255, 0, 0}}}};
+  constexpr std::array<Stop, 4> kStops{
+      {{0, {40, 80, 255}}, {3, {0, 200, 60}}, {4.5, {255, 230, 0}}, {6, {255, 0, 0}}}};
   const double position = std::min(std::log2(static_cast<double>(lsb)), 6.0);
   std::size_t next = 1;
   while (kStops[next].at < position) ++next;
   const double t = (position - kStops[next - 1].at) / (kStops[next].at - kStops[next - 1].at);
   std::uint32_t rgba = 0xff000000u;
   for (std::size_t c = 0; c < 3; ++c)
-    rgba |= static_cast<std::uint32_t>(std::lround(kStops[next - 1].rgb[c] * (1 - t) + kStops[next].rgb[c] * t)) << (8 * c);
+    rgba |=
+        static_cast<std::uint32_t>(std::lround(kStops[next - 1].rgb[c] * (1 - t) + kStops[next].rgb[c] * t))
+        << (8 * c);
   return rgba;
 }
 
@@ -78,7 +86,8 @@ double ImageDifference::fraction_within(int lsb) const {
   return pixels == 0 ? 1.0 : ratio(within, pixels);
 }
 
-ImageDifference compare_images(ImageView a, ImageView b, std::span<const std::uint8_t> excluded, bool with_alpha) {
+ImageDifference compare_images(ImageView a, ImageView b, std::span<const std::uint8_t> excluded,
+                               bool with_alpha) {
   check_sizes(a, b, excluded.size());
   ImageDifference out;
   const std::size_t channels = with_alpha ? 4 : 3;
@@ -102,8 +111,9 @@ ImageDifference compare_images(ImageView a, ImageView b, std::span<const std::ui
   }
   for (std::size_t c = 0; c < channels; ++c) out.histogram[c][0] += equal;
   out.max_histogram[0] += equal;
-  out.psnr_db = squares == 0 ? std::numeric_limits<double>::infinity()
-                             : 10.0 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(out.pixels) / squares);
+  out.psnr_db = squares == 0
+                    ? std::numeric_limits<double>::infinity()
+                    : 10.0 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(out.pixels) / squares);
   count_blocks(a, b, excluded, channels, out);
   return out;
 }
@@ -111,8 +121,8 @@ ImageDifference compare_images(ImageView a, ImageView b, std::span<const std::ui
 double CoverageDifference::coverage_fraction() const { return ratio(only_a + only_b, pixels); }
 double CoverageDifference::triangle_fraction() const { return ratio(other_triangle, pixels); }
 
-CoverageDifference compare_triangles(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, std::uint64_t background,
-                                     std::span<const std::uint8_t> excluded) {
+CoverageDifference compare_triangles(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b,
+                                     std::uint64_t background, std::span<const std::uint8_t> excluded) {
   if (a.size() != b.size() || (!excluded.empty() && excluded.size() != a.size()))
     throw user_error("images differ in size: {} and {} pixels", a.size(), b.size());
   CoverageDifference out;
@@ -139,7 +149,8 @@ std::vector<std::uint32_t> difference_heat_map(ImageView a, ImageView b) {
     if (lsb != 0) {
       out[at] = heat(lsb);
     } else {
-      const int grey = (channel(a.rgba[at], 0) * 2 + channel(a.rgba[at], 1) * 5 + channel(a.rgba[at], 2)) / 8 / 3;
+      const int grey =
+          (channel(a.rgba[at], 0) * 2 + channel(a.rgba[at], 1) * 5 + channel(a.rgba[at], 2)) / 8 / 3;
       out[at] = 0xff000000u | static_cast<std::uint32_t>(grey) * 0x010101u;
     }
   }

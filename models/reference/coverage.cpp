@@ -11,7 +11,8 @@ __extension__ using Wide = __int128;
 Wide product(std::int64_t a, std::int64_t b) { return static_cast<Wide>(a) * static_cast<Wide>(b); }
 
 /// Which side of the line a -> b the point is on; the sign is exact.
-Wide edge_value(std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by, std::int64_t px, std::int64_t py) {
+Wide edge_value(std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by, std::int64_t px,
+                std::int64_t py) {
   return product(bx - ax, py - ay) - product(by - ay, px - ax);
 }
 
@@ -23,14 +24,16 @@ double edge_value(double ax, double ay, double bx, double by, double px, double 
   return swapped ? -value : value;
 }
 
-/// Samples on the edge a -> b belong to the triangle if it is a left edge (it goes up) or a top edge (level, going right); the inside is on its right hand.
+/// Samples on the edge a -> b belong to the triangle if it is a left edge (it goes up) or a top edge (level,
+/// going right); the inside is on its right hand.
 template <class Number>
 bool owns_its_samples(Number ax, Number ay, Number bx, Number by) {
   return by < ay || (by == ay && bx > ax);
 }
 
 template <class Number, class Value>
-SamplePlace locate(const std::array<Number, 3>& x, const std::array<Number, 3>& y, Number px, Number py, bool clockwise) {
+SamplePlace locate(const std::array<Number, 3>& x, const std::array<Number, 3>& y, Number px, Number py,
+                   bool clockwise) {
   SamplePlace place;
   place.covered = true;
   std::array<double, 3> values{};
@@ -49,14 +52,17 @@ SamplePlace locate(const std::array<Number, 3>& x, const std::array<Number, 3>& 
 }  // namespace
 
 double doubled_area(const WindowTriangle& t) {
-  if (t.exact) return static_cast<double>(edge_value(t.fixed_x[0], t.fixed_y[0], t.fixed_x[1], t.fixed_y[1], t.fixed_x[2], t.fixed_y[2]));
+  if (t.exact)
+    return static_cast<double>(
+        edge_value(t.fixed_x[0], t.fixed_y[0], t.fixed_x[1], t.fixed_y[1], t.fixed_x[2], t.fixed_y[2]));
   return edge_value(t.x[0], t.y[0], t.x[1], t.y[1], t.x[2], t.y[2]);
 }
 
 SamplePlace locate_sample(const WindowTriangle& t, int x, int y) {
   if (t.exact) {
     const std::int64_t one = std::int64_t{1} << t.subpixel_bits;
-    return locate<std::int64_t, Wide>(t.fixed_x, t.fixed_y, x * one + one / 2, y * one + one / 2, t.clockwise);
+    return locate<std::int64_t, Wide>(t.fixed_x, t.fixed_y, x * one + one / 2, y * one + one / 2,
+                                      t.clockwise);
   }
   return locate<double, double>(t.x, t.y, x + 0.5, y + 0.5, t.clockwise);
 }

@@ -1,7 +1,8 @@
 /// Which samples a triangle in window space covers, and where in it they are. Internal to the reference.
 ///
-/// Mode *given*: exact integers of any size the input allows. Mode *ideal*: doubles, each edge evaluated from its lexicographically smaller end, so that two
-/// triangles get opposite values from a shared edge and every sample belongs to one of them. Samples on an edge: top-left rule. [VK1.3 #primsrast-polygons-basic]
+/// Mode *given*: exact integers of any size the input allows. Mode *ideal*: doubles, each edge evaluated from
+/// its lexicographically smaller end, so that two triangles get opposite values from a shared edge and every
+/// sample belongs to one of them. Samples on an edge: top-left rule. [VK1.3 #primsrast-polygons-basic]
 #pragma once
 
 #include <array>
@@ -16,21 +17,25 @@ struct WindowTriangle {
   bool exact = false;                       ///< `fixed_x`, `fixed_y` hold; else `x`, `y` alone
   int subpixel_bits = 0;
   std::array<std::int64_t, 3> fixed_x{}, fixed_y{};
-  std::array<double, 3> x{}, y{}, z{}, inv_w{};               ///< framebuffer coordinates, depth, 1 / clip w
-  std::array<std::array<double, 2>, 3> barycentric{};         ///< (b1, b2) of each corner in the original triangle, clip space
+  std::array<double, 3> x{}, y{}, z{}, inv_w{};  ///< framebuffer coordinates, depth, 1 / clip w
+  /// (b1, b2) of each corner in the original triangle, clip space
+  std::array<std::array<double, 2>, 3> barycentric{};
   std::array<std::array<double, 2>, 3> screen_barycentric{};  ///< the same, linear in the framebuffer
-  bool clockwise = false;                                     ///< on the screen, y down; the sign of `doubled_area`
+  /// on the screen, y down; the sign of `doubled_area`
+  bool clockwise = false;
   bool front = true;
   int first_x = 0, first_y = 0, last_x = -1, last_y = -1;  ///< pixels it may cover, inclusive
 };
 
-/// Twice the area by the shoelace formula, y down: positive where the corners run clockwise on the screen. Zero exactly for degenerate triangles.
+/// Twice the area by the shoelace formula, y down: positive where the corners run clockwise on the screen.
+/// Zero exactly for degenerate triangles.
 [[nodiscard]] double doubled_area(const WindowTriangle& triangle);
 
 /// A pixel centre's place in a triangle whose `clockwise` is set.
 struct SamplePlace {
   bool covered = false;
-  std::array<double, 3> weights{};  ///< linear in the framebuffer, of the three corners; sum 1; extrapolated outside
+  /// linear in the framebuffer, of the three corners; sum 1; extrapolated outside
+  std::array<double, 3> weights{};
 };
 [[nodiscard]] SamplePlace locate_sample(const WindowTriangle& triangle, int x, int y);
 

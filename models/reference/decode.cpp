@@ -70,7 +70,8 @@ void Decoder::specialised(const SpirvInstruction& in) {
   program_.initial = std::move(lanes.cells);
   program_.code.resize(first);
   const Value& result = globals_[in.result] = frame.values.at(in.result);
-  if (module_.type(in.type).kind == TypeKind::kInt) constant_words_[in.result] = program_.initial[result.slot].u(0);
+  if (module_.type(in.type).kind == TypeKind::kInt)
+    constant_words_[in.result] = program_.initial[result.slot].u(0);
 }
 
 void Decoder::set_constant(const SpirvInstruction& in, Value& v) {
@@ -79,13 +80,15 @@ void Decoder::set_constant(const SpirvInstruction& in, Value& v) {
   if (in.op == spv::OpConstantComposite || in.op == spv::OpSpecConstantComposite) {
     Slot at = v.slot;
     for (const Id part : in.words) {
-      for (std::uint32_t i = 0; i < cells(globals_[part].type); ++i) program_.initial[at++] = program_.initial[globals_[part].slot + i];
+      for (std::uint32_t i = 0; i < cells(globals_[part].type); ++i)
+        program_.initial[at++] = program_.initial[globals_[part].slot + i];
     }
     return;
   }
   const bool is_bool = in.op == spv::OpConstantTrue || in.op == spv::OpSpecConstantTrue;
   const bool is_word = in.op == spv::OpConstant || in.op == spv::OpSpecConstant;
-  if (!is_bool && !is_word && in.op != spv::OpConstantFalse && in.op != spv::OpSpecConstantFalse) unsupported_op(in.op);
+  if (!is_bool && !is_word && in.op != spv::OpConstantFalse && in.op != spv::OpSpecConstantFalse)
+    unsupported_op(in.op);
   for (int lane = 0; lane < kLanes; ++lane) {
     Cell& cell = program_.initial[v.slot];
     if (type.kind == TypeKind::kFloat) {
@@ -100,12 +103,15 @@ void Decoder::set_constant(const SpirvInstruction& in, Value& v) {
 Slot Decoder::allocate(std::uint32_t n) {
   const std::size_t first = program_.initial.size();
   if (first + n > kMaxProgramCells)
-    throw user_error("shader '{}': needs more than {} scalars, the reference's limit", module_.name, kMaxProgramCells);
+    throw user_error("shader '{}': needs more than {} scalars, the reference's limit", module_.name,
+                     kMaxProgramCells);
   program_.initial.resize(first + n);
   return static_cast<Slot>(first);
 }
 
-Value Decoder::new_value(Id type) { return {Value::Kind::kCells, type, allocate(cells(type)), kNoSlot, false}; }
+Value Decoder::new_value(Id type) {
+  return {Value::Kind::kCells, type, allocate(cells(type)), kNoSlot, false};
+}
 
 Value& Decoder::define(Frame& frame, const SpirvInstruction& in) {
   check_type(in.type);
@@ -151,7 +157,8 @@ void Decoder::unsupported(std::string_view what) const {
 }
 
 void Decoder::unsupported_op(std::uint32_t op) const {
-  throw user_error("shader '{}': the reference renderer does not support SPIR-V instruction {}", module_.name, op);
+  throw user_error("shader '{}': the reference renderer does not support SPIR-V instruction {}", module_.name,
+                   op);
 }
 
 ShaderProgram decode_shader(const traces::Shader& shader) { return Decoder(shader).decode(); }

@@ -1,4 +1,5 @@
-/// The decoder: SPIR-V module to `ShaderProgram`. Internal to the reference; split over decode_*.cpp by the part of SPIR-V each reads.
+/// The decoder: SPIR-V module to `ShaderProgram`. Internal to the reference; split over decode_*.cpp by the
+/// part of SPIR-V each reads.
 #pragma once
 
 #include <initializer_list>
@@ -12,13 +13,15 @@
 
 namespace quadrille::models::reference {
 
-/// What an id stands for while decoding: cells holding a value, a place in memory (with a lane-varying offset, perhaps), or a texture.
+/// What an id stands for while decoding: cells holding a value, a place in memory (with a lane-varying
+/// offset, perhaps), or a texture.
 struct Value {
   enum class Kind : std::uint8_t { kNone, kCells, kPointer, kTexture };
   Kind kind = Kind::kNone;
-  Id type = 0;             ///< of the value, or of what is pointed to
-  Slot slot = kNoSlot;     ///< first cell; kTexture: index into `ShaderProgram::textures`
-  Slot offset = kNoSlot;   ///< pointer: cell with the offset in cells, different for each lane; none: `kNoSlot`
+  Id type = 0;          ///< of the value, or of what is pointed to
+  Slot slot = kNoSlot;  ///< first cell; kTexture: index into `ShaderProgram::textures`
+  /// pointer: cell with the offset in cells, different for each lane; none: `kNoSlot`
+  Slot offset = kNoSlot;
   bool read_only = false;  ///< pointer: to inputs or uniforms, which a load may name instead of copying
 };
 
@@ -32,9 +35,11 @@ class Decoder {
   struct Frame {
     const SpirvFunction* function = nullptr;
     std::unordered_map<Id, Value> values;
-    std::unordered_map<Id, std::uint32_t> labels;                 // block label -> ours
-    std::unordered_map<Id, const SpirvInstruction*> definitions;  // comparisons, to find what decided on a discard
-    std::unordered_map<Id, Id> kill_merge;                        // block that ends in a discard -> merge block of its construct
+    std::unordered_map<Id, std::uint32_t> labels;  // block label -> ours
+    // comparisons, to find what decided on a discard
+    std::unordered_map<Id, const SpirvInstruction*> definitions;
+    // block that ends in a discard -> merge block of its construct
+    std::unordered_map<Id, Id> kill_merge;
     std::uint32_t return_label = 0;
     Slot return_slot = kNoSlot;
     Frame* caller = nullptr;
@@ -66,7 +71,8 @@ class Decoder {
 
   // decode_interface.cpp: module-level variables.
   void variable(const SpirvInstruction& in);
-  void interface_scalars(std::vector<Port>& ports, const Decorations& decorations, Id type, Slot slot, std::uint32_t location, bool input);
+  void interface_scalars(std::vector<Port>& ports, const Decorations& decorations, Id type, Slot slot,
+                         std::uint32_t location, bool input);
   void builtin(std::uint32_t which, Slot slot);
   void block_scalars(UniformScalar place, Id type, const Decorations& layout);
   void texture_variable(const SpirvInstruction& in, Value& value);
@@ -88,7 +94,8 @@ class Decoder {
 
   // decode_instruction.cpp
   void instruction(Frame& frame, const SpirvInstruction& in);
-  void arithmetic(Frame& frame, const SpirvInstruction& in, Handler handler, std::span<const std::uint32_t> operands, bool n_from_result);
+  void arithmetic(Frame& frame, const SpirvInstruction& in, Handler handler,
+                  std::span<const std::uint32_t> operands, bool n_from_result);
   [[nodiscard]] bool texture_instruction(Frame& frame, const SpirvInstruction& in);
   void sample(Frame& frame, const SpirvInstruction& in, bool implicit);
 
@@ -99,7 +106,8 @@ class Decoder {
   // Shared.
   [[nodiscard]] Slot allocate(std::uint32_t n);
   [[nodiscard]] Value new_value(Id type);
-  [[nodiscard]] Value& define(Frame& frame, const SpirvInstruction& in);  ///< a new value for the instruction's result
+  /// a new value for the instruction's result
+  [[nodiscard]] Value& define(Frame& frame, const SpirvInstruction& in);
   [[nodiscard]] const Value& value(const Frame& frame, Id id) const;
   [[nodiscard]] std::uint32_t cells(Id type) const { return module_.type(type).cells; }
   [[nodiscard]] std::uint32_t constant_word(Id id, std::string_view what) const;

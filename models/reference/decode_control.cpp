@@ -1,4 +1,5 @@
-/// Decoding control flow: functions are inlined, blocks placed in structured order, phis become moves on edges.
+/// Decoding control flow: functions are inlined, blocks placed in structured order, phis become moves on
+/// edges.
 #include <set>
 #include <spirv/unified1/spirv.hpp>
 
@@ -52,7 +53,8 @@ void Decoder::resolve_labels() {
 }
 
 void Decoder::inline_function(Frame& frame) {
-  if (frame.depth > kMaxCallDepth) throw user_error("shader '{}': calls nest deeper than {}", module_.name, kMaxCallDepth);
+  if (frame.depth > kMaxCallDepth)
+    throw user_error("shader '{}': calls nest deeper than {}", module_.name, kMaxCallDepth);
   const std::vector<std::size_t> order = structured_order(*frame.function);
   prepare_labels(frame, order);
   find_kill_merges(frame, order);
@@ -62,7 +64,8 @@ void Decoder::inline_function(Frame& frame) {
     begin_block(frame.labels.at(block.label));
     for (const SpirvInstruction& in : block.body) {
       instruction(frame, in);
-      if (program_.code.size() > kMaxCode) throw user_error("shader '{}': more than {} operations after inlining", module_.name, kMaxCode);
+      if (program_.code.size() > kMaxCode)
+        throw user_error("shader '{}': more than {} operations after inlining", module_.name, kMaxCode);
     }
     terminate(frame, block);
   }
@@ -78,7 +81,8 @@ void Decoder::prepare_labels(Frame& frame, std::span<const std::size_t> order) {
   }
 }
 
-/// A discarded lane goes on as a helper behind the innermost construct it is in, where the lanes it left are going too.
+/// A discarded lane goes on as a helper behind the innermost construct it is in, where the lanes it left are
+/// going too.
 void Decoder::find_kill_merges(Frame& frame, std::span<const std::size_t> order) {
   std::vector<std::pair<std::size_t, Id>> open;  // merge's place in the order, its label
   std::unordered_map<Id, std::size_t> place;
@@ -119,7 +123,8 @@ void Decoder::terminate(Frame& frame, const SpirvBlock& block) {
     case spv::OpTerminateInvocation: {
       program_.discards = true;
       const auto merge = frame.kill_merge.find(block.label);
-      return jump_to(merge == frame.kill_merge.end() ? frame.return_label : frame.labels.at(merge->second), BlockEnd::kKill);
+      return jump_to(merge == frame.kill_merge.end() ? frame.return_label : frame.labels.at(merge->second),
+                     BlockEnd::kKill);
     }
     default: return jump_to(frame.return_label, BlockEnd::kJump);  // OpReturn; OpUnreachable cannot run
   }
@@ -147,11 +152,13 @@ void Decoder::switch_block(Frame& frame, const SpirvBlock& block) {
 void Decoder::add_edge(Frame& frame, Id from, Id to, std::uint32_t literal) {
   const auto first = static_cast<std::uint32_t>(program_.code.size());
   phi_moves(frame, from, to);
-  program_.edges.push_back({frame.labels.at(to), first, static_cast<std::uint32_t>(program_.code.size()) - first, literal});
+  program_.edges.push_back(
+      {frame.labels.at(to), first, static_cast<std::uint32_t>(program_.code.size()) - first, literal});
   ++program_.blocks.back().edges;
 }
 
-/// Phis of a block read their sources at once; where one reads what another writes, all go through fresh cells.
+/// Phis of a block read their sources at once; where one reads what another writes, all go through fresh
+/// cells.
 void Decoder::phi_moves(Frame& frame, Id from, Id to) {
   struct Move {
     Slot dst, src;
@@ -171,7 +178,8 @@ void Decoder::phi_moves(Frame& frame, Id from, Id to) {
   }
   bool conflict = false;
   for (const Move& a : moves) {
-    for (const Move& b : moves) conflict = conflict || (&a != &b && (overlaps(a.dst, b.src, a.n) || overlaps(a.dst, b.src, b.n)));
+    for (const Move& b : moves)
+      conflict = conflict || (&a != &b && (overlaps(a.dst, b.src, a.n) || overlaps(a.dst, b.src, b.n)));
   }
   if (conflict) {
     for (Move& move : moves) {
@@ -185,7 +193,8 @@ void Decoder::phi_moves(Frame& frame, Id from, Id to) {
 
 void Decoder::record_discard_margin(Frame& frame, const SpirvInstruction& terminator) {
   for (const SpirvBlock& block : frame.function->blocks) {
-    if ((block.label == terminator.words[1] || block.label == terminator.words[2]) && is_kill(block.terminator.op)) {
+    if ((block.label == terminator.words[1] || block.label == terminator.words[2]) &&
+        is_kill(block.terminator.op)) {
       return margin_of(frame, terminator.words[0]);
     }
   }

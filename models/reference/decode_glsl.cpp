@@ -8,14 +8,17 @@
 namespace quadrille::models::reference {
 
 void Decoder::glsl_instruction(Frame& frame, const SpirvInstruction& in) {
-  if (in.words[0] != module_.glsl_import || module_.glsl_import == 0) unsupported("extended instructions other than GLSL.std.450");
+  if (in.words[0] != module_.glsl_import || module_.glsl_import == 0)
+    unsupported("extended instructions other than GLSL.std.450");
   const std::uint32_t which = in.words[1];
-  if (const Handler handler = glsl_two_result_handler(which); handler != nullptr) return two_results(frame, in, handler);
+  if (const Handler handler = glsl_two_result_handler(which); handler != nullptr)
+    return two_results(frame, in, handler);
   Handler handler = glsl_float_handler(which);
   if (handler == nullptr) handler = glsl_vector_handler(which);
   if (handler == nullptr) handler = glsl_integer_handler(which);
   if (handler == nullptr)
-    throw user_error("shader '{}': the reference renderer does not support GLSL.std.450 instruction {}", module_.name, which);
+    throw user_error("shader '{}': the reference renderer does not support GLSL.std.450 instruction {}",
+                     module_.name, which);
   arithmetic(frame, in, handler, std::span(in.words).subspan(2), false);
 }
 

@@ -19,7 +19,9 @@ Handler core_handler(std::uint32_t op) {
 }  // namespace
 
 void Decoder::instruction(Frame& frame, const SpirvInstruction& in) {
-  if (has_no_effect(in.op) || memory_instruction(frame, in) || composite_instruction(frame, in) || texture_instruction(frame, in)) return;
+  if (has_no_effect(in.op) || memory_instruction(frame, in) || composite_instruction(frame, in) ||
+      texture_instruction(frame, in))
+    return;
   if (in.op == spv::OpFunctionCall) return call(frame, in);
   if (in.op == spv::OpExtInst) return glsl_instruction(frame, in);
   if (in.op == spv::OpDemoteToHelperInvocation) {
@@ -28,15 +30,16 @@ void Decoder::instruction(Frame& frame, const SpirvInstruction& in) {
     return;
   }
   const auto is_float = [this](Id type) { return module_.scalar_of(type).kind == TypeKind::kFloat; };
-  const Handler handler =
-      in.op == spv::OpBitcast ? bitcast_handler(is_float(value(frame, in.words[0]).type), is_float(in.type)) : core_handler(in.op);
+  const Handler handler = in.op == spv::OpBitcast
+                              ? bitcast_handler(is_float(value(frame, in.words[0]).type), is_float(in.type))
+                              : core_handler(in.op);
   if (handler == nullptr) unsupported_op(in.op);
   arithmetic(frame, in, handler, in.words, in.op == spv::OpSelect);
 }
 
 /// Emits an operation by the calling rule of handlers.h.
-void Decoder::arithmetic(Frame& frame, const SpirvInstruction& in, Handler handler, std::span<const std::uint32_t> operands,
-                         bool n_from_result) {
+void Decoder::arithmetic(Frame& frame, const SpirvInstruction& in, Handler handler,
+                         std::span<const std::uint32_t> operands, bool n_from_result) {
   const Slot dst = define(frame, in).slot;
   const Value& first = value(frame, operands[0]);
   const SpirvType& first_type = module_.type(first.type);
@@ -57,9 +60,12 @@ bool Decoder::texture_instruction(Frame& frame, const SpirvInstruction& in) {
     case spv::OpImageSampleExplicitLod: sample(frame, in, false); return true;
     case spv::OpImage: frame.values[in.result] = value(frame, in.words[0]); return true;
     case spv::OpImageQuerySizeLod:
-      emit(query_size, 2, define(frame, in).slot, {kNoSlot, value(frame, in.words[1]).slot}).imm[0] = value(frame, in.words[0]).slot;
+      emit(query_size, 2, define(frame, in).slot, {kNoSlot, value(frame, in.words[1]).slot}).imm[0] =
+          value(frame, in.words[0]).slot;
       return true;
-    case spv::OpImageQueryLevels: emit(query_levels, 1, define(frame, in).slot, {}).imm[0] = value(frame, in.words[0]).slot; return true;
+    case spv::OpImageQueryLevels:
+      emit(query_levels, 1, define(frame, in).slot, {}).imm[0] = value(frame, in.words[0]).slot;
+      return true;
     default: return false;
   }
 }

@@ -7,7 +7,9 @@ namespace quadrille::models::reference {
 namespace {
 
 ScalarKind scalar_kind(TypeKind kind) {
-  return kind == TypeKind::kFloat ? ScalarKind::kFloat : kind == TypeKind::kInt ? ScalarKind::kInt : ScalarKind::kBool;
+  return kind == TypeKind::kFloat ? ScalarKind::kFloat
+         : kind == TypeKind::kInt ? ScalarKind::kInt
+                                  : ScalarKind::kBool;
 }
 
 /// A member's location, component and interpolation, where the variable as a whole does not say.
@@ -31,7 +33,8 @@ void Decoder::variable(const SpirvInstruction& in) {
       const bool input = pointer.storage == spv::StorageClassInput;
       v.slot = allocate(cells(pointer.element));
       v.read_only = input;
-      interface_scalars(input ? program_.inputs : program_.outputs, decorations, pointer.element, v.slot, decorations.location, input);
+      interface_scalars(input ? program_.inputs : program_.outputs, decorations, pointer.element, v.slot,
+                        decorations.location, input);
       if (!input) initialised_.push_back(in);
       break;
     }
@@ -50,7 +53,10 @@ void Decoder::variable(const SpirvInstruction& in) {
       break;
     }
     case spv::StorageClassUniformConstant: texture_variable(in, v); break;
-    default: unsupported("a variable that is not an input, output, private, uniform block, push constant or combined image sampler");
+    default:
+      unsupported(
+          "a variable that is not an input, output, private, uniform block, push constant or combined image "
+          "sampler");
   }
   globals_[in.result] = v;
 }
@@ -63,10 +69,10 @@ void Decoder::texture_variable(const SpirvInstruction& in, Value& v) {
   program_.textures.push_back({module_.decorations[in.result].set, module_.decorations[in.result].binding});
 }
 
-/// Lists the scalars of an input or output. Each scalar or vector (so each column, array element and member) takes a location of its own.
-/// [VK1.3 #interfaces-iointerfaces-locations]
-void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& decorations, Id type, Slot slot, std::uint32_t location,
-                                bool input) {
+/// Lists the scalars of an input or output. Each scalar or vector (so each column, array element and member)
+/// takes a location of its own. [VK1.3 #interfaces-iointerfaces-locations]
+void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& decorations, Id type, Slot slot,
+                                std::uint32_t location, bool input) {
   if (decorations.builtin != kNoNumber) return builtin(decorations.builtin, slot);
   const SpirvType& t = module_.type(type);
   if (t.cells == 0) return;
@@ -92,7 +98,8 @@ void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& dec
                                : decorations.no_perspective ? Interpolation::kLinear
                                                             : Interpolation::kPerspective;
     const std::uint32_t component = decorations.component == kNoNumber ? 0 : decorations.component;
-    for (std::uint32_t i = 0; i < t.cells; ++i) ports.push_back({location, component + i, slot + i, kind, interpolation});
+    for (std::uint32_t i = 0; i < t.cells; ++i)
+      ports.push_back({location, component + i, slot + i, kind, interpolation});
   }
 }
 
@@ -109,11 +116,15 @@ void Decoder::builtin(std::uint32_t which, Slot slot) {
     case spv::BuiltInPointSize:
     case spv::BuiltInClipDistance:
     case spv::BuiltInCullDistance: return;  // members of gl_PerVertex; using one is rejected
-    default: unsupported("a built-in other than Position, VertexIndex, InstanceIndex, FragCoord, FrontFacing, PrimitiveId and FragDepth");
+    default:
+      unsupported(
+          "a built-in other than Position, VertexIndex, InstanceIndex, FragCoord, FrontFacing, PrimitiveId "
+          "and FragDepth");
   }
 }
 
-/// Lists the scalars of a block by its layout decorations. `layout` are those of the variable or member that has this type. [VK1.3 #interfaces-resources-layout]
+/// Lists the scalars of a block by its layout decorations. `layout` are those of the variable or member that
+/// has this type. [VK1.3 #interfaces-resources-layout]
 void Decoder::block_scalars(UniformScalar place, Id type, const Decorations& layout) {
   const SpirvType& t = module_.type(type);
   if (t.cells == 0) return;

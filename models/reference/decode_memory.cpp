@@ -1,5 +1,5 @@
-/// Decoding pointers, loads and stores, and the taking apart and putting together of composites. Most of it costs nothing at run time: an element of a value or
-/// variable is just another slot.
+/// Decoding pointers, loads and stores, and the taking apart and putting together of composites. Most of it
+/// costs nothing at run time: an element of a value or variable is just another slot.
 #include <algorithm>
 #include <spirv/unified1/spirv.hpp>
 
@@ -65,12 +65,14 @@ void Decoder::dynamic_step(Value& pointer, Slot index, std::uint32_t count, std:
 
 void Decoder::reject_clip_distance(Id struct_type, std::uint32_t member) const {
   const std::uint32_t which = module_.member(struct_type, member).builtin;
-  if (which == spv::BuiltInClipDistance || which == spv::BuiltInCullDistance) unsupported("clip and cull distances");
+  if (which == spv::BuiltInClipDistance || which == spv::BuiltInCullDistance)
+    unsupported("clip and cull distances");
 }
 
 Value Decoder::load(const Value& pointer) {
   if (pointer.kind == Value::Kind::kTexture) return pointer;
-  if (pointer.read_only && pointer.offset == kNoSlot) return {Value::Kind::kCells, pointer.type, pointer.slot, kNoSlot, false};
+  if (pointer.read_only && pointer.offset == kNoSlot)
+    return {Value::Kind::kCells, pointer.type, pointer.slot, kNoSlot, false};
   const Value result = new_value(pointer.type);
   if (pointer.offset == kNoSlot) {
     copy(result.slot, pointer.slot, cells(pointer.type));
@@ -91,7 +93,9 @@ void Decoder::store(const Value& pointer, const Value& stored) {
 bool Decoder::composite_instruction(Frame& frame, const SpirvInstruction& in) {
   switch (in.op) {
     case spv::OpCompositeConstruct: construct(frame, in); return true;
-    case spv::OpCompositeExtract: frame.values[in.result] = element(value(frame, in.words[0]), std::span(in.words).subspan(1)); return true;
+    case spv::OpCompositeExtract:
+      frame.values[in.result] = element(value(frame, in.words[0]), std::span(in.words).subspan(1));
+      return true;
     case spv::OpCompositeInsert: insert(frame, in); return true;
     case spv::OpVectorShuffle: shuffle(frame, in); return true;
     case spv::OpCopyObject:
@@ -114,7 +118,8 @@ bool Decoder::composite_instruction(Frame& frame, const SpirvInstruction& in) {
       const Slot dst = define(frame, in).slot;
       const Value& vector = value(frame, in.words[0]);
       copy(dst, vector.slot, cells(in.type));
-      emit(insert_dynamic, cells(in.type), dst, {value(frame, in.words[1]).slot, value(frame, in.words[2]).slot});
+      emit(insert_dynamic, cells(in.type), dst,
+           {value(frame, in.words[1]).slot, value(frame, in.words[2]).slot});
       return true;
     }
     default: return false;

@@ -9,28 +9,32 @@
 namespace quadrille::models::reference {
 namespace {
 
-const traces::DescriptorSet& descriptor_set(const ShaderProgram& program, const DrawState& state, std::uint32_t set) {
+const traces::DescriptorSet& descriptor_set(const ShaderProgram& program, const DrawState& state,
+                                            std::uint32_t set) {
   const auto found = state.descriptor_sets.find(set);
   if (found == state.descriptor_sets.end())
-    throw user_error("draw {}: shader '{}' uses descriptor set {}, which is not bound", state.number, program.name, set);
+    throw user_error("draw {}: shader '{}' uses descriptor set {}, which is not bound", state.number,
+                     program.name, set);
   return state.stream->descriptor_sets[found->second];
 }
 
 /// The bytes of a uniform block: the buffer from the binding's offset, at most its range.
-std::span<const std::byte> block_bytes(const ShaderProgram& program, const DrawState& state, const UniformScalar& scalar) {
+std::span<const std::byte> block_bytes(const ShaderProgram& program, const DrawState& state,
+                                       const UniformScalar& scalar) {
   for (const traces::UniformBinding& binding : descriptor_set(program, state, scalar.set).uniforms) {
     if (binding.binding != scalar.binding) continue;
     const std::span<const std::byte> data = state.stream->buffers[binding.buffer].data;
     const std::span<const std::byte> rest = data.subspan(std::min<std::size_t>(binding.offset, data.size()));
     return rest.first(std::min<std::size_t>(binding.range, rest.size()));
   }
-  throw user_error("draw {}: shader '{}' uses uniform block (set {}, binding {}), which is not bound", state.number, program.name,
-                   scalar.set, scalar.binding);
+  throw user_error("draw {}: shader '{}' uses uniform block (set {}, binding {}), which is not bound",
+                   state.number, program.name, scalar.set, scalar.binding);
 }
 
 void set_uniform(Cell& cell, std::span<const std::byte> bytes, const UniformScalar& scalar) {
   std::uint32_t word = 0;
-  if (std::size_t{scalar.byte_offset} + 4 <= bytes.size()) std::memcpy(&word, bytes.data() + scalar.byte_offset, 4);
+  if (std::size_t{scalar.byte_offset} + 4 <= bytes.size())
+    std::memcpy(&word, bytes.data() + scalar.byte_offset, 4);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (scalar.kind == ScalarKind::kFloat) {
       cell.set_f(lane, static_cast<double>(std::bit_cast<float>(word)));
@@ -40,12 +44,14 @@ void set_uniform(Cell& cell, std::span<const std::byte> bytes, const UniformScal
   }
 }
 
-TextureView texture_view(const ShaderProgram& program, const DrawState& state, const TextureUse& use, const Precision* precision) {
+TextureView texture_view(const ShaderProgram& program, const DrawState& state, const TextureUse& use,
+                         const Precision* precision) {
   for (const traces::TextureDescriptor& texture : descriptor_set(program, state, use.set).textures) {
-    if (texture.binding == use.binding) return {&state.stream->images[texture.image], &state.stream->samplers[texture.sampler], precision};
+    if (texture.binding == use.binding)
+      return {&state.stream->images[texture.image], &state.stream->samplers[texture.sampler], precision};
   }
-  throw user_error("draw {}: shader '{}' uses texture (set {}, binding {}), which is not bound", state.number, program.name, use.set,
-                   use.binding);
+  throw user_error("draw {}: shader '{}' uses texture (set {}, binding {}), which is not bound", state.number,
+                   program.name, use.set, use.binding);
 }
 
 }  // namespace
@@ -62,13 +68,16 @@ BoundShader bind_shader(const ShaderProgram& program, const DrawState& state, co
   const UniformScalar* before = nullptr;
   std::span<const std::byte> bytes;
   for (const UniformScalar& scalar : program.uniforms) {
-    if (before == nullptr || before->push != scalar.push || before->set != scalar.set || before->binding != scalar.binding) {
-      bytes = scalar.push ? std::span<const std::byte>(state.push_constants) : block_bytes(program, state, scalar);
+    if (before == nullptr || before->push != scalar.push || before->set != scalar.set ||
+        before->binding != scalar.binding) {
+      bytes = scalar.push ? std::span<const std::byte>(state.push_constants)
+                          : block_bytes(program, state, scalar);
       before = &scalar;
     }
     set_uniform(bound.cells[scalar.slot], bytes, scalar);
   }
-  for (const TextureUse& use : program.textures) bound.textures.push_back(texture_view(program, state, use, precision));
+  for (const TextureUse& use : program.textures)
+    bound.textures.push_back(texture_view(program, state, use, precision));
   return bound;
 }
 

@@ -1,4 +1,5 @@
-/// What is bound when a draw is executed, and shaders with their uniforms and textures in place. Internal to the reference.
+/// What is bound when a draw is executed, and shaders with their uniforms and textures in place. Internal to
+/// the reference.
 #pragma once
 
 #include <cstddef>
@@ -38,8 +39,10 @@ struct BoundShader {
   [[nodiscard]] Lanes lanes() const;
 };
 
-/// Copies uniforms and push constants into a shader's cells and looks up its textures. Bytes beyond a range or buffer read as zero. `precision`: null in mode
+/// Copies uniforms and push constants into a shader's cells and looks up its textures. Bytes beyond a range
+/// or buffer read as zero. `precision`: null in mode
 /// *ideal*. Throws `UserError` if a descriptor the shader uses is not bound.
-[[nodiscard]] BoundShader bind_shader(const ShaderProgram& program, const DrawState& state, const Precision* precision);
+[[nodiscard]] BoundShader bind_shader(const ShaderProgram& program, const DrawState& state,
+                                      const Precision* precision);
 
 }  // namespace quadrille::models::reference

@@ -17,7 +17,8 @@ bool running(const Lanes& lanes, int lane) { return (lanes.mask >> lane & 1u) !=
 class Execution {
  public:
   Execution(const ShaderProgram& program, Lanes& lanes, unsigned start) : program_(program), lanes_(lanes) {
-    for (int lane = 0; lane < kLanes; ++lane) at_[static_cast<std::size_t>(lane)] = (start >> lane & 1u) != 0 ? 0 : kDone;
+    for (int lane = 0; lane < kLanes; ++lane)
+      at_[static_cast<std::size_t>(lane)] = (start >> lane & 1u) != 0 ? 0 : kDone;
   }
 
   void run() {
@@ -25,7 +26,8 @@ class Execution {
       const std::uint32_t block = *std::min_element(at_.begin(), at_.end());
       if (block == kDone) return;
       if (count > kMaxBlocksRun)
-        throw user_error("shader '{}': runs more than {} blocks for one quad: a loop that does not end?", program_.name, kMaxBlocksRun);
+        throw user_error("shader '{}': runs more than {} blocks for one quad: a loop that does not end?",
+                         program_.name, kMaxBlocksRun);
       lanes_.mask = 0;
       for (unsigned lane = 0; lane < kLanes; ++lane) lanes_.mask |= at_[lane] == block ? 1u << lane : 0u;
       run_block(program_.blocks[block]);
@@ -35,7 +37,8 @@ class Execution {
  private:
   void run_code(std::uint32_t first, std::uint32_t count) {
     const Operation* operation = program_.code.data() + first;
-    for (const Operation* end = operation + count; operation != end; ++operation) operation->run(*operation, lanes_);
+    for (const Operation* end = operation + count; operation != end; ++operation)
+      operation->run(*operation, lanes_);
   }
 
   void run_block(const Block& block) {
@@ -67,7 +70,8 @@ class Execution {
   /// Lanes whose cell equals the literal, or (`other`) does not.
   [[nodiscard]] unsigned lanes_where(Slot slot, std::uint32_t literal, bool other) {
     unsigned mask = 0;
-    for (int lane = 0; lane < kLanes; ++lane) mask |= ((lanes_.at(slot)->u(lane) == literal) != other) ? 1u << lane : 0u;
+    for (int lane = 0; lane < kLanes; ++lane)
+      mask |= ((lanes_.at(slot)->u(lane) == literal) != other) ? 1u << lane : 0u;
     return mask;
   }
 
@@ -92,7 +96,9 @@ class Execution {
 
 }  // namespace
 
-void execute(const ShaderProgram& program, Lanes& lanes, unsigned start) { Execution(program, lanes, start).run(); }
+void execute(const ShaderProgram& program, Lanes& lanes, unsigned start) {
+  Execution(program, lanes, start).run();
+}
 
 void copy_cells(const Operation& o, Lanes& lanes) {
   Cell* dst = lanes.at(o.dst);
@@ -122,7 +128,8 @@ void scale_index(const Operation& o, Lanes& lanes) {
   Cell result;
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto signed_index = static_cast<std::int32_t>(lanes.at(o.src[0])->u(lane));
-    const std::uint32_t index = signed_index < 0 ? 0u : std::min(static_cast<std::uint32_t>(signed_index), o.imm[0] - 1);
+    const std::uint32_t index =
+        signed_index < 0 ? 0u : std::min(static_cast<std::uint32_t>(signed_index), o.imm[0] - 1);
     const std::uint32_t before = o.src[1] == kNoSlot ? 0u : lanes.at(o.src[1])->u(lane);
     result.set_u(lane, before + index * o.imm[1]);
   }
@@ -133,7 +140,8 @@ void extract_dynamic(const Operation& o, Lanes& lanes) {
   Cell result;
   for (int lane = 0; lane < kLanes; ++lane) {
     const std::uint32_t index = std::min(lanes.at(o.src[1])->u(lane), o.n - 1);
-    result.bits[static_cast<std::size_t>(lane)] = lanes.cells[o.src[0] + index].bits[static_cast<std::size_t>(lane)];
+    result.bits[static_cast<std::size_t>(lane)] =
+        lanes.cells[o.src[0] + index].bits[static_cast<std::size_t>(lane)];
   }
   write(lanes, *lanes.at(o.dst), result);
 }
@@ -142,7 +150,8 @@ void insert_dynamic(const Operation& o, Lanes& lanes) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!running(lanes, lane)) continue;
     const std::uint32_t index = std::min(lanes.at(o.src[1])->u(lane), o.n - 1);
-    lanes.cells[o.dst + index].bits[static_cast<std::size_t>(lane)] = lanes.at(o.src[0])->bits[static_cast<std::size_t>(lane)];
+    lanes.cells[o.dst + index].bits[static_cast<std::size_t>(lane)] =
+        lanes.at(o.src[0])->bits[static_cast<std::size_t>(lane)];
   }
 }
 
@@ -151,7 +160,8 @@ void kill_lanes(const Operation&, Lanes& lanes) { lanes.killed |= lanes.mask; }
 void note_margin(const Operation& o, Lanes& lanes) {
   for (int lane = 0; lane < kLanes; ++lane) {
     double& margin = lanes.discard_margin[static_cast<std::size_t>(lane)];
-    if (running(lanes, lane)) margin = std::min(margin, std::abs(lanes.at(o.src[0])->f(lane) - lanes.at(o.src[1])->f(lane)));
+    if (running(lanes, lane))
+      margin = std::min(margin, std::abs(lanes.at(o.src[0])->f(lane) - lanes.at(o.src[1])->f(lane)));
   }
 }
 

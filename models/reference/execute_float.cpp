@@ -46,7 +46,8 @@ void each3(const Operation& o, Lanes& lanes) {
   for (std::uint32_t i = 0; i < o.n; ++i) {
     Cell r;
     for (int l = 0; l < kLanes; ++l)
-      r.set_f(l, kFunction(operand(o, lanes, 0, i).f(l), operand(o, lanes, 1, i).f(l), operand(o, lanes, 2, i).f(l)));
+      r.set_f(l, kFunction(operand(o, lanes, 0, i).f(l), operand(o, lanes, 1, i).f(l),
+                           operand(o, lanes, 2, i).f(l)));
     write(lanes, lanes.cells[o.dst + i], r);
   }
 }
@@ -64,7 +65,8 @@ template <Test2 kTest>
 void test2(const Operation& o, Lanes& lanes) {
   for (std::uint32_t i = 0; i < o.n; ++i) {
     Cell r;
-    for (int l = 0; l < kLanes; ++l) r.set_u(l, kTest(operand(o, lanes, 0, i).f(l), operand(o, lanes, 1, i).f(l)) ? 1u : 0u);
+    for (int l = 0; l < kLanes; ++l)
+      r.set_u(l, kTest(operand(o, lanes, 0, i).f(l), operand(o, lanes, 1, i).f(l)) ? 1u : 0u);
     write(lanes, lanes.cells[o.dst + i], r);
   }
 }

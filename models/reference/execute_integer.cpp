@@ -13,7 +13,9 @@ namespace {
 using U = std::uint32_t;
 using S = std::int32_t;
 
-const Cell& operand(const Operation& o, Lanes& lanes, std::size_t which, U i) { return lanes.cells[o.src[which] + i * o.step[which]]; }
+const Cell& operand(const Operation& o, Lanes& lanes, std::size_t which, U i) {
+  return lanes.cells[o.src[which] + i * o.step[which]];
+}
 S as_signed(U a) { return static_cast<S>(a); }
 U as_unsigned(S a) { return static_cast<U>(a); }
 
@@ -33,12 +35,15 @@ void each1(const Operation& o, Lanes& lanes) {
 }
 template <U (*kFunction)(U, U)>
 void each2(const Operation& o, Lanes& lanes) {
-  integer_result(o, lanes, o.n, [&](U i, int l) { return kFunction(operand(o, lanes, 0, i).u(l), operand(o, lanes, 1, i).u(l)); });
+  integer_result(o, lanes, o.n, [&](U i, int l) {
+    return kFunction(operand(o, lanes, 0, i).u(l), operand(o, lanes, 1, i).u(l));
+  });
 }
 template <U (*kFunction)(U, U, U)>
 void each3(const Operation& o, Lanes& lanes) {
   integer_result(o, lanes, o.n, [&](U i, int l) {
-    return kFunction(operand(o, lanes, 0, i).u(l), operand(o, lanes, 1, i).u(l), operand(o, lanes, 2, i).u(l));
+    return kFunction(operand(o, lanes, 0, i).u(l), operand(o, lanes, 1, i).u(l),
+                     operand(o, lanes, 2, i).u(l));
   });
 }
 
@@ -100,7 +105,8 @@ U extract_signed(U a, U offset, U n) {
 
 void insert_bits(const Operation& o, Lanes& lanes) {
   integer_result(o, lanes, o.n, [&](U i, int l) {
-    const U offset = operand(o, lanes, 2, i).u(l), mask = shift_left(low_bits(operand(o, lanes, 3, i).u(l)), offset);
+    const U offset = operand(o, lanes, 2, i).u(l),
+            mask = shift_left(low_bits(operand(o, lanes, 3, i).u(l)), offset);
     return (operand(o, lanes, 0, i).u(l) & ~mask) | (shift_left(operand(o, lanes, 1, i).u(l), offset) & mask);
   });
 }
@@ -132,7 +138,10 @@ void select(const Operation& o, Lanes& lanes) {
 
 // Conversions to integers truncate; values outside the range saturate and NaN gives 0.
 U to_signed(double a) {
-  return std::isnan(a) ? 0 : a <= -2147483648.0 ? 0x80000000u : a >= 2147483647.0 ? 0x7fffffffu : as_unsigned(static_cast<S>(a));
+  return std::isnan(a)        ? 0
+         : a <= -2147483648.0 ? 0x80000000u
+         : a >= 2147483647.0  ? 0x7fffffffu
+                              : as_unsigned(static_cast<S>(a));
 }
 U to_unsigned(double a) { return std::isnan(a) || a <= 0 ? 0 : a >= 4294967295.0 ? ~0u : static_cast<U>(a); }
 
@@ -141,14 +150,17 @@ void from_float(const Operation& o, Lanes& lanes) {
   integer_result(o, lanes, o.n, [&](U i, int l) { return kFunction(operand(o, lanes, 0, i).f(l)); });
 }
 void signed_to_float(const Operation& o, Lanes& lanes) {
-  vector_result(o, lanes, o.n, [&](U i, int l) { return static_cast<double>(as_signed(operand(o, lanes, 0, i).u(l))); });
+  vector_result(o, lanes, o.n,
+                [&](U i, int l) { return static_cast<double>(as_signed(operand(o, lanes, 0, i).u(l))); });
 }
 void unsigned_to_float(const Operation& o, Lanes& lanes) {
   vector_result(o, lanes, o.n, [&](U i, int l) { return static_cast<double>(operand(o, lanes, 0, i).u(l)); });
 }
 U float_bits(double a) { return std::bit_cast<U>(static_cast<float>(a)); }
 void bits_to_float(const Operation& o, Lanes& lanes) {
-  vector_result(o, lanes, o.n, [&](U i, int l) { return static_cast<double>(std::bit_cast<float>(operand(o, lanes, 0, i).u(l))); });
+  vector_result(o, lanes, o.n, [&](U i, int l) {
+    return static_cast<double>(std::bit_cast<float>(operand(o, lanes, 0, i).u(l)));
+  });
 }
 
 /// Packs n components into one word of `bits` each, scaled by `scale` after clamping to [low, 1].
@@ -158,8 +170,10 @@ void pack_norm(const Operation& o, Lanes& lanes) {
   integer_result(o, lanes, 1, [&](U, int l) {
     U word = 0;
     for (U i = 0; i < o.n; ++i) {
-      const double a = lanes.cells[o.src[0] + i].f(l), clamped = std::fmin(std::fmax(a, kSigned ? -1.0 : 0.0), 1.0);
-      word |= (static_cast<U>(static_cast<S>(std::nearbyint(clamped * scale))) & low_bits(kBits)) << (static_cast<U>(kBits) * i);
+      const double a = lanes.cells[o.src[0] + i].f(l),
+                   clamped = std::fmin(std::fmax(a, kSigned ? -1.0 : 0.0), 1.0);
+      word |= (static_cast<U>(static_cast<S>(std::nearbyint(clamped * scale))) & low_bits(kBits))
+              << (static_cast<U>(kBits) * i);
     }
     return word;
   });

@@ -6,7 +6,8 @@ namespace {
 
 /// Samples in each running lane at `lod(lane)` with `bias(lane)`.
 template <class Lod, class Bias>
-void sample_lanes(const Operation& o, Lanes& lanes, const TextureView& texture, const Lod& lod, const Bias& bias) {
+void sample_lanes(const Operation& o, Lanes& lanes, const TextureView& texture, const Lod& lod,
+                  const Bias& bias) {
   std::array<Cell, 4> result{};
   for (int lane = 0; lane < kLanes; ++lane) {
     if ((lanes.mask >> lane & 1u) == 0) continue;

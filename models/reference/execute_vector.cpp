@@ -1,4 +1,5 @@
-/// Float operations of the interpreter that take vectors and matrices as a whole, and derivatives, which take the quad as a whole.
+/// Float operations of the interpreter that take vectors and matrices as a whole, and derivatives, which take
+/// the quad as a whole.
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <cmath>
@@ -42,8 +43,11 @@ void distance(const Operation& o, Lanes& lanes) {
 
 void normalize(const Operation& o, Lanes& lanes) {
   std::array<double, kLanes> size{};
-  for (std::size_t l = 0; l < kLanes; ++l) size[l] = std::sqrt(dot_of(o, lanes, o.src[0], o.src[0], static_cast<int>(l)));
-  vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) { return lanes.cells[o.src[0] + i].f(l) / size[static_cast<std::size_t>(l)]; });
+  for (std::size_t l = 0; l < kLanes; ++l)
+    size[l] = std::sqrt(dot_of(o, lanes, o.src[0], o.src[0], static_cast<int>(l)));
+  vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) {
+    return lanes.cells[o.src[0] + i].f(l) / size[static_cast<std::size_t>(l)];
+  });
 }
 
 void cross(const Operation& o, Lanes& lanes) {
@@ -63,7 +67,8 @@ void face_forward(const Operation& o, Lanes& lanes) {
 
 void reflect(const Operation& o, Lanes& lanes) {
   vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) {
-    return lanes.cells[o.src[0] + i].f(l) - 2.0 * dot_of(o, lanes, o.src[1], o.src[0], l) * lanes.cells[o.src[1] + i].f(l);
+    return lanes.cells[o.src[0] + i].f(l) -
+           2.0 * dot_of(o, lanes, o.src[1], o.src[0], l) * lanes.cells[o.src[1] + i].f(l);
   });
 }
 
@@ -71,7 +76,9 @@ void refract(const Operation& o, Lanes& lanes) {
   vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) {
     const double eta = lanes.cells[o.src[2]].f(l), cosine = dot_of(o, lanes, o.src[1], o.src[0], l);
     const double k = 1.0 - eta * eta * (1.0 - cosine * cosine);
-    return k < 0 ? 0.0 : eta * lanes.cells[o.src[0] + i].f(l) - (eta * cosine + std::sqrt(k)) * lanes.cells[o.src[1] + i].f(l);
+    return k < 0 ? 0.0
+                 : eta * lanes.cells[o.src[0] + i].f(l) -
+                       (eta * cosine + std::sqrt(k)) * lanes.cells[o.src[1] + i].f(l);
   });
 }
 
@@ -81,13 +88,16 @@ void matrix_times_vector(const Operation& o, Lanes& lanes) {
   const std::uint32_t rows = o.imm[1], columns = o.n / rows;
   vector_result(o, lanes, rows, [&](std::uint32_t row, int l) {
     double sum = 0;
-    for (std::uint32_t c = 0; c < columns; ++c) sum += lanes.cells[o.src[0] + c * rows + row].f(l) * lanes.cells[o.src[1] + c].f(l);
+    for (std::uint32_t c = 0; c < columns; ++c)
+      sum += lanes.cells[o.src[0] + c * rows + row].f(l) * lanes.cells[o.src[1] + c].f(l);
     return sum;
   });
 }
 
 void vector_times_matrix(const Operation& o, Lanes& lanes) {
-  vector_result(o, lanes, o.imm[0], [&](std::uint32_t column, int l) { return dot_of(o, lanes, o.src[0], o.src[1] + column * o.n, l); });
+  vector_result(o, lanes, o.imm[0], [&](std::uint32_t column, int l) {
+    return dot_of(o, lanes, o.src[0], o.src[1] + column * o.n, l);
+  });
 }
 
 void matrix_times_matrix(const Operation& o, Lanes& lanes) {
@@ -102,16 +112,20 @@ void matrix_times_matrix(const Operation& o, Lanes& lanes) {
 }
 
 void outer_product(const Operation& o, Lanes& lanes) {
-  vector_result(o, lanes, o.imm[0],
-                [&](std::uint32_t i, int l) { return lanes.cells[o.src[0] + i % o.n].f(l) * lanes.cells[o.src[1] + i / o.n].f(l); });
+  vector_result(o, lanes, o.imm[0], [&](std::uint32_t i, int l) {
+    return lanes.cells[o.src[0] + i % o.n].f(l) * lanes.cells[o.src[1] + i / o.n].f(l);
+  });
 }
 
 void transpose(const Operation& o, Lanes& lanes) {
   const std::uint32_t rows = o.imm[1], columns = o.n / rows;
-  vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) { return lanes.cells[o.src[0] + (i % columns) * rows + i / columns].f(l); });
+  vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) {
+    return lanes.cells[o.src[0] + (i % columns) * rows + i / columns].f(l);
+  });
 }
 
-/// Determinant of the matrix without the rows and columns whose bits are clear in the masks, by expansion along its first remaining column.
+/// Determinant of the matrix without the rows and columns whose bits are clear in the masks, by expansion
+/// along its first remaining column.
 double minor_of(const Operation& o, Lanes& lanes, unsigned rows_left, unsigned columns_left, int lane) {
   if (columns_left == 0) return 1.0;
   const auto size = o.imm[1];
@@ -143,8 +157,8 @@ void matrix_inverse(const Operation& o, Lanes& lanes) {
   });
 }
 
-// Derivatives: lanes are (0,0) (1,0) (0,1) (1,1). Fine ones are those of a lane's own row or column, coarse ones are lane 0's; the plain
-// ones may be either and are fine here. [VK1.3 #shaders-derivative-operations]
+// Derivatives: lanes are (0,0) (1,0) (0,1) (1,1). Fine ones are those of a lane's own row or column, coarse
+// ones are lane 0's; the plain ones may be either and are fine here. [VK1.3 #shaders-derivative-operations]
 
 template <int kAxis, bool kFine>
 double derivative(const Cell& c, int lane) {
@@ -155,7 +169,9 @@ double derivative(const Cell& c, int lane) {
 
 template <int kAxis, bool kFine>
 void derive(const Operation& o, Lanes& lanes) {
-  vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) { return derivative<kAxis, kFine>(lanes.cells[o.src[0] + i], l); });
+  vector_result(o, lanes, o.n, [&](std::uint32_t i, int l) {
+    return derivative<kAxis, kFine>(lanes.cells[o.src[0] + i], l);
+  });
 }
 
 template <bool kFine>

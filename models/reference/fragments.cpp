@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kBandRows = 16;
 
-/// A fragment shader input and the vertex shader output that feeds it (number among the outputs; none: reads zero).
+/// A fragment shader input and the vertex shader output that feeds it (number among the outputs; none: reads
+/// zero).
 struct Link {
   Port input;
   std::size_t output = 0;
@@ -24,7 +25,8 @@ std::vector<Link> link_varyings(const ShaderProgram& vertex, const ShaderProgram
   for (const Port& input : fragment.inputs) {
     Link link{input, 0, false};
     for (std::size_t i = 0; i < vertex.outputs.size(); ++i) {
-      if (vertex.outputs[i].location == input.location && vertex.outputs[i].component == input.component) link.output = i, link.fed = true;
+      if (vertex.outputs[i].location == input.location && vertex.outputs[i].component == input.component)
+        link.output = i, link.fed = true;
     }
     links.push_back(link);
   }
@@ -83,7 +85,8 @@ class BandWorker {
   }
 
   /// [VK1.3 #primsrast-polygons-basic: interpolation of data across polygons]
-  static void place_fragment(const WindowTriangle& t, const std::array<double, 3>& weights, Quad& quad, std::size_t lane) {
+  static void place_fragment(const WindowTriangle& t, const std::array<double, 3>& weights, Quad& quad,
+                             std::size_t lane) {
     for (std::size_t i = 0; i < 3; ++i) {
       quad.z[lane] += weights[i] * t.z[i];
       quad.inv_w[lane] += weights[i] * t.inv_w[i];
@@ -124,10 +127,13 @@ class BandWorker {
     return work_.float_depth ? static_cast<double>(static_cast<float>(z)) : z;
   }
 
-  [[nodiscard]] bool has_depth() const { return state_.pipeline->depth.test && state_.target->depth != traces::Format::kUndefined; }
+  [[nodiscard]] bool has_depth() const {
+    return state_.pipeline->depth.test && state_.target->depth != traces::Format::kUndefined;
+  }
 
   [[nodiscard]] std::size_t pixel(const Quad& quad, std::size_t lane) const {
-    return (static_cast<std::size_t>(quad.y) + lane / 2) * result_.width + static_cast<std::size_t>(quad.x) + lane % 2;
+    return (static_cast<std::size_t>(quad.y) + lane / 2) * result_.width + static_cast<std::size_t>(quad.x) +
+           lane % 2;
   }
 
   /// Lanes that pass; notes how near the decisions were.
@@ -136,8 +142,10 @@ class BandWorker {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if ((alive >> lane & 1u) == 0) continue;
       const std::size_t at = pixel(quad, lane);
-      result_.depth_margin[at] = std::min(result_.depth_margin[at], static_cast<float>(float_ulps(depth[lane], result_.depth[at])));
-      if (!depth_passes(state_.pipeline->depth.compare, depth[lane], result_.depth[at])) alive &= ~(1u << lane);
+      result_.depth_margin[at] =
+          std::min(result_.depth_margin[at], static_cast<float>(float_ulps(depth[lane], result_.depth[at])));
+      if (!depth_passes(state_.pipeline->depth.compare, depth[lane], result_.depth[at]))
+        alive &= ~(1u << lane);
     }
     return alive;
   }
@@ -147,7 +155,8 @@ class BandWorker {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if ((quad.covered >> lane & 1u) == 0) continue;
       const std::size_t at = pixel(quad, lane);
-      result_.alpha_margin[at] = std::min(result_.alpha_margin[at], static_cast<float>(lanes_.discard_margin[lane]));
+      result_.alpha_margin[at] =
+          std::min(result_.alpha_margin[at], static_cast<float>(lanes_.discard_margin[lane]));
     }
   }
 
@@ -162,13 +171,15 @@ class BandWorker {
   void feed(const Link& link, const WindowTriangle& t, const Quad& quad) {
     Cell& cell = *lanes_.at(link.input.slot);
     const auto bits = [&](std::size_t corner) {
-      return link.fed ? work_.vertices->outputs[t.vertices[corner] * work_.vertices->ports + link.output] : std::uint64_t{0};
+      return link.fed ? work_.vertices->outputs[t.vertices[corner] * work_.vertices->ports + link.output]
+                      : std::uint64_t{0};
     };
     if (link.input.kind != ScalarKind::kFloat || link.input.interpolation == Interpolation::kFlat) {
       cell.bits.fill(bits(0));  // the provoking vertex is the first
       return;
     }
-    const double a0 = std::bit_cast<double>(bits(0)), a1 = std::bit_cast<double>(bits(1)), a2 = std::bit_cast<double>(bits(2));
+    const double a0 = std::bit_cast<double>(bits(0)), a1 = std::bit_cast<double>(bits(1)),
+                 a2 = std::bit_cast<double>(bits(2));
     const auto& place = link.input.interpolation == Interpolation::kLinear ? quad.linear : quad.perspective;
     for (std::size_t lane = 0; lane < kLanes; ++lane)
       cell.set_f(static_cast<int>(lane), a0 + place[lane][0] * (a1 - a0) + place[lane][1] * (a2 - a0));
@@ -190,18 +201,21 @@ class BandWorker {
     }
   }
 
-  void write(const WindowTriangle& t, const Quad& quad, const std::array<double, kLanes>& depth, unsigned alive) {
+  void write(const WindowTriangle& t, const Quad& quad, const std::array<double, kLanes>& depth,
+             unsigned alive) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if ((alive >> lane & 1u) == 0) continue;
       const std::size_t at = pixel(quad, lane);
       if (has_depth() && state_.pipeline->depth.write) result_.depth[at] = depth[lane];
-      if (program_ != nullptr && state_.pipeline->blend.write_mask != 0) write_color(t, at, static_cast<int>(lane));
+      if (program_ != nullptr && state_.pipeline->blend.write_mask != 0)
+        write_color(t, at, static_cast<int>(lane));
     }
   }
 
   void write_color(const WindowTriangle& t, std::size_t at, int lane) {
     std::array<double, 4> source{};
-    for (std::size_t c = 0; c < 4; ++c) source[c] = color_slots_[c] == kNoSlot ? 0.0 : lanes_.at(color_slots_[c])->f(lane);
+    for (std::size_t c = 0; c < 4; ++c)
+      source[c] = color_slots_[c] == kNoSlot ? 0.0 : lanes_.at(color_slots_[c])->f(lane);
     StoredColor before{result_.color[at], {}};
     std::copy_n(result_.color_linear.begin() + static_cast<std::ptrdiff_t>(4 * at), 4, before.linear.begin());
     const StoredColor after = blend(state_.pipeline->blend, state_.target->color, source, before);
@@ -224,11 +238,13 @@ class BandWorker {
 void draw_fragments(const FragmentWork& work, Result& result) {
   if (work.triangles.empty()) return;
   int first = std::numeric_limits<int>::max(), last = 0;
-  for (const WindowTriangle& t : work.triangles) first = std::min(first, t.first_y), last = std::max(last, t.last_y);
+  for (const WindowTriangle& t : work.triangles)
+    first = std::min(first, t.first_y), last = std::max(last, t.last_y);
   const int first_band = first / kBandRows, bands = last / kBandRows - first_band + 1;
   run_tasks(static_cast<std::size_t>(bands), work.threads, [&] {
-    return
-        [worker = BandWorker(work, result), first_band](std::size_t band) mutable { worker(band + static_cast<std::size_t>(first_band)); };
+    return [worker = BandWorker(work, result), first_band](std::size_t band) mutable {
+      worker(band + static_cast<std::size_t>(first_band));
+    };
   });
 }
 

@@ -1,4 +1,5 @@
-/// Rasterisation, fragment shading and output of the triangles of one draw instance. Internal to the reference.
+/// Rasterisation, fragment shading and output of the triangles of one draw instance. Internal to the
+/// reference.
 #pragma once
 
 #include <span>
@@ -22,7 +23,8 @@ struct FragmentWork {
   int threads = 1;
 };
 
-/// Draws into the result, in horizontal bands that share nothing, so the outcome does not depend on the threads.
+/// Draws into the result, in horizontal bands that share nothing, so the outcome does not depend on the
+/// threads.
 void draw_fragments(const FragmentWork& work, Result& result);
 
 }  // namespace quadrille::models::reference

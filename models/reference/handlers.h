@@ -1,7 +1,8 @@
 /// The operations that the interpreter can execute, found by SPIR-V opcode. Internal to the reference.
 ///
-/// Arithmetic handlers share one calling rule: `n` is the cell count of the first operand (of the result for OpSelect), a scalar operand beside vectors has
-/// step 0, `imm[0]` is the cell count of the result and `imm[1]` the rows of a matrix first operand (else n).
+/// Arithmetic handlers share one calling rule: `n` is the cell count of the first operand (of the result for
+/// OpSelect), a scalar operand beside vectors has step 0, `imm[0]` is the cell count of the result and
+/// `imm[1]` the rows of a matrix first operand (else n).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@ namespace quadrille::models::reference {
 [[nodiscard]] Handler float_handler(std::uint32_t op);
 [[nodiscard]] Handler vector_handler(std::uint32_t op);  ///< products, matrices, derivatives
 [[nodiscard]] Handler integer_handler(std::uint32_t op);
-/// OpBitcast between 32-bit scalars or vectors of equal length. A float's bits are those of the nearest float32.
+/// OpBitcast between 32-bit scalars or vectors of equal length. A float's bits are those of the nearest
+/// float32.
 [[nodiscard]] Handler bitcast_handler(bool float_source, bool float_result);
 /// Handler of a GLSL.std.450 instruction, or null.
 [[nodiscard]] Handler glsl_float_handler(std::uint32_t instruction);
@@ -28,7 +30,8 @@ void copy_cells(const Operation& o, Lanes& lanes);
 void gather_cells(const Operation& o, Lanes& lanes);   ///< dst[i] = at(src[0] + offset)[i], offset in src[1]
 void scatter_cells(const Operation& o, Lanes& lanes);  ///< at(dst + offset)[i] = src[0][i], offset in src[1]
 void scale_index(const Operation& o,
-                 Lanes& lanes);  ///< dst = min(src[0], imm[0] - 1) * imm[1] + src[1] (if any); a negative index counts as 0
+                 /// dst = min(src[0], imm[0] - 1) * imm[1] + src[1] (if any); a negative index counts as 0
+                 Lanes& lanes);
 void extract_dynamic(const Operation& o, Lanes& lanes);
 void insert_dynamic(const Operation& o, Lanes& lanes);
 void kill_lanes(const Operation& o, Lanes& lanes);   ///< marks the running lanes as discarded

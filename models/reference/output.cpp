@@ -15,11 +15,14 @@ using traces::BlendOp;
 
 double clamp_unit(double a) { return a > 0 ? std::min(a, 1.0) : 0.0; }  // NaN: 0
 
-bool is_encoded(traces::Format format, std::size_t channel) { return format == traces::Format::kR8G8B8A8Srgb && channel < 3; }
+bool is_encoded(traces::Format format, std::size_t channel) {
+  return format == traces::Format::kR8G8B8A8Srgb && channel < 3;
+}
 
 std::uint32_t encode(traces::Format format, std::size_t channel, double linear) {
   const double clamped = clamp_unit(linear);
-  return static_cast<std::uint32_t>(std::nearbyint((is_encoded(format, channel) ? linear_to_srgb(clamped) : clamped) * 255.0));
+  return static_cast<std::uint32_t>(
+      std::nearbyint((is_encoded(format, channel) ? linear_to_srgb(clamped) : clamped) * 255.0));
 }
 
 double decode(traces::Format format, std::size_t channel, std::uint32_t rgba) {
@@ -27,7 +30,8 @@ double decode(traces::Format format, std::size_t channel, std::uint32_t rgba) {
   return is_encoded(format, channel) ? srgb_to_linear(value) : value;
 }
 
-double factor(BlendFactor which, std::size_t channel, const std::array<double, 4>& source, const std::array<double, 4>& destination) {
+double factor(BlendFactor which, std::size_t channel, const std::array<double, 4>& source,
+              const std::array<double, 4>& destination) {
   switch (which) {
     case BlendFactor::kZero: return 0.0;
     case BlendFactor::kOne: return 1.0;
@@ -43,7 +47,8 @@ double factor(BlendFactor which, std::size_t channel, const std::array<double, 4
   return 0.0;
 }
 
-double combine(BlendOp op, double source, double source_factor, double destination, double destination_factor) {
+double combine(BlendOp op, double source, double source_factor, double destination,
+               double destination_factor) {
   switch (op) {
     case BlendOp::kAdd: return source * source_factor + destination * destination_factor;
     case BlendOp::kSubtract: return source * source_factor - destination * destination_factor;
@@ -74,10 +79,12 @@ double float_ulps(double a, double b) {
   if (a == b) return 0.0;
   const auto larger = static_cast<float>(std::max(std::abs(a), std::abs(b)));
   return std::abs(a - b) /
-         (static_cast<double>(std::nextafter(larger, std::numeric_limits<float>::infinity())) - static_cast<double>(larger));
+         (static_cast<double>(std::nextafter(larger, std::numeric_limits<float>::infinity())) -
+          static_cast<double>(larger));
 }
 
-StoredColor blend(const traces::BlendState& state, traces::Format format, const std::array<double, 4>& source, const StoredColor& before) {
+StoredColor blend(const traces::BlendState& state, traces::Format format, const std::array<double, 4>& source,
+                  const StoredColor& before) {
   std::array<double, 4> src{}, dst{};
   for (std::size_t c = 0; c < 4; ++c) src[c] = clamp_unit(source[c]), dst[c] = decode(format, c, before.rgba);
   StoredColor after = before;
@@ -88,7 +95,8 @@ StoredColor blend(const traces::BlendState& state, traces::Format format, const 
       const bool alpha = c == 3;
       const double source_factor = factor(alpha ? state.src_alpha : state.src_color, c, src, dst);
       const double destination_factor = factor(alpha ? state.dst_alpha : state.dst_color, c, src, dst);
-      value = clamp_unit(combine(alpha ? state.alpha : state.color, src[c], source_factor, dst[c], destination_factor));
+      value = clamp_unit(
+          combine(alpha ? state.alpha : state.color, src[c], source_factor, dst[c], destination_factor));
     }
     after.linear[c] = value;
     after.rgba = (after.rgba & ~(0xffu << (8 * c))) | encode(format, c, value) << (8 * c);

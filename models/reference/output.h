@@ -20,10 +20,11 @@ struct StoredColor {
   std::array<double, 4> linear{};
 };
 
-/// Blends a shader's output into a stored pixel: source and destination in linear values, clamped to 0..1 (NaN: 0), as is the result, which is then encoded and
-/// rounded to nearest, ties to even. Channels that the mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
-[[nodiscard]] StoredColor blend(const traces::BlendState& state, traces::Format format, const std::array<double, 4>& source,
-                                const StoredColor& before);
+/// Blends a shader's output into a stored pixel: source and destination in linear values, clamped to 0..1
+/// (NaN: 0), as is the result, which is then encoded and rounded to nearest, ties to even. Channels that the
+/// mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
+[[nodiscard]] StoredColor blend(const traces::BlendState& state, traces::Format format,
+                                const std::array<double, 4>& source, const StoredColor& before);
 
 /// The stored form of linear values.
 [[nodiscard]] StoredColor store_color(traces::Format format, const std::array<double, 4>& linear);

@@ -10,8 +10,9 @@
 
 namespace quadrille::models::reference {
 
-/// Calls `make_worker()` once a thread, and the function it returns with every number of 0 .. tasks - 1, each once, in no fixed order. Tasks must not share what
-/// they write. If tasks throw, the exception of the lowest-numbered one is rethrown.
+/// Calls `make_worker()` once a thread, and the function it returns with every number of 0 .. tasks - 1, each
+/// once, in no fixed order. Tasks must not share what they write. If tasks throw, the exception of the
+/// lowest-numbered one is rethrown.
 template <class MakeWorker>
 void run_tasks(std::size_t tasks, int threads, const MakeWorker& make_worker) {
   std::atomic<std::size_t> next{0};

@@ -16,7 +16,8 @@ struct Corner {
   double b1 = 0, b2 = 0;
 };
 
-/// The planes that cut, in this order. The sides are far outside the view volume: what they cut away is not seen, and a corner stays where doubles place it.
+/// The planes that cut, in this order. The sides are far outside the view volume: what they cut away is not
+/// seen, and a corner stays where doubles place it.
 enum Plane : int { kEye, kLeft, kRight, kTop, kBottom, kNear, kFar, kPlanes };
 
 /// Signed distances to the planes; positive inside.
@@ -34,12 +35,15 @@ double distance_to(int plane, const Point4& p) {
   return 0;
 }
 
-/// The point of the edge inside -> outside on the plane. Always computed in this direction, so that neighbours get the same point.
+/// The point of the edge inside -> outside on the plane. Always computed in this direction, so that
+/// neighbours get the same point.
 Corner cut(int plane, const Corner& inside, const Corner& outside) {
   const double in = distance_to(plane, inside.clip), out = distance_to(plane, outside.clip);
-  const double to_outside = in / (in - out), to_inside = -out / (in - out);  // weights of both: their sum may not lose the smaller end
+  // weights of both: their sum may not lose the smaller end
+  const double to_outside = in / (in - out), to_inside = -out / (in - out);
   Corner corner;
-  for (std::size_t c = 0; c < 4; ++c) corner.clip[c] = inside.clip[c] * to_inside + outside.clip[c] * to_outside;
+  for (std::size_t c = 0; c < 4; ++c)
+    corner.clip[c] = inside.clip[c] * to_inside + outside.clip[c] * to_outside;
   if (plane == kEye) corner.clip[3] = kMinW;
   corner.b1 = inside.b1 * to_inside + outside.b1 * to_outside;
   corner.b2 = inside.b2 * to_inside + outside.b2 * to_outside;
@@ -64,8 +68,9 @@ std::vector<Corner> clip_polygon(const std::array<Point4, 3>& corners, bool dept
 }
 
 bool all_finite(const std::array<Point4, 3>& corners) {
-  return std::all_of(corners.begin(), corners.end(),
-                     [](const Point4& p) { return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); }); });
+  return std::all_of(corners.begin(), corners.end(), [](const Point4& p) {
+    return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
+  });
 }
 
 /// [VK1.3 #vertexpostproc-viewport]
@@ -76,7 +81,8 @@ void project(const traces::SetViewport& v, const Point4& clip, WindowTriangle& t
   t.z[corner] = clip[2] / clip[3] * (static_cast<double>(v.max_depth) - v.min_depth) + v.min_depth;
 }
 
-/// Weights that vary linearly in the framebuffer: each corner's clip-space weights times the vertices' clip w. [VK1.3 #vertexpostproc-clipping-shader-outputs]
+/// Weights that vary linearly in the framebuffer: each corner's clip-space weights times the vertices' clip
+/// w. [VK1.3 #vertexpostproc-clipping-shader-outputs]
 void find_screen_barycentric(const std::array<Point4, 3>& clip, WindowTriangle& t) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double b1 = t.barycentric[i][0], b2 = t.barycentric[i][1];
@@ -105,18 +111,20 @@ bool finish(const traces::Pipeline& pipeline, const PixelBounds& bounds, WindowT
   return t.first_x <= t.last_x && t.first_y <= t.last_y;
 }
 
-std::array<Point4, 3> corners_of(const ShadedVertices& vertices, const std::array<std::uint32_t, 3>& triangle) {
+std::array<Point4, 3> corners_of(const ShadedVertices& vertices,
+                                 const std::array<std::uint32_t, 3>& triangle) {
   return {vertices.clip[triangle[0]], vertices.clip[triangle[1]], vertices.clip[triangle[2]]};
 }
 
-std::array<std::uint32_t, 3> distinct_of(const ShadedVertices& vertices, const std::array<std::uint32_t, 3>& positions) {
+std::array<std::uint32_t, 3> distinct_of(const ShadedVertices& vertices,
+                                         const std::array<std::uint32_t, 3>& positions) {
   return {vertices.sequence[positions[0]], vertices.sequence[positions[1]], vertices.sequence[positions[2]]};
 }
 
 }  // namespace
 
-std::vector<WindowTriangle> clip_and_project(const DrawState& state, const ShadedVertices& vertices, std::uint32_t instance,
-                                             const PixelBounds& bounds) {
+std::vector<WindowTriangle> clip_and_project(const DrawState& state, const ShadedVertices& vertices,
+                                             std::uint32_t instance, const PixelBounds& bounds) {
   std::vector<WindowTriangle> out;
   const auto primitives = assemble(state.pipeline->topology, state.draw->count);
   for (std::uint32_t primitive = 0; primitive < primitives.size(); ++primitive) {
@@ -138,22 +146,26 @@ std::vector<WindowTriangle> clip_and_project(const DrawState& state, const Shade
   return out;
 }
 
-std::vector<WindowTriangle> take_given(const DrawState& state, const ShadedVertices& vertices, std::span<const GivenTriangle> given,
-                                       int subpixel_bits, const PixelBounds& bounds) {
+std::vector<WindowTriangle> take_given(const DrawState& state, const ShadedVertices& vertices,
+                                       std::span<const GivenTriangle> given, int subpixel_bits,
+                                       const PixelBounds& bounds) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 60;
   std::vector<WindowTriangle> out;
   const auto primitives = assemble(state.pipeline->topology, state.draw->count);
   const double scale = std::ldexp(1.0, -subpixel_bits);
   for (const GivenTriangle& g : given) {
     if (g.primitive >= primitives.size())
-      throw user_error("given triangle: draw {} has {} primitives, not number {}", g.draw, primitives.size(), g.primitive);
+      throw user_error("given triangle: draw {} has {} primitives, not number {}", g.draw, primitives.size(),
+                       g.primitive);
     WindowTriangle t;
-    t.instance = g.instance, t.primitive = g.primitive, t.vertices = distinct_of(vertices, primitives[g.primitive]);
+    t.instance = g.instance, t.primitive = g.primitive,
+    t.vertices = distinct_of(vertices, primitives[g.primitive]);
     t.exact = true, t.subpixel_bits = subpixel_bits;
     t.fixed_x = g.x, t.fixed_y = g.y, t.z = g.z, t.inv_w = g.inv_w, t.barycentric = g.barycentric;
     for (std::size_t i = 0; i < 3; ++i) {
       if (std::max(std::abs(g.x[i]), std::abs(g.y[i])) > kLimit)
-        throw user_error("given triangle: draw {}, primitive {}: a coordinate beyond 2^60", g.draw, g.primitive);
+        throw user_error("given triangle: draw {}, primitive {}: a coordinate beyond 2^60", g.draw,
+                         g.primitive);
       t.x[i] = static_cast<double>(g.x[i]) * scale, t.y[i] = static_cast<double>(g.y[i]) * scale;
     }
     find_screen_barycentric(corners_of(vertices, t.vertices), t);

@@ -13,12 +13,14 @@
 namespace quadrille::models::reference {
 namespace {
 
-/// Keeps the state that commands set, and executes draws of the last pass. Earlier passes cannot be seen: attachments are cleared on load and never read.
+/// Keeps the state that commands set, and executes draws of the last pass. Earlier passes cannot be seen:
+/// attachments are cleared on load and never read.
 class Renderer {
  public:
   Renderer(const traces::CommandStream& stream, const Options& options) : stream_(stream), options_(options) {
     state_.stream = &stream;
-    for (const traces::Command& command : stream.commands) passes_ += std::holds_alternative<traces::BeginPass>(command) ? 1u : 0u;
+    for (const traces::Command& command : stream.commands)
+      passes_ += std::holds_alternative<traces::BeginPass>(command) ? 1u : 0u;
     if (passes_ == 0) throw user_error("command stream '{}': no render pass to draw", stream.name);
     if (options.precision.subpixel_bits < 1 || options.precision.subpixel_bits > 16) {
       throw user_error("reference: subpixel_bits is {}, must be 1..16", options.precision.subpixel_bits);
@@ -31,9 +33,11 @@ class Renderer {
   }
 
   Result render() {
-    for (const traces::Command& command : stream_.commands) std::visit([this](const auto& c) { execute(c); }, command);
+    for (const traces::Command& command : stream_.commands)
+      std::visit([this](const auto& c) { execute(c); }, command);
     if (!options_.given.empty() && options_.given.back().draw >= state_.number) {
-      throw user_error("given triangles: draw {} of a stream with {} draws", options_.given.back().draw, state_.number);
+      throw user_error("given triangles: draw {} of a stream with {} draws", options_.given.back().draw,
+                       state_.number);
     }
     return std::move(result_);
   }
@@ -45,8 +49,8 @@ class Renderer {
     state_.target = &stream_.targets[pass.target];
     const std::size_t pixels = std::size_t{state_.target->width} * state_.target->height;
     result_.width = state_.target->width, result_.height = state_.target->height;
-    const StoredColor clear =
-        store_color(state_.target->color, {pass.clear_color[0], pass.clear_color[1], pass.clear_color[2], pass.clear_color[3]});
+    const StoredColor clear = store_color(state_.target->color, {pass.clear_color[0], pass.clear_color[1],
+                                                                 pass.clear_color[2], pass.clear_color[3]});
     result_.color.assign(pixels, clear.rgba);
     for (std::size_t i = 0; i < pixels; ++i)
       result_.color_linear.insert(result_.color_linear.end(), clear.linear.begin(), clear.linear.end());
@@ -62,9 +66,11 @@ class Renderer {
   void execute(const traces::BindIndexBuffer& c) { state_.index_buffer = c; }
   void execute(const traces::PushConstants& c) {
     if (c.offset > state_.push_constants.size() || c.data.size() > state_.push_constants.size() - c.offset) {
-      throw user_error("push constants: bytes {}..{}, there are {}", c.offset, c.offset + c.data.size(), state_.push_constants.size());
+      throw user_error("push constants: bytes {}..{}, there are {}", c.offset, c.offset + c.data.size(),
+                       state_.push_constants.size());
     }
-    std::copy(c.data.begin(), c.data.end(), state_.push_constants.begin() + static_cast<std::ptrdiff_t>(c.offset));
+    std::copy(c.data.begin(), c.data.end(),
+              state_.push_constants.begin() + static_cast<std::ptrdiff_t>(c.offset));
   }
   void execute(const traces::SetViewport& c) { state_.viewport = c, has_viewport_ = true; }
   void execute(const traces::SetScissor& c) { state_.scissor = c, has_scissor_ = true; }
@@ -73,8 +79,10 @@ class Renderer {
     state_.draw = &draw;
     if (pass_ == passes_) {
       if (state_.pipeline == nullptr) throw user_error("draw {}: no pipeline is bound", state_.number);
-      if (!has_viewport_ || !has_scissor_) throw user_error("draw {}: no viewport or scissor is set", state_.number);
-      if (draw.indexed && state_.index_buffer.buffer == traces::kNone) throw user_error("draw {}: no index buffer is bound", state_.number);
+      if (!has_viewport_ || !has_scissor_)
+        throw user_error("draw {}: no viewport or scissor is set", state_.number);
+      if (draw.indexed && state_.index_buffer.buffer == traces::kNone)
+        throw user_error("draw {}: no index buffer is bound", state_.number);
       draw_instances();
     }
     ++state_.number;
@@ -88,16 +96,19 @@ class Renderer {
     const BoundShader vertex_shader = bind_shader(program(state_.pipeline->vertex_shader), state_, precision);
     BoundShader fragment_shader;
     const bool has_fragment_shader = state_.pipeline->fragment_shader != traces::kNone;
-    if (has_fragment_shader) fragment_shader = bind_shader(program(state_.pipeline->fragment_shader), state_, precision);
-    work.state = &state_, work.vertex_shader = &vertex_shader, work.fragment_shader = has_fragment_shader ? &fragment_shader : nullptr;
+    if (has_fragment_shader)
+      fragment_shader = bind_shader(program(state_.pipeline->fragment_shader), state_, precision);
+    work.state = &state_, work.vertex_shader = &vertex_shader,
+    work.fragment_shader = has_fragment_shader ? &fragment_shader : nullptr;
     work.float_depth = options_.mode == Mode::kGiven, work.threads = options_.threads;
     for (std::uint32_t instance = 0; instance < state_.draw->instances; ++instance) {
       const std::span<const GivenTriangle> given = given_of(instance);
       if (options_.mode == Mode::kGiven && given.empty()) continue;
       const ShadedVertices vertices = shade_vertices(state_, vertex_shader, instance, options_.threads);
-      const std::vector<WindowTriangle> triangles = options_.mode == Mode::kGiven
-                                                        ? take_given(state_, vertices, given, options_.precision.subpixel_bits, work.bounds)
-                                                        : clip_and_project(state_, vertices, instance, work.bounds);
+      const std::vector<WindowTriangle> triangles =
+          options_.mode == Mode::kGiven
+              ? take_given(state_, vertices, given, options_.precision.subpixel_bits, work.bounds)
+              : clip_and_project(state_, vertices, instance, work.bounds);
       work.vertices = &vertices, work.triangles = triangles;
       draw_fragments(work, result_);
     }
@@ -109,19 +120,23 @@ class Renderer {
     const std::uint64_t wanted = std::uint64_t{state_.number} << 32 | instance;
     const auto first = std::lower_bound(options_.given.begin(), options_.given.end(), wanted,
                                         [&](const GivenTriangle& t, std::uint64_t k) { return key(t) < k; });
-    const auto last =
-        std::upper_bound(first, options_.given.end(), wanted, [&](std::uint64_t k, const GivenTriangle& t) { return k < key(t); });
+    const auto last = std::upper_bound(first, options_.given.end(), wanted,
+                                       [&](std::uint64_t k, const GivenTriangle& t) { return k < key(t); });
     return {first, last};
   }
 
   [[nodiscard]] const ShaderProgram& program(traces::Index shader) {
     const auto found = programs_.find(shader);
-    return found != programs_.end() ? found->second : programs_.emplace(shader, decode_shader(stream_.shaders[shader])).first->second;
+    return found != programs_.end()
+               ? found->second
+               : programs_.emplace(shader, decode_shader(stream_.shaders[shader])).first->second;
   }
 
   /// Target, scissor and the region asked for.
   [[nodiscard]] PixelBounds bounds() const {
-    const auto clamp = [](std::int64_t a, std::int64_t high) { return static_cast<int>(std::clamp<std::int64_t>(a, 0, high)); };
+    const auto clamp = [](std::int64_t a, std::int64_t high) {
+      return static_cast<int>(std::clamp<std::int64_t>(a, 0, high));
+    };
     const traces::SetScissor& s = state_.scissor;
     const std::int64_t width = result_.width, height = result_.height;
     PixelBounds b{clamp(s.x, width), clamp(s.y, height), clamp(std::int64_t{s.x} + s.width, width) - 1,
@@ -146,6 +161,8 @@ class Renderer {
 
 }  // namespace
 
-Result render(const traces::CommandStream& stream, const Options& options) { return Renderer(stream, options).render(); }
+Result render(const traces::CommandStream& stream, const Options& options) {
+  return Renderer(stream, options).render();
+}
 
 }  // namespace quadrille::models::reference

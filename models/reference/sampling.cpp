@@ -39,7 +39,9 @@ std::uint32_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
 }
 
 /// floor as an integer; coordinates beyond any texture are kept within what the arithmetic holds.
-std::int64_t floor_index(double a) { return static_cast<std::int64_t>(std::floor(std::clamp(a, -1e15, 1e15))); }
+std::int64_t floor_index(double a) {
+  return static_cast<std::int64_t>(std::floor(std::clamp(a, -1e15, 1e15)));
+}
 
 Texel mix(const Texel& a, const Texel& b, double t) {
   Texel r{};
@@ -47,7 +49,8 @@ Texel mix(const Texel& a, const Texel& b, double t) {
   return r;
 }
 
-Texel sample_level(const TextureView& texture, std::uint32_t level, double u, double v, traces::Filter filter) {
+Texel sample_level(const TextureView& texture, std::uint32_t level, double u, double v,
+                   traces::Filter filter) {
   const auto extent = level_extent(*texture.image, level);
   const auto texel = [&](std::int64_t i, std::int64_t j) {
     return fetch_texel(*texture.image, level, wrapped(i, extent[0], texture.sampler->wrap_u),
@@ -66,9 +69,13 @@ Texel sample_level(const TextureView& texture, std::uint32_t level, double u, do
 
 double finite_or_zero(double a) { return std::isfinite(a) ? a : 0.0; }
 
-double srgb_to_linear(double encoded) { return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4); }
+double srgb_to_linear(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
 
-double linear_to_srgb(double linear) { return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055; }
+double linear_to_srgb(double linear) {
+  return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
 
 std::array<std::uint32_t, 2> level_extent(const traces::Image& image, std::uint32_t level) {
   const std::uint32_t l = level < image.levels ? level : 0;
@@ -78,12 +85,14 @@ std::array<std::uint32_t, 2> level_extent(const traces::Image& image, std::uint3
 Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y) {
   static const std::array<double, 256> kSrgb = srgb_table();
   std::size_t first = 0;
-  for (std::uint32_t l = 0; l < level; ++l) first += std::size_t{level_extent(image, l)[0]} * level_extent(image, l)[1];
+  for (std::uint32_t l = 0; l < level; ++l)
+    first += std::size_t{level_extent(image, l)[0]} * level_extent(image, l)[1];
   const std::size_t at = 4 * (first + std::size_t{y} * level_extent(image, level)[0] + x);
   Texel texel{};
   for (std::size_t c = 0; c < 4; ++c) {
     const auto byte = std::to_integer<std::size_t>(image.texels[at + c]);
-    texel[c] = image.format == traces::Format::kR8G8B8A8Srgb && c < 3 ? kSrgb[byte] : static_cast<double>(byte) / 255.0;
+    texel[c] = image.format == traces::Format::kR8G8B8A8Srgb && c < 3 ? kSrgb[byte]
+                                                                      : static_cast<double>(byte) / 255.0;
   }
   return texel;
 }
@@ -96,17 +105,21 @@ double base_lod(const TextureView& texture, std::array<double, 2> d_dx, std::arr
 Texel sample_texture(const TextureView& texture, double u, double v, double base, double bias) {
   const traces::Sampler& s = *texture.sampler;
   u = finite_or_zero(u), v = finite_or_zero(v);
-  const double biased = base + std::clamp(static_cast<double>(s.lod_bias) + finite_or_zero(bias), -kMaxBias, kMaxBias);
-  const double clamped =
-      std::isnan(biased) ? 0.0 : std::max(static_cast<double>(s.min_lod), std::min(biased, static_cast<double>(s.max_lod)));
+  const double biased =
+      base + std::clamp(static_cast<double>(s.lod_bias) + finite_or_zero(bias), -kMaxBias, kMaxBias);
+  const double clamped = std::isnan(biased) ? 0.0
+                                            : std::max(static_cast<double>(s.min_lod),
+                                                       std::min(biased, static_cast<double>(s.max_lod)));
   // Kept within what has an effect before rounding: infinities do not round.
-  const double lambda =
-      quantised(std::clamp(clamped, -1.0, static_cast<double>(texture.image->levels)), texture.precision, &Precision::lod_bits);
+  const double lambda = quantised(std::clamp(clamped, -1.0, static_cast<double>(texture.image->levels)),
+                                  texture.precision, &Precision::lod_bits);
   const traces::Filter filter = lambda <= 0 ? s.mag : s.min;
   const double top = static_cast<double>(texture.image->levels - 1);
   const double level = std::clamp(lambda, 0.0, top);
   if (s.mip == traces::Filter::kNearest) {
-    return sample_level(texture, static_cast<std::uint32_t>(std::clamp(std::ceil(level + 0.5) - 1.0, 0.0, top)), u, v, filter);
+    return sample_level(texture,
+                        static_cast<std::uint32_t>(std::clamp(std::ceil(level + 0.5) - 1.0, 0.0, top)), u, v,
+                        filter);
   }
   const auto finer = static_cast<std::uint32_t>(level);
   const double weight = level - std::floor(level);

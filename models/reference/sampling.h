@@ -18,14 +18,18 @@ struct TextureView {
 };
 
 /// Decodes one texel of a level; x and y are inside it.
-[[nodiscard]] Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y);
+[[nodiscard]] Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x,
+                                std::uint32_t y);
 
-/// log2 of the larger of the two footprint lengths, in texels of level 0. The derivatives are of normalised coordinates. Minus infinity where both are zero.
-/// [VK1.3 #textures-scale-factor]
-[[nodiscard]] double base_lod(const TextureView& texture, std::array<double, 2> d_dx, std::array<double, 2> d_dy);
+/// log2 of the larger of the two footprint lengths, in texels of level 0. The derivatives are of normalised
+/// coordinates. Minus infinity where both are zero. [VK1.3 #textures-scale-factor]
+[[nodiscard]] double base_lod(const TextureView& texture, std::array<double, 2> d_dx,
+                              std::array<double, 2> d_dy);
 
-/// Samples at normalised (u, v). `base` is the level of detail before the shader's `bias`, the sampler's bias and its clamps; together the biases are limited to
-/// +-16. A nearest mip level is the one of ceil(lambda + 0.5) - 1. A coordinate or bias that is not finite counts as 0, so does a NaN level. [VK1.3 #textures-level-of-detail-operation]
+/// Samples at normalised (u, v). `base` is the level of detail before the shader's `bias`, the sampler's bias
+/// and its clamps; together the biases are limited to
+/// +-16. A nearest mip level is the one of ceil(lambda + 0.5) - 1. A coordinate or bias that is not finite
+/// counts as 0, so does a NaN level. [VK1.3 #textures-level-of-detail-operation]
 [[nodiscard]] Texel sample_texture(const TextureView& texture, double u, double v, double base, double bias);
 
 /// The number, or 0 if it is not finite.

@@ -1,8 +1,9 @@
 /// A shader as flat code for four lanes: what the decoder makes of a SPIR-V module and the interpreter runs.
 ///
-/// Every scalar of every value and variable has a *cell*: one number for each of the four lanes of a quad. Instructions name cells by slot and carry the
-/// function that executes them, so running a shader allocates and looks up nothing. Functions are inlined. Blocks are numbered so that lanes that took different
-/// ways meet again when always the lowest-numbered waiting block runs next (`structured_order`).
+/// Every scalar of every value and variable has a *cell*: one number for each of the four lanes of a quad.
+/// Instructions name cells by slot and carry the function that executes them, so running a shader allocates
+/// and looks up nothing. Functions are inlined. Blocks are numbered so that lanes that took different ways
+/// meet again when always the lowest-numbered waiting block runs next (`structured_order`).
 #pragma once
 
 #include <array>
@@ -21,22 +22,31 @@ inline constexpr Slot kNoSlot = 0xffffffffu;
 inline constexpr int kLanes = 4;  ///< pixels (0,0) (1,0) (0,1) (1,1) of a quad, or four vertices
 inline constexpr unsigned kAllLanes = 0xf;
 
-/// One scalar for each lane: the bits of a double, or a 32-bit integer or a bool (0, 1) in the low bits. Which it is, the operation knows.
+/// One scalar for each lane: the bits of a double, or a 32-bit integer or a bool (0, 1) in the low bits.
+/// Which it is, the operation knows.
 struct alignas(32) Cell {
   std::array<std::uint64_t, kLanes> bits{};
 
-  [[nodiscard]] double f(int lane) const { return std::bit_cast<double>(bits[static_cast<std::size_t>(lane)]); }
-  [[nodiscard]] std::uint32_t u(int lane) const { return static_cast<std::uint32_t>(bits[static_cast<std::size_t>(lane)]); }
-  void set_f(int lane, double value) { bits[static_cast<std::size_t>(lane)] = std::bit_cast<std::uint64_t>(value); }
+  [[nodiscard]] double f(int lane) const {
+    return std::bit_cast<double>(bits[static_cast<std::size_t>(lane)]);
+  }
+  [[nodiscard]] std::uint32_t u(int lane) const {
+    return static_cast<std::uint32_t>(bits[static_cast<std::size_t>(lane)]);
+  }
+  void set_f(int lane, double value) {
+    bits[static_cast<std::size_t>(lane)] = std::bit_cast<std::uint64_t>(value);
+  }
   void set_u(int lane, std::uint32_t value) { bits[static_cast<std::size_t>(lane)] = value; }
 };
 
 /// The state of four lanes: their cells, who is running, who was discarded.
 struct Lanes {
   std::vector<Cell> cells;
-  unsigned mask = kAllLanes;                    ///< lanes that execute now
-  unsigned killed = 0;                          ///< discarded; they go on as helpers, so that derivatives stay defined
-  std::array<double, kLanes> discard_margin{};  ///< smallest |a - b| of a comparison that decided on a discard
+  unsigned mask = kAllLanes;  ///< lanes that execute now
+  /// discarded; they go on as helpers, so that derivatives stay defined
+  unsigned killed = 0;
+  /// smallest |a - b| of a comparison that decided on a discard
+  std::array<double, kLanes> discard_margin{};
   const std::vector<TextureView>* textures = nullptr;
 
   [[nodiscard]] Cell* at(Slot slot) { return cells.data() + slot; }
@@ -45,7 +55,8 @@ struct Lanes {
 struct Operation;
 using Handler = void (*)(const Operation&, Lanes&);
 
-/// `run` computes `n` cells at `dst` from the cells at `src`. `step` is 0 where one scalar serves all components, else 1. `imm` is the handler's own.
+/// `run` computes `n` cells at `dst` from the cells at `src`. `step` is 0 where one scalar serves all
+/// components, else 1. `imm` is the handler's own.
 struct Operation {
   Handler run = nullptr;
   std::uint32_t n = 1;
@@ -64,7 +75,8 @@ struct Edge {
 
 enum class BlockEnd : std::uint8_t { kJump, kBranch, kSwitch, kKill, kStop };
 
-/// Straight code [first, first + count), then a way out: kJump and kKill edge 0; kBranch edge 0 where `condition` is true, else edge 1.
+/// Straight code [first, first + count), then a way out: kJump and kKill edge 0; kBranch edge 0 where
+/// `condition` is true, else edge 1.
 struct Block {
   std::uint32_t first = 0, count = 0;
   BlockEnd end = BlockEnd::kStop;
@@ -117,7 +129,8 @@ struct ShaderProgram {
 /// Decodes a shader. Throws `UserError` naming the shader and what it uses that is outside the subset.
 [[nodiscard]] ShaderProgram decode_shader(const traces::Shader& shader);
 
-/// Runs the lanes of `start` from the first block to the end; `lanes.cells` holds the inputs before and the outputs after. Throws `UserError` if a loop does not end.
+/// Runs the lanes of `start` from the first block to the end; `lanes.cells` holds the inputs before and the
+/// outputs after. Throws `UserError` if a loop does not end.
 void execute(const ShaderProgram& program, Lanes& lanes, unsigned start);
 
 }  // namespace quadrille::models::reference

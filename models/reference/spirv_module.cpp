@@ -17,9 +17,10 @@ constexpr std::uint32_t kMaxIds = 1u << 18;    // the tables are by id
 void validate_words(const traces::Shader& shader) {
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
   std::string first;
-  tools.SetMessageConsumer([&first](spv_message_level_t, const char*, const spv_position_t&, const char* text) {
-    if (first.empty()) first = text;
-  });
+  tools.SetMessageConsumer(
+      [&first](spv_message_level_t, const char*, const spv_position_t&, const char* text) {
+        if (first.empty()) first = text;
+      });
   if (!tools.Validate(shader.spirv.data(), shader.spirv.size())) {
     std::replace(first.begin(), first.end(), '\n', ' ');
     throw user_error("shader '{}': not valid SPIR-V for Vulkan: {}", shader.name, first);
@@ -60,16 +61,22 @@ class Reader {
 
   SpirvModule read() {
     const std::vector<std::uint32_t>& words = shader_.spirv;
-    if (words[3] > kMaxIds) throw user_error("shader '{}': its ids reach {}, the reference allows {}", shader_.name, words[3], kMaxIds);
+    if (words[3] > kMaxIds)
+      throw user_error("shader '{}': its ids reach {}, the reference allows {}", shader_.name, words[3],
+                       kMaxIds);
     module_.types.resize(words[3]);
     module_.decorations.resize(words[3]);
-    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) instruction(std::span(words).subspan(at, words[at] >> 16));
-    if (module_.entry == 0) throw user_error("shader '{}': no {} entry point \"main\"", shader_.name, stage_name());
+    for (std::size_t at = 5; at < words.size(); at += words[at] >> 16)
+      instruction(std::span(words).subspan(at, words[at] >> 16));
+    if (module_.entry == 0)
+      throw user_error("shader '{}': no {} entry point \"main\"", shader_.name, stage_name());
     return std::move(module_);
   }
 
  private:
-  [[nodiscard]] const char* stage_name() const { return shader_.stage == traces::ShaderStage::kVertex ? "vertex" : "fragment"; }
+  [[nodiscard]] const char* stage_name() const {
+    return shader_.stage == traces::ShaderStage::kVertex ? "vertex" : "fragment";
+  }
 
   void instruction(std::span<const std::uint32_t> words) {
     SpirvInstruction in;
@@ -94,7 +101,9 @@ class Reader {
         return;
       case spv::OpEntryPoint: return entry_point(in);
       case spv::OpDecorate: return decorate(module_.decorations[in.words[0]], std::span(in.words).subspan(1));
-      case spv::OpMemberDecorate: return decorate(module_.member_decorations[{in.words[0], in.words[1]}], std::span(in.words).subspan(2));
+      case spv::OpMemberDecorate:
+        return decorate(module_.member_decorations[{in.words[0], in.words[1]}],
+                        std::span(in.words).subspan(2));
       case spv::OpFunction:
         function_ = &module_.functions[in.result];
         function_->id = in.result;
@@ -110,8 +119,10 @@ class Reader {
   }
 
   void entry_point(const SpirvInstruction& in) {
-    const auto wanted = shader_.stage == traces::ShaderStage::kVertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
-    if (in.words[0] == static_cast<std::uint32_t>(wanted) && literal_string(std::span(in.words).subspan(2)) == "main")
+    const auto wanted = shader_.stage == traces::ShaderStage::kVertex ? spv::ExecutionModelVertex
+                                                                      : spv::ExecutionModelFragment;
+    if (in.words[0] == static_cast<std::uint32_t>(wanted) &&
+        literal_string(std::span(in.words).subspan(2)) == "main")
       module_.entry = in.words[1];
   }
 
@@ -136,7 +147,9 @@ class Reader {
   void type(const SpirvInstruction& in) {
     SpirvType t;
     const std::vector<std::uint32_t>& w = in.words;
-    const auto unsupported = [&t](std::string_view what) { t.kind = TypeKind::kUnsupported, t.problem = what; };
+    const auto unsupported = [&t](std::string_view what) {
+      t.kind = TypeKind::kUnsupported, t.problem = what;
+    };
     switch (in.op) {
       case spv::OpTypeVoid: t.kind = TypeKind::kVoid; break;
       case spv::OpTypeBool: t.kind = TypeKind::kBool, t.cells = 1; break;
@@ -156,13 +169,17 @@ class Reader {
       case spv::OpTypeFunction: t.kind = TypeKind::kFunction, t.element = w[0]; break;
       case spv::OpTypeImage:
         t.kind = TypeKind::kImage;
-        if (w[1] != spv::Dim2D || w[2] == 1 || w[3] != 0 || w[4] != 0 || w[5] != 1 || module_.type(w[0]).kind != TypeKind::kFloat) {
-          unsupported("an image other than a sampled, single-sample, non-array, non-shadow 2D image of floats");
+        if (w[1] != spv::Dim2D || w[2] == 1 || w[3] != 0 || w[4] != 0 || w[5] != 1 ||
+            module_.type(w[0]).kind != TypeKind::kFloat) {
+          unsupported(
+              "an image other than a sampled, single-sample, non-array, non-shadow 2D image of floats");
         }
         break;
       case spv::OpTypeSampledImage: t.kind = TypeKind::kSampledImage, t.element = w[0]; break;
       default:
-        unsupported("a type that is not void, bool, int, float, vector, matrix, sized array, struct, pointer or combined image sampler");
+        unsupported(
+            "a type that is not void, bool, int, float, vector, matrix, sized array, struct, pointer or "
+            "combined image sampler");
         break;
     }
     inherit_problem(t, t.element);
@@ -195,7 +212,8 @@ class Reader {
   }
   [[nodiscard]] std::uint32_t checked_cells(std::uint64_t cells) const {
     if (cells > kMaxCells)
-      throw user_error("shader '{}': a type holds {} scalars, the reference allows {}", shader_.name, cells, kMaxCells);
+      throw user_error("shader '{}': a type holds {} scalars, the reference allows {}", shader_.name, cells,
+                       kMaxCells);
     return static_cast<std::uint32_t>(cells);
   }
 

@@ -1,4 +1,5 @@
-/// A SPIR-V module as tables: types, constants, decorations, and functions as lists of blocks. Validated first, so that readers may trust its structure.
+/// A SPIR-V module as tables: types, constants, decorations, and functions as lists of blocks. Validated
+/// first, so that readers may trust its structure.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +42,8 @@ enum class TypeKind : std::uint8_t {
 
 struct SpirvType {
   TypeKind kind = TypeKind::kVoid;
-  Id element = 0;             ///< vector, matrix (its column), array, pointer, sampled image, function (its result)
+  /// vector, matrix (its column), array, pointer, sampled image, function (its result)
+  Id element = 0;
   std::uint32_t count = 0;    ///< vector, matrix, array: elements
   bool is_signed = false;     ///< int
   std::uint32_t storage = 0;  ///< pointer: `spv::StorageClass`
@@ -52,7 +54,8 @@ struct SpirvType {
 
 /// Decorations of an id, or of one member of a struct. `kNoNumber` where absent.
 struct Decorations {
-  std::uint32_t builtin = kNoNumber, location = kNoNumber, component = kNoNumber, binding = kNoNumber, set = kNoNumber;
+  std::uint32_t builtin = kNoNumber, location = kNoNumber, component = kNoNumber, binding = kNoNumber,
+                set = kNoNumber;
   std::uint32_t offset = kNoNumber, array_stride = kNoNumber, matrix_stride = kNoNumber;
   bool row_major = false, flat = false, no_perspective = false;
 };
@@ -89,11 +92,13 @@ struct SpirvModule {
   [[nodiscard]] const SpirvType& scalar_of(Id id) const;
 };
 
-/// Validates (Vulkan rules) and reads a module with entry point "main" for the stage. Throws `UserError` naming the shader.
+/// Validates (Vulkan rules) and reads a module with entry point "main" for the stage. Throws `UserError`
+/// naming the shader.
 [[nodiscard]] SpirvModule read_spirv(const traces::Shader& shader);
 
-/// The blocks of a function so ordered that a construct's blocks stand between its header and its merge block, and a loop's body before its continue block:
-/// lanes that wait at the block of lowest order meet again as early as possible. Blocks that cannot be reached are left out. Returns indices into `blocks`.
+/// The blocks of a function so ordered that a construct's blocks stand between its header and its merge
+/// block, and a loop's body before its continue block: lanes that wait at the block of lowest order meet
+/// again as early as possible. Blocks that cannot be reached are left out. Returns indices into `blocks`.
 [[nodiscard]] std::vector<std::size_t> structured_order(const SpirvFunction& function);
 
 /// Labels a terminator can go to.

@@ -8,7 +8,8 @@
 namespace quadrille::models::reference {
 namespace {
 
-/// Depth-first search that visits merge and continue blocks before the others, so that they come later in the reversed post-order.
+/// Depth-first search that visits merge and continue blocks before the others, so that they come later in the
+/// reversed post-order.
 class StructuredOrder {
  public:
   explicit StructuredOrder(const SpirvFunction& function) : function_(function) {
@@ -73,7 +74,9 @@ class StructuredOrder {
 
 }  // namespace
 
-std::vector<std::size_t> structured_order(const SpirvFunction& function) { return StructuredOrder(function).order(); }
+std::vector<std::size_t> structured_order(const SpirvFunction& function) {
+  return StructuredOrder(function).order();
+}
 
 std::vector<Id> successors(const SpirvInstruction& terminator) {
   const std::vector<std::uint32_t>& w = terminator.words;

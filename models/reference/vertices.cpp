@@ -18,7 +18,8 @@ constexpr std::size_t kVerticesPerTask = 512;
 /// A little-endian unsigned number; zero beyond the buffer.
 std::uint32_t read_bytes(const traces::Buffer& buffer, std::uint64_t offset, std::uint32_t bytes) {
   std::uint32_t word = 0;
-  if (offset <= buffer.data.size() && bytes <= buffer.data.size() - offset) std::memcpy(&word, buffer.data.data() + offset, bytes);
+  if (offset <= buffer.data.size() && bytes <= buffer.data.size() - offset)
+    std::memcpy(&word, buffer.data.data() + offset, bytes);
   return word;
 }
 
@@ -57,7 +58,9 @@ double component(std::uint32_t word, const FormatLayout& layout) {
   const std::uint32_t bits = 8 * layout.bytes;
   if (!layout.is_signed) return word / static_cast<double>((1u << bits) - 1);
   const std::uint32_t sign = 1u << (bits - 1);
-  return std::max(static_cast<double>(static_cast<std::int32_t>((word ^ sign) - sign)) / static_cast<double>(sign - 1), -1.0);
+  return std::max(
+      static_cast<double>(static_cast<std::int32_t>((word ^ sign) - sign)) / static_cast<double>(sign - 1),
+      -1.0);
 }
 
 /// VertexIndex of each vertex of the draw. [VK1.3 #interfaces-builtin-variables-vertexindex]
@@ -73,8 +76,8 @@ std::vector<std::uint32_t> vertex_indices(const DrawState& state) {
                                 : state.index_buffer.type == traces::IndexType::kUint16 ? 2
                                                                                         : 4;
     const std::uint64_t offset = state.index_buffer.offset + (std::uint64_t{draw.first} + i) * bytes;
-    indices[i] =
-        read_bytes(state.stream->buffers[state.index_buffer.buffer], offset, bytes) + static_cast<std::uint32_t>(draw.vertex_offset);
+    indices[i] = read_bytes(state.stream->buffers[state.index_buffer.buffer], offset, bytes) +
+                 static_cast<std::uint32_t>(draw.vertex_offset);
   }
   return indices;
 }
@@ -100,16 +103,19 @@ std::vector<AttributeFeed> attribute_feeds(const DrawState& state, const ShaderP
     }
     if (feed.slots == std::array<Slot, 4>{kNoSlot, kNoSlot, kNoSlot, kNoSlot}) continue;
     if (feed.integers != traces::is_integer_format(attribute.format)) {
-      throw user_error("draw {}: vertex input location {} is declared as {} and supplied as {}", state.number, attribute.location,
-                       feed.integers ? "integers" : "floats", feed.integers ? "floats" : "integers");
+      throw user_error("draw {}: vertex input location {} is declared as {} and supplied as {}", state.number,
+                       attribute.location, feed.integers ? "integers" : "floats",
+                       feed.integers ? "floats" : "integers");
     }
     const auto bound = state.vertex_buffers.find(attribute.binding);
-    if (bound == state.vertex_buffers.end()) throw user_error("draw {}: vertex binding {} has no buffer", state.number, attribute.binding);
+    if (bound == state.vertex_buffers.end())
+      throw user_error("draw {}: vertex binding {} has no buffer", state.number, attribute.binding);
     feed.buffer = &state.stream->buffers[bound->second.buffer];
     feed.offset = bound->second.offset + attribute.offset;
     feed.format = attribute.format;
     for (const traces::VertexBinding& binding : state.pipeline->bindings) {
-      if (binding.binding == attribute.binding) feed.stride = binding.stride, feed.per_instance = binding.per_instance;
+      if (binding.binding == attribute.binding)
+        feed.stride = binding.stride, feed.per_instance = binding.per_instance;
     }
     feeds.push_back(feed);
   }
@@ -119,14 +125,20 @@ std::vector<AttributeFeed> attribute_feeds(const DrawState& state, const ShaderP
 /// Shades vertices in groups of four.
 class VertexWorker {
  public:
-  VertexWorker(const BoundShader& shader, const std::vector<AttributeFeed>& feeds, std::uint32_t instance_index,
-               const std::vector<std::uint32_t>& distinct, ShadedVertices& out)
-      : program_(*shader.program), lanes_(shader.lanes()), feeds_(feeds), instance_index_(instance_index), distinct_(distinct), out_(out) {}
+  VertexWorker(const BoundShader& shader, const std::vector<AttributeFeed>& feeds,
+               std::uint32_t instance_index, const std::vector<std::uint32_t>& distinct, ShadedVertices& out)
+      : program_(*shader.program),
+        lanes_(shader.lanes()),
+        feeds_(feeds),
+        instance_index_(instance_index),
+        distinct_(distinct),
+        out_(out) {}
 
   void operator()(std::size_t task) {
     const std::size_t end = std::min(distinct_.size(), (task + 1) * kVerticesPerTask);
     for (std::size_t first = task * kVerticesPerTask; first < end; first += kLanes) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) load(std::min(first + lane, end - 1), static_cast<int>(lane));
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        load(std::min(first + lane, end - 1), static_cast<int>(lane));
       execute(program_, lanes_, kAllLanes);
       for (std::size_t lane = 0; lane < kLanes && first + lane < end; ++lane) store(first + lane, lane);
     }
@@ -137,20 +149,25 @@ class VertexWorker {
     const std::uint32_t index = distinct_[vertex];
     for (const AttributeFeed& feed : feeds_) {
       const std::uint64_t element = feed.per_instance ? instance_index_ : index;
-      const std::array<double, 4> values = read_attribute(*feed.buffer, feed.offset + element * feed.stride, feed.format);
+      const std::array<double, 4> values =
+          read_attribute(*feed.buffer, feed.offset + element * feed.stride, feed.format);
       for (std::size_t c = 0; c < 4; ++c) {
         if (feed.slots[c] == kNoSlot) continue;
         Cell& cell = lanes_.cells[feed.slots[c]];
         feed.integers ? cell.set_u(lane, static_cast<std::uint32_t>(values[c])) : cell.set_f(lane, values[c]);
       }
     }
-    if (program_.builtins.vertex_index != kNoSlot) lanes_.cells[program_.builtins.vertex_index].set_u(lane, index);
-    if (program_.builtins.instance_index != kNoSlot) lanes_.cells[program_.builtins.instance_index].set_u(lane, instance_index_);
+    if (program_.builtins.vertex_index != kNoSlot)
+      lanes_.cells[program_.builtins.vertex_index].set_u(lane, index);
+    if (program_.builtins.instance_index != kNoSlot)
+      lanes_.cells[program_.builtins.instance_index].set_u(lane, instance_index_);
   }
 
   void store(std::size_t vertex, std::size_t lane) {
-    for (std::uint32_t c = 0; c < 4; ++c) out_.clip[vertex][c] = lanes_.cells[program_.builtins.position + c].f(static_cast<int>(lane));
-    for (std::size_t i = 0; i < out_.ports; ++i) out_.outputs[vertex * out_.ports + i] = lanes_.cells[program_.outputs[i].slot].bits[lane];
+    for (std::uint32_t c = 0; c < 4; ++c)
+      out_.clip[vertex][c] = lanes_.cells[program_.builtins.position + c].f(static_cast<int>(lane));
+    for (std::size_t i = 0; i < out_.ports; ++i)
+      out_.outputs[vertex * out_.ports + i] = lanes_.cells[program_.outputs[i].slot].bits[lane];
   }
 
   const ShaderProgram& program_;
@@ -163,7 +180,8 @@ class VertexWorker {
 
 }  // namespace
 
-std::array<double, 4> read_attribute(const traces::Buffer& buffer, std::uint64_t offset, traces::Format format) {
+std::array<double, 4> read_attribute(const traces::Buffer& buffer, std::uint64_t offset,
+                                     traces::Format format) {
   const FormatLayout layout = layout_of(format);
   std::array<double, 4> values{0, 0, 0, 1};
   for (std::uint32_t c = 0; c < layout.components; ++c) {
@@ -172,8 +190,10 @@ std::array<double, 4> read_attribute(const traces::Buffer& buffer, std::uint64_t
   return values;
 }
 
-ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader, std::uint32_t instance, int threads) {
-  if (shader.program->builtins.position == kNoSlot) throw user_error("shader '{}': does not write gl_Position", shader.program->name);
+ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader, std::uint32_t instance,
+                              int threads) {
+  if (shader.program->builtins.position == kNoSlot)
+    throw user_error("shader '{}': does not write gl_Position", shader.program->name);
   ShadedVertices out;
   std::vector<std::uint32_t> distinct;
   std::unordered_map<std::uint32_t, std::uint32_t> number;

@@ -9,21 +9,28 @@
 
 namespace quadrille::models::reference {
 
-/// Shader outputs of the distinct vertices that an instance uses, and which of them each position in the draw is.
+/// Shader outputs of the distinct vertices that an instance uses, and which of them each position in the draw
+/// is.
 struct ShadedVertices {
   std::vector<std::array<double, 4>> clip;  ///< clip-space position, by distinct vertex
-  std::vector<std::uint64_t> outputs;       ///< cell bits, `ports` a vertex, in the order of the program's outputs
+  /// cell bits, `ports` a vertex, in the order of the program's outputs
+  std::vector<std::uint64_t> outputs;
   std::size_t ports = 0;
   std::vector<std::uint32_t> sequence;  ///< draw order -> distinct vertex
 };
 
-/// An attribute's four components as the shader sees them; bytes beyond the buffer read as zero. [VK1.3 #fxvertex-input-extraction]
-[[nodiscard]] std::array<double, 4> read_attribute(const traces::Buffer& buffer, std::uint64_t offset, traces::Format format);
+/// An attribute's four components as the shader sees them; bytes beyond the buffer read as zero. [VK1.3
+/// #fxvertex-input-extraction]
+[[nodiscard]] std::array<double, 4> read_attribute(const traces::Buffer& buffer, std::uint64_t offset,
+                                                   traces::Format format);
 
 /// Shades the vertices of instance `instance` (from 0).
-[[nodiscard]] ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader, std::uint32_t instance, int threads);
+[[nodiscard]] ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader,
+                                            std::uint32_t instance, int threads);
 
-/// Positions within the draw of the vertices of its primitives, in Vulkan's order. [VK1.3 #drawing-primitive-topologies]
-[[nodiscard]] std::vector<std::array<std::uint32_t, 3>> assemble(traces::Topology topology, std::uint32_t vertices);
+/// Positions within the draw of the vertices of its primitives, in Vulkan's order. [VK1.3
+/// #drawing-primitive-topologies]
+[[nodiscard]] std::vector<std::array<std::uint32_t, 3>> assemble(traces::Topology topology,
+                                                                 std::uint32_t vertices);
 
 }  // namespace quadrille::models::reference

@@ -27,16 +27,19 @@ QuadColor decode_quad(ColorFormat format, __m128i pixels) {
                             _mm_and_si128(_mm_srli_epi32(pixels, 16), byte), _mm_srli_epi32(pixels, 24)};
   QuadColor color;
   for (std::size_t c = 0; c < 3; ++c) {
-    color[c] = format == ColorFormat::kR8G8B8A8Srgb ? _mm_i32gather_ps(kSrgbToLinear.data(), codes[c], 4) : decode_unorm(codes[c]);
+    color[c] = format == ColorFormat::kR8G8B8A8Srgb ? _mm_i32gather_ps(kSrgbToLinear.data(), codes[c], 4)
+                                                    : decode_unorm(codes[c]);
   }
   color[3] = decode_unorm(codes[3]);
   return color;
 }
 
-/// v in 0..1. Looks up the code at the bottom of the value's bucket and compares with the one threshold that the bucket may hold.
+/// v in 0..1. Looks up the code at the bottom of the value's bucket and compares with the one threshold that
+/// the bucket may hold.
 inline __m128i encode_srgb(__m128 v) {
   const __m128 least = _mm_castsi128_ps(_mm_set1_epi32(static_cast<int>(kSrgbFirstBucket << 16)));
-  const __m128i bucket = _mm_sub_epi32(_mm_srli_epi32(_mm_castps_si128(_mm_max_ps(v, least)), 16), _mm_set1_epi32(kSrgbFirstBucket));
+  const __m128i bucket = _mm_sub_epi32(_mm_srli_epi32(_mm_castps_si128(_mm_max_ps(v, least)), 16),
+                                       _mm_set1_epi32(kSrgbFirstBucket));
   const __m128i code = _mm_i32gather_epi32(kSrgbBucketCode.data(), bucket, 4);
   const __m128 threshold = _mm_i32gather_ps(kSrgbThreshold.data(), code, 4);
   return _mm_sub_epi32(code, _mm_castps_si128(_mm_cmpge_ps(v, threshold)));
@@ -47,7 +50,8 @@ inline __m128i encode_unorm(__m128 v) { return _mm_cvtps_epi32(_mm_mul_ps(v, _mm
 __m128i encode_quad(ColorFormat format, const QuadColor& color) {
   __m128i pixels = _mm_slli_epi32(encode_unorm(color[3]), 24);
   for (std::size_t c = 0; c < 3; ++c) {
-    const __m128i code = format == ColorFormat::kR8G8B8A8Srgb ? encode_srgb(color[c]) : encode_unorm(color[c]);
+    const __m128i code =
+        format == ColorFormat::kR8G8B8A8Srgb ? encode_srgb(color[c]) : encode_unorm(color[c]);
     pixels = _mm_or_si128(pixels, _mm_slli_epi32(code, static_cast<int>(8 * c)));
   }
   return pixels;
@@ -74,7 +78,8 @@ __m128 combine(BlendOp op, __m128 src, __m128 src_factor, __m128 dst, __m128 dst
   switch (op) {
     case BlendOp::kAdd: return _mm_add_ps(_mm_mul_ps(src, src_factor), _mm_mul_ps(dst, dst_factor));
     case BlendOp::kSubtract: return _mm_sub_ps(_mm_mul_ps(src, src_factor), _mm_mul_ps(dst, dst_factor));
-    case BlendOp::kReverseSubtract: return _mm_sub_ps(_mm_mul_ps(dst, dst_factor), _mm_mul_ps(src, src_factor));
+    case BlendOp::kReverseSubtract:
+      return _mm_sub_ps(_mm_mul_ps(dst, dst_factor), _mm_mul_ps(src, src_factor));
     case BlendOp::kMin: return _mm_min_ps(src, dst);
     case BlendOp::kMax: return _mm_max_ps(src, dst);
   }
@@ -84,9 +89,11 @@ __m128 combine(BlendOp op, __m128 src, __m128 src_factor, __m128 dst, __m128 dst
 QuadColor blend(const BlendState& state, const QuadColor& src, const QuadColor& dst) {
   QuadColor out;
   for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = saturate(combine(state.color, src[c], factor(state.src_color, src, dst, c), dst[c], factor(state.dst_color, src, dst, c)));
+    out[c] = saturate(combine(state.color, src[c], factor(state.src_color, src, dst, c), dst[c],
+                              factor(state.dst_color, src, dst, c)));
   }
-  out[3] = saturate(combine(state.alpha, src[3], factor(state.src_alpha, src, dst, 3), dst[3], factor(state.dst_alpha, src, dst, 3)));
+  out[3] = saturate(combine(state.alpha, src[3], factor(state.src_alpha, src, dst, 3), dst[3],
+                            factor(state.dst_alpha, src, dst, 3)));
   return out;
 }
 
@@ -101,14 +108,17 @@ constexpr std::uint32_t component_mask(std::uint8_t write_mask) {
 
 bool reads_destination(const BlendState& state) { return state.enable || (state.write_mask & 0xf) != 0xf; }
 
-void blend_quad(const BlendState& state, ColorFormat format, const float rgba[4][4], std::uint32_t dst_pixels[4], std::uint32_t lane_mask) {
+void blend_quad(const BlendState& state, ColorFormat format, const float rgba[4][4],
+                std::uint32_t dst_pixels[4], std::uint32_t lane_mask) {
   const __m128i old = _mm_loadu_si128(reinterpret_cast<const __m128i*>(dst_pixels));
   QuadColor color;
   for (std::size_t c = 0; c < 4; ++c) color[c] = saturate(_mm_loadu_ps(rgba[c]));
   if (state.enable) color = blend(state, color, decode_quad(format, old));
   const __m128i lane_bits = _mm_setr_epi32(1, 2, 4, 8);
-  const __m128i lanes = _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(lane_mask)), lane_bits), lane_bits);
-  const __m128i written = _mm_and_si128(lanes, _mm_set1_epi32(static_cast<int>(component_mask(state.write_mask))));
+  const __m128i lanes =
+      _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(lane_mask)), lane_bits), lane_bits);
+  const __m128i written =
+      _mm_and_si128(lanes, _mm_set1_epi32(static_cast<int>(component_mask(state.write_mask))));
   const __m128i pixels = _mm_blendv_epi8(old, encode_quad(format, color), written);
   _mm_storeu_si128(reinterpret_cast<__m128i*>(dst_pixels), pixels);
 }

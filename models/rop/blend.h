@@ -1,7 +1,7 @@
 /// Blending and conversion of colours to and from RGBA8 targets. [VK1.3 #framebuffer-blending]
 ///
-/// All arithmetic is fp32 on linear values: the destination is decoded, blended, clamped to 0..1 (NaN becomes 0) and encoded once. Alpha
-/// is never sRGB.
+/// All arithmetic is fp32 on linear values: the destination is decoded, blended, clamped to 0..1 (NaN becomes
+/// 0) and encoded once. Alpha is never sRGB.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ enum class BlendOp : std::uint8_t { kAdd, kSubtract, kReverseSubtract, kMin, kMa
 
 struct BlendState {
   bool enable = false;
-  BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne, dst_alpha = BlendFactor::kZero;
+  BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne,
+              dst_alpha = BlendFactor::kZero;
   BlendOp color = BlendOp::kAdd, alpha = BlendOp::kAdd;
   std::uint8_t write_mask = 0xf;  ///< bit 0 red .. bit 3 alpha
 };
@@ -36,10 +37,11 @@ struct BlendState {
 /// Does a write under this state need the old pixel (blending with it, or a partial write mask)?
 [[nodiscard]] bool reads_destination(const BlendState& state);
 
-/// Blends four pixels. `rgba[c][i]` is component c of pixel i as the shader wrote it; `dst_pixels` holds the target's pixels, red in the
-/// low byte, and receives the result where `lane_mask` (bits 0..3) is set. Source and blend factors are clamped to 0..1 first, as a UNORM
-/// target asks.
-void blend_quad(const BlendState& state, ColorFormat format, const float rgba[4][4], std::uint32_t dst_pixels[4], std::uint32_t lane_mask);
+/// Blends four pixels. `rgba[c][i]` is component c of pixel i as the shader wrote it; `dst_pixels` holds the
+/// target's pixels, red in the low byte, and receives the result where `lane_mask` (bits 0..3) is set. Source
+/// and blend factors are clamped to 0..1 first, as a UNORM target asks.
+void blend_quad(const BlendState& state, ColorFormat format, const float rgba[4][4],
+                std::uint32_t dst_pixels[4], std::uint32_t lane_mask);
 
 /// A clear colour in the target's encoding.
 [[nodiscard]] std::uint32_t encode_color(ColorFormat format, const std::array<float, 4>& rgba);

@@ -13,7 +13,8 @@ template <int predicate>
 std::uint64_t compare(const float stored[64], const float incoming[64]) {
   std::uint64_t passed = 0;
   for (int i = 0; i < 64; i += 8) {
-    const __m256 result = _mm256_cmp_ps(_mm256_loadu_ps(incoming + i), _mm256_loadu_ps(stored + i), predicate);
+    const __m256 result =
+        _mm256_cmp_ps(_mm256_loadu_ps(incoming + i), _mm256_loadu_ps(stored + i), predicate);
     passed |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_ps(result))) << i;
   }
   return passed;

@@ -5,17 +5,27 @@
 
 namespace quadrille::models {
 
-enum class CompareOp : std::uint8_t { kNever, kLess, kEqual, kLessOrEqual, kGreater, kNotEqual, kGreaterOrEqual, kAlways };
+enum class CompareOp : std::uint8_t {
+  kNever,
+  kLess,
+  kEqual,
+  kLessOrEqual,
+  kGreater,
+  kNotEqual,
+  kGreaterOrEqual,
+  kAlways
+};
 
 /// Pixels of `mask` for which `incoming op stored` holds; arrays and mask are quad-major (raster/tile.h).
 /// NaN compares as unordered: it fails all but kNotEqual and kAlways.
-[[nodiscard]] std::uint64_t depth_test(CompareOp op, const float stored[64], const float incoming[64], std::uint64_t mask);
+[[nodiscard]] std::uint64_t depth_test(CompareOp op, const float stored[64], const float incoming[64],
+                                       std::uint64_t mask);
 
 /// Writes `incoming` where `mask` is set.
 void depth_write(float stored[64], const float incoming[64], std::uint64_t mask);
 
-/// Greatest and smallest depth of a tile. A NaN, which only a shader can write, counts as +infinity and -infinity, so that bounds stay
-/// conservative.
+/// Greatest and smallest depth of a tile. A NaN, which only a shader can write, counts as +infinity and
+/// -infinity, so that bounds stay conservative.
 [[nodiscard]] float tile_max(const float depths[64]);
 [[nodiscard]] float tile_min(const float depths[64]);
 

@@ -30,7 +30,8 @@ constexpr double to_linear(double encoded) {
 
 constexpr std::array<float, 256> make_linear() {
   std::array<float, 256> table{};
-  for (std::size_t i = 0; i < 256; ++i) table[i] = static_cast<float>(to_linear(static_cast<double>(i) / 255.0));
+  for (std::size_t i = 0; i < 256; ++i)
+    table[i] = static_cast<float>(to_linear(static_cast<double>(i) / 255.0));
   return table;
 }
 
@@ -39,7 +40,8 @@ constexpr std::array<float, 256> make_thresholds() {
   for (std::size_t i = 0; i < 255; ++i) {
     const double boundary = to_linear((static_cast<double>(i) + 0.5) / 255.0);
     auto least = static_cast<float>(boundary);
-    if (static_cast<double>(least) < boundary) least = std::bit_cast<float>(std::bit_cast<std::uint32_t>(least) + 1);
+    if (static_cast<double>(least) < boundary)
+      least = std::bit_cast<float>(std::bit_cast<std::uint32_t>(least) + 1);
     table[i] = least;
   }
   table[255] = std::numeric_limits<float>::infinity();

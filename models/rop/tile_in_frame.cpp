@@ -18,7 +18,8 @@ std::uint64_t pixels_within(int width, int height) {
 
 float tile_max_within(const float depths[64], std::uint64_t mask) {
   std::array<float, kTilePixels> inside;
-  for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = (mask >> i & 1) != 0 ? depths[i] : -std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < inside.size(); ++i)
+    inside[i] = (mask >> i & 1) != 0 ? depths[i] : -std::numeric_limits<float>::infinity();
   return tile_max(inside.data());
 }
 

@@ -1,5 +1,5 @@
-/// Reads a listing (docs/isa.md, "Listing"): one directive or instruction a line, a `;` starts a comment. Operands may be plain numbers; they become
-/// literals in the constant file.
+/// Reads a listing (docs/isa.md, "Listing"): one directive or instruction a line, a `;` starts a comment.
+/// Operands may be plain numbers; they become literals in the constant file.
 #include "models/base/error.h"
 #include "models/shader/decode.h"
 #include "models/shader/listing_numbers.h"
@@ -66,20 +66,29 @@ class Assembler {
 
   void read_directive(std::string_view name, const std::vector<std::string_view>& words) {
     if (name == "stage") program_.stage = one_of<Stage>(words, kStageNames, "stage");
-    else if (name == "varying") program_.varyings.push_back(one_of<Interpolation>(words, kInterpolationNames, "interpolation"));
+    else if (name == "varying")
+      program_.varyings.push_back(one_of<Interpolation>(words, kInterpolationNames, "interpolation"));
     else if (name == "regs") registers_ = static_cast<int>(count(words, kMaxRegisters));
     else if (name == "constants") program_.constants.words = count(words, kMaxConstantWords);
     else if (name == "flags") read_flags(words);
-    else if (name == "texture") program_.textures.push_back({field(words, 0, "set"), field(words, 1, "binding")});
-    else if (name == "input") program_.vertex_inputs.push_back({small_field(words, 0, "location"), small_field(words, 1, "component")});
+    else if (name == "texture")
+      program_.textures.push_back({field(words, 0, "set"), field(words, 1, "binding")});
+    else if (name == "input")
+      program_.vertex_inputs.push_back(
+          {small_field(words, 0, "location"), small_field(words, 1, "component")});
     else if (name == "literal") read_literals(words);
     else if (name == "push") read_block(words, ConstantLayout::Source::kPushConstant);
     else if (name == "uniform") read_block(words, ConstantLayout::Source::kUniformBlock);
-    else fail("unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture input varying", name);
+    else
+      fail(
+          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture input "
+          "varying",
+          name);
   }
 
   template <class Enum, std::size_t kCount>
-  Enum one_of(const std::vector<std::string_view>& words, const std::array<std::string_view, kCount>& names, std::string_view what) const {
+  Enum one_of(const std::vector<std::string_view>& words, const std::array<std::string_view, kCount>& names,
+              std::string_view what) const {
     const auto found = words.size() == 1 ? std::find(names.begin(), names.end(), words[0]) : names.end();
     if (found == names.end()) {
       std::string legal;
@@ -97,21 +106,25 @@ class Assembler {
 
   void read_flags(const std::vector<std::string_view>& words) {
     for (const std::string_view word : words) {
-      const auto* flag = std::find_if(kProgramFlags.begin(), kProgramFlags.end(), [&](const NamedFlag& f) { return f.name == word; });
-      if (flag == kProgramFlags.end()) fail("unknown flag '{}'; legal: discard depth early-tests derivatives", word);
+      const auto* flag = std::find_if(kProgramFlags.begin(), kProgramFlags.end(),
+                                      [&](const NamedFlag& f) { return f.name == word; });
+      if (flag == kProgramFlags.end())
+        fail("unknown flag '{}'; legal: discard depth early-tests derivatives", word);
       program_.*flag->member = true;
     }
   }
 
   /// The value of word `i`, which must read `name=number`.
-  [[nodiscard]] std::uint32_t field(const std::vector<std::string_view>& words, std::size_t i, std::string_view name) const {
+  [[nodiscard]] std::uint32_t field(const std::vector<std::string_view>& words, std::size_t i,
+                                    std::string_view name) const {
     const std::string_view word = i < words.size() ? words[i] : std::string_view{};
     const bool named = word.starts_with(name) && word.substr(name.size()).starts_with('=');
     const auto value = named ? parse_integer<std::uint32_t>(word.substr(name.size() + 1)) : std::nullopt;
     if (!value) fail("expected '{}=NUMBER' instead of '{}'", name, word);
     return *value;
   }
-  [[nodiscard]] std::uint16_t small_field(const std::vector<std::string_view>& words, std::size_t i, std::string_view name) const {
+  [[nodiscard]] std::uint16_t small_field(const std::vector<std::string_view>& words, std::size_t i,
+                                          std::string_view name) const {
     const std::uint32_t value = field(words, i, name);
     if (value > std::numeric_limits<std::uint16_t>::max()) fail("{} is {}; legal: 0 to 65535", name, value);
     return static_cast<std::uint16_t>(value);
@@ -146,7 +159,8 @@ class Assembler {
     }
     range.byte_offset = field(words, next++, "offset");
     range.words = field(words, next, "words");
-    if (range.words > kMaxConstantWords) fail("a block of {} words; legal: 0 to {}", range.words, kMaxConstantWords);
+    if (range.words > kMaxConstantWords)
+      fail("a block of {} words; legal: 0 to {}", range.words, kMaxConstantWords);
     add_range(std::move(range));
   }
 
@@ -168,11 +182,13 @@ class Assembler {
     const OpInfo* info = find_op(word);
     if (info == nullptr) fail("unknown operation '{}'", word);
     in.op = info->op;
-    const std::size_t expected = (info->destinations != 0 ? 1u : 0u) + (info->immediate != Immediate::kUnused ? 1u : 0u) + info->sources;
+    const std::size_t expected = (info->destinations != 0 ? 1u : 0u) +
+                                 (info->immediate != Immediate::kUnused ? 1u : 0u) + info->sources;
     if (fields.size() != expected) fail("'{}' takes {} operands, {} given", word, expected, fields.size());
     auto next = fields.begin();
     if (info->destinations != 0) in.dst = read_destination(trimmed(*next++));
-    if (info->destinations != 0) highest_register_ = std::max(highest_register_, in.dst + info->destinations - 1);
+    if (info->destinations != 0)
+      highest_register_ = std::max(highest_register_, in.dst + info->destinations - 1);
     if (info->immediate != Immediate::kUnused) in.imm = read_immediate(trimmed(*next++), info->immediate);
     Operand* const operands[] = {&in.a, &in.b, &in.c};
     for (int i = 0; i < info->sources; ++i) *operands[i] = read_operand(trimmed(*next++), i);
@@ -220,7 +236,8 @@ class Assembler {
     const auto index = slot(rest, operand.kind == Operand::kConstant ? "c" : "r");
     if (!index) fail("'{}' is no operand; legal: rN, cN, a number, with - and | | on rN and cN", text);
     operand.index = *index;
-    if (operand.kind == Operand::kRegister) highest_register_ = std::max(highest_register_, static_cast<int>(operand.index));
+    if (operand.kind == Operand::kRegister)
+      highest_register_ = std::max(highest_register_, static_cast<int>(operand.index));
     return operand;
   }
 
@@ -237,7 +254,8 @@ class Assembler {
     if (literals_.empty()) return;
     const std::uint32_t first = program_.constants.words;
     if (first + literals_.size() > kMaxConstantWords)
-      fail("constants and numbers need {} words; legal: at most {}", first + literals_.size(), kMaxConstantWords);
+      fail("constants and numbers need {} words; legal: at most {}", first + literals_.size(),
+           kMaxConstantWords);
     for (const NumberUse& use : numbers_) {
       Instruction& in = program_.code[use.instruction];
       Operand& operand = use.position == 0 ? in.a : use.position == 1 ? in.b : in.c;

@@ -1,4 +1,5 @@
-/// Rules that a program must keep so that its execution needs no checks: registers, slots and constants exist, control flow nests and ends.
+/// Rules that a program must keep so that its execution needs no checks: registers, slots and constants
+/// exist, control flow nests and ends.
 #include "models/base/error.h"
 #include "models/shader/decode.h"
 #include "models/shader/op_table.h"
@@ -26,7 +27,8 @@ class Checker {
       check_structure(in);
     }
     index_ = program_.code.size() - 1;
-    require(program_.code.back().op == Op::kEnd, "the last instruction is '{}', it must be 'end'", op_name(program_.code.back().op));
+    require(program_.code.back().op == Op::kEnd, "the last instruction is '{}', it must be 'end'",
+            op_name(program_.code.back().op));
   }
 
  private:
@@ -38,10 +40,12 @@ class Checker {
 
   void check_header() const {
     require(!program_.code.empty(), "there are no instructions; at least 'end' is needed");
-    require(program_.num_regs >= 0 && program_.num_regs <= kMaxRegisters, "{} registers; legal: 0 to {}", program_.num_regs, kMaxRegisters);
-    require(program_.varyings.size() <= kMaxVaryings, "{} varying components; legal: at most {}", program_.varyings.size(), kMaxVaryings);
-    require(program_.vertex_inputs.size() <= kMaxVertexInputs, "{} vertex input components; legal: at most {}",
-            program_.vertex_inputs.size(), kMaxVertexInputs);
+    require(program_.num_regs >= 0 && program_.num_regs <= kMaxRegisters, "{} registers; legal: 0 to {}",
+            program_.num_regs, kMaxRegisters);
+    require(program_.varyings.size() <= kMaxVaryings, "{} varying components; legal: at most {}",
+            program_.varyings.size(), kMaxVaryings);
+    require(program_.vertex_inputs.size() <= kMaxVertexInputs,
+            "{} vertex input components; legal: at most {}", program_.vertex_inputs.size(), kMaxVertexInputs);
   }
 
   void check_operands(const Instruction& in) const {
@@ -50,18 +54,21 @@ class Checker {
     for (unsigned i = 0; i < info.sources; ++i) {
       const Operand& operand = *operands[i];
       const char name = static_cast<char>('a' + i);
-      require(operand.kind == Operand::kRegister || operand.kind == Operand::kConstant, "'{}' lacks its operand {}", info.name, name);
+      require(operand.kind == Operand::kRegister || operand.kind == Operand::kConstant,
+              "'{}' lacks its operand {}", info.name, name);
       if (operand.kind == Operand::kRegister)
-        require(operand.index < program_.num_regs, "operand {} is r{}; the program has {} registers", name, operand.index,
-                program_.num_regs);
+        require(operand.index < program_.num_regs, "operand {} is r{}; the program has {} registers", name,
+                operand.index, program_.num_regs);
       else
-        require(operand.index < program_.constants.words, "operand {} is c{}; the constant file has {} words", name, operand.index,
-                program_.constants.words);
-      require(operand.modifiers == 0 || ((info.modifiable >> i) & 1u) != 0, "operand {} of '{}' takes no modifier", name, info.name);
+        require(operand.index < program_.constants.words, "operand {} is c{}; the constant file has {} words",
+                name, operand.index, program_.constants.words);
+      require(operand.modifiers == 0 || ((info.modifiable >> i) & 1u) != 0,
+              "operand {} of '{}' takes no modifier", name, info.name);
     }
     require((in.flags & Instruction::kSaturate) == 0 || info.saturable, "'{}' cannot saturate", info.name);
     require(info.destinations == 0 || in.dst + info.destinations <= program_.num_regs,
-            "'{}' writes r{} to r{}; the program has {} registers", info.name, in.dst, in.dst + info.destinations - 1, program_.num_regs);
+            "'{}' writes r{} to r{}; the program has {} registers", info.name, in.dst,
+            in.dst + info.destinations - 1, program_.num_regs);
   }
 
   void check_immediate(const Instruction& in) const {
@@ -69,16 +76,20 @@ class Checker {
       case Immediate::kUnused: break;
       case Immediate::kInputSlot: check_input(in.imm); break;
       case Immediate::kVaryingSlot:
-        require(in.imm < program_.varyings.size(), "varying {} does not exist; the program has {}", in.imm, program_.varyings.size());
+        require(in.imm < program_.varyings.size(), "varying {} does not exist; the program has {}", in.imm,
+                program_.varyings.size());
         break;
       case Immediate::kOutputSlot: {
-        const std::size_t slots = program_.stage == Stage::kVertex ? kFirstVaryingOutput + program_.varyings.size() : kDepthOutput + 1u;
+        const std::size_t slots = program_.stage == Stage::kVertex
+                                      ? kFirstVaryingOutput + program_.varyings.size()
+                                      : kDepthOutput + 1u;
         require(in.imm < slots, "output slot {} does not exist; the stage has {}", in.imm, slots);
         break;
       }
       case Immediate::kConstantWord: check_indexed_constant(in); break;
       case Immediate::kTextureBinding:
-        require(in.imm < program_.textures.size(), "texture {} does not exist; the program has {}", in.imm, program_.textures.size());
+        require(in.imm < program_.textures.size(), "texture {} does not exist; the program has {}", in.imm,
+                program_.textures.size());
         break;
     }
   }
@@ -88,23 +99,29 @@ class Checker {
     constexpr auto kLast = static_cast<std::uint16_t>(SystemValue::kPrimitiveId);
     const bool vertex = program_.stage == Stage::kVertex;
     if (slot < kFirstSystemValue)
-      require(vertex && slot < program_.vertex_inputs.size(), "vertex input {} does not exist; the program has {}", slot,
+      require(vertex && slot < program_.vertex_inputs.size(),
+              "vertex input {} does not exist; the program has {}", slot,
               vertex ? program_.vertex_inputs.size() : 0u);
-    else require(slot <= kLast && (slot < kFirstFragment) == vertex, "system value {} does not exist in this stage", slot);
+    else
+      require(slot <= kLast && (slot < kFirstFragment) == vertex,
+              "system value {} does not exist in this stage", slot);
   }
 
   void check_indexed_constant(const Instruction& in) const {
-    const std::uint32_t* last = in.b.kind == Operand::kConstant ? literal_value(program_.constants, in.b.index) : nullptr;
+    const std::uint32_t* last =
+        in.b.kind == Operand::kConstant ? literal_value(program_.constants, in.b.index) : nullptr;
     require(last != nullptr, "operand b of 'loadconst' must be a literal, the largest index");
     require(*last < program_.constants.words && in.imm + *last < program_.constants.words,
-            "'loadconst' reaches c[{} + {}]; the constant file has {} words", in.imm, *last, program_.constants.words);
+            "'loadconst' reaches c[{} + {}]; the constant file has {} words", in.imm, *last,
+            program_.constants.words);
   }
 
   void check_stage(const Instruction& in) const {
     const bool implicit = in.op == Op::kTexImplicit || in.op == Op::kTexBias;
     const bool derivative = in.op >= Op::kDdxFine && in.op <= Op::kDdyCoarse;
     const bool fragment_only = implicit || derivative || in.op == Op::kInterp || in.op == Op::kKillIf;
-    require(!fragment_only || program_.stage == Stage::kFragment, "'{}' exists only in fragment shaders", op_name(in.op));
+    require(!fragment_only || program_.stage == Stage::kFragment, "'{}' exists only in fragment shaders",
+            op_name(in.op));
   }
 
   struct Construct {
@@ -117,21 +134,25 @@ class Checker {
   void check_structure(const Instruction& in) {
     const bool last = index_ + 1 == program_.code.size();
     if (in.op == Op::kIf || in.op == Op::kLoop) {
-      require(open_.size() < static_cast<std::size_t>(kMaxControlDepth), "control flow nests deeper than {}", kMaxControlDepth);
+      require(open_.size() < static_cast<std::size_t>(kMaxControlDepth), "control flow nests deeper than {}",
+              kMaxControlDepth);
       open_.push_back({in.op, false});
     } else if (in.op == Op::kElse || in.op == Op::kContinuing) {
-      require(inside(in.op == Op::kElse ? Op::kIf : Op::kLoop) && !open_.back().second_part, "'{}' has no {} to belong to", op_name(in.op),
-              in.op == Op::kElse ? "'if'" : "'loop'");
+      require(inside(in.op == Op::kElse ? Op::kIf : Op::kLoop) && !open_.back().second_part,
+              "'{}' has no {} to belong to", op_name(in.op), in.op == Op::kElse ? "'if'" : "'loop'");
       open_.back().second_part = true;
     } else if (in.op == Op::kEndIf || in.op == Op::kEndLoop) {
-      require(inside(in.op == Op::kEndIf ? Op::kIf : Op::kLoop), "'{}' does not end the innermost construct", op_name(in.op));
+      require(inside(in.op == Op::kEndIf ? Op::kIf : Op::kLoop), "'{}' does not end the innermost construct",
+              op_name(in.op));
       open_.pop_back();
     } else if (in.op == Op::kBreakIf || in.op == Op::kContinueIf) {
-      const bool in_loop = std::any_of(open_.begin(), open_.end(), [](const Construct& c) { return c.op == Op::kLoop; });
+      const bool in_loop =
+          std::any_of(open_.begin(), open_.end(), [](const Construct& c) { return c.op == Op::kLoop; });
       require(in_loop, "'{}' is outside a loop", op_name(in.op));
     } else if (in.op == Op::kEnd) {
       require(last, "'end' before the last instruction");
-      require(open_.empty(), "'end' inside an open '{}'", open_.empty() ? std::string_view{} : op_name(open_.back().op));
+      require(open_.empty(), "'end' inside an open '{}'",
+              open_.empty() ? std::string_view{} : op_name(open_.back().op));
     }
   }
 

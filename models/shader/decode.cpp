@@ -12,7 +12,9 @@ namespace {
 
 DecodedOperand decode_operand(const Operand& operand) {
   DecodedOperand decoded;
-  decoded.offset = operand.kind == Operand::kRegister ? static_cast<std::uint32_t>(operand.index * sizeof(RegisterRow)) : operand.index;
+  decoded.offset = operand.kind == Operand::kRegister
+                       ? static_cast<std::uint32_t>(operand.index * sizeof(RegisterRow))
+                       : operand.index;
   if ((operand.modifiers & Operand::kAbsolute) != 0) decoded.keep = 0x7fffffffu;
   if ((operand.modifiers & Operand::kNegate) != 0) decoded.flip = 0x80000000u;
   return decoded;
@@ -76,7 +78,8 @@ void prepare(const Program& program) {
   decoded->counts.resize(program.code.size() + 1);
   for (std::size_t i = 0; i < program.code.size(); ++i) {
     decoded->code.push_back(decode_instruction(program, program.code[i]));
-    QUADRILLE_CHECK(decoded->flow[i].control || decoded->code[i].all_lanes != nullptr, "no kernel for '{}'", op_name(program.code[i].op));
+    QUADRILLE_CHECK(decoded->flow[i].control || decoded->code[i].all_lanes != nullptr, "no kernel for '{}'",
+                    op_name(program.code[i].op));
     decoded->counts[i + 1] = decoded->counts[i];
     count(decoded->counts[i + 1], issue_class(program.code[i].op));
   }

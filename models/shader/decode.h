@@ -1,7 +1,9 @@
-/// The form in which a program executes: one record an instruction, with the function that executes it chosen once, for its operand kinds and modifiers.
+/// The form in which a program executes: one record an instruction, with the function that executes it chosen
+/// once, for its operand kinds and modifiers.
 ///
-/// Straight-line instructions run in *runs*: a run ends at control flow and where texture results must be waited for. Both are known from the program text
-/// alone, because control flow always waits; so a run is a plain loop over functions, and its cost a difference of two prefix sums.
+/// Straight-line instructions run in *runs*: a run ends at control flow and where texture results must be
+/// waited for. Both are known from the program text alone, because control flow always waits; so a run is a
+/// plain loop over functions, and its cost a difference of two prefix sums.
 #pragma once
 
 #include "models/shader/warp.h"
@@ -23,7 +25,8 @@ struct ExecutionContext {
   alignas(64) LaneWords exec_lanes;  ///< all ones in lanes of `warp->exec`
 };
 
-/// A register row (byte offset into the register file) or a word of the constant file; the value read is (bits & keep) ^ flip.
+/// A register row (byte offset into the register file) or a word of the constant file; the value read is
+/// (bits & keep) ^ flip.
 struct DecodedOperand {
   std::uint32_t offset = 0;
   std::uint32_t keep = ~0u, flip = 0;
@@ -39,7 +42,8 @@ struct alignas(64) DecodedInstruction {
   Op op = Op::kNop;
 };
 
-/// Where execution goes on. Instructions that `stop` are control flow or wait for textures; runs lie between them.
+/// Where execution goes on. Instructions that `stop` are control flow or wait for textures; runs lie between
+/// them.
 struct Flow {
   std::uint32_t run_end = 0;    ///< a run that starts here ends before this instruction
   std::uint32_t target = 0;     ///< control: where to go when no lane is left
@@ -75,7 +79,8 @@ struct KernelShape {
 [[nodiscard]] Kernel float_kernel(Op op, const KernelShape& shape);
 [[nodiscard]] Kernel special_kernel(Op op, const KernelShape& shape);
 [[nodiscard]] Kernel integer_kernel(Op op, const KernelShape& shape);
-[[nodiscard]] Kernel interface_kernel(const Program& program, const Instruction& instruction, const KernelShape& shape);
+[[nodiscard]] Kernel interface_kernel(const Program& program, const Instruction& instruction,
+                                      const KernelShape& shape);
 
 /// The first instruction that breaks a rule of the ISA (docs/isa.md), and which rule.
 struct ProgramFault {

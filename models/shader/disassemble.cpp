@@ -22,8 +22,8 @@ std::string range_text(const ConstantLayout::Range& range) {
     case ConstantLayout::Source::kPushConstant:
       return fmt::format(".push c{} offset={} words={}", range.first_word, range.byte_offset, range.words);
     case ConstantLayout::Source::kUniformBlock:
-      return fmt::format(".uniform c{} set={} binding={} offset={} words={}", range.first_word, range.set, range.binding, range.byte_offset,
-                         range.words);
+      return fmt::format(".uniform c{} set={} binding={} offset={} words={}", range.first_word, range.set,
+                         range.binding, range.byte_offset, range.words);
   }
   return {};
 }
@@ -32,16 +32,20 @@ std::string header_text(const Program& p) {
   std::string title = p.name;
   std::replace_if(
       title.begin(), title.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  std::string text = fmt::format("; {}\n.stage {}\n.regs {}\n", title, kStageNames[static_cast<std::size_t>(p.stage)], p.num_regs);
+  std::string text = fmt::format("; {}\n.stage {}\n.regs {}\n", title,
+                                 kStageNames[static_cast<std::size_t>(p.stage)], p.num_regs);
   std::string flags;
   for (const NamedFlag& flag : kProgramFlags)
     if (p.*flag.member) flags += fmt::format(" {}", flag.name);
   if (!flags.empty()) text += fmt::format(".flags{}\n", flags);
   if (p.constants.words != 0) text += fmt::format(".constants {}\n", p.constants.words);
   for (const auto& range : p.constants.ranges) text += fmt::format("{}\n", range_text(range));
-  for (const TextureBinding& t : p.textures) text += fmt::format(".texture set={} binding={}\n", t.set, t.binding);
-  for (const VertexInputUse& v : p.vertex_inputs) text += fmt::format(".input location={} component={}\n", v.location, v.component);
-  for (const Interpolation mode : p.varyings) text += fmt::format(".varying {}\n", kInterpolationNames[static_cast<std::size_t>(mode)]);
+  for (const TextureBinding& t : p.textures)
+    text += fmt::format(".texture set={} binding={}\n", t.set, t.binding);
+  for (const VertexInputUse& v : p.vertex_inputs)
+    text += fmt::format(".input location={} component={}\n", v.location, v.component);
+  for (const Interpolation mode : p.varyings)
+    text += fmt::format(".varying {}\n", kInterpolationNames[static_cast<std::size_t>(mode)]);
   return text;
 }
 
@@ -54,14 +58,17 @@ std::string operand_text(const Operand& operand) {
 
 std::string slot_text(const Instruction& in, Immediate immediate) {
   const std::size_t system = static_cast<std::size_t>(in.imm) - kFirstSystemValue;
-  if (immediate == Immediate::kInputSlot && system < kSystemValueNames.size()) return std::string(kSystemValueNames[system]);
+  if (immediate == Immediate::kInputSlot && system < kSystemValueNames.size())
+    return std::string(kSystemValueNames[system]);
   return fmt::format("{}{}", slot_prefix(immediate), in.imm);
 }
 
 std::string instruction_text(const Program& p, const Instruction& in) {
   const OpInfo& info = op_info(in.op);
   std::string fields, values;
-  const auto add = [&](const std::string& field) { fields += fmt::format("{}{}", fields.empty() ? "" : ", ", field); };
+  const auto add = [&](const std::string& field) {
+    fields += fmt::format("{}{}", fields.empty() ? "" : ", ", field);
+  };
   if (info.destinations != 0) add(fmt::format("r{}", in.dst));
   if (info.immediate != Immediate::kUnused) add(slot_text(in, info.immediate));
   const Operand* const operands[] = {&in.a, &in.b, &in.c};
@@ -69,15 +76,19 @@ std::string instruction_text(const Program& p, const Instruction& in) {
     add(operand_text(*operands[i]));
     if (operands[i]->kind != Operand::kConstant) continue;
     if (const std::uint32_t* value = literal_value(p.constants, operands[i]->index))
-      values += fmt::format("{}c{} = {}", values.empty() ? "  ; " : ", ", operands[i]->index, literal_text(*value));
+      values +=
+          fmt::format("{}c{} = {}", values.empty() ? "  ; " : ", ", operands[i]->index, literal_text(*value));
   }
-  std::string mnemonic = fmt::format("{}{}", info.name, (in.flags & Instruction::kSaturate) != 0 ? ".sat" : "");
+  std::string mnemonic =
+      fmt::format("{}{}", info.name, (in.flags & Instruction::kSaturate) != 0 ? ".sat" : "");
   if (fields.empty()) return mnemonic;
   return fmt::format("{:<11} {}{}", mnemonic, fields, values);
 }
 
 bool opens(Op op) { return op == Op::kIf || op == Op::kLoop || op == Op::kElse || op == Op::kContinuing; }
-bool closes(Op op) { return op == Op::kEndIf || op == Op::kEndLoop || op == Op::kElse || op == Op::kContinuing; }
+bool closes(Op op) {
+  return op == Op::kEndIf || op == Op::kEndLoop || op == Op::kElse || op == Op::kContinuing;
+}
 
 }  // namespace
 

@@ -1,4 +1,5 @@
-/// Executes a warp: runs of straight-line instructions, and between them the mask stack of structured control flow.
+/// Executes a warp: runs of straight-line instructions, and between them the mask stack of structured control
+/// flow.
 #include "models/base/error.h"
 #include "models/shader/decode.h"
 #include "models/shader/lanes.h"
@@ -20,7 +21,8 @@ class Execution {
     context_.warp = &warp;
     const FragmentInputs* in = warp.fragment;
     context_.one_triangle =
-        in != nullptr && std::all_of(in->varyings.begin(), in->varyings.end(), [&](const float* v) { return v == in->varyings[0]; });
+        in != nullptr && std::all_of(in->varyings.begin(), in->varyings.end(),
+                                     [&](const float* v) { return v == in->varyings[0]; });
     mask_changed();
   }
 
@@ -48,16 +50,19 @@ class Execution {
 
  private:
   void mask_changed() {
-    for (int g = 0; g < kWarpGroups; ++g) store(context_.exec_lanes.data() + g * kGroupLanes, expand_mask(warp_.exec, g));
+    for (int g = 0; g < kWarpGroups; ++g)
+      store(context_.exec_lanes.data() + g * kGroupLanes, expand_mask(warp_.exec, g));
   }
 
   void run_straight(std::uint32_t end, ClauseCost& cost) {
     const std::uint32_t begin = std::exchange(warp_.pc, end);
     const DecodedInstruction* const last = program_.code.data() + end;
     if (warp_.exec == warp_.launched)
-      for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d) d->all_lanes(*d, context_);
+      for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d)
+        d->all_lanes(*d, context_);
     else
-      for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d) d->some_lanes(*d, context_);
+      for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d)
+        d->some_lanes(*d, context_);
     warp_.instructions += end - begin;
     charge(begin, end, cost);
   }
@@ -71,15 +76,18 @@ class Execution {
     cost.constant += after.constant - before.constant;
     cost.control += after.control - before.control;
     cost.exported += after.exported - before.exported;
-    cost.lane_ops += static_cast<std::uint64_t>(end - begin) * static_cast<std::uint64_t>(std::popcount(warp_.exec));
+    cost.lane_ops +=
+        static_cast<std::uint64_t>(end - begin) * static_cast<std::uint64_t>(std::popcount(warp_.exec));
   }
 
   /// Executing lanes whose condition (operand a) is not zero.
   [[nodiscard]] LaneMask condition() const {
     const DecodedOperand& a = program_.code[warp_.pc].a;
-    if (warp_.program->code[warp_.pc].a.kind == Operand::kConstant) return context_.constants[a.offset] != 0 ? warp_.exec : 0;
+    if (warp_.program->code[warp_.pc].a.kind == Operand::kConstant)
+      return context_.constants[a.offset] != 0 ? warp_.exec : 0;
     LaneMask met = 0;
-    for (int g = 0; g < kWarpGroups; ++g) met |= nonzero_bits(load_words(context_.regs + a.offset + g * 32)) << (g * kGroupLanes);
+    for (int g = 0; g < kWarpGroups; ++g)
+      met |= nonzero_bits(load_words(context_.regs + a.offset + g * 32)) << (g * kGroupLanes);
     return met & warp_.exec;
   }
 
@@ -128,7 +136,8 @@ class Execution {
     }
     if (++warp_.back_edges > kMaxBackEdges || warp_.instructions > kMaxLoopInstructions) {
       throw user_error(
-          "shader '{}', instruction {}: a loop ran {} iterations and {} instructions without an end; does its condition ever become false?",
+          "shader '{}', instruction {}: a loop ran {} iterations and {} instructions without an end; does "
+          "its condition ever become false?",
           warp_.program->name, warp_.pc, warp_.back_edges - 1, warp_.instructions);
     }
     return top().start;
@@ -143,7 +152,8 @@ class Execution {
 void check_interface(const Warp& warp) {
   const bool vertex = warp.program->stage == Stage::kVertex;
   const bool has_inputs = vertex ? warp.vertex != nullptr : warp.fragment != nullptr;
-  QUADRILLE_CHECK(has_inputs && warp.outputs != nullptr, "warp of '{}' runs without inputs or outputs", warp.program->name);
+  QUADRILLE_CHECK(has_inputs && warp.outputs != nullptr, "warp of '{}' runs without inputs or outputs",
+                  warp.program->name);
 }
 
 ClauseResult run(Warp& warp, WarpClock* clock) {

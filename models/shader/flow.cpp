@@ -59,7 +59,8 @@ void mark_runs(std::vector<Flow>& flow) {
     flow[i].run_end = flow[i + 1].stops ? static_cast<std::uint32_t>(i + 1) : flow[i + 1].run_end;
 }
 
-/// A part of a construct (a side of an IF, a loop's body or its continue block) and the instructions that jump to its end when no lane is left.
+/// A part of a construct (a side of an IF, a loop's body or its continue block) and the instructions that
+/// jump to its end when no lane is left.
 struct OpenPart {
   bool loop = false;
   std::uint8_t frame = 0;
@@ -80,7 +81,8 @@ void mark_targets(const Program& program, std::vector<Flow>& flow) {
       close(open.back(), i, flow);
       open.pop_back();
     }
-    if (op == Op::kIf || op == Op::kLoop) open.push_back({op == Op::kLoop, static_cast<std::uint8_t>(open.size()), {}});
+    if (op == Op::kIf || op == Op::kLoop)
+      open.push_back({op == Op::kLoop, static_cast<std::uint8_t>(open.size()), {}});
     if (op == Op::kContinueIf)
       for (const OpenPart& part : open)
         if (part.loop) flow[i].loop_frame = part.frame;

@@ -10,10 +10,13 @@
 namespace quadrille::models {
 namespace {
 
-constexpr IssueClass kAluOp = IssueClass::kAlu, kSfuOp = IssueClass::kSfu, kControlOp = IssueClass::kControl, kTexOp = IssueClass::kTex;
+constexpr IssueClass kAluOp = IssueClass::kAlu, kSfuOp = IssueClass::kSfu, kControlOp = IssueClass::kControl,
+                     kTexOp = IssueClass::kTex;
 
 constexpr OpInfo float_op(Op op, std::string_view name, int sources, IssueClass issue = kAluOp) {
-  return {op, name, issue, static_cast<std::uint8_t>(sources), 1, static_cast<std::uint8_t>((1 << sources) - 1), true};
+  return {
+      op,  name, issue, static_cast<std::uint8_t>(sources), 1, static_cast<std::uint8_t>((1 << sources) - 1),
+      true};
 }
 constexpr OpInfo float_compare(Op op, std::string_view name) { return {op, name, kAluOp, 2, 1, 3, false}; }
 constexpr OpInfo integer_op(Op op, std::string_view name, int sources, IssueClass issue = kAluOp) {
@@ -127,7 +130,8 @@ const OpInfo& op_info(Op op) {
 }
 
 const OpInfo* find_op(std::string_view name) {
-  const auto* found = std::find_if(kOps.begin(), kOps.end(), [&](const OpInfo& info) { return info.name == name; });
+  const auto* found =
+      std::find_if(kOps.begin(), kOps.end(), [&](const OpInfo& info) { return info.name == name; });
   return found == kOps.end() ? nullptr : found;
 }
 

@@ -1,9 +1,10 @@
 /// The register ISA of the shader cores: scalar 32-bit operations over a warp of 32 lanes.
 ///
-/// A program is a flat list of instructions. Each lane owns `num_regs` 32-bit registers (a float or an integer: the operation decides). An operand is a
-/// register or a word of the *constant file*: one array of 32-bit words a draw, the same for all lanes, that holds literals, push constants and uniform
-/// blocks (`ConstantLayout` says where each word comes from). Control flow is structured, so divergence is a stack of lane masks.
-/// docs/isa.md is the reference; `disassemble` prints a listing and `assemble` reads it back.
+/// A program is a flat list of instructions. Each lane owns `num_regs` 32-bit registers (a float or an
+/// integer: the operation decides). An operand is a register or a word of the *constant file*: one array of
+/// 32-bit words a draw, the same for all lanes, that holds literals, push constants and uniform blocks
+/// (`ConstantLayout` says where each word comes from). Control flow is structured, so divergence is a stack
+/// of lane masks. docs/isa.md is the reference; `disassemble` prints a listing and `assemble` reads it back.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +24,14 @@ inline constexpr int kMaxVaryings = 64;      ///< scalar components between vert
 inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attributes of 4)
 inline constexpr int kMaxColorOutputs = 4;   ///< scalar components of one colour attachment
 
-/// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones (true) or zero.
+/// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones
+/// (true) or zero.
 // clang-format off: operations stay grouped by kind
 enum class Op : std::uint8_t {
   kNop,
   kMov,
-  // Float, full rate. FMAD rounds twice (product, then sum), so fusing a multiply and an add never changes a value; FMA rounds once.
+  // Float, full rate. FMAD rounds twice (product, then sum), so fusing a multiply and an add never changes a
+  // value; FMA rounds once.
   kFAdd,
   kFMul,
   kFMad,
@@ -90,24 +93,29 @@ enum class Op : std::uint8_t {
   kU2F,
   // dst = a ? b : c, bitwise test of a != 0.
   kSelect,
-  // Screen-space derivatives within the quad; lanes of a quad are (0,0) (1,0) (0,1) (1,1). "Fine" uses the lane's own row/column, "coarse" the first.
+  // Screen-space derivatives within the quad; lanes of a quad are (0,0) (1,0) (0,1) (1,1). "Fine" uses the
+  // lane's own row/column, "coarse" the first.
   kDdxFine,
   kDdyFine,
   kDdxCoarse,
   kDdyCoarse,
   // Inputs and outputs; `imm` is the slot (see Program).
-  kInput,      ///< vertex stage: dst = vertex input component or system value `imm`; fragment stage: dst = system value `imm`
+  /// vertex stage: dst = vertex input component or system value `imm`; fragment stage: dst = system value
+  /// `imm`
+  kInput,
   kInterp,     ///< fragment stage: dst = varying component `imm`, by its interpolation mode
   kOutput,     ///< output slot `imm` = a
   kLoadConst,  ///< dst = constant word [imm + (lane's a)], a clamped to [0, b]; b is a literal constant
-  // Texturing: a = u, b = v, c = bias or explicit level of detail (if any), `imm` = texture binding; writes dst .. dst+3 (rgba).
+  // Texturing: a = u, b = v, c = bias or explicit level of detail (if any), `imm` = texture binding; writes
+  // dst .. dst+3 (rgba).
   kTexImplicit,
   kTexBias,
   kTexLod,
   kTexSize,  ///< dst, dst+1 = width, height (integers) of texture `imm` at level a
   // Control. IF pushes the mask and keeps lanes with a != 0.
-  // LOOP repeats until no lane is left; lanes that break rejoin after ENDLOOP, lanes that continue rejoin at CONTINUING (a loop may have one, directly in
-  // its body: the continue block of SPIR-V follows it) or else at ENDLOOP.
+  // LOOP repeats until no lane is left; lanes that break rejoin after ENDLOOP, lanes that continue rejoin at
+  // CONTINUING (a loop may have one, directly in its body: the continue block of SPIR-V follows it) or else
+  // at ENDLOOP.
   kIf,
   kElse,
   kEndIf,
@@ -157,13 +165,15 @@ enum class SystemValue : std::uint16_t {
   kPrimitiveId
 };
 
-/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 0..3 colour, 4 depth.
+/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 0..3 colour, 4
+/// depth.
 inline constexpr std::uint16_t kFirstVaryingOutput = 4;
 inline constexpr std::uint16_t kDepthOutput = 4;
 
 enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
 
-/// Where words of the constant file come from. Literals carry their value; blocks are copied from a buffer when a draw is bound.
+/// Where words of the constant file come from. Literals carry their value; blocks are copied from a buffer
+/// when a draw is bound.
 struct ConstantLayout {
   enum class Source : std::uint8_t { kLiteral, kPushConstant, kUniformBlock };
   struct Range {
@@ -192,7 +202,8 @@ struct VertexInputUse {
 
 enum class Stage : std::uint8_t { kVertex, kFragment };
 
-/// The form in which a program executes (models/shader/decode.h). A program holds it once it has been prepared; a copy of a program starts without.
+/// The form in which a program executes (models/shader/decode.h). A program holds it once it has been
+/// prepared; a copy of a program starts without.
 struct DecodedProgram;
 class DecodedCache {
  public:
@@ -207,7 +218,8 @@ class DecodedCache {
   ~DecodedCache() = default;
   [[nodiscard]] const DecodedProgram* get() const { return form_.get(); }
   void set(std::shared_ptr<const DecodedProgram> form) { form_ = std::move(form); }
-  friend bool operator==(const DecodedCache&, const DecodedCache&) { return true; }  ///< never part of a program's value
+  /// never part of a program's value
+  friend bool operator==(const DecodedCache&, const DecodedCache&) { return true; }
 
  private:
   std::shared_ptr<const DecodedProgram> form_;
@@ -221,7 +233,8 @@ struct Program {
   ConstantLayout constants;
   std::vector<TextureBinding> textures;       ///< kTex* imm indexes this
   std::vector<VertexInputUse> vertex_inputs;  ///< vertex stage
-  std::vector<Interpolation> varyings;        ///< both stages of a pipeline hold the same list: scalar components, packed
+  /// both stages of a pipeline hold the same list: scalar components, packed
+  std::vector<Interpolation> varyings;
   bool uses_discard = false;
   bool writes_depth = false;
   bool early_fragment_tests = false;
@@ -230,8 +243,9 @@ struct Program {
   friend bool operator==(const Program&, const Program&) = default;
 };
 
-/// Checks a program (registers, slots, constants, structure of its control flow) and decodes it for execution; `Warp::launch` does so by itself the first
-/// time. Call it again after changing `code` of a program that has run. Throws `UserError` naming the program and the instruction.
+/// Checks a program (registers, slots, constants, structure of its control flow) and decodes it for
+/// execution; `Warp::launch` does so by itself the first time. Call it again after changing `code` of a
+/// program that has run. Throws `UserError` naming the program and the instruction.
 void prepare(const Program& program);
 
 [[nodiscard]] std::string_view op_name(Op op);
@@ -241,8 +255,8 @@ void prepare(const Program& program);
 /// Number of consecutive registers written from `dst` (0, 1, 2 or 4).
 [[nodiscard]] int destination_count(Op op);
 
-/// One line an instruction; constants that are literals are printed with their value. `assemble` gives the same program back, provided that fields an
-/// instruction does not use are zero.
+/// One line an instruction; constants that are literals are printed with their value. `assemble` gives the
+/// same program back, provided that fields an instruction does not use are zero.
 [[nodiscard]] std::string disassemble(const Program& program);
 /// Reads a listing. Throws `UserError` with the line on a mistake.
 [[nodiscard]] Program assemble(std::string_view text, std::string_view name);

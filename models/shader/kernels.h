@@ -1,5 +1,6 @@
-/// How an operation on eight lanes becomes the function that executes an instruction on a warp: one instance for each choice of operand kinds, modifiers,
-/// saturation and masking, so that nothing is decided in the loop.
+/// How an operation on eight lanes becomes the function that executes an instruction on a warp: one instance
+/// for each choice of operand kinds, modifiers, saturation and masking, so that nothing is decided in the
+/// loop.
 ///
 /// An operation is a struct with `apply`, the traits below, and no state.
 #pragma once
@@ -41,13 +42,16 @@ class Source {
 };
 
 /// Clamps to [0, 1]; NaN gives 0 and -0 gives 0 (max returns its second operand then).
-inline Lanes saturated(Floats x) { return Floats{_mm256_min_ps(_mm256_max_ps(x.v, splat(0.0f).v), splat(1.0f).v)}; }
+inline Lanes saturated(Floats x) {
+  return Floats{_mm256_min_ps(_mm256_max_ps(x.v, splat(0.0f).v), splat(1.0f).v)};
+}
 
 /// Writes eight lanes of a row, all of them or those that execute.
 template <bool kMasked>
 void write_group(std::byte* row, int g, Lanes value, const ExecutionContext& x) {
   std::byte* at = row + g * 32;
-  if constexpr (kMasked) value = choose(load_words(x.exec_lanes.data() + g * kGroupLanes), value, load_words(at));
+  if constexpr (kMasked)
+    value = choose(load_words(x.exec_lanes.data() + g * kGroupLanes), value, load_words(at));
   store(at, value);
 }
 
@@ -57,7 +61,9 @@ void execute(const DecodedInstruction& d, ExecutionContext& x) {
   constexpr int kSources = Operation::kSources;
   constexpr bool kModified = ((kShape >> kSources) & 1u) != 0;
   constexpr bool kSaturate = ((kShape >> (kSources + 1)) & 1u) != 0;
-  constexpr auto kKind = [](int i) { return ((kShape >> i) & 1u) != 0 ? SourceKind::kWord : SourceKind::kRow; };
+  constexpr auto kKind = [](int i) {
+    return ((kShape >> i) & 1u) != 0 ? SourceKind::kWord : SourceKind::kRow;
+  };
   std::byte* const dst = x.regs + d.dst;
   const auto finish = [&](int g, Lanes value) {
     if constexpr (kSaturate) value = saturated(value);
@@ -97,9 +103,12 @@ struct FloatTest {
 /// The kernel of `Operation` for a shape that the program checker allowed.
 template <class Operation>
 [[nodiscard]] Kernel kernel_of(const KernelShape& shape) {
-  constexpr unsigned kShapes = 1u << (Operation::kSources + (Operation::kSaturable ? 2 : Operation::kModifiable ? 1 : 0));
+  constexpr unsigned kShapes = 1u << (Operation::kSources + (Operation::kSaturable    ? 2
+                                                             : Operation::kModifiable ? 1
+                                                                                      : 0));
   static constexpr auto kTable = []<unsigned... kShape>(std::integer_sequence<unsigned, kShape...>) {
-    return std::array<Kernel, kShapes>{Kernel{&execute<Operation, kShape, false>, &execute<Operation, kShape, true>}...};
+    return std::array<Kernel, kShapes>{
+        Kernel{&execute<Operation, kShape, false>, &execute<Operation, kShape, true>}...};
   }
   (std::make_integer_sequence<unsigned, kShapes>{});
   const unsigned modified = shape.modified ? 1u : 0u, saturate = shape.saturate ? 2u : 0u;

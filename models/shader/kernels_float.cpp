@@ -1,4 +1,5 @@
-/// Float operations at full rate, comparisons, conversions, derivatives, and the moves that treat bits as floats.
+/// Float operations at full rate, comparisons, conversions, derivatives, and the moves that treat bits as
+/// floats.
 #include "models/shader/kernels.h"
 
 namespace quadrille::models {
@@ -19,12 +20,17 @@ struct FMad : FloatOperation<3> {
 struct Fma : FloatOperation<3> {
   static Floats apply(Floats a, Floats b, Floats c) { return ordered_fused(a, b, c); }
 };
-/// The machine instruction gives its second operand when either is NaN; that is right but for a NaN in the second.
+/// The machine instruction gives its second operand when either is NaN; that is right but for a NaN in the
+/// second.
 struct FMin : FloatOperation<2> {
-  static Lanes apply(Floats a, Floats b) { return choose(compare<_CMP_UNORD_Q>(b, b), a, Floats{_mm256_min_ps(a.v, b.v)}); }
+  static Lanes apply(Floats a, Floats b) {
+    return choose(compare<_CMP_UNORD_Q>(b, b), a, Floats{_mm256_min_ps(a.v, b.v)});
+  }
 };
 struct FMax : FloatOperation<2> {
-  static Lanes apply(Floats a, Floats b) { return choose(compare<_CMP_UNORD_Q>(b, b), a, Floats{_mm256_max_ps(a.v, b.v)}); }
+  static Lanes apply(Floats a, Floats b) {
+    return choose(compare<_CMP_UNORD_Q>(b, b), a, Floats{_mm256_max_ps(a.v, b.v)});
+  }
 };
 template <int kRounding>
 struct FRound : FloatOperation<1> {
@@ -67,14 +73,17 @@ struct F2U : FloatTest<1> {
 
 struct ToFloat {
   static constexpr int kSources = 1;
-  static constexpr bool kModifiable = true, kSaturable = true;  // the checker allows no modifier; the shape index needs its place
+  // the checker allows no modifier; the shape index needs its place
+  static constexpr bool kModifiable = true, kSaturable = true;
 };
 struct I2F : ToFloat {
   static Floats apply(Words a) { return to_floats(a); }
 };
 /// Both halves convert exactly and their sum is rounded once.
 struct U2F : ToFloat {
-  static Floats apply(Words a) { return to_floats(shift_right<16>(a)) * splat(65536.0f) + to_floats(a & splat_word(0xffffu)); }
+  static Floats apply(Words a) {
+    return to_floats(shift_right<16>(a)) * splat(65536.0f) + to_floats(a & splat_word(0xffffu));
+  }
 };
 
 struct Select : FloatOperation<3> {
@@ -84,7 +93,9 @@ struct Select : FloatOperation<3> {
 /// Differences inside each 128-bit half, which is a quad: (0,0) (1,0) (0,1) (1,1).
 template <int kFrom, int kTo>
 struct Derivative : FloatOperation<1> {
-  static Floats apply(Floats a) { return Floats{_mm256_permute_ps(a.v, kTo)} - Floats{_mm256_permute_ps(a.v, kFrom)}; }
+  static Floats apply(Floats a) {
+    return Floats{_mm256_permute_ps(a.v, kTo)} - Floats{_mm256_permute_ps(a.v, kFrom)};
+  }
 };
 using DdxFine = Derivative<_MM_SHUFFLE(2, 2, 0, 0), _MM_SHUFFLE(3, 3, 1, 1)>;
 using DdyFine = Derivative<_MM_SHUFFLE(1, 0, 1, 0), _MM_SHUFFLE(3, 2, 3, 2)>;

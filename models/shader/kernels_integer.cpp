@@ -1,4 +1,5 @@
-/// Integer and bitwise operations. Division has no vector form on the host and goes lane by lane; it never traps.
+/// Integer and bitwise operations. Division has no vector form on the host and goes lane by lane; it never
+/// traps.
 #include "models/shader/kernels.h"
 
 namespace quadrille::models {
@@ -84,7 +85,8 @@ Words lane_by_lane(Words a, Words b, Scalar scalar) {
   return load_words(left.data());
 }
 
-/// Quotient and remainder in 64 bits, where INT_MIN / -1 fits; a zero divisor gives all ones and the dividend.
+/// Quotient and remainder in 64 bits, where INT_MIN / -1 fits; a zero divisor gives all ones and the
+/// dividend.
 inline std::int64_t widen(std::uint32_t x) { return static_cast<std::int32_t>(x); }
 inline std::uint32_t signed_quotient(std::uint32_t a, std::uint32_t b) {
   return b == 0 ? ~0u : static_cast<std::uint32_t>(widen(a) / widen(b));

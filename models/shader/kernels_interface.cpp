@@ -1,4 +1,5 @@
-/// Operations that meet the world outside the warp: vertex inputs and system values, interpolation, outputs, indexed constants, textures, discard.
+/// Operations that meet the world outside the warp: vertex inputs and system values, interpolation, outputs,
+/// indexed constants, textures, discard.
 #include "models/base/error.h"
 #include "models/shader/kernels.h"
 
@@ -11,19 +12,26 @@ using SysVal = SystemValue;
 
 template <bool kMasked>
 void copy_row(std::byte* dst, const void* row, const ExecutionContext& x) {
-  for (int g = 0; g < kWarpGroups; ++g) write_group<kMasked>(dst, g, load_words(static_cast<const std::byte*>(row) + g * 32), x);
+  for (int g = 0; g < kWarpGroups; ++g)
+    write_group<kMasked>(dst, g, load_words(static_cast<const std::byte*>(row) + g * 32), x);
 }
 
 struct VertexAttribute {
-  static const void* row(const DecodedInstruction& d, const Warp& warp) { return warp.vertex->attributes[d.imm].data(); }
+  static const void* row(const DecodedInstruction& d, const Warp& warp) {
+    return warp.vertex->attributes[d.imm].data();
+  }
 };
 template <auto kMember>
 struct VertexValue {
-  static const void* row(const DecodedInstruction&, const Warp& warp) { return (warp.vertex->*kMember).data(); }
+  static const void* row(const DecodedInstruction&, const Warp& warp) {
+    return (warp.vertex->*kMember).data();
+  }
 };
 template <auto kMember>
 struct FragmentValue {
-  static const void* row(const DecodedInstruction&, const Warp& warp) { return (warp.fragment->*kMember).data(); }
+  static const void* row(const DecodedInstruction&, const Warp& warp) {
+    return (warp.fragment->*kMember).data();
+  }
 };
 
 template <class Input, bool kMasked>
@@ -65,8 +73,10 @@ void execute_interp(const DecodedInstruction& d, ExecutionContext& x) {
     if constexpr (kMode == Interpolation::kFlat) {
       write_group<kMasked>(dst, g, a0, x);
     } else {
-      const Floats p1 = load_floats(weight_1.data() + g * kGroupLanes), p2 = load_floats(weight_2.data() + g * kGroupLanes);
-      write_group<kMasked>(dst, g, ordered_add(ordered_add(a0, ordered_multiply(p1, da1)), ordered_multiply(p2, da2)), x);
+      const Floats p1 = load_floats(weight_1.data() + g * kGroupLanes),
+                   p2 = load_floats(weight_2.data() + g * kGroupLanes);
+      write_group<kMasked>(
+          dst, g, ordered_add(ordered_add(a0, ordered_multiply(p1, da1)), ordered_multiply(p2, da2)), x);
     }
   };
   if (x.one_triangle) {
@@ -95,7 +105,8 @@ Kernel interp_kernel(Interpolation mode) {
 
 /// Reads an operand of either kind; for operations that are too rare for an instance each.
 inline Lanes read_operand(const DecodedOperand& operand, bool constant, const ExecutionContext& x, int g) {
-  const Words bits = constant ? splat_word(x.constants[operand.offset]) : load_words(x.regs + operand.offset + g * 32);
+  const Words bits =
+      constant ? splat_word(x.constants[operand.offset]) : load_words(x.regs + operand.offset + g * 32);
   return (bits & splat_word(operand.keep)) ^ splat_word(operand.flip);
 }
 
@@ -105,7 +116,8 @@ void execute_output(const DecodedInstruction& d, ExecutionContext& x) {
   LaneWords& row = x.warp->outputs[d.imm];
   for (int g = 0; g < kWarpGroups; ++g) {
     std::uint32_t* at = row.data() + g * kGroupLanes;
-    store(at, choose(load_words(x.exec_lanes.data() + g * kGroupLanes), read_operand(d.a, kConstant, x, g), load_words(at)));
+    store(at, choose(load_words(x.exec_lanes.data() + g * kGroupLanes), read_operand(d.a, kConstant, x, g),
+                     load_words(at)));
   }
 }
 
@@ -121,7 +133,8 @@ void execute_load_const(const DecodedInstruction& d, ExecutionContext& x) {
   }
 }
 
-/// Records the request; all 32 lanes of the coordinates, so that differences within a quad exist whatever the mask.
+/// Records the request; all 32 lanes of the coordinates, so that differences within a quad exist whatever the
+/// mask.
 template <unsigned kConstants>
 void execute_texture(const DecodedInstruction& d, ExecutionContext& x) {
   Warp& warp = *x.warp;
@@ -159,7 +172,8 @@ void execute_texture_size(const DecodedInstruction& d, ExecutionContext& x) {
 template <bool kConstant>
 void execute_kill(const DecodedInstruction& d, ExecutionContext& x) {
   LaneMask met = 0;
-  for (int g = 0; g < kWarpGroups; ++g) met |= nonzero_bits(read_operand(d.a, kConstant, x, g)) << (g * kGroupLanes);
+  for (int g = 0; g < kWarpGroups; ++g)
+    met |= nonzero_bits(read_operand(d.a, kConstant, x, g)) << (g * kGroupLanes);
   x.warp->killed |= met & x.warp->exec;
 }
 

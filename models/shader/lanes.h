@@ -1,4 +1,5 @@
-/// Eight lanes of a warp in one AVX2 register, as floats or as 32-bit words: the thinnest wrapper that lets operations read like arithmetic.
+/// Eight lanes of a warp in one AVX2 register, as floats or as 32-bit words: the thinnest wrapper that lets
+/// operations read like arithmetic.
 ///
 /// A 128-bit half holds one quad, so shuffles inside a half are exchanges between the pixels of a quad.
 #pragma once
@@ -46,8 +47,9 @@ inline Floats operator/(Floats a, Floats b) { return {_mm256_div_ps(a.v, b.v)}; 
 /// a * b + c, rounded once.
 inline Floats fused(Floats a, Floats b, Floats c) { return {_mm256_fmadd_ps(a.v, b.v, c.v)}; }
 
-// The same with the order of operands kept: when several are NaN, the first one's bits go on. Compilers swap the operands of + and * as they like, differently
-// in each instance of a kernel, and the bits of a NaN are visible to integer operations; the value of a lane must not depend on who shares its warp.
+// The same with the order of operands kept: when several are NaN, the first one's bits go on. Compilers swap
+// the operands of + and * as they like, differently in each instance of a kernel, and the bits of a NaN are
+// visible to integer operations; the value of a lane must not depend on who shares its warp.
 inline Floats ordered_add(Floats a, Floats b) {
   asm("vaddps %1, %0, %0" : "+x"(a.v) : "x"(b.v));
   return a;
@@ -87,11 +89,15 @@ template <int kCount>
 Words shift_right(Words a) {
   return {_mm256_srli_epi32(a.v, kCount)};
 }
-inline Words to_integers(Floats a) { return {_mm256_cvttps_epi32(a.v)}; }  ///< truncates; 0x80000000 outside the range
-inline Floats to_floats(Words a) { return {_mm256_cvtepi32_ps(a.v)}; }     ///< signed, rounded to nearest even
+/// truncates; 0x80000000 outside the range
+inline Words to_integers(Floats a) { return {_mm256_cvttps_epi32(a.v)}; }
+/// signed, rounded to nearest even
+inline Floats to_floats(Words a) { return {_mm256_cvtepi32_ps(a.v)}; }
 
 /// mask ? a : b; each lane of `mask` is all ones or zero.
-inline Lanes choose(Words mask, Lanes a, Lanes b) { return Words{_mm256_blendv_epi8(b.bits, a.bits, mask.v)}; }
+inline Lanes choose(Words mask, Lanes a, Lanes b) {
+  return Words{_mm256_blendv_epi8(b.bits, a.bits, mask.v)};
+}
 
 /// Bit i = lane i of the group has a bit set.
 inline std::uint32_t nonzero_bits(Words a) {

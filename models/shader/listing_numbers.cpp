@@ -19,7 +19,8 @@ std::optional<std::uint32_t> parse_literal(std::string_view text) {
     return std::bit_cast<std::uint32_t>(value);
   }
   const std::optional<std::int64_t> value = parse_integer<std::int64_t>(text);
-  if (!value || *value < std::numeric_limits<std::int32_t>::min() || *value > std::numeric_limits<std::uint32_t>::max())
+  if (!value || *value < std::numeric_limits<std::int32_t>::min() ||
+      *value > std::numeric_limits<std::uint32_t>::max())
     return std::nullopt;
   return static_cast<std::uint32_t>(*value);
 }
@@ -33,7 +34,8 @@ std::string literal_text(std::uint32_t word) {
     return text;
   }
   const auto integer = static_cast<std::int32_t>(word);
-  return std::abs(static_cast<std::int64_t>(integer)) <= 65536 ? fmt::format("{}", integer) : fmt::format("{:#010x}", word);
+  return std::abs(static_cast<std::int64_t>(integer)) <= 65536 ? fmt::format("{}", integer)
+                                                               : fmt::format("{:#010x}", word);
 }
 
 }  // namespace quadrille::models

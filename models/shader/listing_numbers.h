@@ -18,10 +18,12 @@ template <class T>
   return value;
 }
 
-/// The bits of a number: 0x hexadecimal, a float if it has a point or an exponent or is inf or nan, otherwise an integer.
+/// The bits of a number: 0x hexadecimal, a float if it has a point or an exponent or is inf or nan, otherwise
+/// an integer.
 [[nodiscard]] std::optional<std::uint32_t> parse_literal(std::string_view text);
 
-/// A word as the shortest number that `parse_literal` reads back to the same bits: a float if it looks like one, otherwise an integer.
+/// A word as the shortest number that `parse_literal` reads back to the same bits: a float if it looks like
+/// one, otherwise an integer.
 [[nodiscard]] std::string literal_text(std::uint32_t word);
 
 }  // namespace quadrille::models

@@ -1,4 +1,5 @@
-/// The words of a listing that are the same for printing and reading: names of stages, flags, interpolation modes, system values and slots.
+/// The words of a listing that are the same for printing and reading: names of stages, flags, interpolation
+/// modes, system values and slots.
 #pragma once
 
 #include "models/shader/op_table.h"
@@ -20,8 +21,9 @@ inline constexpr std::array<NamedFlag, 4> kProgramFlags{{{"discard", &Program::u
 /// By value of the enumeration.
 inline constexpr std::array<std::string_view, 2> kStageNames{"vertex", "fragment"};
 inline constexpr std::array<std::string_view, 3> kInterpolationNames{"perspective", "linear", "flat"};
-inline constexpr std::array<std::string_view, 8> kSystemValueNames{"vertex_index", "instance_index", "frag_coord_x", "frag_coord_y",
-                                                                   "frag_coord_z", "frag_coord_w",   "front_facing", "primitive_id"};
+inline constexpr std::array<std::string_view, 8> kSystemValueNames{
+    "vertex_index", "instance_index", "frag_coord_x", "frag_coord_y",
+    "frag_coord_z", "frag_coord_w",   "front_facing", "primitive_id"};
 
 /// Prefix of the slot number of an immediate.
 constexpr std::string_view slot_prefix(Immediate immediate) {

@@ -1,5 +1,5 @@
-/// What each operation is: its mnemonic, its operands and what it occupies. One row an operation, in the order of `Op`; the listing, the checker, the
-/// decoder and docs/isa.md follow this table.
+/// What each operation is: its mnemonic, its operands and what it occupies. One row an operation, in the
+/// order of `Op`; the listing, the checker, the decoder and docs/isa.md follow this table.
 #pragma once
 
 #include "models/shader/isa.h"
@@ -7,7 +7,14 @@
 namespace quadrille::models {
 
 /// What the `imm` field of an operation names; it is written after the destination in a listing.
-enum class Immediate : std::uint8_t { kUnused, kInputSlot, kVaryingSlot, kOutputSlot, kConstantWord, kTextureBinding };
+enum class Immediate : std::uint8_t {
+  kUnused,
+  kInputSlot,
+  kVaryingSlot,
+  kOutputSlot,
+  kConstantWord,
+  kTextureBinding
+};
 
 struct OpInfo {
   Op op;

@@ -4,7 +4,8 @@
 
 namespace quadrille::models {
 
-ProgramTiming::ProgramTiming(const Program& program, const IssueTiming& timing) : run_of_(program.code.size(), 0) {
+ProgramTiming::ProgramTiming(const Program& program, const IssueTiming& timing)
+    : run_of_(program.code.size(), 0) {
   const IssueTiming::Class& control = timing.classes[static_cast<std::size_t>(IssueClass::kControl)];
   control_issue_ = control.issue;
   control_distance_ = IssueTiming::distance(control);
@@ -15,7 +16,8 @@ ProgramTiming::ProgramTiming(const Program& program, const IssueTiming& timing) 
   }
 }
 
-void ProgramTiming::add_run(const Program& program, const IssueTiming& timing, std::uint32_t begin, std::uint32_t end) {
+void ProgramTiming::add_run(const Program& program, const IssueTiming& timing, std::uint32_t begin,
+                            std::uint32_t end) {
   constexpr std::int64_t kBefore = -1;
   std::array<std::int64_t, kMaxRegisters> ready;
   ready.fill(kBefore);
@@ -31,7 +33,9 @@ void ProgramTiming::add_run(const Program& program, const IssueTiming& timing, s
     for (std::size_t s = 0; s < sources; ++s)
       if (operands[s]->kind == Operand::kRegister) now = std::max(now, ready[operands[s]->index]);
     for (std::size_t s = 0; s < sources; ++s) {
-      if (operands[s]->kind != Operand::kRegister || ready[operands[s]->index] != kBefore || needed[operands[s]->index]) continue;
+      if (operands[s]->kind != Operand::kRegister || ready[operands[s]->index] != kBefore ||
+          needed[operands[s]->index])
+        continue;
       needed[operands[s]->index] = true;
       needs_.push_back({operands[s]->index, static_cast<std::uint32_t>(now)});
     }

@@ -1,9 +1,11 @@
 /// When the instructions of a warp issue: a dependent instruction waits for its operands.
 ///
-/// Instructions of a warp issue in order. One holds the issue slot for `issue` cycles of its class; its results can be read max(issue, latency) cycles after its
-/// first issue cycle. A branch waits for its condition. Which instructions run is known from execution; so the times of each straight run are found once a
-/// program (`ProgramTiming`), and a warp keeps when its registers are ready (`WarpClock`). Where a run waits for a register from before it, it waits as a
-/// whole. That is late by a few cycles at most: for what issues in the run before the first reader.
+/// Instructions of a warp issue in order. One holds the issue slot for `issue` cycles of its class; its
+/// results can be read max(issue, latency) cycles after its first issue cycle. A branch waits for its
+/// condition. Which instructions run is known from execution; so the times of each straight run are found
+/// once a program (`ProgramTiming`), and a warp keeps when its registers are ready (`WarpClock`). Where a run
+/// waits for a register from before it, it waits as a whole. That is late by a few cycles at most: for what
+/// issues in the run before the first reader.
 #pragma once
 
 #include "models/shader/isa.h"
@@ -29,7 +31,8 @@ struct IssueTiming {
   [[nodiscard]] static std::uint32_t distance(const Class& c) { return std::max(c.issue, c.latency); }
 };
 
-/// The straight runs of a program: each for a warp that has its SIMD to itself, in cycles from the run's first issue.
+/// The straight runs of a program: each for a warp that has its SIMD to itself, in cycles from the run's
+/// first issue.
 class ProgramTiming {
  public:
   struct At {
@@ -37,11 +40,13 @@ class ProgramTiming {
     std::uint32_t cycle = 0;
   };
   struct Run {
-    std::uint32_t needs = 0, needs_end = 0;    ///< into `needs()`: registers from before the run, by their first reader
-    std::uint32_t writes = 0, writes_end = 0;  ///< into `writes()`: registers that it leaves, when they can be read
-    std::uint32_t work = 0;                    ///< issue cycles
-    std::uint32_t span = 0;                    ///< to the end of the last issue
-    std::uint32_t drain = 0;                   ///< until all its results are there
+    /// into `needs()`: registers from before the run, by their first reader
+    std::uint32_t needs = 0, needs_end = 0;
+    /// into `writes()`: registers that it leaves, when they can be read
+    std::uint32_t writes = 0, writes_end = 0;
+    std::uint32_t work = 0;   ///< issue cycles
+    std::uint32_t span = 0;   ///< to the end of the last issue
+    std::uint32_t drain = 0;  ///< until all its results are there
   };
   /// The program has been prepared.
   ProgramTiming(const Program& program, const IssueTiming& timing);
@@ -63,7 +68,8 @@ class ProgramTiming {
   std::uint32_t control_issue_, control_distance_;
 };
 
-/// A clause of a warp as its instructions go by: cycles from the clause's first issue, for a warp that has its SIMD to itself.
+/// A clause of a warp as its instructions go by: cycles from the clause's first issue, for a warp that has
+/// its SIMD to itself.
 class WarpClock {
  public:
   /// All registers are ready: a clause begins when the results of the one before it are there.

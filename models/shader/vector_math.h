@@ -1,9 +1,10 @@
-/// Transcendental functions on eight lanes: our own, so that every machine and compiler gives the same bits. Only + - * /, fused multiply-add, conversions
-/// and integer operations, each correctly rounded by IEEE 754.
+/// Transcendental functions on eight lanes: our own, so that every machine and compiler gives the same bits.
+/// Only + - * /, fused multiply-add, conversions and integer operations, each correctly rounded by IEEE 754.
 ///
-/// Each function reduces its argument exactly, evaluates a polynomial and puts the result together. Coefficients are near-minimax fits (Chebyshev
-/// interpolation in 40 digits, rounded to fp32); the relative error each leaves is noted. tests/models/shader/vector_math_test.cpp measures the whole
-/// against double precision. What Vulkan asks: [VK1.3 #spirvenv-precision-operation].
+/// Each function reduces its argument exactly, evaluates a polynomial and puts the result together.
+/// Coefficients are near-minimax fits (Chebyshev interpolation in 40 digits, rounded to fp32); the relative
+/// error each leaves is noted. tests/models/shader/vector_math_test.cpp measures the whole against double
+/// precision. What Vulkan asks: [VK1.3 #spirvenv-precision-operation].
 #pragma once
 
 #include "models/shader/lanes.h"
@@ -14,7 +15,8 @@ namespace quadrille::models {
 
 /// 2^x. At most 1 ULP. Overflow gives infinity, underflow a denormal or zero, NaN gives NaN.
 inline Floats exp2(Floats x) {
-  // The range is clamped (NaN passes: min and max return their second operand); 2^-160 is zero and 2^129 infinite.
+  // The range is clamped (NaN passes: min and max return their second operand); 2^-160 is zero and 2^129
+  // infinite.
   const Floats clamped{_mm256_min_ps(splat(129.0f).v, _mm256_max_ps(splat(-160.0f).v, x.v))};
   const Floats whole = round_to<_MM_FROUND_TO_NEAREST_INT>(clamped);
   const Floats f = clamped - whole;   // exact, in [-1/2, 1/2]
@@ -32,16 +34,20 @@ inline Floats exp2(Floats x) {
   return p * as_floats(shift_left<23>(half + bias)) * as_floats(shift_left<23>(n - half + bias));
 }
 
-/// log2 x. At most 1 ULP. log2(+-0) = -infinity, log2(infinity) = infinity, negative arguments and NaN give NaN.
+/// log2 x. At most 1 ULP. log2(+-0) = -infinity, log2(infinity) = infinity, negative arguments and NaN give
+/// NaN.
 inline Floats log2(Floats x) {
   const Words tiny = compare<_CMP_LT_OQ>(x, splat(0x1p-126f));  // denormals are scaled into the normal range
   const Floats normal = choose(tiny, x * splat(0x1p24f), x);
-  // m in [sqrt(1/2), sqrt(2)): the exponent is taken after an offset that moves its border from 1 to sqrt(1/2).
+  // m in [sqrt(1/2), sqrt(2)): the exponent is taken after an offset that moves its border from 1 to
+  // sqrt(1/2).
   const Words offset = as_words(normal) - splat_word(0x3f3504f3);
-  const Floats e = to_floats(Words{_mm256_srai_epi32(offset.v, 23)}) - as_floats(tiny & as_words(splat(24.0f)));
+  const Floats e =
+      to_floats(Words{_mm256_srai_epi32(offset.v, 23)}) - as_floats(tiny & as_words(splat(24.0f)));
   const Floats m = as_floats((offset & splat_word(0x007fffff)) + splat_word(0x3f3504f3));
-  // ln m = 2 atanh(s) = 2 s + s r with f = m - 1, s = f / (2 + f), z = s^2 <= 0.0295, r = 2 z l(z), 3e-9. Written as f - h + s (h + r) with h = f^2 / 2,
-  // the leading term is exact and the rounding of s counts little. log2 m = ln m / ln 2, 1 / ln 2 in two parts.
+  // ln m = 2 atanh(s) = 2 s + s r with f = m - 1, s = f / (2 + f), z = s^2 <= 0.0295, r = 2 z l(z), 3e-9.
+  // Written as f - h + s (h + r) with h = f^2 / 2, the leading term is exact and the rounding of s counts
+  // little. log2 m = ln m / ln 2, 1 / ln 2 in two parts.
   const Floats f = m - splat(1.0f);
   const Floats s = f / (m + splat(1.0f));
   const Floats z = s * s;
@@ -50,7 +56,8 @@ inline Floats log2(Floats x) {
   l = fused(l, z, splat(0x1.55555cp-1f));
   const Floats h = f * f * splat(0.5f);
   const Floats tail = fused(s, fused(z, l, h), splat(0.0f) - h);
-  const Floats log2_m = fused(f, splat(0x1.715476p+0f), fused(tail, splat(0x1.715476p+0f), f * splat(0x1.4ae0c0p-26f)));
+  const Floats log2_m =
+      fused(f, splat(0x1.715476p+0f), fused(tail, splat(0x1.715476p+0f), f * splat(0x1.4ae0c0p-26f)));
   const Floats finite = log2_m + e;
   const Floats infinity = splat(std::numeric_limits<float>::infinity());
   const Words passes = compare<_CMP_NLT_UQ>(x, infinity);  // infinity and NaN
@@ -67,12 +74,13 @@ struct ReducedAngle {
   Floats rest;
 };
 
-/// Reduction in double precision with pi/2 in two parts. Magnitudes of 2^40 and more, where neighbouring values are thousands of turns apart, count as 0.
+/// Reduction in double precision with pi/2 in two parts. Magnitudes of 2^40 and more, where neighbouring
+/// values are thousands of turns apart, count as 0.
 inline ReducedAngle reduce_angle(Floats magnitude) {
   const auto half = [](__m128 four, __m128i& quarter, __m128& rest) {
     const __m256d x = _mm256_cvtps_pd(four);
-    const __m256d n =
-        _mm256_round_pd(_mm256_mul_pd(x, _mm256_set1_pd(0x1.45f306dc9c883p-1)), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+    const __m256d n = _mm256_round_pd(_mm256_mul_pd(x, _mm256_set1_pd(0x1.45f306dc9c883p-1)),
+                                      _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
     const __m256d r = _mm256_fnmadd_pd(n, _mm256_set1_pd(0x1.921fb54442d18p+0), x);
     rest = _mm256_cvtpd_ps(_mm256_fnmadd_pd(n, _mm256_set1_pd(0x1.1a62633145c07p-54), r));
     // n < 2^41: adding 2^52 leaves its integer value in the low bits of the significand.

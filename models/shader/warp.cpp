@@ -14,7 +14,8 @@ void Warp::launch(const Program& p, const std::uint32_t* constant_file, LaneMask
   program = &p;
   code = p.decoded.get();
   QUADRILLE_CHECK(code->code.size() == p.code.size(), "program '{}' changed after it was prepared", p.name);
-  QUADRILLE_CHECK(p.constants.words == 0 || constant_file != nullptr, "program '{}' has no constant file", p.name);
+  QUADRILLE_CHECK(p.constants.words == 0 || constant_file != nullptr, "program '{}' has no constant file",
+                  p.name);
   constants = constant_file;
   launched = exec = lanes;
   killed = 0;

@@ -1,7 +1,9 @@
-/// A warp in execution: its registers, masks and place in the program, and the function that runs it up to its next wait.
+/// A warp in execution: its registers, masks and place in the program, and the function that runs it up to
+/// its next wait.
 ///
-/// The core calls `run_clause` when a warp is issued. A *clause* is what executes without giving up the issue slot: it ends before the results of a group of
-/// texture instructions are needed, or at the end of the program. Values depend on the warp's own lanes only, never on time.
+/// The core calls `run_clause` when a warp is issued. A *clause* is what executes without giving up the issue
+/// slot: it ends before the results of a group of texture instructions are needed, or at the end of the
+/// program. Values depend on the warp's own lanes only, never on time.
 #pragma once
 
 #include "models/shader/isa.h"
@@ -20,11 +22,13 @@ using LaneMask = std::uint32_t;  ///< bit i = lane i; quad q owns bits 4q..4q+3
 
 /// Inputs of a fragment warp, lane = 4 * quad + pixel, pixels of a quad in the order (0,0) (1,0) (0,1) (1,1).
 struct FragmentInputs {
-  alignas(64) LaneFloats x, y, z, inv_w;      ///< FragCoord: pixel centre (pixels), window depth, 1/w_clip
-  alignas(64) LaneFloats persp_1, persp_2;    ///< perspective-correct weights of the triangle's second and third vertex
+  alignas(64) LaneFloats x, y, z, inv_w;  ///< FragCoord: pixel centre (pixels), window depth, 1/w_clip
+  /// perspective-correct weights of the triangle's second and third vertex
+  alignas(64) LaneFloats persp_1, persp_2;
   alignas(64) LaneFloats linear_1, linear_2;  ///< the same, linear in screen space
   LaneWords front_facing, primitive_id;       ///< all ones / zero; 0-based primitive of the draw
-  /// Per quad: `3 * varyings.size()` floats, (a0, a1 - a0, a2 - a0) for each scalar component. A quad that is not used points at a valid one.
+  /// Per quad: `3 * varyings.size()` floats, (a0, a1 - a0, a2 - a0) for each scalar component. A quad that is
+  /// not used points at a valid one.
   std::array<const float*, kWarpQuads> varyings{};
 };
 
@@ -37,7 +41,8 @@ struct VertexInputs {
 /// One texture instruction of a warp, from its issue to its result.
 struct TextureRequest {
   alignas(64) LaneFloats u, v, lod;  ///< `lod`: bias or explicit level, by `op`
-  LaneMask active = 0;  ///< lanes that executed it (helpers included); u, v, lod hold all 32 lanes, so a quad's differences exist
+  /// lanes that executed it (helpers included); u, v, lod hold all 32 lanes, so a quad's differences exist
+  LaneMask active = 0;
   Op op = Op::kTexImplicit;
   std::uint16_t binding = 0;  ///< index into Program::textures
   std::uint16_t dst = 0;
@@ -46,12 +51,15 @@ struct TextureRequest {
 inline constexpr int kMaxClauseTextures = 8;
 inline constexpr int kMaxControlDepth = 32;
 
-/// Instructions issued by one clause, by class; a divided warp issues both sides, and a side that no lane takes is jumped over and not counted.
-/// Texture instructions are not among them: `Warp::texture_count` says how many the clause issued (their lanes are in `lane_ops`).
+/// Instructions issued by one clause, by class; a divided warp issues both sides, and a side that no lane
+/// takes is jumped over and not counted. Texture instructions are not among them: `Warp::texture_count` says
+/// how many the clause issued (their lanes are in `lane_ops`).
 struct ClauseCost {
   std::uint32_t alu = 0, sfu = 0, interp = 0, constant = 0, control = 0, exported = 0;
   std::uint64_t lane_ops = 0;  ///< sum over instructions of active lanes
-  [[nodiscard]] std::uint32_t instructions() const { return alu + sfu + interp + constant + control + exported; }
+  [[nodiscard]] std::uint32_t instructions() const {
+    return alu + sfu + interp + constant + control + exported;
+  }
 };
 
 /// Size of a bound texture, for kTexSize.
@@ -62,25 +70,29 @@ struct TextureSize {
 /// One register of a warp, aligned to a host cache line.
 struct alignas(64) RegisterRow : LaneWords {};
 
-/// Back edges one warp may take, and instructions it may have executed at one, before its program counts as endless. A texture request counts as many.
+/// Back edges one warp may take, and instructions it may have executed at one, before its program counts as
+/// endless. A texture request counts as many.
 inline constexpr std::uint32_t kMaxBackEdges = 1u << 20;
 inline constexpr std::uint64_t kMaxLoopInstructions = std::uint64_t{1} << 26, kTextureInstructions = 256;
 
 struct Warp {
   const Program* program = nullptr;
-  const std::uint32_t* constants = nullptr;    ///< the draw's constant file
-  const VertexInputs* vertex = nullptr;        ///< vertex stage
-  const FragmentInputs* fragment = nullptr;    ///< fragment stage
-  const TextureSize* texture_sizes = nullptr;  ///< by texture binding of the program; needed only by programs with kTexSize
-  LaneWords* outputs = nullptr;                ///< rows by output slot; owned by the caller; only executing lanes are written
-  LaneMask launched = 0;                       ///< lanes that exist (helpers included)
-  LaneMask exec = 0;                           ///< lanes executing now
-  LaneMask killed = 0;                         ///< lanes that met kKillIf
+  const std::uint32_t* constants = nullptr;  ///< the draw's constant file
+  const VertexInputs* vertex = nullptr;      ///< vertex stage
+  const FragmentInputs* fragment = nullptr;  ///< fragment stage
+  /// by texture binding of the program; needed only by programs with kTexSize
+  const TextureSize* texture_sizes = nullptr;
+  /// rows by output slot; owned by the caller; only executing lanes are written
+  LaneWords* outputs = nullptr;
+  LaneMask launched = 0;  ///< lanes that exist (helpers included)
+  LaneMask exec = 0;      ///< lanes executing now
+  LaneMask killed = 0;    ///< lanes that met kKillIf
   std::uint32_t pc = 0;
   int control_depth = 0;
   struct Frame {
-    LaneMask outer = 0, other = 0;  ///< IF: mask outside, lanes of the other side. LOOP: mask outside, lanes that continued
-    std::uint32_t start = 0;        ///< LOOP: index of its first instruction
+    /// IF: mask outside, lanes of the other side. LOOP: mask outside, lanes that continued
+    LaneMask outer = 0, other = 0;
+    std::uint32_t start = 0;  ///< LOOP: index of its first instruction
   };
   std::array<Frame, kMaxControlDepth> frames{};
   int texture_count = 0;  ///< requests of the clause that just ended
@@ -90,8 +102,9 @@ struct Warp {
   std::uint32_t back_edges = 0;          ///< taken so far
   std::uint64_t instructions = 0;        ///< executed so far, by which a loop without an end is known
 
-  /// Prepares a launch: lanes in `lanes` run `p` from its start. Registers are zeroed. The program must outlive the run and stay unchanged.
-  /// A lane that is not launched has no defined register values. Throws what `prepare` throws.
+  /// Prepares a launch: lanes in `lanes` run `p` from its start. Registers are zeroed. The program must
+  /// outlive the run and stay unchanged. A lane that is not launched has no defined register values. Throws
+  /// what `prepare` throws.
   void launch(const Program& p, const std::uint32_t* constant_file, LaneMask lanes);
 };
 
@@ -102,9 +115,9 @@ struct ClauseResult {
   ClauseCost cost;
 };
 
-/// Runs the warp until it must wait for the texture requests it made (`warp.textures[0 .. texture_count)`) or until the program ends.
-/// The caller writes the results with `write_texture_result` before it calls again. Throws `UserError` when a loop does not end (`kMaxBackEdges`,
-/// `kMaxLoopInstructions`).
+/// Runs the warp until it must wait for the texture requests it made (`warp.textures[0 .. texture_count)`) or
+/// until the program ends. The caller writes the results with `write_texture_result` before it calls again.
+/// Throws `UserError` when a loop does not end (`kMaxBackEdges`, `kMaxLoopInstructions`).
 ClauseResult run_clause(Warp& warp);
 /// The same; `clock`, which was restarted for the warp's program, counts the clause's cycles.
 ClauseResult run_clause(Warp& warp, WarpClock& clock);

@@ -12,8 +12,8 @@ struct AxisTexels {
   __m256i first, second, weight;
 };
 
-/// Brings a finite coordinate (in texture sizes) to where one multiplication by the size cannot overflow, without changing the texels it
-/// selects: repeat to [0, 1], mirror to [0, 2], clamp to [-1, 2].
+/// Brings a finite coordinate (in texture sizes) to where one multiplication by the size cannot overflow,
+/// without changing the texels it selects: repeat to [0, 1], mirror to [0, 2], clamp to [-1, 2].
 inline __m256 fold_coordinate(__m256 c, Wrap wrap) {
   switch (wrap) {
     case Wrap::kRepeat: return _mm256_sub_ps(c, _mm256_floor_ps(c));
@@ -51,7 +51,8 @@ inline AxisTexels linear_texels(__m256 folded, __m256i size, Wrap wrap, int subt
   const __m256i fixed = _mm256_sub_epi32(_mm256_cvtps_epi32(_mm256_mul_ps(folded, scale)), half);
   const __m256i first = _mm256_sra_epi32(fixed, bits);
   const __m256i fraction = _mm256_and_si256(fixed, _mm256_set1_epi32((1 << subtexel_bits) - 1));
-  return {wrap_texel(first, size, wrap), wrap_texel(_mm256_add_epi32(first, _mm256_set1_epi32(1)), size, wrap),
+  return {wrap_texel(first, size, wrap),
+          wrap_texel(_mm256_add_epi32(first, _mm256_set1_epi32(1)), size, wrap),
           _mm256_sll_epi32(fraction, _mm_cvtsi32_si128(8 - subtexel_bits))};
 }
 
@@ -72,12 +73,14 @@ inline AxisTexels select(const AxisTexels& a, const AxisTexels& b, __m256i mask)
 inline __m256i x_index(__m256i x) {
   const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
   const __m256i low = _mm256_or_si256(field(3), _mm256_slli_epi32(field(4), 1));
-  return _mm256_or_si256(_mm256_or_si256(low, _mm256_slli_epi32(field(24), 2)), _mm256_slli_epi32(_mm256_srli_epi32(x, 5), 10));
+  return _mm256_or_si256(_mm256_or_si256(low, _mm256_slli_epi32(field(24), 2)),
+                         _mm256_slli_epi32(_mm256_srli_epi32(x, 5), 10));
 }
 inline __m256i y_index(__m256i y, __m256i pitch) {
   const auto field = [y](int mask) { return _mm256_and_si256(y, _mm256_set1_epi32(mask)); };
   const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 2), _mm256_slli_epi32(field(2), 3));
-  return _mm256_add_epi32(_mm256_or_si256(low, _mm256_slli_epi32(field(28), 5)), _mm256_mullo_epi32(_mm256_srli_epi32(y, 5), pitch));
+  return _mm256_add_epi32(_mm256_or_si256(low, _mm256_slli_epi32(field(28), 5)),
+                          _mm256_mullo_epi32(_mm256_srli_epi32(y, 5), pitch));
 }
 
 }  // namespace quadrille::models

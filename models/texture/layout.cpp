@@ -11,7 +11,8 @@ namespace {
 
 /// Bytes of a level as it comes: without what tiling adds.
 std::uint64_t level_bytes(const TextureLayout& layout, std::uint32_t level) {
-  return 4 * static_cast<std::uint64_t>(layout.width[level]) * static_cast<std::uint64_t>(layout.height[level]);
+  return 4 * static_cast<std::uint64_t>(layout.width[level]) *
+         static_cast<std::uint64_t>(layout.height[level]);
 }
 
 }  // namespace
@@ -22,7 +23,8 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
   }
   const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
   if (levels < 1 || levels > most)
-    throw user_error("texture of {} x {} texels with {} levels: it can have 1 to {}", width, height, levels, most);
+    throw user_error("texture of {} x {} texels with {} levels: it can have 1 to {}", width, height, levels,
+                     most);
 
   TextureLayout layout;
   layout.levels = levels;
@@ -33,31 +35,35 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
     layout.height[level] = static_cast<std::int32_t>(h);
     layout.pitch[level] = static_cast<std::int32_t>((w + 31) / 32 * 1024);
     layout.first[level] = static_cast<std::int32_t>(next);
-    next =
-        layout.texel_index(level, w - 1, h - 1) / 32 * 32 + 32;  // ends with the line of its last texel, which has the highest index of all
+    next = layout.texel_index(level, w - 1, h - 1) / 32 * 32 +
+           32;  // ends with the line of its last texel, which has the highest index of all
   }
   layout.bytes = 4 * std::uint64_t{next};
   return layout;
 }
 
-TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width, std::uint32_t height, std::uint32_t levels) {
+TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width,
+                             std::uint32_t height, std::uint32_t levels) {
   TextureView view{0, format, make_texture_layout(width, height, levels)};
   view.base = memory.allocate(view.layout.bytes);
   return view;
 }
 
-void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level, std::span<const std::byte> texels) {
+void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level,
+                std::span<const std::byte> texels) {
   constexpr std::size_t kRun = 16;  // a sector's row of four texels is contiguous
   const TextureLayout& layout = view.layout;
-  QUADRILLE_CHECK(level < layout.levels && texels.size() == level_bytes(layout, level), "level {} of {} with {} bytes", level,
-                  layout.levels, texels.size());
+  QUADRILLE_CHECK(level < layout.levels && texels.size() == level_bytes(layout, level),
+                  "level {} of {} with {} bytes", level, layout.levels, texels.size());
   std::byte* const tiled = memory.write(view.base, layout.bytes).data();
-  const auto w = static_cast<std::uint32_t>(layout.width[level]), h = static_cast<std::uint32_t>(layout.height[level]);
+  const auto w = static_cast<std::uint32_t>(layout.width[level]),
+             h = static_cast<std::uint32_t>(layout.height[level]);
   const std::byte* source = texels.data();
   for (std::uint32_t y = 0; y < h; ++y) {
     std::byte* const row = tiled + 4 * std::size_t{layout.texel_index(level, 0, y)};
     std::uint32_t x = 0;
-    for (; x + 4 <= w; x += 4, source += kRun) std::memcpy(row + 4 * std::size_t{TextureLayout::x_part(x)}, source, kRun);
+    for (; x + 4 <= w; x += 4, source += kRun)
+      std::memcpy(row + 4 * std::size_t{TextureLayout::x_part(x)}, source, kRun);
     const std::size_t rest = 4 * std::size_t{w - x};
     std::memcpy(row + 4 * std::size_t{TextureLayout::x_part(x)}, source, rest);
     source += rest;
@@ -69,8 +75,8 @@ void tile_texture(DeviceMemory& memory, const TextureView& view, std::span<const
   std::uint64_t expected = 0;
   for (std::uint32_t level = 0; level < layout.levels; ++level) expected += level_bytes(layout, level);
   if (texels.size() != expected) {
-    throw user_error("texture of {} x {} texels with {} levels: {} bytes of texels, {} are needed", layout.width[0], layout.height[0],
-                     layout.levels, texels.size(), expected);
+    throw user_error("texture of {} x {} texels with {} levels: {} bytes of texels, {} are needed",
+                     layout.width[0], layout.height[0], layout.levels, texels.size(), expected);
   }
   for (std::uint32_t level = 0; level < layout.levels; ++level) {
     const std::uint64_t size = level_bytes(layout, level);

@@ -1,8 +1,9 @@
-/// Textures in device memory: RGBA8 mip chains, tiled so that neighbours in both directions share cache lines and DRAM rows.
+/// Textures in device memory: RGBA8 mip chains, tiled so that neighbours in both directions share cache lines
+/// and DRAM rows.
 ///
-/// A sector of 32 bytes is 4x2 texels, a line of 128 bytes 8x4 texels (2x2 sectors), a tile of 4 KiB 32x32 texels (4x8 lines, row by
-/// row); tiles are row by row. The bits of a texel's index within a tile are, from the least: x0 x1 y0 x2 y1 x3 x4 y2 y3 y4, so an
-/// address is a sum of a part of x and one of y.
+/// A sector of 32 bytes is 4x2 texels, a line of 128 bytes 8x4 texels (2x2 sectors), a tile of 4 KiB 32x32
+/// texels (4x8 lines, row by row); tiles are row by row. The bits of a texel's index within a tile are, from
+/// the least: x0 x1 y0 x2 y1 x3 x4 y2 y3 y4, so an address is a sum of a part of x and one of y.
 #pragma once
 
 #include "models/memory/device_memory.h"
@@ -20,7 +21,8 @@ inline constexpr std::uint32_t kMaxTextureSize = 16384;
 /// Values equal those of the command stream's `Format`.
 enum class TexelFormat : std::uint8_t { kR8G8B8A8Unorm = 1, kR8G8B8A8Srgb = 2 };
 
-/// Where the texels of a mip chain lie, in texels (4 bytes) from its base. Arrays by level, padded for vector loads.
+/// Where the texels of a mip chain lie, in texels (4 bytes) from its base. Arrays by level, padded for vector
+/// loads.
 struct TextureLayout {
   std::uint32_t levels = 1;
   std::array<std::int32_t, 16> width{}, height{};  ///< texels
@@ -28,16 +30,22 @@ struct TextureLayout {
   std::array<std::int32_t, 16> first{};            ///< index of the level's first texel
   std::uint64_t bytes = 0;                         ///< whole chain; a multiple of a line
 
-  [[nodiscard]] static constexpr std::uint32_t x_part(std::uint32_t x) { return (x & 3) | (x & 4) << 1 | (x & 24) << 2 | (x >> 5) << 10; }
-  [[nodiscard]] static constexpr std::uint32_t y_part_in_tile(std::uint32_t y) { return (y & 1) << 2 | (y & 2) << 3 | (y & 28) << 5; }
+  [[nodiscard]] static constexpr std::uint32_t x_part(std::uint32_t x) {
+    return (x & 3) | (x & 4) << 1 | (x & 24) << 2 | (x >> 5) << 10;
+  }
+  [[nodiscard]] static constexpr std::uint32_t y_part_in_tile(std::uint32_t y) {
+    return (y & 1) << 2 | (y & 2) << 3 | (y & 28) << 5;
+  }
   /// Index of a texel within the chain.
   [[nodiscard]] std::uint32_t texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
-    return static_cast<std::uint32_t>(first[level]) + x_part(x) + y_part_in_tile(y) + (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
+    return static_cast<std::uint32_t>(first[level]) + x_part(x) + y_part_in_tile(y) +
+           (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
   }
 };
 
 /// Lays out a chain. Throws `UserError` for a size outside 1..16384 or more levels than the size has.
-[[nodiscard]] TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels);
+[[nodiscard]] TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height,
+                                                std::uint32_t levels);
 
 /// A texture as a sampler sees it.
 struct TextureView {
@@ -50,12 +58,15 @@ struct TextureView {
 };
 
 /// Allocates a texture of zeros; `tile_level` and `tile_texture` bring its texels.
-[[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width, std::uint32_t height,
-                                           std::uint32_t levels);
-/// Tiles one level: rows top to bottom, tightly packed. Another number of texels than the level has is an internal error.
-void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level, std::span<const std::byte> texels);
+[[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width,
+                                           std::uint32_t height, std::uint32_t levels);
+/// Tiles one level: rows top to bottom, tightly packed. Another number of texels than the level has is an
+/// internal error.
+void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level,
+                std::span<const std::byte> texels);
 
-/// Tiles all levels: finest first, each as `tile_level` takes it. Throws `UserError` when `texels` has another size than the levels need.
+/// Tiles all levels: finest first, each as `tile_level` takes it. Throws `UserError` when `texels` has
+/// another size than the levels need.
 void tile_texture(DeviceMemory& memory, const TextureView& view, std::span<const std::byte> texels);
 
 }  // namespace quadrille::models

@@ -1,4 +1,5 @@
-/// Level of detail of the lanes of one texture instruction: which mip levels a lane reads and how it mixes them.
+/// Level of detail of the lanes of one texture instruction: which mip levels a lane reads and how it mixes
+/// them.
 #pragma once
 
 #include "models/precision.h"
@@ -13,13 +14,17 @@ namespace quadrille::models {
 
 /// By lane.
 struct LaneLevels {
-  alignas(32) std::array<std::int32_t, kWarpLanes> finer;  ///< the level read, or the finer of two: 0 .. levels - 1
-  alignas(32) LaneFloats weight;                           ///< of level finer + 1; 0: only the finer one is read
-  LaneMask magnified = 0;                                  ///< lambda <= 0: the magnification filter applies
+  /// the level read, or the finer of two: 0 .. levels - 1
+  alignas(32) std::array<std::int32_t, kWarpLanes> finer;
+  /// of level finer + 1; 0: only the finer one is read
+  alignas(32) LaneFloats weight;
+  LaneMask magnified = 0;  ///< lambda <= 0: the magnification filter applies
 };
 
-/// Computes them from texture coordinates that are finite (u, v in texture widths and heights). sample.h states the rules.
-[[nodiscard]] LaneLevels lane_levels(const TextureLayout& layout, const SamplerState& sampler, const TextureRequest& request,
-                                     const LaneFloats& u, const LaneFloats& v, const Precision& precision);
+/// Computes them from texture coordinates that are finite (u, v in texture widths and heights). sample.h
+/// states the rules.
+[[nodiscard]] LaneLevels lane_levels(const TextureLayout& layout, const SamplerState& sampler,
+                                     const TextureRequest& request, const LaneFloats& u, const LaneFloats& v,
+                                     const Precision& precision);
 
 }  // namespace quadrille::models

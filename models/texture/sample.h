@@ -1,11 +1,15 @@
-/// The texture unit's two halves, for one warp instruction: addresses (`plan_texture`) and filtering (`filter_texture`).
+/// The texture unit's two halves, for one warp instruction: addresses (`plan_texture`) and filtering
+/// (`filter_texture`).
 ///
-/// Level of detail: lambda = log2 max(|d(u W, v H)/dx|, |d(u W, v H)/dy|), differences within the quad (lane 1 - lane 0, lane 2 - lane
-/// 0), so one base a quad; plus bias, clamped, rounded to `lod_bits`. Magnified where lambda <= 0. [VK1.3 #textures-scale-factor,
-/// #textures-level-of-detail-operation] Linear filtering takes texel coordinates to the nearest 2^-subtexel_bits; the integer part
-/// selects texels, the fraction weighs them. Nearest takes the floor of the unrounded coordinate. sRGB texels are decoded before they are
-/// filtered. [VK1.3 #textures-texel-filtering] A coordinate, bias or level that is not finite counts as 0, for derivatives too; no texel
-/// outside the texture is ever read.
+/// Level of detail: lambda = log2 max(|d(u W, v H)/dx|, |d(u W, v H)/dy|), differences within the quad (lane
+/// 1 - lane 0, lane 2 - lane
+/// 0), so one base a quad; plus bias, clamped, rounded to `lod_bits`. Magnified where lambda <= 0. [VK1.3
+/// #textures-scale-factor,
+/// #textures-level-of-detail-operation] Linear filtering takes texel coordinates to the nearest
+/// 2^-subtexel_bits; the integer part selects texels, the fraction weighs them. Nearest takes the floor of
+/// the unrounded coordinate. sRGB texels are decoded before they are filtered. [VK1.3
+/// #textures-texel-filtering] A coordinate, bias or level that is not finite counts as 0, for derivatives
+/// too; no texel outside the texture is ever read.
 #pragma once
 
 #include "models/memory/device_memory.h"
@@ -32,13 +36,16 @@ struct TexturePlan {
 
   /// A group's texels in one mip level.
   struct Footprint {
-    alignas(32) std::array<std::array<std::int32_t, 8>, 4> texel;  ///< index from the texture's base: (0,0) (1,0) (0,1) (1,1)
-    alignas(32) std::array<std::int32_t, 8> frac_x, frac_y;        ///< weights of the right and lower texels, 0..255 of 256
+    /// index from the texture's base: (0,0) (1,0) (0,1) (1,1)
+    alignas(32) std::array<std::array<std::int32_t, 8>, 4> texel;
+    /// weights of the right and lower texels, 0..255 of 256
+    alignas(32) std::array<std::int32_t, 8> frac_x, frac_y;
   };
   std::array<std::array<Footprint, 2>, kGroups> footprint;  ///< [group][finer, coarser level]
   alignas(32) std::array<float, kWarpLanes> level_weight;   ///< of the coarser level
-  std::array<std::uint8_t, kGroups> levels{};               ///< levels a group reads: 0 (no lane active), 1 or 2
-  std::array<std::int32_t, kWarpLanes> finer_level;         ///< level a lane reads (the finer of two)
+  /// levels a group reads: 0 (no lane active), 1 or 2
+  std::array<std::uint8_t, kGroups> levels{};
+  std::array<std::int32_t, kWarpLanes> finer_level;  ///< level a lane reads (the finer of two)
   LaneMask active = 0;
   std::uint64_t base = 0;
   TexelFormat format = TexelFormat::kR8G8B8A8Unorm;
@@ -52,8 +59,8 @@ struct TexturePlan {
 };
 
 /// Computes addresses and weights. The request's operation is kTexImplicit, kTexBias or kTexLod.
-void plan_texture(const TextureView& view, const SamplerState& sampler, const TextureRequest& request, const Precision& precision,
-                  TexturePlan& plan);
+void plan_texture(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
+                  const Precision& precision, TexturePlan& plan);
 
 /// Reads and filters the texels of a plan. Lanes that are not active receive unspecified finite values.
 void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::array<LaneFloats, 4>& rgba);

@@ -20,7 +20,8 @@ struct Texels {
 Texels fetch(const TexturePlan::Footprint& f, const std::byte* base) {
   Texels t;
   for (std::size_t i = 0; i < 4; ++i) {
-    t.corner[i] = _mm256_i32gather_epi32(reinterpret_cast<const int*>(base), load_lanes(f.texel[i].data()), 4);
+    t.corner[i] =
+        _mm256_i32gather_epi32(reinterpret_cast<const int*>(base), load_lanes(f.texel[i].data()), 4);
   }
   t.frac_x = load_lanes(f.frac_x.data());
   t.weight_y = _mm256_cvtepi32_ps(load_lanes(f.frac_y.data()));
@@ -35,7 +36,8 @@ inline __m256i mix_row(__m256i left, __m256i right, __m256i weight_left, __m256i
 /// Codes times 65536, exact: every step is an integer below 2^24.
 LaneColor filter_unorm(const Texels& t) {
   const __m256i low_bytes = _mm256_set1_epi32(0x00ff00ff);
-  const __m256i right = _mm256_or_si256(t.frac_x, _mm256_slli_epi32(t.frac_x, 16)), left = _mm256_sub_epi16(_mm256_set1_epi16(256), right);
+  const __m256i right = _mm256_or_si256(t.frac_x, _mm256_slli_epi32(t.frac_x, 16)),
+                left = _mm256_sub_epi16(_mm256_set1_epi16(256), right);
   __m256i red_blue[2], green_alpha[2];
   for (int row = 0; row < 2; ++row) {
     const __m256i a = t.corner[2 * row], b = t.corner[2 * row + 1];
@@ -44,15 +46,19 @@ LaneColor filter_unorm(const Texels& t) {
   }
   const __m256 lower = t.weight_y, upper = _mm256_sub_ps(_mm256_set1_ps(256.0f), lower);
   const auto mix_rows = [&](__m256i top, __m256i bottom) {
-    return _mm256_add_ps(_mm256_mul_ps(_mm256_cvtepi32_ps(top), upper), _mm256_mul_ps(_mm256_cvtepi32_ps(bottom), lower));
+    return _mm256_add_ps(_mm256_mul_ps(_mm256_cvtepi32_ps(top), upper),
+                         _mm256_mul_ps(_mm256_cvtepi32_ps(bottom), lower));
   };
   const auto low_half = [](__m256i v) { return _mm256_and_si256(v, _mm256_set1_epi32(0xffff)); };
   const auto high_half = [](__m256i v) { return _mm256_srli_epi32(v, 16); };
-  return {{mix_rows(low_half(red_blue[0]), low_half(red_blue[1])), mix_rows(low_half(green_alpha[0]), low_half(green_alpha[1])),
-           mix_rows(high_half(red_blue[0]), high_half(red_blue[1])), mix_rows(high_half(green_alpha[0]), high_half(green_alpha[1]))}};
+  return {{mix_rows(low_half(red_blue[0]), low_half(red_blue[1])),
+           mix_rows(low_half(green_alpha[0]), low_half(green_alpha[1])),
+           mix_rows(high_half(red_blue[0]), high_half(red_blue[1])),
+           mix_rows(high_half(green_alpha[0]), high_half(green_alpha[1]))}};
 }
 
-/// One 8-bit channel that is already in linear light and scaled to 0..1: decode, then two lerps across and one down.
+/// One 8-bit channel that is already in linear light and scaled to 0..1: decode, then two lerps across and
+/// one down.
 template <int shift>
 __m256 filter_srgb_channel(const Texels& t, __m256 wx, __m256 wy) {
   __m256 value[4];
@@ -60,7 +66,9 @@ __m256 filter_srgb_channel(const Texels& t, __m256 wx, __m256 wy) {
     const __m256i code = _mm256_and_si256(_mm256_srli_epi32(t.corner[i], shift), _mm256_set1_epi32(0xff));
     value[i] = _mm256_i32gather_ps(kSrgbToLinear.data(), code, 4);
   }
-  const auto lerp = [](__m256 a, __m256 b, __m256 w) { return _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w)); };
+  const auto lerp = [](__m256 a, __m256 b, __m256 w) {
+    return _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w));
+  };
   return lerp(lerp(value[0], value[1], wx), lerp(value[2], value[3], wx), wy);
 }
 
@@ -77,12 +85,13 @@ __m256 filter_unorm_alpha(const Texels& t) {
 LaneColor filter_srgb(const Texels& t) {
   const __m256 scale = _mm256_set1_ps(1.0f / 256.0f);
   const __m256 wx = _mm256_mul_ps(_mm256_cvtepi32_ps(t.frac_x), scale), wy = _mm256_mul_ps(t.weight_y, scale);
-  return {
-      {filter_srgb_channel<0>(t, wx, wy), filter_srgb_channel<8>(t, wx, wy), filter_srgb_channel<16>(t, wx, wy), filter_unorm_alpha(t)}};
+  return {{filter_srgb_channel<0>(t, wx, wy), filter_srgb_channel<8>(t, wx, wy),
+           filter_srgb_channel<16>(t, wx, wy), filter_unorm_alpha(t)}};
 }
 
 template <bool srgb>
-void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* base, std::array<LaneFloats, 4>& rgba) {
+void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* base,
+                  std::array<LaneFloats, 4>& rgba) {
   const auto filter = [&](std::size_t level) {
     const Texels texels = fetch(plan.footprint[group][level], base);
     if constexpr (srgb) {
@@ -96,7 +105,8 @@ void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* b
     const LaneColor coarser = filter(1);
     const __m256 weight = _mm256_load_ps(plan.level_weight.data() + 8 * group);
     for (int c = 0; c < 4; ++c) {
-      color.channel[c] = _mm256_add_ps(color.channel[c], _mm256_mul_ps(_mm256_sub_ps(coarser.channel[c], color.channel[c]), weight));
+      color.channel[c] = _mm256_add_ps(
+          color.channel[c], _mm256_mul_ps(_mm256_sub_ps(coarser.channel[c], color.channel[c]), weight));
     }
   }
   const __m256 one = _mm256_set1_ps(255.0f * 65536.0f);

@@ -21,10 +21,12 @@ LevelVectors level_vectors(const TextureLayout& layout, __m256i level, std::uint
   const auto common = static_cast<std::size_t>(lanes[static_cast<std::size_t>(std::countr_zero(used) & 7)]);
   const std::uint32_t agree = bits_of(_mm256_cmpeq_epi32(level, _mm256_set1_epi32(static_cast<int>(common))));
   if ((agree & used) == used) {
-    return {_mm256_set1_epi32(layout.width[common]), _mm256_set1_epi32(layout.height[common]), _mm256_set1_epi32(layout.pitch[common]),
-            _mm256_set1_epi32(layout.first[common])};
+    return {_mm256_set1_epi32(layout.width[common]), _mm256_set1_epi32(layout.height[common]),
+            _mm256_set1_epi32(layout.pitch[common]), _mm256_set1_epi32(layout.first[common])};
   }
-  const auto gather = [level](const std::array<std::int32_t, 16>& by_level) { return _mm256_i32gather_epi32(by_level.data(), level, 4); };
+  const auto gather = [level](const std::array<std::int32_t, 16>& by_level) {
+    return _mm256_i32gather_epi32(by_level.data(), level, 4);
+  };
   return {gather(layout.width), gather(layout.height), gather(layout.pitch), gather(layout.first)};
 }
 
@@ -68,7 +70,8 @@ class LineCollector {
     return static_cast<std::uint32_t>(_mm_cvtsi128_si32(half));
   }
 
-  /// Adds sectors of one line. A table leads to the line that last had this hash; only if that is another one is the list searched.
+  /// Adds sectors of one line. A table leads to the line that last had this hash; only if that is another one
+  /// is the list searched.
   void note(std::uint32_t number, std::uint32_t sectors) {
     const std::size_t bucket = (number ^ number >> 6) & 63;
     const std::uint64_t bit = std::uint64_t{1} << bucket;
@@ -107,19 +110,24 @@ struct PlanContext {
 AxisTexels axis_texels(__m256 folded, __m256i size, Wrap wrap, int subtexel_bits, std::uint32_t nearest) {
   if (nearest == 0) return linear_texels(folded, size, wrap, subtexel_bits);
   const AxisTexels point = nearest_texels(folded, size, wrap);
-  return nearest == 0xff ? point : select(linear_texels(folded, size, wrap, subtexel_bits), point, lanes_of(nearest));
+  return nearest == 0xff ? point
+                         : select(linear_texels(folded, size, wrap, subtexel_bits), point, lanes_of(nearest));
 }
 
 /// Addresses of a group in one level. `folded_u`, `folded_v` are folded coordinates.
-void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v, __m256i level, std::uint32_t used, std::uint32_t nearest,
-                    TexturePlan::Footprint& out, LineCollector& lines) {
+void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v, __m256i level,
+                    std::uint32_t used, std::uint32_t nearest, TexturePlan::Footprint& out,
+                    LineCollector& lines) {
   const LevelVectors at = level_vectors(context.view.layout, level, used);
-  const AxisTexels x = axis_texels(folded_u, at.width, context.sampler.wrap_u, context.subtexel_bits, nearest);
-  const AxisTexels y = axis_texels(folded_v, at.height, context.sampler.wrap_v, context.subtexel_bits, nearest);
-  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first)), right = _mm256_add_epi32(at.first, x_index(x.second));
+  const AxisTexels x =
+      axis_texels(folded_u, at.width, context.sampler.wrap_u, context.subtexel_bits, nearest);
+  const AxisTexels y =
+      axis_texels(folded_v, at.height, context.sampler.wrap_v, context.subtexel_bits, nearest);
+  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first)),
+                right = _mm256_add_epi32(at.first, x_index(x.second));
   const __m256i top = y_index(y.first, at.pitch), bottom = y_index(y.second, at.pitch);
-  const __m256i texel[4] = {_mm256_add_epi32(left, top), _mm256_add_epi32(right, top), _mm256_add_epi32(left, bottom),
-                            _mm256_add_epi32(right, bottom)};
+  const __m256i texel[4] = {_mm256_add_epi32(left, top), _mm256_add_epi32(right, top),
+                            _mm256_add_epi32(left, bottom), _mm256_add_epi32(right, bottom)};
   for (std::size_t corner = 0; corner < 4; ++corner) store_lanes(out.texel[corner].data(), texel[corner]);
   store_lanes(out.frac_x.data(), x.weight);
   store_lanes(out.frac_y.data(), y.weight);
@@ -128,15 +136,16 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
 
 void count_work(TexturePlan& plan, std::uint32_t used, std::uint32_t nearest) {
   plan.bilinear_quads += ((used & 0x0f) != 0 ? 1u : 0u) + ((used & 0xf0) != 0 ? 1u : 0u);
-  plan.texels += static_cast<std::uint32_t>(4 * std::popcount(used & ~nearest) + std::popcount(used & nearest));
+  plan.texels +=
+      static_cast<std::uint32_t>(4 * std::popcount(used & ~nearest) + std::popcount(used & nearest));
 }
 
 }  // namespace
 
-void plan_texture(const TextureView& view, const SamplerState& sampler, const TextureRequest& request, const Precision& precision,
-                  TexturePlan& plan) {
-  QUADRILLE_CHECK(request.op == Op::kTexImplicit || request.op == Op::kTexBias || request.op == Op::kTexLod, "operation {}",
-                  static_cast<int>(request.op));
+void plan_texture(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
+                  const Precision& precision, TexturePlan& plan) {
+  QUADRILLE_CHECK(request.op == Op::kTexImplicit || request.op == Op::kTexBias || request.op == Op::kTexLod,
+                  "operation {}", static_cast<int>(request.op));
   plan.active = request.active;
   plan.base = view.base;
   plan.format = view.format;
@@ -151,8 +160,8 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
   plan.level_weight = levels.weight;
   plan.magnified_lanes = static_cast<std::uint32_t>(std::popcount(request.active & levels.magnified));
   plan.minified_lanes = static_cast<std::uint32_t>(std::popcount(request.active & ~levels.magnified));
-  const LaneMask nearest_lanes =
-      (sampler.mag == Filter::kNearest ? levels.magnified : 0) | (sampler.min == Filter::kNearest ? ~levels.magnified : 0);
+  const LaneMask nearest_lanes = (sampler.mag == Filter::kNearest ? levels.magnified : 0) |
+                                 (sampler.min == Filter::kNearest ? ~levels.magnified : 0);
 
   const PlanContext context{view, sampler, precision.subtexel_bits};
   LineCollector lines(plan);
@@ -171,7 +180,8 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
     const std::uint32_t mixing = active & bits_of(mixed);
     plan.levels[group] = mixing != 0 ? 2 : 1;
     if (mixing == 0) continue;
-    const __m256i coarser = _mm256_sub_epi32(finer, mixed);  // + 1 where two levels are mixed: never beyond the last
+    // + 1 where two levels are mixed: never beyond the last
+    const __m256i coarser = _mm256_sub_epi32(finer, mixed);
     plan_footprint(context, folded_u, folded_v, coarser, mixing, nearest, plan.footprint[group][1], lines);
     count_work(plan, mixing, nearest);
   }

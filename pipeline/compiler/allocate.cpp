@@ -14,7 +14,8 @@ namespace {
 
 using models::Op;
 
-constexpr std::size_t kColours = 4 * models::kMaxRegisters;  // beyond the limit, so that an error can say by how much
+// beyond the limit, so that an error can say by how much
+constexpr std::size_t kColours = 4 * models::kMaxRegisters;
 
 /// A set of registers that is walked, grown and shrunk in constant time a step.
 class SparseSet {
@@ -69,7 +70,9 @@ class Allocator {
   }
 
  private:
-  static std::uint32_t results(const ScalarInstruction& i) { return static_cast<std::uint32_t>(models::destination_count(i.op)); }
+  static std::uint32_t results(const ScalarInstruction& i) {
+    return static_cast<std::uint32_t>(models::destination_count(i.op));
+  }
 
   template <class Visit>
   void for_each_use(std::size_t at, Visit visit) const {
@@ -121,7 +124,8 @@ class Allocator {
         case static_cast<int>(Op::kContinuing): loops.back().middle = at; break;
         case static_cast<int>(Op::kEndLoop):
           for (const std::size_t b : loops.back().breaks) jumps[b].push_back(at + 1);
-          for (const std::size_t c : loops.back().continues) jumps[c].push_back(loops.back().middle != 0 ? loops.back().middle : at);
+          for (const std::size_t c : loops.back().continues)
+            jumps[c].push_back(loops.back().middle != 0 ? loops.back().middle : at);
           jumps[at].push_back(loops.back().start + 1);
           loops.pop_back();
           break;
@@ -145,7 +149,8 @@ class Allocator {
       const Op op = code_[end].op;
       for (const std::size_t to : jumps[end])
         if (to < n) block.next.push_back(block_at[to]);
-      if (op != Op::kElse && op != Op::kEndLoop && op != Op::kEnd && end + 1 < n) block.next.push_back(block_at[end + 1]);
+      if (op != Op::kElse && op != Op::kEndLoop && op != Op::kEnd && end + 1 < n)
+        block.next.push_back(block_at[end + 1]);
     }
   }
 
@@ -223,7 +228,8 @@ class Allocator {
     return r;
   }
 
-  /// Joins the two sides of copies that do not conflict. Neighbours stay lists of registers; a class owns those of its members.
+  /// Joins the two sides of copies that do not conflict. Neighbours stay lists of registers; a class owns
+  /// those of its members.
   void coalesce() {
     std::vector<std::uint32_t> group(registers_, kNoRegister);
     for (const ScalarInstruction& i : code_)
@@ -234,7 +240,9 @@ class Allocator {
       std::uint32_t a = find(i.dst), b = find(i.a.bits);
       if (a == b || (group[a] != kNoRegister && group[b] != kNoRegister)) continue;
       if (neighbours_[a].size() > neighbours_[b].size()) std::swap(a, b);
-      if (std::any_of(neighbours_[a].begin(), neighbours_[a].end(), [&](std::uint32_t r) { return find(r) == b; })) continue;
+      if (std::any_of(neighbours_[a].begin(), neighbours_[a].end(),
+                      [&](std::uint32_t r) { return find(r) == b; }))
+        continue;
       parent_[a] = b;
       if (group[b] == kNoRegister) group[b] = group[a];
       neighbours_[b].insert(neighbours_[b].end(), neighbours_[a].begin(), neighbours_[a].end());
@@ -251,7 +259,8 @@ class Allocator {
         if (const int c = colours[find(r)]; c >= 0) used.set(static_cast<std::size_t>(c));
       return used;
     };
-    std::map<std::uint32_t, std::vector<std::uint32_t>> wide;  // class -> the classes of its texture's results
+    // class -> the classes of its texture's results
+    std::map<std::uint32_t, std::vector<std::uint32_t>> wide;
     for (const ScalarInstruction& i : code_) {
       if (results(i) < 2) continue;
       std::vector<std::uint32_t> members;
@@ -264,7 +273,8 @@ class Allocator {
       const std::uint32_t root = find(r);
       if (colours[root] >= 0) return;
       const auto found = wide.find(root);
-      const std::vector<std::uint32_t> members = found == wide.end() ? std::vector<std::uint32_t>{root} : found->second;
+      const std::vector<std::uint32_t> members =
+          found == wide.end() ? std::vector<std::uint32_t>{root} : found->second;
       std::vector<std::bitset<kColours + 4>> used;
       used.reserve(members.size());
       for (const std::uint32_t member : members) used.push_back(taken(member));
@@ -287,7 +297,8 @@ class Allocator {
     for (const ScalarInstruction& i : code_)
       for (const Value& v : {i.a, i.b, i.c})
         if (v.is_register()) visit(v.bits);
-    for (std::uint32_t r = 0; r < registers_; ++r) allocation.physical[r] = static_cast<std::uint16_t>(std::max(0, colours[find(r)]));
+    for (std::uint32_t r = 0; r < registers_; ++r)
+      allocation.physical[r] = static_cast<std::uint16_t>(std::max(0, colours[find(r)]));
     return allocation;
   }
 

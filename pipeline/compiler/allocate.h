@@ -10,9 +10,11 @@ struct Allocation {
   int num_regs = 0;                     ///< may exceed kMaxRegisters: the caller decides
 };
 
-/// Every lane has its own registers and writes are masked, so two values conflict exactly if both are live at one place on the way of a single lane.
-/// Copies get one register for both sides where they do not conflict; a texture's four results get consecutive ones, and those that nobody reads stay
-/// reserved until the first one that is read, because they are written late.
-[[nodiscard]] Allocation allocate_registers(const std::vector<ScalarInstruction>& code, std::size_t registers);
+/// Every lane has its own registers and writes are masked, so two values conflict exactly if both are live at
+/// one place on the way of a single lane. Copies get one register for both sides where they do not conflict;
+/// a texture's four results get consecutive ones, and those that nobody reads stay reserved until the first
+/// one that is read, because they are written late.
+[[nodiscard]] Allocation allocate_registers(const std::vector<ScalarInstruction>& code,
+                                            std::size_t registers);
 
 }  // namespace quadrille::pipeline

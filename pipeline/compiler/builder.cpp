@@ -16,9 +16,9 @@ constexpr std::uint32_t kSignBit = 0x80000000u;
 constexpr std::uint32_t kOne = 0x3f800000u;
 
 bool commutes(Op op) {
-  return op == Op::kFAdd || op == Op::kFMul || op == Op::kFEq || op == Op::kFNe || op == Op::kIAdd || op == Op::kIMul || op == Op::kIMin ||
-         op == Op::kIMax || op == Op::kUMin || op == Op::kUMax || op == Op::kAnd || op == Op::kOr || op == Op::kXor || op == Op::kIEq ||
-         op == Op::kINe;
+  return op == Op::kFAdd || op == Op::kFMul || op == Op::kFEq || op == Op::kFNe || op == Op::kIAdd ||
+         op == Op::kIMul || op == Op::kIMin || op == Op::kIMax || op == Op::kUMin || op == Op::kUMax ||
+         op == Op::kAnd || op == Op::kOr || op == Op::kXor || op == Op::kIEq || op == Op::kINe;
 }
 
 std::uint64_t pack(Value value) {
@@ -28,14 +28,16 @@ std::uint64_t pack(Value value) {
 
 Value integer_identity(Op op, Value a, Value b) {
   const bool zero = b.is_literal(0), ones = b.is_literal(kTrue), one = b.is_literal(1);
-  if (zero &&
-      (op == Op::kIAdd || op == Op::kISub || op == Op::kOr || op == Op::kXor || op == Op::kShl || op == Op::kShrU || op == Op::kShrS))
+  if (zero && (op == Op::kIAdd || op == Op::kISub || op == Op::kOr || op == Op::kXor || op == Op::kShl ||
+               op == Op::kShrU || op == Op::kShrS))
     return a;
   if (zero && (op == Op::kAnd || op == Op::kIMul)) return b;
   if (ones && op == Op::kAnd) return a;
   if (ones && op == Op::kOr) return b;
   if (one && (op == Op::kIMul || op == Op::kIDiv || op == Op::kUDiv)) return a;
-  if (a == b && (op == Op::kAnd || op == Op::kOr || op == Op::kIMin || op == Op::kIMax || op == Op::kUMin || op == Op::kUMax)) return a;
+  if (a == b && (op == Op::kAnd || op == Op::kOr || op == Op::kIMin || op == Op::kIMax || op == Op::kUMin ||
+                 op == Op::kUMax))
+    return a;
   return {};
 }
 
@@ -45,7 +47,8 @@ bool takes_modifiers(Op op, int operand) { return (models::op_info(op).modifiabl
 
 std::size_t ScalarBuilder::KeyHash::operator()(const Key& key) const {
   const auto& [op, flags, imm, a, b, c] = key;
-  std::uint64_t hash = static_cast<std::uint64_t>(op) | static_cast<std::uint64_t>(flags) << 8 | static_cast<std::uint64_t>(imm) << 16;
+  std::uint64_t hash = static_cast<std::uint64_t>(op) | static_cast<std::uint64_t>(flags) << 8 |
+                       static_cast<std::uint64_t>(imm) << 16;
   for (const std::uint64_t part : {a, b, c}) hash = (hash ^ part) * 0x9e3779b97f4a7c15ull ^ hash >> 29;
   return static_cast<std::size_t>(hash ^ hash >> 32);
 }
@@ -100,7 +103,8 @@ Value ScalarBuilder::plain(Value value) {
   return emit(Op::kOr, value, literal(kSignBit));
 }
 
-/// Exact identities only: x * 1, x + -0, selections and integer ones. x * 0 and x + 0 stay, for NaN, infinity and signed zero.
+/// Exact identities only: x * 1, x + -0, selections and integer ones. x * 0 and x + 0 stay, for NaN, infinity
+/// and signed zero.
 Value ScalarBuilder::simplify(Op op, Value a, Value b, Value c) const {
   if (op == Op::kSelect) {
     if (a.is_literal()) return a.bits != 0 ? b : c;
@@ -131,7 +135,8 @@ Value ScalarBuilder::emit_wide(Op op, Value a, Value b, Value c, std::uint16_t i
 }
 
 Value ScalarBuilder::lookup_or_append(const ScalarInstruction& instruction, int results) {
-  const Key key{instruction.op, instruction.flags, instruction.imm, pack(instruction.a), pack(instruction.b), pack(instruction.c)};
+  const Key key{instruction.op,      instruction.flags,   instruction.imm,
+                pack(instruction.a), pack(instruction.b), pack(instruction.c)};
   if (const auto found = known_.find(key); found != known_.end()) return found->second;
   ScalarInstruction appended = instruction;
   appended.dst = new_register(false);
@@ -153,7 +158,8 @@ void ScalarBuilder::effect(Op op, Value a, std::uint16_t imm) {
 }
 
 Value ScalarBuilder::fclamp(Value x, Value lo, Value hi) {
-  if (!x.is_literal() && lo.is_literal(0) && hi.is_literal(kOne)) return emit(Op::kMov, x, {}, {}, 0, models::Instruction::kSaturate);
+  if (!x.is_literal() && lo.is_literal(0) && hi.is_literal(kOne))
+    return emit(Op::kMov, x, {}, {}, 0, models::Instruction::kSaturate);
   return fmin(fmax(x, lo), hi);
 }
 

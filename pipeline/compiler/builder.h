@@ -1,5 +1,5 @@
-/// Emits scalar code: folds literals, numbers values (an expression computed in an enclosing scope is not computed again) and carries float negation and
-/// absolute value as operand modifiers.
+/// Emits scalar code: folds literals, numbers values (an expression computed in an enclosing scope is not
+/// computed again) and carries float negation and absolute value as operand modifiers.
 #pragma once
 
 #include "pipeline/compiler/ir.h"
@@ -12,7 +12,9 @@ namespace quadrille::pipeline {
 
 [[nodiscard]] inline Value literal(std::uint32_t bits) { return {Value::Kind::kLiteral, 0, bits}; }
 [[nodiscard]] inline Value literal(float value) { return literal(std::bit_cast<std::uint32_t>(value)); }
-[[nodiscard]] inline Value uniform_word(std::uint32_t block, std::uint32_t word) { return {Value::Kind::kUniform, 0, block << 16 | word}; }
+[[nodiscard]] inline Value uniform_word(std::uint32_t block, std::uint32_t word) {
+  return {Value::Kind::kUniform, 0, block << 16 | word};
+}
 inline constexpr std::uint32_t kTrue = 0xffffffffu;
 
 class ScalarBuilder {
@@ -20,7 +22,8 @@ class ScalarBuilder {
   explicit ScalarBuilder(ScalarShader& shader) : shader_(shader) {}
 
   /// A pure operation: folded, found or emitted.
-  Value emit(models::Op op, Value a, Value b = {}, Value c = {}, std::uint16_t imm = 0, std::uint8_t flags = 0);
+  Value emit(models::Op op, Value a, Value b = {}, Value c = {}, std::uint16_t imm = 0,
+             std::uint8_t flags = 0);
   /// A pure operation with several results (textures): the first of its consecutive registers.
   Value emit_wide(models::Op op, Value a, Value b, Value c, std::uint16_t imm);
   /// An operation with an effect and no result.
@@ -54,7 +57,8 @@ class ScalarBuilder {
   Value invert(Value condition);
 
  private:
-  using Key = std::tuple<models::Op, std::uint8_t, std::uint16_t, std::uint64_t, std::uint64_t, std::uint64_t>;
+  using Key =
+      std::tuple<models::Op, std::uint8_t, std::uint16_t, std::uint64_t, std::uint64_t, std::uint64_t>;
   struct KeyHash {
     std::size_t operator()(const Key& key) const;
   };

@@ -14,11 +14,13 @@ namespace {
 
 using models::Op;
 
-ScalarShader compile_stage(std::span<const std::uint32_t> words, std::string_view name, traces::ShaderStage stage) {
+ScalarShader compile_stage(std::span<const std::uint32_t> words, std::string_view name,
+                           traces::ShaderStage stage) {
   OptimisedSpirv optimised = optimise_spirv(words, name);
   spirv::Module module(std::move(optimised.words), stage, name);
   module.kills_return = optimised.kills_return;
-  ScalarShader lowered = lower_shader(module, stage == traces::ShaderStage::kVertex ? models::Stage::kVertex : models::Stage::kFragment);
+  ScalarShader lowered = lower_shader(
+      module, stage == traces::ShaderStage::kVertex ? models::Stage::kVertex : models::Stage::kFragment);
   if (!module.unsupported_capability.empty()) throw user_error("{}: {}", name, module.unsupported_capability);
   return lowered;
 }
@@ -36,36 +38,45 @@ Linkage link(const ScalarShader& fragment) {
     linkage.interpolation.push_back(fragment.varyings.at(raw));
   }
   if (read.size() > static_cast<std::size_t>(models::kMaxVaryings))
-    throw user_error("{}: the fragment shader reads {} varying components; at most {} are possible", fragment.name, read.size(),
-                     models::kMaxVaryings);
+    throw user_error("{}: the fragment shader reads {} varying components; at most {} are possible",
+                     fragment.name, read.size(), models::kMaxVaryings);
   return linkage;
 }
 
 /// Removes vertex outputs that nobody reads and checks that those read are written.
 void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, const Linkage& linkage) {
-  const auto varying = [](const ScalarInstruction& i) { return static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput); };
-  const auto is_varying = [](const ScalarInstruction& i) { return i.op == Op::kOutput && i.imm >= models::kFirstVaryingOutput; };
+  const auto varying = [](const ScalarInstruction& i) {
+    return static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput);
+  };
+  const auto is_varying = [](const ScalarInstruction& i) {
+    return i.op == Op::kOutput && i.imm >= models::kFirstVaryingOutput;
+  };
   for (const auto& [raw, packed] : linkage.varyings) {
-    const bool written = std::any_of(vertex.code.begin(), vertex.code.end(),
-                                     [&, raw = raw](const ScalarInstruction& i) { return is_varying(i) && varying(i) == raw; });
+    const bool written = std::any_of(
+        vertex.code.begin(), vertex.code.end(),
+        [&, raw = raw](const ScalarInstruction& i) { return is_varying(i) && varying(i) == raw; });
     if (!written)
-      throw user_error("{}: reads location {} component {}, which the vertex shader {} does not write", fragment.name, raw / 4, raw % 4,
-                       vertex.name);
+      throw user_error("{}: reads location {} component {}, which the vertex shader {} does not write",
+                       fragment.name, raw / 4, raw % 4, vertex.name);
   }
-  std::erase_if(vertex.code, [&](const ScalarInstruction& i) { return is_varying(i) && !linkage.varyings.contains(varying(i)); });
+  std::erase_if(vertex.code, [&](const ScalarInstruction& i) {
+    return is_varying(i) && !linkage.varyings.contains(varying(i));
+  });
 }
 
 }  // namespace
 
 CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, std::string_view vertex_name,
-                                  std::span<const std::uint32_t> fragment_spirv, std::string_view fragment_name) {
+                                  std::span<const std::uint32_t> fragment_spirv,
+                                  std::string_view fragment_name) {
   ScalarShader fragment = compile_stage(fragment_spirv, fragment_name, traces::ShaderStage::kFragment);
   clean_up(fragment);
   const Linkage linkage = link(fragment);
   ScalarShader vertex = compile_stage(vertex_spirv, vertex_name, traces::ShaderStage::kVertex);
   drop_unread_outputs(vertex, fragment, linkage);
   clean_up(vertex);
-  CompiledPipeline pipeline{emit_program(vertex, linkage), emit_program(fragment, linkage), vertex.integer_inputs};
+  CompiledPipeline pipeline{emit_program(vertex, linkage), emit_program(fragment, linkage),
+                            vertex.integer_inputs};
   models::prepare(pipeline.vertex);
   models::prepare(pipeline.fragment);
   return pipeline;

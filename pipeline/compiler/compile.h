@@ -1,8 +1,11 @@
-/// The driver's shader compiler: SPIR-V of a vertex and a fragment shader in, a linked pair of register-ISA programs out.
+/// The driver's shader compiler: SPIR-V of a vertex and a fragment shader in, a linked pair of register-ISA
+/// programs out.
 ///
-/// The stages are: validation and optimisation by SPIRV-Tools (`spirv_optimise.h`), reading the module (`spirv_module.h`), lowering to scalar code with
-/// structured control flow (`lower.h`), scalar clean-up and texture grouping (`passes.h`), register allocation (`allocate.h`) and linking (here).
-/// docs/shader_compiler.md says which SPIR-V is understood and in which order floating-point operations are done.
+/// The stages are: validation and optimisation by SPIRV-Tools (`spirv_optimise.h`), reading the module
+/// (`spirv_module.h`), lowering to scalar code with structured control flow (`lower.h`), scalar clean-up and
+/// texture grouping (`passes.h`), register allocation (`allocate.h`) and linking (here).
+/// docs/shader_compiler.md says which SPIR-V is understood and in which order floating-point operations are
+/// done.
 #pragma once
 
 #include "models/shader/isa.h"
@@ -13,18 +16,21 @@
 
 namespace quadrille::pipeline {
 
-/// Both programs hold the same packed `varyings` list. Vertex outputs that the fragment shader does not read are eliminated, with the code and the vertex
-/// inputs that only fed them.
+/// Both programs hold the same packed `varyings` list. Vertex outputs that the fragment shader does not read
+/// are eliminated, with the code and the vertex inputs that only fed them.
 struct CompiledPipeline {
   models::Program vertex, fragment;
   std::uint32_t integer_inputs = 0;  ///< bit i: the vertex shader declares input location i as integers
 };
 
-/// Compiles and links two SPIR-V modules (entry point "main"; Vulkan 1.1 environment; specialisation constants take their defaults).
-/// The names are used in listings and errors. Deterministic: the same words give the same programs.
-/// Throws `UserError` (one line: shader name, place if the module carries names or lines, what is not legal or not supported) for any module, however
-/// damaged, that cannot be compiled, for mismatched stages, and for programs beyond a limit of the ISA (registers, nesting, varyings, constants).
-[[nodiscard]] CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, std::string_view vertex_name,
-                                                std::span<const std::uint32_t> fragment_spirv, std::string_view fragment_name);
+/// Compiles and links two SPIR-V modules (entry point "main"; Vulkan 1.1 environment; specialisation
+/// constants take their defaults). The names are used in listings and errors. Deterministic: the same words
+/// give the same programs. Throws `UserError` (one line: shader name, place if the module carries names or
+/// lines, what is not legal or not supported) for any module, however damaged, that cannot be compiled, for
+/// mismatched stages, and for programs beyond a limit of the ISA (registers, nesting, varyings, constants).
+[[nodiscard]] CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv,
+                                                std::string_view vertex_name,
+                                                std::span<const std::uint32_t> fragment_spirv,
+                                                std::string_view fragment_name);
 
 }  // namespace quadrille::pipeline

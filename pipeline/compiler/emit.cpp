@@ -24,7 +24,8 @@ constexpr int kFewRegisters = 64;       ///< up to here the texture order is kep
 /// The words of the constant file that the code reads, and where they are put.
 class ConstantFile {
  public:
-  explicit ConstantFile(const ScalarShader& shader, const std::vector<ScalarInstruction>& code) : shader_(shader) {
+  explicit ConstantFile(const ScalarShader& shader, const std::vector<ScalarInstruction>& code)
+      : shader_(shader) {
     for (const ScalarInstruction& i : code) collect(i);
     if (!literals_.empty()) {
       ConstantLayout::Range range;
@@ -37,7 +38,8 @@ class ConstantFile {
     const auto rank = [&](std::uint32_t b) {
       return std::tuple(shader_.blocks[b].source, shader_.blocks[b].set, shader_.blocks[b].binding, b);
     };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
+    std::sort(order.begin(), order.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return rank(a) < rank(b); });
     for (const std::uint32_t block : order) place_block(block);
   }
 
@@ -109,10 +111,11 @@ Candidate best_order(const ScalarShader& shader) {
     return candidate;
   };
   Candidate best = build(Order::kTextures);
-  if (Candidate other = build(Order::kTexturesDemand); other.allocation.num_regs < best.allocation.num_regs) best = std::move(other);
+  if (Candidate other = build(Order::kTexturesDemand); other.allocation.num_regs < best.allocation.num_regs)
+    best = std::move(other);
   if (best.allocation.num_regs <= kFewRegisters) return best;
-  if (Candidate other = build(Order::kSource);
-      2 * other.allocation.num_regs < best.allocation.num_regs || best.allocation.num_regs > models::kMaxRegisters)
+  if (Candidate other = build(Order::kSource); 2 * other.allocation.num_regs < best.allocation.num_regs ||
+                                               best.allocation.num_regs > models::kMaxRegisters)
     if (other.allocation.num_regs < best.allocation.num_regs) best = std::move(other);
   return best;
 }
@@ -157,38 +160,42 @@ class Encoder {
     program.varyings = linkage_.interpolation;
     program.early_fragment_tests = shader_.early_fragment_tests;
     for (const auto& [raw, slot] : inputs_)
-      program.vertex_inputs.push_back({static_cast<std::uint16_t>(raw / 4), static_cast<std::uint16_t>(raw % 4)});
+      program.vertex_inputs.push_back(
+          {static_cast<std::uint16_t>(raw / 4), static_cast<std::uint16_t>(raw % 4)});
     for (const auto& [raw, slot] : textures_) program.textures.push_back(shader_.textures[raw]);
     for (const ScalarInstruction& i : chosen_.code) {
       const Instruction out = encode(i);
-      const bool useless =
-          out.op == Op::kMov && out.flags == 0 && out.a.kind == Operand::kRegister && out.a.modifiers == 0 && out.a.index == out.dst;
+      const bool useless = out.op == Op::kMov && out.flags == 0 && out.a.kind == Operand::kRegister &&
+                           out.a.modifiers == 0 && out.a.index == out.dst;
       if (useless) continue;
       program.uses_discard |= out.op == Op::kKillIf;
-      program.writes_depth |= shader_.stage == models::Stage::kFragment && out.op == Op::kOutput && out.imm == models::kDepthOutput;
-      program.uses_derivatives |=
-          (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) || out.op == Op::kTexImplicit || out.op == Op::kTexBias;
+      program.writes_depth |= shader_.stage == models::Stage::kFragment && out.op == Op::kOutput &&
+                              out.imm == models::kDepthOutput;
+      program.uses_derivatives |= (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) ||
+                                  out.op == Op::kTexImplicit || out.op == Op::kTexBias;
       program.code.push_back(out);
     }
     if (const int depth = control_depth(program.code); depth > models::kMaxControlDepth)
-      throw user_error("{}: control flow is nested {} deep; at most {} is possible", shader_.name, depth, models::kMaxControlDepth);
+      throw user_error("{}: control flow is nested {} deep; at most {} is possible", shader_.name, depth,
+                       models::kMaxControlDepth);
     return program;
   }
 
  private:
   void check_limits() const {
     if (chosen_.allocation.num_regs > models::kMaxRegisters)
-      throw user_error("{}: the shader needs {} registers; a lane has {}", shader_.name, chosen_.allocation.num_regs,
-                       models::kMaxRegisters);
+      throw user_error("{}: the shader needs {} registers; a lane has {}", shader_.name,
+                       chosen_.allocation.num_regs, models::kMaxRegisters);
     if (inputs_.size() > static_cast<std::size_t>(models::kMaxVertexInputs))
-      throw user_error("{}: the shader reads {} vertex input components; at most {} are possible", shader_.name, inputs_.size(),
-                       models::kMaxVertexInputs);
+      throw user_error("{}: the shader reads {} vertex input components; at most {} are possible",
+                       shader_.name, inputs_.size(), models::kMaxVertexInputs);
   }
 
   [[nodiscard]] Operand operand(const Value& v) const {
     switch (v.kind) {
       case Value::Kind::kNone: return {};
-      case Value::Kind::kRegister: return {Operand::kRegister, v.modifiers, chosen_.allocation.physical[v.bits]};
+      case Value::Kind::kRegister:
+        return {Operand::kRegister, v.modifiers, chosen_.allocation.physical[v.bits]};
       case Value::Kind::kLiteral:
       case Value::Kind::kUniform: return {Operand::kConstant, v.modifiers, constants_.word_of(v)};
     }
@@ -199,9 +206,11 @@ class Encoder {
     if (i.op == Op::kInput && i.imm < models::kFirstSystemValue) return inputs_.at(i.imm);
     if (i.op == Op::kInterp) return linkage_.varyings.at(i.imm);
     if (is_texture(i.op) || i.op == Op::kTexSize) return textures_.at(i.imm);
-    if (i.op == Op::kOutput && shader_.stage == models::Stage::kVertex && i.imm >= models::kFirstVaryingOutput)
-      return static_cast<std::uint16_t>(models::kFirstVaryingOutput +
-                                        linkage_.varyings.at(static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput)));
+    if (i.op == Op::kOutput && shader_.stage == models::Stage::kVertex &&
+        i.imm >= models::kFirstVaryingOutput)
+      return static_cast<std::uint16_t>(
+          models::kFirstVaryingOutput +
+          linkage_.varyings.at(static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput)));
     if (i.op == Op::kLoadConst) return constants_.word_of(i.c);
     return i.imm;
   }
@@ -228,6 +237,8 @@ class Encoder {
 
 }  // namespace
 
-models::Program emit_program(const ScalarShader& shader, const Linkage& linkage) { return Encoder(shader, linkage).run(); }
+models::Program emit_program(const ScalarShader& shader, const Linkage& linkage) {
+  return Encoder(shader, linkage).run();
+}
 
 }  // namespace quadrille::pipeline

@@ -16,9 +16,11 @@ std::uint32_t mask(bool value) { return value ? 0xffffffffu : 0u; }
 std::int32_t s(std::uint32_t bits) { return static_cast<std::int32_t>(bits); }
 std::uint32_t w(std::int64_t value) { return static_cast<std::uint32_t>(value); }
 
-/// Results that are NaN or denormal are left to the machine, so that its rules for them are written in one place.
+/// Results that are NaN or denormal are left to the machine, so that its rules for them are written in one
+/// place.
 Folded plain(float value) {
-  if (std::isnan(value) || (value != 0 && std::abs(value) < std::numeric_limits<float>::min())) return std::nullopt;
+  if (std::isnan(value) || (value != 0 && std::abs(value) < std::numeric_limits<float>::min()))
+    return std::nullopt;
   return u(value);
 }
 

@@ -1,4 +1,5 @@
-/// GLSL.std.450: the built-in functions, expanded to ISA operations. The formulas and their grouping are those of Mesa's SPIR-V reader. [Mesa vtn_glsl450]
+/// GLSL.std.450: the built-in functions, expanded to ISA operations. The formulas and their grouping are
+/// those of Mesa's SPIR-V reader. [Mesa vtn_glsl450]
 #include "pipeline/compiler/lowering.h"
 #include "pipeline/compiler/spirv_names.h"
 
@@ -70,8 +71,9 @@ class Functions {
     const Value tail = b_.fmad(a, b_.fmad(a, inner, lit(kQuarterPi - 1.0f)), lit(kHalfPi));
     return b_.fmul(sign(x), b_.fsub(lit(kHalfPi), b_.fmul(sqrt(b_.fsub(lit(kOne), a)), tail)));
   }
-  /// Up to a half r + r z P(z) with z = r r; beyond it by the half angle, asin(a) = pi/2 - 2 asin(sqrt((1 - a) / 2)). Within 2 units in the last place: an
-  /// error that does not shrink with x would add up where results are fed back. P is a fit at Chebyshev's nodes of z in [0, 1/4].
+  /// Up to a half r + r z P(z) with z = r r; beyond it by the half angle, asin(a) = pi/2 - 2 asin(sqrt((1 -
+  /// a) / 2)). Within 2 units in the last place: an error that does not shrink with x would add up where
+  /// results are fed back. P is a fit at Chebyshev's nodes of z in [0, 1/4].
   Value asin(Value x) {
     constexpr std::array<float, 5> kTerms{0.16666673f, 0.07498809f, 0.0450107f, 0.026494281f, 0.038206443f};
     const Value a = b_.fabs(x), half = lit(0.5f), small = less(a, half);
@@ -130,15 +132,18 @@ class Functions {
   }
   /// Fraction and whole part, both with the sign of x.
   std::pair<Value, Value> modf(Value x) {
-    return {b_.fmul(sign(x), b_.emit(Op::kFFract, b_.fabs(x))), b_.fmul(sign(x), b_.emit(Op::kFFloor, b_.fabs(x)))};
+    return {b_.fmul(sign(x), b_.emit(Op::kFFract, b_.fabs(x))),
+            b_.fmul(sign(x), b_.emit(Op::kFFloor, b_.fabs(x)))};
   }
   /// Significand in [0.5, 1) and exponent.
   std::pair<Value, Value> frexp(Value x) {
-    const Value magnitude = b_.emit(Op::kAnd, x, literal(0x7fffffffu)), is_zero = b_.emit(Op::kFEq, b_.fabs(x), lit(0.0f));
+    const Value magnitude = b_.emit(Op::kAnd, x, literal(0x7fffffffu)),
+                is_zero = b_.emit(Op::kFEq, b_.fabs(x), lit(0.0f));
     const Value exponent =
-        b_.iadd(b_.emit(Op::kShrU, magnitude, literal(23u)), b_.select(is_zero, literal(0u), literal(static_cast<std::uint32_t>(-126))));
-    const Value significand =
-        b_.emit(Op::kOr, b_.emit(Op::kAnd, x, literal(0x807fffffu)), b_.select(is_zero, literal(0u), literal(0x3f000000u)));
+        b_.iadd(b_.emit(Op::kShrU, magnitude, literal(23u)),
+                b_.select(is_zero, literal(0u), literal(static_cast<std::uint32_t>(-126))));
+    const Value significand = b_.emit(Op::kOr, b_.emit(Op::kAnd, x, literal(0x807fffffu)),
+                                      b_.select(is_zero, literal(0u), literal(0x3f000000u)));
     return {significand, exponent};
   }
   /// Number of the only bit that is set: the exponent of its float. `none` where no bit is.
@@ -148,20 +153,28 @@ class Functions {
                      b_.iadd(exponent, literal(static_cast<std::uint32_t>(-127))));
   }
   Value find_lowest(Value x) { return bit_number(b_.emit(Op::kAnd, x, b_.emit(Op::kISub, literal(0u), x))); }
-  /// Without the bit below the highest one, rounding to a float cannot carry into the next exponent; the bits below only change the significand.
-  Value find_highest(Value x) { return bit_number(b_.emit(Op::kAnd, x, b_.emit(Op::kNot, b_.emit(Op::kShrU, x, literal(1u))))); }
-  Value find_highest_signed(Value x) { return find_highest(b_.emit(Op::kXor, x, b_.emit(Op::kShrS, x, literal(31u)))); }
+  /// Without the bit below the highest one, rounding to a float cannot carry into the next exponent; the bits
+  /// below only change the significand.
+  Value find_highest(Value x) {
+    return bit_number(b_.emit(Op::kAnd, x, b_.emit(Op::kNot, b_.emit(Op::kShrU, x, literal(1u)))));
+  }
+  Value find_highest_signed(Value x) {
+    return find_highest(b_.emit(Op::kXor, x, b_.emit(Op::kShrS, x, literal(31u))));
+  }
 
   /// Nearest half float, to even; its 16 bits.
   Value to_half(Value x) {
     const Value magnitude = b_.emit(Op::kAnd, x, literal(0x7fffffffu));
     const Value sign_bit = b_.emit(Op::kAnd, b_.emit(Op::kShrU, x, literal(16u)), literal(0x8000u));
-    const Value special = b_.select(b_.emit(Op::kULt, literal(0x7f800000u), magnitude), literal(0x7e00u), literal(0x7c00u));
+    const Value special =
+        b_.select(b_.emit(Op::kULt, literal(0x7f800000u), magnitude), literal(0x7e00u), literal(0x7c00u));
     const Value tiny = b_.emit(Op::kISub, b_.fadd(magnitude, lit(0.5f)), literal(0x3f000000u));
     const Value odd = b_.emit(Op::kAnd, b_.emit(Op::kShrU, magnitude, literal(13u)), literal(1u));
-    const Value normal = b_.emit(Op::kShrU, b_.iadd(b_.iadd(magnitude, literal(0xc8000fffu)), odd), literal(13u));
+    const Value normal =
+        b_.emit(Op::kShrU, b_.iadd(b_.iadd(magnitude, literal(0xc8000fffu)), odd), literal(13u));
     const Value finite = b_.select(b_.emit(Op::kULt, magnitude, literal(0x38800000u)), tiny, normal);
-    return b_.emit(Op::kOr, b_.select(b_.emit(Op::kULe, literal(0x47800000u), magnitude), special, finite), sign_bit);
+    return b_.emit(Op::kOr, b_.select(b_.emit(Op::kULe, literal(0x47800000u), magnitude), special, finite),
+                   sign_bit);
   }
   Value from_half(Value bits) {
     const Value shifted = b_.emit(Op::kShl, b_.emit(Op::kAnd, bits, literal(0x7fffu)), literal(13u));
@@ -171,7 +184,8 @@ class Functions {
     const Value tiny = b_.fsub(b_.iadd(biased, literal(1u << 23)), literal(113u << 23));
     const Value finite = b_.select(b_.emit(Op::kIEq, exponent, literal(0u)), tiny, biased);
     const Value magnitude = b_.select(b_.emit(Op::kIEq, exponent, literal(0x0f800000u)), special, finite);
-    return b_.emit(Op::kOr, magnitude, b_.emit(Op::kShl, b_.emit(Op::kAnd, bits, literal(0x8000u)), literal(16u)));
+    return b_.emit(Op::kOr, magnitude,
+                   b_.emit(Op::kShl, b_.emit(Op::kAnd, bits, literal(0x8000u)), literal(16u)));
   }
   /// `bits` wide fields from the least significant end; floats clamped to [-1 or 0, 1] and scaled.
   Value pack_norm(const Values& v, std::uint32_t bits, bool is_signed) {
@@ -180,7 +194,8 @@ class Functions {
     for (std::uint32_t k = 0; k < v.size(); ++k) {
       const Value clamped = b_.fclamp(v[k], lit(is_signed ? -1.0f : 0.0f), lit(kOne));
       const Value rounded = b_.emit(Op::kFRoundEven, b_.fmul(clamped, lit(scale)));
-      const Value field = b_.emit(Op::kAnd, b_.emit(is_signed ? Op::kF2I : Op::kF2U, rounded), literal((1u << bits) - 1));
+      const Value field =
+          b_.emit(Op::kAnd, b_.emit(is_signed ? Op::kF2I : Op::kF2U, rounded), literal((1u << bits) - 1));
       word = b_.emit(Op::kOr, b_.emit(Op::kShl, field, literal(bits * k)), word);
     }
     return word;
@@ -207,7 +222,8 @@ class Functions {
 }  // namespace
 
 void Lowering::glsl450(const spirv::Instruction& i) {
-  if (!module_.glsl_imports.contains(i.operands[0])) throw unsupported(i, "an extended instruction set other than GLSL.std.450");
+  if (!module_.glsl_imports.contains(i.operands[0]))
+    throw unsupported(i, "an extended instruction set other than GLSL.std.450");
   const auto function = static_cast<int>(i.operands[1]);
   if (function == GLSLstd450InterpolateAtCentroid || function == GLSLstd450InterpolateAtSample) {
     spirv::Instruction plain = i;  // one sample a pixel, at its centre
@@ -226,7 +242,9 @@ void Lowering::glsl450(const spirv::Instruction& i) {
   const auto each = [&](auto&& compute) {
     Values result;
     for (std::size_t k = 0; k < in[0].size(); ++k) {
-      const auto at = [&](std::size_t n) { return n < in.size() ? in[n][std::min(k, in[n].size() - 1)] : Value{}; };
+      const auto at = [&](std::size_t n) {
+        return n < in.size() ? in[n][std::min(k, in[n].size() - 1)] : Value{};
+      };
       result.push_back(compute(at(0), at(1), at(2)));
     }
     define(i, std::move(result));
@@ -242,34 +260,52 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     return result;
   };
   const auto length = [&](const Values& v) { return v.size() == 1 ? b.fabs(v[0]) : f.sqrt(dot(v, v)); };
-  if (const auto* found = std::find_if(kDirect.begin(), kDirect.end(), [&](const Direct& row) { return row.function == function; });
+  if (const auto* found = std::find_if(kDirect.begin(), kDirect.end(),
+                                       [&](const Direct& row) { return row.function == function; });
       found != kDirect.end())
     return each([&](Value x, Value y, Value) { return b.emit(found->op, x, y); });
   switch (function) {
     case GLSLstd450FAbs: return each([&](Value x, Value, Value) { return b.fabs(x); });
-    case GLSLstd450Radians: return each([&](Value x, Value, Value) { return b.fmul(x, f.lit(kPi / 180.0f)); });
-    case GLSLstd450Degrees: return each([&](Value x, Value, Value) { return b.fmul(x, f.lit(57.29577951308232f)); });
-    case GLSLstd450Tan: return each([&](Value x, Value, Value) { return b.fdiv(b.emit(Op::kFSin, x), b.emit(Op::kFCos, x)); });
+    case GLSLstd450Radians:
+      return each([&](Value x, Value, Value) { return b.fmul(x, f.lit(kPi / 180.0f)); });
+    case GLSLstd450Degrees:
+      return each([&](Value x, Value, Value) { return b.fmul(x, f.lit(57.29577951308232f)); });
+    case GLSLstd450Tan:
+      return each([&](Value x, Value, Value) { return b.fdiv(b.emit(Op::kFSin, x), b.emit(Op::kFCos, x)); });
     case GLSLstd450Asin: return each([&](Value x, Value, Value) { return f.asin(x); });
     case GLSLstd450Acos:
-      return each([&](Value x, Value, Value) { return b.fsub(f.lit(kHalfPi), f.rough_asin(x, 0.08132463f, -0.02363318f)); });
+      return each([&](Value x, Value, Value) {
+        return b.fsub(f.lit(kHalfPi), f.rough_asin(x, 0.08132463f, -0.02363318f));
+      });
     case GLSLstd450Atan: return each([&](Value x, Value, Value) { return f.atan(x); });
     case GLSLstd450Atan2: return each([&](Value y, Value x, Value) { return f.atan2(y, x); });
-    case GLSLstd450Sinh: return each([&](Value x, Value, Value) { return b.fmul(f.lit(0.5f), b.fsub(f.exp(x), f.exp(b.fneg(x)))); });
-    case GLSLstd450Cosh: return each([&](Value x, Value, Value) { return b.fmul(f.lit(0.5f), b.fadd(f.exp(x), f.exp(b.fneg(x)))); });
+    case GLSLstd450Sinh:
+      return each(
+          [&](Value x, Value, Value) { return b.fmul(f.lit(0.5f), b.fsub(f.exp(x), f.exp(b.fneg(x)))); });
+    case GLSLstd450Cosh:
+      return each(
+          [&](Value x, Value, Value) { return b.fmul(f.lit(0.5f), b.fadd(f.exp(x), f.exp(b.fneg(x)))); });
     case GLSLstd450Tanh: return each([&](Value x, Value, Value) { return f.tanh(x); });
     case GLSLstd450Asinh: return each([&](Value x, Value, Value) { return f.asinh(x); });
-    case GLSLstd450Acosh: return each([&](Value x, Value, Value) { return f.log(b.fadd(x, f.sqrt(b.fsub(b.fmul(x, x), f.lit(kOne))))); });
-    case GLSLstd450Atanh:
+    case GLSLstd450Acosh:
       return each(
-          [&](Value x, Value, Value) { return b.fmul(f.lit(0.5f), f.log(b.fdiv(b.fadd(f.lit(kOne), x), b.fsub(f.lit(kOne), x)))); });
+          [&](Value x, Value, Value) { return f.log(b.fadd(x, f.sqrt(b.fsub(b.fmul(x, x), f.lit(kOne))))); });
+    case GLSLstd450Atanh:
+      return each([&](Value x, Value, Value) {
+        return b.fmul(f.lit(0.5f), f.log(b.fdiv(b.fadd(f.lit(kOne), x), b.fsub(f.lit(kOne), x))));
+      });
     case GLSLstd450Pow: return each([&](Value x, Value y, Value) { return f.pow(x, y); });
     case GLSLstd450Exp: return each([&](Value x, Value, Value) { return f.exp(x); });
     case GLSLstd450Log: return each([&](Value x, Value, Value) { return f.log(x); });
     case GLSLstd450FClamp:
-    case GLSLstd450NClamp: return each([&](Value x, Value low, Value high) { return b.fclamp(x, low, high); });
-    case GLSLstd450UClamp: return each([&](Value x, Value low, Value high) { return b.emit(Op::kUMin, b.emit(Op::kUMax, x, low), high); });
-    case GLSLstd450SClamp: return each([&](Value x, Value low, Value high) { return b.emit(Op::kIMin, b.emit(Op::kIMax, x, low), high); });
+    case GLSLstd450NClamp:
+      return each([&](Value x, Value low, Value high) { return b.fclamp(x, low, high); });
+    case GLSLstd450UClamp:
+      return each(
+          [&](Value x, Value low, Value high) { return b.emit(Op::kUMin, b.emit(Op::kUMax, x, low), high); });
+    case GLSLstd450SClamp:
+      return each(
+          [&](Value x, Value low, Value high) { return b.emit(Op::kIMin, b.emit(Op::kIMax, x, low), high); });
     case GLSLstd450FMix: {
       const auto all = [&](float v) {
         return std::all_of(in[0].begin(), in[0].end(), [&](Value x) { return x.is_literal(f.lit(v).bits); });
@@ -277,8 +313,10 @@ void Lowering::glsl450(const spirv::Instruction& i) {
       const bool one = all(1.0f), minus_one = all(-1.0f);
       return each([&](Value x, Value y, Value t) { return f.mix(x, y, t, one, minus_one); });
     }
-    case GLSLstd450Step: return each([&](Value edge, Value x, Value) { return f.zero_one(b.emit(Op::kFLe, edge, x)); });
-    case GLSLstd450SmoothStep: return each([&](Value low, Value high, Value x) { return f.smoothstep(low, high, x); });
+    case GLSLstd450Step:
+      return each([&](Value edge, Value x, Value) { return f.zero_one(b.emit(Op::kFLe, edge, x)); });
+    case GLSLstd450SmoothStep:
+      return each([&](Value low, Value high, Value x) { return f.smoothstep(low, high, x); });
     case GLSLstd450Fma: return each([&](Value x, Value y, Value z) { return b.fmad(x, y, z); });
     case GLSLstd450Ldexp: return each([&](Value x, Value e, Value) { return f.ldexp(x, e); });
     case GLSLstd450Modf:
@@ -287,7 +325,8 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     case GLSLstd450FrexpStruct: {
       Values first, second;
       for (const Value x : in[0]) {
-        const auto [one, two] = function == GLSLstd450Modf || function == GLSLstd450ModfStruct ? f.modf(x) : f.frexp(x);
+        const auto [one, two] =
+            function == GLSLstd450Modf || function == GLSLstd450ModfStruct ? f.modf(x) : f.frexp(x);
         first.push_back(one);
         second.push_back(two);
       }
@@ -314,18 +353,22 @@ void Lowering::glsl450(const spirv::Instruction& i) {
       const Value facing = f.less(dot(in[2], in[1]), f.lit(0.0f));
       return each([&](Value n, Value, Value) { return b.select(facing, n, b.fneg(n)); });
     }
-    case GLSLstd450Reflect: return define(i, difference(in[0], scaled(scaled(in[1], dot(in[0], in[1])), f.lit(2.0f))));
+    case GLSLstd450Reflect:
+      return define(i, difference(in[0], scaled(scaled(in[1], dot(in[0], in[1])), f.lit(2.0f))));
     case GLSLstd450Refract: {
       const Value n_dot_i = dot(in[1], in[0]), eta = in[2][0];
-      const Value k = b.fsub(f.lit(kOne), b.fmul(eta, b.fmul(eta, b.fsub(f.lit(kOne), b.fmul(n_dot_i, n_dot_i)))));
+      const Value k =
+          b.fsub(f.lit(kOne), b.fmul(eta, b.fmul(eta, b.fsub(f.lit(kOne), b.fmul(n_dot_i, n_dot_i)))));
       const Value along = b.fadd(b.fmul(eta, n_dot_i), f.sqrt(k));
       const Value total = f.less(k, f.lit(0.0f));
       return each([&](Value incident, Value normal, Value) {
         return b.select(total, f.lit(0.0f), b.fsub(b.fmul(eta, incident), b.fmul(along, normal)));
       });
     }
-    case GLSLstd450Determinant: return define(i, {determinant(in[0], in[0].size() == 4 ? 2 : in[0].size() == 9 ? 3 : 4)});
-    case GLSLstd450MatrixInverse: return define(i, inverse(in[0], in[0].size() == 4 ? 2 : in[0].size() == 9 ? 3 : 4));
+    case GLSLstd450Determinant:
+      return define(i, {determinant(in[0], in[0].size() == 4 ? 2 : in[0].size() == 9 ? 3 : 4)});
+    case GLSLstd450MatrixInverse:
+      return define(i, inverse(in[0], in[0].size() == 4 ? 2 : in[0].size() == 9 ? 3 : 4));
     case GLSLstd450PackUnorm4x8: return define(i, {f.pack_norm(in[0], 8, false)});
     case GLSLstd450PackSnorm4x8: return define(i, {f.pack_norm(in[0], 8, true)});
     case GLSLstd450PackUnorm2x16: return define(i, {f.pack_norm(in[0], 16, false)});
@@ -335,8 +378,10 @@ void Lowering::glsl450(const spirv::Instruction& i) {
     case GLSLstd450UnpackUnorm2x16: return define(i, f.unpack_norm(in[0][0], 16, false));
     case GLSLstd450UnpackSnorm2x16: return define(i, f.unpack_norm(in[0][0], 16, true));
     case GLSLstd450PackHalf2x16:
-      return define(i, {b.emit(Op::kOr, b.emit(Op::kShl, f.to_half(in[0][1]), literal(16u)), f.to_half(in[0][0]))});
-    case GLSLstd450UnpackHalf2x16: return define(i, {f.from_half(in[0][0]), f.from_half(b.emit(Op::kShrU, in[0][0], literal(16u)))});
+      return define(
+          i, {b.emit(Op::kOr, b.emit(Op::kShl, f.to_half(in[0][1]), literal(16u)), f.to_half(in[0][0]))});
+    case GLSLstd450UnpackHalf2x16:
+      return define(i, {f.from_half(in[0][0]), f.from_half(b.emit(Op::kShrU, in[0][0], literal(16u)))});
     case GLSLstd450FindILsb: return each([&](Value x, Value, Value) { return f.find_lowest(x); });
     case GLSLstd450FindUMsb: return each([&](Value x, Value, Value) { return f.find_highest(x); });
     case GLSLstd450FindSMsb: return each([&](Value x, Value, Value) { return f.find_highest_signed(x); });

@@ -1,6 +1,8 @@
-/// The compiler's scalar code: the ISA's operations and structured control flow over any number of virtual registers and named constant words.
+/// The compiler's scalar code: the ISA's operations and structured control flow over any number of virtual
+/// registers and named constant words.
 ///
-/// A virtual register is defined once (SSA), except those marked `variable`: the targets of phi copies, local arrays, read-back outputs.
+/// A virtual register is defined once (SSA), except those marked `variable`: the targets of phi copies, local
+/// arrays, read-back outputs.
 #pragma once
 
 #include "models/shader/isa.h"
@@ -42,11 +44,13 @@ struct ConstantBlock {
 };
 
 inline constexpr std::uint32_t kNoRegister = 0xffffffffu;
-inline constexpr std::uint32_t kMaxLocations = 64;           ///< varyings
-inline constexpr std::uint32_t kMaxAttributeLocations = 32;  ///< vertex inputs: raw slots stay below the system values
+inline constexpr std::uint32_t kMaxLocations = 64;  ///< varyings
+/// vertex inputs: raw slots stay below the system values
+inline constexpr std::uint32_t kMaxAttributeLocations = 32;
 
-/// One shader between lowering and emission. Slots are raw: kInput and kInterp name 4 * location + component (or a system value), kOutput names
-/// the ISA's output slot, with varyings at kFirstVaryingOutput + 4 * location + component. Linking packs them.
+/// One shader between lowering and emission. Slots are raw: kInput and kInterp name 4 * location + component
+/// (or a system value), kOutput names the ISA's output slot, with varyings at kFirstVaryingOutput + 4 *
+/// location + component. Linking packs them.
 struct ScalarShader {
   models::Stage stage = models::Stage::kVertex;
   std::string name;
@@ -55,7 +59,8 @@ struct ScalarShader {
   std::vector<ConstantBlock> blocks;
   std::vector<models::TextureBinding> textures;
   std::map<std::uint16_t, models::Interpolation> varyings;  ///< fragment: interpolation by raw slot
-  std::uint32_t integer_inputs = 0;                         ///< vertex: bit i: input location i is of integers
+  /// vertex: bit i: input location i is of integers
+  std::uint32_t integer_inputs = 0;
   bool early_fragment_tests = false;
 };
 

@@ -16,12 +16,14 @@ ScalarShader lower_shader(const spirv::Module& module, models::Stage stage) {
     try {
       return Lowering(module, stage, attempts).run();
     } catch (const StartAgain& again) {
-      QUADRILLE_CHECK((attempts.*again.set).insert(again.header).second, "block %{} was lowered that way already", again.header);
+      QUADRILLE_CHECK((attempts.*again.set).insert(again.header).second,
+                      "block %{} was lowered that way already", again.header);
     }
   }
 }
 
-Lowering::Lowering(const spirv::Module& module, models::Stage stage, const Attempts& attempts) : module_(module), attempts_(attempts) {
+Lowering::Lowering(const spirv::Module& module, models::Stage stage, const Attempts& attempts)
+    : module_(module), attempts_(attempts) {
   shader_.stage = stage;
   shader_.name = module.shader;
   shader_.early_fragment_tests = module.early_fragment_tests;
@@ -90,7 +92,8 @@ void Lowering::instruction(const spirv::Instruction& i) {
       return;
     default: break;
   }
-  if (!arithmetic(i) && !comparison(i) && !composite(i) && !matrix(i) && !image(i)) throw unsupported(i, spirv::name_of(i));
+  if (!arithmetic(i) && !comparison(i) && !composite(i) && !matrix(i) && !image(i))
+    throw unsupported(i, spirv::name_of(i));
 }
 
 }  // namespace quadrille::pipeline

@@ -1,4 +1,5 @@
-/// SPIR-V to scalar code: every vector and matrix becomes its scalars, phis become copies, and the control-flow graph becomes nested IF and LOOP.
+/// SPIR-V to scalar code: every vector and matrix becomes its scalars, phis become copies, and the
+/// control-flow graph becomes nested IF and LOOP.
 #pragma once
 
 #include "pipeline/compiler/ir.h"

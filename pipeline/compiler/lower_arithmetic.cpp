@@ -87,13 +87,15 @@ Value Lowering::dot(const Values& a, const Values& b) {
 }
 
 bool Lowering::arithmetic(const spirv::Instruction& i) {
-  const auto found = std::find_if(kMapped.begin(), kMapped.end(), [&](const Mapped& row) { return row.from == i.op; });
+  const auto found =
+      std::find_if(kMapped.begin(), kMapped.end(), [&](const Mapped& row) { return row.from == i.op; });
   if (found != kMapped.end()) return elementwise(i, found->to, found->swapped, found->inverted), true;
   const auto each = [&](auto&& function) {
     const Values a = value(i.operands[0]);
     const Values b = i.operands.size() > 1 ? value(i.operands[1]) : Values{};
     Values result;
-    for (std::size_t k = 0; k < a.size(); ++k) result.push_back(function(a[k], b.empty() ? Value{} : b[std::min(k, b.size() - 1)]));
+    for (std::size_t k = 0; k < a.size(); ++k)
+      result.push_back(function(a[k], b.empty() ? Value{} : b[std::min(k, b.size() - 1)]));
     define(i, std::move(result));
     return true;
   };
@@ -102,9 +104,13 @@ bool Lowering::arithmetic(const spirv::Instruction& i) {
     case spv::OpFSub: return each([&](Value a, Value b) { return build_.fsub(a, b); });
     case spv::OpSNegate: return each([&](Value a, Value) { return build_.emit(Op::kISub, literal(0u), a); });
     case spv::OpFRem:
-      return each([&](Value a, Value b) { return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFTrunc, build_.fdiv(a, b)))); });
+      return each([&](Value a, Value b) {
+        return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFTrunc, build_.fdiv(a, b))));
+      });
     case spv::OpFMod:
-      return each([&](Value a, Value b) { return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFFloor, build_.fdiv(a, b)))); });
+      return each([&](Value a, Value b) {
+        return build_.fsub(a, build_.fmul(b, build_.emit(Op::kFFloor, build_.fdiv(a, b))));
+      });
     case spv::OpVectorTimesScalar: return each([&](Value a, Value b) { return build_.fmul(a, b); });
     case spv::OpDot: return define(i, {dot(value(i.operands[0]), value(i.operands[1]))}), true;
     default: return false;
@@ -123,24 +129,31 @@ bool Lowering::comparison(const spirv::Instruction& i) {
   switch (static_cast<std::uint32_t>(i.op)) {
     case spv::OpLogicalNot: return each([&](Value a, Value) { return build_.invert(a); });
     case spv::OpFOrdNotEqual:
-      return each([&](Value a, Value b) { return build_.emit(Op::kOr, build_.emit(Op::kFLt, a, b), build_.emit(Op::kFLt, b, a)); });
+      return each([&](Value a, Value b) {
+        return build_.emit(Op::kOr, build_.emit(Op::kFLt, a, b), build_.emit(Op::kFLt, b, a));
+      });
     case spv::OpFUnordEqual:
       return each([&](Value a, Value b) {
-        return build_.emit(Op::kNot, build_.emit(Op::kOr, build_.emit(Op::kFLt, a, b), build_.emit(Op::kFLt, b, a)));
+        return build_.emit(Op::kNot,
+                           build_.emit(Op::kOr, build_.emit(Op::kFLt, a, b), build_.emit(Op::kFLt, b, a)));
       });
     case spv::OpIsNan: return each([&](Value a, Value) { return build_.emit(Op::kFNe, a, a); });
-    case spv::OpIsInf: return each([&](Value a, Value) { return build_.emit(Op::kFEq, build_.fabs(a), literal(0x7f800000u)); });
+    case spv::OpIsInf:
+      return each(
+          [&](Value a, Value) { return build_.emit(Op::kFEq, build_.fabs(a), literal(0x7f800000u)); });
     case spv::OpAny:
     case spv::OpAll: {
       const Values a = value(i.operands[0]);
       Value all = a[0];
-      for (std::size_t k = 1; k < a.size(); ++k) all = build_.emit(i.op == spv::OpAny ? Op::kOr : Op::kAnd, all, a[k]);
+      for (std::size_t k = 1; k < a.size(); ++k)
+        all = build_.emit(i.op == spv::OpAny ? Op::kOr : Op::kAnd, all, a[k]);
       return define(i, {all}), true;
     }
     case spv::OpSelect: {
       const Values condition = value(i.operands[0]), a = value(i.operands[1]), b = value(i.operands[2]);
       Values result;
-      for (std::size_t k = 0; k < a.size(); ++k) result.push_back(build_.select(condition[std::min(k, condition.size() - 1)], a[k], b[k]));
+      for (std::size_t k = 0; k < a.size(); ++k)
+        result.push_back(build_.select(condition[std::min(k, condition.size() - 1)], a[k], b[k]));
       return define(i, std::move(result)), true;
     }
     default: return false;
@@ -148,12 +161,14 @@ bool Lowering::comparison(const spirv::Instruction& i) {
 }
 
 /// Offset in scalars of a member named by constant indices; `found` becomes its type.
-std::uint32_t Lowering::composite_offset(Id type, std::span<const std::uint32_t> indices, Id& found, const spirv::Instruction& i) const {
+std::uint32_t Lowering::composite_offset(Id type, std::span<const std::uint32_t> indices, Id& found,
+                                         const spirv::Instruction& i) const {
   std::uint32_t offset = 0;
   for (const std::uint32_t index : indices) {
     const spirv::Type& t = module_.type(type);
     const bool is_struct = t.kind == spirv::Type::Kind::kStruct;
-    if (index >= (is_struct ? t.members.size() : t.count)) throw unsupported(i, "an index beyond the composite");
+    if (index >= (is_struct ? t.members.size() : t.count))
+      throw unsupported(i, "an index beyond the composite");
     if (is_struct)
       for (std::uint32_t k = 0; k < index; ++k) offset += module_.type(t.members[k]).scalars;
     else offset += index * module_.type(t.element).scalars;
@@ -164,14 +179,18 @@ std::uint32_t Lowering::composite_offset(Id type, std::span<const std::uint32_t>
 }
 
 bool Lowering::composite(const spirv::Instruction& i) {
-  const auto at = [](const Values& values, std::size_t k) { return k < values.size() ? values[k] : literal(0u); };
+  const auto at = [](const Values& values, std::size_t k) {
+    return k < values.size() ? values[k] : literal(0u);
+  };
   Id found = 0;
   Values result;
   switch (static_cast<std::uint32_t>(i.op)) {
     case spv::OpCopyObject:
     case spv::OpCopyLogical:
-      if (const auto p = pointers_.find(i.operands[0]); p != pointers_.end()) return pointers_[i.result] = Pointer(p->second), true;
-      if (const auto t = textures_.find(i.operands[0]); t != textures_.end()) return textures_[i.result] = std::uint16_t{t->second}, true;
+      if (const auto p = pointers_.find(i.operands[0]); p != pointers_.end())
+        return pointers_[i.result] = Pointer(p->second), true;
+      if (const auto t = textures_.find(i.operands[0]); t != textures_.end())
+        return textures_[i.result] = std::uint16_t{t->second}, true;
       [[fallthrough]];
     case spv::OpBitcast: result = value(i.operands[0]); break;
     case spv::OpCompositeConstruct:
@@ -182,7 +201,8 @@ bool Lowering::composite(const spirv::Instruction& i) {
       break;
     case spv::OpCompositeExtract: {
       const Values& whole = value(i.operands[0]);
-      const std::uint32_t offset = composite_offset(value_type(i.operands[0]), i.operands.subspan(1), found, i);
+      const std::uint32_t offset =
+          composite_offset(value_type(i.operands[0]), i.operands.subspan(1), found, i);
       for (std::uint32_t k = 0; k < module_.type(found).scalars; ++k) result.push_back(at(whole, offset + k));
       break;
     }
@@ -190,19 +210,22 @@ bool Lowering::composite(const spirv::Instruction& i) {
       const Values part = value(i.operands[0]);
       result = value(i.operands[1]);
       const std::uint32_t offset = composite_offset(i.type, i.operands.subspan(2), found, i);
-      for (std::size_t k = 0; k < part.size() && offset + k < result.size(); ++k) result[offset + k] = part[k];
+      for (std::size_t k = 0; k < part.size() && offset + k < result.size(); ++k)
+        result[offset + k] = part[k];
       break;
     }
     case spv::OpVectorShuffle: {
       const Values a = value(i.operands[0]), b = value(i.operands[1]);
-      for (const std::uint32_t k : i.operands.subspan(2)) result.push_back(k < a.size() ? a[k] : at(b, k - a.size()));
+      for (const std::uint32_t k : i.operands.subspan(2))
+        result.push_back(k < a.size() ? a[k] : at(b, k - a.size()));
       break;
     }
     case spv::OpVectorExtractDynamic: {
       const Values vector = value(i.operands[0]);
       const Value index = scalar(i.operands[1]);
       Value chosen = vector[0];
-      for (std::uint32_t k = 1; k < vector.size(); ++k) chosen = build_.select(build_.emit(Op::kIEq, index, literal(k)), vector[k], chosen);
+      for (std::uint32_t k = 1; k < vector.size(); ++k)
+        chosen = build_.select(build_.emit(Op::kIEq, index, literal(k)), vector[k], chosen);
       result = {chosen};
       break;
     }

@@ -1,7 +1,8 @@
 /// Control flow: the structured graph of SPIR-V becomes nested IF and LOOP.
 ///
-/// A region is lowered block by block until an edge leads to where it stops. Phis: each edge into a block copies the values of the block's phis into one
-/// variable a scalar, the block begins by reading them; copies that turn out to be needless are removed by the register allocator.
+/// A region is lowered block by block until an edge leads to where it stops. Phis: each edge into a block
+/// copies the values of the block's phis into one variable a scalar, the block begins by reading them; copies
+/// that turn out to be needless are removed by the register allocator.
 #include "pipeline/compiler/lowering.h"
 
 #include <algorithm>
@@ -20,7 +21,8 @@ bool is_phi(const spirv::Instruction& i) { return i.op == spv::OpPhi; }
 }  // namespace
 
 void Lowering::region(Id first, const Stop& stop) {
-  if (++nesting_ > kMaxNesting) throw user_error("{}: control flow is nested deeper than {}", module_.shader, kMaxNesting);
+  if (++nesting_ > kMaxNesting)
+    throw user_error("{}: control flow is nested deeper than {}", module_.shader, kMaxNesting);
   for (Id current = first; current != 0;) current = lower_block(current, stop);
   --nesting_;
 }
@@ -32,7 +34,8 @@ Id Lowering::lower_block(Id label, const Stop& stop) {
   }
   const spirv::Block& block = module_.block(label);
   const LoopFrame* loop = real_loop();
-  if (block.merge_kind == spv::OpLoopMerge && (loop == nullptr || loop->header != label)) return lower_loop(block, stop);
+  if (block.merge_kind == spv::OpLoopMerge && (loop == nullptr || loop->header != label))
+    return lower_loop(block, stop);
   begin_block(block);
   body(block);
   return terminator(block, stop);
@@ -78,7 +81,8 @@ void Lowering::copy_phis(Id from, Id to) {
 }
 
 Lowering::LoopFrame* Lowering::real_loop() {
-  const auto found = std::find_if(loops_.rbegin(), loops_.rend(), [](const LoopFrame& frame) { return !frame.is_switch; });
+  const auto found =
+      std::find_if(loops_.rbegin(), loops_.rend(), [](const LoopFrame& frame) { return !frame.is_switch; });
   return found == loops_.rend() ? nullptr : &*found;
 }
 const Lowering::LoopFrame* Lowering::real_loop() const { return const_cast<Lowering*>(this)->real_loop(); }
@@ -87,9 +91,11 @@ const Lowering::LoopFrame* Lowering::real_loop() const { return const_cast<Lower
 bool Lowering::is_exit(Id to, const Stop& stop) const {
   if (to == stop.merge) return false;
   const LoopFrame* loop = real_loop();
-  if (loop != nullptr && (to == loop->merge || to == loop->continue_target || to == loop->header)) return true;
+  if (loop != nullptr && (to == loop->merge || to == loop->continue_target || to == loop->header))
+    return true;
   if (open_switches_.contains(to)) return true;
-  return std::any_of(loops_.begin(), loops_.end(), [&](const LoopFrame& frame) { return frame.is_switch && frame.merge == to; });
+  return std::any_of(loops_.begin(), loops_.end(),
+                     [&](const LoopFrame& frame) { return frame.is_switch && frame.merge == to; });
 }
 
 /// Emits what an edge does; returns the block to go on with, or 0 where the edge leaves the region.
@@ -112,9 +118,11 @@ Id Lowering::follow(Id to, const Stop& stop) {
   }
   if (const auto found = open_switches_.find(to); found != open_switches_.end())
     throw StartAgain{&Attempts::looped_switches, found->second};
-  if (const LoopFrame* loop = real_loop(); loop != nullptr && (to == loop->merge || to == loop->continue_target || to == loop->header)) {
+  if (const LoopFrame* loop = real_loop();
+      loop != nullptr && (to == loop->merge || to == loop->continue_target || to == loop->header)) {
     if (loop->unrolled) {
-      if (to != loop->merge || nesting_ != loop->nesting + 1) throw StartAgain{&Attempts::rolled_loops, loop->header};
+      if (to != loop->merge || nesting_ != loop->nesting + 1)
+        throw StartAgain{&Attempts::rolled_loops, loop->header};
       real_loop()->finished = true;
       return 0;
     }
@@ -142,7 +150,8 @@ void Lowering::leave(LoopFrame::Leave how) {
     }
     build_.assign(flag, literal(kTrue));
   }
-  build_.effect(how == LoopFrame::kContinue && !loops_.back().is_switch ? Op::kContinueIf : Op::kBreakIf, literal(kTrue));
+  build_.effect(how == LoopFrame::kContinue && !loops_.back().is_switch ? Op::kContinueIf : Op::kBreakIf,
+                literal(kTrue));
 }
 
 void Lowering::push_loop(LoopFrame frame) {
@@ -165,16 +174,19 @@ void Lowering::pop_loop() {
   }
 }
 
-/// Whether the lowering tries to write the loop out. Its phis must have one way in, whose values are then simply those of the first iteration.
+/// Whether the lowering tries to write the loop out. Its phis must have one way in, whose values are then
+/// simply those of the first iteration.
 bool Lowering::may_unroll(Id header) const {
   const spirv::Block& block = module_.block(header);
-  if (block.merge_kind != spv::OpLoopMerge || (block.loop_control & spv::LoopControlDontUnrollMask) != 0) return false;
+  if (block.merge_kind != spv::OpLoopMerge || (block.loop_control & spv::LoopControlDontUnrollMask) != 0)
+    return false;
   if (attempts_.rolled_loops.contains(header)) return false;
   return std::all_of(block.body.begin(), block.body.end(),
                      [](const spirv::Instruction& i) { return !is_phi(i) || i.operands.size() == 4; });
 }
 
-/// Iterations one after the other, as long as the way out is decided by literals. Starts again without unrolling where that fails or gets long.
+/// Iterations one after the other, as long as the way out is decided by literals. Starts again without
+/// unrolling where that fails or gets long.
 Id Lowering::lower_unrolled(const spirv::Block& header, const Stop& stop) {
   const bool asked = (header.loop_control & spv::LoopControlUnrollMask) != 0;
   const int most_iterations = asked ? 64 : 8;
@@ -187,9 +199,11 @@ Id Lowering::lower_unrolled(const spirv::Block& header, const Stop& stop) {
   frame.continue_target = header.continue_target;
   loops_.push_back(frame);
   for (int iteration = 0; !loops_.back().finished; ++iteration) {
-    if (iteration > most_iterations || shader_.code.size() > most_code) throw StartAgain{&Attempts::rolled_loops, header.label};
+    if (iteration > most_iterations || shader_.code.size() > most_code)
+      throw StartAgain{&Attempts::rolled_loops, header.label};
     region(header.label, {header.continue_target, nullptr});
-    if (!loops_.back().finished && header.continue_target != header.label) region(header.continue_target, {header.label, nullptr});
+    if (!loops_.back().finished && header.continue_target != header.label)
+      region(header.continue_target, {header.label, nullptr});
   }
   loops_.pop_back();
   if (work_ - first_block > widest_unrolled_.first) widest_unrolled_ = {work_ - first_block, header.label};
@@ -244,7 +258,8 @@ void Lowering::kill() {
   if (!loops_.empty()) leave(LoopFrame::kKill);
 }
 
-/// At the end of an iteration, where a discard has returned to a loop that only a lane's own values would end.
+/// At the end of an iteration, where a discard has returned to a loop that only a lane's own values would
+/// end.
 void Lowering::leave_if_killed() {
   if (!module_.kills_return) return;
   build_.effect(Op::kIf, build_.read(killed_));
@@ -261,7 +276,8 @@ bool Lowering::breaks_directly(Id to, Id& from) const {
   const auto found = module_.blocks.find(to);
   if (found == module_.blocks.end()) return false;
   const spirv::Block& block = found->second;
-  if (!block.body.empty() || block.merge_kind != spv::OpNop || block.terminator.op != spv::OpBranch) return false;
+  if (!block.body.empty() || block.merge_kind != spv::OpNop || block.terminator.op != spv::OpBranch)
+    return false;
   if (block.terminator.operands[0] != loops_.back().merge) return false;
   from = to;
   return true;
@@ -271,7 +287,8 @@ bool Lowering::breaks_directly(Id to, Id& from) const {
 void Lowering::conditional_exit(Value condition, Id from, Id to, const Stop& stop) {
   Id source = from;
   if (breaks_directly(to, source)) {
-    if (loops_.back().unrolled) throw StartAgain{&Attempts::rolled_loops, loops_.back().header};  // there is no LOOP to break
+    // there is no LOOP to break
+    if (loops_.back().unrolled) throw StartAgain{&Attempts::rolled_loops, loops_.back().header};
     copy_phis(source, loops_.back().merge);
     build_.effect(Op::kBreakIf, condition);
     return;
@@ -295,10 +312,12 @@ Id Lowering::conditional(const spirv::Block& block, const Stop& stop) {
     const Id taken = condition.bits != 0 ? yes : no;
     if (block.merge_kind != spv::OpSelectionMerge) return edge(block.label, taken, stop);
     side(block.label, taken, {block.merge, nullptr});
-    if (const LoopFrame* loop = real_loop(); loop != nullptr && loop->finished) return 0;  // the side left the loop that is written out
+    // the side left the loop that is written out
+    if (const LoopFrame* loop = real_loop(); loop != nullptr && loop->finished) return 0;
     return follow(block.merge, stop);
   }
-  if (const LoopFrame* loop = real_loop(); loop != nullptr && loop->unrolled && (is_exit(yes, stop) || is_exit(no, stop)))
+  if (const LoopFrame* loop = real_loop();
+      loop != nullptr && loop->unrolled && (is_exit(yes, stop) || is_exit(no, stop)))
     throw StartAgain{&Attempts::rolled_loops, loop->header};
   if (block.merge_kind == spv::OpSelectionMerge) {
     if (Id from = block.label; yes != block.merge && breaks_directly(yes, from)) {
@@ -316,7 +335,8 @@ Id Lowering::conditional(const spirv::Block& block, const Stop& stop) {
     conditional_exit(build_.invert(condition), block.label, no, stop);
     return edge(block.label, yes, stop);
   }
-  if (yes != stop.merge && no != stop.merge) throw unsupported(block.terminator, "a branch without a merge block");
+  if (yes != stop.merge && no != stop.merge)
+    throw unsupported(block.terminator, "a branch without a merge block");
   build_.effect(Op::kIf, condition);
   build_.open_scope();
   side(block.label, yes, stop);

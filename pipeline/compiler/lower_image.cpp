@@ -17,8 +17,11 @@ void Lowering::declare_texture(const spirv::Variable& variable) {
       module_.type(module_.type(type.element).element).kind != Kind::kFloat)
     throw user_error(
         "{}",
-        module_.at_use(variable.id, fmt::format("resource {} is not a combined 2D float image sampler (sampler2D), the only kind supported",
-                                                module_.name(variable.id))));
+        module_.at_use(
+            variable.id,
+            fmt::format(
+                "resource {} is not a combined 2D float image sampler (sampler2D), the only kind supported",
+                module_.name(variable.id))));
   const spirv::Decorations& d = module_.decorations(variable.id);
   const models::TextureBinding binding{static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.set)),
                                        static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.binding))};
@@ -30,7 +33,8 @@ void Lowering::declare_texture(const spirv::Variable& variable) {
 bool Lowering::image(const spirv::Instruction& i) {
   switch (static_cast<std::uint32_t>(i.op)) {
     case spv::OpImage:
-      if (const auto found = textures_.find(i.operands[0]); found != textures_.end()) textures_[i.result] = std::uint16_t{found->second};
+      if (const auto found = textures_.find(i.operands[0]); found != textures_.end())
+        textures_[i.result] = std::uint16_t{found->second};
       return true;
     case spv::OpImageSampleImplicitLod:
     case spv::OpImageSampleExplicitLod: sample(i, false); return true;
@@ -64,7 +68,8 @@ void Lowering::sample(const spirv::Instruction& i, bool projective) {
   if (is_implicit && shader_.stage == models::Stage::kVertex)
     throw unsupported(i, "implicit level of detail in a vertex shader (use textureLod)");
   const Op op = lod ? Op::kTexLod : bias ? Op::kTexBias : Op::kTexImplicit;
-  const Value first = build_.emit_wide(op, at[0], at[1], bias || lod ? scalar(i.operands[3]) : Value{}, texture->second);
+  const Value first =
+      build_.emit_wide(op, at[0], at[1], bias || lod ? scalar(i.operands[3]) : Value{}, texture->second);
   Values result;
   for (std::uint32_t k = 0; k < 4; ++k) result.push_back({Value::Kind::kRegister, 0, first.bits + k});
   define(i, std::move(result));

@@ -1,4 +1,5 @@
-/// Inputs and outputs: which slot each scalar of an interface variable is. [VK1.3 #interfaces-iointerfaces, #interfaces-builtin-variables]
+/// Inputs and outputs: which slot each scalar of an interface variable is. [VK1.3 #interfaces-iointerfaces,
+/// #interfaces-builtin-variables]
 #include "pipeline/compiler/lowering.h"
 
 #include <algorithm>
@@ -19,22 +20,27 @@ void Lowering::declare_interface(const spirv::Variable& variable) {
   const bool output = variable.storage == spv::StorageClassOutput;
   const spirv::Decorations& d = module_.decorations(variable.id);
   if (module_.type(variable.type).scalars > kMaxInterfaceScalars)
-    throw user_error("{}: interface variable {} has more than {} scalars", module_.shader, module_.name(variable.id), kMaxInterfaceScalars);
+    throw user_error("{}: interface variable {} has more than {} scalars", module_.shader,
+                     module_.name(variable.id), kMaxInterfaceScalars);
   auto location = static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.location));
   add_slots(slots_[variable.id], variable.type, d, location, output);
-  if (!output || (!read_outputs_.contains(variable.id) && variable.initializer == 0 && module_.type(variable.type).kind != Kind::kArray))
+  if (!output || (!read_outputs_.contains(variable.id) && variable.initializer == 0 &&
+                  module_.type(variable.type).kind != Kind::kArray))
     return;
   Values& shadow = memory_[variable.id];
-  for (std::uint32_t k = 0; k < module_.type(variable.type).scalars; ++k) shadow.push_back(build_.new_variable());
+  for (std::uint32_t k = 0; k < module_.type(variable.type).scalars; ++k)
+    shadow.push_back(build_.new_variable());
   if (variable.initializer == 0) return;
   const Values initial = value(variable.initializer);
   for (std::uint32_t k = 0; k < initial.size(); ++k) {
     build_.assign(shadow[k], initial[k]);
-    if (slots_[variable.id][k].kind == Slot::Kind::kUsed) build_.effect(Op::kOutput, initial[k], slots_[variable.id][k].imm);
+    if (slots_[variable.id][k].kind == Slot::Kind::kUsed)
+      build_.effect(Op::kOutput, initial[k], slots_[variable.id][k].imm);
   }
 }
 
-void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Decorations& inherited, std::uint32_t& location, bool output) {
+void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Decorations& inherited,
+                         std::uint32_t& location, bool output) {
   const spirv::Type& type = module_.type(type_id);
   if (type.kind == Kind::kStruct) {
     for (std::uint32_t k = 0; k < type.members.size(); ++k) {
@@ -47,7 +53,8 @@ void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Deco
     return;
   }
   if (inherited.built_in < 0 && (type.kind == Kind::kArray || type.kind == Kind::kMatrix)) {
-    for (std::uint32_t k = 0; k < type.count; ++k) add_slots(slots, type.element, inherited, location, output);
+    for (std::uint32_t k = 0; k < type.count; ++k)
+      add_slots(slots, type.element, inherited, location, output);
     return;
   }
   const auto first = static_cast<std::uint32_t>(std::max<std::int64_t>(0, inherited.component));
@@ -55,8 +62,8 @@ void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Deco
     slots.push_back(inherited.built_in >= 0 ? built_in_slot(inherited.built_in, k, output)
                                             : location_slot(location, first + k, inherited, output));
   const Id scalar_type = type.kind == Kind::kVector ? type.element : type_id;
-  const bool integers =
-      shader_.stage == Stage::kVertex && !output && inherited.built_in < 0 && module_.type(scalar_type).kind != Kind::kFloat;
+  const bool integers = shader_.stage == Stage::kVertex && !output && inherited.built_in < 0 &&
+                        module_.type(scalar_type).kind != Kind::kFloat;
   if (integers && location < kMaxAttributeLocations) shader_.integer_inputs |= 1u << location;
   ++location;
 }
@@ -86,7 +93,8 @@ Lowering::Slot Lowering::built_in_slot(std::int64_t built_in, std::uint32_t comp
   }
 }
 
-Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t component, const spirv::Decorations& d, bool output) const {
+Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t component,
+                                       const spirv::Decorations& d, bool output) const {
   Slot slot;
   if (component > 3) return slot;
   const bool vertex = shader_.stage == Stage::kVertex;
@@ -94,7 +102,8 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
   const std::uint32_t limit = color ? 1 : vertex && !output ? kMaxAttributeLocations : kMaxLocations;
   if (location >= limit || (color && d.index > 0)) return slot;
   slot.kind = Slot::Kind::kUsed;
-  slot.imm = static_cast<std::uint16_t>(4 * location + component + (vertex && output ? models::kFirstVaryingOutput : 0u));
+  slot.imm = static_cast<std::uint16_t>(4 * location + component +
+                                        (vertex && output ? models::kFirstVaryingOutput : 0u));
   slot.interpolation = d.flat             ? models::Interpolation::kFlat
                        : d.no_perspective ? models::Interpolation::kLinear
                                           : models::Interpolation::kPerspective;
@@ -104,7 +113,8 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
 Value Lowering::load_input(Id variable, std::uint32_t place, const spirv::Instruction& i) {
   const Slot& slot = slots_[variable].at(place);
   if (slot.kind != Slot::Kind::kUsed)
-    throw unsupported(i, fmt::format("input {} (a built-in, or a location beyond the limit)", module_.name(variable)));
+    throw unsupported(
+        i, fmt::format("input {} (a built-in, or a location beyond the limit)", module_.name(variable)));
   if (shader_.stage == Stage::kVertex || slot.system) return build_.emit(Op::kInput, {}, {}, {}, slot.imm);
   shader_.varyings[slot.imm] = slot.interpolation;
   return build_.emit(Op::kInterp, {}, {}, {}, slot.imm);
@@ -115,7 +125,9 @@ void Lowering::store_output(const Pointer& p, std::uint32_t place, Value v, cons
   if (slot.kind == Slot::Kind::kIgnored) return;
   if (slot.kind == Slot::Kind::kRefused)
     throw unsupported(
-        i, fmt::format("output {} (only colour location 0, gl_FragDepth, gl_Position and varyings are written)", module_.name(p.variable)));
+        i,
+        fmt::format("output {} (only colour location 0, gl_FragDepth, gl_Position and varyings are written)",
+                    module_.name(p.variable)));
   build_.effect(Op::kOutput, v, slot.imm);
 }
 

@@ -1,4 +1,5 @@
-/// Matrices, stored by column. The order of the sums is the one that Mesa's SPIR-V reader uses, so that results agree bit by bit (docs/shader_compiler.md).
+/// Matrices, stored by column. The order of the sums is the one that Mesa's SPIR-V reader uses, so that
+/// results agree bit by bit (docs/shader_compiler.md).
 #include "pipeline/compiler/lowering.h"
 
 #include <algorithm>
@@ -10,7 +11,9 @@ namespace {
 struct Matrix {
   std::uint32_t rows = 0, columns = 0;
   Values elements;
-  [[nodiscard]] Value at(std::uint32_t row, std::uint32_t column) const { return elements.at(column * rows + row); }
+  [[nodiscard]] Value at(std::uint32_t row, std::uint32_t column) const {
+    return elements.at(column * rows + row);
+  }
 };
 
 Matrix transpose(const Matrix& m) {
@@ -21,9 +24,11 @@ Matrix transpose(const Matrix& m) {
 }
 
 /// Element (row, column) as a sum that starts with the last column and adds the others down to the first.
-Value last_column_first(ScalarBuilder& build, const Matrix& a, const Matrix& b, std::uint32_t row, std::uint32_t column) {
+Value last_column_first(ScalarBuilder& build, const Matrix& a, const Matrix& b, std::uint32_t row,
+                        std::uint32_t column) {
   Value sum = build.fmul(a.at(row, a.columns - 1), b.at(b.rows - 1, column));
-  for (std::uint32_t k = a.columns - 1; k-- > 0;) sum = build.fadd(build.fmul(a.at(row, k), b.at(k, column)), sum);
+  for (std::uint32_t k = a.columns - 1; k-- > 0;)
+    sum = build.fadd(build.fmul(a.at(row, k), b.at(k, column)), sum);
   return sum;
 }
 
@@ -33,7 +38,8 @@ bool Lowering::matrix(const spirv::Instruction& i) {
   const auto as_matrix = [&](Id id) {
     const spirv::Type& type = type_of(id);
     const auto size = static_cast<std::uint32_t>(value(id).size());
-    return type.kind == spirv::Type::Kind::kMatrix ? Matrix{size / type.count, type.count, value(id)} : Matrix{size, 1, value(id)};
+    return type.kind == spirv::Type::Kind::kMatrix ? Matrix{size / type.count, type.count, value(id)}
+                                                   : Matrix{size, 1, value(id)};
   };
   switch (static_cast<std::uint32_t>(i.op)) {
     case spv::OpMatrixTimesScalar: {
@@ -61,14 +67,16 @@ bool Lowering::matrix(const spirv::Instruction& i) {
   }
 }
 
-/// A matrix that came as rows is multiplied by dot products of its rows; otherwise columns are scaled and added. Vector times matrix is the transpose
-/// times the vector. Two matrices that came as rows are multiplied as the transpose of the product of their transposes.
+/// A matrix that came as rows is multiplied by dot products of its rows; otherwise columns are scaled and
+/// added. Vector times matrix is the transpose times the vector. Two matrices that came as rows are
+/// multiplied as the transpose of the product of their transposes.
 void Lowering::multiply(const spirv::Instruction& i) {
   const Id left = i.operands[0], right = i.operands[1];
   const auto load = [&](Id id) {
     const spirv::Type& type = type_of(id);
     const auto size = static_cast<std::uint32_t>(value(id).size());
-    return type.kind == spirv::Type::Kind::kMatrix ? Matrix{size / type.count, type.count, value(id)} : Matrix{size, 1, value(id)};
+    return type.kind == spirv::Type::Kind::kMatrix ? Matrix{size / type.count, type.count, value(id)}
+                                                   : Matrix{size, 1, value(id)};
   };
   Matrix a = load(left), b = load(right);
   bool a_rows = transposed_.contains(left), b_rows = transposed_.contains(right);
@@ -106,7 +114,8 @@ void Lowering::multiply(const spirv::Instruction& i) {
   define(i, std::move(product.elements));
 }
 
-/// Determinant of a square matrix by cofactors of the first column, with the groupings of the reference implementation.
+/// Determinant of a square matrix by cofactors of the first column, with the groupings of the reference
+/// implementation.
 Value Lowering::determinant(const Values& m, int size) {
   const auto at = [&](int column, int row) { return m[static_cast<std::size_t>(column * size + row)]; };
   if (size == 2) return build_.fsub(build_.fmul(at(0, 0), at(1, 1)), build_.fmul(at(0, 1), at(1, 0)));
@@ -114,7 +123,8 @@ Value Lowering::determinant(const Values& m, int size) {
     Value term[3];
     for (int r = 0; r < 3; ++r) {
       const int y = (r + 1) % 3, z = (r + 2) % 3;
-      term[r] = build_.fsub(build_.fmul(at(0, r), build_.fmul(at(1, y), at(2, z))), build_.fmul(at(0, r), build_.fmul(at(1, z), at(2, y))));
+      term[r] = build_.fsub(build_.fmul(at(0, r), build_.fmul(at(1, y), at(2, z))),
+                            build_.fmul(at(0, r), build_.fmul(at(1, z), at(2, y))));
     }
     return build_.fadd(term[0], build_.fadd(term[1], term[2]));
   }

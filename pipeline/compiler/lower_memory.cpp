@@ -1,5 +1,6 @@
-/// Loads and stores: uniform blocks read constant words, local variables are registers, and an index known only at run time becomes an indexed constant
-/// load (blocks and constant tables) or a chain of selections (registers).
+/// Loads and stores: uniform blocks read constant words, local variables are registers, and an index known
+/// only at run time becomes an indexed constant load (blocks and constant tables) or a chain of selections
+/// (registers).
 #include "pipeline/compiler/lowering.h"
 #include "pipeline/compiler/spirv_names.h"
 
@@ -15,11 +16,14 @@ constexpr std::uint32_t kMaxBlockWords = 65536;
 constexpr std::size_t kMaxSelectedPlaces = 64;  ///< elements that an index into registers may reach
 constexpr std::uint32_t kMaxLocalScalars = 1024;
 
-bool is_block(spv::StorageClass storage) { return storage == spv::StorageClassUniform || storage == spv::StorageClassPushConstant; }
+bool is_block(spv::StorageClass storage) {
+  return storage == spv::StorageClassUniform || storage == spv::StorageClassPushConstant;
+}
 
 }  // namespace
 
-/// Finds local variables that only ever hold one constant (tables that a shader indexes) and outputs that are read back.
+/// Finds local variables that only ever hold one constant (tables that a shader indexes) and outputs that are
+/// read back.
 void Lowering::find_tables() {
   std::unordered_map<Id, Id> root;
   for (const auto& [id, variable] : variables_) root[id] = id;
@@ -31,8 +35,8 @@ void Lowering::find_tables() {
     changed = false;
     for (const auto& [label, block] : ordered)
       for (const spirv::Instruction& i : block->body)
-        if ((i.op == spv::OpAccessChain || i.op == spv::OpInBoundsAccessChain || i.op == spv::OpCopyObject) && !i.operands.empty() &&
-            root.contains(i.operands[0]) && !root.contains(i.result)) {
+        if ((i.op == spv::OpAccessChain || i.op == spv::OpInBoundsAccessChain || i.op == spv::OpCopyObject) &&
+            !i.operands.empty() && root.contains(i.operands[0]) && !root.contains(i.result)) {
           root[i.result] = root[i.operands[0]];
           changed = true;
         }
@@ -43,14 +47,16 @@ void Lowering::find_tables() {
       const auto found = root.find(i.operands[0]);
       if (found == root.end()) continue;
       if (i.op == spv::OpLoad) {
-        if (variables_[found->second]->storage == spv::StorageClassOutput) read_outputs_.insert(found->second);
+        if (variables_[found->second]->storage == spv::StorageClassOutput)
+          read_outputs_.insert(found->second);
         continue;
       }
       ++stores[found->second];
       if (found->second == i.operands[0]) stored[found->second] = i.operands[1];
     }
   for (const spirv::Variable& variable : module_.variables) {
-    if (variable.storage != spv::StorageClassFunction && variable.storage != spv::StorageClassPrivate) continue;
+    if (variable.storage != spv::StorageClassFunction && variable.storage != spv::StorageClassPrivate)
+      continue;
     if (module_.type(variable.type).kind != Kind::kArray) continue;
     const Id only = stores[variable.id] == 0                                ? variable.initializer
                     : stores[variable.id] == 1 && variable.initializer == 0 ? stored[variable.id]
@@ -82,18 +88,25 @@ void Lowering::declare(const spirv::Variable& variable) {
       if (tables_.contains(variable.id)) break;
       const std::uint32_t scalars = module_.type(variable.type).scalars;
       if (scalars == 0 || scalars > kMaxLocalScalars)
-        throw user_error("{}", module_.at_use(variable.id, fmt::format("local variable {} has {} scalars; 1 to {} are supported",
-                                                                       module_.name(variable.id), scalars, kMaxLocalScalars)));
+        throw user_error(
+            "{}",
+            module_.at_use(variable.id, fmt::format("local variable {} has {} scalars; 1 to {} are supported",
+                                                    module_.name(variable.id), scalars, kMaxLocalScalars)));
       Values& registers = memory_[variable.id];
       for (std::uint32_t k = 0; k < scalars; ++k) registers.push_back(build_.new_variable());
-      if (const auto* words = variable.initializer == 0 ? nullptr : module_.constant(variable.initializer); words != nullptr)
-        for (std::uint32_t k = 0; k < scalars && k < words->size(); ++k) build_.assign(registers[k], literal((*words)[k]));
+      if (const auto* words = variable.initializer == 0 ? nullptr : module_.constant(variable.initializer);
+          words != nullptr)
+        for (std::uint32_t k = 0; k < scalars && k < words->size(); ++k)
+          build_.assign(registers[k], literal((*words)[k]));
       break;
     }
     default:
-      throw user_error("{}", module_.at_use(variable.id, fmt::format("variable {} has storage class {}, which is not supported ({})",
-                                                                     module_.name(variable.id), spirv::storage_class_name(variable.storage),
-                                                                     "use a uniform block, push constants, inputs, outputs or locals")));
+      throw user_error(
+          "{}",
+          module_.at_use(variable.id,
+                         fmt::format("variable {} has storage class {}, which is not supported ({})",
+                                     module_.name(variable.id), spirv::storage_class_name(variable.storage),
+                                     "use a uniform block, push constants, inputs, outputs or locals")));
   }
   pointers_[variable.id] = p;
 }
@@ -116,7 +129,8 @@ void Lowering::step(Pointer& p, Id index, const spirv::Instruction& i) {
   const bool block = is_block(p.storage);
   const Value at = scalar(index);
   if (type.kind == Kind::kStruct) {
-    if (!at.is_literal() || at.bits >= type.members.size()) throw unsupported(i, "a structure member that is not a constant");
+    if (!at.is_literal() || at.bits >= type.members.size())
+      throw unsupported(i, "a structure member that is not a constant");
     const spirv::Decorations& d = module_.member_decorations(p.type, at.bits);
     if (block) {
       p.offset += static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.offset));
@@ -130,8 +144,10 @@ void Lowering::step(Pointer& p, Id index, const spirv::Instruction& i) {
   }
   std::uint32_t stride = 0;
   if (type.kind == Kind::kArray) {
-    stride = block ? static_cast<std::uint32_t>(std::max<std::int64_t>(0, module_.decorations(p.type).array_stride))
-                   : module_.type(type.element).scalars;
+    stride =
+        block
+            ? static_cast<std::uint32_t>(std::max<std::int64_t>(0, module_.decorations(p.type).array_stride))
+            : module_.type(type.element).scalars;
   } else if (type.kind == Kind::kMatrix) {
     stride = !block ? module_.type(type.element).scalars : p.row_major ? 4 : p.matrix_stride;
     p.element_stride = block && p.row_major ? p.matrix_stride : 4;
@@ -141,8 +157,10 @@ void Lowering::step(Pointer& p, Id index, const spirv::Instruction& i) {
     throw unsupported(i, "indexing this type");
   }
   if (at.is_literal()) {
-    const std::uint64_t offset = p.offset + std::uint64_t{stride} * std::min(at.bits, type.count == 0 ? 0 : type.count - 1);
-    if (offset >= kMaxBlockWords * 4) throw unsupported(i, fmt::format("an offset of more than {} bytes", kMaxBlockWords * 4));
+    const std::uint64_t offset =
+        p.offset + std::uint64_t{stride} * std::min(at.bits, type.count == 0 ? 0 : type.count - 1);
+    if (offset >= kMaxBlockWords * 4)
+      throw unsupported(i, fmt::format("an offset of more than {} bytes", kMaxBlockWords * 4));
     p.offset = static_cast<std::uint32_t>(offset);
   } else {
     p.dynamic.push_back({at, stride, type.count});
@@ -153,7 +171,8 @@ void Lowering::step(Pointer& p, Id index, const spirv::Instruction& i) {
 /// Sum of the run-time indices times their strides, in units of `unit`.
 Value Lowering::dynamic_offset(const Pointer& p, std::uint32_t unit) {
   Value sum = literal(0u);
-  for (const Index& index : p.dynamic) sum = build_.iadd(build_.emit(Op::kIMul, index.value, literal(index.stride / unit)), sum);
+  for (const Index& index : p.dynamic)
+    sum = build_.iadd(build_.emit(Op::kIMul, index.value, literal(index.stride / unit)), sum);
   return sum;
 }
 
@@ -189,7 +208,8 @@ std::uint32_t Lowering::block_of(const Pointer& p) {
   return index;
 }
 
-/// Appends the words of a value in a block, following offsets and strides. [VK1.3 #interfaces-resources-layout]
+/// Appends the words of a value in a block, following offsets and strides. [VK1.3
+/// #interfaces-resources-layout]
 void Lowering::load_block(Values& out, const Pointer& p, const spirv::Instruction& i) {
   const spirv::Type& type = module_.type(p.type);
   if (type.kind == Kind::kBool) throw unsupported(i, "a bool in a uniform block");
@@ -211,7 +231,8 @@ void Lowering::load_block(Values& out, const Pointer& p, const spirv::Instructio
       part.type = type.members[k];
     } else {
       const std::uint32_t stride = type.kind == Kind::kArray
-                                       ? static_cast<std::uint32_t>(std::max<std::int64_t>(0, module_.decorations(p.type).array_stride))
+                                       ? static_cast<std::uint32_t>(std::max<std::int64_t>(
+                                             0, module_.decorations(p.type).array_stride))
                                    : type.kind == Kind::kVector ? p.element_stride
                                    : p.row_major                ? 4
                                                                 : p.matrix_stride;
@@ -231,7 +252,8 @@ Value Lowering::block_word(const Pointer& p, const spirv::Instruction& i) {
     aligned = aligned && index.stride % 4 == 0;
   }
   if (!aligned) throw unsupported(i, "a block layout that is not a multiple of 4 bytes");
-  if (reach / 4 >= kMaxBlockWords) throw unsupported(i, fmt::format("a block of more than {} words", kMaxBlockWords));
+  if (reach / 4 >= kMaxBlockWords)
+    throw unsupported(i, fmt::format("a block of more than {} words", kMaxBlockWords));
   const std::uint32_t block = block_of(p);
   if (p.dynamic.empty()) return uniform_word(block, p.offset / 4);
   const std::uint32_t largest = (static_cast<std::uint32_t>(reach) - p.offset) / 4;
@@ -245,7 +267,8 @@ std::vector<std::uint32_t> Lowering::places(const Pointer& p, const spirv::Instr
   std::vector<std::uint32_t> result{p.offset};
   for (const Index& index : p.dynamic) {
     if (result.size() * index.count > kMaxSelectedPlaces)
-      throw unsupported(i, fmt::format("an index into a local array (or input) of more than {} elements", kMaxSelectedPlaces));
+      throw unsupported(i, fmt::format("an index into a local array (or input) of more than {} elements",
+                                       kMaxSelectedPlaces));
     std::vector<std::uint32_t> next;
     for (const std::uint32_t base : result)
       for (std::uint32_t k = 0; k < index.count; ++k) next.push_back(base + k * index.stride);
@@ -256,7 +279,8 @@ std::vector<std::uint32_t> Lowering::places(const Pointer& p, const spirv::Instr
 
 Value Lowering::load_scalar(const Pointer& p, std::uint32_t place, const spirv::Instruction& i) {
   if (p.storage == spv::StorageClassInput) return load_input(p.variable, place, i);
-  if (const auto table = tables_.find(p.variable); table != tables_.end()) return literal(shader_.blocks[table->second].literals.at(place));
+  if (const auto table = tables_.find(p.variable); table != tables_.end())
+    return literal(shader_.blocks[table->second].literals.at(place));
   return build_.read(memory_[p.variable].at(place));
 }
 
@@ -268,7 +292,8 @@ Values Lowering::load_scalars(const Pointer& p, const spirv::Instruction& i) {
     for (const Index& index : p.dynamic) largest += index.stride * (index.count == 0 ? 0 : index.count - 1);
     const Value at = dynamic_offset(p, 1);
     for (std::uint32_t k = 0; k < scalars; ++k)
-      result.push_back(build_.emit(Op::kLoadConst, at, literal(largest), uniform_word(table->second, p.offset + k)));
+      result.push_back(
+          build_.emit(Op::kLoadConst, at, literal(largest), uniform_word(table->second, p.offset + k)));
     return result;
   }
   const std::vector<std::uint32_t> candidates = places(p, i);
@@ -276,7 +301,8 @@ Values Lowering::load_scalars(const Pointer& p, const spirv::Instruction& i) {
   for (std::uint32_t k = 0; k < scalars; ++k) {
     Value chosen = load_scalar(p, candidates[0] + k, i);
     for (std::size_t c = 1; c < candidates.size(); ++c)
-      chosen = build_.select(build_.emit(Op::kIEq, at, literal(candidates[c] - p.offset)), load_scalar(p, candidates[c] + k, i), chosen);
+      chosen = build_.select(build_.emit(Op::kIEq, at, literal(candidates[c] - p.offset)),
+                             load_scalar(p, candidates[c] + k, i), chosen);
     result.push_back(chosen);
   }
   return result;
@@ -300,7 +326,9 @@ void Lowering::store_values(const Pointer& p, const Values& values, const spirv:
     for (std::uint32_t k = 0; k < values.size(); ++k) {
       const Value target = memory->second.at(place + k);
       Value stored = values[k];
-      if (candidates.size() > 1) stored = build_.select(build_.emit(Op::kIEq, at, literal(place - p.offset)), stored, build_.read(target));
+      if (candidates.size() > 1)
+        stored =
+            build_.select(build_.emit(Op::kIEq, at, literal(place - p.offset)), stored, build_.read(target));
       build_.assign(target, stored);
       if (p.storage == spv::StorageClassOutput) store_output(p, place + k, stored, i);
     }

@@ -1,4 +1,5 @@
-/// The state of one lowering. Its parts are in lower_*.cpp: control flow, memory, interface variables, arithmetic, matrices, images and GLSL.std.450.
+/// The state of one lowering. Its parts are in lower_*.cpp: control flow, memory, interface variables,
+/// arithmetic, matrices, images and GLSL.std.450.
 #pragma once
 
 #include "models/base/error.h"
@@ -17,7 +18,8 @@
 namespace quadrille::pipeline {
 
 using spirv::Id;
-using Values = std::vector<Value>;  ///< a value of any type, flattened to scalars: matrices by column, structs and arrays in order
+/// a value of any type, flattened to scalars: matrices by column, structs and arrays in order
+using Values = std::vector<Value>;
 
 /// What earlier attempts at lowering a shader found out.
 struct Attempts {
@@ -56,14 +58,17 @@ class Lowering {
     std::uint16_t imm = 0;
     models::Interpolation interpolation = models::Interpolation::kPerspective;
   };
-  using Cases = std::vector<std::pair<Id, Value>>;  ///< of a switch: label, mask of the lanes that enter there
+  /// of a switch: label, mask of the lanes that enter there
+  using Cases = std::vector<std::pair<Id, Value>>;
   /// Where a region of blocks ends.
   struct Stop {
     Id merge = 0;
-    const std::map<Id, Value>* falls_into = nullptr;  ///< switch: cases still to come, with their flag variable
+    /// switch: cases still to come, with their flag variable
+    const std::map<Id, Value>* falls_into = nullptr;
   };
-  /// A LOOP of the ISA: a loop of the source, or a switch that is left from inside. Lanes that leave further than this loop set a flag, which is tested
-  /// after it; `flags` names the places kept free for clearing the flags before the loop.
+  /// A LOOP of the ISA: a loop of the source, or a switch that is left from inside. Lanes that leave further
+  /// than this loop set a flag, which is tested after it; `flags` names the places kept free for clearing the
+  /// flags before the loop.
   struct LoopFrame {
     enum Leave : std::uint8_t { kBreak, kContinue, kKill, kLeaveCount };
     bool is_switch = false;
@@ -138,9 +143,11 @@ class Lowering {
 
   // lower_interface.cpp
   void declare_interface(const spirv::Variable& variable);
-  void add_slots(std::vector<Slot>& slots, Id type, const spirv::Decorations& inherited, std::uint32_t& location, bool output);
+  void add_slots(std::vector<Slot>& slots, Id type, const spirv::Decorations& inherited,
+                 std::uint32_t& location, bool output);
   Slot built_in_slot(std::int64_t built_in, std::uint32_t component, bool output) const;
-  Slot location_slot(std::uint32_t location, std::uint32_t component, const spirv::Decorations& d, bool output) const;
+  Slot location_slot(std::uint32_t location, std::uint32_t component, const spirv::Decorations& d,
+                     bool output) const;
   Value load_input(Id variable, std::uint32_t place, const spirv::Instruction& i);
   void store_output(const Pointer& p, std::uint32_t place, Value v, const spirv::Instruction& i);
 
@@ -149,7 +156,8 @@ class Lowering {
   bool comparison(const spirv::Instruction& i);
   bool composite(const spirv::Instruction& i);
   void elementwise(const spirv::Instruction& i, models::Op op, bool swapped = false, bool inverted = false);
-  std::uint32_t composite_offset(Id type, std::span<const std::uint32_t> indices, Id& found, const spirv::Instruction& i) const;
+  std::uint32_t composite_offset(Id type, std::span<const std::uint32_t> indices, Id& found,
+                                 const spirv::Instruction& i) const;
   Value dot(const Values& a, const Values& b);
 
   // lower_matrix.cpp
@@ -176,12 +184,14 @@ class Lowering {
   std::unordered_map<Id, Id> value_types_;
   std::unordered_map<Id, Pointer> pointers_;
   std::unordered_map<Id, const spirv::Variable*> variables_;
-  std::unordered_map<Id, Values> memory_;         ///< function variables and shadowed outputs: one register a scalar
+  /// function variables and shadowed outputs: one register a scalar
+  std::unordered_map<Id, Values> memory_;
   std::unordered_map<Id, std::uint32_t> tables_;  ///< function variables that hold one constant: its block
   std::unordered_map<Id, std::vector<Slot>> slots_;
   std::unordered_set<Id> read_outputs_;
   std::unordered_map<Id, std::uint16_t> textures_;  ///< variable or loaded value -> binding
-  std::unordered_set<Id> transposed_;               ///< matrices that came as rows: loaded row-major, or a result of OpTranspose
+  /// matrices that came as rows: loaded row-major, or a result of OpTranspose
+  std::unordered_set<Id> transposed_;
   std::unordered_map<Id, Values> phis_, resolved_phis_;
   std::vector<LoopFrame> loops_;
   std::map<Id, Id> open_switches_;  ///< merge -> header of switches that are not loops

@@ -20,7 +20,8 @@ void remove_dead(ScalarShader& shader) {
   std::vector<bool> live(shader.code.size(), false);
   for (std::uint32_t at = 0; at < shader.code.size(); ++at) {
     const ScalarInstruction& i = shader.code[at];
-    for (int k = 0; k < models::destination_count(i.op); ++k) definitions[i.dst + static_cast<std::uint32_t>(k)].push_back(at);
+    for (int k = 0; k < models::destination_count(i.op); ++k)
+      definitions[i.dst + static_cast<std::uint32_t>(k)].push_back(at);
     if (!has_effect(i.op)) continue;
     live[at] = true;
     work.push_back(at);
@@ -80,7 +81,8 @@ bool simplify_control(ScalarShader& shader) {
   std::vector<ScalarInstruction> out;
   const std::size_t before = shader.code.size();
   for (const ScalarInstruction& i : shader.code) {
-    const bool never = (i.op == Op::kKillIf || i.op == Op::kBreakIf || i.op == Op::kContinueIf) && i.a.is_literal(0);
+    const bool never =
+        (i.op == Op::kKillIf || i.op == Op::kBreakIf || i.op == Op::kContinueIf) && i.a.is_literal(0);
     if (i.op == Op::kNop || never) continue;
     if (i.op == Op::kEndIf) {
       close_if(out, i);
@@ -106,18 +108,22 @@ void drop_unused_continuing(ScalarShader& shader) {
     if (op == Op::kContinueIf) loops.back().continued = true;
     if (op == Op::kContinuing) loops.back().continuing = at;
     if (op != Op::kEndLoop) continue;
-    if (loops.back().continuing != 0 && !loops.back().continued) shader.code[loops.back().continuing].op = Op::kNop;
+    if (loops.back().continuing != 0 && !loops.back().continued)
+      shader.code[loops.back().continuing].op = Op::kNop;
     loops.pop_back();
   }
   std::erase_if(shader.code, [](const ScalarInstruction& i) { return i.op == Op::kNop; });
 }
 
-/// Where each register is defined, how often it is read, and which straight-line stretch an instruction is in.
+/// Where each register is defined, how often it is read, and which straight-line stretch an instruction is
+/// in.
 struct Uses {
   std::vector<std::size_t> definition;
   std::vector<std::uint32_t> reads, stretch;
   explicit Uses(const ScalarShader& shader)
-      : definition(shader.variable.size(), shader.code.size()), reads(shader.variable.size(), 0), stretch(shader.code.size(), 0) {
+      : definition(shader.variable.size(), shader.code.size()),
+        reads(shader.variable.size(), 0),
+        stretch(shader.code.size(), 0) {
     std::uint32_t current = 0;
     for (std::size_t at = 0; at < shader.code.size(); ++at) {
       const ScalarInstruction& i = shader.code[at];
@@ -128,7 +134,8 @@ struct Uses {
       if (models::destination_count(i.op) == 1) definition[i.dst] = at;
     }
   }
-  /// Place of the instruction that makes `v` for nobody but the reader at `at`, in the same stretch; the end of the code if there is none.
+  /// Place of the instruction that makes `v` for nobody but the reader at `at`, in the same stretch; the end
+  /// of the code if there is none.
   [[nodiscard]] std::size_t private_maker(const ScalarShader& shader, const Value& v, std::size_t at) const {
     if (!v.is_register() || shader.variable[v.bits] || reads[v.bits] != 1) return shader.code.size();
     const std::size_t made = definition[v.bits];
@@ -142,8 +149,11 @@ void fuse_multiply_add(ScalarShader& shader) {
     ScalarInstruction& sum = shader.code[at];
     if (sum.op != Op::kFAdd) continue;
     const auto product_of = [&](const Value& v) {
-      const std::size_t made = (v.modifiers & Operand::kAbsolute) != 0 ? shader.code.size() : uses.private_maker(shader, v, at);
-      return made < shader.code.size() && shader.code[made].op == Op::kFMul && shader.code[made].flags == 0 ? made : shader.code.size();
+      const std::size_t made =
+          (v.modifiers & Operand::kAbsolute) != 0 ? shader.code.size() : uses.private_maker(shader, v, at);
+      return made < shader.code.size() && shader.code[made].op == Op::kFMul && shader.code[made].flags == 0
+                 ? made
+                 : shader.code.size();
     };
     std::size_t first = product_of(sum.a), second = product_of(sum.b);
     if (first == shader.code.size() && second == shader.code.size()) continue;
@@ -155,7 +165,8 @@ void fuse_multiply_add(ScalarShader& shader) {
     sum.b = product.b;
     sum.c = other;
     if ((used.modifiers & Operand::kNegate) != 0) sum.a.modifiers ^= Operand::kNegate;
-    if (sum.a.is_literal() && sum.a.modifiers != 0) sum.a = {Value::Kind::kLiteral, 0, sum.a.bits ^ 0x80000000u};
+    if (sum.a.is_literal() && sum.a.modifiers != 0)
+      sum.a = {Value::Kind::kLiteral, 0, sum.a.bits ^ 0x80000000u};
     product = {};
   }
   std::erase_if(shader.code, [](const ScalarInstruction& i) { return i.op == Op::kNop; });
@@ -167,7 +178,9 @@ void fold_saturate(ScalarShader& shader) {
     ScalarInstruction& clamp = shader.code[at];
     if (clamp.op != Op::kMov || clamp.flags != Instruction::kSaturate || clamp.a.modifiers != 0) continue;
     const std::size_t made = uses.private_maker(shader, clamp.a, at);
-    if (made == shader.code.size() || !models::op_info(shader.code[made].op).saturable || shader.code[made].op == Op::kSelect) continue;
+    if (made == shader.code.size() || !models::op_info(shader.code[made].op).saturable ||
+        shader.code[made].op == Op::kSelect)
+      continue;
     shader.code[made].flags |= Instruction::kSaturate;
     shader.code[made].dst = clamp.dst;
     clamp = {};

@@ -1,12 +1,13 @@
-/// Clean-up of scalar code: dead code, needless control flow, multiply-add fusion, saturation, and the order that groups texture instructions.
+/// Clean-up of scalar code: dead code, needless control flow, multiply-add fusion, saturation, and the order
+/// that groups texture instructions.
 #pragma once
 
 #include "pipeline/compiler/ir.h"
 
 namespace quadrille::pipeline {
 
-/// Removes what no output, discard or control flow needs; fuses a product with the one sum that uses it into FMAD (which rounds twice, so no value changes)
-/// and a clamp to [0, 1] with the operation it clamps.
+/// Removes what no output, discard or control flow needs; fuses a product with the one sum that uses it into
+/// FMAD (which rounds twice, so no value changes) and a clamp to [0, 1] with the operation it clamps.
 void clean_up(ScalarShader& shader);
 
 enum class Order : std::uint8_t {
@@ -14,8 +15,9 @@ enum class Order : std::uint8_t {
   kTextures,       ///< texture instructions of a block in groups, the rest as lowered
   kTexturesDemand  ///< texture instructions in groups, the rest when something needs it
 };
-/// Reorders within straight-line stretches. A group holds independent texture instructions, at most `kMaxClauseTextures`, issued back to back before the
-/// first of their results is needed. Discards and control flow are not crossed.
+/// Reorders within straight-line stretches. A group holds independent texture instructions, at most
+/// `kMaxClauseTextures`, issued back to back before the first of their results is needed. Discards and
+/// control flow are not crossed.
 [[nodiscard]] std::vector<ScalarInstruction> schedule(const ScalarShader& shader, Order order);
 
 /// Whether the operation changes the flow of control (KILLIF, which only marks lanes, does not).

@@ -1,4 +1,5 @@
-/// Texture grouping: within a straight-line stretch, texture instructions that do not depend on each other are issued together.
+/// Texture grouping: within a straight-line stretch, texture instructions that do not depend on each other
+/// are issued together.
 #include "models/shader/warp.h"
 #include "pipeline/compiler/passes.h"
 
@@ -12,7 +13,8 @@ using models::Op;
 
 class Stretch {
  public:
-  Stretch(const ScalarShader& shader, std::size_t first, std::size_t last) : shader_(shader), first_(first), size_(last - first) {
+  Stretch(const ScalarShader& shader, std::size_t first, std::size_t last)
+      : shader_(shader), first_(first), size_(last - first) {
     needs_.resize(size_);
     level_.assign(size_, 0);
     done_.assign(size_, false);
@@ -39,7 +41,8 @@ class Stretch {
     level_[at] = std::max(level_[at], level_[before] + (is_texture(code(before).op) ? 1 : 0));
   }
 
-  /// Notes what must come before the instruction: makers of its operands, earlier readers and writers of its variable, earlier outputs.
+  /// Notes what must come before the instruction: makers of its operands, earlier readers and writers of its
+  /// variable, earlier outputs.
   void connect(std::size_t at) {
     const ScalarInstruction& i = code(at);
     for (const Value& v : {i.a, i.b, i.c}) {
@@ -86,10 +89,13 @@ class Stretch {
     std::vector<std::size_t> textures;
     for (std::size_t at = 0; at < size_; ++at)
       if (is_texture(code(at).op)) textures.push_back(at);
-    std::stable_sort(textures.begin(), textures.end(), [&](std::size_t a, std::size_t b) { return level_[a] < level_[b]; });
+    std::stable_sort(textures.begin(), textures.end(),
+                     [&](std::size_t a, std::size_t b) { return level_[a] < level_[b]; });
     for (std::size_t from = 0; from < textures.size();) {
       std::size_t to = from;
-      while (to < textures.size() && level_[textures[to]] == level_[textures[from]] && to - from < models::kMaxClauseTextures) ++to;
+      while (to < textures.size() && level_[textures[to]] == level_[textures[from]] &&
+             to - from < models::kMaxClauseTextures)
+        ++to;
       for (std::size_t k = from; k < to; ++k)
         for (const std::size_t before : needs_[textures[k]]) emit(before);
       for (std::size_t k = from; k < to; ++k) emit(textures[k]);
@@ -117,8 +123,8 @@ std::vector<ScalarInstruction> schedule(const ScalarShader& shader, Order order)
   out.reserve(shader.code.size());
   std::size_t first = 0;
   for (std::size_t at = 0; at <= shader.code.size(); ++at) {
-    const bool boundary =
-        at == shader.code.size() || is_control(shader.code[at].op) || shader.code[at].op == Op::kKillIf || shader.code[at].op == Op::kEnd;
+    const bool boundary = at == shader.code.size() || is_control(shader.code[at].op) ||
+                          shader.code[at].op == Op::kKillIf || shader.code[at].op == Op::kEnd;
     if (!boundary) continue;
     Stretch(shader, first, at).append(out, order);
     if (at < shader.code.size()) out.push_back(shader.code[at]);

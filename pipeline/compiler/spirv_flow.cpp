@@ -9,7 +9,8 @@ SpirvFlow::SpirvFlow(std::span<const std::uint32_t> words) : words_(words) {
   for (auto& entry : functions) {
     std::unordered_map<Id, Block>& blocks = entry.second.blocks;
     for (auto& [label, block] : blocks) {
-      std::erase_if(block.successors, [&](Id to) { return !blocks.contains(to); });  // parts of a wide literal
+      // parts of a wide literal
+      std::erase_if(block.successors, [&](Id to) { return !blocks.contains(to); });
       for (const Id to : block.successors) blocks.at(to).predecessors.push_back(label);
     }
   }
@@ -28,7 +29,9 @@ bool SpirvFlow::spread_kills() {
   for (auto& function : functions) {
     for (auto& entry : function.second.blocks) {
       Block& block = entry.second;
-      if (block.kills || std::ranges::none_of(block.calls, [&](Id callee) { return killers.contains(callee); })) continue;
+      if (block.kills ||
+          std::ranges::none_of(block.calls, [&](Id callee) { return killers.contains(callee); }))
+        continue;
       news = block.kills = block.ends = true;
     }
   }
@@ -74,7 +77,8 @@ void SpirvFlow::add_to_block(const std::uint32_t* operands, std::size_t at, std:
       if (known == constants_.end() || !known->second) leads_to(2);
       break;
     }
-    case spv::OpSwitch:  // a default, then pairs of literal and label; wider selectors than 32 bits are refused later
+    // a default, then pairs of literal and label; wider selectors than 32 bits are refused later
+    case spv::OpSwitch:
       for (std::size_t target = 1; target + 1 < count; target += 2) leads_to(target);
       break;
     case spv::OpKill:
@@ -86,7 +90,8 @@ void SpirvFlow::add_to_block(const std::uint32_t* operands, std::size_t at, std:
   }
 }
 
-std::unordered_set<SpirvFlow::Id> SpirvFlow::reached(const Function& function, std::vector<Id> from, std::vector<Id> Block::*edges,
+std::unordered_set<SpirvFlow::Id> SpirvFlow::reached(const Function& function, std::vector<Id> from,
+                                                     std::vector<Id> Block::*edges,
                                                      const std::unordered_set<Id>& walls) {
   std::unordered_set<Id> found(from.begin(), from.end());
   while (!from.empty()) {

@@ -1,4 +1,5 @@
-/// The control flow of every function of a module as it was given: for what has to be known before the optimiser has made one function of it.
+/// The control flow of every function of a module as it was given: for what has to be known before the
+/// optimiser has made one function of it.
 #pragma once
 
 #include "pipeline/compiler/spirv_words.h"
@@ -31,8 +32,10 @@ class SpirvFlow {
 
   explicit SpirvFlow(std::span<const std::uint32_t> words);
 
-  /// The blocks that edges lead to from `from`, along them or against them, `from` among them. Nothing is followed beyond `walls`.
-  [[nodiscard]] static std::unordered_set<Id> reached(const Function& function, std::vector<Id> from, std::vector<Id> Block::*edges,
+  /// The blocks that edges lead to from `from`, along them or against them, `from` among them. Nothing is
+  /// followed beyond `walls`.
+  [[nodiscard]] static std::unordered_set<Id> reached(const Function& function, std::vector<Id> from,
+                                                      std::vector<Id> Block::*edges,
                                                       const std::unordered_set<Id>& walls = {});
 
   std::vector<Id> entry_points;

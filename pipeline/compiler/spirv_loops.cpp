@@ -21,7 +21,8 @@ void refuse_endless_loops(std::span<const std::uint32_t> words, std::string_view
     for (const auto& [label, block] : function.blocks) {
       if (block.ends) ends.push_back(label);
     }
-    const std::unordered_set<Id> can_end = SpirvFlow::reached(function, ends, &SpirvFlow::Block::predecessors);
+    const std::unordered_set<Id> can_end =
+        SpirvFlow::reached(function, ends, &SpirvFlow::Block::predecessors);
     for (const Id label : SpirvFlow::reached(function, {function.entry}, &SpirvFlow::Block::successors)) {
       const SpirvFlow::Block& block = function.blocks.at(label);
       if (block.loop && !can_end.contains(label)) {

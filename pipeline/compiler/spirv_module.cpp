@@ -23,11 +23,13 @@ std::uint32_t saturating_product(std::uint64_t a, std::uint64_t b) {
 }
 
 bool harmless_capability(std::uint32_t capability) {
-  return capability == spv::CapabilityMatrix || capability == spv::CapabilityShader || capability == spv::CapabilityImageQuery ||
-         capability == spv::CapabilityDerivativeControl || capability == spv::CapabilitySampleRateShading ||
+  return capability == spv::CapabilityMatrix || capability == spv::CapabilityShader ||
+         capability == spv::CapabilityImageQuery || capability == spv::CapabilityDerivativeControl ||
+         capability == spv::CapabilitySampleRateShading ||
          capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry ||
          capability == spv::CapabilityClipDistance || capability == spv::CapabilityCullDistance ||
-         capability == spv::CapabilityDemoteToHelperInvocation || capability == spv::CapabilityDrawParameters ||
+         capability == spv::CapabilityDemoteToHelperInvocation ||
+         capability == spv::CapabilityDrawParameters ||
          capability == spv::CapabilityVariablePointersStorageBuffer;
 }
 
@@ -51,7 +53,8 @@ Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std:
   bound = words_.size() > 3 ? words_[3] : 0;
   for (std::size_t at = 5; at < words_.size();) {
     const std::size_t count = words_[at] >> 16;
-    if (count == 0 || at + count > words_.size()) throw user_error("{}: the module ends inside an instruction", shader);
+    if (count == 0 || at + count > words_.size())
+      throw user_error("{}: the module ends inside an instruction", shader);
     Instruction instruction;
     instruction.op = static_cast<spv::Op>(words_[at] & 0xffffu);
     bool has_result = false, has_type = false;
@@ -66,9 +69,10 @@ Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std:
   }
   if (!wide_types_.empty()) throw user_error("{}: {}", shader, wide_types_.begin()->second);
   if (entry == 0)
-    throw user_error("{}: no entry point \"main\" of the {} stage{}", shader,
-                     stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment",
-                     other_entry_points_.empty() ? "" : fmt::format("; it has {}", fmt::join(other_entry_points_, ", ")));
+    throw user_error(
+        "{}: no entry point \"main\" of the {} stage{}", shader,
+        stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment",
+        other_entry_points_.empty() ? "" : fmt::format("; it has {}", fmt::join(other_entry_points_, ", ")));
 }
 
 const Type& Module::type(Id id) const {
@@ -102,25 +106,28 @@ const std::vector<std::uint32_t>* Module::constant(Id id) const {
 
 Id Module::constant_type(Id id) const {
   const auto found = constant_types_.find(id);
-  if (found == constant_types_.end()) throw user_error("{}: {} has no type that the compiler knows", shader, name(id));
+  if (found == constant_types_.end())
+    throw user_error("{}: {} has no type that the compiler knows", shader, name(id));
   return found->second;
 }
 
 std::string Module::name(Id id) const {
   const auto found = names_.find(id);
-  return found == names_.end() || found->second.empty() ? fmt::format("%{}", id) : fmt::format("'{}'", found->second);
+  return found == names_.end() || found->second.empty() ? fmt::format("%{}", id)
+                                                        : fmt::format("'{}'", found->second);
 }
 
 std::string Module::at(const Instruction& instruction, std::string_view text) const {
-  return instruction.line == 0 ? fmt::format("{}: {}", shader, text) : fmt::format("{}:{}: {}", shader, instruction.line, text);
+  return instruction.line == 0 ? fmt::format("{}: {}", shader, text)
+                               : fmt::format("{}:{}: {}", shader, instruction.line, text);
 }
 
 std::string Module::at_use(Id id, std::string_view text) const {
   std::uint32_t line = 0;
   for (const auto& entry_and_block : blocks) {
     for (const Instruction& i : entry_and_block.second.body) {
-      const bool uses = (i.op == spv::OpLoad || i.op == spv::OpStore || i.op == spv::OpAccessChain || i.op == spv::OpInBoundsAccessChain ||
-                         i.op == spv::OpImageTexelPointer) &&
+      const bool uses = (i.op == spv::OpLoad || i.op == spv::OpStore || i.op == spv::OpAccessChain ||
+                         i.op == spv::OpInBoundsAccessChain || i.op == spv::OpImageTexelPointer) &&
                         i.operands[0] == id;
       if (uses && i.line != 0 && (line == 0 || i.line < line)) line = i.line;
     }
@@ -134,30 +141,36 @@ void Module::add(const Instruction& given) {
   switch (static_cast<std::uint32_t>(instruction.op)) {
     case spv::OpLine: line_ = instruction.operands[1]; break;
     case spv::OpNoLine: line_ = 0; break;
-    case spv::OpName: names_[instruction.operands[0]] = literal_string(instruction.operands.subspan(1)); break;
+    case spv::OpName:
+      names_[instruction.operands[0]] = literal_string(instruction.operands.subspan(1));
+      break;
     case spv::OpCapability: add_capability(instruction.operands[0]); break;
     case spv::OpExtInstImport:
-      if (literal_string(instruction.operands) == "GLSL.std.450") glsl_imports[instruction.result] = instruction.result;
+      if (literal_string(instruction.operands) == "GLSL.std.450")
+        glsl_imports[instruction.result] = instruction.result;
       break;
     case spv::OpEntryPoint: add_entry_point(instruction); break;
     case spv::OpExecutionMode:
-      if (instruction.operands[0] == entry_function_ && instruction.operands[1] == spv::ExecutionModeEarlyFragmentTests)
+      if (instruction.operands[0] == entry_function_ &&
+          instruction.operands[1] == spv::ExecutionModeEarlyFragmentTests)
         early_fragment_tests = true;
       break;
     case spv::OpDecorate:
-      add_decoration(decorations_[instruction.operands[0]], static_cast<spv::Decoration>(instruction.operands[1]),
-                     instruction.operands.subspan(2));
+      add_decoration(decorations_[instruction.operands[0]],
+                     static_cast<spv::Decoration>(instruction.operands[1]), instruction.operands.subspan(2));
       break;
     case spv::OpMemberDecorate:
       add_decoration(member_decorations_[{instruction.operands[0], instruction.operands[1]}],
                      static_cast<spv::Decoration>(instruction.operands[2]), instruction.operands.subspan(3));
       break;
     case spv::OpGroupDecorate:
-      for (const Id target : instruction.operands.subspan(1)) decorations_[target] = decorations(instruction.operands[0]);
+      for (const Id target : instruction.operands.subspan(1))
+        decorations_[target] = decorations(instruction.operands[0]);
       break;
     case spv::OpVariable: add_variable(instruction); break;
     default:
-      if (instruction.op >= spv::OpTypeVoid && instruction.op <= spv::OpTypeForwardPointer) add_type(instruction);
+      if (instruction.op >= spv::OpTypeVoid && instruction.op <= spv::OpTypeForwardPointer)
+        add_type(instruction);
       else if ((instruction.op >= spv::OpConstantTrue && instruction.op <= spv::OpSpecConstantOp) ||
                (instruction.op == spv::OpUndef && open_block_ == 0))
         add_constant(instruction);
@@ -172,18 +185,22 @@ void Module::add_capability(std::uint32_t capability) {
   const std::string instead = instead_of_capability(capability);
   unsupported_capability = fmt::format(
       "capability {} is not supported ({})", capability_name(capability),
-      instead.empty() ? "vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are" : instead);
+      instead.empty()
+          ? "vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are"
+          : instead);
 }
 
 void Module::add_entry_point(const Instruction& instruction) {
-  const spv::ExecutionModel wanted = stage_ == traces::ShaderStage::kVertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
+  const spv::ExecutionModel wanted =
+      stage_ == traces::ShaderStage::kVertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
   const std::string name = literal_string(instruction.operands.subspan(2));
   const bool of_stage = instruction.operands[0] == static_cast<std::uint32_t>(wanted);
   if (of_stage && name == "main") entry_function_ = instruction.operands[1];
   else other_entry_points_.push_back(fmt::format("'{}'{}", name, of_stage ? "" : " of another stage"));
 }
 
-void Module::add_decoration(Decorations& target, spv::Decoration decoration, std::span<const std::uint32_t> arguments) {
+void Module::add_decoration(Decorations& target, spv::Decoration decoration,
+                            std::span<const std::uint32_t> arguments) {
   const std::int64_t value = arguments.empty() ? 0 : arguments[0];
   switch (static_cast<std::uint32_t>(decoration)) {
     case spv::DecorationBuiltIn: target.built_in = value; break;
@@ -198,7 +215,8 @@ void Module::add_decoration(Decorations& target, spv::Decoration decoration, std
     case spv::DecorationRowMajor: target.row_major = true; break;
     case spv::DecorationFlat: target.flat = true; break;
     case spv::DecorationNoPerspective: target.no_perspective = true; break;
-    default: break;  // precision, contraction, centroid, sample and the like do not change what is computed here
+    // precision, contraction, centroid, sample and the like do not change what is computed here
+    default: break;
   }
 }
 
@@ -215,10 +233,11 @@ void Module::add_type(const Instruction& instruction) {
     case spv::OpTypeInt:
     case spv::OpTypeFloat:
       if (operands[0] != 32)
-        wide_types_[instruction.result] = fmt::format("{}-bit {} are not supported by the shader compiler (32-bit ones are)", operands[0],
-                                                      instruction.op == spv::OpTypeInt ? "integers"
-                                                      : operands[0] == 64              ? "floats (double)"
-                                                                                       : "floats");
+        wide_types_[instruction.result] =
+            fmt::format("{}-bit {} are not supported by the shader compiler (32-bit ones are)", operands[0],
+                        instruction.op == spv::OpTypeInt ? "integers"
+                        : operands[0] == 64              ? "floats (double)"
+                                                         : "floats");
       type.kind = instruction.op == spv::OpTypeInt ? Type::Kind::kInt : Type::Kind::kFloat;
       type.is_signed = instruction.op == spv::OpTypeInt && operands[1] != 0;
       type.scalars = 1;
@@ -229,7 +248,8 @@ void Module::add_type(const Instruction& instruction) {
       type.element = operands[0];
       type.count = operands[1];
       type.scalars = saturating_product(this->type(type.element).scalars, type.count);
-      if (const auto wide = wide_types_.find(type.element); wide != wide_types_.end()) wide_types_[instruction.result] = wide->second;
+      if (const auto wide = wide_types_.find(type.element); wide != wide_types_.end())
+        wide_types_[instruction.result] = wide->second;
       break;
     case spv::OpTypeArray: {
       const std::vector<std::uint32_t>* length = constant(operands[1]);
@@ -255,7 +275,8 @@ void Module::add_type(const Instruction& instruction) {
       break;
     case spv::OpTypeImage:
       // Word order: sampled type, dimension, depth, arrayed, multisampled, sampled.
-      type.count = operands[1] == spv::Dim2D && operands[3] == 0 && operands[4] == 0 && operands[5] == 1 ? 2 : 0;
+      type.count =
+          operands[1] == spv::Dim2D && operands[3] == 0 && operands[4] == 0 && operands[5] == 1 ? 2 : 0;
       type.element = operands[0];
       break;
     case spv::OpTypeSampledImage:
@@ -280,33 +301,41 @@ void Module::add_constant(const Instruction& instruction) {
     case spv::OpSpecConstantComposite:
       for (const Id part : instruction.operands) {
         const std::vector<std::uint32_t>* words = constant(part);
-        if (words == nullptr) throw user_error("{}: constant {} has a part that is none", shader, name(instruction.result));
+        if (words == nullptr)
+          throw user_error("{}: constant {} has a part that is none", shader, name(instruction.result));
         value.insert(value.end(), words->begin(), words->end());
         if (value.size() > kMaxValueScalars)
-          throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
+          throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result),
+                           kMaxValueScalars);
       }
       break;
     case spv::OpConstantNull:
     case spv::OpUndef: {
       const std::uint32_t scalars = type(instruction.type).scalars;
       if (scalars > kMaxValueScalars)
-        throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result), kMaxValueScalars);
+        throw user_error("{}: constant {} has more than {} scalars", shader, name(instruction.result),
+                         kMaxValueScalars);
       value.assign(scalars, 0);
       break;
     }
     case spv::OpSpecConstantOp: value = specialisation_constant(instruction); break;
-    default: throw user_error("{}", at(instruction, fmt::format("a constant by {} is not supported", name_of(instruction))));
+    default:
+      throw user_error(
+          "{}", at(instruction, fmt::format("a constant by {} is not supported", name_of(instruction))));
   }
   constant_types_[instruction.result] = instruction.type;
   constants_[instruction.result] = std::move(value);
 }
 
 std::vector<std::uint32_t> Module::specialisation_constant(const Instruction& instruction) const {
-  std::optional<std::vector<std::uint32_t>> value = evaluate_spec_constant(*this, instruction.operands, type(instruction.type).scalars);
+  std::optional<std::vector<std::uint32_t>> value =
+      evaluate_spec_constant(*this, instruction.operands, type(instruction.type).scalars);
   if (value) return *std::move(value);
-  throw user_error("{}",
-                   at(instruction, fmt::format("specialisation constant {}: its expression ({}) cannot be evaluated; compute it in main",
-                                               name(instruction.result), name_of(instruction))));
+  throw user_error(
+      "{}", at(instruction,
+               fmt::format(
+                   "specialisation constant {}: its expression ({}) cannot be evaluated; compute it in main",
+                   name(instruction.result), name_of(instruction))));
 }
 
 void Module::add_variable(const Instruction& instruction) {

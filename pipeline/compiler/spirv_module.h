@@ -1,4 +1,5 @@
-/// A SPIR-V module as the lowering reads it: types, constants, decorations and the blocks of the one function that is left after optimisation.
+/// A SPIR-V module as the lowering reads it: types, constants, decorations and the blocks of the one function
+/// that is left after optimisation.
 #pragma once
 
 #include "traces/command_stream.h"
@@ -21,7 +22,19 @@ namespace quadrille::pipeline::spirv {
 using Id = std::uint32_t;
 
 struct Type {
-  enum class Kind : std::uint8_t { kVoid, kBool, kInt, kFloat, kVector, kMatrix, kArray, kStruct, kPointer, kSampledImage, kOther };
+  enum class Kind : std::uint8_t {
+    kVoid,
+    kBool,
+    kInt,
+    kFloat,
+    kVector,
+    kMatrix,
+    kArray,
+    kStruct,
+    kPointer,
+    kSampledImage,
+    kOther
+  };
   Kind kind = Kind::kOther;
   bool is_signed = false;
   Id element = 0;             ///< component, column, array element, pointee or image
@@ -32,8 +45,8 @@ struct Type {
 
 /// Decorations of an id or of a struct member that the compiler reads. -1: not decorated.
 struct Decorations {
-  std::int64_t built_in = -1, location = -1, component = -1, binding = -1, set = -1, offset = -1, array_stride = -1, matrix_stride = -1,
-               index = -1;
+  std::int64_t built_in = -1, location = -1, component = -1, binding = -1, set = -1, offset = -1,
+               array_stride = -1, matrix_stride = -1, index = -1;
   bool row_major = false, flat = false, no_perspective = false;
 };
 
@@ -67,8 +80,8 @@ inline constexpr std::uint32_t kMaxValueScalars = 4096;
 
 class Module {
  public:
-  /// Reads an optimised, valid module. Throws `UserError` naming `shader` for what the compiler cannot take: types of other than 32 bits,
-  /// several functions, no entry point "main" of the stage.
+  /// Reads an optimised, valid module. Throws `UserError` naming `shader` for what the compiler cannot take:
+  /// types of other than 32 bits, several functions, no entry point "main" of the stage.
   Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std::string_view shader);
 
   [[nodiscard]] const Type& type(Id id) const;
@@ -91,15 +104,17 @@ class Module {
   std::unordered_map<Id, Block> blocks;
   std::unordered_map<Id, Id> glsl_imports;  ///< ids of OpExtInstImport "GLSL.std.450"
   bool early_fragment_tests = false;
-  bool kills_return = false;           ///< a demotion stands for a discard (spirv_returning_kills.h)
-  std::string unsupported_capability;  ///< what is wrong with it; the module must be refused, if nothing that needs it was
+  bool kills_return = false;  ///< a demotion stands for a discard (spirv_returning_kills.h)
+  /// what is wrong with it; the module must be refused, if nothing that needs it was
+  std::string unsupported_capability;
   Id bound = 0;
 
  private:
   void add(const Instruction& given);
   void add_type(const Instruction& instruction);
   void add_constant(const Instruction& instruction);
-  void add_decoration(Decorations& target, spv::Decoration decoration, std::span<const std::uint32_t> arguments);
+  void add_decoration(Decorations& target, spv::Decoration decoration,
+                      std::span<const std::uint32_t> arguments);
   void add_variable(const Instruction& instruction);
   void add_entry_point(const Instruction& instruction);
   void add_capability(std::uint32_t capability);
@@ -116,7 +131,8 @@ class Module {
   std::unordered_map<Id, std::string> names_;
   Id entry_function_ = 0, open_function_ = 0, open_block_ = 0;
   std::uint32_t line_ = 0;
-  std::map<Id, std::string> wide_types_;  ///< types of other than 32 bits and vectors of them: why they are refused
+  /// types of other than 32 bits and vectors of them: why they are refused
+  std::map<Id, std::string> wide_types_;
   std::vector<std::string> other_entry_points_;
 };
 

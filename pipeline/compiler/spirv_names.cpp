@@ -35,7 +35,8 @@ std::vector<std::string> disassemble(const Words& instructions) {
   return words;
 }
 
-std::string word_or_number(const std::vector<std::string>& words, std::size_t place, std::string_view kind, std::uint32_t number) {
+std::string word_or_number(const std::vector<std::string>& words, std::size_t place, std::string_view kind,
+                           std::uint32_t number) {
   return place < words.size() ? words[place] : fmt::format("{} {}", kind, number);
 }
 
@@ -83,12 +84,15 @@ std::string name_of(const Instruction& instruction) {
   const std::uint32_t* const first = instruction.operands.data() - fixed;
   const bool extended = instruction.op == spv::OpExtInst;
   Words module;
-  if (extended) append(module, spv::OpExtInstImport, {instruction.operands[0], 0x4c534c47, 0x6474732e, 0x3035342e, 0});  // "GLSL.std.450"
+  // "GLSL.std.450"
+  if (extended)
+    append(module, spv::OpExtInstImport, {instruction.operands[0], 0x4c534c47, 0x6474732e, 0x3035342e, 0});
   module.insert(module.end(), first, instruction.operands.data() + instruction.operands.size());
   const std::vector<std::string> words = disassemble(module);
   const std::size_t place = instruction.result != 0 ? 2 : 0;  // "%1 = OpName ..."
   const std::string name = word_or_number(words, place, "opcode", static_cast<std::uint32_t>(instruction.op));
-  return with_advice(extended ? word_or_number(words, place + 3, "GLSL.std.450 function", instruction.operands[1]) : name);
+  return with_advice(
+      extended ? word_or_number(words, place + 3, "GLSL.std.450 function", instruction.operands[1]) : name);
 }
 
 std::string capability_name(std::uint32_t capability) {

@@ -7,9 +7,11 @@
 
 namespace quadrille::pipeline::spirv {
 
-/// "OpBitCount", or the name of an extended instruction ("FindILsb"); with what GLSL calls it and what to write instead where that is known.
+/// "OpBitCount", or the name of an extended instruction ("FindILsb"); with what GLSL calls it and what to
+/// write instead where that is known.
 [[nodiscard]] std::string name_of(const Instruction& instruction);
-/// "Float64" of the capability, "StorageBuffer" of the storage class. Those that SPIRV-Tools does not know are called by number.
+/// "Float64" of the capability, "StorageBuffer" of the storage class. Those that SPIRV-Tools does not know
+/// are called by number.
 [[nodiscard]] std::string capability_name(std::uint32_t capability);
 [[nodiscard]] std::string storage_class_name(spv::StorageClass storage);
 /// What a shader can do without the capability; empty: nothing known.

@@ -25,16 +25,20 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 void validate(std::span<const std::uint32_t> words, std::string_view shader) {
   if (words.size() < 5 || words.size() > kMaxModuleWords)
-    throw user_error("{}: a SPIR-V module has 5 to {} words, this one has {}", shader, kMaxModuleWords, words.size());
+    throw user_error("{}: a SPIR-V module has 5 to {} words, this one has {}", shader, kMaxModuleWords,
+                     words.size());
   if (words[0] != spv::MagicNumber)
-    throw user_error("{}: not SPIR-V (first word {:#010x} instead of {:#010x})", shader, words[0], spv::MagicNumber + 0u);
+    throw user_error("{}: not SPIR-V (first word {:#010x} instead of {:#010x})", shader, words[0],
+                     spv::MagicNumber + 0u);
   std::string message;
   spvtools::SpirvTools tools(kEnvironment);
-  tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t& position, const char* text) {
-    if (message.empty()) message = fmt::format("{} (word {})", first_line(text), position.index);
-  });
+  tools.SetMessageConsumer(
+      [&](spv_message_level_t, const char*, const spv_position_t& position, const char* text) {
+        if (message.empty()) message = fmt::format("{} (word {})", first_line(text), position.index);
+      });
   spvtools::ValidatorOptions options;
-  if (!tools.Validate(words.data(), words.size(), options)) throw user_error("{}: not valid SPIR-V: {}", shader, message);
+  if (!tools.Validate(words.data(), words.size(), options))
+    throw user_error("{}: not valid SPIR-V: {}", shader, message);
 }
 
 /// Instructions of a function with every call expanded, saturating. The validator has refused recursion.
@@ -71,13 +75,15 @@ class ExpandedSize {
 };
 
 bool is_annotation(spv::Op op) {
-  return op == spv::OpDecorate || op == spv::OpMemberDecorate || op == spv::OpDecorationGroup || op == spv::OpGroupDecorate ||
-         op == spv::OpGroupMemberDecorate || op == spv::OpDecorateId || op == spv::OpDecorateString || op == spv::OpMemberDecorateString;
+  return op == spv::OpDecorate || op == spv::OpMemberDecorate || op == spv::OpDecorationGroup ||
+         op == spv::OpGroupDecorate || op == spv::OpGroupMemberDecorate || op == spv::OpDecorateId ||
+         op == spv::OpDecorateString || op == spv::OpMemberDecorateString;
 }
 
 bool is_declaration(spv::Op op) {
-  return (op >= spv::OpTypeVoid && op <= spv::OpTypeForwardPointer) || (op >= spv::OpConstantTrue && op <= spv::OpSpecConstantOp) ||
-         op == spv::OpVariable || op == spv::OpUndef || op == spv::OpFunction || op == spv::OpLine || op == spv::OpNoLine;
+  return (op >= spv::OpTypeVoid && op <= spv::OpTypeForwardPointer) ||
+         (op >= spv::OpConstantTrue && op <= spv::OpSpecConstantOp) || op == spv::OpVariable ||
+         op == spv::OpUndef || op == spv::OpFunction || op == spv::OpLine || op == spv::OpNoLine;
 }
 
 /// Float results: arithmetic and extended instructions whose type is a float, a vector or a matrix of floats.
@@ -86,11 +92,14 @@ std::vector<std::uint32_t> float_results(std::span<const std::uint32_t> words, c
   std::vector<std::uint32_t> results;
   for (const auto& [at, count] : layout) {
     const spv::Op op = opcode(words, at);
-    if (op == spv::OpDecorate && count >= 3 && words[at + 2] == spv::DecorationNoContraction) marked.insert(words[at + 1]);
+    if (op == spv::OpDecorate && count >= 3 && words[at + 2] == spv::DecorationNoContraction)
+      marked.insert(words[at + 1]);
     if (op == spv::OpTypeFloat) float_types.insert(words[at + 1]);
-    if ((op == spv::OpTypeVector || op == spv::OpTypeMatrix) && float_types.contains(words[at + 2])) float_types.insert(words[at + 1]);
+    if ((op == spv::OpTypeVector || op == spv::OpTypeMatrix) && float_types.contains(words[at + 2]))
+      float_types.insert(words[at + 1]);
     const bool arithmetic = (op >= spv::OpSNegate && op <= spv::OpDot) || op == spv::OpExtInst;
-    if (arithmetic && float_types.contains(words[at + 1]) && !marked.contains(words[at + 2])) results.push_back(words[at + 2]);
+    if (arithmetic && float_types.contains(words[at + 1]) && !marked.contains(words[at + 2]))
+      results.push_back(words[at + 2]);
   }
   return results;
 }
@@ -146,14 +155,16 @@ OptimisedSpirv optimise_spirv(std::span<const std::uint32_t> words, std::string_
   validate(words, shader);
   refuse_endless_loops(words, shader);
   if (ExpandedSize(words).largest() > kMaxInlinedInstructions)
-    throw user_error("{}: more than {} instructions once every call is expanded in place", shader, kMaxInlinedInstructions);
+    throw user_error("{}: more than {} instructions once every call is expanded in place", shader,
+                     kMaxInlinedInstructions);
   ReturningKills kills = let_kills_return({words.begin(), words.end()});
   const std::vector<std::uint32_t> input = forbid_float_rewrites(kills.words);
   std::string message;
   spvtools::Optimizer optimizer(kEnvironment);
-  optimizer.SetMessageConsumer([&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
-    if (message.empty() && level <= SPV_MSG_ERROR) message = first_line(text);
-  });
+  optimizer.SetMessageConsumer(
+      [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
+        if (message.empty() && level <= SPV_MSG_ERROR) message = first_line(text);
+      });
   register_passes(optimizer);
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);

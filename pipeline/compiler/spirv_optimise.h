@@ -1,4 +1,5 @@
-/// SPIR-V in, SPIR-V out: validation and the optimisations of SPIRV-Tools that leave one function in SSA form with structured control flow.
+/// SPIR-V in, SPIR-V out: validation and the optimisations of SPIRV-Tools that leave one function in SSA form
+/// with structured control flow.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,9 @@ struct OptimisedSpirv {
   bool kills_return = false;  ///< a demotion stands for a discard (spirv_returning_kills.h)
 };
 
-/// Validates `words` for Vulkan 1.1 and optimises them. Every float result is first marked NoContraction, so that no pass reorders, merges or evaluates
-/// float arithmetic: the order of operations is the source's (docs/shader_compiler.md). Throws `UserError` naming `shader` for a module that is not valid.
+/// Validates `words` for Vulkan 1.1 and optimises them. Every float result is first marked NoContraction, so
+/// that no pass reorders, merges or evaluates float arithmetic: the order of operations is the source's
+/// (docs/shader_compiler.md). Throws `UserError` naming `shader` for a module that is not valid.
 [[nodiscard]] OptimisedSpirv optimise_spirv(std::span<const std::uint32_t> words, std::string_view shader);
 
 }  // namespace quadrille::pipeline

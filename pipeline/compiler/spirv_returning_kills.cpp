@@ -14,20 +14,23 @@ bool may_kill(const SpirvFlow::Function& function) {
   return std::ranges::any_of(function.blocks, [](const auto& entry) { return entry.second.kills; });
 }
 
-/// Functions that may kill and are called where a loop continues, and those that may kill and are called by them.
+/// Functions that may kill and are called where a loop continues, and those that may kill and are called by
+/// them.
 std::unordered_set<Id> killers_in_continues(const SpirvFlow& flow) {
   std::unordered_set<Id> found;
   std::vector<Id> open;
   const auto add_calls = [&](const SpirvFlow::Block& block) {
     for (const Id callee : block.calls) {
       const auto function = flow.functions.find(callee);
-      if (function != flow.functions.end() && may_kill(function->second) && found.insert(callee).second) open.push_back(callee);
+      if (function != flow.functions.end() && may_kill(function->second) && found.insert(callee).second)
+        open.push_back(callee);
     }
   };
   for (const auto& [id, function] : flow.functions) {
     for (const auto& [header, block] : function.blocks) {
       if (!block.loop || !function.blocks.contains(block.continue_target)) continue;
-      const auto construct = SpirvFlow::reached(function, {block.continue_target}, &SpirvFlow::Block::successors, {header, block.merge});
+      const auto construct = SpirvFlow::reached(function, {block.continue_target},
+                                                &SpirvFlow::Block::successors, {header, block.merge});
       for (const Id label : construct) add_calls(function.blocks.at(label));
     }
   }
@@ -44,12 +47,16 @@ void append(std::vector<std::uint32_t>& words, spv::Op op, std::initializer_list
   words.insert(words.end(), operands);
 }
 
-/// The capability and the extension that demotion needs. Both lists come first in a module, and saying a thing twice does no harm.
+/// The capability and the extension that demotion needs. Both lists come first in a module, and saying a
+/// thing twice does no harm.
 void append_permission(std::vector<std::uint32_t>& words, spv::Op last) {
   constexpr std::uint32_t kSpvExtDemote[] = {0x5f565053, 0x5f545845, 0x6f6d6564, 0x745f6574, 0x65685f6f,
-                                             0x7265706c, 0x766e695f, 0x7461636f, 0x006e6f69};  // "SPV_EXT_demote_to_helper_invocation"
-  if (last == spv::OpCapability) return append(words, spv::OpCapability, {spv::CapabilityDemoteToHelperInvocation});
-  words.push_back(static_cast<std::uint32_t>(std::size(kSpvExtDemote) + 1) << 16 | static_cast<std::uint32_t>(spv::OpExtension));
+                                             // "SPV_EXT_demote_to_helper_invocation"
+                                             0x7265706c, 0x766e695f, 0x7461636f, 0x006e6f69};
+  if (last == spv::OpCapability)
+    return append(words, spv::OpCapability, {spv::CapabilityDemoteToHelperInvocation});
+  words.push_back(static_cast<std::uint32_t>(std::size(kSpvExtDemote) + 1) << 16 |
+                  static_cast<std::uint32_t>(spv::OpExtension));
   words.insert(words.end(), std::begin(kSpvExtDemote), std::end(kSpvExtDemote));
 }
 
@@ -83,7 +90,8 @@ ReturningKills let_kills_return(std::vector<std::uint32_t> words) {
       append(out, spv::OpReturnValue, {nothing});
       continue;
     }
-    out.insert(out.end(), words.begin() + static_cast<std::ptrdiff_t>(at), words.begin() + static_cast<std::ptrdiff_t>(at + count));
+    out.insert(out.end(), words.begin() + static_cast<std::ptrdiff_t>(at),
+               words.begin() + static_cast<std::ptrdiff_t>(at + count));
   }
   return {std::move(out), true};
 }

@@ -21,7 +21,8 @@ std::optional<Word> divide(Word op, Word a, Word b) {
     case spv::OpUMod: return b == 0 ? 0 : a % b;
     case spv::OpSDiv: return b == 0 ? 0 : overflows ? a : static_cast<Word>(x / y);
     case spv::OpSRem: return b == 0 ? 0 : static_cast<Word>(x % y);
-    case spv::OpSMod: return b == 0 ? 0 : static_cast<Word>(x % y != 0 && (x % y < 0) != (y < 0) ? x % y + y : x % y);
+    case spv::OpSMod:
+      return b == 0 ? 0 : static_cast<Word>(x % y != 0 && (x % y < 0) != (y < 0) ? x % y + y : x % y);
     default: return std::nullopt;
   }
 }
@@ -74,9 +75,11 @@ std::optional<Word> unary(Word op, Word a) {
 }
 
 std::optional<Words> select(const Words& condition, const Words& yes, const Words& no) {
-  if (yes.size() != no.size() || (condition.size() != 1 && condition.size() != yes.size())) return std::nullopt;
+  if (yes.size() != no.size() || (condition.size() != 1 && condition.size() != yes.size()))
+    return std::nullopt;
   Words result;
-  for (std::size_t k = 0; k < yes.size(); ++k) result.push_back(condition[condition.size() == 1 ? 0 : k] != 0 ? yes[k] : no[k]);
+  for (std::size_t k = 0; k < yes.size(); ++k)
+    result.push_back(condition[condition.size() == 1 ? 0 : k] != 0 ? yes[k] : no[k]);
   return result;
 }
 
@@ -89,7 +92,9 @@ std::optional<Words> shuffle(const Words& first, const Words& second, std::span<
 
 /// Every operand has one word or as many as the result.
 std::optional<Words> componentwise(Word op, std::span<const Words> in, std::uint32_t scalars) {
-  if (in.empty() || in.size() > 2 || std::ranges::any_of(in, [&](const Words& w) { return w.size() != scalars; })) return std::nullopt;
+  if (in.empty() || in.size() > 2 ||
+      std::ranges::any_of(in, [&](const Words& w) { return w.size() != scalars; }))
+    return std::nullopt;
   Words result;
   for (std::uint32_t k = 0; k < scalars; ++k) {
     const std::optional<Word> word = in.size() == 1 ? unary(op, in[0][k]) : binary(op, in[0][k], in[1][k]);
@@ -99,7 +104,9 @@ std::optional<Words> componentwise(Word op, std::span<const Words> in, std::uint
   return result;
 }
 
-bool is_vector(const Module& module, Id id) { return module.type(module.constant_type(id)).kind == Type::Kind::kVector; }
+bool is_vector(const Module& module, Id id) {
+  return module.type(module.constant_type(id)).kind == Type::Kind::kVector;
+}
 
 /// Of a vector: elements of other composites take as many words as their types say, which nobody needed yet.
 std::optional<Words> extract(const Module& module, Id composite, std::span<const Word> path) {
@@ -116,11 +123,14 @@ std::optional<Words> insert(const Module& module, Id object, Id composite, std::
 
 }  // namespace
 
-std::optional<Words> evaluate_spec_constant(const Module& module, std::span<const Word> operands, std::uint32_t scalars) {
+std::optional<Words> evaluate_spec_constant(const Module& module, std::span<const Word> operands,
+                                            std::uint32_t scalars) {
   if (operands.empty()) return std::nullopt;
   const Word op = operands[0];
   const std::span<const Word> after = operands.subspan(1);
-  const std::size_t ids = op == spv::OpCompositeExtract ? 1 : op == spv::OpCompositeInsert || op == spv::OpVectorShuffle ? 2 : after.size();
+  const std::size_t ids = op == spv::OpCompositeExtract                                ? 1
+                          : op == spv::OpCompositeInsert || op == spv::OpVectorShuffle ? 2
+                                                                                       : after.size();
   if (after.size() < std::max<std::size_t>(1, ids)) return std::nullopt;
   std::vector<Words> in;
   for (const Id id : after.first(ids)) {

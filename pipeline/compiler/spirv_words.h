@@ -1,4 +1,5 @@
-/// A SPIR-V module as its instructions lie in memory: for what has to be known before it is optimised and read.
+/// A SPIR-V module as its instructions lie in memory: for what has to be known before it is optimised and
+/// read.
 #pragma once
 
 #ifndef SPV_ENABLE_UTILITY_CODE

@@ -7,12 +7,20 @@
 
 namespace quadrille::pipeline {
 
-DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory, TextureFills& fills)
-    : stream_(stream), memory_(memory), fills_(fills), buffers_(stream.buffers.size()), textures_(stream.images.size()) {
+DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory,
+                                 TextureFills& fills)
+    : stream_(stream),
+      memory_(memory),
+      fills_(fills),
+      buffers_(stream.buffers.size()),
+      textures_(stream.images.size()) {
   std::uint64_t bytes = 0;
-  const auto add = [&bytes](std::uint64_t size) { bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes; };
+  const auto add = [&bytes](std::uint64_t size) {
+    bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes;
+  };
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
-  for (const traces::Image& i : stream.images) add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
+  for (const traces::Image& i : stream.images)
+    add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
   for (const traces::RenderTarget& t : stream.targets)
     add(std::uint64_t{2} * models::kTileBytes * ((t.width + 7) / 8) * ((t.height + 7) / 8));
   memory.reserve(bytes);

@@ -1,5 +1,6 @@
-/// Buffers and images of a command stream in device memory: each is placed when it is first asked for, so that what nothing reads takes no memory.
-/// A texture gets its address then, and its texels when something first samples it: they are unpacked, tiled and forgotten.
+/// Buffers and images of a command stream in device memory: each is placed when it is first asked for, so
+/// that what nothing reads takes no memory. A texture gets its address then, and its texels when something
+/// first samples it: they are unpacked, tiled and forgotten.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +17,8 @@ namespace quadrille::pipeline {
 
 class DeviceResources {
  public:
-  /// Takes room for everything in the stream, its render targets too, so that growing never copies what is there.
+  /// Takes room for everything in the stream, its render targets too, so that growing never copies what is
+  /// there.
   DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory, TextureFills& fills);
   /// Address of a buffer's first byte; it is aligned to a line.
   [[nodiscard]] std::uint64_t buffer(traces::Index index);
@@ -25,7 +27,8 @@ class DeviceResources {
     models::TextureFill* fill = nullptr;
   };
   [[nodiscard]] const Texture& texture(traces::Index image);
-  /// Places what nobody asked for, behind all else, so that no address depends on it, and brings all texels. Throws `UserError`.
+  /// Places what nobody asked for, behind all else, so that no address depends on it, and brings all texels.
+  /// Throws `UserError`.
   void place_rest();
 
   [[nodiscard]] std::uint64_t buffer_bytes() const { return buffer_bytes_; }

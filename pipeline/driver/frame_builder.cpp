@@ -17,17 +17,24 @@ using traces::kNone;
 
 // The models have their own enumerations with the command stream's values; a conversion is a cast.
 static_assert(static_cast<int>(models::CompareOp::kAlways) == static_cast<int>(traces::CompareOp::kAlways));
-static_assert(static_cast<int>(models::BlendFactor::kOneMinusDstAlpha) == static_cast<int>(traces::BlendFactor::kOneMinusDstAlpha));
+static_assert(static_cast<int>(models::BlendFactor::kOneMinusDstAlpha) ==
+              static_cast<int>(traces::BlendFactor::kOneMinusDstAlpha));
 static_assert(static_cast<int>(models::BlendOp::kMax) == static_cast<int>(traces::BlendOp::kMax));
 static_assert(static_cast<int>(models::CullMode::kBack) == static_cast<int>(traces::CullMode::kBack));
-static_assert(static_cast<int>(models::FrontFace::kClockwise) == static_cast<int>(traces::FrontFace::kClockwise));
-static_assert(static_cast<int>(models::Topology::kTriangleFan) == static_cast<int>(traces::Topology::kTriangleFan));
+static_assert(static_cast<int>(models::FrontFace::kClockwise) ==
+              static_cast<int>(traces::FrontFace::kClockwise));
+static_assert(static_cast<int>(models::Topology::kTriangleFan) ==
+              static_cast<int>(traces::Topology::kTriangleFan));
 static_assert(static_cast<int>(models::Wrap::kClampToEdge) == static_cast<int>(traces::Wrap::kClampToEdge));
 static_assert(static_cast<int>(models::Filter::kLinear) == static_cast<int>(traces::Filter::kLinear));
-static_assert(static_cast<int>(models::AttributeFormat::kR32Float) == static_cast<int>(traces::Format::kR32Float));
-static_assert(static_cast<int>(models::AttributeFormat::kR16G16B16A16Uint) == static_cast<int>(traces::kLastFormat));
-static_assert(static_cast<int>(models::TexelFormat::kR8G8B8A8Srgb) == static_cast<int>(traces::Format::kR8G8B8A8Srgb));
-static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) == static_cast<int>(traces::Format::kR8G8B8A8Srgb));
+static_assert(static_cast<int>(models::AttributeFormat::kR32Float) ==
+              static_cast<int>(traces::Format::kR32Float));
+static_assert(static_cast<int>(models::AttributeFormat::kR16G16B16A16Uint) ==
+              static_cast<int>(traces::kLastFormat));
+static_assert(static_cast<int>(models::TexelFormat::kR8G8B8A8Srgb) ==
+              static_cast<int>(traces::Format::kR8G8B8A8Srgb));
+static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) ==
+              static_cast<int>(traces::Format::kR8G8B8A8Srgb));
 
 class FrameBuilder {
  public:
@@ -66,14 +73,15 @@ class FrameBuilder {
     out_.shown_has_depth = target_has_depth_;
     pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw;
     const auto first = out_.frame.draws.begin() + pass.first_draw;
-    const bool tests = std::any_of(first, out_.frame.draws.end(), [](const hw::DrawState& d) { return d.depth_test; });
+    const bool tests =
+        std::any_of(first, out_.frame.draws.end(), [](const hw::DrawState& d) { return d.depth_test; });
     if (target_has_depth_ && tests) {
       pass.has_depth = true;
       pass.depth = models::allocate_surface(out_.memory, pass.color.width, pass.color.height);
       out_.surface_bytes += pass.depth.bytes();
     } else if (target_has_depth_) {
-      out_.left_out.push_back(
-          {"depth surface", "no draw of the pass tests depth", fmt::format("{} bytes of device memory", pass.color.bytes())});
+      out_.left_out.push_back({"depth surface", "no draw of the pass tests depth",
+                               fmt::format("{} bytes of device memory", pass.color.bytes())});
     }
   }
   void apply(const traces::BindPipeline& c) { pipeline_ = c.pipeline; }
@@ -84,9 +92,12 @@ class FrameBuilder {
     if (push_.size() < c.offset + c.data.size()) push_.resize(c.offset + c.data.size());
     std::copy(c.data.begin(), c.data.end(), push_.begin() + c.offset);
   }
-  void apply(const traces::SetViewport& c) { viewport_ = {c.x, c.y, c.width, c.height, c.min_depth, c.max_depth}; }
+  void apply(const traces::SetViewport& c) {
+    viewport_ = {c.x, c.y, c.width, c.height, c.min_depth, c.max_depth};
+  }
   void apply(const traces::SetScissor& c) {
-    scissor_ = {c.x, c.y, c.x + static_cast<std::int32_t>(c.width), c.y + static_cast<std::int32_t>(c.height)};
+    scissor_ = {c.x, c.y, c.x + static_cast<std::int32_t>(c.width),
+                c.y + static_cast<std::int32_t>(c.height)};
   }
   void apply(const traces::Draw& c) {
     const traces::Pipeline& pipeline = stream_.pipelines[pipeline_];
@@ -128,7 +139,8 @@ class FrameBuilder {
     draw.first_vertex = c.first;
     if (c.indexed) {
       draw.index_bytes = 1u << static_cast<int>(index_buffer_.type);
-      draw.index_address = resources_.buffer(index_buffer_.buffer) + index_buffer_.offset + std::uint64_t{c.first} * draw.index_bytes;
+      draw.index_address = resources_.buffer(index_buffer_.buffer) + index_buffer_.offset +
+                           std::uint64_t{c.first} * draw.index_bytes;
     }
   }
 
@@ -148,10 +160,12 @@ class FrameBuilder {
       }
       const bool integers = (integer_inputs >> attribute.location & 1u) != 0;
       if (integers != traces::is_integer_format(attribute.format)) {
-        throw user_error("{}: reads vertex input location {} as {}, which pipeline '{}' supplies as {}", draw.vertex_program->name,
-                         attribute.location, integers ? "integers" : "floats", pipeline.name, integers ? "floats" : "integers");
+        throw user_error("{}: reads vertex input location {} as {}, which pipeline '{}' supplies as {}",
+                         draw.vertex_program->name, attribute.location, integers ? "integers" : "floats",
+                         pipeline.name, integers ? "floats" : "integers");
       }
-      const auto binding = std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
+      const auto binding =
+          std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
       const traces::BindVertexBuffer& bound = vertex_buffers_.at(attribute.binding);
       fetch.address = resources_.buffer(bound.buffer) + bound.offset + attribute.offset;
       fetch.stride = binding->stride;
@@ -160,17 +174,18 @@ class FrameBuilder {
       draw.attributes.push_back(fetch);
     }
     for (const models::VertexInputUse& use : uses) {
-      const bool given = std::ranges::any_of(pipeline.attributes, [&](const auto& a) { return a.location == use.location; });
+      const bool given =
+          std::ranges::any_of(pipeline.attributes, [&](const auto& a) { return a.location == use.location; });
       if (!given) {
-        throw user_error("{}: reads vertex input location {}, which pipeline '{}' does not supply", draw.vertex_program->name, use.location,
-                         pipeline.name);
+        throw user_error("{}: reads vertex input location {}, which pipeline '{}' does not supply",
+                         draw.vertex_program->name, use.location, pipeline.name);
       }
     }
   }
 
   void fixed_function(const traces::Pipeline& pipeline, hw::DrawState& draw) {
-    const models::PixelRect rect =
-        models::drawable_rect(viewport_, scissor_, out_.frame.passes.back().color.width, out_.frame.passes.back().color.height);
+    const models::PixelRect rect = models::drawable_rect(
+        viewport_, scissor_, out_.frame.passes.back().color.width, out_.frame.passes.back().color.height);
     const int bits = out_.frame.precision.subpixel_bits;
     draw.viewport = viewport_;
     draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
@@ -193,7 +208,8 @@ class FrameBuilder {
                   static_cast<models::BlendOp>(b.alpha),
                   b.write_mask};
     const models::Program& program = *draw.fragment_program;
-    draw.late_depth = draw.depth_test && (program.uses_discard || program.writes_depth) && !program.early_fragment_tests;
+    draw.late_depth =
+        draw.depth_test && (program.uses_discard || program.writes_depth) && !program.early_fragment_tests;
   }
 
   std::vector<std::uint32_t> constants(const models::Program& program) {
@@ -201,7 +217,9 @@ class FrameBuilder {
     for (const models::ConstantLayout::Range& range : program.constants.ranges) {
       std::uint32_t* const to = words.data() + range.first_word;
       switch (range.source) {
-        case models::ConstantLayout::Source::kLiteral: std::copy(range.literals.begin(), range.literals.end(), to); break;
+        case models::ConstantLayout::Source::kLiteral:
+          std::copy(range.literals.begin(), range.literals.end(), to);
+          break;
         case models::ConstantLayout::Source::kPushConstant:
           copy_words(push_, range, to, program, [] { return "the push constants"; });
           break;
@@ -209,8 +227,9 @@ class FrameBuilder {
           const traces::UniformBinding& bound = uniform(program, range.set, range.binding);
           const auto& data = stream_.buffers[bound.buffer].data;
           const std::span<const std::byte> view = std::span(data).subspan(bound.offset, bound.range);
-          copy_words(view, range, to, program,
-                     [&] { return fmt::format("the uniform block at set {}, binding {}", range.set, range.binding); });
+          copy_words(view, range, to, program, [&] {
+            return fmt::format("the uniform block at set {}, binding {}", range.set, range.binding);
+          });
           break;
         }
       }
@@ -220,14 +239,16 @@ class FrameBuilder {
 
   /// `what` makes the name of `from`, for an error: it would cost more than the copy.
   template <class What>
-  static void copy_words(std::span<const std::byte> from, const models::ConstantLayout::Range& range, std::uint32_t* to,
-                         const models::Program& program, const What& what) {
+  static void copy_words(std::span<const std::byte> from, const models::ConstantLayout::Range& range,
+                         std::uint32_t* to, const models::Program& program, const What& what) {
     const std::uint64_t end = range.byte_offset + std::uint64_t{4} * range.words;
-    if (end > from.size()) throw user_error("{}: reads {} bytes of {}, which holds {}", program.name, end, what(), from.size());
+    if (end > from.size())
+      throw user_error("{}: reads {} bytes of {}, which holds {}", program.name, end, what(), from.size());
     std::memcpy(to, from.data() + range.byte_offset, std::size_t{4} * range.words);
   }
 
-  const traces::UniformBinding& uniform(const models::Program& program, std::uint32_t set, std::uint32_t binding) {
+  const traces::UniformBinding& uniform(const models::Program& program, std::uint32_t set,
+                                        std::uint32_t binding) {
     if (const auto bound = sets_.find(set); bound != sets_.end()) {
       for (const traces::UniformBinding& u : stream_.descriptor_sets[bound->second].uniforms) {
         if (u.binding == binding) return u;
@@ -236,21 +257,24 @@ class FrameBuilder {
     throw user_error("{}: no uniform buffer is bound at set {}, binding {}", program.name, set, binding);
   }
 
-  void textures(const models::Program& program, std::vector<hw::TextureState>& states, std::vector<models::TextureSize>& sizes) {
+  void textures(const models::Program& program, std::vector<hw::TextureState>& states,
+                std::vector<models::TextureSize>& sizes) {
     for (const models::TextureBinding& use : program.textures) {
       const traces::TextureDescriptor& bound = texture(program, use.set, use.binding);
       const traces::Sampler& s = stream_.samplers[bound.sampler];
       const traces::Image& image = stream_.images[bound.image];
       const DeviceResources::Texture& texture = resources_.texture(bound.image);
       states.push_back({texture.view,
-                        {static_cast<models::Filter>(s.mag), static_cast<models::Filter>(s.min), static_cast<models::Filter>(s.mip),
-                         static_cast<models::Wrap>(s.wrap_u), static_cast<models::Wrap>(s.wrap_v), s.lod_bias, s.min_lod, s.max_lod},
+                        {static_cast<models::Filter>(s.mag), static_cast<models::Filter>(s.min),
+                         static_cast<models::Filter>(s.mip), static_cast<models::Wrap>(s.wrap_u),
+                         static_cast<models::Wrap>(s.wrap_v), s.lod_bias, s.min_lod, s.max_lod},
                         texture.fill});
       sizes.push_back({image.width, image.height, image.levels});
     }
   }
 
-  const traces::TextureDescriptor& texture(const models::Program& program, std::uint32_t set, std::uint32_t binding) {
+  const traces::TextureDescriptor& texture(const models::Program& program, std::uint32_t set,
+                                           std::uint32_t binding) {
     if (const auto bound = sets_.find(set); bound != sets_.end()) {
       for (const traces::TextureDescriptor& t : stream_.descriptor_sets[bound->second].textures) {
         if (t.binding == binding) return t;
@@ -264,7 +288,8 @@ class FrameBuilder {
       if (unneeded) out_.left_out.push_back({what, why, std::move(saved)});
     };
     const auto [images, image_bytes] = resources_.unplaced_images();
-    note(images > 0, "textures", "no program of a draw reads them", fmt::format("{} textures, {} bytes", images, image_bytes));
+    note(images > 0, "textures", "no program of a draw reads them",
+         fmt::format("{} textures, {} bytes", images, image_bytes));
     note(unread_attributes_ > 0, "vertex attributes", "the vertex program does not read them",
          fmt::format("{} attributes of draws", unread_attributes_));
   }
@@ -287,17 +312,20 @@ class FrameBuilder {
 }  // namespace
 
 bool DeviceFrame::reads_textures() const {
-  return std::ranges::any_of(frame.draws,
-                             [](const hw::DrawState& d) { return !d.vertex_textures.empty() || !d.fragment_textures.empty(); });
+  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) {
+    return !d.vertex_textures.empty() || !d.fragment_textures.empty();
+  });
 }
 bool DeviceFrame::tests_depth() const {
   return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return d.depth_test; });
 }
 bool DeviceFrame::blends() const {
-  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return models::reads_destination(d.blend); });
+  return std::ranges::any_of(frame.draws,
+                             [](const hw::DrawState& d) { return models::reads_destination(d.blend); });
 }
 
-void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out, bool leave_out) {
+void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,
+                 bool leave_out) {
   FrameBuilder(stream, precision, out).build(leave_out);
 }
 

@@ -1,6 +1,8 @@
-/// The driver: turns a command stream into what the machine executes. Allocates device memory, uploads and tiles, compiles shaders, resolves state by draw.
+/// The driver: turns a command stream into what the machine executes. Allocates device memory, uploads and
+/// tiles, compiles shaders, resolves state by draw.
 ///
-/// Only what some draw reads is uploaded and compiled in; what was left out is listed with the reason. A texture's texels come when something samples them.
+/// Only what some draw reads is uploaded and compiled in; what was left out is listed with the reason. A
+/// texture's texels come when something samples them.
 #pragma once
 
 #include "hw/frame/frame.h"
@@ -29,16 +31,19 @@ struct DeviceFrame {
   std::deque<CompiledPipeline> programs;
   hw::Frame frame;
   std::vector<LeftOut> left_out;
-  bool shown_has_depth = false;  ///< the target of the last pass has a depth attachment, whether it is tested or not
+  /// the target of the last pass has a depth attachment, whether it is tested or not
+  bool shown_has_depth = false;
   std::uint64_t buffer_bytes = 0, texture_bytes = 0, surface_bytes = 0;
   [[nodiscard]] bool reads_textures() const;
   [[nodiscard]] bool tests_depth() const;
   [[nodiscard]] bool blends() const;
 };
 
-/// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all else, so that no address depends on it,
-/// and all texels come now.
-/// The stream must live as long as `out` is run. Throws `UserError` for a shader that does not compile, a stage interface that does not match, or memory that does not fit.
-void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out, bool leave_out = true);
+/// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all
+/// else, so that no address depends on it, and all texels come now.
+/// The stream must live as long as `out` is run. Throws `UserError` for a shader that does not compile, a
+/// stage interface that does not match, or memory that does not fit.
+void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,
+                 bool leave_out = true);
 
 }  // namespace quadrille::pipeline

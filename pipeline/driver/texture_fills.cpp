@@ -16,7 +16,9 @@ models::TextureFill& TextureFills::add(const traces::Image& image, const models:
     const Clock::time_point start = Clock::now();
     const double cpu = pipeline::cpu_seconds();
     if (packed)
-      (*packed)([&](std::uint32_t level, std::span<const std::byte> texels) { models::tile_level(memory_, view, level, texels); });
+      (*packed)([&](std::uint32_t level, std::span<const std::byte> texels) {
+        models::tile_level(memory_, view, level, texels);
+      });
     else models::tile_texture(memory_, view, unpacked->texels);
     seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
     cpu_seconds_ += pipeline::cpu_seconds() - cpu;

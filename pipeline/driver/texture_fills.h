@@ -1,4 +1,5 @@
-/// The textures of a frame whose texels come when they are first sampled, what that cost, and which never came.
+/// The textures of a frame whose texels come when they are first sampled, what that cost, and which never
+/// came.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,8 @@ class TextureFills {
   TextureFills(const TextureFills&) = delete;
   TextureFills& operator=(const TextureFills&) = delete;
 
-  /// The image's texels, to be tiled where `view` says. The image must outlive this, or be packed. Filling throws `UserError` for an image that cannot be unpacked.
+  /// The image's texels, to be tiled where `view` says. The image must outlive this, or be packed. Filling
+  /// throws `UserError` for an image that cannot be unpacked.
   models::TextureFill& add(const traces::Image& image, const models::TextureView& view);
 
   /// Textures that nothing has sampled, and their texels with all mip levels.

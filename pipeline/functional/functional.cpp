@@ -19,8 +19,9 @@ using hw::DrawState;
 using hw::WarpSlot;
 
 /// Runs a warp to its end, filtering its textures as it asks for them.
-void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures, const models::Precision& precision,
-              const models::DeviceMemory& memory, models::TexturePlan& plan) {
+void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures,
+              const models::Precision& precision, const models::DeviceMemory& memory,
+              models::TexturePlan& plan) {
   std::array<models::LaneFloats, 4> rgba;
   while (models::run_clause(warp).end == models::ClauseEnd::kTextures) {
     for (int i = 0; i < warp.texture_count; ++i) {
@@ -42,7 +43,8 @@ class FunctionalRenderer {
   FunctionalCounts run() {
     for (const hw::PassState& pass : frame_.passes) {
       models::fill_surface(memory_, pass.color, pass.clear_color);
-      if (pass.has_depth) models::fill_surface(memory_, pass.depth, std::bit_cast<std::uint32_t>(pass.clear_depth));
+      if (pass.has_depth)
+        models::fill_surface(memory_, pass.depth, std::bit_cast<std::uint32_t>(pass.clear_depth));
       for (std::uint32_t d = pass.first_draw; d < pass.first_draw + pass.draws; ++d) draw(d);
     }
     return counts_;
@@ -65,19 +67,24 @@ class FunctionalRenderer {
   std::uint32_t vertex_number(std::uint32_t position) const {
     if (!draw_->indexed) return draw_->first_vertex + position;
     std::uint32_t index = 0;
-    std::memcpy(&index, memory_.read(draw_->index_address + std::uint64_t{position} * draw_->index_bytes, draw_->index_bytes).data(),
-                draw_->index_bytes);
+    std::memcpy(
+        &index,
+        memory_.read(draw_->index_address + std::uint64_t{position} * draw_->index_bytes, draw_->index_bytes)
+            .data(),
+        draw_->index_bytes);
     return index + static_cast<std::uint32_t>(draw_->vertex_offset);
   }
 
-  /// Forms, shades and rasterises the batch that begins with triangle `first`; returns the first triangle after it.
+  /// Forms, shades and rasterises the batch that begins with triangle `first`; returns the first triangle
+  /// after it.
   std::uint32_t batch(std::uint32_t first) {
     models::VertexReuse reuse;
     batch_.triangles.clear();
     std::uint32_t t = first;
     for (; t < draw_->triangles(); ++t) {
       const auto corner = models::triangle_vertices(draw_->topology, t);
-      const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]), vertex_number(corner[2])};
+      const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]),
+                                                vertex_number(corner[2])};
       if (!reuse.fits(vertex)) break;
       BatchSlot::Triangle triangle{{}, t};
       for (std::size_t i = 0; i < 3; ++i) triangle.corner[i] = reuse.place(vertex[i]);
@@ -101,7 +108,10 @@ class FunctionalRenderer {
         const std::uint32_t element = f.per_instance ? draw_->first_instance + instance_ : reuse.index(lane);
         std::uint32_t value[4];
         models::decode_attribute(
-            f.format, memory_.read(f.address + std::uint64_t{element} * f.stride, models::attribute_bytes(f.format)).data(), value);
+            f.format,
+            memory_.read(f.address + std::uint64_t{element} * f.stride, models::attribute_bytes(f.format))
+                .data(),
+            value);
         for (std::size_t c = 0; c < 4; ++c) {
           if (f.input_row[c] >= 0) batch_.attributes[static_cast<std::size_t>(f.input_row[c])][l] = value[c];
         }
@@ -116,7 +126,8 @@ class FunctionalRenderer {
     engine_.fragment = nullptr;
     engine_.outputs = batch_.outputs.data();
     engine_.texture_sizes = draw_->vertex_texture_sizes.data();
-    const models::LaneMask lanes = batch_.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch_.lanes) - 1;
+    const models::LaneMask lanes =
+        batch_.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch_.lanes) - 1;
     engine_.launch(*draw_->vertex_program, draw_->vertex_constants.data(), lanes);
     run_warp(engine_, draw_->vertex_textures, frame_.precision, memory_, plan_);
   }
@@ -126,7 +137,8 @@ class FunctionalRenderer {
     std::array<glm::vec4, 3> position;
     for (std::size_t i = 0; i < 3; ++i) {
       for (int c = 0; c < 4; ++c)
-        position[i][c] = std::bit_cast<float>(batch_.outputs[static_cast<std::size_t>(c)][triangle.corner[i].lane]);
+        position[i][c] =
+            std::bit_cast<float>(batch_.outputs[static_cast<std::size_t>(c)][triangle.corner[i].lane]);
     }
     models::ClippedPolygon polygon;
     const models::ClipOutcome outcome = models::clip_triangle(position, draw_->clip, polygon);
@@ -144,7 +156,8 @@ class FunctionalRenderer {
     const std::array<int, 3> corner{0, i, i + 1};
     for (std::size_t k = 0; k < 3; ++k) {
       const models::ClipVertex& v = polygon.vertices[static_cast<std::size_t>(corner[k])];
-      const bool valid = models::to_window(v.position, draw_->viewport, frame_.precision.subpixel_bits, window.vertices[k]);
+      const bool valid =
+          models::to_window(v.position, draw_->viewport, frame_.precision.subpixel_bits, window.vertices[k]);
       QUADRILLE_CHECK(valid, "a clipped vertex of draw {} has no window position", warp_.draw);
       window.weights[k] = {v.b1, v.b2};
     }
@@ -172,7 +185,8 @@ class FunctionalRenderer {
     models::TileWalk walk(setup);
     models::TileHit tile;
     while (walk.next(tile)) {
-      std::uint64_t coverage = tile.fully_covered ? ~std::uint64_t{0} : models::tile_coverage(setup, tile.tile_x, tile.tile_y);
+      std::uint64_t coverage =
+          tile.fully_covered ? ~std::uint64_t{0} : models::tile_coverage(setup, tile.tile_x, tile.tile_y);
       counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
       if (draw_->depth_test && !draw_->late_depth) coverage = test_tile(setup, tile, coverage);
       for (std::uint32_t quads = models::quads_of(coverage); quads != 0; quads &= quads - 1)
@@ -181,11 +195,13 @@ class FunctionalRenderer {
   }
 
   float* depths(std::int32_t tile_x, std::int32_t tile_y) {
-    const std::uint64_t address = pass_->depth.tile_address(static_cast<std::uint32_t>(tile_x), static_cast<std::uint32_t>(tile_y));
+    const std::uint64_t address =
+        pass_->depth.tile_address(static_cast<std::uint32_t>(tile_x), static_cast<std::uint32_t>(tile_y));
     return reinterpret_cast<float*>(memory_.write(address, models::kTileBytes).data());
   }
 
-  std::uint64_t test_tile(const models::TriangleSetup& setup, const models::TileHit& tile, std::uint64_t coverage) {
+  std::uint64_t test_tile(const models::TriangleSetup& setup, const models::TileHit& tile,
+                          std::uint64_t coverage) {
     alignas(32) float incoming[models::kTilePixels];
     models::tile_depths(setup, tile.tile_x, tile.tile_y, incoming);
     float* const stored = depths(tile.tile_x, tile.tile_y);
@@ -199,8 +215,9 @@ class FunctionalRenderer {
     if (warp_.quads == models::kWarpQuads) shade();
     const auto lanes = static_cast<std::uint32_t>(coverage >> (4 * q)) & 0xfu;
     warp_.covered |= lanes << (4 * warp_.quads);
-    warp_.quad[static_cast<std::size_t>(warp_.quads++)] = {sequence_, static_cast<std::uint16_t>(8 * tile.tile_x + 2 * (q & 3)),
-                                                           static_cast<std::uint16_t>(8 * tile.tile_y + 2 * (q >> 2))};
+    warp_.quad[static_cast<std::size_t>(warp_.quads++)] = {
+        sequence_, static_cast<std::uint16_t>(8 * tile.tile_x + 2 * (q & 3)),
+        static_cast<std::uint16_t>(8 * tile.tile_y + 2 * (q >> 2))};
   }
 
   void shade() {
@@ -209,8 +226,9 @@ class FunctionalRenderer {
     counts_.fragments_shaded += live;
     counts_.helper_lanes += 4 * static_cast<std::uint64_t>(warp_.quads) - live;
     hw::fill_fragment_inputs(warp_, triangles_, inputs_);
-    const models::LaneMask lanes =
-        warp_.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * warp_.quads)) - 1;
+    const models::LaneMask lanes = warp_.quads == models::kWarpQuads
+                                       ? ~models::LaneMask{0}
+                                       : (models::LaneMask{1} << (4 * warp_.quads)) - 1;
     engine_.vertex = nullptr;
     engine_.fragment = &inputs_;
     engine_.outputs = outputs_.data();
@@ -233,10 +251,11 @@ class FunctionalRenderer {
     counts_.fragments_written += static_cast<std::uint64_t>(std::popcount(lanes));
     float rgba[4][4];
     for (std::size_t c = 0; c < 4; ++c) {
-      for (std::size_t i = 0; i < 4; ++i) rgba[c][i] = std::bit_cast<float>(outputs_[c][static_cast<std::size_t>(4 * q) + i]);
+      for (std::size_t i = 0; i < 4; ++i)
+        rgba[c][i] = std::bit_cast<float>(outputs_[c][static_cast<std::size_t>(4 * q) + i]);
     }
-    auto* const tile =
-        reinterpret_cast<std::uint32_t*>(memory_.write(pass_->color.tile_address(quad.x / 8u, quad.y / 8u), models::kTileBytes).data());
+    auto* const tile = reinterpret_cast<std::uint32_t*>(
+        memory_.write(pass_->color.tile_address(quad.x / 8u, quad.y / 8u), models::kTileBytes).data());
     models::blend_quad(draw_->blend, pass_->color_format, rgba, tile + 4 * place, lanes);
   }
 
@@ -245,10 +264,12 @@ class FunctionalRenderer {
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t lane = static_cast<std::size_t>(4 * q) + i;
       incoming[static_cast<std::size_t>(4 * place) + i] =
-          draw_->fragment_program->writes_depth ? std::bit_cast<float>(outputs_[models::kDepthOutput][lane]) : inputs_.z[lane];
+          draw_->fragment_program->writes_depth ? std::bit_cast<float>(outputs_[models::kDepthOutput][lane])
+                                                : inputs_.z[lane];
     }
     float* const stored = depths(quad.x / 8, quad.y / 8);
-    const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, std::uint64_t{lanes} << (4 * place));
+    const std::uint64_t survivors =
+        models::depth_test(draw_->depth_compare, stored, incoming, std::uint64_t{lanes} << (4 * place));
     if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
     const std::uint32_t left = static_cast<std::uint32_t>(survivors >> (4 * place)) & 0xf;
     counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(lanes & ~left));
@@ -274,7 +295,8 @@ class FunctionalRenderer {
 
 }  // namespace
 
-FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory, const TriangleObserver& observer) {
+FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory,
+                                   const TriangleObserver& observer) {
   return FunctionalRenderer(frame, memory, observer).run();
 }
 

@@ -1,5 +1,5 @@
-/// Functional rendering: the machine's values without its time. The same models in API order, one warp after another; also the yardstick that every
-/// timed run must equal, bit for bit.
+/// Functional rendering: the machine's values without its time. The same models in API order, one warp after
+/// another; also the yardstick that every timed run must equal, bit for bit.
 #pragma once
 
 #include "hw/frame/frame.h"
@@ -26,6 +26,7 @@ struct RasterizedTriangle {
 using TriangleObserver = std::function<void(const RasterizedTriangle&)>;
 
 /// Renders all passes of the frame into its surfaces in `memory`.
-FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory, const TriangleObserver& observer = {});
+FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory,
+                                   const TriangleObserver& observer = {});
 
 }  // namespace quadrille::pipeline

@@ -45,9 +45,10 @@ Machine::Machine(const MachineConfig& config, DeviceFrame& frame, const MachineO
   for (hw::Unit* unit : driver_->units()) unit->set_quiet_log(quiet_);
 }
 
-// SystemC searches for what is destroyed: for a port from the latest to the first, for a link from the first object on, and puts the last one in its place. In
-// other orders than these (ports backwards; two links, in whose places come SystemC's process and the last link, then backwards from that) the search takes
-// longer than the run of a wide machine.
+// SystemC searches for what is destroyed: for a port from the latest to the first, for a link from the first
+// object on, and puts the last one in its place. In other orders than these (ports backwards; two links, in
+// whose places come SystemC's process and the last link, then backwards from that) the search takes longer
+// than the run of a wide machine.
 Machine::~Machine() {
   const auto destroy_last_first = [](auto& made) {
     while (!made.empty()) made.pop_back();
@@ -63,9 +64,11 @@ Machine::Stores::Stores(const MachineConfig& config)
       pieces(static_cast<std::size_t>(config.link.clipper_to_setup.depth.value()) + 2),
       triangles(static_cast<std::size_t>(config.triangle_setup.triangle_slots.value()) + 1) {
   for (int p = 0; p < config.gpu.partitions; ++p)
-    warps.push_back(std::make_unique<hw::Store<hw::WarpSlot>>(static_cast<std::size_t>(config.warp_packer.warp_slots.value())));
+    warps.push_back(std::make_unique<hw::Store<hw::WarpSlot>>(
+        static_cast<std::size_t>(config.warp_packer.warp_slots.value())));
   for (int c = 0; c < config.gpu.cores; ++c)
-    cores.push_back(std::make_unique<hw::Store<hw::CoreSlot>>(static_cast<std::size_t>(config.core.warp_slots.value())));
+    cores.push_back(
+        std::make_unique<hw::Store<hw::CoreSlot>>(static_cast<std::size_t>(config.core.warp_slots.value())));
 }
 
 void Machine::check_registers() const {
@@ -76,7 +79,8 @@ void Machine::check_registers() const {
   }
   if (vertex + fragment > config_.core.register_rows) {
     throw user_error(
-        "machine: core.register_rows ({}) cannot hold one vertex warp ({} registers) and one fragment warp ({}); at least {} are needed",
+        "machine: core.register_rows ({}) cannot hold one vertex warp ({} registers) and one fragment warp "
+        "({}); at least {} are needed",
         config_.core.register_rows.value(), vertex, fragment, vertex + fragment);
   }
 }
@@ -85,18 +89,22 @@ void Machine::leave_out(bool wanted) {
   const int cores = config_.gpu.cores, partitions = config_.gpu.partitions, channels = config_.gpu.channels;
   textured_ = frame_.reads_textures() || !wanted;
   if (!textured_)
-    left_out_.push_back({"texture units", "no program of a draw reads a texture", fmt::format("{} units and their caches", cores)});
+    left_out_.push_back({"texture units", "no program of a draw reads a texture",
+                         fmt::format("{} units and their caches", cores)});
   depth_memory_ = frame_.tests_depth() || !wanted;
   if (!depth_memory_) {
     left_out_.push_back({"depth units' links to memory", "no draw tests depth",
-                         fmt::format("{} links, and their places in the arbiters of {} L2 slices", 2 * partitions * channels, channels)});
+                         fmt::format("{} links, and their places in the arbiters of {} L2 slices",
+                                     2 * partitions * channels, channels)});
   }
-  if (!frame_.blends()) left_out_.push_back({"blending", "no draw combines with the old colour", "reading colours back"});
+  if (!frame_.blends())
+    left_out_.push_back({"blending", "no draw combines with the old colour", "reading colours back"});
 }
 
 void Machine::list_clients() {
   clients_ = {{"vertex_fetch", hw::MemoryClient::kVertexFetch}};
-  for (int c = 0; textured_ && c < config_.gpu.cores; ++c) clients_.push_back({fmt::format("texture_{}", c), hw::MemoryClient::kTexture});
+  for (int c = 0; textured_ && c < config_.gpu.cores; ++c)
+    clients_.push_back({fmt::format("texture_{}", c), hw::MemoryClient::kTexture});
   for (int p = 0; p < config_.gpu.partitions; ++p) {
     if (depth_memory_) clients_.push_back({fmt::format("depth_{}", p), hw::MemoryClient::kDepth});
     clients_.push_back({fmt::format("rop_{}", p), hw::MemoryClient::kColor});
@@ -126,7 +134,8 @@ void Machine::create_units(std::uint64_t order) {
         makers.emplace_back([&maker, &of_kind, i, stands] {
           const std::string name(UnitKind<Unit>::name);
           std::unique_ptr<Unit> made =
-              maker.make(std::type_identity<Unit>(), (stands == Stands::kOnce ? name : fmt::format("{}_{}", name, i)).c_str(), i);
+              maker.make(std::type_identity<Unit>(),
+                         (stands == Stands::kOnce ? name : fmt::format("{}_{}", name, i)).c_str(), i);
           of_kind[static_cast<std::size_t>(i)] = made.get();
           return made;
         });
@@ -144,7 +153,8 @@ void Machine::run(const hw::RunLimits& limits) {
   const hw::RunEnd reason = driver_->run(limits);
   if (!one<hw::CommandProcessor>().finished()) {
     if (reason == hw::RunEnd::kTimeLimit) {
-      throw UserError(fmt::format("the limit of {} cycles was reached before the frame was done; {}", clock_.edges_before(limits.max_time),
+      throw UserError(fmt::format("the limit of {} cycles was reached before the frame was done; {}",
+                                  clock_.edges_before(limits.max_time),
                                   hw::waiting_report(driver_->units(), limits.max_time)));
     }
     // Tables of who waits for whom are the only errors of many lines.

@@ -1,6 +1,8 @@
-/// The machine: elaborates the units and links that a configuration and a frame ask for, runs them, and keeps them for the figures.
+/// The machine: elaborates the units and links that a configuration and a frame ask for, runs them, and keeps
+/// them for the figures.
 ///
-/// One machine per process: SystemC elaborates once. Names of units are their paths in figures (`gpu.core_0.texture`).
+/// One machine per process: SystemC elaborates once. Names of units are their paths in figures
+/// (`gpu.core_0.texture`).
 #pragma once
 
 #include "hw/base/driver.h"
@@ -19,10 +21,12 @@ enum class DriverKind : std::uint8_t { kDispatcher, kNative };
 
 struct MachineOptions {
   DriverKind driver = DriverKind::kDispatcher;
-  hw::Tick window = 0;             ///< extra look-ahead of the dispatcher; 0 is exact
-  std::uint64_t module_order = 0;  ///< seed: in which order modules are created and handed to the driver; figures must not depend on it
-  bool leave_out = true;           ///< do not build what the frame does not need
-  hw::Driver* external_driver = nullptr;  ///< add the units to this driver instead of an own one; its owner runs it
+  hw::Tick window = 0;  ///< extra look-ahead of the dispatcher; 0 is exact
+  /// seed: in which order modules are created and handed to the driver; figures must not depend on it
+  std::uint64_t module_order = 0;
+  bool leave_out = true;  ///< do not build what the frame does not need
+  /// add the units to this driver instead of an own one; its owner runs it
+  hw::Driver* external_driver = nullptr;
 };
 
 class Machine {
@@ -83,7 +87,8 @@ class Machine {
   hw::QuietLog quiet_;
   std::vector<LeftOut> left_out_;
   bool textured_ = true, depth_memory_ = true;  ///< texture units are built; depth units are linked to memory
-  std::vector<hw::L2Slice::Client> clients_;    ///< of the L2 slices: names of units, in the order of their ports
+  /// of the L2 slices: names of units, in the order of their ports
+  std::vector<hw::L2Slice::Client> clients_;
   std::unique_ptr<hw::Driver> own_driver_;
   hw::Driver* driver_ = nullptr;
   Stores stores_;

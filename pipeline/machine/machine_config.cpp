@@ -47,8 +47,10 @@ std::string MachineConfig::title() const {
   std::string text = name == base_ ? name : fmt::format("{}: {}", one_line(name), base_);
   const std::vector<Change> changed = changes();
   for (std::size_t i = 0; i < std::min(changed.size(), kMaxListed); ++i)
-    text += fmt::format("{}{}={} ({})", i == 0 ? " with " : ", ", changed[i].path, changed[i].value, changed[i].base_value);
-  return changed.size() > kMaxListed ? fmt::format("{} and {} more", text, changed.size() - kMaxListed) : text;
+    text += fmt::format("{}{}={} ({})", i == 0 ? " with " : ", ", changed[i].path, changed[i].value,
+                        changed[i].base_value);
+  return changed.size() > kMaxListed ? fmt::format("{} and {} more", text, changed.size() - kMaxListed)
+                                     : text;
 }
 
 namespace {
@@ -64,7 +66,8 @@ std::string legal_groups(const std::vector<std::pair<std::string, hw::ParamGroup
 
 std::string legal_parameters(const hw::ParamGroup& group) {
   std::string legal;
-  for (const hw::ParamBase* p : group.params()) legal += fmt::format("{}{}", legal.empty() ? "" : ", ", p->name());
+  for (const hw::ParamBase* p : group.params())
+    legal += fmt::format("{}{}", legal.empty() ? "" : ", ", p->name());
   return legal;
 }
 
@@ -80,7 +83,8 @@ std::vector<std::string> MachineConfig::paths() const {
 
 const hw::ParamBase* MachineConfig::find(std::string_view key) const {
   const std::size_t dot = std::min(key.rfind('.'), key.size());
-  const auto group = std::ranges::find(groups_, key.substr(0, dot), [](const auto& g) { return std::string_view(g.first); });
+  const auto group =
+      std::ranges::find(groups_, key.substr(0, dot), [](const auto& g) { return std::string_view(g.first); });
   return group == groups_.end() || dot == key.size() ? nullptr : group->second->find(key.substr(dot + 1));
 }
 
@@ -91,8 +95,10 @@ void MachineConfig::assign(std::string_view key, std::string_view value, std::st
   hw::ParamBase* const param = group == groups_.end() ? nullptr : group->second->find(key.substr(dot + 1));
   if (param == nullptr) {
     const bool known = group != groups_.end();
-    throw user_error("{}: unknown key '{}'; {}: {}{}", where, key, known ? fmt::format("parameters of {}", group_name) : "groups",
-                     known ? legal_parameters(*group->second) : legal_groups(groups_), did_you_mean(key, paths()));
+    throw user_error("{}: unknown key '{}'; {}: {}{}", where, key,
+                     known ? fmt::format("parameters of {}", group_name) : "groups",
+                     known ? legal_parameters(*group->second) : legal_groups(groups_),
+                     did_you_mean(key, paths()));
   }
   try {
     param->parse(value);
@@ -111,30 +117,37 @@ void MachineConfig::set(std::string_view key, std::string_view value, std::strin
 void MachineConfig::check_memory() const {
   const hw::MemoryChannel::Params& m = memory;
   if (m.banks % m.bank_groups != 0)
-    throw user_error("machine: memory.banks ({}) is not a multiple of memory.bank_groups ({})", m.banks.value(), m.bank_groups.value());
+    throw user_error("machine: memory.banks ({}) is not a multiple of memory.bank_groups ({})",
+                     m.banks.value(), m.bank_groups.value());
   if (m.burst_bytes != 32 && m.burst_bytes != 64 && m.burst_bytes != 128)
     throw user_error("machine: memory.burst_bytes ({}) is none of 32, 64 and 128", m.burst_bytes.value());
-  if (m.row_bytes % 128 != 0) throw user_error("machine: memory.row_bytes ({}) is not a multiple of 128, a line", m.row_bytes.value());
+  if (m.row_bytes % 128 != 0)
+    throw user_error("machine: memory.row_bytes ({}) is not a multiple of 128, a line", m.row_bytes.value());
   if (m.write_low >= m.write_high)
-    throw user_error("machine: memory.write_low ({}) is not below memory.write_high ({})", m.write_low.value(), m.write_high.value());
+    throw user_error("machine: memory.write_low ({}) is not below memory.write_high ({})",
+                     m.write_low.value(), m.write_high.value());
   if (m.refresh == models::DramRefresh::kAllBank && m.t_refi < 2 * m.t_rfc)
-    throw user_error("machine: memory.t_rfc ({}) is more than half of memory.t_refi ({}): refresh leaves too little time", m.t_rfc.value(),
-                     m.t_refi.value());
+    throw user_error(
+        "machine: memory.t_rfc ({}) is more than half of memory.t_refi ({}): refresh leaves too little time",
+        m.t_rfc.value(), m.t_refi.value());
 }
 
 void MachineConfig::check() const {
-  // The slower clock's cycle is many of the faster one's, and each costs the simulation time: refreshes, for example.
+  // The slower clock's cycle is many of the faster one's, and each costs the simulation time: refreshes, for
+  // example.
   constexpr double kFarthestClocks = 1e4;
   const double ratio = gpu.clock_mhz / gpu.memory_mhz;
   if (ratio > kFarthestClocks || ratio < 1 / kFarthestClocks)
-    throw user_error("machine: gpu.clock_mhz ({}) and gpu.memory_mhz ({}) are more than {:.0f} times apart", gpu.clock_mhz.value(),
-                     gpu.memory_mhz.value(), kFarthestClocks);
+    throw user_error("machine: gpu.clock_mhz ({}) and gpu.memory_mhz ({}) are more than {:.0f} times apart",
+                     gpu.clock_mhz.value(), gpu.memory_mhz.value(), kFarthestClocks);
   check_memory();
   const auto cache = [](std::string_view path, int lines, int ways) {
     if (lines % ways == 0) return;  // whole sets
     const int fewer = lines - lines % ways, more = fewer + ways;
-    throw user_error("machine: {0}.cache_lines ({1}) is not a multiple of {0}.cache_ways ({2}): it can be {3}, or give it other ways", path,
-                     lines, ways, fewer > 0 ? fmt::format("{} or {}", fewer, more) : fmt::format("{}", more));
+    throw user_error(
+        "machine: {0}.cache_lines ({1}) is not a multiple of {0}.cache_ways ({2}): it can be {3}, or give it "
+        "other ways",
+        path, lines, ways, fewer > 0 ? fmt::format("{} or {}", fewer, more) : fmt::format("{}", more));
   };
   cache("vertex_fetch", vertex_fetch.cache_lines, vertex_fetch.cache_ways);
   cache("texture", texture.cache_lines, texture.cache_ways);

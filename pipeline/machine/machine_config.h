@@ -1,10 +1,12 @@
-/// A machine: every parameter of every unit and link, by path. Loaded from TOML, changed by `--set`, printed by `quadrille describe`.
+/// A machine: every parameter of every unit and link, by path. Loaded from TOML, changed by `--set`, printed
+/// by `quadrille describe`.
 ///
-/// Paths are `group.parameter`: `gpu.cores`, `coarse_raster.tests_per_clk`, `link.coarse_to_fine.depth`. An unknown key or an illegal value is an error that
-/// names the file, the line, the key and the legal values.
+/// Paths are `group.parameter`: `gpu.cores`, `coarse_raster.tests_per_clk`, `link.coarse_to_fine.depth`. An
+/// unknown key or an illegal value is an error that names the file, the line, the key and the legal values.
 ///
-/// Machines come in layers: a file may name another machine as its `base` and say only what differs, and `--set` is a layer more. A machine therefore knows the
-/// one it was made from, the last that came with the program, and what was changed since.
+/// Machines come in layers: a file may name another machine as its `base` and say only what differs, and
+/// `--set` is a layer more. A machine therefore knows the one it was made from, the last that came with the
+/// program, and what was changed since.
 #pragma once
 
 #include "pipeline/machine/machine_plan.h"
@@ -20,7 +22,9 @@ namespace quadrille::pipeline {
 
 /// The whole: how many of each unit, clocks, widths.
 struct GpuParams : hw::ParamGroup {
-  hw::Param<int> cores{*this, "cores", 4, "core", {1, 64}, "Shader cores, each with a texture unit. [G: a small integrated GPU]"};
+  hw::Param<int> cores{*this,   "cores",
+                       4,       "core",
+                       {1, 64}, "Shader cores, each with a texture unit. [G: a small integrated GPU]"};
   hw::Param<int> partitions{*this,
                             "partitions",
                             2,
@@ -28,11 +32,19 @@ struct GpuParams : hw::ParamGroup {
                             {1, 64},
                             "Screen partitions, each with a depth unit, a warp packer and a ROP. [G]",
                             hw::Effect::kTradeOff};
-  hw::Param<int> channels{*this, "channels", 2, "channel", {1, 64}, "Memory channels, each with an L2 slice. [G]"};
-  hw::Param<double> clock_mhz{
-      *this, "clock_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of everything but the memory channels. [G]", hw::Effect::kTradeOff};
-  hw::Param<double> memory_mhz{*this, "memory_mhz", 1000, "MHz", {0.001, 1e6}, "Clock of the memory channels. [G]"};
-  hw::Param<int> memory_mib{*this, "memory_mib", 4096, "MiB", {1, 16384}, "Device memory. [G]", hw::Effect::kNeutral};
+  hw::Param<int> channels{*this,     "channels", 2,
+                          "channel", {1, 64},    "Memory channels, each with an L2 slice. [G]"};
+  hw::Param<double> clock_mhz{*this,
+                              "clock_mhz",
+                              1000,
+                              "MHz",
+                              {0.001, 1e6},
+                              "Clock of everything but the memory channels. [G]",
+                              hw::Effect::kTradeOff};
+  hw::Param<double> memory_mhz{*this, "memory_mhz", 1000,
+                               "MHz", {0.001, 1e6}, "Clock of the memory channels. [G]"};
+  hw::Param<int> memory_mib{
+      *this, "memory_mib", 4096, "MiB", {1, 16384}, "Device memory. [G]", hw::Effect::kNeutral};
   hw::Param<int> subpixel_bits{*this,
                                "subpixel_bits",
                                8,
@@ -54,23 +66,32 @@ struct GpuParams : hw::ParamGroup {
                           {1, 8},
                           "Fractional bits of the level of detail. [VK1.3 limit mipmapPrecisionBits]",
                           hw::Effect::kPicture};
-  hw::Param<bool> linear_log2{*this,
-                              "linear_log2",
-                              false,
-                              "",
-                              "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]",
-                              hw::Effect::kPicture};
+  hw::Param<bool> linear_log2{
+      *this,
+      "linear_log2",
+      false,
+      "",
+      "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]",
+      hw::Effect::kPicture};
 };
 
-/// How many tokens the producer of a link can have for it: what that does not reach, more depth or width does nothing.
+/// How many tokens the producer of a link can have for it: what that does not reach, more depth or width does
+/// nothing.
 enum class LinkFlow : std::uint8_t { kSeveralACycle, kOneACycle, kOneAPass };
 
 /// One class of links. Full rate needs depth >= width * (latency + credit_latency).
 struct LinkParams : hw::ParamGroup {
   /// `link_name` has to live as long.
-  LinkParams(std::string_view link_name, int depth_default, int width_default, int latency_default, LinkFlow flow)
+  LinkParams(std::string_view link_name, int depth_default, int width_default, int latency_default,
+             LinkFlow flow)
       : name(link_name),
-        depth{*this, "depth", depth_default, "token", {1, 1 << 20}, "Tokens the link holds.", unless_one_a_pass(flow, hw::Effect::kFaster)},
+        depth{*this,
+              "depth",
+              depth_default,
+              "token",
+              {1, 1 << 20},
+              "Tokens the link holds.",
+              unless_one_a_pass(flow, hw::Effect::kFaster)},
         width{*this,
               "width",
               width_default,
@@ -78,7 +99,13 @@ struct LinkParams : hw::ParamGroup {
               {1, 64},
               "Tokens a cycle.",
               flow == LinkFlow::kSeveralACycle ? hw::Effect::kFaster : hw::Effect::kNeutral},
-        latency{*this, "latency", latency_default, "clk", {1, 1 << 24}, "Cycles from push to visibility.", hw::Effect::kSlower},
+        latency{*this,
+                "latency",
+                latency_default,
+                "clk",
+                {1, 1 << 24},
+                "Cycles from push to visibility.",
+                hw::Effect::kSlower},
         credit_latency{*this,
                        "credit_latency",
                        1,
@@ -97,7 +124,8 @@ struct LinkParams : hw::ParamGroup {
 };
 
 struct Links {
-#define QUADRILLE_LINK(name, depth, width, latency, flow) LinkParams name{#name, depth, width, latency, LinkFlow::flow};
+#define QUADRILLE_LINK(name, depth, width, latency, flow) \
+  LinkParams name{#name, depth, width, latency, LinkFlow::flow};
   QUADRILLE_LINKS(QUADRILLE_LINK)
 #undef QUADRILLE_LINK
 };
@@ -114,35 +142,41 @@ class MachineConfig {
 #undef QUADRILLE_PARAMS
   Links link;
 
-  std::string name = "default";  ///< what reports call it: the name of the machine that comes with the program, or of its file
+  /// what reports call it: the name of the machine that comes with the program, or of its file
+  std::string name = "default";
 
   /// A parameter whose value differs from that of the base.
   struct Change {
     std::string path, value, base_value;
   };
-  /// The machine this one was made from: one that comes with the program; "default" where no file names another.
+  /// The machine this one was made from: one that comes with the program; "default" where no file names
+  /// another.
   [[nodiscard]] const std::string& base() const { return base_; }
   /// What was changed since, in the order of `groups()`.
   [[nodiscard]] std::vector<Change> changes() const;
   /// From here on, this is the base called `name`.
   void become_base(const std::string& name);
-  /// In a line: "large", "large with gpu.cores=8 (16)", "mine.toml: large with gpu.cores=8 (16) and 12 more". In brackets is what the base has.
+  /// In a line: "large", "large with gpu.cores=8 (16)", "mine.toml: large with gpu.cores=8 (16) and 12 more".
+  /// In brackets is what the base has.
   [[nodiscard]] std::string title() const;
 
   /// Every group with its path, in the order of the pipeline.
   [[nodiscard]] const std::vector<std::pair<std::string, hw::ParamGroup*>>& groups() const { return groups_; }
   /// `group.parameter` of every parameter.
   [[nodiscard]] std::vector<std::string> paths() const;
-  /// What is set from here on belongs together: a file, or all of `--set`. Within a layer the order does not matter in which `memory.kind` and what it stands for
-  /// are set.
+  /// What is set from here on belongs together: a file, or all of `--set`. Within a layer the order does not
+  /// matter in which `memory.kind` and what it stands for are set.
   void begin_layer() { given_.clear(); }
   /// The parameter of that name; null if there is none.
   [[nodiscard]] const hw::ParamBase* find(std::string_view key) const;
-  /// Sets `group.parameter` from text; `memory.kind` also what its data file holds and this layer does not set. Throws `UserError` with the key and what is legal; `where` leads it.
+  /// Sets `group.parameter` from text; `memory.kind` also what its data file holds and this layer does not
+  /// set. Throws `UserError` with the key and what is legal; `where` leads it.
   void set(std::string_view key, std::string_view value, std::string_view where);
   /// Checks that hold between parameters.
   void check() const;
-  [[nodiscard]] models::Precision precision() const { return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2}; }
+  [[nodiscard]] models::Precision precision() const {
+    return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2};
+  }
 
  private:
   [[nodiscard]] std::vector<std::string> values() const;
@@ -155,18 +189,22 @@ class MachineConfig {
   std::vector<std::string> base_values_;      ///< of every parameter, in the order of `groups_`
 };
 
-/// Applies a machine: a path ending in .toml, or the name of one in configs/. Its base, and the base of that, are applied before it. Throws `UserError`.
+/// Applies a machine: a path ending in .toml, or the name of one in configs/. Its base, and the base of that,
+/// are applied before it. Throws `UserError`.
 void load_machine(MachineConfig& config, const std::string& name_or_path);
-/// Applies the text of a machine file (TOML); `file` is its name in errors, and a base that is a path is looked for beside it. Throws `UserError` with file and line.
+/// Applies the text of a machine file (TOML); `file` is its name in errors, and a base that is a path is
+/// looked for beside it. Throws `UserError` with file and line.
 void apply_machine_text(MachineConfig& config, std::string_view text, const std::string& file);
-/// What a kind of memory stands for: keys and values of its data file, `gpu.memory_mhz` among them. Throws `UserError`.
+/// What a kind of memory stands for: keys and values of its data file, `gpu.memory_mhz` among them. Throws
+/// `UserError`.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> memory_kind_values(const std::string& kind);
 /// Names of the machines that come with the program.
 [[nodiscard]] std::vector<std::string> machine_names();
 
 /// Parameters of a group, by its path.
 using DescribedGroup = std::pair<std::string, std::vector<const hw::ParamBase*>>;
-/// Them as the text of a machine file: each with its value, and a comment with unit, legal values and reason. Read back, they give the same values.
+/// Them as the text of a machine file: each with its value, and a comment with unit, legal values and reason.
+/// Read back, they give the same values.
 [[nodiscard]] std::string machine_toml(const std::vector<DescribedGroup>& groups);
 
 }  // namespace quadrille::pipeline

@@ -16,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 20;
-constexpr std::size_t kMaxLineBytes = 1000;  // bounds how deep a dotted key can nest tables, which are walked and freed by recursion
+// bounds how deep a dotted key can nest tables, which are walked and freed by recursion
+constexpr std::size_t kMaxLineBytes = 1000;
 
 /// Folders that may hold the machines that come with the program, the likeliest first.
 std::vector<fs::path> config_folders() {
@@ -33,7 +34,8 @@ void check_lines(std::string_view text, const std::string& file) {
   for (std::size_t i = 0; i <= text.size(); ++i) {
     if (i < text.size() && text[i] != '\n') continue;
     if (i - begin > kMaxLineBytes)
-      throw user_error("{}:{}: the line has {} bytes; at most {} are read", file, line, i - begin, kMaxLineBytes);
+      throw user_error("{}:{}: the line has {} bytes; at most {} are read", file, line, i - begin,
+                       kMaxLineBytes);
     begin = i + 1;
     ++line;
   }
@@ -51,7 +53,8 @@ std::string value_text(const toml::node& node, bool word, const std::string& whe
   throw user_error("{}: {}: a number or true/false is expected", where, key);
 }
 
-/// Files and names that are being applied, the outermost first: a machine among its own bases would never end.
+/// Files and names that are being applied, the outermost first: a machine among its own bases would never
+/// end.
 struct Layers {
   std::vector<std::string> places;  ///< canonical paths
   std::vector<std::string> names;   ///< as they were given
@@ -60,26 +63,33 @@ struct Layers {
 void load_layer(MachineConfig& config, const std::string& name_or_path, const Layers& above);
 
 /// Applies the machine that a file names as its base; a path is seen from the file.
-void apply_base(MachineConfig& config, const toml::node& node, const std::string& file, const Layers& layers) {
+void apply_base(MachineConfig& config, const toml::node& node, const std::string& file,
+                const Layers& layers) {
   const std::string where = fmt::format("{}:{}: base", file, node.source().begin.line);
   const auto base = node.value<std::string>();
-  if (!base) throw user_error("{}: the name of a machine or the path of a .toml file is expected, as in base = \"large\"", where);
+  if (!base)
+    throw user_error(
+        "{}: the name of a machine or the path of a .toml file is expected, as in base = \"large\"", where);
   const bool is_path = fs::path(*base).extension() == ".toml";
   try {
     load_layer(config, is_path ? (fs::path(file).parent_path() / *base).string() : *base, layers);
   } catch (const UserError& e) { throw user_error("{}: {}", where, e.what()); }
 }
 
-void apply(MachineConfig& config, const toml::table& table, const std::string& prefix, const std::string& file) {
+void apply(MachineConfig& config, const toml::table& table, const std::string& prefix,
+           const std::string& file) {
   for (const auto& [name, node] : table) {
     const std::string key = prefix.empty() ? std::string(name.str()) : prefix + "." + std::string(name.str());
     const std::string where = fmt::format("{}:{}", file, node.source().begin.line);
     if (const toml::table* inner = node.as_table()) {
-      const auto is_group = [&](const auto& group) { return group.first == key || group.first.starts_with(key + "."); };
+      const auto is_group = [&](const auto& group) {
+        return group.first == key || group.first.starts_with(key + ".");
+      };
       if (std::ranges::none_of(config.groups(), is_group)) {
         std::vector<std::string> names;
         for (const auto& [path, group] : config.groups()) names.push_back(path);
-        throw user_error("{}: unknown group '{}'; `quadrille describe` lists them{}", where, key, did_you_mean(key, names));
+        throw user_error("{}: unknown group '{}'; `quadrille describe` lists them{}", where, key,
+                         did_you_mean(key, names));
       }
       apply(config, *inner, key, file);
     } else if (key == "name") {
@@ -91,7 +101,8 @@ void apply(MachineConfig& config, const toml::table& table, const std::string& p
     } else if (prefix.empty()) {
       std::vector<std::string> names = config.paths();
       names.insert(names.end(), {"name", "base"});
-      throw user_error("{}: unknown key '{}'; outside of groups there are name and base{}", where, key, did_you_mean(key, names));
+      throw user_error("{}: unknown key '{}'; outside of groups there are name and base{}", where, key,
+                       did_you_mean(key, names));
     } else {
       const hw::ParamBase* const param = config.find(key);
       config.set(key, value_text(node, param != nullptr && param->is_word(), where, key), where);
@@ -99,8 +110,10 @@ void apply(MachineConfig& config, const toml::table& table, const std::string& p
   }
 }
 
-/// Applies a file and what it is based on. What must hold between parameters is checked later: a layer above may mend it.
-void apply_layers(MachineConfig& config, std::string_view text, const std::string& file, const Layers& layers) {
+/// Applies a file and what it is based on. What must hold between parameters is checked later: a layer above
+/// may mend it.
+void apply_layers(MachineConfig& config, std::string_view text, const std::string& file,
+                  const Layers& layers) {
   check_lines(text, file);
   try {
     const toml::table table = toml::parse(text, file);
@@ -108,7 +121,9 @@ void apply_layers(MachineConfig& config, std::string_view text, const std::strin
     config.name = fs::path(file).filename().string();  // unless it says another
     config.begin_layer();
     apply(config, table, "", file);
-  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", file, e.source().begin.line, e.description()); }
+  } catch (const toml::parse_error& e) {
+    throw user_error("{}:{}: {}", file, e.source().begin.line, e.description());
+  }
 }
 
 /// The file of a machine that comes with the program. Throws `UserError` when there is none of that name.
@@ -118,8 +133,8 @@ fs::path file_of_machine(const std::string& name) {
     if (name.find('/') == std::string::npos && fs::exists(file)) return file;
   }
   const std::vector<std::string> names = machine_names();
-  throw user_error("machine '{}' is unknown; machines: {}; or give a path that ends in .toml{}", name, fmt::join(names, ", "),
-                   did_you_mean(name, names));
+  throw user_error("machine '{}' is unknown; machines: {}; or give a path that ends in .toml{}", name,
+                   fmt::join(names, ", "), did_you_mean(name, names));
 }
 
 /// The data file of a kind of memory.
@@ -128,7 +143,8 @@ fs::path file_of_memory(const std::string& kind) {
     fs::path file = folder / "memory" / (kind + ".toml");
     if (fs::exists(file)) return file;
   }
-  throw user_error("memory '{}': no file memory/{}.toml beside the machines that come with the program", kind, kind);
+  throw user_error("memory '{}': no file memory/{}.toml beside the machines that come with the program", kind,
+                   kind);
 }
 
 void load_layer(MachineConfig& config, const std::string& name_or_path, const Layers& above) {
@@ -142,7 +158,8 @@ void load_layer(MachineConfig& config, const std::string& name_or_path, const La
   if (std::ranges::find(above.places, layers.places.back()) != above.places.end())
     throw user_error("the bases of machines go in a circle: {}", fmt::join(layers.names, " -> "));
   if (layers.names.size() > kMaxLayers)
-    throw user_error("{} machines, each the base of another; at most {} are read", layers.names.size(), kMaxLayers);
+    throw user_error("{} machines, each the base of another; at most {} are read", layers.names.size(),
+                     kMaxLayers);
   const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxFileBytes);
   apply_layers(config, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, layers);
   if (by_name) config.become_base(name_or_path);
@@ -174,14 +191,19 @@ std::vector<std::pair<std::string, std::string>> memory_kind_values(const std::s
   const std::vector<std::byte> bytes = traces::read_whole_file(file, kMaxFileBytes);
   std::vector<std::pair<std::string, std::string>> values;
   try {
-    const toml::table table = toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file);
+    const toml::table table =
+        toml::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()), file);
     const toml::table* memory = table["memory"].as_table();
     if (memory == nullptr) throw user_error("{}: has no table [memory]", file);
     for (const auto& [name, node] : *memory) {
-      const std::string key = name.str() == "clock_mhz" ? "gpu.memory_mhz" : fmt::format("memory.{}", name.str());
-      values.emplace_back(key, value_text(node, node.is_string(), fmt::format("{}:{}", file, node.source().begin.line), key));
+      const std::string key =
+          name.str() == "clock_mhz" ? "gpu.memory_mhz" : fmt::format("memory.{}", name.str());
+      values.emplace_back(
+          key, value_text(node, node.is_string(), fmt::format("{}:{}", file, node.source().begin.line), key));
     }
-  } catch (const toml::parse_error& e) { throw user_error("{}:{}: {}", file, e.source().begin.line, e.description()); }
+  } catch (const toml::parse_error& e) {
+    throw user_error("{}:{}: {}", file, e.source().begin.line, e.description());
+  }
   return values;
 }
 
@@ -201,7 +223,8 @@ std::string machine_toml(const std::vector<DescribedGroup>& groups) {
     text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", path);
     for (const hw::ParamBase* p : params) {
       const std::string unit = p->unit().empty() ? "" : fmt::format("{}, ", p->unit());
-      text += fmt::format("{} = {}  # {}{}: {}\n", p->name(), p->literal(), unit, p->legal_text(), p->reason());
+      text +=
+          fmt::format("{} = {}  # {}{}: {}\n", p->name(), p->literal(), unit, p->legal_text(), p->reason());
     }
   }
   return text;

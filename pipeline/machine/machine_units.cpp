@@ -7,56 +7,69 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-Machine::Maker::Made<hw::CommandProcessor> Machine::Maker::make(Kind<hw::CommandProcessor> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::CommandProcessor> Machine::Maker::make(Kind<hw::CommandProcessor> /*kind*/,
+                                                                const char* name, int i) const {
   return std::make_unique<hw::CommandProcessor>(name, context(i), c_.command_processor, m_.quiet_);
 }
 
-Machine::Maker::Made<hw::VertexFetch> Machine::Maker::make(Kind<hw::VertexFetch> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::VertexFetch> Machine::Maker::make(Kind<hw::VertexFetch> /*kind*/, const char* name,
+                                                           int i) const {
   return std::make_unique<hw::VertexFetch>(name, context(i), c_.vertex_fetch, s_.batches);
 }
 
-Machine::Maker::Made<hw::PrimitiveAssembly> Machine::Maker::make(Kind<hw::PrimitiveAssembly> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::PrimitiveAssembly> Machine::Maker::make(Kind<hw::PrimitiveAssembly> /*kind*/,
+                                                                 const char* name, int i) const {
   return std::make_unique<hw::PrimitiveAssembly>(name, context(i), c_.primitive_assembly, s_.batches);
 }
 
-Machine::Maker::Made<hw::Clipper> Machine::Maker::make(Kind<hw::Clipper> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::Clipper> Machine::Maker::make(Kind<hw::Clipper> /*kind*/, const char* name,
+                                                       int i) const {
   return std::make_unique<hw::Clipper>(name, context(i), c_.clipper, s_.batches, s_.pieces);
 }
 
-Machine::Maker::Made<hw::TriangleSetupUnit> Machine::Maker::make(Kind<hw::TriangleSetupUnit> /*kind*/, const char* name, int i) const {
-  return std::make_unique<hw::TriangleSetupUnit>(name, context(i), c_.triangle_setup,
-                                                 hw::TriangleSetupUnit::Stores{s_.batches, s_.pieces, s_.triangles});
+Machine::Maker::Made<hw::TriangleSetupUnit> Machine::Maker::make(Kind<hw::TriangleSetupUnit> /*kind*/,
+                                                                 const char* name, int i) const {
+  return std::make_unique<hw::TriangleSetupUnit>(
+      name, context(i), c_.triangle_setup,
+      hw::TriangleSetupUnit::Stores{s_.batches, s_.pieces, s_.triangles});
 }
 
-Machine::Maker::Made<hw::CoarseRaster> Machine::Maker::make(Kind<hw::CoarseRaster> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::CoarseRaster> Machine::Maker::make(Kind<hw::CoarseRaster> /*kind*/, const char* name,
+                                                            int i) const {
   return std::make_unique<hw::CoarseRaster>(name, context(i), c_.coarse_raster, s_.triangles);
 }
 
-Machine::Maker::Made<hw::FineRaster> Machine::Maker::make(Kind<hw::FineRaster> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::FineRaster> Machine::Maker::make(Kind<hw::FineRaster> /*kind*/, const char* name,
+                                                          int i) const {
   return std::make_unique<hw::FineRaster>(name, context(i), c_.fine_raster, s_.triangles);
 }
 
-Machine::Maker::Made<hw::DepthUnit> Machine::Maker::make(Kind<hw::DepthUnit> /*kind*/, const char* name, int i) const {
-  return std::make_unique<hw::DepthUnit>(name, m_.depth_memory_ ? context(i) : context(i).without_memory(), c_.depth, s_.triangles,
-                                         *s_.warps[at(i)]);
+Machine::Maker::Made<hw::DepthUnit> Machine::Maker::make(Kind<hw::DepthUnit> /*kind*/, const char* name,
+                                                         int i) const {
+  return std::make_unique<hw::DepthUnit>(name, m_.depth_memory_ ? context(i) : context(i).without_memory(),
+                                         c_.depth, s_.triangles, *s_.warps[at(i)]);
 }
 
-Machine::Maker::Made<hw::WarpPacker> Machine::Maker::make(Kind<hw::WarpPacker> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::WarpPacker> Machine::Maker::make(Kind<hw::WarpPacker> /*kind*/, const char* name,
+                                                          int i) const {
   return std::make_unique<hw::WarpPacker>(name, context(i), c_.warp_packer, *s_.warps[at(i)]);
 }
 
-Machine::Maker::Made<hw::WorkDistributor> Machine::Maker::make(Kind<hw::WorkDistributor> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::WorkDistributor> Machine::Maker::make(Kind<hw::WorkDistributor> /*kind*/,
+                                                               const char* name, int i) const {
   return std::make_unique<hw::WorkDistributor>(name, context(i), c_.work_distributor);
 }
 
-Machine::Maker::Made<hw::ShaderCore> Machine::Maker::make(Kind<hw::ShaderCore> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::ShaderCore> Machine::Maker::make(Kind<hw::ShaderCore> /*kind*/, const char* name,
+                                                          int i) const {
   std::vector<hw::Store<hw::WarpSlot>*> warps;
   for (const auto& of_partition : s_.warps) warps.push_back(of_partition.get());
   const hw::ShaderCore::Stores stores{*s_.cores[at(i)], s_.batches, std::move(warps), s_.triangles};
   return std::make_unique<hw::ShaderCore>(name, context(i), c_.core, stores, m_.textured_);
 }
 
-Machine::Maker::Made<hw::TextureUnit> Machine::Maker::make(Kind<hw::TextureUnit> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::TextureUnit> Machine::Maker::make(Kind<hw::TextureUnit> /*kind*/, const char* name,
+                                                           int i) const {
   return std::make_unique<hw::TextureUnit>(name, context(i), c_.texture, *s_.cores[at(i)]);
 }
 
@@ -64,15 +77,18 @@ Machine::Maker::Made<hw::Rop> Machine::Maker::make(Kind<hw::Rop> /*kind*/, const
   return std::make_unique<hw::Rop>(name, context(i), c_.rop, *s_.warps[at(i)]);
 }
 
-Machine::Maker::Made<hw::L2Slice> Machine::Maker::make(Kind<hw::L2Slice> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::L2Slice> Machine::Maker::make(Kind<hw::L2Slice> /*kind*/, const char* name,
+                                                       int i) const {
   return std::make_unique<hw::L2Slice>(name, context(i), c_.l2, m_.clients_);
 }
 
-Machine::Maker::Made<hw::MemoryChannel> Machine::Maker::make(Kind<hw::MemoryChannel> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::MemoryChannel> Machine::Maker::make(Kind<hw::MemoryChannel> /*kind*/,
+                                                             const char* name, int i) const {
   return std::make_unique<hw::MemoryChannel>(name, context(i, m_.memory_clock_), c_.memory);
 }
 
-Machine::Maker::Made<hw::ScanOut> Machine::Maker::make(Kind<hw::ScanOut> /*kind*/, const char* name, int i) const {
+Machine::Maker::Made<hw::ScanOut> Machine::Maker::make(Kind<hw::ScanOut> /*kind*/, const char* name,
+                                                       int i) const {
   return std::make_unique<hw::ScanOut>(name, context(i), c_.scan_out);
 }
 

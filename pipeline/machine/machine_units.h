@@ -16,14 +16,16 @@ class Machine::Maker {
   template <class Unit>
   using Kind = std::type_identity<Unit>;
   /// The unit called `name`, number `i` of its kind.
-#define QUADRILLE_MAKE(path, type, how_often) [[nodiscard]] Made<type> make(Kind<type> kind, const char* name, int i) const;
+#define QUADRILLE_MAKE(path, type, how_often) \
+  [[nodiscard]] Made<type> make(Kind<type> kind, const char* name, int i) const;
   QUADRILLE_UNITS(QUADRILLE_MAKE)
 #undef QUADRILLE_MAKE
 
  private:
   [[nodiscard]] hw::UnitContext context(int number) const { return context(number, m_.clock_); }
   [[nodiscard]] hw::UnitContext context(int number, const hw::Clock& clock) const {
-    return {clock, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
+    return {
+        clock, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
   }
 
   Machine& m_;

@@ -5,7 +5,8 @@
 namespace quadrille::pipeline {
 
 template <class Token>
-void Machine::Wiring::link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of, const std::string& path, int path_clk) {
+void Machine::Wiring::link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of,
+                           const std::string& path, int path_clk) {
   hw::LinkSpec spec = of.spec();
   // A longer way holds as many tokens more as are on it.
   spec.latency += path_clk;
@@ -67,11 +68,14 @@ void Machine::Wiring::partition(std::size_t p) {
 void Machine::Wiring::core(std::size_t c) {
   auto& core = *m_.all<hw::ShaderCore>()[c];
   auto& distributor = m_.one<hw::WorkDistributor>();
-  link(*distributor.vertex_out[c], core.vertex_in, l_.distributor_to_core, fmt::format("distributor_to_core_vertex_{}", c));
-  link(*distributor.fragment_out[c], core.fragment_in, l_.distributor_to_core, fmt::format("distributor_to_core_fragment_{}", c));
+  link(*distributor.vertex_out[c], core.vertex_in, l_.distributor_to_core,
+       fmt::format("distributor_to_core_vertex_{}", c));
+  link(*distributor.fragment_out[c], core.fragment_in, l_.distributor_to_core,
+       fmt::format("distributor_to_core_fragment_{}", c));
   link(core.vertex_out, m_.one<hw::PrimitiveAssembly>().done_in[c], l_.core_to_assembly, c);
   for (std::size_t p = 0; p < m_.all<hw::Rop>().size(); ++p)
-    link(*core.fragment_out[p], m_.all<hw::Rop>()[p]->done_in[c], l_.core_to_rop, fmt::format("core_to_rop_{}_{}", c, p));
+    link(*core.fragment_out[p], m_.all<hw::Rop>()[p]->done_in[c], l_.core_to_rop,
+         fmt::format("core_to_rop_{}_{}", c, p));
   if (m_.all<hw::TextureUnit>().empty()) return;
   auto& texture = *m_.all<hw::TextureUnit>()[c];
   link(*core.texture_out, texture.request_in, l_.core_to_texture, c);
@@ -79,13 +83,16 @@ void Machine::Wiring::core(std::size_t c) {
 }
 
 void Machine::Wiring::client(const hw::Unit& unit, hw::MemoryPort& port) {
-  const auto found = std::ranges::find(m_.clients_, std::string_view(unit.name()), &hw::L2Slice::Client::name);
+  const auto found =
+      std::ranges::find(m_.clients_, std::string_view(unit.name()), &hw::L2Slice::Client::name);
   QUADRILLE_CHECK(found != m_.clients_.end(), "{} is no client of the L2 cache", unit.name());
   const auto number = static_cast<std::size_t>(found - m_.clients_.begin());
   const std::vector<hw::L2Slice*>& slices = m_.all<hw::L2Slice>();
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    link(*port.request_out[i], slices[i]->request_in[number], l_.client_to_l2, fmt::format("{}_to_l2_{}", unit.name(), i));
-    link(*slices[i]->response_out[number], port.response_in[i], l_.l2_to_client, fmt::format("l2_{}_to_{}", i, unit.name()));
+    link(*port.request_out[i], slices[i]->request_in[number], l_.client_to_l2,
+         fmt::format("{}_to_l2_{}", unit.name(), i));
+    link(*slices[i]->response_out[number], port.response_in[i], l_.l2_to_client,
+         fmt::format("l2_{}_to_{}", i, unit.name()));
   }
 }
 
@@ -102,7 +109,8 @@ void Machine::Wiring::memory() {
     hw::L2Slice& slice = *m_.all<hw::L2Slice>()[i];
     hw::MemoryChannel& channel = *m_.all<hw::MemoryChannel>()[i];
     link(slice.memory_out, channel.request_in, l_.l2_to_memory, i);
-    link(channel.response_out, slice.fill_in, l_.memory_to_l2, fmt::format("memory_to_l2_{}", i), m_.config_.memory.path_clk);
+    link(channel.response_out, slice.fill_in, l_.memory_to_l2, fmt::format("memory_to_l2_{}", i),
+         m_.config_.memory.path_clk);
   }
 }
 

@@ -19,7 +19,8 @@ class Machine::Wiring {
   void client(const hw::Unit& unit, hw::MemoryPort& port);
   /// A link of a class from port to port; its path is the class's name unless another is given.
   template <class Token>
-  void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of, const std::string& path, int path_clk = 0);
+  void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of, const std::string& path,
+            int path_clk = 0);
   template <class Token>
   void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of) {
     link(from, to, of, std::string(of.name));

@@ -1,6 +1,8 @@
-/// A frame's figures by draw and by part of the screen, and the laws that they obey: what the draws and the rest did is what the frame did.
+/// A frame's figures by draw and by part of the screen, and the laws that they obey: what the draws and the
+/// rest did is what the frame did.
 ///
-/// Units name the draw and the tile that they work for (hw/base/work_log.h); here is which of their counters are kept so, and under what name.
+/// Units name the draw and the tile that they work for (hw/base/work_log.h); here is which of their counters
+/// are kept so, and under what name.
 #pragma once
 
 #include "hw/base/audit.h"
@@ -66,7 +68,8 @@ struct CounterName {
   std::string_view kind, counter;
 };
 
-/// A count of a draw or of a part of the screen: its place in the JSON, the counters that it is the sum of, and the law of its sum over the frame.
+/// A count of a draw or of a part of the screen: its place in the JSON, the counters that it is the sum of,
+/// and the law of its sum over the frame.
 struct DetailCount {
   std::string_view group, key;
   std::vector<CounterName> counters;
@@ -81,15 +84,19 @@ struct DetailCount {
 struct DrawFigures {
   std::string label;
   std::uint32_t pass = 0;
-  std::int64_t issued = 0, retired = 0;  ///< cycles of the GPU clock: the command processor issues it; every partition has retired it
+  /// cycles of the GPU clock: the command processor issues it; every partition has retired it
+  std::int64_t issued = 0, retired = 0;
   std::array<std::uint64_t, kDrawCounts> counts{};
-  std::vector<std::int64_t> busy = {};  ///< by kind of unit: cycles, summed over its units; of cores those of their SIMD units
-  std::vector<double> work = {};        ///< by kind of unit: GPU cycles that its busiest unit needs for the draw's work at its peak rates
+  /// by kind of unit: cycles, summed over its units; of cores those of their SIMD units
+  std::vector<std::int64_t> busy = {};
+  /// by kind of unit: GPU cycles that its busiest unit needs for the draw's work at its peak rates
+  std::vector<double> work = {};
   [[nodiscard]] std::uint64_t of(DrawCount count) const { return counts[static_cast<std::size_t>(count)]; }
   [[nodiscard]] std::int64_t in_flight() const { return retired - issued; }
 };
 
-/// What limits a draw: the kind of unit with the most work, unless that fills less than half of the time that the draw was in flight.
+/// What limits a draw: the kind of unit with the most work, unless that fills less than half of the time that
+/// the draw was in flight.
 struct DrawLimiter {
   std::string_view unit;  ///< kind with the most work; empty: no unit worked for it
   double work = 0;        ///< GPU cycles
@@ -98,7 +105,8 @@ struct DrawLimiter {
   [[nodiscard]] std::string_view kind() const { return latency() ? "latency" : unit; }
 };
 
-/// The screen in squares, row by row from its top left. The last entry of each array is what has no place there.
+/// The screen in squares, row by row from its top left. The last entry of each array is what has no place
+/// there.
 struct TileFigures {
   std::uint32_t width = 0, height = 0;  ///< squares across and down
   std::uint32_t pixels = 32;            ///< side of a square

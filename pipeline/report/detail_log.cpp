@@ -71,12 +71,16 @@ void DetailLog::add(const hw::Unit& unit) {
 }
 
 // The units of other kinds than these are busy for as long as their work takes at their peak rate.
-double DetailLog::work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts, std::int64_t busy) const {
+double DetailLog::work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts,
+                          std::int64_t busy) const {
   const MachineConfig& config = machine_.config();
   const auto count = [&](DrawCount c) { return static_cast<double>(counts[static_cast<std::size_t>(c)]); };
   if (kind == kCores) return count(DrawCount::kSimdBusy) / config.core.simds;
-  if (kind == kMemory) return count(DrawCount::kMemoryBytes) * config.gpu.channels / peak_memory_bytes_per_cycle(config);
-  if (kind == kTextures) return std::max(static_cast<double>(busy), count(DrawCount::kBilinearQuads) / config.texture.filter_quads_per_clk);
+  if (kind == kMemory)
+    return count(DrawCount::kMemoryBytes) * config.gpu.channels / peak_memory_bytes_per_cycle(config);
+  if (kind == kTextures)
+    return std::max(static_cast<double>(busy),
+                    count(DrawCount::kBilinearQuads) / config.texture.filter_quads_per_clk);
   return static_cast<double>(busy);
 }
 
@@ -88,13 +92,15 @@ void DetailLog::collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures
   for (std::size_t i = 0; i < kDrawCounts; ++i) draw.counts[i] += counts[i];
   draw.work[u.kind] = std::max(draw.work[u.kind], work_of(kind, counts, busy));
   // Several draws are on the SIMD units of a core, and in the queue of a memory channel, at a time.
-  if (kind == kCores) busy = static_cast<std::int64_t>(counts[static_cast<std::size_t>(DrawCount::kSimdBusy)]);
+  if (kind == kCores)
+    busy = static_cast<std::int64_t>(counts[static_cast<std::size_t>(DrawCount::kSimdBusy)]);
   if (kind != kMemory) draw.busy[u.kind] += busy;
 }
 
 void DetailLog::collect_tiles(const LoggedUnit& u, TileFigures& tiles) const {
   for (const Column& c : u.tiles)
-    for (std::uint32_t cell = 0; cell <= screen_.count(); ++cell) tiles.counts[c.count][cell] += u.log->of_cell(c.column, cell);
+    for (std::uint32_t cell = 0; cell <= screen_.count(); ++cell)
+      tiles.counts[c.count][cell] += u.log->of_cell(c.column, cell);
 }
 
 Detail DetailLog::collect() {
@@ -124,8 +130,11 @@ Detail DetailLog::collect() {
     collect_draw(u, draws, d.outside_draws);
     collect_tiles(u, d.tiles);
     const std::string& kind = d.kinds[u.kind];
-    const auto value = [&](std::uint64_t& total) { return [&](std::string_view name) { total += counter_of(*u.unit, name).value(); }; };
-    for (std::size_t i = 0; i < kDrawCounts; ++i) visit_counters(kind, draw_counts()[i].counters, value(d.draw_totals[i]));
+    const auto value = [&](std::uint64_t& total) {
+      return [&](std::string_view name) { total += counter_of(*u.unit, name).value(); };
+    };
+    for (std::size_t i = 0; i < kDrawCounts; ++i)
+      visit_counters(kind, draw_counts()[i].counters, value(d.draw_totals[i]));
     for (std::size_t i = 0; i < kTileCounts; ++i) {
       const DetailCount& count = tile_counts()[i];
       visit_counters(kind, count.total.empty() ? count.counters : count.total, value(d.tile_totals[i]));

@@ -1,4 +1,5 @@
-/// Keeps, while a machine runs, for which draw and which part of the screen its units count; afterwards, the figures of that.
+/// Keeps, while a machine runs, for which draw and which part of the screen its units count; afterwards, the
+/// figures of that.
 #pragma once
 
 #include "hw/base/work_log.h"
@@ -12,7 +13,8 @@ namespace quadrille::pipeline {
 
 class DetailLog {
  public:
-  /// Gives every unit of the machine a log. Before the run; the machine lives longer than this or is not run any more.
+  /// Gives every unit of the machine a log. Before the run; the machine lives longer than this or is not run
+  /// any more.
   DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted);
   /// After the run.
   [[nodiscard]] Detail collect();
@@ -32,7 +34,8 @@ class DetailLog {
   void collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const;
   void collect_tiles(const LoggedUnit& u, TileFigures& tiles) const;
   /// GPU cycles of a unit's work for one draw at its peak rates.
-  [[nodiscard]] double work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts, std::int64_t busy) const;
+  [[nodiscard]] double work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts,
+                               std::int64_t busy) const;
 
   const Machine& machine_;
   const DeviceFrame& frame_;

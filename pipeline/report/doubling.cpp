@@ -10,11 +10,13 @@ namespace {
 
 template <class T>
 std::string scaled_within(const hw::Param<T>& p, double value) {
-  const T legal = static_cast<T>(std::clamp(value, static_cast<double>(p.range().min), static_cast<double>(p.range().max)));
+  const T legal = static_cast<T>(
+      std::clamp(value, static_cast<double>(p.range().min), static_cast<double>(p.range().max)));
   return fmt::format("{}", legal);
 }
 std::string scaled(const hw::ParamBase& p, double factor) {
-  if (const auto* whole = dynamic_cast<const hw::Param<int>*>(&p)) return scaled_within(*whole, std::floor(whole->value() * factor));
+  if (const auto* whole = dynamic_cast<const hw::Param<int>*>(&p))
+    return scaled_within(*whole, std::floor(whole->value() * factor));
   const auto* number = dynamic_cast<const hw::Param<double>*>(&p);
   QUADRILLE_CHECK(number != nullptr, "{} is no number", p.name());
   return scaled_within(*number, number->value() * factor);
@@ -30,11 +32,19 @@ const std::vector<Doubling>& doublings() {
        "indices and attributes a cycle",
        {{"vertex_fetch.indices_per_clk", 2}, {"vertex_fetch.attributes_per_clk", 2}}},
       {"vertex_fetch.batch_slots", "vertex batches under way", {{"vertex_fetch.batch_slots", 2}}},
-      {"vertex_fetch.cache_misses", "misses of the vertex cache under way", {{"vertex_fetch.cache_misses", 2}}},
+      {"vertex_fetch.cache_misses",
+       "misses of the vertex cache under way",
+       {{"vertex_fetch.cache_misses", 2}}},
       {"triangle_setup.triangle_slots", "triangles under way", {{"triangle_setup.triangle_slots", 2}}},
-      {"primitive_assembly.rate", "triangles assembled a cycle", {{"primitive_assembly.triangles_per_clk", 2}}},
-      {"clipper.rate", "triangles and pieces clipped a cycle", {{"clipper.triangles_per_clk", 2}, {"clipper.clip_clk", 0.5}}},
-      {"triangle_setup.rate", "triangles set up a cycle", {{"triangle_setup.drawn_per_clk", 2}, {"triangle_setup.culled_per_clk", 2}}},
+      {"primitive_assembly.rate",
+       "triangles assembled a cycle",
+       {{"primitive_assembly.triangles_per_clk", 2}}},
+      {"clipper.rate",
+       "triangles and pieces clipped a cycle",
+       {{"clipper.triangles_per_clk", 2}, {"clipper.clip_clk", 0.5}}},
+      {"triangle_setup.rate",
+       "triangles set up a cycle",
+       {{"triangle_setup.drawn_per_clk", 2}, {"triangle_setup.culled_per_clk", 2}}},
       {"coarse_raster.tests_per_clk", "tiles tested a cycle", {{"coarse_raster.tests_per_clk", 2}}},
       {"fine_raster.quads_per_clk", "quads rasterised a cycle", {{"fine_raster.quads_per_clk", 2}}},
       {"depth.quads_per_clk", "quads a cycle of the depth units", {{"depth.quads_per_clk", 2}}},
@@ -56,7 +66,9 @@ const std::vector<Doubling>& doublings() {
       {"rop.cache_misses", "misses of the colour caches under way", {{"rop.cache_misses", 2}}},
       {"scan_out.lines_in_flight", "lines that scan-out has under way", {{"scan_out.lines_in_flight", 2}}},
       {"l2.cache_misses", "misses of the L2 cache under way", {{"l2.cache_misses", 2}}},
-      {"memory.bus", "width of the data bus", {{"memory.t_burst", 0.5}, {"memory.t_ccd_s", 0.5}, {"memory.t_ccd_l", 0.5}}},
+      {"memory.bus",
+       "width of the data bus",
+       {{"memory.t_burst", 0.5}, {"memory.t_ccd_s", 0.5}, {"memory.t_ccd_l", 0.5}}},
       {"memory.rows",
        "speed of rows, turns and refresh",
        {{"memory.t_rcd", 0.5},
@@ -80,7 +92,8 @@ const std::vector<Doubling>& doublings() {
 }
 
 const Doubling* doubling_of(std::string_view resource) {
-  const auto found = std::ranges::find(doublings(), resource, [](const Doubling& d) { return std::string_view(d.resource); });
+  const auto found = std::ranges::find(doublings(), resource,
+                                       [](const Doubling& d) { return std::string_view(d.resource); });
   return found == doublings().end() ? nullptr : &*found;
 }
 

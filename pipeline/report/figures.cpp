@@ -12,8 +12,11 @@ namespace quadrille::pipeline {
 namespace {
 
 HistogramFigure figures_of(const hw::Histogram& h) {
-  HistogramFigure f{
-      std::string(h.name()), std::string(h.unit()), std::string(h.definition()), {h.buckets().begin(), h.buckets().end()}, h.sum()};
+  HistogramFigure f{std::string(h.name()),
+                    std::string(h.unit()),
+                    std::string(h.definition()),
+                    {h.buckets().begin(), h.buckets().end()},
+                    h.sum()};
   while (!f.buckets.empty() && f.buckets.back() == 0) f.buckets.pop_back();
   return f;
 }
@@ -29,14 +32,16 @@ UnitFigures figures_of(const hw::Unit& unit, hw::Tick end) {
   f.idle = unit.idle_cycles();
   for (const hw::PortBase* port : unit.ports()) {
     if (port->waited() > 0)
-      f.waits.push_back({port->name(), port->direction() == hw::PortBase::Direction::kIn, port->waited(), port->fifo().path()});
+      f.waits.push_back({port->name(), port->direction() == hw::PortBase::Direction::kIn, port->waited(),
+                         port->fifo().path()});
   }
   std::ranges::stable_sort(f.waits, std::ranges::greater{}, &WaitFigure::cycles);
   for (const hw::Resource& r : unit.resources().all())
     f.resources.push_back({std::string(r.name), std::string(r.serial), r.kind, r.total(end), r.at_end_of});
   if (unit.stats() != nullptr) {
     for (const hw::Counter* c : unit.stats()->counters()) {
-      f.counters.push_back({std::string(c->name()), std::string(c->unit()), std::string(c->definition()), c->value()});
+      f.counters.push_back(
+          {std::string(c->name()), std::string(c->unit()), std::string(c->definition()), c->value()});
     }
     for (const hw::Histogram* h : unit.stats()->histograms()) f.histograms.push_back(figures_of(*h));
   }
@@ -44,13 +49,15 @@ UnitFigures figures_of(const hw::Unit& unit, hw::Tick end) {
   return f;
 }
 
-/// The least time in which a link carries `tokens`, in ticks: a slot is taken from a push until its credit is back, and `width` bounds the pushes of a cycle.
+/// The least time in which a link carries `tokens`, in ticks: a slot is taken from a push until its credit is
+/// back, and `width` bounds the pushes of a cycle.
 double least_ticks(const hw::FifoBase& link, std::uint64_t tokens) {
   if (tokens == 0) return 0;
   const auto last = static_cast<double>(tokens - 1);  // the frame may end with the last push
   const double round_trip = static_cast<double>(link.forward_lookahead() + link.credit_lookahead());
   const double cycle = static_cast<double>(link.producer()->clock().edge(1));
-  return std::max(std::floor(last / link.spec().depth) * round_trip, std::floor(last / link.spec().width) * cycle);
+  return std::max(std::floor(last / link.spec().depth) * round_trip,
+                  std::floor(last / link.spec().width) * cycle);
 }
 
 LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tick end) {
@@ -95,20 +102,24 @@ std::vector<ClientFigures> bandwidth(const Machine& m) {
 }
 
 /// All laws that a unit or the frame named: those of the pipeline in its order, then others.
-std::vector<Check> checks_of(const Machine& m, const DeviceFrame& frame, const std::optional<Detail>& detail) {
+std::vector<Check> checks_of(const Machine& m, const DeviceFrame& frame,
+                             const std::optional<Detail>& detail) {
   hw::Audit audit;
   for (const hw::Unit* unit : m.units()) unit->audit(audit);
   audit.right(hw::laws::kDrawsOfFrame, frame.frame.draws.size());
   if (!frame.frame.passes.empty()) audit.right(hw::laws::kScanOut, frame.frame.passes.back().color.bytes());
   audit.left(hw::laws::kDirtyLines, frame.memory.dirty_lines());
   if (detail) detail->audit(audit);
-  const auto place = [](const hw::Audit::Sides& sides) { return std::ranges::find(hw::laws::kAll, sides.law) - hw::laws::kAll.begin(); };
+  const auto place = [](const hw::Audit::Sides& sides) {
+    return std::ranges::find(hw::laws::kAll, sides.law) - hw::laws::kAll.begin();
+  };
   std::vector<hw::Audit::Sides> all = audit.all();
   std::ranges::stable_sort(all, {}, place);
   std::vector<Check> checks;
   checks.reserve(all.size());
   for (const hw::Audit::Sides& s : all)
-    checks.push_back({std::string(s.law->text), std::string(s.law->left), std::string(s.law->right), s.left, s.right});
+    checks.push_back(
+        {std::string(s.law->text), std::string(s.law->left), std::string(s.law->right), s.left, s.right});
   return checks;
 }
 
@@ -120,7 +131,8 @@ std::uint64_t memory_bytes(const Figures& figures) {
   std::uint64_t bytes = 0;
   for (const UnitFigures& unit : figures.units) {
     if (without_number(unit.path) != "memory") continue;
-    for (const CounterFigure& c : unit.counters) bytes += c.name == "read_bytes" || c.name == "write_bytes" ? c.value : 0;
+    for (const CounterFigure& c : unit.counters)
+      bytes += c.name == "read_bytes" || c.name == "write_bytes" ? c.value : 0;
   }
   return bytes;
 }
@@ -163,14 +175,17 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame, std::optiona
   for (const hw::Unit* unit : m.units()) f.units.push_back(figures_of(*unit, m.end()));
   for (const hw::Unit* unit : m.units()) {
     if (!unit->resources().empty())
-      f.slice_cycles = static_cast<double>(unit->resources().slice()) * static_cast<double>(m.clock().frequency_hz()) * 1e-15;
+      f.slice_cycles = static_cast<double>(unit->resources().slice()) *
+                       static_cast<double>(m.clock().frequency_hz()) * 1e-15;
   }
-  for (std::size_t i = 0; i < m.links().size(); ++i) f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));
+  for (std::size_t i = 0; i < m.links().size(); ++i)
+    f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));
   f.bandwidth = bandwidth(m);
   f.checks = checks_of(m, frame, f.detail);
   // The counted work at its peak rates fits into the frame.
   const auto light = static_cast<std::int64_t>(std::ceil(speed_of_light(f).cycles - 1e-6));
-  f.checks.push_back({"cycles are not below the least time of the counted work", "frame.cycles below frame.least_cycles", "none",
+  f.checks.push_back({"cycles are not below the least time of the counted work",
+                      "frame.cycles below frame.least_cycles", "none",
                       static_cast<std::uint64_t>(std::max<std::int64_t>(0, light - f.frame.cycles)), 0});
   f.left_out = m.left_out();
   f.host.actions = m.driver().actions();

@@ -1,4 +1,5 @@
-/// The figures of one frame: what each unit did and where its time went, who moved how many bytes, and the laws they must obey.
+/// The figures of one frame: what each unit did and where its time went, who moved how many bytes, and the
+/// laws they must obey.
 #pragma once
 
 #include "pipeline/functional/fates.h"
@@ -18,7 +19,8 @@ struct CounterFigure {
   std::uint64_t value = 0;
 };
 
-/// How often a quantity had which size: bucket 0 counts zeros, bucket k > 0 sizes from 2^(k-1) to 2^k - 1. Ends with the last bucket that is not empty.
+/// How often a quantity had which size: bucket 0 counts zeros, bucket k > 0 sizes from 2^(k-1) to 2^k - 1.
+/// Ends with the last bucket that is not empty.
 struct HistogramFigure {
   std::string name, unit, definition;
   std::vector<std::uint64_t> buckets;
@@ -33,9 +35,11 @@ struct WaitFigure {
   std::string link = {};  ///< path of the link at the port
 };
 
-/// A link and what went through it. A slot is taken for a round trip at least, so what a link carries bounds the frame's time from below.
+/// A link and what went through it. A slot is taken for a round trip at least, so what a link carries bounds
+/// the frame's time from below.
 struct LinkFigures {
-  std::string path, key;           ///< "coarse_to_fine"; the key of its class in a machine file, "link.coarse_to_fine"
+  /// "coarse_to_fine"; the key of its class in a machine file, "link.coarse_to_fine"
+  std::string path, key;
   std::string producer, consumer;  ///< paths of units
   int depth = 0, width = 0;
   int latency = 0, credit_latency = 0;  ///< cycles of the receiving side, a clock crossing's cost included
@@ -43,7 +47,8 @@ struct LinkFigures {
   double use = 0;  ///< least time in which the link can carry its tokens, over the frame's time: 0..1
 };
 
-/// What a unit took of one of its resources (hw/base/resource.h): cycles of its clock, and what they had come to at the end of each slice of the frame.
+/// What a unit took of one of its resources (hw/base/resource.h): cycles of its clock, and what they had come
+/// to at the end of each slice of the frame.
 struct ResourceFigure {
   std::string name, serial;
   hw::Resource::Kind kind = hw::Resource::Kind::kRate;
@@ -76,7 +81,8 @@ struct Check {
 };
 
 struct FrameFigures {
-  std::int64_t cycles = 0;         ///< of the GPU clock, from the first command to the last pixel read by scan-out
+  /// of the GPU clock, from the first command to the last pixel read by scan-out
+  std::int64_t cycles = 0;
   std::int64_t render_cycles = 0;  ///< until the last pass was flushed
   double clock_mhz = 0;
   std::uint64_t draws = 0, triangles = 0, vertices = 0;
@@ -86,22 +92,26 @@ struct FrameFigures {
   Fates fates;
   /// Of `cycles`, those after the last pass was flushed: scan-out alone.
   [[nodiscard]] std::int64_t scan_out_cycles() const { return cycles - render_cycles; }
-  /// Cycles from one frame to the next of an endless row of this frame where scan-out of each overlaps the drawing of the next.
+  /// Cycles from one frame to the next of an endless row of this frame where scan-out of each overlaps the
+  /// drawing of the next.
   [[nodiscard]] std::int64_t period_cycles() const { return std::max(render_cycles, scan_out_cycles()); }
 };
 
 struct HostFigures {
   double load_s = 0, build_s = 0, simulate_s = 0, wall_s = 0;
-  double unpack_s =
-      0;  ///< unpacking and tiling the textures that something sampled, which interrupts the simulation; in none of the others but `wall_s`
-  double simulate_cpu_s = 0;  ///< processor time of the simulation: what `simulate_s` is on a machine with nothing else to do
+  /// unpacking and tiling the textures that something sampled, which interrupts the simulation; in none of
+  /// the others but `wall_s`
+  double unpack_s = 0;
+  /// processor time of the simulation: what `simulate_s` is on a machine with nothing else to do
+  double simulate_cpu_s = 0;
   double fragments_per_s = 0, cycles_per_s = 0, peak_rss_mib = 0;
   std::uint64_t actions = 0;
 };
 
 struct Figures {
   std::string scene, fidelity = "exact";
-  std::int64_t window_cycles = 0;  ///< how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
+  /// how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
+  std::int64_t window_cycles = 0;
   FrameFigures frame;
   double slice_cycles = 0;  ///< of the GPU clock; 0: there are no slices
   std::vector<UnitFigures> units;
@@ -118,6 +128,7 @@ struct Figures {
 [[nodiscard]] std::uint64_t memory_bytes(const Figures& figures);
 
 /// Reads the figures of a machine that has run, with the detail that was kept. `host` is left to the caller.
-[[nodiscard]] Figures collect_figures(const Machine& machine, const DeviceFrame& frame, std::optional<Detail> detail = {});
+[[nodiscard]] Figures collect_figures(const Machine& machine, const DeviceFrame& frame,
+                                      std::optional<Detail> detail = {});
 
 }  // namespace quadrille::pipeline

@@ -12,7 +12,9 @@ namespace quadrille::pipeline {
 
 namespace {
 
-double share(std::int64_t part, std::int64_t whole) { return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0; }
+double share(std::int64_t part, std::int64_t whole) {
+  return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+}
 
 std::string kind_of(std::string_view path) { return std::string(without_number(path)); }
 
@@ -24,10 +26,12 @@ struct KindWait {
   std::int64_t longest = 0;
 };
 
-/// Units of a kind: what they did with their cycles, and whom they waited for (by class of link and direction).
+/// Units of a kind: what they did with their cycles, and whom they waited for (by class of link and
+/// direction).
 struct Kind {
   std::int64_t cycles = 0, busy = 0;
-  std::map<std::pair<std::string, std::string>, KindWait> waits;  ///< by key of the link and kind of the other end
+  /// by key of the link and kind of the other end
+  std::map<std::pair<std::string, std::string>, KindWait> waits;
 };
 
 class Graph {
@@ -68,9 +72,12 @@ std::string arrows(const std::vector<std::string>& names) {
 }
 
 /// The part of the frame's time that comes after the last pass was flushed: nothing but scan-out works then.
-double scan_part(const FrameFigures& frame) { return share(frame.cycles - frame.render_cycles, frame.cycles); }
+double scan_part(const FrameFigures& frame) {
+  return share(frame.cycles - frame.render_cycles, frame.cycles);
+}
 
-/// The walk where the command processor waited longer for scan-out than for anything else. It ends there: what units that serve others too waited for was mostly for those.
+/// The walk where the command processor waited longer for scan-out than for anything else. It ends there:
+/// what units that serve others too waited for was mostly for those.
 Limiter scanning(const Graph& graph, double part) {
   Limiter limiter;
   limiter.kind = Limiter::Kind::kWork;
@@ -84,11 +91,13 @@ Limiter scanning(const Graph& graph, double part) {
   limiter.text += fmt::format("; busy {:.1f} %", 100 * share(unit->busy, unit->cycles));
   std::map<std::string, std::int64_t> waits;
   for (const auto& [end, wait] : unit->waits) {
-    if (end.second != "command_processor") waits[end.second] += wait.cycles;  // that one was waited for while the passes were drawn
+    // that one was waited for while the passes were drawn
+    if (end.second != "command_processor") waits[end.second] += wait.cycles;
   }
   const auto longest = std::ranges::max_element(waits, {}, [](const auto& w) { return w.second; });
   if (longest != waits.end())
-    limiter.text += fmt::format(", waits for {} {:.1f} %", longest->first, 100 * share(longest->second, unit->cycles));
+    limiter.text +=
+        fmt::format(", waits for {} {:.1f} %", longest->first, 100 * share(longest->second, unit->cycles));
   return limiter;
 }
 
@@ -102,14 +111,17 @@ Limiter walk(const Graph& graph, double scan_part) {
     if (kind == nullptr) break;
     limiter.walk.push_back(at);
     // Scan-out works once all passes are flushed: nothing but the command processor has waited for it.
-    const auto weight = [&](const auto& w) { return w.first.second == "scan_out" && at != "command_processor" ? 0 : w.second.cycles; };
+    const auto weight = [&](const auto& w) {
+      return w.first.second == "scan_out" && at != "command_processor" ? 0 : w.second.cycles;
+    };
     const auto longest = std::ranges::max_element(kind->waits, {}, weight);
     if (longest == kind->waits.end() || weight(*longest) <= kind->busy) {
       limiter.kind = Limiter::Kind::kWork;
       limiter.name = at;
       limiter.share = share(kind->busy, kind->cycles);
       limiter.loop = limiter.walk.size();
-      limiter.text = fmt::format("work of {}, one at a time: busy {:.1f} %; waits {}", at, 100 * limiter.share, arrows(limiter.walk));
+      limiter.text = fmt::format("work of {}, one at a time: busy {:.1f} %; waits {}", at,
+                                 100 * limiter.share, arrows(limiter.walk));
       return limiter;
     }
     if (longest->first.second == "scan_out") return scanning(graph, scan_part);
@@ -123,13 +135,17 @@ Limiter walk(const Graph& graph, double scan_part) {
   }
   if (steps.empty()) return limiter;
   limiter.kind = Limiter::Kind::kLatency;
-  const auto delay = [](const KindWait* step) { return step->input ? step->link->latency : step->link->credit_latency; };
-  const auto slowest = *std::ranges::max_element(steps.begin() + static_cast<std::ptrdiff_t>(std::min(limiter.loop, steps.size() - 1)),
-                                                 steps.end(), {}, delay);
+  const auto delay = [](const KindWait* step) {
+    return step->input ? step->link->latency : step->link->credit_latency;
+  };
+  const auto slowest = *std::ranges::max_element(
+      steps.begin() + static_cast<std::ptrdiff_t>(std::min(limiter.loop, steps.size() - 1)), steps.end(), {},
+      delay);
   limiter.name = slowest->link->key;
-  const std::vector<std::string> around(limiter.walk.begin() + static_cast<std::ptrdiff_t>(limiter.loop), limiter.walk.end());
-  limiter.text = fmt::format("latency around {} <- {}: the longest link of the loop is {}, {} clk; waits {}", arrows(around), at,
-                             slowest->link->key, delay(slowest), arrows(limiter.walk));
+  const std::vector<std::string> around(limiter.walk.begin() + static_cast<std::ptrdiff_t>(limiter.loop),
+                                        limiter.walk.end());
+  limiter.text = fmt::format("latency around {} <- {}: the longest link of the loop is {}, {} clk; waits {}",
+                             arrows(around), at, slowest->link->key, delay(slowest), arrows(limiter.walk));
   return limiter;
 }
 
@@ -152,7 +168,9 @@ namespace {
 /// "core.issue 38 % (lanes of the SIMDs)".
 std::string gain_text(const Gain& gain) {
   const Doubling* doubling = doubling_of(gain.resource);
-  const std::string words = doubling != nullptr ? doubling->words : gain.resource.starts_with("link.") ? "depth and width" : "no parameter";
+  const std::string words = doubling != nullptr                  ? doubling->words
+                            : gain.resource.starts_with("link.") ? "depth and width"
+                                                                 : "no parameter";
   return fmt::format("{} {:.0f} % ({})", gain.resource, 100 * gain.share, words);
 }
 
@@ -161,12 +179,16 @@ std::string gain_text(const Gain& gain) {
 Limiter find_limiter(const Figures& figures) {
   if (figures.units.empty()) return {};
   const Sensitivity s = sensitivity(figures);
-  if (s.gains.empty() || s.gains.front().share < kLeastGain) return walk(Graph(figures), scan_part(figures.frame));
+  if (s.gains.empty() || s.gains.front().share < kLeastGain)
+    return walk(Graph(figures), scan_part(figures.frame));
   Limiter limiter;
   const Gain& first = s.gains.front();
-  const auto places = std::ranges::find_if(s.uses, [&](const ResourceUse& use) { return use.places && use.name == first.resource; });
+  const auto places = std::ranges::find_if(
+      s.uses, [&](const ResourceUse& use) { return use.places && use.name == first.resource; });
   const bool link = first.resource.starts_with("link.");
-  limiter.kind = link ? Limiter::Kind::kLink : places != s.uses.end() ? Limiter::Kind::kPlaces : Limiter::Kind::kUnit;
+  limiter.kind = link                     ? Limiter::Kind::kLink
+                 : places != s.uses.end() ? Limiter::Kind::kPlaces
+                                          : Limiter::Kind::kUnit;
   limiter.resource = first.resource;
   limiter.name = link ? first.resource : first.resource.substr(0, first.resource.find('.'));
   limiter.share = first.share;
@@ -175,7 +197,8 @@ Limiter find_limiter(const Figures& figures) {
     if (s.gains[i].share < kLeastNamedGain) break;
     limiter.text += (i > 0 ? ", " : "") + gain_text(s.gains[i]);
   }
-  if (s.waiting >= kLeastGain) limiter.text += fmt::format("; waiting that none of it explains {:.0f} %", 100 * s.waiting);
+  if (s.waiting >= kLeastGain)
+    limiter.text += fmt::format("; waiting that none of it explains {:.0f} %", 100 * s.waiting);
   return limiter;
 }
 

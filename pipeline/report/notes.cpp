@@ -22,14 +22,16 @@ std::string why_nothing(const FrameFigures& f) {
   if (f.draws == 0) return "the frame has no draws; has the scene a mesh with positions, and is it shown?";
   if (f.triangles == 0) return fmt::format("the {} draws of the frame have no triangles", grouped(f.draws));
   if (f.fragments_shaded > 0) {
-    return "no fragment passed: " + counted({{fates.discarded, "discarded by their shader"}, {fates.hidden, "killed by the depth test"}});
+    return "no fragment passed: " + counted({{fates.discarded, "discarded by their shader"},
+                                             {fates.hidden, "killed by the depth test"}});
   }
   if (fates.hidden + fates.tiles_hidden > 0) return "every fragment failed the depth test";
-  return "no triangle covers a pixel: " + counted({{fates.off_screen, "off screen"},
-                                                   {fates.culled, "culled by their facing"},
-                                                   {fates.no_area, "without area"},
-                                                   {fates.no_sample + fates.rasterised, "between pixel centres"},
-                                                   {fates.not_finite, "with positions that are NaN or infinite"}});
+  return "no triangle covers a pixel: " +
+         counted({{fates.off_screen, "off screen"},
+                  {fates.culled, "culled by their facing"},
+                  {fates.no_area, "without area"},
+                  {fates.no_sample + fates.rasterised, "between pixel centres"},
+                  {fates.not_finite, "with positions that are NaN or infinite"}});
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
-/// The figures of a frame as people and programs read them: a table for the terminal, JSON for everything else.
+/// The figures of a frame as people and programs read them: a table for the terminal, JSON for everything
+/// else.
 ///
-/// Both walk the figures; nothing is counted here. Rates and percentages exist only in the table, computed when printed. docs/figures.md explains both.
+/// Both walk the figures; nothing is counted here. Rates and percentages exist only in the table, computed
+/// when printed. docs/figures.md explains both.
 #pragma once
 
 #include "pipeline/machine/machine_config.h"
@@ -30,7 +32,8 @@ enum class UnitRows : std::uint8_t {
 [[nodiscard]] std::string report_table(const ReportSubject& subject, UnitRows rows = UnitRows::kFolded);
 /// The JSON document, schema `kFiguresSchema`.
 [[nodiscard]] std::string report_json(const ReportSubject& subject);
-/// The whole machine as JSON: name, base, what was changed from the base, and every parameter. Every document that says of which machine it is holds this.
+/// The whole machine as JSON: name, base, what was changed from the base, and every parameter. Every document
+/// that says of which machine it is holds this.
 [[nodiscard]] std::string machine_json(const MachineConfig& machine);
 /// One line for each check that does not hold, with both sides; empty when all hold.
 [[nodiscard]] std::string failed_checks(const Figures& figures);

@@ -51,9 +51,15 @@ Json unit_json(const UnitFigures& u) {
   Json resources = Json::object();
   for (const ResourceFigure& r : u.resources) {
     switch (r.kind) {
-      case hw::Resource::Kind::kRate: resources[r.name] = {{"kind", "rate"}, {"least_cycles", r.cycles}}; break;
-      case hw::Resource::Kind::kLoss: resources[r.name] = {{"kind", "loss"}, {"lost_cycles", r.cycles}}; break;
-      case hw::Resource::Kind::kPlaces: resources[r.name] = {{"kind", "places"}, {"full_cycles", r.cycles}}; break;
+      case hw::Resource::Kind::kRate:
+        resources[r.name] = {{"kind", "rate"}, {"least_cycles", r.cycles}};
+        break;
+      case hw::Resource::Kind::kLoss:
+        resources[r.name] = {{"kind", "loss"}, {"lost_cycles", r.cycles}};
+        break;
+      case hw::Resource::Kind::kPlaces:
+        resources[r.name] = {{"kind", "places"}, {"full_cycles", r.cycles}};
+        break;
     }
   }
   return {{"cycles", u.cycles},
@@ -77,7 +83,8 @@ Json definitions_json(const Figures& f) {
     if (!kind.is_null()) continue;
     kind = Json::object();
     for (const CounterFigure& c : u.counters) kind[c.name] = {{"unit", c.unit}, {"definition", c.definition}};
-    for (const HistogramFigure& h : u.histograms) kind[h.name] = {{"unit", h.unit}, {"definition", h.definition}};
+    for (const HistogramFigure& h : u.histograms)
+      kind[h.name] = {{"unit", h.unit}, {"definition", h.definition}};
   }
   return all;
 }
@@ -93,7 +100,8 @@ Json checks_json(const Figures& f) {
   return all;
 }
 
-/// What holds the frame up: what each resource's doubling is expected to gain, and all uses, from a thousandth and a hundredth on.
+/// What holds the frame up: what each resource's doubling is expected to gain, and all uses, from a
+/// thousandth and a hundredth on.
 Json limit_json(const Figures& f) {
   const Limiter limiter = find_limiter(f);
   if (limiter.kind == Limiter::Kind::kNothing) return nullptr;
@@ -144,7 +152,10 @@ Json draw_json(const Detail& d, const DrawFigures& draw) {
   const DrawLimiter limiter = d.limiter(draw);
   all["busy"] = by_kind(d.kinds, draw.busy);
   all["work"] = by_kind(d.kinds, draw.work);
-  all["limiter"] = {{"kind", limiter.kind()}, {"unit", limiter.unit}, {"work_cycles", limiter.work}, {"share", limiter.share}};
+  all["limiter"] = {{"kind", limiter.kind()},
+                    {"unit", limiter.unit},
+                    {"work_cycles", limiter.work},
+                    {"share", limiter.share}};
   return all;
 }
 
@@ -194,12 +205,15 @@ Json host_json(const Figures& f) {
 std::string machine_json(const MachineConfig& machine) {
   Json parameters = Json::object(), changed = Json::object();
   for (const auto& [path, group] : machine.groups()) {
-    for (const hw::ParamBase* p : group->params()) parameters[path + "." + std::string(p->name())] = Json::parse(p->literal());
+    for (const hw::ParamBase* p : group->params())
+      parameters[path + "." + std::string(p->name())] = Json::parse(p->literal());
   }
   for (const MachineConfig::Change& c : machine.changes())
     changed[c.path] = {{"value", Json::parse(c.value)}, {"base", Json::parse(c.base_value)}};
-  const Json all = {
-      {"name", machine.name}, {"base", machine.base()}, {"changed", std::move(changed)}, {"parameters", std::move(parameters)}};
+  const Json all = {{"name", machine.name},
+                    {"base", machine.base()},
+                    {"changed", std::move(changed)},
+                    {"parameters", std::move(parameters)}};
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -207,8 +221,10 @@ std::string report_json(const ReportSubject& s) {
   const Figures& f = s.figures;
   Json units = Json::object(), bandwidth = Json::object(), left_out = Json::array();
   for (const UnitFigures& u : f.units) units[u.path] = unit_json(u);
-  for (const ClientFigures& c : f.bandwidth) bandwidth[c.name] = {{"read_bytes", c.read_bytes}, {"write_bytes", c.write_bytes}};
-  for (const LeftOut& l : f.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
+  for (const ClientFigures& c : f.bandwidth)
+    bandwidth[c.name] = {{"read_bytes", c.read_bytes}, {"write_bytes", c.write_bytes}};
+  for (const LeftOut& l : f.left_out)
+    left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
   Json document = {{"schema", kFiguresSchema},
                    {"scene", f.scene},
                    {"fidelity", f.fidelity},

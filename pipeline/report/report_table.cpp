@@ -1,4 +1,5 @@
-/// The table: what a person reads first. Every share says of what, every rate its unit and what the best would be.
+/// The table: what a person reads first. Every share says of what, every rate its unit and what the best
+/// would be.
 #include "pipeline/report/limiter.h"
 #include "pipeline/report/notes.h"
 #include "pipeline/report/report.h"
@@ -16,7 +17,9 @@ constexpr std::size_t kColumns = 139;
 constexpr std::size_t kFacetColumn = 79;
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
-double ratio(std::uint64_t a, std::uint64_t b) { return ratio(static_cast<double>(a), static_cast<double>(b)); }
+double ratio(std::uint64_t a, std::uint64_t b) {
+  return ratio(static_cast<double>(a), static_cast<double>(b));
+}
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; }
 
 /// Text in lines of `kColumns`, broken at facets, the later ones indented to `indent`.
@@ -43,16 +46,19 @@ std::string row(std::string_view title, const std::vector<std::string>& facets) 
 
 std::string time_row(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
-  if (s.figures.units.empty()) return row("time", {"not simulated (functional: the picture and its counts only)"});
+  if (s.figures.units.empty())
+    return row("time", {"not simulated (functional: the picture and its counts only)"});
   const auto text = [](std::int64_t cycles) { return grouped(static_cast<std::uint64_t>(cycles)); };
   const double mhz = s.machine.gpu.clock_mhz;
   const auto rate = [mhz](std::int64_t cycles) { return 1e6 * ratio(mhz, static_cast<double>(cycles)); };
-  return row("time", {fmt::format("{}{} cycles: {} until all passes are flushed, {} of scan-out after that",
-                                  s.figures.window_cycles > 0 ? "approximate: " : "", text(f.cycles), text(f.render_cycles),
-                                  text(f.scan_out_cycles())),
-                      fmt::format("{:.3f} ms at {:g} MHz", ratio(static_cast<double>(f.cycles), mhz) * 1e-3, mhz),
-                      fmt::format("{:.1f} frames/s one after another", rate(f.cycles)),
-                      fmt::format("{:.1f} frames/s where scan-out overlaps the next frame", rate(f.period_cycles()))});
+  return row(
+      "time",
+      {fmt::format("{}{} cycles: {} until all passes are flushed, {} of scan-out after that",
+                   s.figures.window_cycles > 0 ? "approximate: " : "", text(f.cycles), text(f.render_cycles),
+                   text(f.scan_out_cycles())),
+       fmt::format("{:.3f} ms at {:g} MHz", ratio(static_cast<double>(f.cycles), mhz) * 1e-3, mhz),
+       fmt::format("{:.1f} frames/s one after another", rate(f.cycles)),
+       fmt::format("{:.1f} frames/s where scan-out overlaps the next frame", rate(f.period_cycles()))});
 }
 
 /// Empty for an exact run.
@@ -65,21 +71,26 @@ std::string frame_text(const ReportSubject& s) {
   const FrameFigures& f = s.figures.frame;
   const std::uint64_t pixels = std::uint64_t{s.width} * s.height;
   const std::uint64_t executed = f.fragments_shaded + f.helper_lanes;
-  std::string out = fmt::format("FRAME  {}, {}x{}, machine {}, {}{}\n", s.figures.scene, s.width, s.height, s.machine.title(),
-                                s.figures.fidelity, window_text(s.figures));
+  std::string out = fmt::format("FRAME  {}, {}x{}, machine {}, {}{}\n", s.figures.scene, s.width, s.height,
+                                s.machine.title(), s.figures.fidelity, window_text(s.figures));
   out += time_row(s);
-  out += row("geometry", {fmt::format("{} draws", grouped(f.draws)), fmt::format("{} triangles", grouped(f.triangles)),
-                          fmt::format("{} vertices shaded ({:.2f} a triangle)", grouped(f.vertices), ratio(f.vertices, f.triangles))});
-  out += row("fragments", {fmt::format("{} covered", grouped(f.fragments_covered)), fmt::format("{} shaded", grouped(f.fragments_shaded)),
+  out += row("geometry",
+             {fmt::format("{} draws", grouped(f.draws)), fmt::format("{} triangles", grouped(f.triangles)),
+              fmt::format("{} vertices shaded ({:.2f} a triangle)", grouped(f.vertices),
+                          ratio(f.vertices, f.triangles))});
+  out += row("fragments", {fmt::format("{} covered", grouped(f.fragments_covered)),
+                           fmt::format("{} shaded", grouped(f.fragments_shaded)),
                            fmt::format("{} written", grouped(f.fragments_written)),
-                           fmt::format("{} helper lanes ({:.1f} % of the lanes executed)", grouped(f.helper_lanes),
-                                       100 * ratio(f.helper_lanes, executed))});
-  std::vector<std::string> rates{fmt::format("{:.2f} covered", ratio(f.fragments_covered, pixels)),
-                                 fmt::format("{:.2f} shaded", ratio(f.fragments_shaded, pixels)),
-                                 fmt::format("{:.2f} written (overdraw)", ratio(f.fragments_written, pixels))};
+                           fmt::format("{} helper lanes ({:.1f} % of the lanes executed)",
+                                       grouped(f.helper_lanes), 100 * ratio(f.helper_lanes, executed))});
+  std::vector<std::string> rates{
+      fmt::format("{:.2f} covered", ratio(f.fragments_covered, pixels)),
+      fmt::format("{:.2f} shaded", ratio(f.fragments_shaded, pixels)),
+      fmt::format("{:.2f} written (overdraw)", ratio(f.fragments_written, pixels))};
   if (f.cycles > 0)
     rates.push_back(
-        fmt::format("and {:.3f} fragments shaded a cycle", ratio(static_cast<double>(f.fragments_shaded), static_cast<double>(f.cycles))));
+        fmt::format("and {:.3f} fragments shaded a cycle",
+                    ratio(static_cast<double>(f.fragments_shaded), static_cast<double>(f.cycles))));
   return out + row("per pixel", rates);
 }
 
@@ -98,12 +109,14 @@ std::string unit_row(const UnitGroup& group) {
   const auto share = [&](std::int64_t UnitFigures::*member) {
     return 100 * ratio(static_cast<double>(group.sum(member)), static_cast<double>(group.cycles()));
   };
-  const std::string name = group.units.size() > 1 ? fmt::format("{} x{}", group.kind, group.units.size()) : group.name;
+  const std::string name =
+      group.units.size() > 1 ? fmt::format("{} x{}", group.kind, group.units.size()) : group.name;
   const std::string spread = group.units.size() > 1 ? fmt::format("+-{:.1f}", group.busy_spread()) : "";
   double use = 0;
   for (const UnitFigures* unit : group.units) use = std::max(use, use_of(*unit));
-  std::string out = fmt::format("  {:<19}{:>6.1f}{:>7.1f} {:<6}{:>7.1f}{:>8.1f}{:>8.1f}{:>6.1f}  {:<22} ", name, 100 * use,
-                                share(&UnitFigures::busy), spread, share(&UnitFigures::waiting), share(&UnitFigures::starved),
+  std::string out = fmt::format("  {:<19}{:>6.1f}{:>7.1f} {:<6}{:>7.1f}{:>8.1f}{:>8.1f}{:>6.1f}  {:<22} ",
+                                name, 100 * use, share(&UnitFigures::busy), spread,
+                                share(&UnitFigures::waiting), share(&UnitFigures::starved),
                                 share(&UnitFigures::blocked), share(&UnitFigures::idle), wait_text(group));
   out.resize(std::max(out.size(), kFacetColumn), ' ');
   const std::vector<std::string> facets = unit_facets(group);
@@ -114,26 +127,32 @@ std::string unit_row(const UnitGroup& group) {
 std::string units_text(const ReportSubject& s, UnitRows rows) {
   if (s.figures.units.empty()) return "";
   std::string out = fmt::format(
-      "\nUNITS{}  in % of each unit's cycles: use is the least time of its work at its peak rates; busy (work begins) + waiting (for its "
+      "\nUNITS{}  in % of each unit's cycles: use is the least time of its work at its peak rates; busy "
+      "(work begins) + waiting (for its "
       "own "
-      "latencies) + starved (an\n  input was missing) + blocked (an output was full) + idle (no work in flight) make 100\n"
+      "latencies) + starved (an\n  input was missing) + blocked (an output was full) + idle (no work in "
+      "flight) make 100\n"
       "  {:<19}{:>6}{:>7} {:<6}{:>7}{:>8}{:>8}{:>6}  {:<15}{:>6}  {}\n",
-      s.figures.window_cycles > 0 ? " (approximate)" : "", "unit", "use", "busy", "", "waiting", "starved", "blocked", "idle",
-      "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
-  for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded)) out += unit_row(group);
+      s.figures.window_cycles > 0 ? " (approximate)" : "", "unit", "use", "busy", "", "waiting", "starved",
+      "blocked", "idle", "longest wait", "%", "what it did; /clk is a unit's mean rate, with % of its peak");
+  for (const UnitGroup& group : group_units(s.figures.units, rows == UnitRows::kFolded))
+    out += unit_row(group);
   return out;
 }
 
 std::string light_text(const Figures& f) {
   const SpeedOfLight light = speed_of_light(f);
-  return fmt::format("LEAST  {} cycles for the counted work at its peak rates ({}): the frame takes {:.2f} times that\n",
-                     grouped(static_cast<std::uint64_t>(std::ceil(light.cycles))), light.resource,
-                     ratio(static_cast<double>(f.frame.cycles), light.cycles));
+  return fmt::format(
+      "LEAST  {} cycles for the counted work at its peak rates ({}): the frame takes {:.2f} times that\n",
+      grouped(static_cast<std::uint64_t>(std::ceil(light.cycles))), light.resource,
+      ratio(static_cast<double>(f.frame.cycles), light.cycles));
 }
 
 std::string limit_text(const Figures& f) {
   const Limiter limiter = find_limiter(f);
-  return limiter.kind == Limiter::Kind::kNothing ? "" : fmt::format("\nLIMIT  {}\n{}", limiter.text, light_text(f));
+  return limiter.kind == Limiter::Kind::kNothing
+             ? ""
+             : fmt::format("\nLIMIT  {}\n{}", limiter.text, light_text(f));
 }
 
 std::string notes_text(const Figures& f) {
@@ -142,10 +161,11 @@ std::string notes_text(const Figures& f) {
   return out;
 }
 
-std::string bandwidth_row(std::string_view name, std::uint64_t read, std::uint64_t written, std::int64_t cycles, double peak) {
+std::string bandwidth_row(std::string_view name, std::uint64_t read, std::uint64_t written,
+                          std::int64_t cycles, double peak) {
   const double rate = ratio(static_cast<double>(read + written), static_cast<double>(cycles));
-  return fmt::format("  {:<19}{:>12.3f}{:>13.3f}{:>12.3f}{:>11.1f}\n", name, megabytes(read), megabytes(written), rate,
-                     100 * ratio(rate, peak));
+  return fmt::format("  {:<19}{:>12.3f}{:>13.3f}{:>12.3f}{:>11.1f}\n", name, megabytes(read),
+                     megabytes(written), rate, 100 * ratio(rate, peak));
 }
 
 std::string bandwidth_text(const ReportSubject& s) {
@@ -153,10 +173,11 @@ std::string bandwidth_text(const ReportSubject& s) {
   if (f.bandwidth.empty()) return "";
   const double peak = peak_memory_bytes_per_cycle(s.machine);
   std::string out = fmt::format(
-      "\nBANDWIDTH{}  clients at the L2 cache, and what reached memory; the memory's peak is {:.1f} byte/clk ({:.1f} GB/s, {} channels)\n"
+      "\nBANDWIDTH{}  clients at the L2 cache, and what reached memory; the memory's peak is {:.1f} byte/clk "
+      "({:.1f} GB/s, {} channels)\n"
       "  {:<19}{:>12}{:>13}{:>12}{:>11}\n",
-      s.figures.window_cycles > 0 ? " (approximate)" : "", peak, peak * s.machine.gpu.clock_mhz * 1e-3, s.machine.gpu.channels.value(),
-      "client", "read MB", "written MB", "byte/clk", "% of peak");
+      s.figures.window_cycles > 0 ? " (approximate)" : "", peak, peak * s.machine.gpu.clock_mhz * 1e-3,
+      s.machine.gpu.channels.value(), "client", "read MB", "written MB", "byte/clk", "% of peak");
   std::uint64_t read = 0, written = 0;
   for (const ClientFigures& c : f.bandwidth) {
     out += bandwidth_row(c.name, c.read_bytes, c.write_bytes, f.frame.cycles, peak);
@@ -166,7 +187,8 @@ std::string bandwidth_text(const ReportSubject& s) {
   out += bandwidth_row("all clients", read, written, f.frame.cycles, peak);
   for (const UnitGroup& group : group_units(f.units, true)) {
     if (group.kind == "memory")
-      out += bandwidth_row("memory", group.counter("read_bytes"), group.counter("write_bytes"), f.frame.cycles, peak);
+      out += bandwidth_row("memory", group.counter("read_bytes"), group.counter("write_bytes"),
+                           f.frame.cycles, peak);
   }
   return out;
 }
@@ -194,16 +216,19 @@ std::string draws_text(const Figures& f) {
   std::ranges::stable_sort(dearest, std::ranges::greater{}, &DrawFigures::in_flight);
   dearest.resize(std::min(dearest.size(), kDearestDraws));
   std::string out = fmt::format(
-      "\nDRAWS  the {} of {} that were in flight longest; draws overlap. Limiter: the unit with most work, if that is half of the time\n"
+      "\nDRAWS  the {} of {} that were in flight longest; draws overlap. Limiter: the unit with most work, "
+      "if that is half of the time\n"
       "  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n",
-      dearest.size(), d.draws.size(), "draw", "label", "pass", "cycles", "triangles", "drawn", "fragments", "limiter");
+      dearest.size(), d.draws.size(), "draw", "label", "pass", "cycles", "triangles", "drawn", "fragments",
+      "limiter");
   for (const DrawFigures* draw : dearest) {
     std::string label = draw->label;
     if (label.size() > 39) label = "..." + label.substr(label.size() - 36);  // the end tells draws apart
     out +=
-        fmt::format("  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n", draw - d.draws.data(), label, draw->pass,
-                    grouped(static_cast<std::uint64_t>(draw->in_flight())), grouped(draw->of(DrawCount::kTrianglesIn)),
-                    grouped(draw->of(DrawCount::kTrianglesDrawn)), grouped(draw->of(DrawCount::kShaded)), limiter_text(d.limiter(*draw)));
+        fmt::format("  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n", draw - d.draws.data(), label,
+                    draw->pass, grouped(static_cast<std::uint64_t>(draw->in_flight())),
+                    grouped(draw->of(DrawCount::kTrianglesIn)), grouped(draw->of(DrawCount::kTrianglesDrawn)),
+                    grouped(draw->of(DrawCount::kShaded)), limiter_text(d.limiter(*draw)));
   }
   return out;
 }
@@ -220,14 +245,15 @@ std::string host_text(const Figures& f) {
   std::vector<std::string> speed{fmt::format("{:.3f} million fragments/s", h.fragments_per_s * 1e-6)};
   if (!f.units.empty()) {
     speed.push_back(fmt::format("{:.3f} million cycles/s", h.cycles_per_s * 1e-6));
-    speed.push_back(
-        fmt::format("{} actions of units, {:.0f} ns each", grouped(h.actions), 1e9 * ratio(h.simulate_s, static_cast<double>(h.actions))));
+    speed.push_back(fmt::format("{} actions of units, {:.0f} ns each", grouped(h.actions),
+                                1e9 * ratio(h.simulate_s, static_cast<double>(h.actions))));
   }
   return "\nHOST  what the simulation cost here\n" +
-         row("seconds", {fmt::format("load {:.3f}", h.load_s), fmt::format("build {:.3f}", h.build_s),
-                         fmt::format("unpack textures {:.3f}", h.unpack_s),
-                         fmt::format("simulate {:.3f} ({:.3f} of processor time)", h.simulate_s, h.simulate_cpu_s),
-                         fmt::format("whole process {:.3f}", h.wall_s)}) +
+         row("seconds",
+             {fmt::format("load {:.3f}", h.load_s), fmt::format("build {:.3f}", h.build_s),
+              fmt::format("unpack textures {:.3f}", h.unpack_s),
+              fmt::format("simulate {:.3f} ({:.3f} of processor time)", h.simulate_s, h.simulate_cpu_s),
+              fmt::format("whole process {:.3f}", h.wall_s)}) +
          row("speed", speed) + row("memory", {fmt::format("{:.0f} MiB at most", h.peak_rss_mib)});
 }
 
@@ -236,7 +262,9 @@ std::string host_text(const Figures& f) {
 std::string failed_checks(const Figures& figures) {
   std::string out;
   for (const Check& c : figures.checks) {
-    if (!c.holds()) out += fmt::format("  law broken: {}: {} is {}, {} is {}\n", c.law, c.left_name, c.left, c.right_name, c.right);
+    if (!c.holds())
+      out += fmt::format("  law broken: {}: {} is {}, {} is {}\n", c.law, c.left_name, c.left, c.right_name,
+                         c.right);
   }
   return out;
 }
@@ -244,7 +272,8 @@ std::string failed_checks(const Figures& figures) {
 std::string_view without_number(std::string_view name) {
   const std::size_t bar = name.rfind('_');
   if (bar == std::string_view::npos || bar + 1 == name.size()) return name;
-  const bool number = std::ranges::all_of(name.substr(bar + 1), [](unsigned char c) { return std::isdigit(c) != 0; });
+  const bool number =
+      std::ranges::all_of(name.substr(bar + 1), [](unsigned char c) { return std::isdigit(c) != 0; });
   return number ? name.substr(0, bar) : name;
 }
 
@@ -255,9 +284,9 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
-  return frame_text(subject) + notes_text(subject.figures) + units_text(subject, rows) + limit_text(subject.figures) +
-         bandwidth_text(subject) + draws_text(subject.figures) + checks_text(subject.figures) + left_out_text(subject.figures) +
-         host_text(subject.figures);
+  return frame_text(subject) + notes_text(subject.figures) + units_text(subject, rows) +
+         limit_text(subject.figures) + bandwidth_text(subject) + draws_text(subject.figures) +
+         checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

@@ -11,15 +11,18 @@ namespace quadrille::pipeline {
 
 namespace {
 
-/// How bounds of like length add up: infinity would be perfect overlap, 1 none. [M: `quadrille experiment limits`]
+/// How bounds of like length add up: infinity would be perfect overlap, 1 none. [M: `quadrille experiment
+/// limits`]
 constexpr double kNorm = 12;
-/// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between them it is shared. Where places are full, somebody waits for
-/// one, and the bounds of units have to reach further; a link's own bound counts its places. [M: the same]
+/// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between
+/// them it is shared. Where places are full, somebody waits for one, and the bounds of units have to reach
+/// further; a link's own bound counts its places. [M: the same]
 struct Reach {
   double waiting, work;
 };
 constexpr Reach kReach{0.35, 0.75}, kReachWithFullPlaces{0.5, 0.95};
-/// Slices are joined until they are no shorter than this, and no more than so many: within a batch or a tile units take turns, and that is no phase.
+/// Slices are joined until they are no shorter than this, and no more than so many: within a batch or a tile
+/// units take turns, and that is no phase.
 constexpr double kShortestSlice = 4000;
 constexpr std::size_t kMostSlices = 24;
 /// From this part of a slice on, places that are all taken hold it up.
@@ -55,11 +58,13 @@ class Slices {
   explicit Slices(const Figures& f) {
     const auto cycles = static_cast<double>(f.frame.cycles);
     if (f.slice_cycles > 0) {
-      while (static_cast<double>(joined_) * f.slice_cycles < std::max(kShortestSlice, cycles / kMostSlices)) ++joined_;
+      while (static_cast<double>(joined_) * f.slice_cycles < std::max(kShortestSlice, cycles / kMostSlices))
+        ++joined_;
       slice_ = static_cast<double>(joined_) * f.slice_cycles;
     } else slice_ = cycles;
     count_ = static_cast<std::size_t>(std::ceil(cycles / slice_));
-    for (std::size_t s = 0; s < count_; ++s) lengths_.push_back(std::min(slice_, cycles - static_cast<double>(s) * slice_));
+    for (std::size_t s = 0; s < count_; ++s)
+      lengths_.push_back(std::min(slice_, cycles - static_cast<double>(s) * slice_));
     for (const UnitFigures& unit : f.units) add(unit, cycles);
     for (const LinkFigures& link : f.links) add(link);
   }
@@ -72,7 +77,8 @@ class Slices {
   [[nodiscard]] std::vector<double> parts(const ResourceFigure& r, double per_cycle) const {
     std::vector<double> part(count_, 0);
     double before = 0;
-    if (r.at_end_of.empty() && lengths_[0] > 0) part[0] = std::clamp(r.cycles / (lengths_[0] * per_cycle), 0.0, 1.0);
+    if (r.at_end_of.empty() && lengths_[0] > 0)
+      part[0] = std::clamp(r.cycles / (lengths_[0] * per_cycle), 0.0, 1.0);
     if (r.at_end_of.empty()) return part;
     for (std::size_t s = 0; s < count_; ++s) {
       const double until = r.at_end_of[std::min(r.at_end_of.size(), (s + 1) * joined_) - 1];
@@ -133,18 +139,21 @@ std::string_view full_places(const Slices& slices, std::size_t s) {
   return {};
 }
 
-void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double>& gains, double& waiting_cycles) {
+void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double>& gains,
+               double& waiting_cycles) {
   double sum = 0;
   for (const auto& [name, bound] : slices.rates()) sum += std::pow(bound.use[s], kNorm);
   const double reach = std::pow(sum, 1 / kNorm), length = slices.length(s);
   const std::string_view full = full_places(slices, s);
-  const auto greatest = std::ranges::max_element(slices.rates(), {}, [s](const auto& r) { return r.second.use[s]; });
+  const auto greatest =
+      std::ranges::max_element(slices.rates(), {}, [s](const auto& r) { return r.second.use[s]; });
   const Reach& between = full.empty() || greatest->first.starts_with("link.") ? kReach : kReachWithFullPlaces;
   const double work = std::clamp((reach - between.waiting) / (between.work - between.waiting), 0.0, 1.0);
   for (const auto& [name, bound] : slices.rates()) {
     for (const auto& [resource, part] : bound.of) {
       const double rest = sum - std::pow(bound.use[s], kNorm) + std::pow(bound.use[s] - part[s] / 2, kNorm);
-      if (reach > 0) gains[resource] += length * work * (1 - std::pow(std::max(0.0, rest), 1 / kNorm) / reach);
+      if (reach > 0)
+        gains[resource] += length * work * (1 - std::pow(std::max(0.0, rest), 1 / kNorm) / reach);
     }
   }
   if (full.empty()) waiting_cycles += length * (1 - work);
@@ -191,8 +200,9 @@ Sensitivity sensitivity(const Figures& f) {
   for (const auto& [name, bound] : slices.rates())
     for (const auto& [resource, part] : bound.of) result.uses.push_back({resource, mean(part), false});
   for (const auto& [name, part] : slices.places()) result.uses.push_back({name, mean(part), true});
-  std::ranges::stable_sort(result.uses,
-                           [](const ResourceUse& a, const ResourceUse& b) { return a.places != b.places ? b.places : a.use > b.use; });
+  std::ranges::stable_sort(result.uses, [](const ResourceUse& a, const ResourceUse& b) {
+    return a.places != b.places ? b.places : a.use > b.use;
+  });
   result.waiting = waiting / cycles;
   return result;
 }

@@ -1,10 +1,13 @@
 /// What a frame would gain if a resource were doubled, estimated from the figures of the one run.
 ///
-/// Every unit says how much of each of its resources the frame took, slice by slice (hw/base/resource.h). In a slice, a rate that was used for a part `u` of the
-/// time is a bound of `u` on the slice's length. What the bounds together leave of the slice is waiting. Bounds that are nearly as long as the greatest one
-/// add to it, since work does not overlap perfectly: the time of a slice is the p-norm of its bounds and its waiting, with one p for all frames. Doubling a
-/// rate halves its bound. Doubling a number of places halves the waiting of the slices in which all places were taken, and those of nobody further
-/// downstream: who waits for a full place downstream is full himself. docs/limit.md has the table of what doubling sets, and how often the estimate is right.
+/// Every unit says how much of each of its resources the frame took, slice by slice (hw/base/resource.h). In
+/// a slice, a rate that was used for a part `u` of the time is a bound of `u` on the slice's length. What the
+/// bounds together leave of the slice is waiting. Bounds that are nearly as long as the greatest one add to
+/// it, since work does not overlap perfectly: the time of a slice is the p-norm of its bounds and its
+/// waiting, with one p for all frames. Doubling a rate halves its bound. Doubling a number of places halves
+/// the waiting of the slices in which all places were taken, and those of nobody further downstream: who
+/// waits for a full place downstream is full himself. docs/limit.md has the table of what doubling sets, and
+/// how often the estimate is right.
 #pragma once
 
 #include "pipeline/report/figures.h"
@@ -28,14 +31,16 @@ struct Doubling {
 [[nodiscard]] const std::vector<Doubling>& doublings();
 /// The doubling of a resource; nullptr when no parameter sets it.
 [[nodiscard]] const Doubling* doubling_of(std::string_view resource);
-/// The settings that it means on a machine, within the legal values: "core.simd_lanes=16". Empty when they change nothing.
+/// The settings that it means on a machine, within the legal values: "core.simd_lanes=16". Empty when they
+/// change nothing.
 [[nodiscard]] std::vector<std::string> settings_of(const Doubling& doubling, const MachineConfig& machine);
 
 /// How much of the frame's time a resource needs at least.
 struct ResourceUse {
   std::string name;  ///< "core.issue"; the key of a class of links
-  double use =
-      0;  ///< of the busiest of its kind: least time of its work over the frame's, 0..1; of places the part of the time they were all taken
+  /// of the busiest of its kind: least time of its work over the frame's, 0..1; of places the part of the
+  /// time they were all taken
+  double use = 0;
   bool places = false;
 };
 struct Gain {

@@ -16,7 +16,8 @@ std::string facet_text(const hw::Facet& facet, std::int64_t cycles) {
     case kCount: return fmt::format("{} {}", facet.label, grouped(static_cast<std::uint64_t>(facet.value)));
     case kRate: {
       const double rate = facet.value / static_cast<double>(std::max<std::int64_t>(1, cycles));
-      return fmt::format("{} {:.2f}/clk ({:.0f} % of {:g})", facet.label, rate, 100 * rate / facet.peak, facet.peak);
+      return fmt::format("{} {:.2f}/clk ({:.0f} % of {:g})", facet.label, rate, 100 * rate / facet.peak,
+                         facet.peak);
     }
     case kShare:
       if (facet.whole <= 0) return fmt::format("{} -", facet.label);
@@ -52,7 +53,8 @@ double UnitGroup::busy_spread() const {
   };
   const double mean = share(sum(&UnitFigures::busy), cycles());
   double spread = 0;
-  for (const UnitFigures* unit : units) spread = std::max(spread, std::abs(share(unit->busy, unit->cycles) - mean));
+  for (const UnitFigures* unit : units)
+    spread = std::max(spread, std::abs(share(unit->busy, unit->cycles) - mean));
   return spread;
 }
 

@@ -1,4 +1,5 @@
-/// What is worth saying of each kind of unit in a table: which of its counters, and the rates and shares made of them.
+/// What is worth saying of each kind of unit in a table: which of its counters, and the rates and shares made
+/// of them.
 #pragma once
 
 #include "pipeline/report/figures.h"

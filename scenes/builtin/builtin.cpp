@@ -27,18 +27,26 @@ struct Entry {
 constexpr std::array<Entry, 8> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
-    {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"}, [](double) { return build_quad(); }},
-    {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"}, [](double) { return build_cubes(); }},
+    {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
+     [](double) { return build_quad(); }},
+    {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"},
+     [](double) { return build_cubes(); }},
     {{"courtyard",
-      "a sunlit courtyard with fountain, arcades, trees and glass: 15 materials, normal maps, MASK and BLEND, 380 thousand triangles"},
+      "a sunlit courtyard with fountain, arcades, trees and glass: 15 materials, normal maps, MASK and "
+      "BLEND, 380 thousand triangles"},
      [](double) { return build_courtyard(); }},
     {{"overdraw", "sixteen translucent layers over the whole screen: blending and colour bandwidth"},
      [](double) { return build_overdraw(); }},
-    {{"fill", "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most units left out"},
+    {{"fill",
+      "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most "
+      "units left out"},
      [](double) { return build_fill(); }},
-    {{"materials", "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"},
+    {{"materials",
+      "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"},
      [](double) { return build_materials(); }},
-    {{"flag", "a flag in the wind, two seconds that repeat: a skin of 25 joints and two morph targets, posed by the vertex shader"},
+    {{"flag",
+      "a flag in the wind, two seconds that repeat: a skin of 25 joints and two morph targets, posed by the "
+      "vertex shader"},
      build_flag,
      kFlagSeconds},
 }};
@@ -46,7 +54,9 @@ constexpr std::array<Entry, 8> kEntries{{
 /// An unlit quad that fills the picture of `flat_camera`, at distance `depth`.
 std::uint32_t screen_quad(SceneData& scene, const std::string& name, int material, float depth) {
   MeshBuilder mesh;
-  mesh.patch(1, 1, [&](float u, float v) { return PatchPoint{{40 * (u - 0.5F), 20 * (0.5F - v), -depth}, {u, v}}; });
+  mesh.patch(1, 1, [&](float u, float v) {
+    return PatchPoint{{40 * (u - 0.5F), 20 * (0.5F - v), -depth}, {u, v}};
+  });
   return mesh.finish(scene, name, material, {.normal = false, .tangent = false, .uv = false, .color = false});
 }
 
@@ -91,7 +101,8 @@ SceneData build_triangle() {
     mesh.vertex(v);
   }
   mesh.triangle(0, 1, 2);
-  place(scene, mesh.finish(scene, "triangle", 0, {.normal = false, .tangent = false, .uv = false, .color = true}));
+  place(scene,
+        mesh.finish(scene, "triangle", 0, {.normal = false, .tangent = false, .uv = false, .color = true}));
   scene.cameras.push_back(flat_camera());
   scene.background = {0.02F, 0.02F, 0.03F};
   return scene;
@@ -100,12 +111,16 @@ SceneData build_triangle() {
 SceneData build_quad() {
   SceneData scene;
   Material m = unlit("checker", glm::vec4(1));
-  m.texture(TextureSlot::kBaseColor).image = add_image(scene, "checker", checker(256, 8, {0.85F, 0.83F, 0.78F}, {0.05F, 0.08F, 0.15F}));
+  m.texture(TextureSlot::kBaseColor).image =
+      add_image(scene, "checker", checker(256, 8, {0.85F, 0.83F, 0.78F}, {0.05F, 0.08F, 0.15F}));
   m.double_sided = true;
   scene.materials.push_back(m);
   MeshBuilder mesh;
-  mesh.patch(1, 1, [](float u, float v) { return PatchPoint{{30 * (u - 0.5F), -1, 1 - 40 * (1 - v)}, {8 * u, 10 * v}}; });
-  place(scene, mesh.finish(scene, "floor", 0, {.normal = false, .tangent = false, .uv = true, .color = false}));
+  mesh.patch(1, 1, [](float u, float v) {
+    return PatchPoint{{30 * (u - 0.5F), -1, 1 - 40 * (1 - v)}, {8 * u, 10 * v}};
+  });
+  place(scene,
+        mesh.finish(scene, "floor", 0, {.normal = false, .tangent = false, .uv = true, .color = false}));
   Camera camera;
   camera.name = "low";
   camera.pose = glm::mat4(1);
@@ -115,14 +130,18 @@ SceneData build_quad() {
 
 SceneData build_cubes() {
   SceneData scene;
-  const int image = add_image(scene, "crate", paint(256, true, [](glm::vec2 uv) {
-                                const glm::vec2 edge = glm::vec2(0.5F) - glm::abs(uv - 0.5F);
-                                const float frame = smooth_ramp(0.075F, 0.085F, std::min(edge.x, edge.y));
-                                const float grain = tiling_noise({uv.x * 8, uv.y * 64}, 8, 3, 5);
-                                return glm::vec4(glm::mix(glm::vec3(0.75F), glm::vec3(1), frame) * (0.7F + 0.3F * grain), 1);
-                              }));
-  constexpr std::array<glm::vec3, 5> kColors{
-      {{0.80F, 0.25F, 0.18F}, {0.90F, 0.66F, 0.20F}, {0.25F, 0.55F, 0.30F}, {0.20F, 0.42F, 0.72F}, {0.75F, 0.72F, 0.68F}}};
+  const int image = add_image(
+      scene, "crate", paint(256, true, [](glm::vec2 uv) {
+        const glm::vec2 edge = glm::vec2(0.5F) - glm::abs(uv - 0.5F);
+        const float frame = smooth_ramp(0.075F, 0.085F, std::min(edge.x, edge.y));
+        const float grain = tiling_noise({uv.x * 8, uv.y * 64}, 8, 3, 5);
+        return glm::vec4(glm::mix(glm::vec3(0.75F), glm::vec3(1), frame) * (0.7F + 0.3F * grain), 1);
+      }));
+  constexpr std::array<glm::vec3, 5> kColors{{{0.80F, 0.25F, 0.18F},
+                                              {0.90F, 0.66F, 0.20F},
+                                              {0.25F, 0.55F, 0.30F},
+                                              {0.20F, 0.42F, 0.72F},
+                                              {0.75F, 0.72F, 0.68F}}};
   std::array<std::uint32_t, 5> cubes{};
   for (std::size_t i = 0; i < kColors.size(); ++i) {
     Material m;
@@ -139,8 +158,9 @@ SceneData build_cubes() {
   for (int i = 0; i < 125; ++i) {
     const glm::ivec3 cell(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
     const glm::vec3 at = 1.7F * glm::vec3(cell);
-    const glm::mat4 turned = glm::translate(glm::mat4(1), at) *
-                             rotation(6.2831853F * lattice_random(i, 0, 3), glm::normalize(glm::vec3(1, 2, lattice_random(i, 1, 3))));
+    const glm::mat4 turned =
+        glm::translate(glm::mat4(1), at) * rotation(6.2831853F * lattice_random(i, 0, 3),
+                                                    glm::normalize(glm::vec3(1, 2, lattice_random(i, 1, 3))));
     place(scene, cubes[static_cast<std::size_t>(i) % kColors.size()], turned);
   }
   return scene;
@@ -151,7 +171,8 @@ SceneData build_overdraw() {
   scene.cameras.push_back(flat_camera());
   for (int i = 0; i < 16; ++i) {
     const float t = static_cast<float>(i) / 15;
-    Material m = unlit(fmt::format("layer {}", i), {0.9F - 0.7F * t, 0.3F + 0.4F * t * (1 - t) * 4, 0.2F + 0.7F * t, 0.25F});
+    Material m = unlit(fmt::format("layer {}", i),
+                       {0.9F - 0.7F * t, 0.3F + 0.4F * t * (1 - t) * 4, 0.2F + 0.7F * t, 0.25F});
     m.alpha = AlphaMode::kBlend;
     scene.materials.push_back(m);
     place(scene, screen_quad(scene, fmt::format("layer {}", i), i, 50 - static_cast<float>(i)),
@@ -197,7 +218,8 @@ const Entry& entry_of(const std::string& name) {
   if (found != kEntries.end()) return *found;
   std::vector<std::string> names;
   for (const Entry& entry : kEntries) names.push_back(fmt::format("builtin:{}", entry.scene.name));
-  throw user_error("builtin:{}: no such built-in scene; there are {}{}", name.substr(0, 60), fmt::join(names, ", "), meant_builtin(name));
+  throw user_error("builtin:{}: no such built-in scene; there are {}{}", name.substr(0, 60),
+                   fmt::join(names, ", "), meant_builtin(name));
 }
 
 }  // namespace

@@ -14,10 +14,12 @@ struct BuiltinScene {
   std::string_view description;  ///< one line
 };
 [[nodiscard]] const std::vector<BuiltinScene>& builtin_scenes();
-/// "; did you mean 'builtin:quad'?" for a name that is none, to go on with after what is wrong; empty when none is near.
+/// "; did you mean 'builtin:quad'?" for a name that is none, to go on with after what is wrong; empty when
+/// none is near.
 [[nodiscard]] std::string meant_builtin(std::string_view name);
 
-/// Builds the scene `name` (without `builtin:`) as it is at `time`, in seconds. Throws `UserError` that lists the legal names.
+/// Builds the scene `name` (without `builtin:`) as it is at `time`, in seconds. Throws `UserError` that lists
+/// the legal names.
 [[nodiscard]] SceneData build_builtin(const std::string& name, double time = 0);
 /// Seconds that its animation takes; 0: nothing moves. Throws as `build_builtin`.
 [[nodiscard]] double builtin_length(const std::string& name);

@@ -1,4 +1,5 @@
-/// `builtin:courtyard`, the front page: a walled yard with arcades, a fountain, trees and lamps (scenes/builtin/courtyard_*).
+/// `builtin:courtyard`, the front page: a walled yard with arcades, a fountain, trees and lamps
+/// (scenes/builtin/courtyard_*).
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +20,8 @@ using namespace courtyard;
 Shade make_shade() {
   Shade shade;
   shade.add_box({kWall, 0, -kWall}, {kWall + 0.5F, kWallHeight, kWall});
-  shade.add_box({kArcade - 0.2F, 3.5F, -kArcade}, {kWall, kTop + 0.4F, kArcade});    // roof of the right arcade
+  // roof of the right arcade
+  shade.add_box({kArcade - 0.2F, 3.5F, -kArcade}, {kWall, kTop + 0.4F, kArcade});
   shade.add_box({-kArcade, 3.5F, -kWall}, {kArcade, kTop + 0.4F, -kArcade + 0.2F});  // and of the back one
   shade.add_box({-kWall, 3.5F, -kArcade}, {-kArcade + 0.2F, kTop + 0.4F, kArcade});
   for (int i = 0; i <= 8; ++i) {
@@ -45,12 +47,14 @@ void add_sky(SceneData& scene) {
   mesh.patch(64, 24, [](float u, float v) {
     const float angle = -kTurn * u, tilt = 0.27F * kTurn * glm::clamp(v, 0.0F, 1.0F);
     const glm::vec3 d(sine(tilt) * sine(angle), cosine(tilt), sine(tilt) * cosine(angle));
-    const float haze = power(1 - std::max(0.0F, d.y), 4.0F), glow = power(std::max(0.0F, glm::dot(d, to_sun())), 12.0F);
-    const glm::vec3 color =
-        glm::mix(glm::vec3(0.12F, 0.29F, 0.66F), glm::vec3(0.62F, 0.74F, 0.86F), haze) + glow * glm::vec3(0.35F, 0.28F, 0.18F);
+    const float haze = power(1 - std::max(0.0F, d.y), 4.0F),
+                glow = power(std::max(0.0F, glm::dot(d, to_sun())), 12.0F);
+    const glm::vec3 color = glm::mix(glm::vec3(0.12F, 0.29F, 0.66F), glm::vec3(0.62F, 0.74F, 0.86F), haze) +
+                            glow * glm::vec3(0.35F, 0.28F, 0.18F);
     return PatchPoint{60.0F * d, {}, glm::vec4(color, 1)};
   });
-  place(scene, mesh.finish(scene, "sky", kSky, {.normal = false, .tangent = false, .uv = false, .color = true}));
+  place(scene,
+        mesh.finish(scene, "sky", kSky, {.normal = false, .tangent = false, .uv = false, .color = true}));
 }
 
 void add_view_and_light(SceneData& scene) {
@@ -58,7 +62,8 @@ void add_view_and_light(SceneData& scene) {
   sun.color = glm::vec3(1.0F, 0.93F, 0.80F) * 3.4F;
   sun.direction = -to_sun();
   scene.lights.push_back(sun);
-  scene.environment = {{1.05F, 1.22F, 1.50F}, {0.75F, 0.64F, 0.50F}};  // scaled down beside the file's own lights, like any scene's
+  // scaled down beside the file's own lights, like any scene's
+  scene.environment = {{1.05F, 1.22F, 1.50F}, {0.75F, 0.64F, 0.50F}};
   scene.background = {0.45F, 0.60F, 0.78F};
   Camera camera;
   camera.name = "gate";

@@ -1,4 +1,5 @@
-/// Surfaces by formula: each is a height and a colour over the unit square, painted into a base colour, a normal map and (where it varies) roughness.
+/// Surfaces by formula: each is a height and a colour over the unit square, painted into a base colour, a
+/// normal map and (where it varies) roughness.
 #include "scenes/builtin/courtyard_materials.h"
 
 #include <algorithm>
@@ -22,13 +23,16 @@ constexpr std::uint32_t kSize = 512;
 // ---- surfaces: uv in 0..1, results linear ----
 
 float paving_height(glm::vec2 uv) {
-  return smooth_ramp(0.02F, 0.16F, tiling_cells(uv * 8.0F, 8, 11).border) * 0.8F + 0.2F * tiling_noise(uv * 32.0F, 32, 3, 12);
+  return smooth_ramp(0.02F, 0.16F, tiling_cells(uv * 8.0F, 8, 11).border) * 0.8F +
+         0.2F * tiling_noise(uv * 32.0F, 32, 3, 12);
 }
 
 glm::vec4 paving_color(glm::vec2 uv) {
   const CellPoint cell = tiling_cells(uv * 8.0F, 8, 11);
   const float stone = smooth_ramp(0.02F, 0.10F, cell.border), grain = tiling_noise(uv * 64.0F, 64, 3, 13);
-  const glm::vec3 tint = glm::mix(glm::vec3(0.36F, 0.32F, 0.27F), glm::vec3(0.55F, 0.50F, 0.43F), cell.random) * (0.75F + 0.5F * grain);
+  const glm::vec3 tint =
+      glm::mix(glm::vec3(0.36F, 0.32F, 0.27F), glm::vec3(0.55F, 0.50F, 0.43F), cell.random) *
+      (0.75F + 0.5F * grain);
   return glm::vec4(glm::mix(glm::vec3(0.12F, 0.11F, 0.09F), tint, stone), 1);
 }
 
@@ -42,7 +46,9 @@ float plaster_height(glm::vec2 uv) { return tiling_noise(uv * 16.0F, 16, 5, 21);
 
 glm::vec4 plaster_color(glm::vec2 uv) {
   const float stain = tiling_noise(uv * 4.0F, 4, 4, 22), grain = tiling_noise(uv * 64.0F, 64, 2, 23);
-  return glm::vec4(glm::mix(glm::vec3(0.70F, 0.52F, 0.34F), glm::vec3(0.84F, 0.68F, 0.48F), stain) * (0.88F + 0.2F * grain), 1);
+  return glm::vec4(glm::mix(glm::vec3(0.70F, 0.52F, 0.34F), glm::vec3(0.84F, 0.68F, 0.48F), stain) *
+                       (0.88F + 0.2F * grain),
+                   1);
 }
 
 float stone_height(glm::vec2 uv) {
@@ -57,12 +63,14 @@ glm::vec4 stone_color(glm::vec2 uv) {
 
 /// Rows of barrel tiles: a half circle across, a step along.
 float roof_height(glm::vec2 uv) {
-  const float across = std::abs(2 * (uv.x * 8 - std::floor(uv.x * 8)) - 1), along = uv.y * 6 - std::floor(uv.y * 6);
+  const float across = std::abs(2 * (uv.x * 8 - std::floor(uv.x * 8)) - 1),
+              along = uv.y * 6 - std::floor(uv.y * 6);
   return 0.8F * std::sqrt(std::max(0.0F, 1 - across * across)) + 0.25F * along;
 }
 
 glm::vec4 roof_color(glm::vec2 uv) {
-  const float tile = lattice_random(static_cast<int>(uv.x * 8), static_cast<int>(uv.y * 6), 41), moss = tiling_noise(uv * 8.0F, 8, 4, 42);
+  const float tile = lattice_random(static_cast<int>(uv.x * 8), static_cast<int>(uv.y * 6), 41),
+              moss = tiling_noise(uv * 8.0F, 8, 4, 42);
   const glm::vec3 clay = glm::mix(glm::vec3(0.42F, 0.13F, 0.06F), glm::vec3(0.68F, 0.28F, 0.13F), tile);
   return glm::vec4(glm::mix(clay, glm::vec3(0.30F, 0.24F, 0.14F), 0.6F * smooth_ramp(0.55F, 0.8F, moss)), 1);
 }
@@ -83,13 +91,16 @@ glm::vec4 wood_color(glm::vec2 uv) {
 glm::vec4 leaf_color(glm::vec2 uv) {
   glm::vec4 color(0.10F, 0.20F, 0.04F, 0);
   for (int i = 0; i < 26; ++i) {
-    const glm::vec2 center(0.12F + 0.76F * lattice_random(i, 0, 81), 0.12F + 0.76F * lattice_random(i, 1, 81));
+    const glm::vec2 center(0.12F + 0.76F * lattice_random(i, 0, 81),
+                           0.12F + 0.76F * lattice_random(i, 1, 81));
     const float angle = 6.2831853F * lattice_random(i, 2, 81), c = cosine(angle), s = sine(angle);
     const glm::vec2 d = uv - center, local(c * d.x + s * d.y, -s * d.x + c * d.y);
     const float along = local.x / 0.115F, width = 0.05F * (1 - along * along);
     if (std::abs(along) >= 1 || std::abs(local.y) >= width) continue;
     const float rib = smooth_ramp(0, 0.006F, std::abs(local.y)), tone = lattice_random(i, 3, 81);
-    color = glm::vec4(glm::mix(glm::vec3(0.10F, 0.24F, 0.035F), glm::vec3(0.30F, 0.46F, 0.08F), tone) * (0.8F + 0.2F * rib), 1);
+    color = glm::vec4(
+        glm::mix(glm::vec3(0.10F, 0.24F, 0.035F), glm::vec3(0.30F, 0.46F, 0.08F), tone) * (0.8F + 0.2F * rib),
+        1);
   }
   return color;
 }

@@ -1,4 +1,5 @@
-/// The parts of the built-in courtyard and its plan. Metres, y up, the fountain at the origin, the viewer toward +z.
+/// The parts of the built-in courtyard and its plan. Metres, y up, the fountain at the origin, the viewer
+/// toward +z.
 #pragma once
 
 #include <array>
@@ -23,8 +24,10 @@ inline constexpr float kBay = 2;        // from column to column
 inline constexpr float kSpring = 2.5F;  // where the arches start
 inline constexpr float kTop = 3.9F;     // top of the arcade
 inline constexpr float kColumn = 0.19F;
-inline constexpr std::array<glm::vec3, 4> kTrees{{{-5.2F, 0, -3.6F}, {4.9F, 0, -4.4F}, {-6.1F, 0, 4.4F}, {5.6F, 0, 2.6F}}};
-inline constexpr std::array<glm::vec3, 4> kLamps{{{-3.1F, 0, -2.6F}, {3.1F, 0, -2.6F}, {-3.1F, 0, 3.0F}, {3.1F, 0, 3.0F}}};
+inline constexpr std::array<glm::vec3, 4> kTrees{
+    {{-5.2F, 0, -3.6F}, {4.9F, 0, -4.4F}, {-6.1F, 0, 4.4F}, {5.6F, 0, 2.6F}}};
+inline constexpr std::array<glm::vec3, 4> kLamps{
+    {{-3.1F, 0, -2.6F}, {3.1F, 0, -2.6F}, {-3.1F, 0, 3.0F}, {3.1F, 0, 3.0F}}};
 inline constexpr float kCrownHeight = 3.7F, kCrownRadius = 1.75F;
 
 [[nodiscard]] glm::mat4 moved(const glm::vec3& by);
@@ -33,8 +36,10 @@ inline constexpr float kCrownHeight = 3.7F, kCrownRadius = 1.75F;
 
 /// Radius and height along a turned shape, from its top (v = 0) to its foot (v = 1).
 using Profile = std::vector<glm::vec2>;
-/// Turns a profile around the y axis; seen from outside u goes right. The texture repeats `repeats` times around and along.
-void lathe(MeshBuilder& mesh, const Profile& profile, std::uint32_t sides, std::uint32_t rings, glm::vec2 repeats);
+/// Turns a profile around the y axis; seen from outside u goes right. The texture repeats `repeats` times
+/// around and along.
+void lathe(MeshBuilder& mesh, const Profile& profile, std::uint32_t sides, std::uint32_t rings,
+           glm::vec2 repeats);
 void sphere(MeshBuilder& mesh, const glm::vec3& center, float radius, std::uint32_t sides);
 
 // courtyard_stone.cpp

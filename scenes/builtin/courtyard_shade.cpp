@@ -18,12 +18,14 @@ constexpr float kShade = 0.36F;  // of the sunlit colour: what the sky alone giv
 bool hits_box(const glm::vec3& p, const glm::vec3& d, const glm::vec3& low, const glm::vec3& high) {
   const glm::vec3 a = (low - p) / d, b = (high - p) / d;
   const glm::vec3 enter = glm::min(a, b), leave = glm::max(a, b);
-  const float first = std::max({enter.x, enter.y, enter.z, 1e-3F}), last = std::min({leave.x, leave.y, leave.z});
+  const float first = std::max({enter.x, enter.y, enter.z, 1e-3F}),
+              last = std::min({leave.x, leave.y, leave.z});
   return first < last;
 }
 
 /// Does the ray come within `radius` of the axis below the top? Seen from above it is a line and a circle.
-bool hits_cylinder(const glm::vec3& p, const glm::vec3& d, const glm::vec3& foot, float radius, float height) {
+bool hits_cylinder(const glm::vec3& p, const glm::vec3& d, const glm::vec3& foot, float radius,
+                   float height) {
   const glm::vec2 flat(d.x, d.z), offset(foot.x - p.x, foot.z - p.z);
   const float reach = glm::dot(offset, flat) / glm::dot(flat, flat);
   if (glm::dot(offset, offset) < radius * radius) return p.y < foot.y + height - 0.05F;
@@ -59,7 +61,8 @@ float Shade::lit(const glm::vec3& point, const glm::vec3& direction) const {
 
 float Shade::at(const glm::vec3& point) const {
   constexpr float kDisc = 0.012F;  // a sun a little larger than ours: softens the steps between vertices
-  constexpr std::array<glm::vec3, 4> kOffsets{{{kDisc, 0, kDisc}, {-kDisc, 0, kDisc}, {kDisc, 0, -kDisc}, {-kDisc, 0, -kDisc}}};
+  constexpr std::array<glm::vec3, 4> kOffsets{
+      {{kDisc, 0, kDisc}, {-kDisc, 0, kDisc}, {kDisc, 0, -kDisc}, {-kDisc, 0, -kDisc}}};
   float sum = 0;
   for (const glm::vec3& offset : kOffsets) sum += lit(point, glm::normalize(to_sun() + offset));
   return kShade + (1 - kShade) * sum / static_cast<float>(kOffsets.size());

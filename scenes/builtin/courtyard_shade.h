@@ -1,4 +1,5 @@
-/// Sunlight in the courtyard, computed once a vertex: the machine draws no shadows, so the big surfaces carry theirs in their vertex colours.
+/// Sunlight in the courtyard, computed once a vertex: the machine draws no shadows, so the big surfaces carry
+/// theirs in their vertex colours.
 #pragma once
 
 #include <vector>
@@ -16,7 +17,9 @@ class Shade {
   /// Blocks all light.
   void add_box(const glm::vec3& low, const glm::vec3& high) { boxes_.push_back({low, high}); }
   /// A vertical cylinder; blocks all light.
-  void add_cylinder(const glm::vec3& foot, float radius, float height) { cylinders_.push_back({foot, radius, height}); }
+  void add_cylinder(const glm::vec3& foot, float radius, float height) {
+    cylinders_.push_back({foot, radius, height});
+  }
   /// A tree crown: lets specks of light through.
   void add_crown(const glm::vec3& center, float radius) { crowns_.push_back({center, radius}); }
   /// The vertex colour of a point: 1 in the sun, less in shade, averaged over the sun's disc.

@@ -20,15 +20,19 @@ glm::vec2 on_profile(const Profile& profile, float v) {
 }
 
 /// A wall as seen from the yard; `center` is the middle of its foot, `right` the way its u runs.
-void add_wall(SceneData& scene, const Shade& shade, const char* name, const glm::vec3& center, const glm::vec3& right) {
+void add_wall(SceneData& scene, const Shade& shade, const char* name, const glm::vec3& center,
+              const glm::vec3& right) {
   MeshBuilder mesh;
   mesh.patch(160, 48, [&](float u, float v) {
     const float x = 2 * kWall * (u - 0.5F), y = glm::mix(kWallHeight, -0.1F, v);
-    const glm::vec3 p = center + right * x + glm::vec3(0, y, 0), inward = glm::cross(right, glm::vec3(0, 1, 0));
+    const glm::vec3 p = center + right * x + glm::vec3(0, y, 0),
+                    inward = glm::cross(right, glm::vec3(0, 1, 0));
     const float contact = 0.7F + 0.3F * smooth_ramp(0, 1.2F, y);
-    return PatchPoint{p, glm::vec2(x, -y) * 0.4F, glm::vec4(glm::vec3(contact * shade.at(p + 0.02F * inward)), 1)};
+    return PatchPoint{p, glm::vec2(x, -y) * 0.4F,
+                      glm::vec4(glm::vec3(contact * shade.at(p + 0.02F * inward)), 1)};
   });
-  place(scene, mesh.finish(scene, name, kPlaster, {.normal = true, .tangent = true, .uv = true, .color = true}));
+  place(scene,
+        mesh.finish(scene, name, kPlaster, {.normal = true, .tangent = true, .uv = true, .color = true}));
 }
 
 std::uint32_t make_column(SceneData& scene) {
@@ -54,7 +58,9 @@ std::uint32_t make_column(SceneData& scene) {
 /// One bay of the arcade, between columns at x = +-1: front, back and the curved underside.
 std::uint32_t make_arch(SceneData& scene) {
   constexpr float kThick = 0.2F, kOpening = 0.72F;
-  const auto curve = [&](float x) { return kSpring + std::sqrt(std::max(0.0F, kOpening * kOpening - x * x)); };
+  const auto curve = [&](float x) {
+    return kSpring + std::sqrt(std::max(0.0F, kOpening * kOpening - x * x));
+  };
   MeshBuilder mesh;
   for (const float side : {1.0F, -1.0F}) {
     mesh.patch(64, 6, [&](float u, float v) {
@@ -64,7 +70,8 @@ std::uint32_t make_arch(SceneData& scene) {
   }
   mesh.patch(64, 3, [&](float u, float v) {
     const float angle = 0.5F * kTurn * u;
-    return PatchPoint{{-kOpening * cosine(angle), kSpring + kOpening * sine(angle), kThick * (1 - 2 * v)}, {u * 1.2F, v * 0.2F}};
+    return PatchPoint{{-kOpening * cosine(angle), kSpring + kOpening * sine(angle), kThick * (1 - 2 * v)},
+                      {u * 1.2F, v * 0.2F}};
   });
   return mesh.finish(scene, "arch", kPlaster, {.normal = true, .tangent = true, .uv = true, .color = false});
 }
@@ -74,7 +81,8 @@ std::uint32_t make_roof(SceneData& scene) {
   MeshBuilder mesh;
   mesh.patch(288, 24, [&](float u, float v) {
     const float x = 2 * kWall * (u - 0.5F), wave = 0.05F * std::abs(sine(0.5F * kTurn * u * 72));
-    return PatchPoint{{x, glm::mix(5.0F, kTop - 0.05F, v) + wave, glm::mix(-kWall, -kArcade + 0.45F, v)}, {u * 9, v * 1.4F}};
+    return PatchPoint{{x, glm::mix(5.0F, kTop - 0.05F, v) + wave, glm::mix(-kWall, -kArcade + 0.45F, v)},
+                      {u * 9, v * 1.4F}};
   });
   return mesh.finish(scene, "roof", kRoof, {.normal = true, .tangent = true, .uv = true, .color = false});
 }
@@ -86,7 +94,8 @@ void add_water(SceneData& scene, float radius, float height, const char* name) {
     const glm::vec3 p(r * sine(angle), height, r * cosine(angle));
     return PatchPoint{p, glm::vec2(p.x, p.z) * 0.5F};
   });
-  place(scene, mesh.finish(scene, name, kWater, {.normal = true, .tangent = false, .uv = true, .color = false}));
+  place(scene,
+        mesh.finish(scene, name, kWater, {.normal = true, .tangent = false, .uv = true, .color = false}));
 }
 
 }  // namespace
@@ -94,7 +103,8 @@ void add_water(SceneData& scene, float radius, float height, const char* name) {
 glm::mat4 moved(const glm::vec3& by) { return glm::translate(glm::mat4(1), by); }
 glm::mat4 turned(float angle) { return rotation(angle, {0, 1, 0}); }
 
-void lathe(MeshBuilder& mesh, const Profile& profile, std::uint32_t sides, std::uint32_t rings, glm::vec2 repeats) {
+void lathe(MeshBuilder& mesh, const Profile& profile, std::uint32_t sides, std::uint32_t rings,
+           glm::vec2 repeats) {
   mesh.patch(sides, rings, [&](float u, float v) {
     const glm::vec2 p = on_profile(profile, v);
     const float angle = kTurn * u;
@@ -105,7 +115,9 @@ void lathe(MeshBuilder& mesh, const Profile& profile, std::uint32_t sides, std::
 void sphere(MeshBuilder& mesh, const glm::vec3& center, float radius, std::uint32_t sides) {
   mesh.patch(sides, sides / 2, [&](float u, float v) {
     const float angle = kTurn * u, tilt = 0.5F * kTurn * glm::clamp(v, 0.0F, 1.0F);
-    return PatchPoint{center + radius * glm::vec3(sine(tilt) * sine(angle), cosine(tilt), sine(tilt) * cosine(angle)), {u, v}};
+    return PatchPoint{
+        center + radius * glm::vec3(sine(tilt) * sine(angle), cosine(tilt), sine(tilt) * cosine(angle)),
+        {u, v}};
   });
 }
 
@@ -113,10 +125,13 @@ void add_ground(SceneData& scene, const Shade& shade) {
   MeshBuilder mesh;
   mesh.patch(220, 220, [&](float u, float v) {
     const glm::vec3 p(2 * kWall * (u - 0.5F), 0, 2 * kWall * (v - 0.5F));
-    const glm::vec3 bumpy = p + glm::vec3(0, 0.03F * (tiling_noise(glm::vec2(u, v) * 32.0F, 32, 2, 3) - 0.5F), 0);
-    return PatchPoint{bumpy, glm::vec2(p.x, p.z) * 0.45F, glm::vec4(glm::vec3(shade.at(p + glm::vec3(0, 0.02F, 0))), 1)};
+    const glm::vec3 bumpy =
+        p + glm::vec3(0, 0.03F * (tiling_noise(glm::vec2(u, v) * 32.0F, 32, 2, 3) - 0.5F), 0);
+    return PatchPoint{bumpy, glm::vec2(p.x, p.z) * 0.45F,
+                      glm::vec4(glm::vec3(shade.at(p + glm::vec3(0, 0.02F, 0))), 1)};
   });
-  place(scene, mesh.finish(scene, "ground", kPaving, {.normal = true, .tangent = true, .uv = true, .color = true}));
+  place(scene,
+        mesh.finish(scene, "ground", kPaving, {.normal = true, .tangent = true, .uv = true, .color = true}));
 }
 
 void add_walls(SceneData& scene, const Shade& shade) {
@@ -129,8 +144,11 @@ void add_arcades(SceneData& scene) {
   const std::uint32_t column = make_column(scene), arch = make_arch(scene), roof = make_roof(scene);
   for (const float angle : {0.0F, 0.25F * kTurn, -0.25F * kTurn}) {
     place(scene, roof, turned(angle));
-    for (int i = 0; i <= 8; ++i) place(scene, column, turned(angle) * moved({-kArcade + kBay * static_cast<float>(i), 0, -kArcade}));
-    for (int i = 0; i < 8; ++i) place(scene, arch, turned(angle) * moved({-kArcade + kBay * (static_cast<float>(i) + 0.5F), 0, -kArcade}));
+    for (int i = 0; i <= 8; ++i)
+      place(scene, column, turned(angle) * moved({-kArcade + kBay * static_cast<float>(i), 0, -kArcade}));
+    for (int i = 0; i < 8; ++i)
+      place(scene, arch,
+            turned(angle) * moved({-kArcade + kBay * (static_cast<float>(i) + 0.5F), 0, -kArcade}));
   }
 }
 
@@ -168,10 +186,12 @@ void add_fountain(SceneData& scene) {
     const float angle = kTurn * u, r = 1.82F * glm::clamp(v, 0.0F, 1.0F);
     return PatchPoint{{r * sine(angle), 0.13F, r * cosine(angle)}, {sine(angle) * v, cosine(angle) * v}};
   });
-  place(scene, stone.finish(scene, "fountain", kBasin, {.normal = true, .tangent = true, .uv = true, .color = false}));
+  place(scene, stone.finish(scene, "fountain", kBasin,
+                            {.normal = true, .tangent = true, .uv = true, .color = false}));
   MeshBuilder gold;
   sphere(gold, {0, 2.2F, 0}, 0.17F, 48);
-  place(scene, gold.finish(scene, "finial", kGold, {.normal = true, .tangent = false, .uv = false, .color = false}));
+  place(scene,
+        gold.finish(scene, "finial", kGold, {.normal = true, .tangent = false, .uv = false, .color = false}));
   add_water(scene, 1.81F, 0.47F, "basin water");
   add_water(scene, 0.77F, 1.645F, "bowl water");
 }

@@ -1,4 +1,5 @@
-/// `builtin:materials`: a wall of spheres, a row for each extension of glTF's materials, its parameter growing from left to right; the last of a row has textures.
+/// `builtin:materials`: a wall of spheres, a row for each extension of glTF's materials, its parameter
+/// growing from left to right; the last of a row has textures.
 #include <array>
 
 #include <fmt/format.h>
@@ -89,7 +90,8 @@ Material sheen(int i, const Textures& t) {
 
 Material transmission(int i, const Textures& t) {
   const float x = static_cast<float>(i) / 5;
-  Material m = plain("transmission", glm::mix(glm::vec3(1), glm::vec3(0.35F, 0.9F, 0.55F), x), 0, 0.5F * x * x);
+  Material m =
+      plain("transmission", glm::mix(glm::vec3(1), glm::vec3(0.35F, 0.9F, 0.55F), x), 0, 0.5F * x * x);
   m.layers.transmission = i == 0 ? 0.5F : 1.0F;
   if (i < kColumns - 1) return m;
   m.base_color = {1, 0.8F, 0.5F, 1};
@@ -123,19 +125,24 @@ Material specular_glossiness(int i, const Textures& t) {
 void sphere(MeshBuilder& mesh) {
   mesh.patch(40, 24, [](float u, float v) {
     const float around = 2 * kPi * u, down = kPi * v;
-    return PatchPoint{kRadius * glm::vec3(sine(down) * sine(around), cosine(down), sine(down) * cosine(around)), {2 * u, v}};
+    return PatchPoint{
+        kRadius * glm::vec3(sine(down) * sine(around), cosine(down), sine(down) * cosine(around)),
+        {2 * u, v}};
   });
 }
 
 void add_wall(SceneData& scene) {
   Material m = plain("wall", glm::vec3(1), 0, 0.9F);
-  m.texture(TextureSlot::kBaseColor).image = add_image(scene, "wall", paint(64, true, [](glm::vec2 uv) {
-                                                         const glm::ivec2 square(uv * 4.0F);
-                                                         return glm::vec4(glm::vec3((square.x + square.y) % 2 == 0 ? 0.55F : 0.16F), 1);
-                                                       }));
+  m.texture(TextureSlot::kBaseColor).image =
+      add_image(scene, "wall", paint(64, true, [](glm::vec2 uv) {
+                  const glm::ivec2 square(uv * 4.0F);
+                  return glm::vec4(glm::vec3((square.x + square.y) % 2 == 0 ? 0.55F : 0.16F), 1);
+                }));
   scene.materials.push_back(m);
   MeshBuilder mesh;
-  mesh.patch(1, 1, [](float u, float v) { return PatchPoint{{14 * (u - 0.5F), 14 * (0.5F - v), -1.2F}, {12 * u, 12 * v}}; });
+  mesh.patch(1, 1, [](float u, float v) {
+    return PatchPoint{{14 * (u - 0.5F), 14 * (0.5F - v), -1.2F}, {12 * u, 12 * v}};
+  });
   place(scene, mesh.finish(scene, "wall", static_cast<int>(scene.materials.size() - 1), {}));
 }
 
@@ -143,12 +150,14 @@ void add_wall(SceneData& scene) {
 
 SceneData build_materials() {
   using Row = Material (*)(int, const Textures&);
-  constexpr std::array<Row, kRows> kMaterials{ior, specular, clearcoat, sheen, transmission, volume, specular_glossiness};
+  constexpr std::array<Row, kRows> kMaterials{ior,          specular, clearcoat,          sheen,
+                                              transmission, volume,   specular_glossiness};
   SceneData scene;
   const Textures textures{
       add_image(scene, "mask", stripes(false, glm::vec4(1), glm::vec4(0.1F))),
       add_image(scene, "color", stripes(true, {0.9F, 0.25F, 0.1F, 1}, {0.1F, 0.5F, 0.8F, 0.4F})),
-      add_image(scene, "bumps", paint_normals(128, 0.02F, [](glm::vec2 uv) { return tiling_noise(uv * 16.0F, 16, 2, 9); }))};
+      add_image(scene, "bumps",
+                paint_normals(128, 0.02F, [](glm::vec2 uv) { return tiling_noise(uv * 16.0F, 16, 2, 9); }))};
   add_wall(scene);
   MeshBuilder mesh;
   sphere(mesh);
@@ -156,9 +165,11 @@ SceneData build_materials() {
     for (int column = 0; column < kColumns; ++column) {
       scene.materials.push_back(kMaterials[static_cast<std::size_t>(row)](column, textures));
       const Material& m = scene.materials.back();
-      const std::uint32_t primitive = mesh.finish(scene, fmt::format("{} {}", m.name, column), static_cast<int>(scene.materials.size() - 1),
-                                                  {.normal = true, .tangent = true, .uv = true, .color = false});
-      place(scene, primitive, glm::translate(glm::mat4(1), kPitch * glm::vec3(column - kColumns / 2, kRows / 2 - row, 0)));
+      const std::uint32_t primitive = mesh.finish(
+          scene, fmt::format("{} {}", m.name, column), static_cast<int>(scene.materials.size() - 1),
+          {.normal = true, .tangent = true, .uv = true, .color = false});
+      place(scene, primitive,
+            glm::translate(glm::mat4(1), kPitch * glm::vec3(column - kColumns / 2, kRows / 2 - row, 0)));
     }
   }
   Camera camera;

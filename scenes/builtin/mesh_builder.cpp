@@ -10,8 +10,8 @@ namespace quadrille::scenes {
 namespace {
 
 template <class T, class Get>
-int add_stream(SceneData& scene, const std::string& name, traces::Format format, const std::vector<MeshBuilder::Vertex>& vertices,
-               const Get& get) {
+int add_stream(SceneData& scene, const std::string& name, traces::Format format,
+               const std::vector<MeshBuilder::Vertex>& vertices, const Get& get) {
   std::vector<std::byte> data(vertices.size() * sizeof(T));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const T value = get(vertices[i]);
@@ -43,14 +43,17 @@ std::uint32_t MeshBuilder::vertex(const Vertex& v) {
   return static_cast<std::uint32_t>(vertices_.size() - 1);
 }
 
-void MeshBuilder::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { indices_.insert(indices_.end(), {a, b, c}); }
+void MeshBuilder::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  indices_.insert(indices_.end(), {a, b, c});
+}
 
 void MeshBuilder::patch(std::uint32_t columns, std::uint32_t rows, const PatchFunction& point) {
   constexpr float kStep = 1.0F / 1024;
   const auto first = static_cast<std::uint32_t>(vertices_.size());
   for (std::uint32_t row = 0; row <= rows; ++row) {
     for (std::uint32_t column = 0; column <= columns; ++column) {
-      const float u = static_cast<float>(column) / static_cast<float>(columns), v = static_cast<float>(row) / static_cast<float>(rows);
+      const float u = static_cast<float>(column) / static_cast<float>(columns),
+                  v = static_cast<float>(row) / static_cast<float>(rows);
       const PatchPoint p = point(u, v);
       // At a pole the direction of u vanishes: the differences are taken a little inside.
       const float inner_v = std::clamp(v, 2 * kStep, 1 - 2 * kStep);
@@ -85,24 +88,28 @@ void MeshBuilder::box(const glm::vec3& low, const glm::vec3& high, float uv_scal
     const auto extent = [&](const glm::vec3& axis) { return std::abs(glm::dot(axis, half)); };
     patch(1, 1, [&](float u, float v) {
       const float x = (2 * u - 1) * extent(face.right), y = (2 * v - 1) * extent(face.down);
-      return PatchPoint{center + normal * extent(normal) + face.right * x + face.down * y, glm::vec2(x, y) * uv_scale + 0.5F, color};
+      return PatchPoint{center + normal * extent(normal) + face.right * x + face.down * y,
+                        glm::vec2(x, y) * uv_scale + 0.5F, color};
     });
   }
 }
 
-std::uint32_t MeshBuilder::finish(SceneData& scene, const std::string& name, int material, const Streams& streams) const {
+std::uint32_t MeshBuilder::finish(SceneData& scene, const std::string& name, int material,
+                                  const Streams& streams) const {
   Primitive p;
   p.name = name;
   p.material = material;
   p.count = static_cast<std::uint32_t>(indices_.size());
-  const auto stream = [&]<class T>(Semantic semantic, bool wanted, const char* suffix, traces::Format format, T Vertex::*member) {
+  const auto stream = [&]<class T>(Semantic semantic, bool wanted, const char* suffix, traces::Format format,
+                                   T Vertex::*member) {
     if (wanted)
       p.attributes[static_cast<std::size_t>(semantic)] =
           add_stream<T>(scene, name + suffix, format, vertices_, [&](const Vertex& v) { return v.*member; });
   };
   stream(Semantic::kPosition, true, ".position", traces::Format::kR32G32B32Float, &Vertex::position);
   stream(Semantic::kNormal, streams.normal, ".normal", traces::Format::kR32G32B32Float, &Vertex::normal);
-  stream(Semantic::kTangent, streams.tangent, ".tangent", traces::Format::kR32G32B32A32Float, &Vertex::tangent);
+  stream(Semantic::kTangent, streams.tangent, ".tangent", traces::Format::kR32G32B32A32Float,
+         &Vertex::tangent);
   stream(Semantic::kUv0, streams.uv, ".uv", traces::Format::kR32G32Float, &Vertex::uv);
   stream(Semantic::kColor, streams.color, ".color", traces::Format::kR32G32B32A32Float, &Vertex::color);
   const bool small = vertices_.size() <= 0xffff;

@@ -40,10 +40,12 @@ class MeshBuilder {
   std::uint32_t vertex(const Vertex& v);
   /// Counter-clockwise seen from the front.
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
-  /// A grid of `columns` x `rows` quads. Seen from the front, u goes right and v down; normals and tangents come from differences of the positions.
+  /// A grid of `columns` x `rows` quads. Seen from the front, u goes right and v down; normals and tangents
+  /// come from differences of the positions.
   void patch(std::uint32_t columns, std::uint32_t rows, const PatchFunction& point);
   /// An axis-aligned box, each face one quad with `uv_scale` texture repeats a metre.
-  void box(const glm::vec3& low, const glm::vec3& high, float uv_scale, const glm::vec4& color = glm::vec4(1));
+  void box(const glm::vec3& low, const glm::vec3& high, float uv_scale,
+           const glm::vec4& color = glm::vec4(1));
   [[nodiscard]] std::size_t triangles() const { return indices_.size() / 3; }
 
   /// Adds the mesh to the scene; returns its number. Indices take the smallest type that holds them.

@@ -37,7 +37,8 @@ float noise_octave(glm::vec2 p, int period, std::uint32_t seed) {
 std::uint8_t encode(float linear) {
   static const std::array<std::uint8_t, 4096> kTable = [] {
     std::array<std::uint8_t, 4096> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) table[i] = to_byte(static_cast<float>(linear_to_srgb(static_cast<double>(i) / 4095)));
+    for (std::size_t i = 0; i < table.size(); ++i)
+      table[i] = to_byte(static_cast<float>(linear_to_srgb(static_cast<double>(i) / 4095)));
     return table;
   }();
   return kTable[nearest_step(linear, 4095)];
@@ -46,8 +47,10 @@ std::uint8_t encode(float linear) {
 }  // namespace
 
 float lattice_random(int x, int y, std::uint32_t seed) {
-  // An integer mixer of multiplications and shifts; any avalanche will do, it only has to be the same everywhere.
-  std::uint32_t h = seed * 0x9e3779b9U + static_cast<std::uint32_t>(x) * 0x85ebca6bU + static_cast<std::uint32_t>(y) * 0xc2b2ae35U;
+  // An integer mixer of multiplications and shifts; any avalanche will do, it only has to be the same
+  // everywhere.
+  std::uint32_t h = seed * 0x9e3779b9U + static_cast<std::uint32_t>(x) * 0x85ebca6bU +
+                    static_cast<std::uint32_t>(y) * 0xc2b2ae35U;
   h = (h ^ (h >> 15)) * 0x2c1b3c6dU;
   h = (h ^ (h >> 12)) * 0x297a2d39U;
   h ^= h >> 15;
@@ -96,7 +99,8 @@ Rgba8Image paint(std::uint32_t size, bool srgb, const std::function<glm::vec4(gl
   for (std::uint32_t y = 0; y < size; ++y) {
     for (std::uint32_t x = 0; x < size; ++x, at += 4) {
       const glm::vec4 c = color((glm::vec2(x, y) + 0.5F) / static_cast<float>(size));
-      for (int i = 0; i < 3; ++i) image.pixels[at + static_cast<std::size_t>(i)] = srgb ? encode(c[i]) : to_byte(c[i]);
+      for (int i = 0; i < 3; ++i)
+        image.pixels[at + static_cast<std::size_t>(i)] = srgb ? encode(c[i]) : to_byte(c[i]);
       image.pixels[at + 3] = to_byte(c.a);
     }
   }
@@ -106,16 +110,21 @@ Rgba8Image paint(std::uint32_t size, bool srgb, const std::function<glm::vec4(gl
 Rgba8Image paint_normals(std::uint32_t size, float depth, const std::function<float(glm::vec2)>& height) {
   std::vector<float> field(std::size_t{size} * size);
   for (std::uint32_t y = 0; y < size; ++y) {
-    for (std::uint32_t x = 0; x < size; ++x) field[std::size_t{size} * y + x] = height((glm::vec2(x, y) + 0.5F) / static_cast<float>(size));
+    for (std::uint32_t x = 0; x < size; ++x)
+      field[std::size_t{size} * y + x] = height((glm::vec2(x, y) + 0.5F) / static_cast<float>(size));
   }
-  const auto sample = [&](std::uint32_t x, std::uint32_t y) { return field[std::size_t{size} * (y % size) + x % size]; };
+  const auto sample = [&](std::uint32_t x, std::uint32_t y) {
+    return field[std::size_t{size} * (y % size) + x % size];
+  };
   const float slope = 0.5F * depth * static_cast<float>(size);
   Rgba8Image image{size, size, {}};
   image.pixels.reserve(std::size_t{4} * size * size);
   for (std::uint32_t y = 0; y < size; ++y) {
     for (std::uint32_t x = 0; x < size; ++x) {
-      const float du = sample(x + 1, y) - sample(x + size - 1, y), dv = sample(x, y + 1) - sample(x, y + size - 1);
-      const glm::vec3 n = glm::normalize(glm::vec3(-du * slope, dv * slope, 1));  // green points up, against v
+      const float du = sample(x + 1, y) - sample(x + size - 1, y),
+                  dv = sample(x, y + 1) - sample(x, y + size - 1);
+      // green points up, against v
+      const glm::vec3 n = glm::normalize(glm::vec3(-du * slope, dv * slope, 1));
       for (int i = 0; i < 3; ++i) image.pixels.push_back(to_byte(0.5F * n[i] + 0.5F));
       image.pixels.push_back(255);
     }

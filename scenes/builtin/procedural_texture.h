@@ -1,4 +1,5 @@
-/// Textures by formula for the built-in scenes. All tile: the left edge continues the right one, the top the bottom.
+/// Textures by formula for the built-in scenes. All tile: the left edge continues the right one, the top the
+/// bottom.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +18,20 @@ namespace quadrille::scenes {
 /// A fixed pseudo-random number in 0..1 for a lattice point.
 [[nodiscard]] float lattice_random(int x, int y, std::uint32_t seed);
 
-/// The nearest of one jittered point a cell: distance to the border between the two nearest, and a number for the cell.
+/// The nearest of one jittered point a cell: distance to the border between the two nearest, and a number for
+/// the cell.
 struct CellPoint {
   float border = 0, random = 0;
 };
 [[nodiscard]] CellPoint tiling_cells(glm::vec2 p, int period, std::uint32_t seed);
 
-/// Evaluates `color` (linear, 0..1) at the centre of every texel, u and v in 0..1; rgb is stored sRGB-encoded when `srgb`.
-[[nodiscard]] Rgba8Image paint(std::uint32_t size, bool srgb, const std::function<glm::vec4(glm::vec2)>& color);
+/// Evaluates `color` (linear, 0..1) at the centre of every texel, u and v in 0..1; rgb is stored sRGB-encoded
+/// when `srgb`.
+[[nodiscard]] Rgba8Image paint(std::uint32_t size, bool srgb,
+                               const std::function<glm::vec4(glm::vec2)>& color);
 /// A tangent-space normal map of a tiling height field, `depth` in units of the texture's width.
-[[nodiscard]] Rgba8Image paint_normals(std::uint32_t size, float depth, const std::function<float(glm::vec2)>& height);
+[[nodiscard]] Rgba8Image paint_normals(std::uint32_t size, float depth,
+                                       const std::function<float(glm::vec2)>& height);
 
 /// 0 below `low`, 1 above `high`, smooth between.
 [[nodiscard]] float smooth_ramp(float low, float high, float x);

@@ -7,7 +7,8 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr double kNearlyParallel = 1 - 1e-9;  // beyond this cosine the arc is its chord to the last place of a double's square
+// beyond this cosine the arc is its chord to the last place of a double's square
+constexpr double kNearlyParallel = 1 - 1e-9;
 
 using Values = std::vector<double>;
 
@@ -38,7 +39,8 @@ Values slerp(const Values& a, const Values& b, double t) {
   const double cosine = dot(a, b), sign = cosine < 0 ? -1.0 : 1.0;
   if (std::abs(cosine) > kNearlyParallel) return normalized(mix(a, 1 - t, b, sign * t));
   const double angle = std::acos(std::abs(cosine));
-  return normalized(mix(a, std::sin(angle * (1 - t)) / std::sin(angle), b, sign * std::sin(angle * t) / std::sin(angle)));
+  return normalized(
+      mix(a, std::sin(angle * (1 - t)) / std::sin(angle), b, sign * std::sin(angle * t) / std::sin(angle)));
 }
 
 /// One key's part of the values: 0 tangent in, 1 value, 2 tangent out; other interpolations have values only.
@@ -56,8 +58,10 @@ Values key_value(const Keyframes& keys, std::size_t key) {
 /// Hermite's spline; tangents are a second's change, so they are scaled by the length of the segment.
 Values cubic(const Keyframes& keys, std::size_t key, double t, double seconds) {
   const double t2 = t * t, t3 = t2 * t;
-  const Values from = mix(values_of(part(keys, key, 1)), 2 * t3 - 3 * t2 + 1, values_of(part(keys, key, 2)), seconds * (t3 - 2 * t2 + t));
-  const Values to = mix(values_of(part(keys, key + 1, 1)), 3 * t2 - 2 * t3, values_of(part(keys, key + 1, 0)), seconds * (t3 - t2));
+  const Values from = mix(values_of(part(keys, key, 1)), 2 * t3 - 3 * t2 + 1, values_of(part(keys, key, 2)),
+                          seconds * (t3 - 2 * t2 + t));
+  const Values to = mix(values_of(part(keys, key + 1, 1)), 3 * t2 - 2 * t3, values_of(part(keys, key + 1, 0)),
+                        seconds * (t3 - t2));
   const Values sum = mix(from, 1, to, 1);
   return keys.rotation ? normalized(sum) : sum;
 }
@@ -65,7 +69,8 @@ Values cubic(const Keyframes& keys, std::size_t key, double t, double seconds) {
 }  // namespace
 
 std::vector<double> value_at(const Keyframes& keys, double time) {
-  const auto after = std::ranges::upper_bound(keys.times, time, {}, [](float t) { return static_cast<double>(t); });
+  const auto after =
+      std::ranges::upper_bound(keys.times, time, {}, [](float t) { return static_cast<double>(t); });
   if (after == keys.times.begin()) return key_value(keys, 0);
   const auto key = static_cast<std::size_t>(after - keys.times.begin()) - 1;
   if (after == keys.times.end() || keys.interpolation == Interpolation::kStep) return key_value(keys, key);

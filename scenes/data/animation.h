@@ -14,7 +14,8 @@ enum class Interpolation : std::uint8_t { kStep, kLinear, kCubicSpline };
 struct Keyframes {
   Interpolation interpolation = Interpolation::kLinear;
   std::size_t width = 1;  ///< components of a value
-  bool rotation = false;  ///< unit quaternions (x, y, z, w): linear means spherically linear, results are normalized
+  /// unit quaternions (x, y, z, w): linear means spherically linear, results are normalized
+  bool rotation = false;
   std::vector<float> times;
   std::vector<float> values;  ///< key by key; of a cubic spline the tangent in, the value and the tangent out
 };

@@ -10,7 +10,8 @@ namespace quadrille::scenes {
 std::optional<std::size_t> find_choice(const std::vector<std::string>& names, const std::string& choice) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(choice.data(), choice.data() + choice.size(), number);
-  if (error == std::errc{} && end == choice.data() + choice.size()) return number < names.size() ? std::optional(number) : std::nullopt;
+  if (error == std::errc{} && end == choice.data() + choice.size())
+    return number < names.size() ? std::optional(number) : std::nullopt;
   const auto found = std::ranges::find(names, choice);
   return found == names.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - names.begin()));
 }

@@ -10,7 +10,8 @@
 
 namespace quadrille::scenes {
 
-/// Calls `work(i)` for i in 0..count-1, each once, in any order, on up to one thread a core. If calls throw, the exception of the smallest i is rethrown.
+/// Calls `work(i)` for i in 0..count-1, each once, in any order, on up to one thread a core. If calls throw,
+/// the exception of the smallest i is rethrown.
 template <class Work>
 void parallel_for(std::size_t count, const Work& work) {
   std::vector<std::exception_ptr> failures(count);
@@ -24,8 +25,9 @@ void parallel_for(std::size_t count, const Work& work) {
   };
   {
     std::vector<std::jthread> threads;
-    const std::size_t helpers =
-        std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), std::max<std::size_t>(count, 1)) - 1;
+    const std::size_t helpers = std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()),
+                                                      std::max<std::size_t>(count, 1)) -
+                                1;
     for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(run);
     run();
   }

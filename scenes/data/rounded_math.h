@@ -1,5 +1,5 @@
-/// Functions of the host's mathematics library for geometry and textures that we make ourselves: computed in double and rounded once, so that a last bit in
-/// which two libraries differ does not reach a pixel.
+/// Functions of the host's mathematics library for geometry and textures that we make ourselves: computed in
+/// double and rounded once, so that a last bit in which two libraries differ does not reach a pixel.
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,12 @@
 namespace quadrille::scenes {
 
 /// Angles in radians.
-[[nodiscard]] inline float sine(float angle) { return static_cast<float>(std::sin(static_cast<double>(angle))); }
-[[nodiscard]] inline float cosine(float angle) { return static_cast<float>(std::cos(static_cast<double>(angle))); }
+[[nodiscard]] inline float sine(float angle) {
+  return static_cast<float>(std::sin(static_cast<double>(angle)));
+}
+[[nodiscard]] inline float cosine(float angle) {
+  return static_cast<float>(std::cos(static_cast<double>(angle)));
+}
 [[nodiscard]] inline float power(float base, float exponent) {
   return static_cast<float>(std::pow(static_cast<double>(base), static_cast<double>(exponent)));
 }

@@ -26,7 +26,8 @@ Bounds Bounds::transformed(const glm::mat4& matrix) const {
   Bounds result;
   if (empty()) return result;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 point{(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y, (corner & 4) != 0 ? high.z : low.z};
+    const glm::vec3 point{(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                          (corner & 4) != 0 ? high.z : low.z};
     result.add(glm::vec3(matrix * glm::vec4(point, 1)));
   }
   return result;
@@ -46,7 +47,9 @@ Bounds morphed(Bounds box, const Primitive& primitive, const std::vector<float>&
   return box;
 }
 
-glm::mat4 matrix_of(const JointMatrix& rows) { return glm::transpose(glm::mat4(rows[0], rows[1], rows[2], glm::vec4(0, 0, 0, 1))); }
+glm::mat4 matrix_of(const JointMatrix& rows) {
+  return glm::transpose(glm::mat4(rows[0], rows[1], rows[2], glm::vec4(0, 0, 0, 1)));
+}
 
 }  // namespace
 
@@ -63,7 +66,8 @@ void SceneData::visit_model_boxes(const Instance& instance, const VisitModelBox&
 Bounds SceneData::model_box(const Instance& instance) const {
   if (instance.pose < 0) return primitives[instance.primitive].bounds;
   Bounds all;
-  visit_model_boxes(instance, [&](const Bounds& box, const glm::mat4& matrix) { all.add(box.transformed(matrix)); });
+  visit_model_boxes(instance,
+                    [&](const Bounds& box, const glm::mat4& matrix) { all.add(box.transformed(matrix)); });
   return all;
 }
 
@@ -74,7 +78,8 @@ Bounds SceneData::bounds() const { return PlacedScene(*this).bounds(); }
 void PlacedScene::visit_boxes(const Instance& instance, const VisitBox& visit) const {
   const Bounds model = data.model_box(instance);
   if (instance.copies < 0) return visit(model.transformed(glm::mat4(instance.world)));
-  for (const glm::dmat4& copy : at.copies[static_cast<std::size_t>(instance.copies)]) visit(model.transformed(glm::mat4(copy)));
+  for (const glm::dmat4& copy : at.copies[static_cast<std::size_t>(instance.copies)])
+    visit(model.transformed(glm::mat4(copy)));
 }
 
 void PlacedScene::visit_boxes(const VisitBox& visit) const {
@@ -100,8 +105,8 @@ SceneImage::Source SceneImage::source() const {
   return [name = name_, size = size(), unpack = unpack_] {
     auto pixels = std::make_shared<const Rgba8Image>(unpack());
     if (pixels->width != size.width || pixels->height != size.height)
-      throw user_error("image '{}': its picture is {}x{}, its header says {}x{}", name, pixels->width, pixels->height, size.width,
-                       size.height);
+      throw user_error("image '{}': its picture is {}x{}, its header says {}x{}", name, pixels->width,
+                       pixels->height, size.width, size.height);
     return pixels;
   };
 }

@@ -1,8 +1,9 @@
 /// A scene in memory, between the file it came from and the commands it becomes.
 ///
-/// glTF's conventions: right-handed world, y up, metres; texture coordinates start at the upper left; a front face is counter-clockwise; matrices are
-/// column-major and act on column vectors. Colours are linear. Where things are is kept in double: what is far from the origin may have to be moved before it is
-/// rounded (scenes/view/world_range.h).
+/// glTF's conventions: right-handed world, y up, metres; texture coordinates start at the upper left; a front
+/// face is counter-clockwise; matrices are column-major and act on column vectors. Colours are linear. Where
+/// things are is kept in double: what is far from the origin may have to be moved before it is rounded
+/// (scenes/view/world_range.h).
 #pragma once
 
 #include <array>
@@ -52,7 +53,8 @@ struct Array {
   std::vector<std::byte> data;
 };
 
-/// What a morph target adds to the attributes at weight one, as float vectors of 2 (texture coordinates), 3 or 4 (colours) components.
+/// What a morph target adds to the attributes at weight one, as float vectors of 2 (texture coordinates), 3
+/// or 4 (colours) components.
 struct MorphTarget {
   std::array<int, kSemantics> deltas{-1, -1, -1, -1, -1, -1};  ///< into `SceneData::arrays`; -1: nothing
   Bounds reach;                                                ///< of the position deltas
@@ -60,7 +62,8 @@ struct MorphTarget {
 
 /// Joints that move a vertex, and how much each counts: one set of four.
 struct JointSet {
-  int joints = -1, weights = -1;  ///< into `SceneData::arrays`: integers of 8 or 16 bits, and fractions; -1: absent
+  /// into `SceneData::arrays`: integers of 8 or 16 bits, and fractions; -1: absent
+  int joints = -1, weights = -1;
 };
 
 struct Primitive {
@@ -69,16 +72,19 @@ struct Primitive {
   std::array<int, kSemantics> attributes{-1, -1, -1, -1, -1, -1};  ///< into `SceneData::arrays`; -1: absent
   int indices = -1;                                                ///< into `SceneData::arrays`; -1: none
   traces::IndexType index_type = traces::IndexType::kUint16;
-  std::uint32_t count = 0;       ///< indices, or vertices without them
-  bool partial_normals = false;  ///< some of its normals are zero: the faces of those vertices are drawn with their own
+  std::uint32_t count = 0;  ///< indices, or vertices without them
+  /// some of its normals are zero: the faces of those vertices are drawn with their own
+  bool partial_normals = false;
   int material = 0;
   Bounds bounds;  ///< model space
   std::vector<MorphTarget> targets;
   std::array<JointSet, 2> joint_sets;
-  std::vector<Bounds> joint_boxes;  ///< by joint: the vertices that it moves; one more than the largest joint in use
+  /// by joint: the vertices that it moves; one more than the largest joint in use
+  std::vector<Bounds> joint_boxes;
 };
 
-/// Texture roles; the shader binds slot i at binding 1 + i. From kSpecular on they belong to `MaterialLayers`.
+/// Texture roles; the shader binds slot i at binding 1 + i. From kSpecular on they belong to
+/// `MaterialLayers`.
 enum class TextureSlot : std::uint8_t {
   kBaseColor,
   kMetallicRoughness,
@@ -107,9 +113,13 @@ class SceneImage {
   using Source = std::function<std::shared_ptr<const Rgba8Image>()>;
 
   SceneImage(std::string name, Rgba8Image pixels)
-      : name_(std::move(name)), size_({pixels.width, pixels.height}), pixels_(std::make_shared<const Rgba8Image>(std::move(pixels))) {}
-  /// `unpack` throws `UserError`; any number of times, on any thread. `size`: what the pixels will have; none: they have to be unpacked to know it.
-  SceneImage(std::string name, std::optional<Size> size, Unpack unpack) : name_(std::move(name)), size_(size), unpack_(std::move(unpack)) {}
+      : name_(std::move(name)),
+        size_({pixels.width, pixels.height}),
+        pixels_(std::make_shared<const Rgba8Image>(std::move(pixels))) {}
+  /// `unpack` throws `UserError`; any number of times, on any thread. `size`: what the pixels will have;
+  /// none: they have to be unpacked to know it.
+  SceneImage(std::string name, std::optional<Size> size, Unpack unpack)
+      : name_(std::move(name)), size_(size), unpack_(std::move(unpack)) {}
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] bool packed() const { return pixels_ == nullptr; }
   [[nodiscard]] bool knows_size() const { return size_.has_value(); }
@@ -123,8 +133,8 @@ class SceneImage {
     if (!pixels_) pixels_ = std::make_shared<const Rgba8Image>(unpack_());
     return *pixels_;
   }
-  /// What brings the pixels when the scene is gone: those that are unpacked now, or a copy that is unpacked at each call. Throws `UserError`, also when they have
-  /// another size than the image said.
+  /// What brings the pixels when the scene is gone: those that are unpacked now, or a copy that is unpacked
+  /// at each call. Throws `UserError`, also when they have another size than the image said.
   [[nodiscard]] Source source() const;
 
  private:
@@ -146,15 +156,18 @@ enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
 
 /// What extensions of glTF add to a material. A member at its default adds nothing.
 struct MaterialLayers {
-  bool specular = false;            ///< the dielectric's reflectance differs from 0.04 [KHR_materials_ior, KHR_materials_specular]
+  /// the dielectric's reflectance differs from 0.04 [KHR_materials_ior, KHR_materials_specular]
+  bool specular = false;
   glm::vec3 specular_color{0.04F};  ///< reflectance at normal incidence, not yet limited to 1
   float specular_weight = 1;
-  bool specular_glossiness = false;  ///< `specular_color` is the reflectance of all; no metals [KHR_materials_pbrSpecularGlossiness]
+  /// `specular_color` is the reflectance of all; no metals [KHR_materials_pbrSpecularGlossiness]
+  bool specular_glossiness = false;
   float clearcoat = 0, clearcoat_roughness = 0, clearcoat_normal_scale = 1;
   glm::vec3 sheen_color{0};
   float sheen_roughness = 0;
   float transmission = 0;
-  glm::vec3 absorption{0};  ///< log2 of what the whole thickness lets through, 0 or less [KHR_materials_volume]
+  /// log2 of what the whole thickness lets through, 0 or less [KHR_materials_volume]
+  glm::vec3 absorption{0};
   [[nodiscard]] bool coats() const { return clearcoat > 0; }
   [[nodiscard]] bool sheens() const { return sheen_color != glm::vec3(0); }
   [[nodiscard]] bool transmits() const { return transmission > 0; }
@@ -173,7 +186,9 @@ struct Material {
   std::array<TextureUse, kTextureSlots> textures;
   /// Is what lies behind seen through it? Such draws come after the others, from back to front.
   [[nodiscard]] bool see_through() const { return alpha == AlphaMode::kBlend || layers.transmits(); }
-  [[nodiscard]] const TextureUse& texture(TextureSlot slot) const { return textures[static_cast<std::size_t>(slot)]; }
+  [[nodiscard]] const TextureUse& texture(TextureSlot slot) const {
+    return textures[static_cast<std::size_t>(slot)];
+  }
   [[nodiscard]] TextureUse& texture(TextureSlot slot) { return textures[static_cast<std::size_t>(slot)]; }
 };
 
@@ -191,8 +206,9 @@ struct Instance {
   std::uint32_t primitive = 0;
   glm::dmat4 world{1};
   std::string label;
-  int copies = -1;  ///< into `SceneData::copies`: drawn once with each of these matrices instead of `world`; -1: drawn once
-  int pose = -1;    ///< into `SceneData::poses`; -1: as the arrays have it
+  /// into `SceneData::copies`: drawn once with each of these matrices instead of `world`; -1: drawn once
+  int copies = -1;
+  int pose = -1;  ///< into `SceneData::poses`; -1: as the arrays have it
 };
 
 struct Light {
@@ -215,7 +231,8 @@ struct Camera {
   std::optional<glm::dmat4> pose;   ///< the node's world matrix; none: no node carries it
 };
 
-/// Light from everywhere, as the material shader knows it: radiance from straight above and from straight below.
+/// Light from everywhere, as the material shader knows it: radiance from straight above and from straight
+/// below.
 struct Environment {
   glm::vec3 sky{0.50F, 0.57F, 0.68F}, ground{0.20F, 0.18F, 0.16F};
 };
@@ -223,10 +240,12 @@ struct Environment {
 /// Where things are: what of a scene moves with its world.
 struct Placements {
   std::vector<Instance> instances;
-  std::vector<std::vector<glm::dmat4>> copies;  ///< world matrices of one draw, all of them mirror or none does; never empty
+  /// world matrices of one draw, all of them mirror or none does; never empty
+  std::vector<std::vector<glm::dmat4>> copies;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
-  /// What a camera that frames the scene has to hold, world space, where that is more than this moment: the boxes of all of an animation's moments.
+  /// What a camera that frames the scene has to hold, world space, where that is more than this moment: the
+  /// boxes of all of an animation's moments.
   std::vector<Bounds> extent;
 };
 
@@ -254,7 +273,8 @@ struct SceneData : Placements {
 /// A scene where its own placements, or others of the same things, put it. Refers to both.
 struct PlacedScene {
   using VisitBox = std::function<void(const Bounds&)>;
-  PlacedScene(const SceneData& scene) : data(scene), at(scene) {}  // NOLINT(google-explicit-constructor): a scene is placed as it is
+  PlacedScene(const SceneData& scene)
+      : data(scene), at(scene) {}  // NOLINT(google-explicit-constructor): a scene is placed as it is
   PlacedScene(const SceneData& scene, const Placements& placements) : data(scene), at(placements) {}
   const SceneData& data;
   const Placements& at;

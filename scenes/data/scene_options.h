@@ -13,19 +13,28 @@ inline constexpr double kLeastExposure = 1e-12, kMostExposure = 1e12;
 
 struct SceneOptions {
   std::uint32_t width = 1920, height = 1080;  ///< pixels, 1..16384
-  int camera = -1;  ///< index into the file's cameras; -1: the first one a node carries, else one that frames the scene
+  /// index into the file's cameras; -1: the first one a node carries, else one that frames the scene
+  int camera = -1;
   std::optional<glm::vec3> eye,
-      at;  ///< world space; either one makes an own camera (60 degrees high); the other defaults to the centre / the framing eye
-  std::string camera_name;             ///< used where `camera` is -1: a camera's name
-  std::string scene;                   ///< which scene of the file, by number or name; empty: the file's own
-  std::optional<double> time;          ///< seconds into the animation; none: at rest, unless an animation is named
-  std::string animation;               ///< number, name or `all`; empty: the first
-  std::optional<double> orbit;         ///< part of a turn by which the camera is carried around the scene's centre
-  std::optional<double> exposure = 1;  ///< times the scene's light (scenes/view/exposure.h); none: chosen by it
-  bool visibility = false;             ///< draw triangle ids instead of colours (see `triangle_id_color`)
-  bool leave_out = true;     ///< false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
-  bool keep_packed = false;  ///< record textures packed, for a machine that unpacks those that it samples (`traces::Image::packed`)
-  std::string vertex_shader, fragment_shader;  ///< path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
+      /// world space; either one makes an own camera (60 degrees high); the other defaults to the centre /
+      /// the framing eye
+      at;
+  std::string camera_name;  ///< used where `camera` is -1: a camera's name
+  std::string scene;        ///< which scene of the file, by number or name; empty: the file's own
+  /// seconds into the animation; none: at rest, unless an animation is named
+  std::optional<double> time;
+  std::string animation;  ///< number, name or `all`; empty: the first
+  /// part of a turn by which the camera is carried around the scene's centre
+  std::optional<double> orbit;
+  /// times the scene's light (scenes/view/exposure.h); none: chosen by it
+  std::optional<double> exposure = 1;
+  bool visibility = false;  ///< draw triangle ids instead of colours (see `triangle_id_color`)
+  /// false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
+  bool leave_out = true;
+  /// record textures packed, for a machine that unpacks those that it samples (`traces::Image::packed`)
+  bool keep_packed = false;
+  /// path of GLSL or SPIR-V (.spv) used instead of the material's; empty: the material's
+  std::string vertex_shader, fragment_shader;
 };
 
 /// When, and from where, a frame of a scene is taken.

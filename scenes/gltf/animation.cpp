@@ -46,8 +46,10 @@ class Reader {
   std::size_t weights_of(int node, const std::string& place) const {
     const int mesh = file_.model.nodes[static_cast<std::size_t>(node)].mesh;
     const bool exists = mesh >= 0 && static_cast<std::size_t>(mesh) < file_.model.meshes.size();
-    const auto* primitives = exists ? &file_.model.meshes[static_cast<std::size_t>(mesh)].primitives : nullptr;
-    const std::size_t targets = primitives == nullptr || primitives->empty() ? 0 : primitives->front().targets.size();
+    const auto* primitives =
+        exists ? &file_.model.meshes[static_cast<std::size_t>(mesh)].primitives : nullptr;
+    const std::size_t targets =
+        primitives == nullptr || primitives->empty() ? 0 : primitives->front().targets.size();
     if (targets == 0) fail(place, fmt::format("weights of node {}, which has no morph targets", node));
     return targets;
   }
@@ -58,14 +60,18 @@ class Reader {
     const std::optional<TrackTarget> target = target_of(channel.target_path);
     if (!target) {
       if (channel.target_path == "pointer") return;  // said once for the file
-      fail(place, fmt::format("path '{}' is not translation, rotation, scale or weights", channel.target_path.substr(0, 40)));
+      fail(place, fmt::format("path '{}' is not translation, rotation, scale or weights",
+                              channel.target_path.substr(0, 40)));
     }
     if (channel.target_node < 0) return;  // to be ignored [glTF2.0 #animations: target.node]
     if (static_cast<std::size_t>(channel.target_node) >= file_.model.nodes.size())
-      fail(place, fmt::format("node {} does not exist (the file has {})", channel.target_node, file_.model.nodes.size()));
+      fail(place, fmt::format("node {} does not exist (the file has {})", channel.target_node,
+                              file_.model.nodes.size()));
     if (channel.sampler < 0 || static_cast<std::size_t>(channel.sampler) >= source_.samplers.size())
-      fail(place, fmt::format("sampler {} does not exist (the animation has {})", channel.sampler, source_.samplers.size()));
-    if (*target != TrackTarget::kWeights && !file_.model.nodes[static_cast<std::size_t>(channel.target_node)].matrix.empty())
+      fail(place, fmt::format("sampler {} does not exist (the animation has {})", channel.sampler,
+                              source_.samplers.size()));
+    if (*target != TrackTarget::kWeights &&
+        !file_.model.nodes[static_cast<std::size_t>(channel.target_node)].matrix.empty())
       fail(place, fmt::format("it moves node {}, which has a matrix", channel.target_node));
     const std::size_t width = *target == TrackTarget::kRotation  ? 4
                               : *target == TrackTarget::kWeights ? weights_of(channel.target_node, place)
@@ -102,7 +108,8 @@ class Reader {
 
   void charge(std::size_t values, const std::string& place) {
     values_ += values;
-    if (values_ > kMaxValues) fail(place, fmt::format("the animation holds more than {} numbers", kMaxValues));
+    if (values_ > kMaxValues)
+      fail(place, fmt::format("the animation holds more than {} numbers", kMaxValues));
   }
 
   void read_times(Keyframes& keys, int accessor, const std::string& place) {
@@ -113,26 +120,32 @@ class Reader {
     keys.times.resize(e.count);
     for (std::size_t i = 0; i < e.count; ++i) {
       const float time = keys.times[i] = component_value(e, i, 0);
-      if (!std::isfinite(time) || time < 0) fail(place, fmt::format("input: key {} is at {} s, which is no time", i, time));
+      if (!std::isfinite(time) || time < 0)
+        fail(place, fmt::format("input: key {} is at {} s, which is no time", i, time));
       if (i > 0 && !(time > keys.times[i - 1]))
-        fail(place, fmt::format("input: key {} at {} s is not after the one before it, at {} s", i, time, keys.times[i - 1]));
+        fail(place, fmt::format("input: key {} at {} s is not after the one before it, at {} s", i, time,
+                                keys.times[i - 1]));
     }
   }
 
   void read_values(Keyframes& keys, int accessor, const std::string& place, bool scalars) {
     const Elements e = read_accessor(file_, accessor, fmt::format("{}.{}.output", place_, place));
     const std::size_t components = scalars ? 1 : keys.width;
-    const bool numbers = e.component == Component::kFloat || (e.normalized && e.component != Component::kUint32);
+    const bool numbers =
+        e.component == Component::kFloat || (e.normalized && e.component != Component::kUint32);
     if (e.components != components || !numbers)
-      fail(place, fmt::format("output: accessor {} is not of {} floats or normalized integers an element", accessor, components));
+      fail(place, fmt::format("output: accessor {} is not of {} floats or normalized integers an element",
+                              accessor, components));
     const std::size_t parts = keys.interpolation == Interpolation::kCubicSpline ? 3 : 1;
     const std::size_t due = keys.times.size() * parts * (keys.width / components);
-    if (e.count != due) fail(place, fmt::format("output: {} elements where {} keys take {}", e.count, keys.times.size(), due));
+    if (e.count != due)
+      fail(place, fmt::format("output: {} elements where {} keys take {}", e.count, keys.times.size(), due));
     charge(e.count * components, place);
     keys.values.resize(e.count * components);
     for (std::size_t i = 0; i < keys.values.size(); ++i) {
       keys.values[i] = component_value(e, i / components, i % components);
-      if (!std::isfinite(keys.values[i])) fail(place, fmt::format("output: element {} is not finite", i / components));
+      if (!std::isfinite(keys.values[i]))
+        fail(place, fmt::format("output: element {} is not finite", i / components));
     }
     if (keys.rotation) check_rotations(keys, parts, place);
   }
@@ -140,7 +153,8 @@ class Reader {
   void check_rotations(const Keyframes& keys, std::size_t parts, const std::string& place) const {
     for (std::size_t key = 0; key < keys.times.size(); ++key) {
       const float* q = &keys.values[(key * parts + parts / 2) * 4];
-      if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) fail(place, fmt::format("output: key {} is not a quaternion", key));
+      if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0)
+        fail(place, fmt::format("output: key {} is not a quaternion", key));
     }
   }
 
@@ -168,7 +182,8 @@ Animation read_animation(const GltfFile& file, std::size_t index) { return Reade
 std::vector<Animation> choose_animations(GltfFile& file, const std::string& choice) {
   std::vector<std::string> names;
   for (const tinygltf::Animation& animation : file.model.animations) names.push_back(animation.name);
-  if (std::ranges::find(file.model.extensionsUsed, "KHR_animation_pointer") != file.model.extensionsUsed.end())
+  if (std::ranges::find(file.model.extensionsUsed, "KHR_animation_pointer") !=
+      file.model.extensionsUsed.end())
     file.notes.emplace_back("KHR_animation_pointer is not supported; its channels are left out");
   std::vector<Animation> chosen;
   if (choice == kAll && !names.empty()) {
@@ -178,7 +193,8 @@ std::vector<Animation> choose_animations(GltfFile& file, const std::string& choi
   if (choice.empty() && names.empty()) return chosen;
   const std::optional<std::size_t> index = find_choice(names, choice.empty() ? "0" : choice);
   if (!index)
-    throw user_error("{}: animation '{}' does not exist; animations: {}", file.path, choice.substr(0, 60), list_of_choices(names));
+    throw user_error("{}: animation '{}' does not exist; animations: {}", file.path, choice.substr(0, 60),
+                     list_of_choices(names));
   chosen.push_back(read_animation(file, *index));
   return chosen;
 }

@@ -22,11 +22,12 @@ struct NodeMotion {
 };
 using NodeMotions = std::map<int, NodeMotion>;  ///< by node number
 
-/// Reads and checks animation `index`. Channels of KHR_animation_pointer are left out. Throws `UserError` with the place of what is wrong.
+/// Reads and checks animation `index`. Channels of KHR_animation_pointer are left out. Throws `UserError`
+/// with the place of what is wrong.
 [[nodiscard]] Animation read_animation(const GltfFile& file, std::size_t index);
 
-/// The animations that `choice` names: a number, a name, `all`, or empty for the first; none when the file has none and nothing is named.
-/// Notes a file that uses KHR_animation_pointer.
+/// The animations that `choice` names: a number, a name, `all`, or empty for the first; none when the file
+/// has none and nothing is named. Notes a file that uses KHR_animation_pointer.
 /// Throws `UserError` that lists the file's animations when there is no such one.
 [[nodiscard]] std::vector<Animation> choose_animations(GltfFile& file, const std::string& choice);
 

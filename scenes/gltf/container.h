@@ -17,8 +17,9 @@ struct GltfContainer {
 /// Throws `UserError` for what cannot be a glTF file by its first bytes, so that the rest need not be read.
 void look_at_gltf(const std::string& path, std::span<const std::byte> beginning);
 
-/// Splits the bytes of `path`, which must outlive the result. A binary file is known by its first bytes; its chunks are JSON, then BIN where there is one, then
-/// chunks of other types, which are passed over. Throws `UserError` when a chunk does not fit or is out of its place. [glTF2.0 #glb-file-format-specification]
+/// Splits the bytes of `path`, which must outlive the result. A binary file is known by its first bytes; its
+/// chunks are JSON, then BIN where there is one, then chunks of other types, which are passed over. Throws
+/// `UserError` when a chunk does not fit or is out of its place. [glTF2.0 #glb-file-format-specification]
 [[nodiscard]] GltfContainer split_gltf(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace quadrille::scenes

@@ -17,14 +17,18 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr const char* kName = "KHR_draco_mesh_compression";
-constexpr std::uint64_t kMaxTriangles = std::uint64_t{1} << 23;  // of a primitive; Draco takes about 100 bytes for each [G: half of 2 GiB]
-constexpr std::uint64_t kMaxWork = std::uint64_t{1} << 24;  // triangles times connectivity tables, of which each attribute may have its own
+// of a primitive; Draco takes about 100 bytes for each [G: half of 2 GiB]
+constexpr std::uint64_t kMaxTriangles = std::uint64_t{1} << 23;
+// triangles times connectivity tables, of which each attribute may have its own
+constexpr std::uint64_t kMaxWork = std::uint64_t{1} << 24;
 constexpr std::uint64_t kMaxAttributeBytes = std::uint64_t{1} << 29;  // of a primitive
-constexpr std::size_t kMaxComponents = 4;                             // no vertex attribute has more [glTF2.0 #meshes-overview]
-constexpr std::uint64_t kMaxDecodedBytes = std::uint64_t{1} << 30;    // of a file
+// no vertex attribute has more [glTF2.0 #meshes-overview]
+constexpr std::size_t kMaxComponents = 4;
+constexpr std::uint64_t kMaxDecodedBytes = std::uint64_t{1} << 30;  // of a file
 
-/// A decoder of Draco's that stops before its two allocations by counts which the data claims: connectivity and attributes.
-/// It looks at the counts where bitstream 2.2 has them. [Draco 1.5, mesh_edgebreaker_decoder_impl.cc, mesh_sequential_decoder.cc]
+/// A decoder of Draco's that stops before its two allocations by counts which the data claims: connectivity
+/// and attributes. It looks at the counts where bitstream 2.2 has them. [Draco 1.5,
+/// mesh_edgebreaker_decoder_impl.cc, mesh_sequential_decoder.cc]
 template <class Decoder, bool kEdgebreaker>
 class BoundedDecoder final : public Decoder {
  public:
@@ -40,11 +44,14 @@ class BoundedDecoder final : public Decoder {
     draco::DecoderBuffer ahead(*this->buffer());
     std::uint32_t first = 0, second = 0;
     std::uint8_t tables = 0;
-    if (!draco::DecodeVarint(&first, &ahead) || !draco::DecodeVarint(&second, &ahead)) return refuse("its data is truncated");
+    if (!draco::DecodeVarint(&first, &ahead) || !draco::DecodeVarint(&second, &ahead))
+      return refuse("its data is truncated");
     if (kEdgebreaker && !ahead.Decode(&tables)) return refuse("its data is truncated");
     const std::uint64_t triangles = kEdgebreaker ? second : first, points = kEdgebreaker ? first : second;
-    if (triangles == 0 || triangles > kMaxTriangles || points > 3 * triangles || triangles * (tables + 1U) > kMaxWork)
-      return refuse(fmt::format("{} triangles of {} vertices; 1 to {} are read", triangles, points, kMaxTriangles));
+    if (triangles == 0 || triangles > kMaxTriangles || points > 3 * triangles ||
+        triangles * (tables + 1U) > kMaxWork)
+      return refuse(
+          fmt::format("{} triangles of {} vertices; 1 to {} are read", triangles, points, kMaxTriangles));
     return Decoder::DecodeConnectivity() || refuse("its triangles cannot be decoded");
   }
 
@@ -54,7 +61,8 @@ class BoundedDecoder final : public Decoder {
     for (int i = 0; i < cloud.num_attributes(); ++i)
       bytes += static_cast<std::uint64_t>(std::max<std::int64_t>(cloud.attribute(i)->byte_stride(), 4));
     if (bytes * cloud.num_points() > kMaxAttributeBytes)
-      return refuse(fmt::format("{} vertices of {} bytes take more than {} bytes", cloud.num_points(), bytes, kMaxAttributeBytes));
+      return refuse(fmt::format("{} vertices of {} bytes take more than {} bytes", cloud.num_points(), bytes,
+                                kMaxAttributeBytes));
     return Decoder::DecodeAllAttributes() || refuse("its attributes cannot be decoded");
   }
 
@@ -78,10 +86,13 @@ void decode_mesh(const GltfObject& object, std::span<const std::byte> bytes, dra
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::DecoderBuffer ahead(buffer);
   draco::DracoHeader header;
-  if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok()) object.fail("bufferView", "its data is not Draco's");
-  if (header.encoder_type != draco::TRIANGULAR_MESH) object.fail("bufferView", "its data is no triangle mesh");
+  if (!draco::PointCloudDecoder::DecodeHeader(&ahead, &header).ok())
+    object.fail("bufferView", "its data is not Draco's");
+  if (header.encoder_type != draco::TRIANGULAR_MESH)
+    object.fail("bufferView", "its data is no triangle mesh");
   if (header.version_major != 2 || header.version_minor != 2)
-    object.fail("bufferView", fmt::format("bitstream {}.{}; 2.2 is read", header.version_major, header.version_minor));
+    object.fail("bufferView",
+                fmt::format("bitstream {}.{}; 2.2 is read", header.version_major, header.version_minor));
   if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING)
     return run<BoundedDecoder<draco::MeshEdgebreakerDecoder, true>>(object, buffer, mesh);
   if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING)
@@ -90,14 +101,16 @@ void decode_mesh(const GltfObject& object, std::span<const std::byte> bytes, dra
 }
 
 template <class T>
-bool convert(const draco::PointAttribute& source, draco::AttributeValueIndex index, std::size_t components, std::byte* out) {
+bool convert(const draco::PointAttribute& source, draco::AttributeValueIndex index, std::size_t components,
+             std::byte* out) {
   std::array<T, kMaxComponents> value{};
   if (!source.ConvertValue<T>(index, static_cast<std::int8_t>(components), value.data())) return false;
   std::memcpy(out, value.data(), components * sizeof(T));
   return true;
 }
 
-bool convert(const draco::PointAttribute& source, draco::AttributeValueIndex index, const Elements& form, std::byte* out) {
+bool convert(const draco::PointAttribute& source, draco::AttributeValueIndex index, const Elements& form,
+             std::byte* out) {
   switch (form.component) {
     case Component::kInt8: return convert<std::int8_t>(source, index, form.components, out);
     case Component::kUint8: return convert<std::uint8_t>(source, index, form.components, out);
@@ -110,13 +123,17 @@ bool convert(const draco::PointAttribute& source, draco::AttributeValueIndex ind
 }
 
 /// One attribute of the decoded mesh in the type that its accessor has.
-Elements attribute_elements(const GltfObject& object, const draco::Mesh& mesh, std::uint64_t id, const char* name, Elements form) {
-  const draco::PointAttribute* source = id > 0xffffffff ? nullptr : mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
+Elements attribute_elements(const GltfObject& object, const draco::Mesh& mesh, std::uint64_t id,
+                            const char* name, Elements form) {
+  const draco::PointAttribute* source =
+      id > 0xffffffff ? nullptr : mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
   if (source == nullptr) object.fail(name, fmt::format("Draco's data has no attribute {}", id));
   if (static_cast<std::size_t>(source->num_components()) != form.components)
-    object.fail(name, fmt::format("{} components in Draco's data, {} in the accessor", source->num_components(), form.components));
+    object.fail(name, fmt::format("{} components in Draco's data, {} in the accessor",
+                                  source->num_components(), form.components));
   if (form.components > kMaxComponents)
-    object.fail(name, fmt::format("{} components; Draco's attributes are read with at most {}", form.components, kMaxComponents));
+    object.fail(name, fmt::format("{} components; Draco's attributes are read with at most {}",
+                                  form.components, kMaxComponents));
   const std::size_t size = form.components * component_bytes(form.component);
   form.count = mesh.num_points();
   form.data.resize(form.count * size);
@@ -125,7 +142,8 @@ Elements attribute_elements(const GltfObject& object, const draco::Mesh& mesh, s
   for (std::uint32_t i = 0; i < form.count; ++i) {
     const draco::AttributeValueIndex index = source->mapped_index(draco::PointIndex(i));
     const bool inside = index.value() < source->size() && (index.value() + 1) * stride <= stored;
-    if (!inside || !convert(*source, index, form, &form.data[i * size])) object.fail(name, fmt::format("vertex {} cannot be decoded", i));
+    if (!inside || !convert(*source, index, form, &form.data[i * size]))
+      object.fail(name, fmt::format("vertex {} cannot be decoded", i));
   }
   return form;
 }
@@ -133,8 +151,8 @@ Elements attribute_elements(const GltfObject& object, const draco::Mesh& mesh, s
 /// Indices keep the type of their accessor where the vertices fit it.
 Elements index_elements(const draco::Mesh& mesh, Component wanted) {
   Elements out;
-  const bool fits =
-      (wanted == Component::kUint8 && mesh.num_points() <= 0x100) || (wanted == Component::kUint16 && mesh.num_points() <= 0x10000);
+  const bool fits = (wanted == Component::kUint8 && mesh.num_points() <= 0x100) ||
+                    (wanted == Component::kUint16 && mesh.num_points() <= 0x10000);
   out.component = fits ? wanted : Component::kUint32;
   out.count = 3 * mesh.num_faces();
   const std::size_t size = component_bytes(out.component);
@@ -153,7 +171,9 @@ class Reader {
   void read(tinygltf::Primitive& primitive, const std::string& place, const tinygltf::Value& extension) {
     const GltfObject object(file_.path, place + "." + kName, extension);
     if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP)
-      object.fail("bufferView", fmt::format("primitive mode {}; triangles and triangle strips can be compressed", primitive.mode));
+      object.fail(
+          "bufferView",
+          fmt::format("primitive mode {}; triangles and triangle strips can be compressed", primitive.mode));
     const int view = object.index("bufferView", file_.model.bufferViews.size());
     if (!object.has("attributes")) object.fail("attributes", "it is missing");
     const GltfObject attributes = object.object("attributes");
@@ -163,10 +183,14 @@ class Reader {
       const auto found = primitive.attributes.find(name);
       if (found == primitive.attributes.end()) attributes.fail(name, "the primitive has no such attribute");
       const Elements form = accessor_form(found->second, attributes, name);
-      keep(found->second, attribute_elements(attributes, mesh, attributes.required_integer(name.c_str()), name.c_str(), form), object);
+      keep(
+          found->second,
+          attribute_elements(attributes, mesh, attributes.required_integer(name.c_str()), name.c_str(), form),
+          object);
     }
     if (primitive.indices < 0) object.fail("bufferView", "its primitive has no accessor of indices");
-    keep(primitive.indices, index_elements(mesh, accessor_form(primitive.indices, object, "indices").component), object);
+    keep(primitive.indices,
+         index_elements(mesh, accessor_form(primitive.indices, object, "indices").component), object);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;  // Draco's meshes are lists
   }
 
@@ -181,7 +205,8 @@ class Reader {
   void keep(int accessor, Elements elements, const GltfObject& object) {
     total_ += elements.data.size();
     if (total_ > kMaxDecodedBytes)
-      object.fail("bufferView", fmt::format("the compressed meshes expand to more than {} bytes", kMaxDecodedBytes));
+      object.fail("bufferView",
+                  fmt::format("the compressed meshes expand to more than {} bytes", kMaxDecodedBytes));
     file_.decoded_accessors[accessor] = std::make_shared<const Elements>(std::move(elements));
   }
 

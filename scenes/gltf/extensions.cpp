@@ -66,9 +66,11 @@ std::string listed(const std::vector<std::string>& names, bool basis_is_known) {
 void check_extensions(GltfFile& file) {
   const std::string lacking = listed(file.model.extensionsRequired, false);
   if (!lacking.empty())
-    throw user_error("{}: extensionsRequired: {} not supported; supported are {}", file.path, lacking, fmt::join(kSupported, ", "));
+    throw user_error("{}: extensionsRequired: {} not supported; supported are {}", file.path, lacking,
+                     fmt::join(kSupported, ", "));
   const std::string ignored = listed(file.model.extensionsUsed, true);
-  if (!ignored.empty()) file.notes.push_back(fmt::format("extensionsUsed: {} not supported; drawn without", ignored));
+  if (!ignored.empty())
+    file.notes.push_back(fmt::format("extensionsUsed: {} not supported; drawn without", ignored));
 }
 
 }  // namespace quadrille::scenes

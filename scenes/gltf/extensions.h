@@ -5,8 +5,8 @@
 
 namespace quadrille::scenes {
 
-/// Throws `UserError` naming every extension in `extensionsRequired` that is not supported, and those that are. Notes, in one line for the file,
-/// those in `extensionsUsed` that are not drawn.
+/// Throws `UserError` naming every extension in `extensionsRequired` that is not supported, and those that
+/// are. Notes, in one line for the file, those in `extensionsUsed` that are not drawn.
 void check_extensions(GltfFile& file);
 
 }  // namespace quadrille::scenes

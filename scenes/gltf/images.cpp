@@ -12,10 +12,12 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr std::uint64_t kFreePixels = std::uint64_t{1} << 26,
-                        kPixelsAByte = 32;  // [G: half a gigabyte with mips, and flat textures of real scenes]
+                        // [G: half a gigabyte with mips, and flat textures of real scenes]
+    kPixelsAByte = 32;
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 31;
 
-/// Of the formats whose picture always has the size that the header checked here says: others have windows, cubes and frames.
+/// Of the formats whose picture always has the size that the header checked here says: others have windows,
+/// cubes and frames.
 std::optional<SceneImage::Size> picture_size(const ImageHeader& header) {
   const bool sure = header.format == ImageFormat::kPng || header.format == ImageFormat::kJpeg;
   return sure ? std::optional(SceneImage::Size{header.width, header.height}) : std::nullopt;
@@ -40,9 +42,12 @@ SceneImage ImageReader::read(std::size_t index) {
   // A few bytes can say that they are many pixels: what a scene may unpack grows with what it brings.
   pixels_ += std::uint64_t{encoded.header.width} * encoded.header.height;
   if (pixels_ > kFreePixels + kPixelsAByte * bytes_)
-    fail(index, fmt::format("the images up to here are {} pixels in {} bytes of files; legal are {} and {} more a byte", pixels_, bytes_,
-                            kFreePixels, kPixelsAByte));
-  return {image_name(index), picture_size(encoded.header), [bytes = encoded.bytes, place] { return decode_image(*bytes, place); }};
+    fail(index,
+         fmt::format(
+             "the images up to here are {} pixels in {} bytes of files; legal are {} and {} more a byte",
+             pixels_, bytes_, kFreePixels, kPixelsAByte));
+  return {image_name(index), picture_size(encoded.header),
+          [bytes = encoded.bytes, place] { return decode_image(*bytes, place); }};
 }
 
 void ImageReader::fail(std::size_t index, const std::string& reason) const {
@@ -53,7 +58,8 @@ void ImageReader::fail(std::size_t index, const std::string& reason) const {
 std::string ImageReader::source_of(std::size_t index) const {
   const int view = file_.model.images[index].bufferView;
   if (view >= 0) {
-    if (file_.decoded_views.contains(view) || static_cast<std::size_t>(view) >= file_.model.bufferViews.size())
+    if (file_.decoded_views.contains(view) ||
+        static_cast<std::size_t>(view) >= file_.model.bufferViews.size())
       return fmt::format("view {}", view);
     const tinygltf::BufferView& range = file_.model.bufferViews[static_cast<std::size_t>(view)];
     return fmt::format("buffer {} {} {}", range.buffer, range.byteOffset, range.byteLength);
@@ -71,12 +77,13 @@ std::vector<std::byte> ImageReader::fetch(std::size_t index) {
   const int view = file_.model.images[index].bufferView;
   if (view >= 0) {
     const std::span<const std::byte> bytes = buffer_view_bytes(file_, view, fmt::format("images[{}]", index));
-    if (bytes.size() > view_room_) fail(index, "the images up to here have buffer views that overlap, and more bytes than all buffers");
+    if (bytes.size() > view_room_)
+      fail(index, "the images up to here have buffer views that overlap, and more bytes than all buffers");
     view_room_ -= bytes.size();
     return {bytes.begin(), bytes.end()};
   }
-  std::vector<std::byte> bytes =
-      fetch_uri(file_.path, *file_.image_uris[index], fmt::format("{}: images[{}]", file_.path, index), file_room_);
+  std::vector<std::byte> bytes = fetch_uri(file_.path, *file_.image_uris[index],
+                                           fmt::format("{}: images[{}]", file_.path, index), file_room_);
   file_room_ -= bytes.size();
   return bytes;
 }
@@ -89,7 +96,8 @@ std::string ImageReader::image_name(std::size_t index) const {
 
 std::string ImageReader::image_place(std::size_t index) const {
   const std::string& uri = file_.model.images[index].uri;
-  return fmt::format("{}: images[{}]{}", file_.path, index, uri.empty() ? "" : " '" + uri.substr(0, 200) + "'");
+  return fmt::format("{}: images[{}]{}", file_.path, index,
+                     uri.empty() ? "" : " '" + uri.substr(0, 200) + "'");
 }
 
 }  // namespace quadrille::scenes

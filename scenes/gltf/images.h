@@ -1,7 +1,8 @@
 /// The images of a glTF file as pictures that are unpacked when they are first looked at.
 ///
-/// Encoded bytes are fetched once for each place where they lie, however many images name it, and checked before the next ones are fetched: a file brings no more
-/// memory about than its own bytes, and what may be unpacked grows with these.
+/// Encoded bytes are fetched once for each place where they lie, however many images name it, and checked
+/// before the next ones are fetched: a file brings no more memory about than its own bytes, and what may be
+/// unpacked grows with these.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,8 @@ namespace quadrille::scenes {
 class ImageReader {
  public:
   explicit ImageReader(const GltfFile& file);
-  /// Image `index`, which must exist. Throws `UserError` for bytes that are not there or no image, and when all images so far are too many pixels or bytes.
+  /// Image `index`, which must exist. Throws `UserError` for bytes that are not there or no image, and when
+  /// all images so far are too many pixels or bytes.
   [[nodiscard]] SceneImage read(std::size_t index);
 
  private:

@@ -42,8 +42,8 @@ class InstanceReader {
       if (attributes.has(name)) count(attributes, name);
     }
     for (const std::string& name : attributes.value().Keys()) count(attributes, name);
-    const auto translation = stream(attributes, "TRANSLATION", 3), rotation = stream(attributes, "ROTATION", 4),
-               scale = stream(attributes, "SCALE", 3);
+    const auto translation = stream(attributes, "TRANSLATION", 3),
+               rotation = stream(attributes, "ROTATION", 4), scale = stream(attributes, "SCALE", 3);
     std::vector<glm::dmat4> result;
     result.reserve(count_.value_or(0));
     for (std::uint32_t i = 0; i < count_.value_or(0); ++i) {
@@ -52,7 +52,8 @@ class InstanceReader {
       if (scale) {
         for (std::size_t k = 0; k < 3; ++k) m[static_cast<int>(k)] *= value(*scale, i, k);
       }
-      if (translation) m[3] = glm::dvec4(value(*translation, i, 0), value(*translation, i, 1), value(*translation, i, 2), 1);
+      if (translation)
+        m[3] = glm::dvec4(value(*translation, i, 0), value(*translation, i, 1), value(*translation, i, 2), 1);
       result.push_back(m);
     }
     return result;
@@ -63,13 +64,18 @@ class InstanceReader {
     return static_cast<double>(component_value(elements, i, k));
   }
 
-  /// All attributes are of one number of elements, those too that only an application knows the meaning of: that many copies there are.
+  /// All attributes are of one number of elements, those too that only an application knows the meaning of:
+  /// that many copies there are.
   void count(const GltfObject& attributes, const std::string& name) {
     const std::size_t elements =
-        file_.model.accessors[static_cast<std::size_t>(attributes.index(name.c_str(), file_.model.accessors.size()))].count;
+        file_.model
+            .accessors[static_cast<std::size_t>(attributes.index(name.c_str(), file_.model.accessors.size()))]
+            .count;
     if (elements == 0) attributes.fail(name, "its accessor has no elements");
-    if (elements > kMaxInstances) attributes.fail(name, fmt::format("{} instances; at most {} are drawn", elements, kMaxInstances));
-    if (count_ && *count_ != elements) attributes.fail(name, fmt::format("{} elements where another attribute has {}", elements, *count_));
+    if (elements > kMaxInstances)
+      attributes.fail(name, fmt::format("{} instances; at most {} are drawn", elements, kMaxInstances));
+    if (count_ && *count_ != elements)
+      attributes.fail(name, fmt::format("{} elements where another attribute has {}", elements, *count_));
     count_ = static_cast<std::uint32_t>(elements);
   }
 
@@ -80,20 +86,23 @@ class InstanceReader {
     Elements elements = read_accessor(file_, accessor, attributes.place() + "." + name);
     const bool is_float = elements.component == Component::kFloat;
     const bool is_fraction =
-        components == 4 && elements.normalized && (elements.component == Component::kInt8 || elements.component == Component::kInt16);
+        components == 4 && elements.normalized &&
+        (elements.component == Component::kInt8 || elements.component == Component::kInt16);
     if (elements.components != components || !(is_float || is_fraction))
       attributes.fail(name, fmt::format("accessor {} is not of {} floats{}", accessor, components,
                                         components == 4 ? " or normalized bytes or shorts" : ""));
     for (std::uint32_t i = 0; i < elements.count; ++i) {
       for (std::size_t k = 0; k < components; ++k) {
-        if (!std::isfinite(value(elements, i, k))) attributes.fail(name, fmt::format("element {} is not finite", i));
+        if (!std::isfinite(value(elements, i, k)))
+          attributes.fail(name, fmt::format("element {} is not finite", i));
       }
     }
     return elements;
   }
 
   static glm::dquat quaternion(const GltfObject& attributes, const Elements& rotation, std::uint32_t i) {
-    const glm::dquat q(value(rotation, i, 3), value(rotation, i, 0), value(rotation, i, 1), value(rotation, i, 2));
+    const glm::dquat q(value(rotation, i, 3), value(rotation, i, 0), value(rotation, i, 1),
+                       value(rotation, i, 2));
     const double length = glm::length(q);
     if (!(length > 0)) attributes.fail("ROTATION", fmt::format("element {} is not a quaternion", i));
     return q / length;
@@ -106,25 +115,29 @@ class InstanceReader {
 
 }  // namespace
 
-std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Value& extension, const std::string& place) {
+std::vector<glm::dmat4> read_instances(const GltfFile& file, const tinygltf::Value& extension,
+                                       const std::string& place) {
   return InstanceReader(file, extension, place).read();
 }
 
-bool place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place, const glm::dmat4& world,
-                  std::size_t first, SceneData& scene, PlacedCopies& placed_copies) {
+bool place_copies(const GltfFile& file, const tinygltf::Value& extension, const std::string& place,
+                  const glm::dmat4& world, std::size_t first, SceneData& scene, PlacedCopies& placed_copies) {
   const auto [entry, added] = placed_copies.matrices.try_emplace(&extension);
   if (added) entry->second = read_instances(file, extension, place);
   if (entry->second.empty()) return false;
   placed_copies.drawn += entry->second.size() * std::max<std::size_t>(1, scene.instances.size() - first);
   if (placed_copies.drawn > kMaxInstances)
-    throw user_error("{}: {}: the scene has more than {} instances of primitives", file.path, place, kMaxInstances);
+    throw user_error("{}: {}: the scene has more than {} instances of primitives", file.path, place,
+                     kMaxInstances);
   std::array<std::vector<glm::dmat4>, 2> sides;
   for (const glm::dmat4& matrix : entry->second) {
     const glm::dmat4 placed = world * matrix;
-    if (!all_finite(glm::mat4(placed))) throw user_error("{}: {}: the matrix of one of its instances is not finite", file.path, place);
+    if (!all_finite(glm::mat4(placed)))
+      throw user_error("{}: {}: the matrix of one of its instances is not finite", file.path, place);
     sides[glm::determinant(glm::dmat3(placed)) < 0 ? 1 : 0].push_back(placed);
   }
-  const std::vector<Instance> originals(scene.instances.begin() + static_cast<std::ptrdiff_t>(first), scene.instances.end());
+  const std::vector<Instance> originals(scene.instances.begin() + static_cast<std::ptrdiff_t>(first),
+                                        scene.instances.end());
   scene.instances.resize(first);
   for (std::vector<glm::dmat4>& side : sides) {
     if (side.empty()) continue;

@@ -13,10 +13,13 @@ using traces::Format;
 constexpr double kRounding = 2e-7;  // of a sum, for each weight in it [glTF2.0 #skinned-mesh-attributes]
 
 bool is_fraction(const Elements& weights) {
-  return weights.normalized && (weights.component == Component::kUint8 || weights.component == Component::kUint16);
+  return weights.normalized &&
+         (weights.component == Component::kUint8 || weights.component == Component::kUint16);
 }
 
-float weight_at(const JointElements& set, std::size_t vertex, std::size_t i) { return component_value(set.weights, vertex, i); }
+float weight_at(const JointElements& set, std::size_t vertex, std::size_t i) {
+  return component_value(set.weights, vertex, i);
+}
 
 /// The sum of a vertex's weights, and how many of them count.
 struct Sum {
@@ -56,7 +59,8 @@ void mend(std::span<JointElements> sets, std::size_t vertex, const Sum& sum) {
   for (JointElements& set : sets) make_floats(set.weights);
   if (sum.terms == 0) return set_weight(sets.front(), vertex, 0, 1);
   for (JointElements& set : sets) {
-    for (std::size_t i = 0; i < 4; ++i) set_weight(set, vertex, i, static_cast<double>(weight_at(set, vertex, i)) / sum.weight);
+    for (std::size_t i = 0; i < 4; ++i)
+      set_weight(set, vertex, i, static_cast<double>(weight_at(set, vertex, i)) / sum.weight);
   }
 }
 
@@ -64,10 +68,12 @@ void mend(std::span<JointElements> sets, std::size_t vertex, const Sum& sum) {
 
 void check_joints(const GltfFile& file, const JointElements& set, const std::string& place) {
   const auto& [joints, weights] = set;
-  if (joints.components != 4 || joints.normalized || (joints.component != Component::kUint16 && joints.component != Component::kUint8))
+  if (joints.components != 4 || joints.normalized ||
+      (joints.component != Component::kUint16 && joints.component != Component::kUint8))
     throw user_error("{}: {}: JOINTS are four unsigned integers of 8 or 16 bits", file.path, place);
   if (weights.components != 4 || (!is_fraction(weights) && weights.component != Component::kFloat))
-    throw user_error("{}: {}: WEIGHTS are four floats or normalized unsigned integers of 8 or 16 bits", file.path, place);
+    throw user_error("{}: {}: WEIGHTS are four floats or normalized unsigned integers of 8 or 16 bits",
+                     file.path, place);
   if (joints.count != weights.count)
     throw user_error("{}: {}: {} JOINTS where WEIGHTS has {}", file.path, place, joints.count, weights.count);
   for (std::size_t i = 0; i < std::size_t{4} * weights.count; ++i) {
@@ -94,7 +100,8 @@ std::pair<Array, Array> to_joint_arrays(JointElements set) {
   for (std::size_t i = 0; i < std::size_t{4} * weights.count; ++i) {
     if (weight_at(set, i / 4, i % 4) == 0) std::memset(&joints.data[i * size], 0, size);
   }
-  const Format numbers = joints.component == Component::kUint16 ? Format::kR16G16B16A16Uint : Format::kR8G8B8A8Uint;
+  const Format numbers =
+      joints.component == Component::kUint16 ? Format::kR16G16B16A16Uint : Format::kR8G8B8A8Uint;
   const Format fractions = weights.component == Component::kFloat   ? Format::kR32G32B32A32Float
                            : weights.component == Component::kUint8 ? Format::kR8G8B8A8UnormVertex
                                                                     : Format::kR16G16B16A16Unorm;

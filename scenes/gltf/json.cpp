@@ -15,7 +15,8 @@ using Json = nlohmann::json;
 
 constexpr int kMaxJsonDepth = 128;  // tinygltf's walk over unknown members is recursive
 // tinygltf keeps half a kilobyte of a node, one of an accessor, two of a material, whatever they hold.
-constexpr std::size_t kMaxJsonValues = std::size_t{1} << 23, kMaxJsonObjects = std::size_t{5} << 18, kMaxMaterials = std::size_t{1} << 18;
+constexpr std::size_t kMaxJsonValues = std::size_t{1} << 23, kMaxJsonObjects = std::size_t{5} << 18,
+                      kMaxMaterials = std::size_t{1} << 18;
 
 /// How much a text asks of who parses it, whether or not it is JSON.
 struct Extent {
@@ -48,13 +49,15 @@ Extent extent_of(std::string_view text) {
   return extent;
 }
 
-/// Takes members that are null out of a document: some exporters write them for what is absent. Counts them, and says where the first was.
+/// Takes members that are null out of a document: some exporters write them for what is absent. Counts them,
+/// and says where the first was.
 class NullMembers {
  public:
   void take_out(Json& value) { take_out(value, {}); }
   [[nodiscard]] std::string note() const {
     if (count_ == 0) return "";
-    return fmt::format("{} is null{} and counts as absent", first_, count_ > 1 ? fmt::format(", as are {} more members,", count_ - 1) : "");
+    return fmt::format("{} is null{} and counts as absent", first_,
+                       count_ > 1 ? fmt::format(", as are {} more members,", count_ - 1) : "");
   }
 
  private:
@@ -96,8 +99,10 @@ class Preparer {
  public:
   Preparer(const std::string& path, std::string_view json) : path_(path) {
     const Extent extent = extent_of(json);
-    if (extent.depth > kMaxJsonDepth) fail("its JSON", fmt::format("is nested deeper than {}", kMaxJsonDepth));
-    if (extent.values > kMaxJsonValues) fail("its JSON", fmt::format("has {} values; at most {} are read", extent.values, kMaxJsonValues));
+    if (extent.depth > kMaxJsonDepth)
+      fail("its JSON", fmt::format("is nested deeper than {}", kMaxJsonDepth));
+    if (extent.values > kMaxJsonValues)
+      fail("its JSON", fmt::format("has {} values; at most {} are read", extent.values, kMaxJsonValues));
     if (extent.objects > kMaxJsonObjects)
       fail("its JSON", fmt::format("has {} objects; at most {} are read", extent.objects, kMaxJsonObjects));
     try {
@@ -118,18 +123,25 @@ class Preparer {
   PreparedJson prepare() {
     PreparedJson result;
     result.note = nulls_.note();
-    for_each("buffers", [&](const Json& item, const std::string& place) { result.buffers.push_back(buffer(item, place)); });
-    for_each("images", [&](const Json& item, const std::string& place) { result.images.push_back(image(item, place)); });
+    for_each("buffers", [&](const Json& item, const std::string& place) {
+      result.buffers.push_back(buffer(item, place));
+    });
+    for_each("images", [&](const Json& item, const std::string& place) {
+      result.images.push_back(image(item, place));
+    });
     root_.erase("buffers");
     root_.erase("images");
     give_views(result.viewless);
-    if (!result.viewless.empty() && !root_.contains("bufferViews")) root_["bufferViews"] = Json::parse(R"([{"buffer":0,"byteLength":1}])");
+    if (!result.viewless.empty() && !root_.contains("bufferViews"))
+      root_["bufferViews"] = Json::parse(R"([{"buffer":0,"byteLength":1}])");
     result.text = root_.dump();
     return result;
   }
 
  private:
-  [[noreturn]] void fail(const std::string& place, const std::string& reason) const { throw user_error("{}: {} {}", path_, place, reason); }
+  [[noreturn]] void fail(const std::string& place, const std::string& reason) const {
+    throw user_error("{}: {} {}", path_, place, reason);
+  }
 
   /// Before all else: a glTF 1.0 file has objects where 2.0 has arrays.
   void check_version() const {
@@ -138,13 +150,16 @@ class Preparer {
     check_types(path_, only);
     const Json& asset = only["asset"];
     const std::string version = asset["version"].get<std::string>(), least = asset.value("minVersion", "2.0");
-    const bool two = version.size() > 2 && version.starts_with("2.") && version.find_first_not_of("0123456789", 2) == std::string::npos;
+    const bool two = version.size() > 2 && version.starts_with("2.") &&
+                     version.find_first_not_of("0123456789", 2) == std::string::npos;
     if (!two) throw user_error("{}: asset.version '{}'; glTF 2.x is read", path_, version.substr(0, 40));
-    if (least != "2.0") throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", path_, least.substr(0, 40));
+    if (least != "2.0")
+      throw user_error("{}: asset.minVersion '{}'; glTF 2.0 is read", path_, least.substr(0, 40));
   }
 
-  /// An integer may be written as 1.0 or 1e0; tinygltf takes only digits. Members of extensions, though, it keeps as `int`, which wraps: there the large ones
-  /// become fractions, which it keeps as double. `extras`, which nobody here reads, go. The nesting is bounded by now.
+  /// An integer may be written as 1.0 or 1e0; tinygltf takes only digits. Members of extensions, though, it
+  /// keeps as `int`, which wraps: there the large ones become fractions, which it keeps as double. `extras`,
+  /// which nobody here reads, go. The nesting is bounded by now.
   static void make_integers(Json& value, bool in_extension) {
     constexpr double kLargestExact = 9007199254740992.0, kInt = 2147483648.0;  // 2^53, 2^31
     if (value.is_object()) {
@@ -186,7 +201,8 @@ class Preparer {
   BufferSource buffer(const Json& item, const std::string& place) const {
     BufferSource result;
     const auto length = item.find("byteLength");
-    if (length == item.end() || !length->is_number_unsigned() || *length == 0U) fail(place, "byteLength: a positive integer is due");
+    if (length == item.end() || !length->is_number_unsigned() || *length == 0U)
+      fail(place, "byteLength: a positive integer is due");
     result.bytes = length->get<std::uint64_t>();
     result.uri = text(item, "uri", place);
     if (result.uri && result.uri->empty()) result.uri.reset();  // so write some what has no name
@@ -199,7 +215,8 @@ class Preparer {
     result.uri = text(item, "uri", place);
     const auto view = item.find("bufferView");
     if (view == item.end()) return result;
-    if (!view->is_number_unsigned() || view->get<std::uint64_t>() > 0x7fffffff) fail(place, "bufferView: an index is due");
+    if (!view->is_number_unsigned() || view->get<std::uint64_t>() > 0x7fffffff)
+      fail(place, "bufferView: an index is due");
     result.buffer_view = view->get<int>();
     return result;
   }
@@ -222,6 +239,8 @@ class Preparer {
 
 }  // namespace
 
-PreparedJson prepare_json(const std::string& path, std::string_view json) { return Preparer(path, json).prepare(); }
+PreparedJson prepare_json(const std::string& path, std::string_view json) {
+  return Preparer(path, json).prepare();
+}
 
 }  // namespace quadrille::scenes

@@ -11,12 +11,14 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr float kPlainReflectance = 0.04F;  // of an index of refraction of 1.5 [glTF2.0 #appendix-b-brdf-implementation]
+// of an index of refraction of 1.5 [glTF2.0 #appendix-b-brdf-implementation]
+constexpr float kPlainReflectance = 0.04F;
 constexpr double kPlainIor = 1.5;
 
 class LayerReader {
  public:
-  LayerReader(const GltfFile& file, const tinygltf::Material& source, const std::string& place, Material& material)
+  LayerReader(const GltfFile& file, const tinygltf::Material& source, const std::string& place,
+              Material& material)
       : file_(file), source_(source), place_(place), m_(material) {}
 
   void read() {
@@ -61,7 +63,8 @@ class LayerReader {
       textured = texture(*object, "specularTexture", TextureSlot::kSpecular);
       textured = texture(*object, "specularColorTexture", TextureSlot::kSpecularColor) || textured;
     }
-    layers.specular = textured || layers.specular_color != glm::vec3(kPlainReflectance) || layers.specular_weight != 1;
+    layers.specular =
+        textured || layers.specular_color != glm::vec3(kPlainReflectance) || layers.specular_weight != 1;
   }
 
   void read_clearcoat() {
@@ -93,7 +96,8 @@ class LayerReader {
     if (const auto volume = extension("KHR_materials_volume")) read_volume(*volume);
   }
 
-  /// What passes the thickness t is color^(t / distance); the texture scales t. [KHR_materials_volume: attenuation]
+  /// What passes the thickness t is color^(t / distance); the texture scales t. [KHR_materials_volume:
+  /// attenuation]
   void read_volume(const GltfObject& object) {
     const float thickness = object.number("thicknessFactor", 0, 0, 1e30);
     const glm::vec3 color = object.color("attenuationColor", glm::vec3(1));
@@ -104,8 +108,8 @@ class LayerReader {
     constexpr double kLeast = 1.0 / 1024, kMost = 64;  // nothing passes beyond 2^-64
     for (int i = 0; i < 3; ++i) {
       const double passed = std::clamp(static_cast<double>(color[i]), kLeast, 1.0);
-      m_.layers.absorption[i] =
-          static_cast<float>(-std::min(kMost, -std::log2(passed) * static_cast<double>(thickness) / static_cast<double>(distance)));
+      m_.layers.absorption[i] = static_cast<float>(-std::min(
+          kMost, -std::log2(passed) * static_cast<double>(thickness) / static_cast<double>(distance)));
     }
   }
 
@@ -113,7 +117,8 @@ class LayerReader {
     const auto object = extension("KHR_materials_pbrSpecularGlossiness");
     if (!object) return false;
     m_.base_color = diffuse(*object);
-    m_.texture(TextureSlot::kBaseColor) = read_texture(file_, mention_of(*object, "diffuseTexture"), object->place() + ".diffuseTexture");
+    m_.texture(TextureSlot::kBaseColor) =
+        read_texture(file_, mention_of(*object, "diffuseTexture"), object->place() + ".diffuseTexture");
     m_.texture(TextureSlot::kMetallicRoughness) = {};
     m_.metallic = 0;
     m_.roughness = 1 - object->number("glossinessFactor", 1, 0, 1);
@@ -131,7 +136,8 @@ class LayerReader {
     for (int i = 0; i < 4; ++i) {
       const tinygltf::Value& part = values.Get(i);
       result[i] = part.IsNumber() ? static_cast<float>(part.GetNumberAsDouble()) : -1.0F;
-      if (!(result[i] >= 0 && result[i] <= 1)) object.fail("diffuseFactor", "four numbers within 0..1 are due");
+      if (!(result[i] >= 0 && result[i] <= 1))
+        object.fail("diffuseFactor", "four numbers within 0..1 are due");
     }
     return result;
   }
@@ -144,7 +150,8 @@ class LayerReader {
 
 }  // namespace
 
-void read_layers(const GltfFile& file, const tinygltf::Material& source, const std::string& place, Material& material) {
+void read_layers(const GltfFile& file, const tinygltf::Material& source, const std::string& place,
+                 Material& material) {
   LayerReader(file, source, place, material).read();
 }
 

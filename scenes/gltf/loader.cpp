@@ -1,4 +1,5 @@
-/// The scene graph: nodes, where the animation puts them, to instances, cameras and lights, and the images that the materials turn out to need.
+/// The scene graph: nodes, where the animation puts them, to instances, cameras and lights, and the images
+/// that the materials turn out to need.
 #include "scenes/gltf/loader.h"
 
 #include <algorithm>
@@ -28,10 +29,14 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr int kExtentMoments = 32, kFewestMoments = 4;
-constexpr std::size_t kExtentVisits = std::size_t{1} << 22;      // nodes and copies of all moments [G: seconds]
-constexpr std::uint64_t kMaxMorphWork = std::uint64_t{1} << 28;  // vertices times attributes that targets of weight move
-constexpr std::size_t kMaxPoseValues = std::size_t{1}
-                                       << 22;  // joints and weights of all posed primitives: a file may show one skin any number of times
+// nodes and copies of all moments [G: seconds]
+constexpr std::size_t kExtentVisits = std::size_t{1} << 22;
+// vertices times attributes that targets of weight move
+constexpr std::uint64_t kMaxMorphWork = std::uint64_t{1} << 28;
+constexpr std::size_t kMaxPoseValues =
+    std::size_t{1}  // joints and weights of all posed primitives: a file may show one skin
+    // any number of times
+    << 22;
 
 bool all_finite(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i) {
@@ -44,11 +49,13 @@ bool all_finite(const glm::dmat4& m) {
 
 class GltfScene::Reader {
  public:
-  Reader(const std::string& path, const GltfChoice& choice) : file_(read_gltf_file(path)), choice_(choice), meshes_(file_, scene_) {
+  Reader(const std::string& path, const GltfChoice& choice)
+      : file_(read_gltf_file(path)), choice_(choice), meshes_(file_, scene_) {
     scene_.name = path;
     if (choice.animated) animations_ = choose_animations(file_, choice.animation);
     for (const Animation& animation : animations_) length_ = std::max(length_, animation.length);
-    for (std::size_t i = 0; i < file_.model.cameras.size(); ++i) scene_.cameras.push_back(read_camera(file_, i));
+    for (std::size_t i = 0; i < file_.model.cameras.size(); ++i)
+      scene_.cameras.push_back(read_camera(file_, i));
     visit_nodes();
     read_images();
     if (!animations_.empty()) {
@@ -101,18 +108,20 @@ class GltfScene::Reader {
   int extent_moments() const {
     std::size_t visits = file_.model.nodes.size() + scene_.instances.size();
     for (const auto& copies : scene_.copies) visits += copies.size();
-    return std::max(kFewestMoments,
-                    static_cast<int>(std::min<std::size_t>(kExtentMoments, kExtentVisits / std::max<std::size_t>(1, visits))));
+    return std::max(kFewestMoments, static_cast<int>(std::min<std::size_t>(
+                                        kExtentMoments, kExtentVisits / std::max<std::size_t>(1, visits))));
   }
 
-  /// The boxes of all instances at moments all over the animation, so that a camera that frames the scene stands still.
+  /// The boxes of all instances at moments all over the animation, so that a camera that frames the scene
+  /// stands still.
   void hold_extent() {
     std::vector<Bounds> extent(scene_.instances.size());
     const int moments = extent_moments();
     for (int i = 0; i <= moments; ++i) {
       pose(length_ * i / moments);
       extent.resize(std::max(extent.size(), scene_.instances.size()));
-      for (std::size_t k = 0; k < scene_.instances.size(); ++k) extent[k].add(scene_.box(scene_.instances[k]));
+      for (std::size_t k = 0; k < scene_.instances.size(); ++k)
+        extent[k].add(scene_.box(scene_.instances[k]));
     }
     scene_.extent = std::move(extent);
   }
@@ -121,7 +130,8 @@ class GltfScene::Reader {
 
   glm::dmat4 local_matrix(const tinygltf::Node& node, const NodeMotion& motion, int number) const {
     const auto sized = [&](const std::vector<double>& values, std::size_t size, const char* member) {
-      if (!values.empty() && values.size() != size) fail(number, fmt::format("{}: {} numbers instead of {}", member, values.size(), size));
+      if (!values.empty() && values.size() != size)
+        fail(number, fmt::format("{}: {} numbers instead of {}", member, values.size(), size));
       return !values.empty();
     };
     glm::dmat4 m(1);
@@ -150,7 +160,8 @@ class GltfScene::Reader {
     return m;
   }
 
-  /// The roots of the scene that was asked for, or of the file's own; without any scene, the nodes that are nobody's child. [glTF2.0 #scenes]
+  /// The roots of the scene that was asked for, or of the file's own; without any scene, the nodes that are
+  /// nobody's child. [glTF2.0 #scenes]
   std::vector<int> roots() const {
     const tinygltf::Model& model = file_.model;
     if (!model.scenes.empty()) {
@@ -177,11 +188,14 @@ class GltfScene::Reader {
     std::vector<std::string> names;
     for (const tinygltf::Scene& scene : file_.model.scenes) names.push_back(scene.name);
     const std::optional<std::size_t> found = find_choice(names, choice_.scene);
-    if (!found) fail("scenes", fmt::format("scene '{}' does not exist; scenes: {}", choice_.scene.substr(0, 60), list_of_choices(names)));
+    if (!found)
+      fail("scenes", fmt::format("scene '{}' does not exist; scenes: {}", choice_.scene.substr(0, 60),
+                                 list_of_choices(names)));
     return static_cast<int>(*found);
   }
 
-  /// Depth first, children in order, without recursion. A node seen twice would make the graph no tree, or a loop.
+  /// Depth first, children in order, without recursion. A node seen twice would make the graph no tree, or a
+  /// loop.
   void visit_nodes() {
     static const NodeMotion kStill;
     worlds_.assign(file_.model.nodes.size(), std::nullopt);
@@ -223,15 +237,18 @@ class GltfScene::Reader {
   }
 
   /// What is hidden shows neither mesh nor light; a camera there takes pictures.
-  void place_node(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, int number, bool visible) {
+  void place_node(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, int number,
+                  bool visible) {
     if (node.mesh >= 0 && visible) place_mesh(node, motion, world, number);
     if (node.camera >= 0) {
       const auto camera = static_cast<std::size_t>(node.camera);
       if (camera >= scene_.cameras.size())
-        fail(number, fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
+        fail(number,
+             fmt::format("camera {} does not exist (the file has {})", node.camera, scene_.cameras.size()));
       if (!scene_.cameras[camera].pose) scene_.cameras[camera].pose = world;
     }
-    if (const auto found = node.extensions.find("KHR_lights_punctual"); visible && found != node.extensions.end())
+    if (const auto found = node.extensions.find("KHR_lights_punctual");
+        visible && found != node.extensions.end())
       place_light(found->second, world, place_of(number));
   }
 
@@ -253,31 +270,38 @@ class GltfScene::Reader {
       if (added) skin->second = read_skin(file_, node.skin, place_of(at));
       charge_pose(skin->second.joints.size() * primitives.size(), at);
       meshes_.read_skinning(node.mesh, skin->second.joints.size(), node.skin);
-      skinned_.push_back({node.skin, static_cast<std::size_t>(number), scene_.instances.size(), primitives.size()});
+      skinned_.push_back(
+          {node.skin, static_cast<std::size_t>(number), scene_.instances.size(), primitives.size()});
     }
     const std::size_t first = scene_.instances.size();
     for (const std::uint32_t primitive : primitives) {
       const std::string& name = scene_.primitives[primitive].name;
-      scene_.instances.push_back({primitive, world, node.name.empty() ? name : node.name + "/" + name, -1, number});
+      scene_.instances.push_back(
+          {primitive, world, node.name.empty() ? name : node.name + "/" + name, -1, number});
     }
     if (const auto found = node.extensions.find("EXT_mesh_gpu_instancing"); found != node.extensions.end())
       place_copies_of(node, found->second, world, at, first);
   }
 
   /// A skin places its mesh by joints alone, so that instances of it would all lie in one place.
-  void place_copies_of(const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& world, int at, std::size_t first) {
+  void place_copies_of(const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& world,
+                       int at, std::size_t first) {
     const bool skinned = node.skin >= 0;
     if (!skinned && place_copies(file_, extension, place_of(at), world, first, scene_, copies_)) return;
     if (!std::exchange(warned_of_copies_, true))
-      file_.notes.push_back(
-          fmt::format("{}: EXT_mesh_gpu_instancing {}; it is drawn once", place_of(at),
-                      skinned ? "counts for nothing on a node with a skin" : "has no attribute that says how many copies there are"));
+      file_.notes.push_back(fmt::format("{}: EXT_mesh_gpu_instancing {}; it is drawn once", place_of(at),
+                                        skinned ? "counts for nothing on a node with a skin"
+                                                : "has no attribute that says how many copies there are"));
   }
 
-  /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0 #morph-targets]
-  std::vector<float> morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh, const NodeMotion& motion, int at) const {
+  /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0
+  /// #morph-targets]
+  std::vector<float> morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
+                                   const NodeMotion& motion, int at) const {
     const std::size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
-    const std::vector<double>& weights = motion.weights ? *motion.weights : node.weights.empty() ? mesh.weights : node.weights;
+    const std::vector<double>& weights = motion.weights         ? *motion.weights
+                                         : node.weights.empty() ? mesh.weights
+                                                                : node.weights;
     if (!weights.empty() && weights.size() != targets)
       fail(at, fmt::format("{} weights for a mesh of {} morph targets", weights.size(), targets));
     std::vector<float> result;
@@ -290,7 +314,8 @@ class GltfScene::Reader {
 
   void charge_pose(std::size_t values, int at) {
     pose_values_ += values;
-    if (pose_values_ > kMaxPoseValues) fail(at, fmt::format("the scene poses more than {} joints and weights", kMaxPoseValues));
+    if (pose_values_ > kMaxPoseValues)
+      fail(at, fmt::format("the scene poses more than {} joints and weights", kMaxPoseValues));
   }
 
   /// What the host would have to add; many targets may be of one accessor.
@@ -299,11 +324,13 @@ class GltfScene::Reader {
       const Primitive& primitive = scene_.primitives[number];
       const std::uint64_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
       for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
-        const auto moved = std::ranges::count_if(primitive.targets[t].deltas, [](int delta) { return delta >= 0; });
+        const auto moved =
+            std::ranges::count_if(primitive.targets[t].deltas, [](int delta) { return delta >= 0; });
         if (weights[t] != 0) morph_work_ += vertices * static_cast<std::uint64_t>(moved);
       }
       if (morph_work_ > kMaxMorphWork)
-        fail(at, fmt::format("the scene's morph targets move more than {} attributes of vertices", kMaxMorphWork));
+        fail(at, fmt::format("the scene's morph targets move more than {} attributes of vertices",
+                             kMaxMorphWork));
     }
   }
 
@@ -328,8 +355,8 @@ class GltfScene::Reader {
 
   // ---- images ----
 
-  /// Fetches what materials in use refer to, and renumbers their references; the recorder unpacks what is sampled. With everything asked for, the file's other
-  /// images follow.
+  /// Fetches what materials in use refer to, and renumbers their references; the recorder unpacks what is
+  /// sampled. With everything asked for, the file's other images follow.
   void read_images() {
     std::map<int, int> numbers;  // the file's to the scene's
     std::vector<std::size_t> wanted;
@@ -364,7 +391,8 @@ class GltfScene::Reader {
   PlacedCopies copies_;
 };
 
-GltfScene::GltfScene(const std::string& path, const GltfChoice& choice) : reader_(std::make_unique<Reader>(path, choice)) {}
+GltfScene::GltfScene(const std::string& path, const GltfChoice& choice)
+    : reader_(std::make_unique<Reader>(path, choice)) {}
 GltfScene::~GltfScene() = default;
 GltfScene::GltfScene(GltfScene&&) noexcept = default;
 GltfScene& GltfScene::operator=(GltfScene&&) noexcept = default;

@@ -1,4 +1,5 @@
-/// glTF 2.0 files as scenes. docs/scenes.md lists what is covered. Everything that a file says is checked before it is used.
+/// glTF 2.0 files as scenes. docs/scenes.md lists what is covered. Everything that a file says is checked
+/// before it is used.
 #pragma once
 
 #include <memory>
@@ -32,9 +33,11 @@ class GltfScene {
   [[nodiscard]] bool animated() const;
   /// Images that the file has, whether used or not.
   [[nodiscard]] std::size_t image_count() const;
-  /// Moves nodes, skins, morph targets, cameras and lights to `time` in seconds. Throws `UserError`. Without an animation it does nothing.
+  /// Moves nodes, skins, morph targets, cameras and lights to `time` in seconds. Throws `UserError`. Without
+  /// an animation it does nothing.
   void pose(double time);
-  /// Prints to standard error, once, what is drawn otherwise than the file says; for when the scene is not refused.
+  /// Prints to standard error, once, what is drawn otherwise than the file says; for when the scene is not
+  /// refused.
   void print_notes();
 
  private:

@@ -30,7 +30,8 @@ class MaterialReader {
     m.double_sided = source_.doubleSided;
     m.unlit = source_.extensions.contains("KHR_materials_unlit");
     m.texture(TextureSlot::kBaseColor) = texture(pbr.baseColorTexture, "baseColorTexture");
-    m.texture(TextureSlot::kMetallicRoughness) = texture(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
+    m.texture(TextureSlot::kMetallicRoughness) =
+        texture(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
     m.texture(TextureSlot::kNormal) = texture(source_.normalTexture, "normalTexture");
     m.texture(TextureSlot::kOcclusion) = texture(source_.occlusionTexture, "occlusionTexture");
     m.texture(TextureSlot::kEmissive) = texture(source_.emissiveTexture, "emissiveTexture");
@@ -72,7 +73,8 @@ class MaterialReader {
   float emissive_strength() const {
     const auto found = source_.extensions.find("KHR_materials_emissive_strength");
     if (found == source_.extensions.end()) return 1;
-    return GltfObject(file_.path, place_ + ".KHR_materials_emissive_strength", found->second).number("emissiveStrength", 1);
+    return GltfObject(file_.path, place_ + ".KHR_materials_emissive_strength", found->second)
+        .number("emissiveStrength", 1);
   }
 
   template <class Info>

@@ -1,4 +1,5 @@
-/// glTF materials: the metallic-roughness model, its five textures, and the extensions that this project knows.
+/// glTF materials: the metallic-roughness model, its five textures, and the extensions that this project
+/// knows.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,8 @@
 
 namespace quadrille::scenes {
 
-/// Material `index` of the file; image numbers are the file's. Throws `UserError` with the place of a reference or value that is wrong.
+/// Material `index` of the file; image numbers are the file's. Throws `UserError` with the place of a
+/// reference or value that is wrong.
 [[nodiscard]] Material read_material(const GltfFile& file, std::size_t index);
 
 }  // namespace quadrille::scenes

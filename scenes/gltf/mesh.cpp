@@ -13,9 +13,11 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::uint64_t kMaxGeometryBytes = std::uint64_t{3} << 29;   // 1.5 GiB of decoded streams
-constexpr std::uint64_t kFreeGeometryBytes = std::uint64_t{1} << 28;  // and of these, what a file may have beyond four times its buffers
-constexpr std::array<const char*, kSemantics> kAttributeNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
+constexpr std::uint64_t kMaxGeometryBytes = std::uint64_t{3} << 29;  // 1.5 GiB of decoded streams
+// and of these, what a file may have beyond four times its buffers
+constexpr std::uint64_t kFreeGeometryBytes = std::uint64_t{1} << 28;
+constexpr std::array<const char*, kSemantics> kAttributeNames{"POSITION",   "NORMAL",     "TANGENT",
+                                                              "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
 
 /// [glTF2.0 #meshes: mode]
 traces::Topology topology(const GltfFile& file, int mode, const std::string& place) {
@@ -29,8 +31,9 @@ traces::Topology topology(const GltfFile& file, int mode, const std::string& pla
     case TINYGLTF_MODE_LINE:
     case TINYGLTF_MODE_LINE_LOOP:
     case TINYGLTF_MODE_LINE_STRIP:
-      throw user_error("{}: {}: primitive mode {} is not supported (TRIANGLES, TRIANGLE_STRIP and TRIANGLE_FAN are)", file.path, place,
-                       kUnsupported[static_cast<std::size_t>(mode)]);
+      throw user_error(
+          "{}: {}: primitive mode {} is not supported (TRIANGLES, TRIANGLE_STRIP and TRIANGLE_FAN are)",
+          file.path, place, kUnsupported[static_cast<std::size_t>(mode)]);
     default: throw user_error("{}: {}: primitive mode {} is not one of glTF's", file.path, place, mode);
   }
 }
@@ -50,14 +53,15 @@ const std::vector<std::uint32_t>& MeshReader::primitives(int index) {
     scene_.primitives.push_back(std::move(primitive));
     sources_.push_back(&mesh.primitives[i]);
     if (mesh.primitives[i].targets.size() != mesh.primitives[0].targets.size()) {
-      throw user_error("{}: {}.targets: {} where the mesh's first primitive has {}", file_.path, place, mesh.primitives[i].targets.size(),
-                       mesh.primitives[0].targets.size());
+      throw user_error("{}: {}.targets: {} where the mesh's first primitive has {}", file_.path, place,
+                       mesh.primitives[i].targets.size(), mesh.primitives[0].targets.size());
     }
   }
   return entry->second;
 }
 
-bool MeshReader::read_primitive(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+bool MeshReader::read_primitive(const tinygltf::Primitive& source, const std::string& place,
+                                Primitive& primitive) {
   primitive.topology = topology(file_, source.mode, place);
   if (!source.attributes.contains("POSITION")) return false;  // nothing to draw [glTF2.0 #meshes-overview]
   read_attributes(source, place, primitive);
@@ -72,7 +76,8 @@ bool MeshReader::read_primitive(const tinygltf::Primitive& source, const std::st
   return true;
 }
 
-void MeshReader::read_attributes(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+void MeshReader::read_attributes(const tinygltf::Primitive& source, const std::string& place,
+                                 Primitive& primitive) {
   for (std::size_t i = 0; i < kSemantics; ++i) {
     const auto found = source.attributes.find(kAttributeNames[i]);
     if (found == source.attributes.end()) continue;
@@ -84,8 +89,8 @@ void MeshReader::read_attributes(const tinygltf::Primitive& source, const std::s
   check_directions(place, primitive);
 }
 
-/// Normals that point nowhere give way to those of their faces; a normal map's frame with such tangents, to the one that texture coordinates span: each as
-/// where the file has none.
+/// Normals that point nowhere give way to those of their faces; a normal map's frame with such tangents, to
+/// the one that texture coordinates span: each as where the file has none.
 void MeshReader::check_directions(const std::string& place, Primitive& primitive) {
   const std::size_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
   const auto lacking = [&](Semantic semantic) {
@@ -100,7 +105,8 @@ void MeshReader::check_directions(const std::string& place, Primitive& primitive
 }
 
 void MeshReader::require_vertices(std::size_t count, std::size_t vertices, const std::string& place) const {
-  if (count != vertices) throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, place, count, vertices);
+  if (count != vertices)
+    throw user_error("{}: {}: {} elements where POSITION has {}", file_.path, place, count, vertices);
 }
 
 void MeshReader::Mended::add(const std::string& place, std::size_t mended, std::size_t vertices) {
@@ -111,7 +117,8 @@ void MeshReader::Mended::add(const std::string& place, std::size_t mended, std::
 }
 
 std::string MeshReader::Mended::text() const {
-  return fmt::format("{}{}: {} of {} vertices", first_place, places > 1 ? fmt::format(" and {} more", places - 1) : "", count, of);
+  return fmt::format("{}{}: {} of {} vertices", first_place,
+                     places > 1 ? fmt::format(" and {} more", places - 1) : "", count, of);
 }
 
 std::vector<std::string> MeshReader::take_notes() {
@@ -119,20 +126,25 @@ std::vector<std::string> MeshReader::take_notes() {
   const auto take = [&](Mended& mended, const char* what) {
     if (mended.places > 0) notes.push_back(std::exchange(mended, {}).text() + what);
   };
-  take(mended_normals_, " have a normal without a direction; faces of such vertices are drawn with their own");
-  take(dropped_tangents_, " have a tangent without a direction; normal maps there follow the texture coordinates");
+  take(mended_normals_,
+       " have a normal without a direction; faces of such vertices are drawn with their own");
+  take(dropped_tangents_,
+       " have a tangent without a direction; normal maps there follow the texture coordinates");
   take(mended_weights_,
-       " have joint weights that do not sum to 1; they are divided by their sum, and without any weight the first joint moves the vertex");
+       " have joint weights that do not sum to 1; they are divided by their sum, and without any weight the "
+       "first joint moves the vertex");
   return notes;
 }
 
-void MeshReader::read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+void MeshReader::read_indices(const tinygltf::Primitive& source, const std::string& place,
+                              Primitive& primitive) {
   const std::string at = place + ".indices";
   primitive.indices = index_array(source.indices, at);
   primitive.index_type = index_arrays_.at(source.indices).second;
   const std::uint32_t largest = largest_index_.at(primitive.indices);
   if (largest >= primitive.count)
-    throw user_error("{}: {}: accessor {}: index {} is beyond {} vertices", file_.path, at, source.indices, largest, primitive.count);
+    throw user_error("{}: {}: accessor {}: index {} is beyond {} vertices", file_.path, at, source.indices,
+                     largest, primitive.count);
   primitive.count = scene_.arrays[static_cast<std::size_t>(primitive.indices)].count;
 }
 
@@ -148,7 +160,8 @@ void MeshReader::require_room(std::uint64_t bytes, const std::string& place) con
   std::uint64_t limit = kFreeGeometryBytes;
   for (const tinygltf::Buffer& buffer : file_.model.buffers) limit += 4 * std::uint64_t{buffer.data.size()};
   limit = std::min(limit, kMaxGeometryBytes);
-  if (total_bytes_ + bytes > limit) throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, limit);
+  if (total_bytes_ + bytes > limit)
+    throw user_error("{}: {}: the scene's geometry takes more than {} bytes", file_.path, place, limit);
 }
 
 int MeshReader::vertex_array(int accessor, Semantic semantic, const std::string& place) {
@@ -157,7 +170,9 @@ int MeshReader::vertex_array(int accessor, Semantic semantic, const std::string&
   Elements elements = read_accessor(file_, accessor, place);
   require_room(vertex_array_bytes(elements, semantic), place);
   std::uint32_t lacking = 0;
-  const int array = add_array(to_vertex_array(file_, elements, semantic, fmt::format("{}: accessor {}", place, accessor), &lacking), place);
+  const int array = add_array(
+      to_vertex_array(file_, elements, semantic, fmt::format("{}: accessor {}", place, accessor), &lacking),
+      place);
   if (lacking > 0) without_direction_[array] = lacking;
   return vertex_arrays_[{accessor, semantic}] = array;
 }
@@ -166,8 +181,9 @@ int MeshReader::index_array(int accessor, const std::string& place) {
   const auto found = index_arrays_.find(accessor);
   if (found != index_arrays_.end()) return found->second.first;
   Elements elements = read_accessor(file_, accessor, place);
-  const bool is_unsigned =
-      elements.component == Component::kUint8 || elements.component == Component::kUint16 || elements.component == Component::kUint32;
+  const bool is_unsigned = elements.component == Component::kUint8 ||
+                           elements.component == Component::kUint16 ||
+                           elements.component == Component::kUint32;
   if (elements.components != 1 || !is_unsigned)
     throw user_error("{}: {}: accessor {}: indices are unsigned scalars", file_.path, place, accessor);
   const std::size_t size = component_bytes(elements.component);
@@ -180,7 +196,8 @@ int MeshReader::index_array(int accessor, const std::string& place) {
   const traces::IndexType type = size == 1   ? traces::IndexType::kUint8
                                  : size == 2 ? traces::IndexType::kUint16
                                              : traces::IndexType::kUint32;
-  const int array = add_array({{}, traces::Format::kUndefined, elements.count, std::move(elements.data)}, place);
+  const int array =
+      add_array({{}, traces::Format::kUndefined, elements.count, std::move(elements.data)}, place);
   largest_index_[array] = largest;
   index_arrays_[accessor] = {array, type};
   return array;
@@ -188,11 +205,13 @@ int MeshReader::index_array(int accessor, const std::string& place) {
 
 int MeshReader::material(int index, const std::string& place) {
   if (index < -1 || index >= static_cast<int>(file_.model.materials.size())) {
-    throw user_error("{}: {}.material: material {} does not exist (the file has {})", file_.path, place, index,
-                     file_.model.materials.size());
+    throw user_error("{}: {}.material: material {} does not exist (the file has {})", file_.path, place,
+                     index, file_.model.materials.size());
   }
   const auto [entry, added] = materials_.try_emplace(index, static_cast<int>(scene_.materials.size()));
-  if (added) scene_.materials.push_back(index < 0 ? Material{} : read_material(file_, static_cast<std::size_t>(index)));
+  if (added)
+    scene_.materials.push_back(index < 0 ? Material{}
+                                         : read_material(file_, static_cast<std::size_t>(index)));
   return entry->second;
 }
 

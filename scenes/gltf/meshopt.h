@@ -5,8 +5,9 @@
 
 namespace quadrille::scenes {
 
-/// Expands every buffer view that has the extension into `file.decoded_views`. What the extension says of counts, strides and lengths is checked before the
-/// library sees a byte, and the codecs' least size bounds the memory. Throws `UserError` with the view's place. [EXT_meshopt_compression]
+/// Expands every buffer view that has the extension into `file.decoded_views`. What the extension says of
+/// counts, strides and lengths is checked before the library sees a byte, and the codecs' least size bounds
+/// the memory. Throws `UserError` with the view's place. [EXT_meshopt_compression]
 void decode_meshopt_views(GltfFile& file);
 
 }  // namespace quadrille::scenes

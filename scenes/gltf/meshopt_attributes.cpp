@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::byte kHeader{0xa1};
 constexpr std::size_t kGroup = 16, kMostOfBlock = 256, kBlockBytes = 8192, kLeastTail = 24;
-constexpr unsigned kZeros = 2, kLiteral = 3;                                             // controls; 0 and 1 choose among the widths below
+// controls; 0 and 1 choose among the widths below
+constexpr unsigned kZeros = 2, kLiteral = 3;
 constexpr unsigned kBytes = 0, kHalves = 1, kWords = 2;                                  // modes of a channel
 constexpr std::array<std::array<unsigned, 4>, 2> kWidths{{{0, 1, 2, 4}, {1, 2, 4, 8}}};  // bits of a delta
 
@@ -47,7 +48,9 @@ class Decoder {
 
  private:
   /// The high half of a mode is the rotation of words; others have none.
-  static bool legal(std::byte mode) { return (number(mode) & 15) == kWords || number(mode) == kBytes || number(mode) == kHalves; }
+  static bool legal(std::byte mode) {
+    return (number(mode) & 15) == kWords || number(mode) == kBytes || number(mode) == kHalves;
+  }
 
   bool take(std::size_t bytes, std::span<const std::byte>& part) {
     if (source_.size() < bytes) return false;
@@ -60,7 +63,8 @@ class Decoder {
     std::span<const std::byte> controls;
     if (!take(stride_ / 4, controls)) return false;
     for (std::size_t k = 0; k < stride_; ++k) {
-      if (!position(number(controls[k / 4]) >> 2 * (k % 4) & 3, elements, &deltas_[k * kMostOfBlock])) return false;
+      if (!position(number(controls[k / 4]) >> 2 * (k % 4) & 3, elements, &deltas_[k * kMostOfBlock]))
+        return false;
     }
     return true;
   }
@@ -92,7 +96,9 @@ class Decoder {
     const unsigned ones = (1u << bits) - 1, in_byte = 8 / bits;
     for (unsigned i = 0; i < kGroup; ++i) {
       const unsigned place =
-          bits == 1 ? i % in_byte : in_byte - 1 - i % in_byte;  // single bits begin with the lowest, others with the highest
+          bits == 1
+              ? i % in_byte
+              : in_byte - 1 - i % in_byte;  // single bits begin with the lowest, others with the highest
       const unsigned value = number(packed[i / in_byte]) >> bits * place & ones;
       if (value == ones && !take(1, byte)) return false;
       deltas[i] = value == ones ? byte[0] : static_cast<std::byte>(value);
@@ -137,9 +143,12 @@ class Decoder {
 
 }  // namespace
 
-bool is_attribute_stream_1(std::span<const std::byte> source) { return !source.empty() && source.front() == kHeader; }
+bool is_attribute_stream_1(std::span<const std::byte> source) {
+  return !source.empty() && source.front() == kHeader;
+}
 
-bool decode_attribute_stream_1(std::span<const std::byte> source, std::uint64_t count, std::uint64_t stride, std::vector<std::byte>& out) {
+bool decode_attribute_stream_1(std::span<const std::byte> source, std::uint64_t count, std::uint64_t stride,
+                               std::vector<std::byte>& out) {
   return is_attribute_stream_1(source) && Decoder(source, stride, out).run(count);
 }
 

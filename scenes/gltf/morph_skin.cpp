@@ -12,9 +12,11 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::size_t kMaxJointedVertices = std::size_t{1} << 27;  // of all distinct streams of joints [G: a second]
-constexpr std::size_t kMaxJointBoxes = std::size_t{1} << 22;       // of all primitives: 100 MB
-constexpr std::array<const char*, kSemantics> kTargetNames{"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
+// of all distinct streams of joints [G: a second]
+constexpr std::size_t kMaxJointedVertices = std::size_t{1} << 27;
+constexpr std::size_t kMaxJointBoxes = std::size_t{1} << 22;  // of all primitives: 100 MB
+constexpr std::array<const char*, kSemantics> kTargetNames{"POSITION",   "NORMAL",     "TANGENT",
+                                                           "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
 
 std::uint32_t joint_at(const Array& joints, std::size_t component) {
   const std::size_t size = joints.format == traces::Format::kR16G16B16A16Uint ? 2 : 1;
@@ -53,7 +55,8 @@ int MeshReader::delta_array(int accessor, std::size_t components, const std::str
   return entry->second = add_array(std::move(array), place);
 }
 
-void MeshReader::read_targets(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+void MeshReader::read_targets(const tinygltf::Primitive& source, const std::string& place,
+                              Primitive& primitive) {
   for (std::size_t t = 0; t < source.targets.size(); ++t) {
     MorphTarget& target = primitive.targets.emplace_back();
     for (std::size_t i = 0; i < kSemantics; ++i) {
@@ -76,15 +79,18 @@ void MeshReader::read_targets(const tinygltf::Primitive& source, const std::stri
 }
 
 /// The streams of all sets that the primitive has; primitives of the same accessors share them.
-const std::array<JointSet, 2>& MeshReader::joint_sets(const tinygltf::Primitive& source, const std::string& place, std::size_t vertices) {
+const std::array<JointSet, 2>& MeshReader::joint_sets(const tinygltf::Primitive& source,
+                                                      const std::string& place, std::size_t vertices) {
   std::array<int, 4> accessors{-1, -1, -1, -1};
   std::size_t sets = 0;
   for (; sets < 2; ++sets) {
     const auto joints = source.attributes.find(fmt::format("JOINTS_{}", sets)),
                weights = source.attributes.find(fmt::format("WEIGHTS_{}", sets));
-    const bool has_joints = joints != source.attributes.end(), has_weights = weights != source.attributes.end();
+    const bool has_joints = joints != source.attributes.end(),
+               has_weights = weights != source.attributes.end();
     if (has_joints != has_weights)
-      throw user_error("{}: {}: JOINTS_{} and WEIGHTS_{} come together; one is missing", file_.path, place, sets, sets);
+      throw user_error("{}: {}: JOINTS_{} and WEIGHTS_{} come together; one is missing", file_.path, place,
+                       sets, sets);
     if (!has_joints) break;
     accessors[2 * sets] = joints->second;
     accessors[2 * sets + 1] = weights->second;
@@ -94,7 +100,8 @@ const std::array<JointSet, 2>& MeshReader::joint_sets(const tinygltf::Primitive&
   std::vector<JointElements> elements;
   const auto at = [&](std::size_t set) { return fmt::format("{}.attributes.JOINTS_{}", place, set); };
   for (std::size_t set = 0; set < sets; ++set) {
-    elements.push_back({read_accessor(file_, accessors[2 * set], at(set)), read_accessor(file_, accessors[2 * set + 1], at(set))});
+    elements.push_back({read_accessor(file_, accessors[2 * set], at(set)),
+                        read_accessor(file_, accessors[2 * set + 1], at(set))});
     check_joints(file_, elements.back(), at(set));
     require_room(elements.back().joints.data.size() + float_bytes(elements.back().weights), at(set));
     require_vertices(elements.back().joints.count, vertices, at(set));
@@ -107,27 +114,31 @@ const std::array<JointSet, 2>& MeshReader::joint_sets(const tinygltf::Primitive&
   return entry->second;
 }
 
-void MeshReader::read_joints(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive, std::size_t joint_count,
-                             int skin) {
+void MeshReader::read_joints(const tinygltf::Primitive& source, const std::string& place,
+                             Primitive& primitive, std::size_t joint_count, int skin) {
   const std::size_t vertices = scene_.arrays[static_cast<std::size_t>(primitive.attributes[0])].count;
   primitive.joint_sets = joint_sets(source, place, vertices);
   for (std::size_t set = 0; set < primitive.joint_sets.size(); ++set) {
     if (primitive.joint_sets[set].joints < 0) break;
     const std::string at = fmt::format("{}.attributes.JOINTS_{}", place, set);
-    require_vertices(scene_.arrays[static_cast<std::size_t>(primitive.joint_sets[set].joints)].count, vertices, at);
+    require_vertices(scene_.arrays[static_cast<std::size_t>(primitive.joint_sets[set].joints)].count,
+                     vertices, at);
     const std::vector<Bounds>& boxes = joint_boxes(primitive.attributes[0], primitive.joint_sets[set], at);
     if (boxes.size() > joint_count)
-      throw user_error("{}: {}: JOINTS name joint {}; skins[{}] has {} joints", file_.path, place, boxes.size() - 1, skin, joint_count);
+      throw user_error("{}: {}: JOINTS name joint {}; skins[{}] has {} joints", file_.path, place,
+                       boxes.size() - 1, skin, joint_count);
     if (primitive.joint_boxes.size() < boxes.size()) primitive.joint_boxes.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) primitive.joint_boxes[i].add(boxes[i]);
   }
   joint_box_count_ += primitive.joint_boxes.size();
   if (joint_box_count_ > kMaxJointBoxes)
-    throw user_error("{}: {}: the scene's primitives hang on more than {} joints", file_.path, place, kMaxJointBoxes);
+    throw user_error("{}: {}: the scene's primitives hang on more than {} joints", file_.path, place,
+                     kMaxJointBoxes);
 }
 
 /// What each joint moves, by scanning the vertices once for all primitives that share these arrays.
-const std::vector<Bounds>& MeshReader::joint_boxes(int positions, const JointSet& set, const std::string& place) {
+const std::vector<Bounds>& MeshReader::joint_boxes(int positions, const JointSet& set,
+                                                   const std::string& place) {
   const auto [entry, added] = joint_boxes_.try_emplace({positions, set.joints, set.weights});
   std::vector<Bounds>& boxes = entry->second;
   if (!added) return boxes;
@@ -136,7 +147,8 @@ const std::vector<Bounds>& MeshReader::joint_boxes(int positions, const JointSet
   const Array& fractions = scene_.arrays[static_cast<std::size_t>(set.weights)];
   jointed_vertices_ += points.count;
   if (jointed_vertices_ > kMaxJointedVertices)
-    throw user_error("{}: {}: the scene's skins move more than {} vertices", file_.path, place, kMaxJointedVertices);
+    throw user_error("{}: {}: the scene's skins move more than {} vertices", file_.path, place,
+                     kMaxJointedVertices);
   for (std::size_t i = 0; i < std::size_t{4} * points.count; ++i) {
     if (!has_weight(fractions, i)) continue;
     const std::uint32_t joint = joint_at(numbers, i);
@@ -156,10 +168,11 @@ void MeshReader::read_skinning(int index, std::size_t joints, int skin) {
     if (first) read_joints(source, place, scene_.primitives[number], joints, skin);
     const Primitive& primitive = scene_.primitives[number];
     if (primitive.joint_sets[0].joints < 0)
-      throw user_error("{}: {}: it is drawn with skins[{}], and has no JOINTS_0 and WEIGHTS_0", file_.path, place, skin);
+      throw user_error("{}: {}: it is drawn with skins[{}], and has no JOINTS_0 and WEIGHTS_0", file_.path,
+                       place, skin);
     if (primitive.joint_boxes.size() > joints) {
-      throw user_error("{}: {}: JOINTS name joint {}; skins[{}] has {} joints", file_.path, place, primitive.joint_boxes.size() - 1, skin,
-                       joints);
+      throw user_error("{}: {}: JOINTS name joint {}; skins[{}] has {} joints", file_.path, place,
+                       primitive.joint_boxes.size() - 1, skin, joints);
     }
   }
 }

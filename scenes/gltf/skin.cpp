@@ -14,12 +14,14 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr double kAffineTolerance = 1e-3;  // [G: rounding of exporters]
-constexpr double kFarFromOne =
-    1024;  // sizes whose squares the shader's cross products hold with ease; also what is far, in sizes of the skeleton
+// sizes whose squares the shader's cross products hold with ease; also what is far, in sizes of the
+// skeleton
+constexpr double kFarFromOne = 1024;
 
 glm::dmat4 matrix_of(const Elements& e, std::size_t index) {
   glm::dmat4 m(1);
-  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = static_cast<double>(component_value(e, index, static_cast<std::size_t>(i)));
+  for (int i = 0; i < 16; ++i)
+    m[i / 4][i % 4] = static_cast<double>(component_value(e, index, static_cast<std::size_t>(i)));
   return m;
 }
 
@@ -56,40 +58,48 @@ glm::dvec3 far_center(const std::vector<glm::dvec3>& places, double size) {
 Skin read_skin(const GltfFile& file, int index, const std::string& place) {
   const auto& skins = file.model.skins;
   if (index < 0 || static_cast<std::size_t>(index) >= skins.size())
-    throw user_error("{}: {}: skin {} does not exist (the file has {})", file.path, place, index, skins.size());
+    throw user_error("{}: {}: skin {} does not exist (the file has {})", file.path, place, index,
+                     skins.size());
   const tinygltf::Skin& source = skins[static_cast<std::size_t>(index)];
   if (source.joints.empty()) throw user_error("{}: skins[{}].joints: there are none", file.path, index);
   for (const int node : source.joints) {
     if (node < 0 || static_cast<std::size_t>(node) >= file.model.nodes.size())
-      throw user_error("{}: skins[{}].joints: node {} does not exist (the file has {})", file.path, index, node, file.model.nodes.size());
+      throw user_error("{}: skins[{}].joints: node {} does not exist (the file has {})", file.path, index,
+                       node, file.model.nodes.size());
   }
   Skin skin{source.joints, std::vector<glm::dmat4>(source.joints.size(), glm::dmat4(1))};
   if (source.inverseBindMatrices < 0) return skin;
   const std::string at = fmt::format("skins[{}].inverseBindMatrices", index);
   const Elements e = read_accessor(file, source.inverseBindMatrices, at);
   if (e.components != 16 || e.component != Component::kFloat)
-    throw user_error("{}: {}: accessor {} is not of 4x4 float matrices", file.path, at, source.inverseBindMatrices);
-  if (e.count < skin.joints.size()) throw user_error("{}: {}: {} matrices for {} joints", file.path, at, e.count, skin.joints.size());
+    throw user_error("{}: {}: accessor {} is not of 4x4 float matrices", file.path, at,
+                     source.inverseBindMatrices);
+  if (e.count < skin.joints.size())
+    throw user_error("{}: {}: {} matrices for {} joints", file.path, at, e.count, skin.joints.size());
   for (std::size_t i = 0; i < skin.joints.size(); ++i) {
     skin.inverse_binds[i] = matrix_of(e, i);
-    if (!is_affine(skin.inverse_binds[i])) throw user_error("{}: {}: matrix {} is not finite and affine", file.path, at, i);
+    if (!is_affine(skin.inverse_binds[i]))
+      throw user_error("{}: {}: matrix {} is not finite and affine", file.path, at, i);
   }
   return skin;
 }
 
-void pose_skin(const GltfFile& file, int index, const Skin& skin, const std::vector<std::optional<glm::dmat4>>& worlds, Pose& pose,
-               glm::dmat4& model) {
+void pose_skin(const GltfFile& file, int index, const Skin& skin,
+               const std::vector<std::optional<glm::dmat4>>& worlds, Pose& pose, glm::dmat4& model) {
   std::vector<glm::dmat4> joints;
   std::vector<glm::dvec3> places;
   joints.reserve(skin.joints.size());
   for (std::size_t i = 0; i < skin.joints.size(); ++i) {
     const std::optional<glm::dmat4>& world = worlds[static_cast<std::size_t>(skin.joints[i])];
-    if (!world) throw user_error("{}: skins[{}].joints: node {} is not in the scene that is drawn", file.path, index, skin.joints[i]);
+    if (!world)
+      throw user_error("{}: skins[{}].joints: node {} is not in the scene that is drawn", file.path, index,
+                       skin.joints[i]);
     joints.push_back(*world * skin.inverse_binds[i]);
     places.emplace_back((*world)[3]);
   }
   const double size = size_of(joints);
-  if (!std::isfinite(static_cast<float>(size))) throw user_error("{}: skins[{}]: a joint's matrix is not finite", file.path, index);
+  if (!std::isfinite(static_cast<float>(size)))
+    throw user_error("{}: skins[{}]: a joint's matrix is not finite", file.path, index);
   const bool plain = size == 0 || (size < kFarFromOne && size * kFarFromOne > 1);
   const double unit = plain ? 1.0 : std::ldexp(1.0, std::ilogb(size));
   const glm::dvec3 center = far_center(places, size);
@@ -100,7 +110,8 @@ void pose_skin(const GltfFile& file, int index, const Skin& skin, const std::vec
   for (const glm::dmat4& m : joints) {
     JointMatrix rows;
     for (int r = 0; r < 3; ++r)
-      rows[static_cast<std::size_t>(r)] = glm::vec4(m[0][r] / unit, m[1][r] / unit, m[2][r] / unit, (m[3][r] - center[r]) / unit);
+      rows[static_cast<std::size_t>(r)] =
+          glm::vec4(m[0][r] / unit, m[1][r] / unit, m[2][r] / unit, (m[3][r] - center[r]) / unit);
     if (!std::isfinite(rows[0].w + rows[1].w + rows[2].w))
       throw user_error("{}: skins[{}]: a joint's matrix is not finite", file.path, index);
     pose.joints.push_back(rows);

@@ -26,8 +26,10 @@ template <class Info>
 /// The texture info that an extension's object has as `name`; none where it lacks it.
 [[nodiscard]] TextureMention mention_of(const GltfObject& object, const char* name);
 
-/// What the mention at `place` ("materials[0].normalTexture") leads to. An image of EXT_texture_webp or MSFT_texture_dds goes before the texture's own `source`; a texture that
-/// has only KHR_texture_basisu is refused. Throws `UserError`.
-[[nodiscard]] TextureUse read_texture(const GltfFile& file, const TextureMention& mention, const std::string& place);
+/// What the mention at `place` ("materials[0].normalTexture") leads to. An image of EXT_texture_webp or
+/// MSFT_texture_dds goes before the texture's own `source`; a texture that has only KHR_texture_basisu is
+/// refused. Throws `UserError`.
+[[nodiscard]] TextureUse read_texture(const GltfFile& file, const TextureMention& mention,
+                                      const std::string& place);
 
 }  // namespace quadrille::scenes

@@ -1,4 +1,5 @@
-/// tinygltf's header without the parts of it that this project does not use: images are decoded by scenes/image/image_io.h, and nothing is written.
+/// tinygltf's header without the parts of it that this project does not use: images are decoded by
+/// scenes/image/image_io.h, and nothing is written.
 #pragma once
 
 #define TINYGLTF_NO_STB_IMAGE

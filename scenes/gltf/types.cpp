@@ -40,7 +40,8 @@ const char* due(Type type) {
 }
 
 bool numbers(const Json& value, std::size_t count) {
-  return value.is_array() && value.size() == count && std::ranges::all_of(value, [](const Json& v) { return v.is_number(); });
+  return value.is_array() && value.size() == count &&
+         std::ranges::all_of(value, [](const Json& v) { return v.is_number(); });
 }
 
 /// Members of extensions beyond 31 bits have been made fractions (gltf_json.cpp).
@@ -56,7 +57,8 @@ bool is(const Json& value, Type type) {
     case Type::kObject: return value.is_object();
     case Type::kArray: return value.is_array();
     case Type::kIndex: return value.is_number_unsigned() || is_large_integer(value);
-    case Type::kInt: return value.is_number_unsigned() && value.get<std::uint64_t>() <= 0x7fffffff;  // tinygltf keeps it as an int
+    // tinygltf keeps it as an int
+    case Type::kInt: return value.is_number_unsigned() && value.get<std::uint64_t>() <= 0x7fffffff;
     case Type::kNumber: return value.is_number();
     case Type::kStride:
       return value.is_number_unsigned() && value.get<std::uint64_t>() <= 252 &&
@@ -236,14 +238,16 @@ class Check {
     if (into == nullptr ? own : !into->is_array()) return;  // which is refused where it stands
     const std::size_t size = into == nullptr ? 0 : into->size();
     if (value.get<std::uint64_t>() >= size)
-      throw user_error("{}: {}: {} {} does not exist (the {} has {})", path_, place.text(), noun(table), value.get<std::uint64_t>(),
-                       own ? "animation" : "file", size);
+      throw user_error("{}: {}: {} {} does not exist (the {} has {})", path_, place.text(), noun(table),
+                       value.get<std::uint64_t>(), own ? "animation" : "file", size);
   }
 
   [[noreturn]] void fail(const Place& place, const Due& wanted, const char* missing = "") const {
-    if (wanted.legal.empty()) throw user_error("{}: {}: {}{} is due", path_, place.text(), missing, due(wanted.type));
+    if (wanted.legal.empty())
+      throw user_error("{}: {}: {}{} is due", path_, place.text(), missing, due(wanted.type));
     std::string legal;
-    for_each_word(wanted.legal, [&](std::string_view word) { legal += (legal.empty() ? "" : ", ") + std::string(word); });
+    for_each_word(wanted.legal,
+                  [&](std::string_view word) { legal += (legal.empty() ? "" : ", ") + std::string(word); });
     throw user_error("{}: {}: {}one of {} is due", path_, place.text(), missing, legal);
   }
 

@@ -25,7 +25,8 @@ std::string percent_decoded(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool room = text[i] == '%' && i + 2 < text.size();
-    const auto high = room ? hex_digit(text[i + 1]) : std::nullopt, low = room ? hex_digit(text[i + 2]) : std::nullopt;
+    const auto high = room ? hex_digit(text[i + 1]) : std::nullopt,
+               low = room ? hex_digit(text[i + 2]) : std::nullopt;
     if (high && low) {
       result += static_cast<char>(*high * 16 + *low);
       i += 2;
@@ -42,7 +43,8 @@ constexpr std::array<unsigned char, 256> base64_digits() {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::array<unsigned char, 256> table{};
   table.fill(kNoDigit);
-  for (std::size_t i = 0; i < kDigits.size(); ++i) table[static_cast<unsigned char>(kDigits[i])] = static_cast<unsigned char>(i);
+  for (std::size_t i = 0; i < kDigits.size(); ++i)
+    table[static_cast<unsigned char>(kDigits[i])] = static_cast<unsigned char>(i);
   return table;
 }
 
@@ -52,13 +54,15 @@ std::vector<std::byte> base64_decoded(std::string_view text, const std::string& 
   std::size_t padding = 0;
   while (padding < 2 && text.ends_with('=')) text.remove_suffix(1), ++padding;
   if (text.size() % 4 == 1 || (padding > 0 && (text.size() + padding) % 4 != 0))
-    throw user_error("{}: its data URI's base64 text has no valid length ({} digits, {} of padding)", place, text.size(), padding);
+    throw user_error("{}: its data URI's base64 text has no valid length ({} digits, {} of padding)", place,
+                     text.size(), padding);
   std::vector<std::byte> result;
   result.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t word = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const unsigned digit = kDigits[static_cast<unsigned char>(text[i])];
-    if (digit == kNoDigit) throw user_error("{}: its data URI's base64 text has a character that is not base64, at {}", place, i);
+    if (digit == kNoDigit)
+      throw user_error("{}: its data URI's base64 text has a character that is not base64, at {}", place, i);
     word = word << 6 | digit;
     if (i % 4 != 0) result.push_back(static_cast<std::byte>(word >> (6 - 2 * (i % 4)) & 0xff));
   }
@@ -67,7 +71,8 @@ std::vector<std::byte> base64_decoded(std::string_view text, const std::string& 
 
 std::vector<std::byte> data_of(std::string_view uri, const std::string& place) {
   const std::size_t comma = uri.find(',');
-  if (comma == std::string_view::npos) throw user_error("{}: its data URI has no comma before the data", place);
+  if (comma == std::string_view::npos)
+    throw user_error("{}: its data URI has no comma before the data", place);
   const std::string_view head = uri.substr(0, comma);
   std::string_view text = uri.substr(comma + 1);
   std::string plain;
@@ -80,13 +85,15 @@ std::vector<std::byte> data_of(std::string_view uri, const std::string& place) {
 /// "http:", "file:", "c:": letters, digits, plus, minus and dots before a colon. [RFC 3986 section 3.1]
 bool has_scheme(std::string_view uri) {
   const std::size_t colon = uri.find(':');
-  if (colon == std::string_view::npos || colon == 0 || std::isalpha(static_cast<unsigned char>(uri[0])) == 0) return false;
-  return std::ranges::all_of(uri.substr(0, colon),
-                             [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.'; });
+  if (colon == std::string_view::npos || colon == 0 || std::isalpha(static_cast<unsigned char>(uri[0])) == 0)
+    return false;
+  return std::ranges::all_of(uri.substr(0, colon), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '.';
+  });
 }
 
-/// Is it, links followed, neither in the folder of the scene file nor in the one that the scene file itself is a link into? What cannot be followed is not
-/// there to be read.
+/// Is it, links followed, neither in the folder of the scene file nor in the one that the scene file itself
+/// is a link into? What cannot be followed is not there to be read.
 bool follows_out(const std::filesystem::path& scene, const std::filesystem::path& file) {
   std::error_code lost;
   // Absolute first: of a relative path nothing of which exists, the canonical one stays relative.
@@ -99,7 +106,8 @@ bool follows_out(const std::filesystem::path& scene, const std::filesystem::path
     const std::filesystem::path inner = target.lexically_relative(folder);
     return !inner.empty() && *inner.begin() != "..";
   };
-  const std::filesystem::path beside = scene.has_parent_path() ? scene.parent_path() : std::filesystem::path(".");
+  const std::filesystem::path beside =
+      scene.has_parent_path() ? scene.parent_path() : std::filesystem::path(".");
   const std::filesystem::path named = canonical(beside);
   if (!lost && holds(named)) return false;
   const std::filesystem::path own = canonical(scene);
@@ -121,21 +129,27 @@ bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
 std::string uri_file(const std::string& scene, std::string_view uri, const std::string& place) {
   const std::string shown = printable(uri);
   if (uri.empty()) throw user_error("{}: its uri is empty", place);
-  if (has_scheme(uri)) throw user_error("{}: '{}': only data URIs and files beside the scene are read", place, shown);
+  if (has_scheme(uri))
+    throw user_error("{}: '{}': only data URIs and files beside the scene are read", place, shown);
   std::string name = percent_decoded(uri);
   std::ranges::replace(name, '\\', '/');  // as browsers read them, and exporters of another system write them
-  if (name.find('\0') != std::string::npos) throw user_error("{}: '{}': a name of a file has no zero byte", place, shown);
+  if (name.find('\0') != std::string::npos)
+    throw user_error("{}: '{}': a name of a file has no zero byte", place, shown);
   const std::filesystem::path relative = std::filesystem::path(name).lexically_normal();
-  if (relative.is_absolute()) throw user_error("{}: '{}': an absolute path; files lie beside the scene", place, shown);
+  if (relative.is_absolute())
+    throw user_error("{}: '{}': an absolute path; files lie beside the scene", place, shown);
   if (*relative.begin() == "..") throw user_error("{}: '{}': leads out of the scene's folder", place, shown);
   const std::filesystem::path file = std::filesystem::path(scene).parent_path() / relative;
-  if (follows_out(scene, file)) throw user_error("{}: '{}': a link that leads out of the scene's folder", place, shown);
+  if (follows_out(scene, file))
+    throw user_error("{}: '{}': a link that leads out of the scene's folder", place, shown);
   return file.string();
 }
 
-std::vector<std::byte> fetch_uri(const std::string& scene, std::string_view uri, const std::string& place, std::uint64_t max_bytes) {
+std::vector<std::byte> fetch_uri(const std::string& scene, std::string_view uri, const std::string& place,
+                                 std::uint64_t max_bytes) {
   if (is_data_uri(uri)) {
-    if (uri.size() / 4 * 3 > max_bytes) throw user_error("{}: its data URI is larger than {} bytes", place, max_bytes);
+    if (uri.size() / 4 * 3 > max_bytes)
+      throw user_error("{}: its data URI is larger than {} bytes", place, max_bytes);
     return data_of(uri, place);
   }
   try {

@@ -19,7 +19,8 @@ std::uint64_t GltfObject::integer(const char* name, std::uint64_t absent) const 
   if (!has(name)) return absent;
   const tinygltf::Value& member = value_.Get(name);
   const double number = member.IsNumber() ? member.GetNumberAsDouble() : -1;
-  if (!(number >= 0 && number < 9007199254740992.0) || number != std::floor(number)) fail(name, "a non-negative integer is due");
+  if (!(number >= 0 && number < 9007199254740992.0) || number != std::floor(number))
+    fail(name, "a non-negative integer is due");
   return static_cast<std::uint64_t>(number);
 }
 
@@ -68,6 +69,8 @@ std::string GltfObject::text(const char* name, const std::string& absent) const 
   return value_.Get(name).Get<std::string>();
 }
 
-GltfObject GltfObject::object(const char* name) const { return {path_, place_ + "." + name, value_.Get(name)}; }
+GltfObject GltfObject::object(const char* name) const {
+  return {path_, place_ + "." + name, value_.Get(name)};
+}
 
 }  // namespace quadrille::scenes

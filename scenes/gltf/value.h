@@ -10,8 +10,9 @@
 
 namespace quadrille::scenes {
 
-/// Reads an object of the file `path` at `place` ("materials[2].KHR_materials_ior"). Every function throws `UserError` naming the member when its value is of
-/// another type, not finite or out of range. A member that is absent has the default that is given.
+/// Reads an object of the file `path` at `place` ("materials[2].KHR_materials_ior"). Every function throws
+/// `UserError` naming the member when its value is of another type, not finite or out of range. A member that
+/// is absent has the default that is given.
 class GltfObject {
  public:
   GltfObject(const std::string& path, std::string place, const tinygltf::Value& value);

@@ -1,4 +1,5 @@
-/// Elements into vertex streams: which types glTF allows where, and which vertex format holds them without loss.
+/// Elements into vertex streams: which types glTF allows where, and which vertex format holds them without
+/// loss.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -31,7 +32,9 @@ T load(const std::byte* source) {
 }
 
 float integer_value(const std::byte* source, Component component, bool normalized) {
-  const auto unit = [&](double value, double largest) { return static_cast<float>(normalized ? std::max(value / largest, -1.0) : value); };
+  const auto unit = [&](double value, double largest) {
+    return static_cast<float>(normalized ? std::max(value / largest, -1.0) : value);
+  };
   switch (component) {
     case Component::kInt8: return unit(load<std::int8_t>(source), 127);
     case Component::kUint8: return unit(load<std::uint8_t>(source), 255);
@@ -43,7 +46,8 @@ float integer_value(const std::byte* source, Component component, bool normalize
   return 0;
 }
 
-/// Components that glTF, or KHR_mesh_quantization, allows for the semantic. [glTF2.0 #meshes-overview] [KHR_mesh_quantization]
+/// Components that glTF, or KHR_mesh_quantization, allows for the semantic. [glTF2.0 #meshes-overview]
+/// [KHR_mesh_quantization]
 bool allowed_type(const Elements& e, Semantic semantic) {
   const bool is_float = e.component == Component::kFloat;
   const bool small = e.component != Component::kUint32;
@@ -54,7 +58,8 @@ bool allowed_type(const Elements& e, Semantic semantic) {
     case Semantic::kTangent: return e.components == 4 && (is_float || (is_signed && e.normalized));
     case Semantic::kUv0:
     case Semantic::kUv1: return e.components == 2 && small;
-    case Semantic::kColor: return (e.components == 3 || e.components == 4) && (is_float || (small && !is_signed && e.normalized));
+    case Semantic::kColor:
+      return (e.components == 3 || e.components == 4) && (is_float || (small && !is_signed && e.normalized));
   }
   return false;
 }
@@ -75,7 +80,8 @@ Format native_format(const Elements& e, Semantic semantic) {
 }
 
 Format float_format(std::size_t components) {
-  constexpr std::array<Format, 4> kFormats{Format::kR32Float, Format::kR32G32Float, Format::kR32G32B32Float, Format::kR32G32B32A32Float};
+  constexpr std::array<Format, 4> kFormats{Format::kR32Float, Format::kR32G32Float, Format::kR32G32B32Float,
+                                           Format::kR32G32B32A32Float};
   return kFormats[components - 1];
 }
 
@@ -112,7 +118,8 @@ void require_finite(const GltfFile& file, const Elements& e, const std::string& 
 
 constexpr double kShortest = 1e-12, kLongest = 1e12;  // lengths whose squares the shader holds with ease
 
-/// Zeros in the place of what is no direction; lengths far from one become one. Returns how many are no direction.
+/// Zeros in the place of what is no direction; lengths far from one become one. Returns how many are no
+/// direction.
 std::uint32_t mend_directions(Elements& e) {
   const bool is_float = e.component == Component::kFloat;
   std::uint32_t lacking = 0;
@@ -145,8 +152,8 @@ float component_value(const Elements& elements, std::size_t element, std::size_t
 Array to_vertex_array(const GltfFile& file, Elements elements, Semantic semantic, const std::string& place,
                       std::uint32_t* without_direction) {
   if (!allowed_type(elements, semantic)) {
-    throw user_error("{}: {}: {} components of this type are not allowed for {}", file.path, place, elements.components,
-                     semantic_name(semantic));
+    throw user_error("{}: {}: {} components of this type are not allowed for {}", file.path, place,
+                     elements.components, semantic_name(semantic));
   }
   if (semantic == Semantic::kNormal || semantic == Semantic::kTangent) {
     const std::uint32_t lacking = mend_directions(elements);
@@ -156,10 +163,13 @@ Array to_vertex_array(const GltfFile& file, Elements elements, Semantic semantic
   const Format native = native_format(elements, semantic);
   if (native == Format::kUndefined)
     return {semantic_name(semantic), float_format(elements.components), elements.count, as_floats(elements)};
-  return {semantic_name(semantic), native, elements.count, elements.components == 3 ? padded(elements) : elements.data};
+  return {semantic_name(semantic), native, elements.count,
+          elements.components == 3 ? padded(elements) : elements.data};
 }
 
-std::uint64_t float_bytes(const Elements& elements) { return std::uint64_t{4} * elements.count * elements.components; }
+std::uint64_t float_bytes(const Elements& elements) {
+  return std::uint64_t{4} * elements.count * elements.components;
+}
 
 std::uint64_t vertex_array_bytes(const Elements& elements, Semantic semantic) {
   if (native_format(elements, semantic) == Format::kUndefined) return float_bytes(elements);
@@ -167,11 +177,12 @@ std::uint64_t vertex_array_bytes(const Elements& elements, Semantic semantic) {
   return std::uint64_t{component_bytes(elements.component)} * elements.count * components;
 }
 
-Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components, const std::string& place) {
+Array to_delta_array(const GltfFile& file, const Elements& elements, std::size_t components,
+                     const std::string& place) {
   const bool small = elements.component != Component::kUint32;
   if (elements.components != components || !small)
-    throw user_error("{}: {}: {} components of this type are not what a morph target adds here ({} are)", file.path, place,
-                     elements.components, components);
+    throw user_error("{}: {}: {} components of this type are not what a morph target adds here ({} are)",
+                     file.path, place, elements.components, components);
   require_finite(file, elements, place);
   return {"morph target", float_format(components), elements.count, as_floats(elements)};
 }

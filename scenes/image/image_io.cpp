@@ -19,7 +19,8 @@ namespace {
 
 constexpr const char* kModuleName = "libquadrille_images.so";
 constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{1} << 30;
-constexpr std::uint64_t kMaxDecodedBytes = std::uint64_t{12} * kMaxImagePixels;  // the largest picture with three floats a pixel
+// the largest picture with three floats a pixel
+constexpr std::uint64_t kMaxDecodedBytes = std::uint64_t{12} * kMaxImagePixels;
 
 struct Module {
   QuadrilleDecode decode = nullptr;
@@ -53,8 +54,10 @@ Module open_module() {
     }
     reasons += fmt::format(" {}", dlerror());
   }
-  throw user_error("{}: not found beside the program, in ../lib or in the build folder; image files cannot be read or written{}",
-                   kModuleName, reasons);
+  throw user_error(
+      "{}: not found beside the program, in ../lib or in the build folder; image files cannot be read or "
+      "written{}",
+      kModuleName, reasons);
 }
 
 const Module& module() {
@@ -76,7 +79,8 @@ QuadrilleImage decode(std::span<const std::byte> bytes, const std::string& name,
   return result;
 }
 
-void encode(const std::string& path, const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float) {
+void encode(const std::string& path, const void* pixels, std::uint32_t width, std::uint32_t height,
+            std::uint32_t channels, bool as_float) {
   QuadrilleImage result{};
   if (!module().encode(pixels, width, height, channels, as_float, &result))
     throw user_error("{}: cannot be encoded: {}", path, result.error);
@@ -101,7 +105,9 @@ Rgba8Image decode_any_image(std::span<const std::byte> bytes, const std::string&
   return {raw.width, raw.height, {pixels, pixels + raw.size}};
 }
 
-Rgba8Image load_image(const std::string& path) { return decode_image(traces::read_whole_file(path, kMaxImageFileBytes), path); }
+Rgba8Image load_image(const std::string& path) {
+  return decode_image(traces::read_whole_file(path, kMaxImageFileBytes), path);
+}
 
 FloatImage load_float_image(const std::string& path) {
   const QuadrilleImage raw = decode(traces::read_whole_file(path, kMaxImageFileBytes), path, true);
@@ -115,15 +121,16 @@ void save_png_by_module(const std::string& path, const Rgba8Image& image) {
 }
 
 void save_png(const std::string& path, const Rgba8Image& image) {
-  QUADRILLE_CHECK(image.pixels.size() == std::size_t{4} * image.width * image.height, "{}x{} with {} bytes", image.width, image.height,
-                  image.pixels.size());
-  if (const auto file = image.pixels.empty() ? std::nullopt : encode_plain_png(image)) traces::write_whole_file(path, *file);
+  QUADRILLE_CHECK(image.pixels.size() == std::size_t{4} * image.width * image.height, "{}x{} with {} bytes",
+                  image.width, image.height, image.pixels.size());
+  if (const auto file = image.pixels.empty() ? std::nullopt : encode_plain_png(image))
+    traces::write_whole_file(path, *file);
   else save_png_by_module(path, image);
 }
 
 void save_exr(const std::string& path, const FloatImage& image) {
-  QUADRILLE_CHECK(image.pixels.size() == std::size_t{image.channels} * image.width * image.height, "{}x{}x{} with {} samples", image.width,
-                  image.height, image.channels, image.pixels.size());
+  QUADRILLE_CHECK(image.pixels.size() == std::size_t{image.channels} * image.width * image.height,
+                  "{}x{}x{} with {} samples", image.width, image.height, image.channels, image.pixels.size());
   encode(path, image.pixels.data(), image.width, image.height, image.channels, true);
 }
 

@@ -49,7 +49,8 @@ void widen_to_rgba(const std::vector<std::uint8_t>& in, std::size_t channels, st
   }
 }
 
-/// While any thread decodes, standard error leads nowhere: libpng and others print lines of their own about damaged files, and our caller prints its own.
+/// While any thread decodes, standard error leads nowhere: libpng and others print lines of their own about
+/// damaged files, and our caller prints its own.
 class QuietErrors {
  public:
   QuietErrors() {
@@ -77,7 +78,8 @@ class QuietErrors {
 };
 
 bool read_bytes(OIIO::ImageInput& input, QuadrilleImage& result) {
-  const std::size_t channels = std::min(result.channels, 4U), pixels = std::size_t{result.width} * result.height;
+  const std::size_t channels = std::min(result.channels, 4U),
+                    pixels = std::size_t{result.width} * result.height;
   if (!allocate(result, 4 * pixels)) return false;
   std::vector<std::uint8_t> narrow(channels < 4 ? channels * pixels : 0);
   void* const to = channels < 4 ? narrow.data() : result.data;
@@ -93,13 +95,16 @@ bool read_bytes(OIIO::ImageInput& input, QuadrilleImage& result) {
 
 bool read_floats(OIIO::ImageInput& input, QuadrilleImage& result) {
   if (!allocate(result, sizeof(float) * result.width * result.height * result.channels)) return false;
-  return input.read_image(0, 0, 0, static_cast<int>(result.channels), OIIO::TypeDesc::FLOAT, result.data) || fail(result, input.geterror());
+  return input.read_image(0, 0, 0, static_cast<int>(result.channels), OIIO::TypeDesc::FLOAT, result.data) ||
+         fail(result, input.geterror());
 }
 
-/// Is it a still WebP image with alpha? OpenImageIO's reader multiplies the colours of such a one by its alpha, whatever it is asked for.
+/// Is it a still WebP image with alpha? OpenImageIO's reader multiplies the colours of such a one by its
+/// alpha, whatever it is asked for.
 bool is_webp_with_alpha(const void* bytes, std::size_t size, const char* format) {
   WebPBitstreamFeatures features;
-  return std::strcmp(format, "webp") == 0 && WebPGetFeatures(static_cast<const std::uint8_t*>(bytes), size, &features) == VP8_STATUS_OK &&
+  return std::strcmp(format, "webp") == 0 &&
+         WebPGetFeatures(static_cast<const std::uint8_t*>(bytes), size, &features) == VP8_STATUS_OK &&
          features.has_alpha != 0 && features.has_animation == 0;
 }
 
@@ -107,10 +112,13 @@ bool decode_webp(const void* bytes, std::size_t size, std::uint64_t max_bytes, Q
   const auto* data = static_cast<const std::uint8_t*>(bytes);
   int width = 0, height = 0;
   if (WebPGetInfo(data, size, &width, &height) == 0) return fail(result, "it is not a picture");
-  const std::uint64_t out_bytes = std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-  if (out_bytes > max_bytes) return fail(result, "its pixels take more than " + std::to_string(max_bytes) + " bytes");
+  const std::uint64_t out_bytes =
+      std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  if (out_bytes > max_bytes)
+    return fail(result, "its pixels take more than " + std::to_string(max_bytes) + " bytes");
   if (!allocate(result, out_bytes)) return false;
-  if (WebPDecodeRGBAInto(data, size, static_cast<std::uint8_t*>(result.data), out_bytes, 4 * width) == nullptr) {
+  if (WebPDecodeRGBAInto(data, size, static_cast<std::uint8_t*>(result.data), out_bytes, 4 * width) ==
+      nullptr) {
     std::free(result.data);
     result.data = nullptr;
     return fail(result, "it is damaged");
@@ -121,11 +129,11 @@ bool decode_webp(const void* bytes, std::size_t size, std::uint64_t max_bytes, Q
   return true;
 }
 
-/// OpenImageIO tries a file's first bytes before it opens it, and its DDS reader then does not go back: that one is named instead.
-/// One file is opened at a time: while OpenImageIO 2.4 reads a colour profile, it writes to a table that all threads share.
-/// Pixels are decoded outside of the lock.
-std::unique_ptr<OIIO::ImageInput> open_input(const std::string& format, const OIIO::ImageSpec& config, OIIO::Filesystem::IOProxy* proxy,
-                                             std::string& error) {
+/// OpenImageIO tries a file's first bytes before it opens it, and its DDS reader then does not go back: that
+/// one is named instead. One file is opened at a time: while OpenImageIO 2.4 reads a colour profile, it
+/// writes to a table that all threads share. Pixels are decoded outside of the lock.
+std::unique_ptr<OIIO::ImageInput> open_input(const std::string& format, const OIIO::ImageSpec& config,
+                                             OIIO::Filesystem::IOProxy* proxy, std::string& error) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   if (format != "dds") {
@@ -140,10 +148,12 @@ std::unique_ptr<OIIO::ImageInput> open_input(const std::string& format, const OI
   return nullptr;
 }
 
-bool decode(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint64_t max_bytes, QuadrilleImage& result) {
+bool decode(const void* bytes, std::size_t size, const char* format, bool as_float, std::uint64_t max_bytes,
+            QuadrilleImage& result) {
   configure();
   const QuietErrors quiet;
-  if (!as_float && is_webp_with_alpha(bytes, size, format)) return decode_webp(bytes, size, max_bytes, result);
+  if (!as_float && is_webp_with_alpha(bytes, size, format))
+    return decode_webp(bytes, size, max_bytes, result);
   OIIO::Filesystem::IOMemReader memory(const_cast<void*>(bytes), size);
   OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config;
@@ -153,12 +163,14 @@ bool decode(const void* bytes, std::size_t size, const char* format, bool as_flo
   const auto input = open_input(format, config, proxy, error);
   if (!input) return fail(result, error);
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) return fail(result, "it is not a picture");
-  const std::uint64_t pixels = static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
+  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
+    return fail(result, "it is not a picture");
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(spec.width) * static_cast<std::uint64_t>(spec.height);
   const std::uint64_t pixel_bytes = as_float ? sizeof(float) * static_cast<std::uint64_t>(spec.nchannels) : 4;
   if (pixels > max_bytes / pixel_bytes) {
-    return fail(result, "its " + std::to_string(pixels) + " pixels of " + std::to_string(spec.nchannels) + " channels take more than " +
-                            std::to_string(max_bytes) + " bytes");
+    return fail(result, "its " + std::to_string(pixels) + " pixels of " + std::to_string(spec.nchannels) +
+                            " channels take more than " + std::to_string(max_bytes) + " bytes");
   }
   result.width = static_cast<std::uint32_t>(spec.width);
   result.height = static_cast<std::uint32_t>(spec.height);
@@ -169,7 +181,8 @@ bool decode(const void* bytes, std::size_t size, const char* format, bool as_flo
 /// A picture's bytes are its own: OpenImageIO writes today's date into an .exr file that names none.
 constexpr const char* kNoDate = "1970:01:01 00:00:00";
 
-OIIO::ImageSpec output_spec(std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float) {
+OIIO::ImageSpec output_spec(std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+                            bool as_float) {
   OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels),
                        as_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   if (as_float && channels == 1) spec.channelnames = {"Z"};
@@ -184,7 +197,8 @@ OIIO::ImageSpec output_spec(std::uint32_t width, std::uint32_t height, std::uint
   return spec;
 }
 
-bool encode(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels, bool as_float, QuadrilleImage& result) {
+bool encode(const void* pixels, std::uint32_t width, std::uint32_t height, std::uint32_t channels,
+            bool as_float, QuadrilleImage& result) {
   configure();
   std::vector<unsigned char> file;
   OIIO::Filesystem::IOVecOutput memory(file);
@@ -192,7 +206,8 @@ bool encode(const void* pixels, std::uint32_t width, std::uint32_t height, std::
   const auto output = OIIO::ImageOutput::create(name, &memory);
   if (!output) return fail(result, OIIO::geterror());
   const OIIO::ImageSpec spec = output_spec(width, height, channels, as_float);
-  if (!output->open(name, spec) || !output->write_image(spec.format, pixels) || !output->close()) return fail(result, output->geterror());
+  if (!output->open(name, spec) || !output->write_image(spec.format, pixels) || !output->close())
+    return fail(result, output->geterror());
   if (!allocate(result, file.size())) return false;
   std::memcpy(result.data, file.data(), file.size());
   return true;
@@ -216,13 +231,17 @@ bool guarded(QuadrilleImage* result, const Call& call) {
 
 extern "C" {
 
-__attribute__((visibility("default"))) bool quadrille_images_decode(const void* bytes, std::size_t size, const char* format, bool as_float,
-                                                                    std::uint64_t max_bytes, QuadrilleImage* result) {
+__attribute__((visibility("default"))) bool quadrille_images_decode(const void* bytes, std::size_t size,
+                                                                    const char* format, bool as_float,
+                                                                    std::uint64_t max_bytes,
+                                                                    QuadrilleImage* result) {
   return guarded(result, [&] { return decode(bytes, size, format, as_float, max_bytes, *result); });
 }
 
-__attribute__((visibility("default"))) bool quadrille_images_encode(const void* pixels, std::uint32_t width, std::uint32_t height,
-                                                                    std::uint32_t channels, bool as_float, QuadrilleImage* result) {
+__attribute__((visibility("default"))) bool quadrille_images_encode(const void* pixels, std::uint32_t width,
+                                                                    std::uint32_t height,
+                                                                    std::uint32_t channels, bool as_float,
+                                                                    QuadrilleImage* result) {
   return guarded(result, [&] { return encode(pixels, width, height, channels, as_float, *result); });
 }
 

@@ -10,12 +10,15 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::size_t kEncodeSteps = 16384;  // fine enough that the nearest of the 255 thresholds is one comparison away
+// fine enough that the nearest of the 255 thresholds is one comparison away
+constexpr std::size_t kEncodeSteps = 16384;
 
 struct Tables {
   std::array<float, 256> srgb_decode{}, plain_decode{};
-  std::array<std::uint8_t, kEncodeSteps + 1> first_code{};  ///< a code that is at most right for the smallest value of the step
-  std::array<float, 257> threshold{};                       ///< linear values from threshold[c] on encode to at least c
+  /// a code that is at most right for the smallest value of the step
+  std::array<std::uint8_t, kEncodeSteps + 1> first_code{};
+  /// linear values from threshold[c] on encode to at least c
+  std::array<float, 257> threshold{};
 
   Tables() {
     for (std::size_t c = 0; c < 256; ++c) {
@@ -66,7 +69,8 @@ Taps taps(std::uint32_t target, std::uint32_t source_size, std::uint32_t target_
   if (source_size == 1) return {};
   if (source_size % 2 == 0) return {2 * target, {0.5F, 0.5F, 0}, 2};
   // Odd: texel t of n covers [t, t+1) * (2n+1)/n, that is a part of texel 2t, all of 2t+1 and a part of 2t+2.
-  const auto n = static_cast<float>(target_size), t = static_cast<float>(target), size = static_cast<float>(source_size);
+  const auto n = static_cast<float>(target_size), t = static_cast<float>(target),
+             size = static_cast<float>(source_size);
   return {2 * target, {(n - t) / size, n / size, (t + 1) / size}, 3};
 }
 
@@ -97,7 +101,8 @@ void accumulate(std::vector<float>& sum, const float* row, float weight) {
 }
 
 /// Filters one row of source texels (already summed over y) into one row of target texels.
-void shrink_row(const std::vector<float>& row, std::uint32_t source_width, std::uint32_t target_width, float* out) {
+void shrink_row(const std::vector<float>& row, std::uint32_t source_width, std::uint32_t target_width,
+                float* out) {
   if (source_width % 2 == 0) {
     for (std::size_t i = 0; i < std::size_t{4} * target_width; i += 4) {
       for (std::size_t c = 0; c < 4; ++c) out[i + c] = 0.5F * (row[2 * i + c] + row[2 * i + 4 + c]);
@@ -108,7 +113,8 @@ void shrink_row(const std::vector<float>& row, std::uint32_t source_width, std::
     const Taps t = taps(x, source_width, target_width);
     for (std::size_t c = 0; c < 4; ++c) {
       float value = 0;
-      for (std::uint32_t k = 0; k < t.count; ++k) value += t.weight[k] * row[std::size_t{4} * (t.first + k) + c];
+      for (std::uint32_t k = 0; k < t.count; ++k)
+        value += t.weight[k] * row[std::size_t{4} * (t.first + k) + c];
       out[std::size_t{4} * x + c] = value;
     }
   }
@@ -139,14 +145,19 @@ FloatLevel shrink_image(const Rgba8Image& image, bool srgb) {
 }
 
 FloatLevel shrink_level(const FloatLevel& level) {
-  return shrink(level.width, level.height, [&](std::uint32_t y) { return &level.texels[std::size_t{4} * level.width * y]; });
+  return shrink(level.width, level.height,
+                [&](std::uint32_t y) { return &level.texels[std::size_t{4} * level.width * y]; });
 }
 
 }  // namespace
 
-double srgb_to_linear(double encoded) { return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4); }
+double srgb_to_linear(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
 
-double linear_to_srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
+double linear_to_srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
 
 std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));

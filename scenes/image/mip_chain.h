@@ -1,8 +1,9 @@
 /// Mip chains, filtered in linear light.
 ///
-/// Each level is filtered from the one before, kept in float, so that rounding to 8 bits happens once a level and never accumulates. A texel of level i+1
-/// covers exactly w(i)/w(i+1) texels of level i: two where the width is even, and for odd widths three with polyphase weights, so that a constant stays
-/// constant and the mean is kept. [VK1.3 #textures-image-level-size: sizes round down]
+/// Each level is filtered from the one before, kept in float, so that rounding to 8 bits happens once a level
+/// and never accumulates. A texel of level i+1 covers exactly w(i)/w(i+1) texels of level i: two where the
+/// width is even, and for odd widths three with polyphase weights, so that a constant stays constant and the
+/// mean is kept. [VK1.3 #textures-image-level-size: sizes round down]
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,8 @@ namespace quadrille::scenes {
 
 /// Levels of a full chain: down to 1x1.
 [[nodiscard]] std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height);
-/// All levels of `image`, finest first, tightly packed RGBA8. With `srgb`, r, g and b are decoded before and encoded after filtering; alpha is linear always.
+/// All levels of `image`, finest first, tightly packed RGBA8. With `srgb`, r, g and b are decoded before and
+/// encoded after filtering; alpha is linear always.
 [[nodiscard]] std::vector<std::byte> build_mip_chain(const Rgba8Image& image, bool srgb);
 /// The same, level by level; only one is held at a time.
 void visit_mip_chain(const Rgba8Image& image, bool srgb, const traces::LevelSink& sink);

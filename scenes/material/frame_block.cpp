@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kMaxLights = 256;
 constexpr std::size_t kMaxUnrolledLights = 4;
-constexpr float kSkyBesideLights = 0.35F;  // the sky's share where the file brings its own lights [G: shadows stay readable]
+// the sky's share where the file brings its own lights [G: shadows stay readable]
+constexpr float kSkyBesideLights = 0.35F;
 
 /// `Light` of interface.glsl, std140.
 struct LightBlock {
@@ -46,7 +47,8 @@ LightBlock light_block(const Light& light, const View& view) {
   block.color = glm::vec4(light.color * std::numbers::inv_pi_v<float>, 0);
   if (light.kind == Light::Kind::kSpot) {
     // Linear in the cosine between the two cones. [KHR_lights_punctual, inner and outer cone angles]
-    const double outer = std::cos(static_cast<double>(light.outer_cone)), inner = std::cos(static_cast<double>(light.inner_cone));
+    const double outer = std::cos(static_cast<double>(light.outer_cone)),
+                 inner = std::cos(static_cast<double>(light.inner_cone));
     const double scale = 1 / std::max(1e-3, inner - outer);
     block.cone = glm::vec4(static_cast<float>(scale), static_cast<float>(-outer * scale), 0, 0);
   }
@@ -63,16 +65,19 @@ std::vector<Light> frame_lights(const PlacedScene& scene, const View& view, floa
   std::vector<Light> lights = scene.at.lights;
   if (lights.empty()) lights.push_back(key_light(view));
   if (scene.at.lights.size() > kMaxLights)
-    throw user_error("{}: {} lights; at most {} are supported", scene.data.name, scene.at.lights.size(), kMaxLights);
+    throw user_error("{}: {} lights; at most {} are supported", scene.data.name, scene.at.lights.size(),
+                     kMaxLights);
   for (Light& light : lights) light.color = exposed(light.color, exposure);
   std::ranges::stable_sort(lights, {}, &Light::kind);
   return lights;
 }
 
-std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights, float exposure) {
+std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights,
+                                   float exposure) {
   const float share = scene.lights.empty() ? exposure : kSkyBesideLights;
   const FrameHead head{view.view_projection, glm::vec4(view.eye, 0), glm::vec4(view.toward_viewer, 0),
-                       glm::vec4(scene.environment.sky * share, 0), glm::vec4(scene.environment.ground * share, 0)};
+                       glm::vec4(scene.environment.sky * share, 0),
+                       glm::vec4(scene.environment.ground * share, 0)};
   std::vector<LightBlock> blocks;
   blocks.reserve(lights.size());
   for (const Light& light : lights) blocks.push_back(light_block(light, view));
@@ -84,8 +89,10 @@ std::vector<std::byte> frame_block(const SceneData& scene, const View& view, con
 
 std::vector<std::string> frame_defines(const View& view, const std::vector<Light>& lights) {
   std::vector<std::string> defines{
-      fmt::format("LIGHTS {}", lights.size()), fmt::format("DIRECTIONAL_LIGHTS {}", count(lights, Light::Kind::kDirectional)),
-      fmt::format("POINT_LIGHTS {}", count(lights, Light::Kind::kPoint)), fmt::format("SPOT_LIGHTS {}", count(lights, Light::Kind::kSpot)),
+      fmt::format("LIGHTS {}", lights.size()),
+      fmt::format("DIRECTIONAL_LIGHTS {}", count(lights, Light::Kind::kDirectional)),
+      fmt::format("POINT_LIGHTS {}", count(lights, Light::Kind::kPoint)),
+      fmt::format("SPOT_LIGHTS {}", count(lights, Light::Kind::kSpot)),
       lights.size() <= kMaxUnrolledLights ? "LOOP_HINT [[unroll]]" : "LOOP_HINT"};
   if (view.orthographic) defines.emplace_back("ORTHOGRAPHIC");
   return defines;

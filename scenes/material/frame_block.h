@@ -1,4 +1,5 @@
-/// The uniform block that all draws of a frame share: camera, sky and lights (`Frame` in scenes/material/shaders/interface.glsl).
+/// The uniform block that all draws of a frame share: camera, sky and lights (`Frame` in
+/// scenes/material/shaders/interface.glsl).
 #pragma once
 
 #include <cstddef>
@@ -10,12 +11,12 @@
 
 namespace quadrille::scenes {
 
-/// The lights of the scene in the shader's order (directional, point, spot), or the default key light when there are none, times the exposure
-/// (scenes/view/exposure.h). At most 256. Throws `UserError` beyond that.
+/// The lights of the scene in the shader's order (directional, point, spot), or the default key light when
+/// there are none, times the exposure (scenes/view/exposure.h). At most 256. Throws `UserError` beyond that.
 [[nodiscard]] std::vector<Light> frame_lights(const PlacedScene& scene, const View& view, float exposure);
 /// The block's bytes, std140.
-[[nodiscard]] std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights,
-                                                 float exposure);
+[[nodiscard]] std::vector<std::byte> frame_block(const SceneData& scene, const View& view,
+                                                 const std::vector<Light>& lights, float exposure);
 /// What the fragment shader is compiled for: numbers of lights by kind, loop unrolling, projection.
 [[nodiscard]] std::vector<std::string> frame_defines(const View& view, const std::vector<Light>& lights);
 

@@ -34,7 +34,8 @@ std::string first_error(const char* log, std::string_view name) {
   if (const auto at = text.find(mark); at != std::string_view::npos) text.remove_prefix(at + mark.size());
   text = text.substr(0, text.find('\n'));
   if (text.substr(0, name.size()) == name && !text.empty()) return std::string(text);
-  return std::string(name) + ": " + std::string(text.empty() ? std::string_view("glslang refuses it without a reason") : text);
+  return std::string(name) + ": " +
+         std::string(text.empty() ? std::string_view("glslang refuses it without a reason") : text);
 }
 
 std::string preamble_of(std::span<const std::string> defines) {
@@ -45,8 +46,8 @@ std::string preamble_of(std::span<const std::string> defines) {
 
 }  // namespace
 
-std::vector<std::uint32_t> compile_glsl(std::string_view source, traces::ShaderStage stage, std::string_view name,
-                                        std::span<const std::string> defines) {
+std::vector<std::uint32_t> compile_glsl(std::string_view source, traces::ShaderStage stage,
+                                        std::string_view name, std::span<const std::string> defines) {
   for (const std::string& define : defines)
     if (define.empty() || define.find('\n') != std::string::npos)
       throw user_error("{}: a define is one line \"NAME\" or \"NAME VALUE\"", name);
@@ -65,7 +66,8 @@ std::vector<std::uint32_t> compile_glsl(std::string_view source, traces::ShaderS
   shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_1);
   shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_3);
   const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-  if (!shader.parse(GetDefaultResources(), 450, false, messages)) throw user_error("{}", first_error(shader.getInfoLog(), name));
+  if (!shader.parse(GetDefaultResources(), 450, false, messages))
+    throw user_error("{}", first_error(shader.getInfoLog(), name));
   glslang::TProgram program;
   program.addShader(&shader);
   if (!program.link(messages)) throw user_error("{}", first_error(program.getInfoLog(), name));

@@ -13,21 +13,26 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr std::array<const char*, kTextureSlots> kSlotNames{
-    "BASE_COLOR", "METALLIC_ROUGHNESS",  "NORMAL",           "OCCLUSION",   "EMISSIVE",        "SPECULAR",     "SPECULAR_COLOR",
-    "CLEARCOAT",  "CLEARCOAT_ROUGHNESS", "CLEARCOAT_NORMAL", "SHEEN_COLOR", "SHEEN_ROUGHNESS", "TRANSMISSION", "THICKNESS"};
-constexpr std::array<const char*, kSemantics> kAttributeDefines{"", "HAS_NORMAL", "HAS_TANGENT", "HAS_UV0", "HAS_UV1", "HAS_COLOR"};
+    "BASE_COLOR",       "METALLIC_ROUGHNESS", "NORMAL",
+    "OCCLUSION",        "EMISSIVE",           "SPECULAR",
+    "SPECULAR_COLOR",   "CLEARCOAT",          "CLEARCOAT_ROUGHNESS",
+    "CLEARCOAT_NORMAL", "SHEEN_COLOR",        "SHEEN_ROUGHNESS",
+    "TRANSMISSION",     "THICKNESS"};
+constexpr std::array<const char*, kSemantics> kAttributeDefines{"",        "HAS_NORMAL", "HAS_TANGENT",
+                                                                "HAS_UV0", "HAS_UV1",    "HAS_COLOR"};
 
 constexpr std::size_t at(Semantic semantic) { return static_cast<std::size_t>(semantic); }
 constexpr std::size_t at(TextureSlot slot) { return static_cast<std::size_t>(slot); }
 
 bool emits(const Material& m) { return m.emissive != glm::vec3(0); }
 
-/// Is the occlusion in the red channel of the very texture that holds metallic and roughness, read at the same place?
+/// Is the occlusion in the red channel of the very texture that holds metallic and roughness, read at the
+/// same place?
 bool shares_occlusion(const Material& m) {
   const TextureUse& a = m.texture(TextureSlot::kMetallicRoughness);
   const TextureUse& b = m.texture(TextureSlot::kOcclusion);
-  return a.image >= 0 && a.image == b.image && a.sampler == b.sampler && a.uv_set == b.uv_set && a.transformed == b.transformed &&
-         a.u_row == b.u_row && a.v_row == b.v_row;
+  return a.image >= 0 && a.image == b.image && a.sampler == b.sampler && a.uv_set == b.uv_set &&
+         a.transformed == b.transformed && a.u_row == b.u_row && a.v_row == b.v_row;
 }
 
 /// Does the layer that the texture belongs to exist?
@@ -64,7 +69,8 @@ bool wants_texture(const Material& m, std::size_t slot, ShaderSet set) {
   return slot != at(TextureSlot::kOcclusion) || !shares_occlusion(m);
 }
 
-/// Decides which textures are sampled, and by that which texture coordinates are needed. A texture whose coordinates the primitive lacks is left out.
+/// Decides which textures are sampled, and by that which texture coordinates are needed. A texture whose
+/// coordinates the primitive lacks is left out.
 void choose_textures(Variant& v, const Material& m, const Primitive& p, ShaderSet set) {
   for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
     const TextureUse& use = m.textures[slot];
@@ -72,9 +78,11 @@ void choose_textures(Variant& v, const Material& m, const Primitive& p, ShaderSe
     if (use.image < 0 || p.attributes[uv] < 0 || !wants_texture(m, slot, set)) continue;
     v.textures[slot] = v.attributes[uv] = true;
     const std::string name = fmt::format("v_uv{}", use.uv_set);
-    v.defines.push_back(
-        fmt::format("{}_UV {}", kSlotNames[slot],
-                    use.transformed ? fmt::format("transform{}_uv({}, {})", slot < kBaseTextureSlots ? "" : "_layer", slot, name) : name));
+    v.defines.push_back(fmt::format(
+        "{}_UV {}", kSlotNames[slot],
+        use.transformed
+            ? fmt::format("transform{}_uv({}, {})", slot < kBaseTextureSlots ? "" : "_layer", slot, name)
+            : name));
   }
 }
 
@@ -89,7 +97,8 @@ void choose_attributes(Variant& v, const Material& m, const Primitive& p, Shader
     use(Semantic::kNormal);
   }
   // Tangents without normals mean nothing. [glTF2.0 #meshes-overview]
-  const bool normal_map = v.textures[at(TextureSlot::kNormal)] || v.textures[at(TextureSlot::kClearcoatNormal)];
+  const bool normal_map =
+      v.textures[at(TextureSlot::kNormal)] || v.textures[at(TextureSlot::kClearcoatNormal)];
   const bool tangents = v.attributes[at(Semantic::kNormal)] && (set == ShaderSet::kUser || normal_map);
   if (tangents) use(Semantic::kTangent);
   if (set == ShaderSet::kUser) {
@@ -117,7 +126,8 @@ void choose_modes(Variant& v, const Material& m, ShaderSet set) {
   choose_layers(v, m.layers);
   if (m.double_sided) v.defines.emplace_back("DOUBLE_SIDED");
   if (emits(m)) v.defines.emplace_back("EMISSIVE");
-  if (v.textures[at(TextureSlot::kMetallicRoughness)] && !v.textures[at(TextureSlot::kOcclusion)] && shares_occlusion(m)) {
+  if (v.textures[at(TextureSlot::kMetallicRoughness)] && !v.textures[at(TextureSlot::kOcclusion)] &&
+      shares_occlusion(m)) {
     v.defines.emplace_back("OCCLUSION_IN_METALLIC_ROUGHNESS");
   }
 }
@@ -143,7 +153,8 @@ std::string_view material_shader_name(traces::ShaderStage stage) {
 
 std::string material_shader_glsl(traces::ShaderStage stage) {
   const std::string interface(kInterfaceGlsl);
-  if (stage == traces::ShaderStage::kVertex) return interface + std::string(kPoseGlsl) + std::string(kMaterialVert);
+  if (stage == traces::ShaderStage::kVertex)
+    return interface + std::string(kPoseGlsl) + std::string(kMaterialVert);
   return interface + std::string(kMaterialGlsl) + std::string(kLayersGlsl) + std::string(kMaterialFrag);
 }
 
@@ -155,8 +166,9 @@ std::vector<std::string> material_shader_defines(traces::ShaderStage stage, cons
     return defines;
   }
   std::vector<std::string> defines{frame_defines.front()};
-  std::ranges::copy_if(variant.defines, std::back_inserter(defines),
-                       [](const std::string& define) { return define.starts_with("HAS_") || define == "NEEDS_POSITION"; });
+  std::ranges::copy_if(variant.defines, std::back_inserter(defines), [](const std::string& define) {
+    return define.starts_with("HAS_") || define == "NEEDS_POSITION";
+  });
   if (variant.instanced) defines.emplace_back("INSTANCED");
   defines.insert(defines.end(), variant.pose_defines.begin(), variant.pose_defines.end());
   return defines;

@@ -1,7 +1,7 @@
 /// One shader source for all materials, compiled once for each set of features that occurs.
 ///
-/// A variant is decided by what the material asks for and what the primitive has. It is spelled as a list of preprocessor defines, which is also its
-/// identity: materials with the same defines share their shaders.
+/// A variant is decided by what the material asks for and what the primitive has. It is spelled as a list of
+/// preprocessor defines, which is also its identity: materials with the same defines share their shaders.
 #pragma once
 
 #include <array>
@@ -19,8 +19,10 @@ struct Variant {
   std::array<bool, kSemantics> attributes{};   ///< vertex streams that the shaders read
   std::array<bool, kTextureSlots> textures{};  ///< texture slots that the fragment shader samples
   std::vector<std::string> defines;            ///< of both stages
-  bool instanced = false;                      ///< the vertex shader takes its matrices from streams that advance by instance
-  std::vector<std::string> pose_defines;       ///< of the materials' vertex shader (scenes/record/pose_streams.h)
+  /// the vertex shader takes its matrices from streams that advance by instance
+  bool instanced = false;
+  /// of the materials' vertex shader (scenes/record/pose_streams.h)
+  std::vector<std::string> pose_defines;
   friend bool operator==(const Variant&, const Variant&) = default;
 };
 
@@ -34,9 +36,11 @@ enum class ShaderSet : std::uint8_t { kMaterial, kVisibility, kUser };
 [[nodiscard]] std::string_view material_shader_name(traces::ShaderStage stage);
 /// Its GLSL, the same for all variants.
 [[nodiscard]] std::string material_shader_glsl(traces::ShaderStage stage);
-/// The defines that make a variant of it, in order. The vertex shader looks at streams only, and of the frame (`frame_defines` of scenes/material/frame_block.h) at the
-/// size of the array of lights, so that it is shared among more materials.
-[[nodiscard]] std::vector<std::string> material_shader_defines(traces::ShaderStage stage, const Variant& variant,
+/// The defines that make a variant of it, in order. The vertex shader looks at streams only, and of the frame
+/// (`frame_defines` of scenes/material/frame_block.h) at the size of the array of lights, so that it is
+/// shared among more materials.
+[[nodiscard]] std::vector<std::string> material_shader_defines(traces::ShaderStage stage,
+                                                               const Variant& variant,
                                                                const std::vector<std::string>& frame_defines);
 
 }  // namespace quadrille::scenes

@@ -20,7 +20,8 @@ namespace {
 constexpr std::uint64_t kMaxShaderBytes = 1 << 24;
 
 std::vector<std::uint32_t> spirv_words(const std::vector<std::byte>& bytes, const std::string& path) {
-  if (bytes.size() < 20 || bytes.size() % 4 != 0) throw user_error("{}: not SPIR-V ({} bytes)", path, bytes.size());
+  if (bytes.size() < 20 || bytes.size() % 4 != 0)
+    throw user_error("{}: not SPIR-V ({} bytes)", path, bytes.size());
   std::vector<std::uint32_t> words(bytes.size() / 4);
   std::memcpy(words.data(), bytes.data(), bytes.size());
   if (words[0] != 0x07230203) throw user_error("{}: not SPIR-V (its first word is {:#010x})", path, words[0]);
@@ -41,20 +42,26 @@ ShaderLibrary::Source ShaderLibrary::read_source(traces::ShaderStage stage, cons
   return {path, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), {}};
 }
 
-ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines, std::vector<traces::Shader>& shaders)
+ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines,
+                             std::vector<traces::Shader>& shaders)
     : leave_out_(options.leave_out), frame_defines_(std::move(frame_defines)), shaders_(shaders) {
   const auto source = [](traces::ShaderStage stage, const std::string& path) {
-    return path.empty() ? Source{std::string(material_shader_name(stage)), {}, {}, true} : read_source(stage, path);
+    return path.empty() ? Source{std::string(material_shader_name(stage)), {}, {}, true}
+                        : read_source(stage, path);
   };
-  const bool user = !options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility);
+  const bool user =
+      !options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility);
   set_ = user ? ShaderSet::kUser : options.visibility ? ShaderSet::kVisibility : ShaderSet::kMaterial;
   vertex_ = source(traces::ShaderStage::kVertex, options.vertex_shader);
   if (options.visibility)
-    fragment_ = {"visibility.frag", std::string(kInterfaceGlsl) + std::string(kMaterialGlsl) + std::string(kVisibilityFrag), {}};
+    fragment_ = {"visibility.frag",
+                 std::string(kInterfaceGlsl) + std::string(kMaterialGlsl) + std::string(kVisibilityFrag),
+                 {}};
   else fragment_ = source(traces::ShaderStage::kFragment, options.fragment_shader);
 }
 
-std::vector<std::string> ShaderLibrary::defines(traces::ShaderStage stage, const Source& source, const Variant& variant) const {
+std::vector<std::string> ShaderLibrary::defines(traces::ShaderStage stage, const Source& source,
+                                                const Variant& variant) const {
   if (source.material) return material_shader_defines(stage, variant, frame_defines_);
   std::vector<std::string> all = frame_defines_;
   all.insert(all.end(), variant.defines.begin(), variant.defines.end());
@@ -62,7 +69,8 @@ std::vector<std::string> ShaderLibrary::defines(traces::ShaderStage stage, const
   return all;
 }
 
-std::vector<std::uint32_t> ShaderLibrary::spirv(traces::ShaderStage stage, const Source& source, const std::vector<std::string>& defines) {
+std::vector<std::uint32_t> ShaderLibrary::spirv(traces::ShaderStage stage, const Source& source,
+                                                const std::vector<std::string>& defines) {
   if (!source.spirv.empty()) return source.spirv;
   static const ShaderPack pack(quadrille_shader_pack);
   if (source.material && leave_out_) {
@@ -70,7 +78,8 @@ std::vector<std::uint32_t> ShaderLibrary::spirv(traces::ShaderStage stage, const
     if (!ready.empty()) return {ready.begin(), ready.end()};
   }
   ++compiled_;
-  return compile_glsl(source.material ? material_shader_glsl(stage) : source.glsl, stage, source.name, defines);
+  return compile_glsl(source.material ? material_shader_glsl(stage) : source.glsl, stage, source.name,
+                      defines);
 }
 
 traces::Index ShaderLibrary::shader(traces::ShaderStage stage, const Variant& variant) {

@@ -13,17 +13,20 @@ constexpr std::size_t kEntryWords = 4;
 }  // namespace
 
 std::string shader_key(traces::ShaderStage stage, const std::vector<std::string>& defines) {
-  return fmt::format("{}:{}", stage == traces::ShaderStage::kVertex ? "vert" : "frag", fmt::join(defines, ";"));
+  return fmt::format("{}:{}", stage == traces::ShaderStage::kVertex ? "vert" : "frag",
+                     fmt::join(defines, ";"));
 }
 
-std::vector<std::uint32_t> write_shader_pack(const std::map<std::string, std::vector<std::uint32_t>>& shaders) {
+std::vector<std::uint32_t> write_shader_pack(
+    const std::map<std::string, std::vector<std::uint32_t>>& shaders) {
   std::string keys;
   for (const auto& [key, words] : shaders) keys += key;
   const std::size_t first_key = 1 + kEntryWords * shaders.size();
   std::vector<std::uint32_t> pack{static_cast<std::uint32_t>(shaders.size())};
   std::size_t key_byte = 4 * first_key, word = first_key + (keys.size() + 3) / 4;
   for (const auto& [key, words] : shaders) {
-    for (const std::size_t value : {key_byte, key.size(), word, words.size()}) pack.push_back(static_cast<std::uint32_t>(value));
+    for (const std::size_t value : {key_byte, key.size(), word, words.size()})
+      pack.push_back(static_cast<std::uint32_t>(value));
     key_byte += key.size();
     word += words.size();
   }

@@ -1,8 +1,8 @@
-/// Variants of the materials' shaders that were compiled with the program, so that a scene which uses no other needs no GLSL compiler: preparing that one costs
-/// more than many a small frame.
+/// Variants of the materials' shaders that were compiled with the program, so that a scene which uses no
+/// other needs no GLSL compiler: preparing that one costs more than many a small frame.
 ///
-/// The pack is one array of 32-bit words, found by key: the number of shaders n; n times key's first byte, key's bytes, first word, words, sorted by key; the
-/// keys' bytes (from a word of its own); the shaders.
+/// The pack is one array of 32-bit words, found by key: the number of shaders n; n times key's first byte,
+/// key's bytes, first word, words, sorted by key; the keys' bytes (from a word of its own); the shaders.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ namespace quadrille::scenes {
 /// What a variant of a stage is found by.
 [[nodiscard]] std::string shader_key(traces::ShaderStage stage, const std::vector<std::string>& defines);
 
-[[nodiscard]] std::vector<std::uint32_t> write_shader_pack(const std::map<std::string, std::vector<std::uint32_t>>& shaders);
+[[nodiscard]] std::vector<std::uint32_t> write_shader_pack(
+    const std::map<std::string, std::vector<std::uint32_t>>& shaders);
 
 class ShaderPack {
  public:

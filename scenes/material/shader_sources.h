@@ -5,6 +5,7 @@
 
 namespace quadrille::scenes {
 
-extern const std::string_view kInterfaceGlsl, kPoseGlsl, kMaterialGlsl, kLayersGlsl, kMaterialVert, kMaterialFrag, kVisibilityFrag;
+extern const std::string_view kInterfaceGlsl, kPoseGlsl, kMaterialGlsl, kLayersGlsl, kMaterialVert,
+    kMaterialFrag, kVisibilityFrag;
 
 }  // namespace quadrille::scenes

@@ -32,7 +32,8 @@ std::set<std::uint32_t> mentioned_bindings(std::span<const std::uint32_t> spirv,
     }
     // A literal that equals an id only makes a binding that is not read look as if it were.
     for (const std::uint32_t id : in_functions ? operands : std::span<const std::uint32_t>()) {
-      if (const auto found = places.find(id); found != places.end() && found->second.set == set) mentioned.insert(found->second.binding);
+      if (const auto found = places.find(id); found != places.end() && found->second.set == set)
+        mentioned.insert(found->second.binding);
     }
     at += words;
   }

@@ -14,7 +14,8 @@ namespace {
 // [SPV #instructions, #Execution_Model]
 constexpr std::uint32_t kEntryPoint = 15;
 constexpr std::size_t kHeaderWords = 5;
-constexpr std::size_t kNameWord = 3;  ///< of the instruction: after its first word, the stage and the function
+/// of the instruction: after its first word, the stage and the function
+constexpr std::size_t kNameWord = 3;
 
 struct Entry {
   std::size_t at = 0;
@@ -40,14 +41,16 @@ std::vector<Entry> entry_points(std::span<const std::uint32_t> spirv) {
 }
 
 std::string_view stage_name(std::uint32_t model) {
-  constexpr std::string_view kNames[] = {"vertex", "tessellation control", "tessellation evaluation", "geometry", "fragment", "compute"};
+  constexpr std::string_view kNames[] = {
+      "vertex", "tessellation control", "tessellation evaluation", "geometry", "fragment", "compute"};
   return model < std::size(kNames) ? kNames[model] : "other";
 }
 
 std::string list(const std::vector<Entry>& entries) {
   std::vector<std::string> names;
   names.reserve(entries.size());
-  for (const Entry& entry : entries) names.push_back(fmt::format("'{}' ({})", entry.name, stage_name(entry.model)));
+  for (const Entry& entry : entries)
+    names.push_back(fmt::format("'{}' ({})", entry.name, stage_name(entry.model)));
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -62,7 +65,8 @@ void rename_to_main(std::vector<std::uint32_t>& spirv, const Entry& entry) {
 
 }  // namespace
 
-void call_entry_point_main(std::vector<std::uint32_t>& spirv, traces::ShaderStage stage, const std::string& path, std::string& note) {
+void call_entry_point_main(std::vector<std::uint32_t>& spirv, traces::ShaderStage stage,
+                           const std::string& path, std::string& note) {
   const std::uint32_t wanted = stage == traces::ShaderStage::kVertex ? 0 : 4;
   const std::vector<Entry> all = entry_points(spirv);
   std::vector<Entry> of_stage;
@@ -72,12 +76,15 @@ void call_entry_point_main(std::vector<std::uint32_t>& spirv, traces::ShaderStag
     of_stage.push_back(entry);
   }
   if (of_stage.empty() && !all.empty())
-    throw user_error("{}: no entry point of the {} stage; the module has {}", path, stage_name(wanted), list(all));
+    throw user_error("{}: no entry point of the {} stage; the module has {}", path, stage_name(wanted),
+                     list(all));
   if (of_stage.size() > 1)
-    throw user_error("{}: several entry points of the {} stage and none is called main: {}", path, stage_name(wanted), list(of_stage));
+    throw user_error("{}: several entry points of the {} stage and none is called main: {}", path,
+                     stage_name(wanted), list(of_stage));
   if (of_stage.empty()) return;
-  note = one_line(fmt::format("{}: no entry point is called main; '{}', the only one of the {} stage, is used", path, of_stage[0].name,
-                              stage_name(wanted)));
+  note =
+      one_line(fmt::format("{}: no entry point is called main; '{}', the only one of the {} stage, is used",
+                           path, of_stage[0].name, stage_name(wanted)));
   rename_to_main(spirv, of_stage[0]);
 }
 

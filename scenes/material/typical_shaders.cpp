@@ -12,7 +12,8 @@
 namespace quadrille::scenes {
 namespace {
 
-/// The textures of a material, as bits of its slots. Occlusion, where there is any, is also tried in the texture of metallic and roughness.
+/// The textures of a material, as bits of its slots. Occlusion, where there is any, is also tried in the
+/// texture of metallic and roughness.
 constexpr unsigned kBase = 1, kMetal = 2, kNormal = 4, kOcclusion = 8, kEmissive = 16;
 constexpr std::array kTextureSets{kBase,
                                   kMetal,
@@ -33,12 +34,14 @@ class Collector {
   Collector(const View& view, Light::Kind light) : frame_defines_(frame_defines(view, {one_light(light)})) {}
 
   /// All sides and alpha modes of a material with these textures, on a mesh with these attributes.
-  void add(unsigned textures, bool shared_occlusion, bool emissive, bool unlit, const std::vector<Semantic>& attributes) {
+  void add(unsigned textures, bool shared_occlusion, bool emissive, bool unlit,
+           const std::vector<Semantic>& attributes) {
     Material m;
     for (std::size_t slot = 0; slot < kBaseTextureSlots; ++slot) {
       if ((textures >> slot & 1) != 0) m.textures[slot].image = static_cast<int>(slot);
     }
-    if (shared_occlusion) m.textures[at(TextureSlot::kOcclusion)].image = m.textures[at(TextureSlot::kMetallicRoughness)].image;
+    if (shared_occlusion)
+      m.textures[at(TextureSlot::kOcclusion)].image = m.textures[at(TextureSlot::kMetallicRoughness)].image;
     m.emissive = glm::vec3(emissive ? 1.0F : 0.0F);
     m.unlit = unlit;
     Primitive primitive;
@@ -79,8 +82,10 @@ void add_plain(Collector& c) {
   for (unsigned features = 0; features < 8; ++features) {
     const bool mapped = (features & 1) != 0, colored = (features & 2) != 0, emissive = (features & 4) != 0;
     const unsigned textures = mapped ? kBase : 0;
-    const Attributes attributes = with(with({Semantic::kPosition}, mapped, Semantic::kUv0), colored, Semantic::kColor);
-    for (const bool normals : {false, true}) c.add(textures, false, emissive, false, with(attributes, normals, Semantic::kNormal));
+    const Attributes attributes =
+        with(with({Semantic::kPosition}, mapped, Semantic::kUv0), colored, Semantic::kColor);
+    for (const bool normals : {false, true})
+      c.add(textures, false, emissive, false, with(attributes, normals, Semantic::kNormal));
     if (!emissive) c.add(textures, false, false, true, attributes);
   }
 }
@@ -89,12 +94,15 @@ void add_plain(Collector& c) {
 void add_textured(Collector& c) {
   for (const unsigned textures : kTextureSets) {
     for (unsigned features = 0; features < 4; ++features) {
-      const bool tangents = (features & 1) != 0, colored = (features & 2) != 0, emissive = (textures & kEmissive) != 0;
+      const bool tangents = (features & 1) != 0, colored = (features & 2) != 0,
+                 emissive = (textures & kEmissive) != 0;
       if (tangents && (textures & kNormal) == 0) continue;
       const Attributes attributes =
-          with(with({Semantic::kPosition, Semantic::kNormal, Semantic::kUv0}, tangents, Semantic::kTangent), colored, Semantic::kColor);
+          with(with({Semantic::kPosition, Semantic::kNormal, Semantic::kUv0}, tangents, Semantic::kTangent),
+               colored, Semantic::kColor);
       c.add(textures, false, emissive, false, attributes);
-      if ((textures & kMetal) != 0 && (textures & kOcclusion) != 0) c.add(textures, true, emissive, false, attributes);
+      if ((textures & kMetal) != 0 && (textures & kOcclusion) != 0)
+        c.add(textures, true, emissive, false, attributes);
     }
   }
 }
@@ -104,7 +112,8 @@ void add_textured(Collector& c) {
 std::vector<TypicalShader> typical_shaders() {
   View orthographic;
   orthographic.orthographic = true;
-  Collector lit(View{}, Light::Kind::kDirectional), by_a_lamp(View{}, Light::Kind::kPoint), flat(orthographic, Light::Kind::kDirectional);
+  Collector lit(View{}, Light::Kind::kDirectional), by_a_lamp(View{}, Light::Kind::kPoint),
+      flat(orthographic, Light::Kind::kDirectional);
   add_textured(lit);
   std::vector<TypicalShader> all = lit.take();
   for (Collector* const c : {&lit, &by_a_lamp, &flat}) {

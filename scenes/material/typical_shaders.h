@@ -13,8 +13,9 @@ struct TypicalShader {
   std::vector<std::string> defines;
 };
 
-/// Those of materials as most files have them: the maps of metallic-roughness in their usual combinations, all alpha modes, one or two sides, lit by the default
-/// light or by one of the scene's; without layers, texture transforms and poses. Some may come twice.
+/// Those of materials as most files have them: the maps of metallic-roughness in their usual combinations,
+/// all alpha modes, one or two sides, lit by the default light or by one of the scene's; without layers,
+/// texture transforms and poses. Some may come twice.
 [[nodiscard]] std::vector<TypicalShader> typical_shaders();
 
 }  // namespace quadrille::scenes

@@ -20,8 +20,8 @@ using Vector = std::array<double, 4>;
 
 std::array<std::uint32_t, 4> words_at(const Array& array, std::size_t vertex) {
   std::array<std::uint32_t, 4> words{};
-  models::decode_attribute(static_cast<AttributeFormat>(array.format), &array.data[vertex * traces::format_bytes(array.format)],
-                           words.data());
+  models::decode_attribute(static_cast<AttributeFormat>(array.format),
+                           &array.data[vertex * traces::format_bytes(array.format)], words.data());
   return words;
 }
 
@@ -39,9 +39,12 @@ void set_xyz(Vector& v, const glm::dvec3& value) { v = {value.x, value.y, value.
 struct Blend {
   std::array<glm::dvec4, 3> rows{};
   [[nodiscard]] glm::dvec3 direction(const glm::dvec3& v) const {
-    return {glm::dot(glm::dvec3(rows[0]), v), glm::dot(glm::dvec3(rows[1]), v), glm::dot(glm::dvec3(rows[2]), v)};
+    return {glm::dot(glm::dvec3(rows[0]), v), glm::dot(glm::dvec3(rows[1]), v),
+            glm::dot(glm::dvec3(rows[2]), v)};
   }
-  [[nodiscard]] glm::dvec3 point(const glm::dvec3& v) const { return direction(v) + glm::dvec3(rows[0].w, rows[1].w, rows[2].w); }
+  [[nodiscard]] glm::dvec3 point(const glm::dvec3& v) const {
+    return direction(v) + glm::dvec3(rows[0].w, rows[1].w, rows[2].w);
+  }
   /// By cofactors, as the shader does: perpendicular to what `direction` makes of a surface.
   [[nodiscard]] glm::dvec3 normal(const glm::dvec3& v) const {
     const glm::dvec3 x(rows[0]), y(rows[1]), z(rows[2]);
@@ -79,14 +82,16 @@ class HostPose {
   }
 
   [[nodiscard]] Array posed(std::size_t semantic) const {
-    constexpr std::array<traces::Format, 5> kFormats{traces::Format::kUndefined, traces::Format::kR32Float, traces::Format::kR32G32Float,
-                                                     traces::Format::kR32G32B32Float, traces::Format::kR32G32B32A32Float};
+    constexpr std::array<traces::Format, 5> kFormats{
+        traces::Format::kUndefined, traces::Format::kR32Float, traces::Format::kR32G32Float,
+        traces::Format::kR32G32B32Float, traces::Format::kR32G32B32A32Float};
     const Array& base = array(primitive_.attributes[semantic]);
     const auto kind = static_cast<Semantic>(semantic);
     // A normal stored in four small integers becomes three floats; a colour keeps its alpha.
     const int components = kind == Semantic::kNormal ? 3 : traces::format_components(base.format);
     const std::size_t bytes = sizeof(float) * static_cast<std::size_t>(components);
-    Array out{base.name + " posed", kFormats[static_cast<std::size_t>(components)], base.count, std::vector<std::byte>(base.count * bytes)};
+    Array out{base.name + " posed", kFormats[static_cast<std::size_t>(components)], base.count,
+              std::vector<std::byte>(base.count * bytes)};
     for (std::size_t vertex = 0; vertex < base.count; ++vertex) {
       Vector value = values_at(base, vertex);
       morph(value, semantic, vertex);
@@ -108,7 +113,8 @@ class HostPose {
       for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) value[c] += weight * add[c];
     }
     if (static_cast<Semantic>(semantic) == Semantic::kColor) {
-      for (double& v : value) v = std::clamp(v, 0.0, 1.0);  // [glTF2.0 #morph-targets: colours are clamped after morphing]
+      // [glTF2.0 #morph-targets: colours are clamped after morphing]
+      for (double& v : value) v = std::clamp(v, 0.0, 1.0);
     }
   }
 
@@ -146,8 +152,8 @@ class HostPose {
 
 }  // namespace
 
-std::array<std::optional<Array>, kSemantics> pose_on_host(const SceneData& scene, const Primitive& primitive, const Pose& pose,
-                                                          bool skinned) {
+std::array<std::optional<Array>, kSemantics> pose_on_host(const SceneData& scene, const Primitive& primitive,
+                                                          const Pose& pose, bool skinned) {
   return HostPose(scene, primitive, pose, skinned).run();
 }
 

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::array<const char*, kSemantics> kNames{"POSITION", "NORMAL", "TANGENT", "UV0", "UV1", "COLOR"};
 constexpr std::size_t kShaderSemantics = 3;  ///< positions, normals and tangents are what the shader morphs
-constexpr std::size_t kLeastJoints = 16;     ///< blocks are of 16, 32, 64 ... joints, so that skins share shaders
+/// blocks are of 16, 32, 64 ... joints, so that skins share shaders
+constexpr std::size_t kLeastJoints = 16;
 
 std::vector<std::size_t> targets_with_weight(const Primitive& primitive, const Pose& pose) {
   std::vector<std::size_t> active;
@@ -26,8 +27,8 @@ bool moves(const MorphTarget& target, std::size_t semantic, const std::array<boo
 }
 
 /// Do the deltas that are read fit the locations that are left?
-bool fits(const Primitive& primitive, const std::vector<std::size_t>& active, const std::array<bool, kSemantics>& attributes,
-          std::size_t locations) {
+bool fits(const Primitive& primitive, const std::vector<std::size_t>& active,
+          const std::array<bool, kSemantics>& attributes, std::size_t locations) {
   std::size_t needed = 0;
   for (const std::size_t t : active) {
     for (std::size_t s = 0; s < kSemantics; ++s) {
@@ -51,7 +52,8 @@ class Chooser {
     out_.skin_on_host = skinned && (on_host || pose_.joints.size() > kMaxShaderJoints);
     // A skin comes after the morphing, so a skin on the host takes the morphing along.
     out_.morph_on_host =
-        !active.empty() && (on_host || out_.skin_on_host || !fits(primitive_, active, attributes_, kPoseLocations - 2 * sets));
+        !active.empty() &&
+        (on_host || out_.skin_on_host || !fits(primitive_, active, attributes_, kPoseLocations - 2 * sets));
     if (skinned && !out_.skin_on_host) add_joints(sets);
     if (!active.empty() && !out_.morph_on_host) add_morphs(active);
     // The weights are first in the block.
@@ -81,7 +83,8 @@ class Chooser {
         const MorphTarget& target = primitive_.targets[active[i]];
         if (!moves(target, s, attributes_)) continue;
         inputs += fmt::format("layout(location = {0}) in vec3 delta_{0}; ", location_);
-        sums[s] += fmt::format("{}pose.weights[{}][{}] * delta_{}", sums[s].empty() ? "" : " + ", i / 4, i % 4, location_);
+        sums[s] += fmt::format("{}pose.weights[{}][{}] * delta_{}", sums[s].empty() ? "" : " + ", i / 4,
+                               i % 4, location_);
         out_.streams.push_back({location_++, target.deltas[s]});
       }
     }
@@ -92,7 +95,8 @@ class Chooser {
       if (!sums[s].empty()) out_.defines.push_back(fmt::format("POSE_{} {}", kNames[s], sums[s]));
     }
     out_.block.resize((active.size() + 3) / 4 * sizeof(glm::vec4));
-    for (std::size_t i = 0; i < active.size(); ++i) std::memcpy(&out_.block[i * sizeof(float)], &pose_.weights[active[i]], sizeof(float));
+    for (std::size_t i = 0; i < active.size(); ++i)
+      std::memcpy(&out_.block[i * sizeof(float)], &pose_.weights[active[i]], sizeof(float));
   }
 
   const Primitive& primitive_;
@@ -105,8 +109,8 @@ class Chooser {
 
 }  // namespace
 
-PoseStreams choose_pose_streams(const Primitive& primitive, const Pose& pose, const std::array<bool, kSemantics>& attributes,
-                                bool on_host) {
+PoseStreams choose_pose_streams(const Primitive& primitive, const Pose& pose,
+                                const std::array<bool, kSemantics>& attributes, bool on_host) {
   return Chooser(primitive, pose, attributes).run(on_host);
 }
 

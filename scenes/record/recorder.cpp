@@ -18,7 +18,8 @@ namespace quadrille::scenes {
 namespace {
 
 constexpr std::size_t kMaxPosedBytes = std::size_t{3} << 28;  // 768 MiB
-static_assert(offsetof(DrawConstants, draw_id) == 112 && offsetof(DrawConstants, handedness) + 4 == kDrawConstantBytes);
+static_assert(offsetof(DrawConstants, draw_id) == 112 &&
+              offsetof(DrawConstants, handedness) + 4 == kDrawConstantBytes);
 
 const traces::BlendState kOver{true,
                                traces::BlendFactor::kSrcAlpha,
@@ -43,14 +44,16 @@ const traces::BlendState kPremultiplied{true,
 
 bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::mat3(world))) < 0; }
 
-// By cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its normals). With the longest column one long, squares in
-// the shader neither vanish nor overflow.
+// By cofactors: the same direction, and defined for a singular matrix too (a flattened mesh keeps its
+// normals). With the longest column one long, squares in the shader neither vanish nor overflow.
 std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored) {
   const glm::dvec3 x(world[0]), y(world[1]), z(world[2]);
   std::array<glm::dvec3, 3> columns{glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
-  const double longest = std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
+  const double longest =
+      std::max({glm::length(columns[0]), glm::length(columns[1]), glm::length(columns[2])});
   const double scale = (mirrored ? -1.0 : 1.0) / (longest > 0 ? longest : 1.0);
-  return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0), glm::vec4(columns[2] * scale, 0)};
+  return {glm::vec4(columns[0] * scale, 0), glm::vec4(columns[1] * scale, 0),
+          glm::vec4(columns[2] * scale, 0)};
 }
 
 Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
@@ -68,16 +71,18 @@ Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
 
 traces::CommandStream Recorder::record() {
   stream_.name = scene_.name;
-  stream_.targets.push_back({options_.width, options_.height,
-                             options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
-                             scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
+  stream_.targets.push_back(
+      {options_.width, options_.height,
+       options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
+       scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
   record_arrays();
   record_textures();
   const glm::vec3& back = scene_.background;
-  const std::array<float, 4> clear =
-      options_.visibility ? std::array<float, 4>{0, 0, 0, 0} : std::array<float, 4>{back.r, back.g, back.b, 1};
+  const std::array<float, 4> clear = options_.visibility ? std::array<float, 4>{0, 0, 0, 0}
+                                                         : std::array<float, 4>{back.r, back.g, back.b, 1};
   stream_.commands.emplace_back(traces::BeginPass{0, clear, 1});
-  stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width), static_cast<float>(options_.height), 0, 1});
+  stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width),
+                                                    static_cast<float>(options_.height), 0, 1});
   stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
   record_frame_set();
   for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
@@ -113,7 +118,8 @@ void Recorder::record_arrays() {
   }
   array_buffers_.assign(scene_.arrays.size(), traces::kNone);
   for (std::size_t i = 0; i < scene_.arrays.size(); ++i) {
-    if (!deltas[i]) (void)array_buffer(static_cast<int>(i));  // of morph targets, those with weight are recorded when a draw reads them
+    // of morph targets, those with weight are recorded when a draw reads them
+    if (!deltas[i]) (void)array_buffer(static_cast<int>(i));
   }
 }
 
@@ -121,14 +127,16 @@ traces::Index Recorder::array_buffer(int array) {
   traces::Index& buffer = array_buffers_[static_cast<std::size_t>(array)];
   if (buffer == traces::kNone) {
     buffer = static_cast<traces::Index>(stream_.buffers.size());
-    stream_.buffers.push_back({scene_.arrays[static_cast<std::size_t>(array)].name, scene_.arrays[static_cast<std::size_t>(array)].data});
+    stream_.buffers.push_back({scene_.arrays[static_cast<std::size_t>(array)].name,
+                               scene_.arrays[static_cast<std::size_t>(array)].data});
   }
   return buffer;
 }
 
 traces::Index Recorder::pose_set(const std::vector<std::byte>& block) {
-  const auto [entry, added] = pose_sets_.try_emplace({reinterpret_cast<const char*>(block.data()), block.size()},
-                                                     static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  const auto [entry, added] =
+      pose_sets_.try_emplace({reinterpret_cast<const char*>(block.data()), block.size()},
+                             static_cast<traces::Index>(stream_.descriptor_sets.size()));
   if (!added) return entry->second;
   const auto buffer = static_cast<traces::Index>(stream_.buffers.size());
   stream_.buffers.push_back({"pose", block});
@@ -136,7 +144,8 @@ traces::Index Recorder::pose_set(const std::vector<std::byte>& block) {
   return entry->second;
 }
 
-void Recorder::add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer) {
+void Recorder::add_stream(Geometry& geometry, std::uint32_t location, const Array& array,
+                          traces::Index buffer) {
   geometry.streams.emplace_back(location, buffer);
   geometry.formats.push_back(array.format);
 }
@@ -145,11 +154,13 @@ Recorder::Geometry Recorder::geometry(const Instance& instance) {
   const Primitive& primitive = scene_.primitives[instance.primitive];
   Geometry g;
   g.variant = variant(primitive);
-  g.mirrored =
-      mirrors(glm::mat4(instance.copies < 0 ? instance.world : placed_.at.copies[static_cast<std::size_t>(instance.copies)].front()));
+  g.mirrored = mirrors(glm::mat4(instance.copies < 0
+                                     ? instance.world
+                                     : placed_.at.copies[static_cast<std::size_t>(instance.copies)].front()));
   for (std::uint32_t i = 0; i < kSemantics; ++i) {
     if (!g.variant.attributes[i]) continue;
-    add_stream(g, i, scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])], array_buffer(primitive.attributes[i]));
+    add_stream(g, i, scene_.arrays[static_cast<std::size_t>(primitive.attributes[i])],
+               array_buffer(primitive.attributes[i]));
   }
   if (instance.pose >= 0) pose(instance, g);
   return g;
@@ -159,7 +170,8 @@ Recorder::Geometry Recorder::geometry(const Instance& instance) {
 void Recorder::pose(const Instance& instance, Geometry& g) {
   const Primitive& primitive = scene_.primitives[instance.primitive];
   const Pose& pose = scene_.poses[static_cast<std::size_t>(instance.pose)];
-  const bool on_host = !options_.vertex_shader.empty() || instance.copies >= 0;  // copies have their matrices where a pose has its streams
+  // copies have their matrices where a pose has its streams
+  const bool on_host = !options_.vertex_shader.empty() || instance.copies >= 0;
   g.mirrored = g.mirrored != pose.mirrored;
   PoseStreams plan = choose_pose_streams(primitive, pose, g.variant.attributes, on_host);
   g.variant.pose_defines = std::move(plan.defines);
@@ -179,8 +191,8 @@ void Recorder::pose(const Instance& instance, Geometry& g) {
 const Recorder::PosedStreams& Recorder::posed_streams(const Instance& instance, bool skinned) {
   const auto [entry, added] = posed_streams_.try_emplace({instance.primitive, instance.pose, skinned});
   if (!added) return entry->second;
-  const auto arrays =
-      pose_on_host(scene_, scene_.primitives[instance.primitive], scene_.poses[static_cast<std::size_t>(instance.pose)], skinned);
+  const auto arrays = pose_on_host(scene_, scene_.primitives[instance.primitive],
+                                   scene_.poses[static_cast<std::size_t>(instance.pose)], skinned);
   const Variant& read = variant(scene_.primitives[instance.primitive]);
   for (std::size_t i = 0; i < kSemantics; ++i) {
     entry->second[i].second = traces::kNone;
@@ -198,7 +210,8 @@ void Recorder::record_frame_set() {
   const auto block = static_cast<traces::Index>(stream_.buffers.size());
   stream_.buffers.push_back({"frame", frame_block(scene_, view_, lights_, exposure_)});
   const auto set = static_cast<traces::Index>(stream_.descriptor_sets.size());
-  stream_.descriptor_sets.push_back({{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
+  stream_.descriptor_sets.push_back(
+      {{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
   stream_.commands.emplace_back(traces::BindDescriptorSet{kFrameSet, set});
 }
 
@@ -210,7 +223,8 @@ void add_copy_streams(traces::Pipeline& p) {
   p.bindings.push_back({kCopiesBinding, 6 * kVectorBytes, true});
   for (std::uint32_t i = 0; i < 6; ++i)
     p.attributes.push_back({kCopiesBinding + i, kCopiesBinding,
-                            i < 3 ? traces::Format::kR32G32B32A32Float : traces::Format::kR32G32B32Float, i * kVectorBytes});
+                            i < 3 ? traces::Format::kR32G32B32A32Float : traces::Format::kR32G32B32Float,
+                            i * kVectorBytes});
 }
 
 }  // namespace
@@ -228,9 +242,11 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
   p.topology = primitive.topology;
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
   p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
-  p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend), traces::CompareOp::kLess};
+  p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend),
+             traces::CompareOp::kLess};
   if (blended) p.blend = material.layers.transmits() ? kPremultiplied : kOver;
-  const auto found = std::ranges::find_if(stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
+  const auto found = std::ranges::find_if(
+      stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
   if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());
   p.name = "pipeline " + std::to_string(stream_.pipelines.size());
   stream_.pipelines.push_back(std::move(p));
@@ -245,12 +261,15 @@ void Recorder::bind_once(const traces::Command& command, std::size_t slot) {
 
 void Recorder::bind_geometry(const Primitive& primitive, const Geometry& g) {
   if (g.pose_set != traces::kNone) bind_once(traces::BindDescriptorSet{kPoseSet, g.pose_set}, kPoseSlot);
-  for (const auto& [location, buffer] : g.streams) bind_once(traces::BindVertexBuffer{location, buffer, 0}, kVertexSlot + location);
-  if (primitive.indices >= 0) bind_once(traces::BindIndexBuffer{array_buffer(primitive.indices), 0, primitive.index_type}, kIndexSlot);
+  for (const auto& [location, buffer] : g.streams)
+    bind_once(traces::BindVertexBuffer{location, buffer, 0}, kVertexSlot + location);
+  if (primitive.indices >= 0)
+    bind_once(traces::BindIndexBuffer{array_buffer(primitive.indices), 0, primitive.index_type}, kIndexSlot);
 }
 
 void Recorder::push_constants(const glm::mat4& world, bool mirrored) {
-  const DrawConstants constants{world, normal_matrix(world, mirrored), draws_, triangles_, mirrored ? -1.0F : 1.0F};
+  const DrawConstants constants{world, normal_matrix(world, mirrored), draws_, triangles_,
+                                mirrored ? -1.0F : 1.0F};
   std::vector<std::byte> bytes(kDrawConstantBytes);
   std::memcpy(bytes.data(), &constants, bytes.size());
   stream_.commands.emplace_back(traces::PushConstants{0, std::move(bytes)});
@@ -285,10 +304,12 @@ void Recorder::bind(const Primitive& primitive, const States& states) {
   bind_geometry(primitive, states.geometry);
 }
 
-void Recorder::record_draw(const Instance& instance, const Geometry& g, const glm::mat4& world, std::uint32_t copies) {
+void Recorder::record_draw(const Instance& instance, const Geometry& g, const glm::mat4& world,
+                           std::uint32_t copies) {
   const Primitive& primitive = scene_.primitives[instance.primitive];
   push_constants(world, g.mirrored);
-  stream_.commands.emplace_back(traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, copies, 0, instance.label});
+  stream_.commands.emplace_back(
+      traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, copies, 0, instance.label});
   ++draws_;
   triangles_ += traces::triangle_count(primitive.topology, primitive.count) * copies;
 }

@@ -30,12 +30,14 @@ inline constexpr std::size_t kDrawConstantBytes = 124;
 
 /// Does the matrix turn front faces into back faces?
 [[nodiscard]] bool mirrors(const glm::mat4& world);
-/// Inverse transpose of the upper 3x3, scaled so that its longest column is one long: columns, 16 bytes apart. `mirrored`: it turns front faces into back
-/// faces, by itself or with the pose of its mesh.
+/// Inverse transpose of the upper 3x3, scaled so that its longest column is one long: columns, 16 bytes
+/// apart. `mirrored`: it turns front faces into back faces, by itself or with the pose of its mesh.
 [[nodiscard]] std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored);
 
-// Slots of the bound state: pipeline, material set, index buffer, pose set, then a vertex stream for each location.
-inline constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kPoseSlot = 3, kVertexSlot = 4, kLocations = 16;
+// Slots of the bound state: pipeline, material set, index buffer, pose set, then a vertex stream for each
+// location.
+inline constexpr std::size_t kPipelineSlot = 0, kSetSlot = 1, kIndexSlot = 2, kPoseSlot = 3, kVertexSlot = 4,
+                             kLocations = 16;
 inline constexpr std::uint32_t kFrameSet = 0, kMaterialSet = 1, kPoseSet = 2;
 /// Vertex binding and first location of an instanced draw's matrices.
 inline constexpr std::uint32_t kCopiesBinding = 10;
@@ -56,7 +58,8 @@ class Recorder {
   struct TextureKey {
     int image = 0;
     bool srgb = false;
-    auto operator<=>(const TextureKey&) const = default;  // NOLINT(modernize-use-nullptr): the comparison with zero that it stands for
+    auto operator<=>(const TextureKey&) const =
+        default;  // NOLINT(modernize-use-nullptr): the comparison with zero that it stands for
   };
 
   /// What one draw reads: the variant of its shaders, and its vertex streams by location.
@@ -77,7 +80,8 @@ class Recorder {
   /// What the host has posed: format and buffer by semantic; kNone: the mesh's own.
   using PosedStreams = std::array<std::pair<traces::Format, traces::Index>, kSemantics>;
 
-  /// Indices into the scene's instances: opaque and masked ones in scene order, then blended ones back to front.
+  /// Indices into the scene's instances: opaque and masked ones in scene order, then blended ones back to
+  /// front.
   [[nodiscard]] std::vector<std::size_t> draw_order() const;
   void record_arrays();
   void record_textures();
@@ -88,9 +92,11 @@ class Recorder {
   void leave_out_unread(Variant& variant);
   void record_frame_set();
   void record_instance(const Instance& instance);
-  /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their triangles apart or is not ours.
+  /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their
+  /// triangles apart or is not ours.
   void record_copies(const Instance& instance, Geometry geometry);
-  void record_draw(const Instance& instance, const Geometry& geometry, const glm::mat4& world, std::uint32_t copies);
+  void record_draw(const Instance& instance, const Geometry& geometry, const glm::mat4& world,
+                   std::uint32_t copies);
   /// The matrices of its copies, from back to front where `sorted`.
   [[nodiscard]] std::vector<glm::mat4> ordered_copies(const Instance& instance, bool sorted) const;
   [[nodiscard]] traces::Index copies_buffer(const Instance& instance, bool sorted, bool mirrored);
@@ -100,13 +106,16 @@ class Recorder {
   void add_stream(Geometry& geometry, std::uint32_t location, const Array& array, traces::Index buffer);
   [[nodiscard]] traces::Index array_buffer(int array);
   [[nodiscard]] traces::Index pose_set(const std::vector<std::byte>& block);
-  void bind(const Instance& instance, const Geometry& geometry) { bind(scene_.primitives[instance.primitive], states(instance, geometry)); }
+  void bind(const Instance& instance, const Geometry& geometry) {
+    bind(scene_.primitives[instance.primitive], states(instance, geometry));
+  }
   [[nodiscard]] States states(const Instance& instance, Geometry geometry);
   void bind(const Primitive& primitive, const States& states);
   void bind_geometry(const Primitive& primitive, const Geometry& geometry);
   void push_constants(const glm::mat4& world, bool mirrored);
   void bind_once(const traces::Command& command, std::size_t slot);
-  [[nodiscard]] traces::Index pipeline(const Primitive& primitive, const Material& material, const Geometry& geometry);
+  [[nodiscard]] traces::Index pipeline(const Primitive& primitive, const Material& material,
+                                       const Geometry& geometry);
   [[nodiscard]] traces::Index material_set(int material, const Variant& variant);
   [[nodiscard]] traces::Index material_block(int material);
   [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
@@ -124,18 +133,22 @@ class Recorder {
   traces::CommandStream stream_;
   ShaderLibrary shaders_;
   std::map<TextureKey, traces::Index> textures_;
-  std::set<int> images_;                                                             ///< of `textures_`
-  std::map<std::tuple<int, std::array<bool, kSemantics>, bool>, Variant> variants_;  ///< by material, available attributes, partial normals
+  std::set<int> images_;  ///< of `textures_`
+  /// by material, available attributes, partial normals
+  std::map<std::tuple<int, std::array<bool, kSemantics>, bool>, Variant> variants_;
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
-  std::map<std::pair<std::uint32_t, bool>, States>
-      states_;                                      ///< of instances neither posed nor copied, by primitive and whether they mirror
-  std::map<int, traces::Index> copies_buffers_;     ///< by `Instance::copies`, where their order is the scene's
+  /// of instances neither posed nor copied, by primitive and whether they mirror
+  std::map<std::pair<std::uint32_t, bool>, States> states_;
+  /// by `Instance::copies`, where their order is the scene's
+  std::map<int, traces::Index> copies_buffers_;
   std::vector<traces::Index> array_buffers_;        ///< by array of the scene; kNone: not recorded
   std::map<std::string, traces::Index> pose_sets_;  ///< by the block's bytes
-  std::map<std::tuple<std::uint32_t, int, bool>, PosedStreams> posed_streams_;  ///< by primitive, pose, and whether the host skins too
-  std::vector<traces::Command> bound_;                                          ///< what each slot holds, to leave out repeated binds
-  std::size_t posed_bytes_ = 0;                                                 ///< by the host
+  /// by primitive, pose, and whether the host skins too
+  std::map<std::tuple<std::uint32_t, int, bool>, PosedStreams> posed_streams_;
+  /// what each slot holds, to leave out repeated binds
+  std::vector<traces::Command> bound_;
+  std::size_t posed_bytes_ = 0;  ///< by the host
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

@@ -18,7 +18,8 @@ struct CopyStreams {
 CopyStreams copy_streams(const glm::mat4& world, bool mirrored) {
   CopyStreams streams{{}, normal_matrix(world, mirrored)};
   for (int row = 0; row < 3; ++row)
-    streams.model_rows[static_cast<std::size_t>(row)] = glm::vec4(world[0][row], world[1][row], world[2][row], world[3][row]);
+    streams.model_rows[static_cast<std::size_t>(row)] =
+        glm::vec4(world[0][row], world[1][row], world[2][row], world[3][row]);
   return streams;
 }
 
@@ -26,16 +27,20 @@ CopyStreams copy_streams(const glm::mat4& world, bool mirrored) {
 
 std::vector<glm::mat4> Recorder::ordered_copies(const Instance& instance, bool sorted) const {
   std::vector<glm::mat4> copies;
-  for (const glm::dmat4& copy : placed_.at.copies[static_cast<std::size_t>(instance.copies)]) copies.emplace_back(copy);
+  for (const glm::dmat4& copy : placed_.at.copies[static_cast<std::size_t>(instance.copies)])
+    copies.emplace_back(copy);
   if (!sorted) return copies;
   const glm::vec4 center(scene_.model_box(instance).center(), 1);
-  const auto distance = [&](const glm::mat4& m) { return glm::dot(view_.eye - glm::vec3(m * center), view_.toward_viewer); };
+  const auto distance = [&](const glm::mat4& m) {
+    return glm::dot(view_.eye - glm::vec3(m * center), view_.toward_viewer);
+  };
   std::ranges::stable_sort(copies, std::ranges::greater{}, distance);
   return copies;
 }
 
 traces::Index Recorder::copies_buffer(const Instance& instance, bool sorted, bool mirrored) {
-  if (const auto found = copies_buffers_.find(instance.copies); !sorted && found != copies_buffers_.end()) return found->second;
+  if (const auto found = copies_buffers_.find(instance.copies); !sorted && found != copies_buffers_.end())
+    return found->second;
   const std::vector<glm::mat4> copies = ordered_copies(instance, sorted);
   std::vector<std::byte> data(copies.size() * sizeof(CopyStreams));
   for (std::size_t i = 0; i < copies.size(); ++i) {
@@ -49,7 +54,9 @@ traces::Index Recorder::copies_buffer(const Instance& instance, bool sorted, boo
 }
 
 void Recorder::record_copies(const Instance& instance, Geometry g) {
-  const bool sorted = scene_.materials[static_cast<std::size_t>(scene_.primitives[instance.primitive].material)].see_through();
+  const bool sorted =
+      scene_.materials[static_cast<std::size_t>(scene_.primitives[instance.primitive].material)]
+          .see_through();
   if (options_.visibility || !options_.vertex_shader.empty()) {
     bind(instance, g);
     for (const glm::mat4& copy : ordered_copies(instance, sorted)) record_draw(instance, g, copy, 1);
@@ -57,7 +64,8 @@ void Recorder::record_copies(const Instance& instance, Geometry g) {
   }
   g.variant.instanced = true;
   bind(instance, g);
-  bind_once(traces::BindVertexBuffer{kCopiesBinding, copies_buffer(instance, sorted, g.mirrored), 0}, kVertexSlot + kCopiesBinding);
+  bind_once(traces::BindVertexBuffer{kCopiesBinding, copies_buffer(instance, sorted, g.mirrored), 0},
+            kVertexSlot + kCopiesBinding);
   const std::vector<glm::dmat4>& copies = placed_.at.copies[static_cast<std::size_t>(instance.copies)];
   record_draw(instance, g, glm::mat4(copies.front()), static_cast<std::uint32_t>(copies.size()));
 }

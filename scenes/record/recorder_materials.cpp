@@ -1,4 +1,5 @@
-/// The part of the recorder that materials need: uniform blocks, textures with their mip chains, samplers, and the sets that bind them.
+/// The part of the recorder that materials need: uniform blocks, textures with their mip chains, samplers,
+/// and the sets that bind them.
 #include <algorithm>
 #include <cstring>
 #include <set>
@@ -60,8 +61,8 @@ std::vector<std::byte> bytes_of(const T& value) {
 
 bool is_srgb(std::size_t slot) {
   const auto role = static_cast<TextureSlot>(slot);
-  return role == TextureSlot::kBaseColor || role == TextureSlot::kEmissive || role == TextureSlot::kSpecularColor ||
-         role == TextureSlot::kSheenColor;
+  return role == TextureSlot::kBaseColor || role == TextureSlot::kEmissive ||
+         role == TextureSlot::kSpecularColor || role == TextureSlot::kSheenColor;
 }
 
 }  // namespace
@@ -69,9 +70,11 @@ bool is_srgb(std::size_t slot) {
 const Variant& Recorder::variant(const Primitive& primitive) {
   std::array<bool, kSemantics> available{};
   for (std::size_t i = 0; i < kSemantics; ++i) available[i] = primitive.attributes[i] >= 0;
-  const auto [entry, added] = variants_.try_emplace({primitive.material, available, primitive.partial_normals});
+  const auto [entry, added] =
+      variants_.try_emplace({primitive.material, available, primitive.partial_normals});
   if (added) {
-    entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive, shaders_.set());
+    entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive,
+                                   shaders_.set());
     if (shaders_.set() == ShaderSet::kUser && options_.leave_out) leave_out_unread(entry->second);
   }
   return entry->second;
@@ -87,15 +90,25 @@ void Recorder::leave_out_unread(Variant& v) {
 }
 
 void Recorder::add_textures(const std::vector<TextureKey>& keys) {
-  const auto source = [this](const TextureKey& key) -> const SceneImage& { return scene_.images[static_cast<std::size_t>(key.image)]; };
+  const auto source = [this](const TextureKey& key) -> const SceneImage& {
+    return scene_.images[static_cast<std::size_t>(key.image)];
+  };
   unpack_images(keys);
   const std::size_t first = stream_.images.size();
   for (const TextureKey& key : keys) {
     const SceneImage::Size size = source(key).size();
     const auto format = key.srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm;
     const auto packed = std::make_shared<const traces::UnpackTexels>(
-        [pixels = source(key).source(), srgb = key.srgb](const traces::LevelSink& sink) { visit_mip_chain(*pixels(), srgb, sink); });
-    stream_.images.push_back({source(key).name(), format, size.width, size.height, full_chain_levels(size.width, size.height), {}, packed});
+        [pixels = source(key).source(), srgb = key.srgb](const traces::LevelSink& sink) {
+          visit_mip_chain(*pixels(), srgb, sink);
+        });
+    stream_.images.push_back({source(key).name(),
+                              format,
+                              size.width,
+                              size.height,
+                              full_chain_levels(size.width, size.height),
+                              {},
+                              packed});
   }
   if (options_.keep_packed) return;
   parallel_for(keys.size(), [&](std::size_t i) { traces::unpack(stream_.images[first + i]); });
@@ -118,7 +131,8 @@ void Recorder::record_textures() {
     const Variant& v = variant(primitive);
     for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
       if (v.textures[slot])
-        used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image, is_srgb(slot)});
+        used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image,
+                     is_srgb(slot)});
     }
   }
   const std::vector<TextureKey> keys(used.begin(), used.end());
@@ -143,11 +157,13 @@ traces::Index Recorder::sampler(const traces::Sampler& wanted) {
 }
 
 traces::Index Recorder::material_block(int material) {
-  const auto [entry, added] = material_blocks_.try_emplace(material, static_cast<traces::Index>(stream_.buffers.size()));
+  const auto [entry, added] =
+      material_blocks_.try_emplace(material, static_cast<traces::Index>(stream_.buffers.size()));
   if (added) {
     const Material& m = scene_.materials[static_cast<std::size_t>(material)];
     std::vector<std::byte> block = bytes_of(material_values(m, exposure_));
-    const std::vector<std::byte> layers = m.layers.any() ? bytes_of(layer_values(m)) : std::vector<std::byte>();
+    const std::vector<std::byte> layers =
+        m.layers.any() ? bytes_of(layer_values(m)) : std::vector<std::byte>();
     block.insert(block.end(), layers.begin(), layers.end());
     stream_.buffers.push_back({"material " + m.name, std::move(block)});
   }
@@ -155,15 +171,17 @@ traces::Index Recorder::material_block(int material) {
 }
 
 traces::Index Recorder::material_set(int material, const Variant& v) {
-  const auto [entry, added] =
-      material_sets_.try_emplace({material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
+  const auto [entry, added] = material_sets_.try_emplace(
+      {material, v.textures}, static_cast<traces::Index>(stream_.descriptor_sets.size()));
   if (!added) return entry->second;
   const traces::Index block = material_block(material);
-  traces::DescriptorSet set{{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers[block].data.size())}}, {}};
+  traces::DescriptorSet set{{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers[block].data.size())}},
+                            {}};
   for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
     if (!v.textures[slot]) continue;
     const TextureUse& use = scene_.materials[static_cast<std::size_t>(material)].textures[slot];
-    set.textures.push_back({static_cast<std::uint32_t>(1 + slot), textures_.at({use.image, is_srgb(slot)}), sampler(use.sampler)});
+    set.textures.push_back({static_cast<std::uint32_t>(1 + slot), textures_.at({use.image, is_srgb(slot)}),
+                            sampler(use.sampler)});
   }
   stream_.descriptor_sets.push_back(std::move(set));
   return entry->second;

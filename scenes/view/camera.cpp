@@ -1,4 +1,5 @@
-/// Matrices are made in double and rounded once, so that the vertex shader is where precision is lost, as on a GPU.
+/// Matrices are made in double and rounded once, so that the vertex shader is where precision is lost, as on
+/// a GPU.
 #include "scenes/view/camera.h"
 
 #include <algorithm>
@@ -20,8 +21,9 @@ namespace {
 
 constexpr double kFramingFov = std::numbers::pi / 4;
 constexpr double kUserFov = std::numbers::pi / 3;
-constexpr double kFramed = 0.8;                                  // of the picture's height or width
-constexpr std::size_t kMostFramedPoints = std::size_t{1} << 20;  // each is looked at 23 times [G: some hundredths of a second]
+constexpr double kFramed = 0.8;  // of the picture's height or width
+// each is looked at 23 times [G: some hundredths of a second]
+constexpr std::size_t kMostFramedPoints = std::size_t{1} << 20;
 constexpr int kOrbitPlaces = 32;
 constexpr double kNearestRatio = 1e-4;  // near plane over far plane, at least: keeps 32-bit depth useful
 
@@ -37,7 +39,8 @@ glm::dmat4 view_matrix(const CameraPose& pose) {
     view[i][1] = pose.up[i];
     view[i][2] = pose.backward[i];
   }
-  view[3] = glm::dvec4(-glm::dot(pose.right, pose.eye), -glm::dot(pose.up, pose.eye), -glm::dot(pose.backward, pose.eye), 1);
+  view[3] = glm::dvec4(-glm::dot(pose.right, pose.eye), -glm::dot(pose.up, pose.eye),
+                       -glm::dot(pose.backward, pose.eye), 1);
   return view;
 }
 
@@ -73,7 +76,8 @@ View finish(const CameraPose& pose, const glm::dmat4& projection, bool is_orthog
   return view;
 }
 
-/// Axes for a camera at `eye` that looks against `backward`, its top toward +y (or -z when it looks straight up or down).
+/// Axes for a camera at `eye` that looks against `backward`, its top toward +y (or -z when it looks straight
+/// up or down).
 CameraPose upright(const glm::dvec3& eye, const glm::dvec3& backward) {
   CameraPose pose;
   pose.eye = eye;
@@ -88,8 +92,8 @@ template <class Visit>
 void for_each_corner(const PlacedScene& scene, const Visit& visit) {
   scene.visit_boxes([&](const Bounds& box) {
     for (int c = 0; !box.empty() && c < 8; ++c)
-      visit(
-          glm::dvec3((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y, (c & 4) != 0 ? box.high.z : box.low.z));
+      visit(glm::dvec3((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y,
+                       (c & 4) != 0 ? box.high.z : box.low.z));
   });
 }
 
@@ -106,31 +110,36 @@ std::pair<double, double> depth_range(const PlacedScene& scene, const CameraPose
   return {std::max(nearest * 0.99, far * kNearestRatio), far};
 }
 
-/// A pose carried around the vertical axis through `center` by a part of a turn, counter-clockwise seen from above.
+/// A pose carried around the vertical axis through `center` by a part of a turn, counter-clockwise seen from
+/// above.
 CameraPose turned(const CameraPose& pose, const glm::dvec3& center, double turns) {
   if (turns == 0) return pose;
   const double angle = 2 * std::numbers::pi * turns, c = std::cos(angle), s = std::sin(angle);
-  const auto turn = [&](const glm::dvec3& v) { return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x); };
+  const auto turn = [&](const glm::dvec3& v) {
+    return glm::dvec3(c * v.x + s * v.z, v.y, c * v.z - s * v.x);
+  };
   return {center + turn(pose.eye - center), turn(pose.right), turn(pose.up), turn(pose.backward)};
 }
 
-/// A camera that frames the scene, and the part of its picture plane that it shows: what is middle, in tangents right and up of the view direction.
+/// A camera that frames the scene, and the part of its picture plane that it shows: what is middle, in
+/// tangents right and up of the view direction.
 struct Framing {
   CameraPose pose;
   glm::dvec2 middle{0};
 };
 
-/// How far back the eye has to be for the scene to lie within each side of the picture: a point does when it is within the plane through the eye and that side.
-/// Right, left, upper, lower; `half` is half the picture in tangents. Over all places of an orbit.
-Reaches distances(const SceneReach& reach, const CameraPose& pose, const glm::dvec3& center, int places, const glm::dvec2& middle,
-                  const glm::dvec2& half) {
+/// How far back the eye has to be for the scene to lie within each side of the picture: a point does when it
+/// is within the plane through the eye and that side. Right, left, upper, lower; `half` is half the picture
+/// in tangents. Over all places of an orbit.
+Reaches distances(const SceneReach& reach, const CameraPose& pose, const glm::dvec3& center, int places,
+                  const glm::dvec2& middle, const glm::dvec2& half) {
   const glm::dvec2 high = half + middle, low = half - middle;
   Reaches most;
   most.fill(-INFINITY);
   for (int i = 0; i < places; ++i) {
     const CameraPose p = turned(pose, center, static_cast<double>(i) / places);
-    const Reaches reaches =
-        reach({p.backward + p.right / high.x, p.backward - p.right / low.x, p.backward + p.up / high.y, p.backward - p.up / low.y});
+    const Reaches reaches = reach({p.backward + p.right / high.x, p.backward - p.right / low.x,
+                                   p.backward + p.up / high.y, p.backward - p.up / low.y});
     for (std::size_t d = 0; d < most.size(); ++d) most[d] = std::max(most[d], reaches[d]);
   }
   return most;
@@ -138,9 +147,10 @@ Reaches distances(const SceneReach& reach, const CameraPose& pose, const glm::dv
 
 double side(double a, double b) { return a > b ? 1 : a < b ? -1 : 0; }
 
-/// The middle of what the scene takes of the picture plane, seen from `distance` away: each of its sides by halving what is left.
-glm::dvec2 middle_of(const SceneReach& reach, const CameraPose& pose, const glm::dvec3& center, int places, const glm::dvec2& half,
-                     double distance) {
+/// The middle of what the scene takes of the picture plane, seen from `distance` away: each of its sides by
+/// halving what is left.
+glm::dvec2 middle_of(const SceneReach& reach, const CameraPose& pose, const glm::dvec3& center, int places,
+                     const glm::dvec2& half, double distance) {
   constexpr int kHalvings = 10;
   Reaches slope{}, step{half.x, half.x, half.y, half.y};
   for (int i = 0; i < kHalvings; ++i) {
@@ -148,18 +158,21 @@ glm::dvec2 middle_of(const SceneReach& reach, const CameraPose& pose, const glm:
     most.fill(-INFINITY);
     for (int k = 0; k < places; ++k) {
       const CameraPose p = turned(pose, center, static_cast<double>(k) / places);
-      const Reaches reaches = reach(
-          {p.right + slope[0] * p.backward, slope[1] * p.backward - p.right, p.up + slope[2] * p.backward, slope[3] * p.backward - p.up});
+      const Reaches reaches = reach({p.right + slope[0] * p.backward, slope[1] * p.backward - p.right,
+                                     p.up + slope[2] * p.backward, slope[3] * p.backward - p.up});
       for (std::size_t d = 0; d < most.size(); ++d) most[d] = std::max(most[d], reaches[d]);
     }
-    for (std::size_t d = 0; d < most.size(); ++d) slope[d] += step[d] * side(most[d], slope[d] * distance), step[d] /= 2;
+    for (std::size_t d = 0; d < most.size(); ++d)
+      slope[d] += step[d] * side(most[d], slope[d] * distance), step[d] /= 2;
   }
   return {places > 1 ? 0 : (slope[0] - slope[1]) / 2, (slope[2] - slope[3]) / 2};
 }
 
-/// The eye is on the line from the centre along the pose's view direction. The picture is shifted, as by a shift lens, until opposite sides ask for one distance,
-/// by halving what is left; a camera that goes around keeps the centre in the middle from left to right.
-Framing framed(const PlacedScene& scene, const CameraPose& pose, const glm::dvec3& center, double aspect, int places) {
+/// The eye is on the line from the centre along the pose's view direction. The picture is shifted, as by a
+/// shift lens, until opposite sides ask for one distance, by halving what is left; a camera that goes around
+/// keeps the centre in the middle from left to right.
+Framing framed(const PlacedScene& scene, const CameraPose& pose, const glm::dvec3& center, double aspect,
+               int places) {
   constexpr int kHalvings = 12;
   const SceneReach reach(scene, center, kMostFramedPoints / static_cast<std::size_t>(places));
   const double tangent = std::tan(kFramingFov / 2) * kFramed;
@@ -186,10 +199,14 @@ Framing framing(const PlacedScene& scene, double aspect, bool orbiting) {
 
 View user_view(const PlacedScene& scene, const SceneOptions& options, double aspect) {
   const Bounds box = scene.bounds();
-  const glm::dvec3 at = options.at ? glm::dvec3(*options.at) : box.empty() ? glm::dvec3(0) : glm::dvec3(box.center());
-  const glm::dvec3 eye = options.eye ? glm::dvec3(*options.eye) : framing(scene, aspect, options.orbit.has_value()).pose.eye;
+  const glm::dvec3 at = options.at    ? glm::dvec3(*options.at)
+                        : box.empty() ? glm::dvec3(0)
+                                      : glm::dvec3(box.center());
+  const glm::dvec3 eye =
+      options.eye ? glm::dvec3(*options.eye) : framing(scene, aspect, options.orbit.has_value()).pose.eye;
   const double distance = glm::length(eye - at);
-  if (!std::isfinite(distance) || !(distance > 0)) throw user_error("camera: the eye is where it looks at ({}, {}, {})", at.x, at.y, at.z);
+  if (!std::isfinite(distance) || !(distance > 0))
+    throw user_error("camera: the eye is where it looks at ({}, {}, {})", at.x, at.y, at.z);
   const CameraPose pose = turned(upright(eye, eye - at), at, options.orbit.value_or(0));
   const auto [near, far] = depth_range(scene, pose);
   return finish(pose, perspective(kUserFov, aspect, near, far), false);
@@ -198,8 +215,8 @@ View user_view(const PlacedScene& scene, const SceneOptions& options, double asp
 /// A file may hold a camera of pi and more, but should not. [glTF2.0 #reference-camera-perspective: yfov]
 void require_field_of_view(const PlacedScene& scene, const Camera& camera) {
   if (camera.perspective && !(camera.yfov < std::numbers::pi)) {
-    throw user_error("{}: cameras[{}]: yfov {} is outside 0..pi; --camera or --eye takes another", scene.data.name,
-                     &camera - scene.at.cameras.data(), camera.yfov);
+    throw user_error("{}: cameras[{}]: yfov {} is outside 0..pi; --camera or --eye takes another",
+                     scene.data.name, &camera - scene.at.cameras.data(), camera.yfov);
   }
 }
 
@@ -219,13 +236,17 @@ View file_view(const PlacedScene& scene, const Camera& camera, const SceneOption
     const Bounds box = scene.bounds();
     pose = turned(pose, box.empty() ? glm::dvec3(0) : glm::dvec3(box.center()), *options.orbit);
   }
-  if (camera.perspective) return finish(pose, perspective(camera.yfov, aspect, camera.near, camera.far), false);
-  return finish(pose, orthographic(camera.half_height, aspect, camera.near, camera.far.value_or(camera.near + 1)), true);
+  if (camera.perspective)
+    return finish(pose, perspective(camera.yfov, aspect, camera.near, camera.far), false);
+  return finish(pose,
+                orthographic(camera.half_height, aspect, camera.near, camera.far.value_or(camera.near + 1)),
+                true);
 }
 
 const Camera* chosen_camera(const PlacedScene& scene, const SceneOptions& options) {
   if (options.camera < 0 && options.camera_name.empty()) {
-    const auto placed = std::ranges::find_if(scene.at.cameras, [](const Camera& c) { return c.pose.has_value(); });
+    const auto placed =
+        std::ranges::find_if(scene.at.cameras, [](const Camera& c) { return c.pose.has_value(); });
     return placed == scene.at.cameras.end() ? nullptr : &*placed;
   }
   std::vector<std::string> names;
@@ -233,9 +254,11 @@ const Camera* chosen_camera(const PlacedScene& scene, const SceneOptions& option
   const std::string wanted = options.camera < 0 ? options.camera_name : std::to_string(options.camera);
   const std::optional<std::size_t> index = find_choice(names, wanted);
   if (!index)
-    throw user_error("{}: camera '{}' does not exist; cameras: {}", scene.data.name, wanted.substr(0, 60), list_of_choices(names));
+    throw user_error("{}: camera '{}' does not exist; cameras: {}", scene.data.name, wanted.substr(0, 60),
+                     list_of_choices(names));
   if (!scene.at.cameras[*index].pose)
-    throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.data.name, *index, names[*index].substr(0, 60));
+    throw user_error("{}: camera {} '{}' is not placed by any node of the scene", scene.data.name, *index,
+                     names[*index].substr(0, 60));
   return &scene.at.cameras[*index];
 }
 
@@ -257,7 +280,8 @@ View make_view(const PlacedScene& scene, const SceneOptions& options) {
   const double aspect = static_cast<double>(options.width) / options.height;
   if (options.eye || options.at) return user_view(scene, options, aspect);
   const Camera* camera = chosen_camera(scene, options);
-  return camera != nullptr ? file_view(scene, *camera, options, aspect) : framing_view(scene, aspect, options.orbit);
+  return camera != nullptr ? file_view(scene, *camera, options, aspect)
+                           : framing_view(scene, aspect, options.orbit);
 }
 
 }  // namespace quadrille::scenes

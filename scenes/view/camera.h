@@ -21,13 +21,16 @@ struct View {
   bool orthographic = false;
 };
 
-/// The camera that `options` asks for. The vertical extent is the camera's, the horizontal one follows the output's aspect ratio.
-/// Throws `UserError` when the scene has no such camera, or eye and point looked at coincide.
+/// The camera that `options` asks for. The vertical extent is the camera's, the horizontal one follows the
+/// output's aspect ratio. Throws `UserError` when the scene has no such camera, or eye and point looked at
+/// coincide.
 [[nodiscard]] View make_view(const PlacedScene& scene, const SceneOptions& options);
 
-/// A perspective camera, 45 degrees high, right of, above and before the scene, which takes 80 % of the picture's height or width, whichever it fills first, in
-/// its middle (scenes/view/scene_reach.h).
-/// `orbit`: carried around the scene's centre by this part of a turn, as far away as all parts of the turn need.
-[[nodiscard]] View framing_view(const PlacedScene& scene, double aspect, std::optional<double> orbit = std::nullopt);
+/// A perspective camera, 45 degrees high, right of, above and before the scene, which takes 80 % of the
+/// picture's height or width, whichever it fills first, in its middle (scenes/view/scene_reach.h).
+/// `orbit`: carried around the scene's centre by this part of a turn, as far away as all parts of the turn
+/// need.
+[[nodiscard]] View framing_view(const PlacedScene& scene, double aspect,
+                                std::optional<double> orbit = std::nullopt);
 
 }  // namespace quadrille::scenes

@@ -1,7 +1,8 @@
 /// How far a scene reaches along a direction: what a camera that frames it asks.
 ///
-/// Of meshes at rest every vertex counts, of posed ones the boxes of what each joint moves. A box around a whole round or slanting object has corners where nothing is,
-/// and a camera that held them would show the object small.
+/// Of meshes at rest every vertex counts, of posed ones the boxes of what each joint moves. A box around a
+/// whole round or slanting object has corners where nothing is, and a camera that held them would show the
+/// object small.
 #pragma once
 
 #include <array>
@@ -20,10 +21,12 @@ using Reaches = std::array<double, 4>;
 /// Asked for several sets of directions; refers to the scene.
 class SceneReach {
  public:
-  /// Where the scene draws more than `most_points` vertices, its boxes stand for them, and where there are more than 4096 of those, the box around all.
+  /// Where the scene draws more than `most_points` vertices, its boxes stand for them, and where there are
+  /// more than 4096 of those, the box around all.
   SceneReach(const PlacedScene& scene, const glm::dvec3& origin, std::size_t most_points);
 
-  /// The largest of dot(direction, point - origin) over what a camera has to hold (`PlacedScene::visit_boxes`), for each direction; -infinity for an empty scene.
+  /// The largest of dot(direction, point - origin) over what a camera has to hold
+  /// (`PlacedScene::visit_boxes`), for each direction; -infinity for an empty scene.
   [[nodiscard]] Reaches operator()(const Directions& directions) const;
 
  private:

@@ -16,7 +16,8 @@ constexpr double kFarFromOrigin = 1024;
 /// Half the diagonal, in double: the squares of float32 may overflow.
 double radius(const Bounds& box) { return 0.5 * glm::length(glm::dvec3(box.high) - glm::dvec3(box.low)); }
 
-/// About how far away the nearest thing is that the eye may look at: over instances and their copies, the distance of its middle and its own size.
+/// About how far away the nearest thing is that the eye may look at: over instances and their copies, the
+/// distance of its middle and its own size.
 double nearest_reach(const PlacedScene& scene, const glm::dvec3& eye) {
   double reach = INFINITY;
   for (const Instance& instance : scene.at.instances) {
@@ -27,7 +28,9 @@ double nearest_reach(const PlacedScene& scene, const glm::dvec3& eye) {
   return reach;
 }
 
-glm::dvec3 moved_point(const glm::dvec3& p, const WorldRange& range) { return (p - glm::dvec3(range.origin)) * range.scale; }
+glm::dvec3 moved_point(const glm::dvec3& p, const WorldRange& range) {
+  return (p - glm::dvec3(range.origin)) * range.scale;
+}
 
 glm::dmat4 moved_matrix(const glm::dmat4& matrix, const WorldRange& range, double axes) {
   glm::dmat4 out = matrix;
@@ -57,18 +60,22 @@ std::optional<WorldRange> needed_range(const PlacedScene& scene, const View& vie
 }
 
 Placements moved(Placements placements, const WorldRange& range) {
-  for (Instance& instance : placements.instances) instance.world = moved_matrix(instance.world, range, range.scale);
+  for (Instance& instance : placements.instances)
+    instance.world = moved_matrix(instance.world, range, range.scale);
   for (std::vector<glm::dmat4>& copies : placements.copies) {
     for (glm::dmat4& copy : copies) copy = moved_matrix(copy, range, range.scale);
   }
   for (Bounds& box : placements.extent) {
-    if (!box.empty()) box = {glm::vec3(moved_point(glm::dvec3(box.low), range)), glm::vec3(moved_point(glm::dvec3(box.high), range))};
+    if (!box.empty())
+      box = {glm::vec3(moved_point(glm::dvec3(box.low), range)),
+             glm::vec3(moved_point(glm::dvec3(box.high), range))};
   }
   for (Light& light : placements.lights) {
     if (light.kind == Light::Kind::kDirectional) continue;
     light.position = moved_point(light.position, range);
     light.range = static_cast<float>(static_cast<double>(light.range) * range.scale);
-    light.color = glm::vec3(glm::dvec3(light.color) * (range.scale * range.scale));  // it falls with the square of the distance
+    // it falls with the square of the distance
+    light.color = glm::vec3(glm::dvec3(light.color) * (range.scale * range.scale));
   }
   for (Camera& camera : placements.cameras) {
     if (camera.pose) camera.pose = moved_matrix(*camera.pose, range, 1);

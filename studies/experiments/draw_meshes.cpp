@@ -11,11 +11,14 @@
 namespace quadrille::studies::experiments {
 namespace {
 
-std::uint32_t vertex_number(const hw::DrawState& draw, const models::DeviceMemory& memory, std::uint32_t position) {
+std::uint32_t vertex_number(const hw::DrawState& draw, const models::DeviceMemory& memory,
+                            std::uint32_t position) {
   if (!draw.indexed) return position;
   std::uint32_t index = 0;
-  std::memcpy(&index, memory.read(draw.index_address + std::uint64_t{position} * draw.index_bytes, draw.index_bytes).data(),
-              draw.index_bytes);
+  std::memcpy(
+      &index,
+      memory.read(draw.index_address + std::uint64_t{position} * draw.index_bytes, draw.index_bytes).data(),
+      draw.index_bytes);
   return index;
 }
 
@@ -47,7 +50,8 @@ std::vector<DrawMesh> draw_meshes(const traces::CommandStream& stream) {
 }
 
 std::uint64_t analysed_vertices(const DrawMesh& mesh, unsigned cache, unsigned warp, unsigned group) {
-  const auto counted = meshopt_analyzeVertexCache(mesh.corners.data(), mesh.corners.size(), mesh.vertices, cache, warp, group);
+  const auto counted =
+      meshopt_analyzeVertexCache(mesh.corners.data(), mesh.corners.size(), mesh.vertices, cache, warp, group);
   return std::uint64_t{mesh.instances} * counted.vertices_transformed;
 }
 

@@ -22,10 +22,13 @@ constexpr double kLongestFrameSeconds = 3600;
 const Experiment kExperiments[] = {
     {"memory-scheduling",
      "Memory access scheduling",
-     "Rixner and others (Memory Access Scheduling, ISCA 2000), media kernels and applications on one Imagine processor with in-order "
+     "Rixner and others (Memory Access Scheduling, ISCA 2000), media kernels and applications on one Imagine "
+     "processor with in-order "
      "access as the base: "
-     "first-ready scheduling raises the sustained bandwidth by 17 % on applications and 40 % on streams, aggressive reordering by 93 %.",
-     "Frames that memory limits, each with four controllers: in order; in order with rows opened ahead; first-ready; first-ready with "
+     "first-ready scheduling raises the sustained bandwidth by 17 % on applications and 40 % on streams, "
+     "aggressive reordering by 93 %.",
+     "Frames that memory limits, each with four controllers: in order; in order with rows opened ahead; "
+     "first-ready; first-ready with "
      "writes drained by watermarks. "
      "Victims leave the L2 cache in "
      "the order of eviction. Bandwidth is bytes moved by the channels over the frame's cycles.",
@@ -34,11 +37,14 @@ const Experiment kExperiments[] = {
      "960x540"},
     {"vertex-reuse",
      "Vertex reuse",
-     "Kerbl and others (Revisiting the Vertex Cache, 2018): GPUs reuse vertices within a batch, not through one cache. The indices 0, 1, 2 "
-     "drawn again and again cost a GeForce GTX 1080 Ti three invocations of the vertex shader up to 96 indices and six at 99; on a Radeon "
+     "Kerbl and others (Revisiting the Vertex Cache, 2018): GPUs reuse vertices within a batch, not through "
+     "one cache. The indices 0, 1, 2 "
+     "drawn again and again cost a GeForce GTX 1080 Ti three invocations of the vertex shader up to 96 "
+     "indices and six at 99; on a Radeon "
      "R7 "
      "200 the step is at 384. meshoptimizer's analyser counts what a mesh costs by such rules.",
-     "Every draw of a scene under six policies of vertex fetch, its shaded vertices beside the analyser's count of the same index lists; "
+     "Every draw of a scene under six policies of vertex fetch, its shaded vertices beside the analyser's "
+     "count of the same index lists; "
      "and "
      "the repeated triangle on both sides of the published steps.",
      &vertex_reuse,
@@ -46,44 +52,56 @@ const Experiment kExperiments[] = {
      "320x180"},
     {"small-triangles",
      "Small triangles",
-     "Riccio (How bad are small triangles on GPU and why?, g-truc, 2014), a frame of 1920x1080 filled by tiles of two triangles, time "
-     "against tiles of 128x128: no loss at 16x16 and above, a visible one at 8x8; at 1x1 about 10 times on Haswell, 15 on Kepler, 20 on "
+     "Riccio (How bad are small triangles on GPU and why?, g-truc, 2014), a frame of 1920x1080 filled by "
+     "tiles of two triangles, time "
+     "against tiles of 128x128: no loss at 16x16 and above, a visible one at 8x8; at 1x1 about 10 times on "
+     "Haswell, 15 on Kepler, 20 on "
      "Southern Islands. 256x1 differs from 1x256.",
-     "The same tiles, one indexed draw, shaders that hand through, on the default machine with four times its channels, so that memory is "
+     "The same tiles, one indexed draw, shaders that hand through, on the default machine with four times "
+     "its channels, so that memory is "
      "not the limit, and on machines of the cards' rates. Cycles until the pass is flushed.",
      &small_triangles,
      {},
      "1920x1080"},
     {"setup-rate",
      "Set-up rate",
-     "Reviews of the time (gpu-tech.org, GF100 vs. Archmark): up to the GT200 one triangle a clock when it is culled and half of that when "
-     "it is drawn; one drawn a clock on the Radeon HD 5000; 3.5 a clock with the four raster engines of the GF100.",
-     "A mesh of triangles of one pixel each, drawn eight times over: as it is, all culled, and all off screen. Cycles until the pass is "
+     "Reviews of the time (gpu-tech.org, GF100 vs. Archmark): up to the GT200 one triangle a clock when it "
+     "is culled and half of that when "
+     "it is drawn; one drawn a clock on the Radeon HD 5000; 3.5 a clock with the four raster engines of the "
+     "GF100.",
+     "A mesh of triangles of one pixel each, drawn eight times over: as it is, all culled, and all off "
+     "screen. Cycles until the pass is "
      "flushed.",
      &setup_rate,
      {},
      "128x128"},
     {"quad-overhead",
      "Quad overhead",
-     "Fatahalian and others (Reducing Shading on GPUs using Quad-Fragment Merging, SIGGRAPH 2010): a fragment costs at most 4 lanes at one "
-     "sample; about 1.4 lanes of 4 are live at triangles of one pixel; with several samples a covered pixel is shaded more than 8 times.",
+     "Fatahalian and others (Reducing Shading on GPUs using Quad-Fragment Merging, SIGGRAPH 2010): a "
+     "fragment costs at most 4 lanes at one "
+     "sample; about 1.4 lanes of 4 are live at triangles of one pixel; with several samples a covered pixel "
+     "is shaded more than 8 times.",
      "Frames of triangles of one area each, on the default machine: lanes executed over fragments covered.",
      &quad_overhead,
      {},
      "960x540"},
     {"hidden-surfaces",
      "Hidden surfaces",
-     "ATI's Radeon X800 (reviews of 2004: Hexus, AnandTech) drops up to 256 hidden pixels a clock by a hierarchical depth test of blocks "
+     "ATI's Radeon X800 (reviews of 2004: Hexus, AnandTech) drops up to 256 hidden pixels a clock by a "
+     "hierarchical depth test of blocks "
      "of 8x8 pixels.",
-     "Ten layers over the whole frame, each two triangles, depth test less and depth written: front to back and back to front, with and "
+     "Ten layers over the whole frame, each two triangles, depth test less and depth written: front to back "
+     "and back to front, with and "
      "without Hi-Z, on the default machine with four times its channels.",
      &hidden_surfaces,
      {},
      "960x540"},
     {"limits",
      "What limits a frame",
-     "Nothing is published to compare with: the ruler is the machine itself, drawn again with one resource doubled.",
-     "Frames on machines that are narrow at different places. The report of each frame, from its one run, names the doublings that it "
+     "Nothing is published to compare with: the ruler is the machine itself, drawn again with one resource "
+     "doubled.",
+     "Frames on machines that are narrow at different places. The report of each frame, from its one run, "
+     "names the doublings that it "
      "expects to gain most. Then every resource is doubled by itself, and the gains are measured.",
      &limits,
      {"builtin:cubes", "builtin:materials", "builtin:flag", "builtin:overdraw"},
@@ -91,7 +109,8 @@ const Experiment kExperiments[] = {
     {"parameters",
      "Every parameter by itself",
      "Nothing is published to compare with: each parameter is held to what it declares of itself.",
-     "Small frames on a few machines, each drawn again with one parameter changed. More of a resource shall slow no frame by more than 1 "
+     "Small frames on a few machines, each drawn again with one parameter changed. More of a resource shall "
+     "slow no frame by more than 1 "
      "%, and every parameter shall do something somewhere.",
      &parameters,
      {"builtin:cubes", "builtin:flag", "builtin:overdraw", "builtin:fill", "builtin:quad"},
@@ -100,7 +119,8 @@ const Experiment kExperiments[] = {
 
 pipeline::RenderedFrame drawn(const traces::CommandStream& stream, const pipeline::MachineConfig& machine) {
   pipeline::RenderedFrame frame = pipeline::render_exact(stream, machine, {});
-  if (!frame.figures.checks_hold()) throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(frame.figures));
+  if (!frame.figures.checks_hold())
+    throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(frame.figures));
   return frame;
 }
 
@@ -121,7 +141,8 @@ std::string padded(const std::string& text, std::size_t width) {
 }
 
 std::string verdict_text(const Verdict& v) {
-  return fmt::format("{:<5}  {}: {:.3g}, band {:.3g} to {:.3g}", v.holds() ? "holds" : "FAILS", v.what, v.value, v.least, v.most);
+  return fmt::format("{:<5}  {}: {:.3g}, band {:.3g} to {:.3g}", v.holds() ? "holds" : "FAILS", v.what,
+                     v.value, v.least, v.most);
 }
 
 }  // namespace
@@ -148,10 +169,12 @@ Readings::Readings(const std::string& report_json) {
     const std::string kind(pipeline::without_number(path));
     sums[kind + ".cycles"] += unit.at("cycles").get<double>();
     sums[kind + ".busy"] += unit.at("busy").get<double>();
-    for (const auto& [name, value] : unit.at("counters").items()) sums[kind + "." + name] += value.get<double>();
+    for (const auto& [name, value] : unit.at("counters").items())
+      sums[kind + "." + name] += value.get<double>();
   }
   if (report.contains("limit") && !report["limit"].is_null()) {
-    for (const auto& [name, value] : report["limit"].at("gains").items()) sums["gain." + name] = value.get<double>();
+    for (const auto& [name, value] : report["limit"].at("gains").items())
+      sums["gain." + name] = value.get<double>();
   }
   values_.assign(sums.begin(), sums.end());
 }
@@ -168,7 +191,8 @@ double Readings::gain(const std::string& resource) const {
 }
 
 std::vector<std::vector<double>> frame_cycles(const std::vector<traces::CommandStream>& streams,
-                                              const std::vector<std::vector<std::string>>& machines, const Setting& setting) {
+                                              const std::vector<std::vector<std::string>>& machines,
+                                              const Setting& setting) {
   // A process draws one frame: SystemC elaborates once.
   std::vector<ChildWork> works;
   for (const std::vector<std::string>& settings : machines) {
@@ -185,7 +209,8 @@ std::vector<std::vector<double>> frame_cycles(const std::vector<traces::CommandS
   std::size_t done = 0;
   run_in_children(works, setting.jobs, [&](std::size_t i, const ChildRun& run) {
     const std::size_t m = i / streams.size(), s = i % streams.size();
-    cycles[m][s] = std::stod(output_of(run, fmt::format("{} with {}", streams[s].name, fmt::join(machines[m], " "))));
+    cycles[m][s] =
+        std::stod(output_of(run, fmt::format("{} with {}", streams[s].name, fmt::join(machines[m], " "))));
     setting.progress(fmt::format("{} of {} frames", ++done, works.size()));
   });
   return cycles;
@@ -193,11 +218,13 @@ std::vector<std::vector<double>> frame_cycles(const std::vector<traces::CommandS
 
 std::vector<Readings> draw(const std::vector<Frame>& frames, const Setting& setting) {
   std::vector<ChildWork> works;
-  for (const Frame& frame : frames) works.push_back({[&frame] { return figures_of(frame); }, {.seconds = kLongestFrameSeconds}});
+  for (const Frame& frame : frames)
+    works.push_back({[&frame] { return figures_of(frame); }, {.seconds = kLongestFrameSeconds}});
   std::vector<std::string> reports(frames.size());
   std::size_t drawn = 0;
   run_in_children(works, setting.jobs, [&](std::size_t i, const ChildRun& run) {
-    reports[i] = output_of(run, fmt::format("{} with {}", frames[i].stream->name, fmt::join(frames[i].settings, " ")));
+    reports[i] =
+        output_of(run, fmt::format("{} with {}", frames[i].stream->name, fmt::join(frames[i].settings, " ")));
     setting.progress(fmt::format("{} of {} frames", ++drawn, frames.size()));
   });
   return {reports.begin(), reports.end()};
@@ -215,8 +242,8 @@ std::string result_text(const Experiment& experiment, const Result& result) {
     for (std::size_t c = 0; c < cells.size(); ++c) text += " " + padded(cells[c], widths[c] + 1);
     return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
   };
-  std::string text = fmt::format("EXPERIMENT  {}: {}\n  published: {}\n  here: {}\n\n", experiment.name, experiment.title,
-                                 experiment.published, experiment.how);
+  std::string text = fmt::format("EXPERIMENT  {}: {}\n  published: {}\n  here: {}\n\n", experiment.name,
+                                 experiment.title, experiment.published, experiment.how);
   text += line(result.table.head);
   for (const auto& row : result.table.rows) text += line(row);
   text += "\n";
@@ -226,8 +253,11 @@ std::string result_text(const Experiment& experiment, const Result& result) {
 }
 
 std::string result_markdown(const Experiment& experiment, const Result& result, const std::string& picture) {
-  const auto line = [](const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); };
-  std::string text = fmt::format("# {}\n\n**Published.** {}\n\n**Here.** {}\n\n", experiment.title, experiment.published, experiment.how);
+  const auto line = [](const std::vector<std::string>& cells) {
+    return fmt::format("| {} |\n", fmt::join(cells, " | "));
+  };
+  std::string text = fmt::format("# {}\n\n**Published.** {}\n\n**Here.** {}\n\n", experiment.title,
+                                 experiment.published, experiment.how);
   text += line(result.table.head) + line(std::vector<std::string>(result.table.head.size(), "---"));
   for (const auto& row : result.table.rows) text += line(row);
   text += "\n";

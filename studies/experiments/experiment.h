@@ -1,7 +1,9 @@
-/// Experiments: what others measured on real hardware or published of simulators, run on the simulated machine, with the band that the published figures give.
+/// Experiments: what others measured on real hardware or published of simulators, run on the simulated
+/// machine, with the band that the published figures give.
 ///
-/// An experiment is one file of this folder and one line of `experiments()`. It draws its frames, each in a process of its own, and returns a table, verdicts and a
-/// plot. A band is never widened so that it holds: a figure that falls outside says FAILS, and the page says why.
+/// An experiment is one file of this folder and one line of `experiments()`. It draws its frames, each in a
+/// process of its own, and returns a table, verdicts and a plot. A band is never widened so that it holds: a
+/// figure that falls outside says FAILS, and the page says why.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +65,8 @@ struct Frame {
 };
 /// The default machine with settings `KEY=VALUE`. Throws `UserError` for one that is refused.
 void apply_settings(pipeline::MachineConfig& machine, const std::vector<std::string>& settings);
-/// Figures of a frame, by name: "frame.cycles", and "KIND.COUNTER" summed over the units of a kind ("memory.bus_busy", "memory.cycles").
+/// Figures of a frame, by name: "frame.cycles", and "KIND.COUNTER" summed over the units of a kind
+/// ("memory.bus_busy", "memory.cycles").
 class Readings {
  public:
   explicit Readings(const std::string& report_json);
@@ -78,13 +81,16 @@ class Readings {
 /// Draws all frames, in order. Throws `UserError` as a refused run does.
 [[nodiscard]] std::vector<Readings> draw(const std::vector<Frame>& frames, const Setting& setting);
 
-/// The cycles of all frames on all machines: [machine][stream]. Machines by their settings; throws as `draw` does.
-[[nodiscard]] std::vector<std::vector<double>> frame_cycles(const std::vector<traces::CommandStream>& streams,
-                                                            const std::vector<std::vector<std::string>>& machines, const Setting& setting);
+/// The cycles of all frames on all machines: [machine][stream]. Machines by their settings; throws as
+/// `draw` does.
+[[nodiscard]] std::vector<std::vector<double>> frame_cycles(
+    const std::vector<traces::CommandStream>& streams, const std::vector<std::vector<std::string>>& machines,
+    const Setting& setting);
 
 /// The result as text, and as a page of documentation that shows `picture`.
 [[nodiscard]] std::string result_text(const Experiment& experiment, const Result& result);
-[[nodiscard]] std::string result_markdown(const Experiment& experiment, const Result& result, const std::string& picture);
+[[nodiscard]] std::string result_markdown(const Experiment& experiment, const Result& result,
+                                          const std::string& picture);
 
 // The experiments, each in its file.
 [[nodiscard]] Result limits(const Setting& setting);

@@ -34,7 +34,8 @@ TriangleMesh same_triangle(std::uint32_t width, std::uint32_t height, std::uint3
 
 TriangleMesh repeated(TriangleMesh mesh, std::uint32_t times) {
   const std::vector<std::array<std::uint32_t, 3>> once = mesh.triangles;
-  for (std::uint32_t i = 1; i < times; ++i) mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
+  for (std::uint32_t i = 1; i < times; ++i)
+    mesh.triangles.insert(mesh.triangles.end(), once.begin(), once.end());
   return mesh;
 }
 
@@ -50,12 +51,14 @@ TriangleMesh scattered(std::uint32_t width, std::uint32_t height, double area) {
   const int count = static_cast<int>(std::min<double>(kMostTriangles, kFragments / area));
   for (int i = 0; i < count; ++i) {
     const double turn = draws.next() * 2 * std::numbers::pi;
-    const double x = radius + draws.next() * (width - 2 * radius), y = radius + draws.next() * (height - 2 * radius);
+    const double x = radius + draws.next() * (width - 2 * radius),
+                 y = radius + draws.next() * (height - 2 * radius);
     const auto first = static_cast<std::uint32_t>(mesh.corners.size());
     for (int c = 0; c < 3; ++c) {
       const double angle = turn + c * 2 * std::numbers::pi / 3;
-      mesh.corners.push_back({static_cast<std::int32_t>(std::lround(kGrid * (x + radius * std::cos(angle)))),
-                              static_cast<std::int32_t>(std::lround(kGrid * (y + radius * std::sin(angle))))});
+      mesh.corners.push_back(
+          {static_cast<std::int32_t>(std::lround(kGrid * (x + radius * std::cos(angle)))),
+           static_cast<std::int32_t>(std::lround(kGrid * (y + radius * std::sin(angle))))});
     }
     mesh.triangles.push_back({first, first + 1, first + 2});
   }

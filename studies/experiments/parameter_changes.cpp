@@ -69,12 +69,17 @@ const std::vector<Tight>& tight_grounds() {
       {"memory.t_rfc", {"memory.refresh=all_bank"}},
       {"memory.t_rtrs", with(kNarrowMemory, {"memory.ranks=2"})},
       {"memory.age_cap", with(kNarrowMemory, {"memory.age_cap=50"})},
-      {"memory.", with(kNarrowMemory, {"memory.banks=4", "memory.bank_groups=2", "memory.queue_depth=8", "memory.write_queue=8"})},
+      {"memory.", with(kNarrowMemory, {"memory.banks=4", "memory.bank_groups=2", "memory.queue_depth=8",
+                                       "memory.write_queue=8"})},
       {"l2.write_back_lines", with(kNarrowMemory, {"l2.write_back=row"})},
       {"l2.", with(kNarrowMemory, {"l2.cache_lines=32", "l2.cache_ways=2", "l2.cache_misses=4"})},
-      {"texture.", {"texture.cache_lines=8", "texture.cache_ways=2", "texture.cache_misses=1", "texture.groups_in_flight=2"}},
-      {"rop.", with(kNarrowMemory, {"rop.cache_lines=8", "rop.cache_ways=2", "rop.cache_misses=1", "rop.warps_in_flight=2"})},
-      {"depth.", with(kNarrowMemory, {"depth.cache_lines=8", "depth.cache_ways=2", "depth.cache_misses=1", "depth.tiles_in_flight=2"})},
+      {"texture.",
+       {"texture.cache_lines=8", "texture.cache_ways=2", "texture.cache_misses=1",
+        "texture.groups_in_flight=2"}},
+      {"rop.", with(kNarrowMemory, {"rop.cache_lines=8", "rop.cache_ways=2", "rop.cache_misses=1",
+                                    "rop.warps_in_flight=2"})},
+      {"depth.", with(kNarrowMemory, {"depth.cache_lines=8", "depth.cache_ways=2", "depth.cache_misses=1",
+                                      "depth.tiles_in_flight=2"})},
       {"vertex_fetch.reuse_entries", {"vertex_fetch.reuse=fifo"}},
       {"work_distributor.block_tiles", {"work_distributor.policy=tile"}},
       {"clipper.", kFastGeometry},
@@ -86,17 +91,20 @@ const std::vector<Tight>& tight_grounds() {
   return all;
 }
 
-/// A link of one place passes a token in as many cycles as its latencies take together; its width shows when both its ends are fast.
+/// A link of one place passes a token in as many cycles as its latencies take together; its width shows when
+/// both its ends are fast.
 Settings tight_link(const std::string& path) {
   const std::string link = path.substr(0, path.rfind('.'));
   if (path.ends_with(".width")) return with(kFastGeometry, {link + ".width=4", link + ".depth=64"});
-  if (path.ends_with(".depth")) return {link + ".depth=1", link + ".latency=256", link + ".credit_latency=256"};
+  if (path.ends_with(".depth"))
+    return {link + ".depth=1", link + ".latency=256", link + ".credit_latency=256"};
   return {link + ".depth=1"};
 }
 
 Settings tight_settings(const std::string& path) {
   if (path.starts_with("link.")) return tight_link(path);
-  const auto found = std::ranges::find_if(tight_grounds(), [&](const Tight& tight) { return path.starts_with(tight.path); });
+  const auto found =
+      std::ranges::find_if(tight_grounds(), [&](const Tight& tight) { return path.starts_with(tight.path); });
   return found == tight_grounds().end() ? Settings{} : found->settings;
 }
 
@@ -110,8 +118,10 @@ std::vector<std::string> values_of(const hw::ParamBase& p, const std::vector<dou
       if (other != value && std::ranges::find(values, text) == values.end()) values.push_back(text);
     }
   };
-  if (const auto* n = dynamic_cast<const hw::Param<int>*>(&p)) numbers(n->value(), n->range().min, n->range().max, true);
-  if (const auto* d = dynamic_cast<const hw::Param<double>*>(&p)) numbers(d->value(), d->range().min, d->range().max, false);
+  if (const auto* n = dynamic_cast<const hw::Param<int>*>(&p))
+    numbers(n->value(), n->range().min, n->range().max, true);
+  if (const auto* d = dynamic_cast<const hw::Param<double>*>(&p))
+    numbers(d->value(), d->range().min, d->range().max, false);
   for (const std::string_view word : p.words())
     if (word != p.value_text()) values.emplace_back(word);
   return values;
@@ -130,8 +140,8 @@ bool is_more(const hw::ParamBase& p, const std::string& value) {
   return p.words().empty() ? std::stod(value) > std::stod(p.value_text()) : value == "true";
 }
 
-void add_changes(std::vector<Change>& changes, const Ground& ground, const std::string& path, const hw::ParamBase& p,
-                 const std::vector<double>& factors) {
+void add_changes(std::vector<Change>& changes, const Ground& ground, const std::string& path,
+                 const hw::ParamBase& p, const std::vector<double>& factors) {
   if (p.effect() == hw::Effect::kPicture) return;
   for (const std::string& value : values_of(p, factors)) {
     Change change{path, value, ground.name, ground.settings, p.effect(), is_more(p, value)};
@@ -153,7 +163,9 @@ void visit_parameters(const Ground& ground, const Visit& visit) {
 std::vector<Change> near_changes() {
   std::vector<Change> changes;
   for (const Ground& ground : common_grounds())
-    visit_parameters(ground, [&](const std::string& path, const hw::ParamBase& p) { add_changes(changes, ground, path, p, {0.5, 2.0}); });
+    visit_parameters(ground, [&](const std::string& path, const hw::ParamBase& p) {
+      add_changes(changes, ground, path, p, {0.5, 2.0});
+    });
   return changes;
 }
 

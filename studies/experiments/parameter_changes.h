@@ -17,12 +17,13 @@ struct Change {
   bool more = false;  ///< of a number; of a switch, on
 };
 
-/// Half and twice of each number, and every other word, on the default machine and on some that are narrow elsewhere. Changes that give no legal machine are left out,
-/// and what changes the picture.
+/// Half and twice of each number, and every other word, on the default machine and on some that are narrow
+/// elsewhere. Changes that give no legal machine are left out, and what changes the picture.
 [[nodiscard]] std::vector<Change> near_changes();
 
-/// For parameters that showed nothing so: an eighth and eight times of it there, and all of these on a machine on which it must show (a link of one place, a policy
-/// that asks for it, units that wait for nothing else).
+/// For parameters that showed nothing so: an eighth and eight times of it there, and all of these on a
+/// machine on which it must show (a link of one place, a policy that asks for it, units that wait for nothing
+/// else).
 [[nodiscard]] std::vector<Change> far_changes(const std::vector<std::string>& paths);
 
 }  // namespace quadrille::studies::experiments

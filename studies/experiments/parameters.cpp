@@ -20,8 +20,8 @@ constexpr double kWrong = 0.01;
 constexpr double kChaos = 0.005;
 /// A change of less than this part is no effect.
 constexpr double kEffect = 0.0005;
-/// A short frame moves by a per cent or two when any unit acts a cycle later. What seems wrong is drawn again so many times, on machines whose memory is a little
-/// farther away each time, and the mean counts.
+/// A short frame moves by a per cent or two when any unit acts a cycle later. What seems wrong is drawn again
+/// so many times, on machines whose memory is a little farther away each time, and the mean counts.
 constexpr int kShakes = 12;
 constexpr int kShakeClk = 3;
 
@@ -30,7 +30,9 @@ struct Anomaly {
   std::string_view path, cause;
 };
 constexpr Anomaly kAnomalies[] = {
-    {"memory.queue_depth", "short frames: one run of kept-back writes more or less before the frame ends, 1000 to 1500 cycles here"},
+    {"memory.queue_depth",
+     "short frames: one run of kept-back writes more or less before the frame ends, 1000 to 1500 cycles "
+     "here"},
     {"memory.banks", "as of memory.queue_depth: 1496 cycles of writes more within the frame of builtin:flag"},
 };
 /// No more are allowed.
@@ -41,7 +43,8 @@ std::string_view cause_of(const std::string& path) {
   return found == std::end(kAnomalies) ? std::string_view() : found->cause;
 }
 
-/// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up, layers that lie behind each other, and fragments that the shader drops.
+/// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up,
+/// layers that lie behind each other, and fragments that the shader drops.
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   constexpr std::int32_t kBeyond = 100'000;  // pixels
   constexpr int kLayers = 8;
@@ -113,7 +116,8 @@ class Sweep {
     if (shake == 0) return machine;
     const pipeline::MachineConfig plain;
     const int farther = kShakeClk * shake;
-    if (c.path == "memory.path_clk") machine.push_back(fmt::format("l2.hit_clk={}", plain.l2.hit_clk + farther));
+    if (c.path == "memory.path_clk")
+      machine.push_back(fmt::format("l2.hit_clk={}", plain.l2.hit_clk + farther));
     else machine.push_back(fmt::format("memory.path_clk={}", plain.memory.path_clk + farther));
     return machine;
   }
@@ -152,11 +156,14 @@ void try_changes(const Sweep& sweep, const std::vector<Change>& changes, Finding
   for (std::size_t i = 0; i < suspects.size(); ++i) {
     if (!is_wrong(suspects[i], again[i].mean)) continue;
     std::string& wrong = findings[suspects[i].path].wrong;
-    wrong += fmt::format("{}{} on {}: {:+.1f} %", wrong.empty() ? "" : "; ", suspects[i].value, suspects[i].ground, 100 * again[i].mean);
+    wrong += fmt::format("{}{} on {}: {:+.1f} %", wrong.empty() ? "" : "; ", suspects[i].value,
+                         suspects[i].ground, 100 * again[i].mean);
   }
 }
 
-bool without_effect(const Finding& finding) { return finding.greatest < kEffect && finding.effect != hw::Effect::kNeutral; }
+bool without_effect(const Finding& finding) {
+  return finding.greatest < kEffect && finding.effect != hw::Effect::kNeutral;
+}
 
 std::vector<std::string> silent(const Findings& findings) {
   std::vector<std::string> paths;
@@ -176,27 +183,33 @@ Result parameters(const Setting& setting) {
   try_changes(sweep, far, findings);
 
   Result result;
-  result.table.head = {"parameter", "more is", "greatest change of a frame, %", "against what it declares", "cause"};
+  result.table.head = {"parameter", "more is", "greatest change of a frame, %", "against what it declares",
+                       "cause"};
   std::string data;
   std::size_t unnamed = 0, named = 0;
   for (const auto& [path, finding] : findings) {
     const std::string_view cause = cause_of(path);
     if (!finding.wrong.empty()) ++(cause.empty() ? unnamed : named);
-    result.table.rows.push_back({path, std::string(hw::effect_name(finding.effect)),
-                                 fmt::format("{:.2f}{}", 100 * finding.greatest, without_effect(finding) ? " (none)" : ""), finding.wrong,
-                                 finding.wrong.empty() ? "" : std::string(cause)});
+    result.table.rows.push_back(
+        {path, std::string(hw::effect_name(finding.effect)),
+         fmt::format("{:.2f}{}", 100 * finding.greatest, without_effect(finding) ? " (none)" : ""),
+         finding.wrong, finding.wrong.empty() ? "" : std::string(cause)});
     data += fmt::format("{}\n", std::max(0.01, 100 * finding.greatest));
   }
   const auto count = [](std::size_t n) { return static_cast<double>(n); };
-  result.verdicts = {{"parameters that go against what they declare, without a known cause", count(unnamed), 0, 0},
-                     {"parameters that do so with a cause named here", count(named), 0, count(kMostAnomalies)},
-                     {"parameters without any effect", count(silent(findings).size()), 0, 0}};
+  result.verdicts = {
+      {"parameters that go against what they declare, without a known cause", count(unnamed), 0, 0},
+      {"parameters that do so with a cause named here", count(named), 0, count(kMostAnomalies)},
+      {"parameters without any effect", count(silent(findings).size()), 0, 0}};
   result.remarks = {
-      fmt::format("{} changes: half and twice of each number and every other word of each choice, on three machines; and {} "
-                  "of those that did nothing so, farther and on machines made for them. What seemed wrong was drawn {} times.",
+      fmt::format("{} changes: half and twice of each number and every other word of each choice, on three "
+                  "machines; and {} "
+                  "of those that did nothing so, farther and on machines made for them. What seemed wrong "
+                  "was drawn {} times.",
                   near.size(), far.size(), kShakes)};
   result.plot =
-      "set logscale y\nset ylabel 'greatest change, % of a frame'\nset xlabel 'parameters, in the order of the table'\nset grid y\nset "
+      "set logscale y\nset ylabel 'greatest change, % of a frame'\nset xlabel 'parameters, in the order of "
+      "the table'\nset grid y\nset "
       "key off\n$d << EOD\n" +
       data + "EOD\nplot $d using 0:1 with impulses lw 2";
   return result;

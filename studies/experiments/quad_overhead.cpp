@@ -46,30 +46,41 @@ Result quad_overhead(const Setting& setting) {
     const Coverage one = coverage_of(meshes[i], kOneSample), four = coverage_of(meshes[i], kFourSamples);
     const double fragments = r["frame.fragments_covered"], lanes = r["frame.executed_lanes"];
     const double counted = 4 * ratio(one.quads, one.pixels), live = 4 * fragments / lanes;
-    const double four_lanes = 4 * static_cast<double>(four.quads) / (area * static_cast<double>(meshes[i].triangles.size()));
-    result.table.rows.push_back({fmt::format("{}", area), fmt::format("{}", meshes[i].triangles.size()), fmt::format("{:.0f}", fragments),
-                                 fmt::format("{:.0f}", lanes), fmt::format("{:.3f}", lanes / fragments), fmt::format("{:.3f}", counted),
-                                 fmt::format("{:.3f}", live), fmt::format("{:.3f}", ratio(four.pixels, four.quads)),
+    const double four_lanes =
+        4 * static_cast<double>(four.quads) / (area * static_cast<double>(meshes[i].triangles.size()));
+    result.table.rows.push_back({fmt::format("{}", area), fmt::format("{}", meshes[i].triangles.size()),
+                                 fmt::format("{:.0f}", fragments), fmt::format("{:.0f}", lanes),
+                                 fmt::format("{:.3f}", lanes / fragments), fmt::format("{:.3f}", counted),
+                                 fmt::format("{:.3f}", live),
+                                 fmt::format("{:.3f}", ratio(four.pixels, four.quads)),
                                  fmt::format("{:.2f}", four_lanes)});
-    result.verdicts.push_back({fmt::format("{} px: lanes a fragment over those counted", area), lanes / fragments / counted, 0.98, 1.02});
+    result.verdicts.push_back({fmt::format("{} px: lanes a fragment over those counted", area),
+                               lanes / fragments / counted, 0.98, 1.02});
     if (i == 0) {
-      result.verdicts.push_back({"1 px: live lanes of 4, one sample, against those published", live, kPublishedLive * (1 - kPublishedBand),
+      result.verdicts.push_back({"1 px: live lanes of 4, one sample, against those published", live,
+                                 kPublishedLive * (1 - kPublishedBand),
                                  kPublishedLive * (1 + kPublishedBand)});
     }
     data += fmt::format("{} {} {} {}\n", area, lanes / fragments, counted, four_lanes);
   }
   result.remarks = {
-      "The triangles are equilateral, turned and placed by chance, so no tile or quad is favoured. What is counted is counted pixel by "
+      "The triangles are equilateral, turned and placed by chance, so no tile or quad is favoured. What is "
+      "counted is counted pixel by "
       "pixel by a rasteriser that shares no code with the machine.",
-      "At one sample the published 1.4 live lanes of 4 cannot be reached by any rasteriser that tests pixel centres: a triangle of one "
-      "pixel covers one centre on average and touches 0.92 quads, so 1.08 lanes of a quad that is shaded are live. With four samples a "
-      "pixel the count gives 1.47 live lanes and 7.1 lanes shaded a pixel of area, which suggests that the published 1.4, and more than 8, "
+      "At one sample the published 1.4 live lanes of 4 cannot be reached by any rasteriser that tests pixel "
+      "centres: a triangle of one "
+      "pixel covers one centre on average and touches 0.92 quads, so 1.08 lanes of a quad that is shaded are "
+      "live. With four samples a "
+      "pixel the count gives 1.47 live lanes and 7.1 lanes shaded a pixel of area, which suggests that the "
+      "published 1.4, and more than 8, "
       "are of several samples. The machine has one."};
   result.plot =
-      "set logscale x 2\nset xlabel 'area of a triangle, pixels'\nset ylabel 'lanes'\nset yrange [0:*]\nset key top right\nset grid\n$d << "
+      "set logscale x 2\nset xlabel 'area of a triangle, pixels'\nset ylabel 'lanes'\nset yrange [0:*]\nset "
+      "key top right\nset grid\n$d << "
       "EOD\n" +
       data +
-      "EOD\nplot $d using 1:3 with lines lw 2 title 'counted, a fragment', '' using 1:2 with points pt 7 title 'simulated, a fragment', '' "
+      "EOD\nplot $d using 1:3 with lines lw 2 title 'counted, a fragment', '' using 1:2 with points pt 7 "
+      "title 'simulated, a fragment', '' "
       "using 1:4 with lines dt 2 title 'counted with 4 samples, a pixel of area'";
   return result;
 }

@@ -33,11 +33,14 @@ traces::Buffer buffer_of(const char* name, std::span<const T> values) {
   return buffer;
 }
 
-/// Clip space, from the window. The error of a float, 2^-24 of the frame, is far below half a step of the grid: snapping finds the corner again.
+/// Clip space, from the window. The error of a float, 2^-24 of the frame, is far below half a step of the
+/// grid: snapping finds the corner again.
 std::vector<float> clip_positions(const TriangleMesh& mesh, bool depth) {
   std::vector<float> positions;
   positions.reserve(3 * mesh.corners.size());
-  const auto clip = [](std::int32_t at, std::uint32_t size) { return static_cast<float>(2.0 * at / (double{kGrid} * size) - 1); };
+  const auto clip = [](std::int32_t at, std::uint32_t size) {
+    return static_cast<float>(2.0 * at / (double{kGrid} * size) - 1);
+  };
   for (const WindowCorner& c : mesh.corners) {
     positions.push_back(clip(c.x, mesh.width));
     positions.push_back(clip(c.y, mesh.height));
@@ -51,7 +54,8 @@ traces::Pipeline pipeline_of(const DrawOptions& options) {
   pipeline.vertex_shader = 0;
   pipeline.fragment_shader = 1;
   // A component that is not there reads as 0.
-  const traces::Format format = options.depth ? traces::Format::kR32G32B32Float : traces::Format::kR32G32Float;
+  const traces::Format format =
+      options.depth ? traces::Format::kR32G32B32Float : traces::Format::kR32G32Float;
   pipeline.bindings = {{0, traces::format_bytes(format), false}};
   pipeline.attributes = {{0, 0, format, 0}};
   pipeline.cull = options.cull;
@@ -71,7 +75,8 @@ const char* fragment_shader_of(const DrawOptions& options) {
 
 }  // namespace
 
-void TriangleMesh::rectangle(std::int32_t left, std::int32_t top, std::int32_t right, std::int32_t bottom, float depth) {
+void TriangleMesh::rectangle(std::int32_t left, std::int32_t top, std::int32_t right, std::int32_t bottom,
+                             float depth) {
   const auto first = static_cast<std::uint32_t>(corners.size());
   for (const auto& [x, y] : {std::array{left, top}, {right, top}, {right, bottom}, {left, bottom}})
     corners.push_back({x * kGrid, y * kGrid, depth});
@@ -79,8 +84,8 @@ void TriangleMesh::rectangle(std::int32_t left, std::int32_t top, std::int32_t r
   triangles.push_back({first, first + 2, first + 3});
 }
 
-TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height,
-                         std::uint32_t column_tiles) {
+TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width,
+                         std::uint32_t tile_height, std::uint32_t column_tiles) {
   TriangleMesh mesh{width, height, {}, {}};
   const auto tiles = [](std::uint32_t size, std::uint32_t tile) { return (size + tile - 1) / tile; };
   const std::uint32_t columns = tiles(width, tile_width), rows = tiles(height, tile_height);
@@ -107,25 +112,29 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
   traces::CommandStream stream;
   stream.name = "triangles";
   stream.shaders = {
-      {"hand through", ShaderStage::kVertex, scenes::compile_glsl(kVertexShader, ShaderStage::kVertex, "triangles.vert")},
-      {"one colour", ShaderStage::kFragment, scenes::compile_glsl(fragment_shader_of(options), ShaderStage::kFragment, "triangles.frag")}};
+      {"hand through", ShaderStage::kVertex,
+       scenes::compile_glsl(kVertexShader, ShaderStage::kVertex, "triangles.vert")},
+      {"one colour", ShaderStage::kFragment,
+       scenes::compile_glsl(fragment_shader_of(options), ShaderStage::kFragment, "triangles.frag")}};
   const std::vector<float> positions = clip_positions(mesh, options.depth);
-  const std::span<const std::uint32_t> indices(mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), 3 * mesh.triangles.size());
+  const std::span<const std::uint32_t> indices(
+      mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), 3 * mesh.triangles.size());
   stream.buffers = {buffer_of<float>("positions", positions), buffer_of("indices", indices)};
-  stream.targets = {
-      {mesh.width, mesh.height, traces::Format::kR8G8B8A8Unorm, options.depth ? traces::Format::kD32Float : traces::Format::kUndefined}};
+  stream.targets = {{mesh.width, mesh.height, traces::Format::kR8G8B8A8Unorm,
+                     options.depth ? traces::Format::kD32Float : traces::Format::kUndefined}};
   stream.pipelines = {pipeline_of(options)};
   traces::Draw draw;
   draw.indexed = true;
   draw.count = static_cast<std::uint32_t>(indices.size());
-  stream.commands = {traces::BeginPass{},
-                     traces::BindPipeline{0},
-                     traces::BindVertexBuffer{0, 0, 0},
-                     traces::BindIndexBuffer{1, 0, traces::IndexType::kUint32},
-                     traces::SetViewport{0, 0, static_cast<float>(mesh.width), static_cast<float>(mesh.height), 0, 1},
-                     traces::SetScissor{0, 0, mesh.width, mesh.height},
-                     draw,
-                     traces::EndPass{}};
+  stream.commands = {
+      traces::BeginPass{},
+      traces::BindPipeline{0},
+      traces::BindVertexBuffer{0, 0, 0},
+      traces::BindIndexBuffer{1, 0, traces::IndexType::kUint32},
+      traces::SetViewport{0, 0, static_cast<float>(mesh.width), static_cast<float>(mesh.height), 0, 1},
+      traces::SetScissor{0, 0, mesh.width, mesh.height},
+      draw,
+      traces::EndPass{}};
   traces::validate(stream);
   return stream;
 }

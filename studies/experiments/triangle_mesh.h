@@ -1,6 +1,8 @@
-/// Meshes of flat triangles in the window, for experiments whose outcome follows from counting: what is drawn, and the frame that draws it.
+/// Meshes of flat triangles in the window, for experiments whose outcome follows from counting: what is
+/// drawn, and the frame that draws it.
 ///
-/// Corners lie on the grid of 1/256 pixel that the machine snaps to, so what a triangle covers is known exactly.
+/// Corners lie on the grid of 1/256 pixel that the machine snaps to, so what a triangle covers is known
+/// exactly.
 #pragma once
 
 #include <array>
@@ -27,10 +29,11 @@ struct TriangleMesh {
   void rectangle(std::int32_t left, std::int32_t top, std::int32_t right, std::int32_t bottom, float depth);
 };
 
-/// The frame filled by pairs of triangles, each pair a tile of `tile_width` x `tile_height` pixels (cut at the right and lower edge). Tiles come in columns
-/// of `column_tiles`, from top to bottom, and share their corners within a column.
-[[nodiscard]] TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width, std::uint32_t tile_height,
-                                       std::uint32_t column_tiles = 4);
+/// The frame filled by pairs of triangles, each pair a tile of `tile_width` x `tile_height` pixels (cut at
+/// the right and lower edge). Tiles come in columns of `column_tiles`, from top to bottom, and share their
+/// corners within a column.
+[[nodiscard]] TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width,
+                                       std::uint32_t tile_height, std::uint32_t column_tiles = 4);
 
 struct DrawOptions {
   traces::CullMode cull = traces::CullMode::kNone;

@@ -9,7 +9,8 @@ namespace {
 constexpr std::int64_t kTile = 8;
 constexpr std::int64_t kWarpQuads = 8;
 
-/// Positive inside, for the triangle turned so that its area is positive; `owned`: a centre on the edge belongs to it (left and top edges own theirs).
+/// Positive inside, for the triangle turned so that its area is positive; `owned`: a centre on the edge
+/// belongs to it (left and top edges own theirs).
 struct Edge {
   std::int64_t x = 0, y = 0, dx = 0, dy = 0;
   bool owned = false;
@@ -24,16 +25,19 @@ struct Shape {
   [[nodiscard]] bool covers(std::int64_t px, std::int64_t py, const Sample& sample = {}) const {
     return std::ranges::all_of(edges, [&](const Edge& e) { return e.inside(px, py, sample); });
   }
-  std::int64_t left = 0, top = 0, right = 0, bottom = 0;  ///< pixels whose centres lie in the bounding box: from, and up to
+  /// pixels whose centres lie in the bounding box: from, and up to
+  std::int64_t left = 0, top = 0, right = 0, bottom = 0;
 };
 
 std::int64_t first_centre(std::int64_t at) { return (at + kGrid / 2 - 1) / kGrid; }
 
 /// The triangle, turned clockwise as seen on the screen. False for one without area.
 bool shape_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& triangle, Shape& shape) {
-  std::array<const WindowCorner*, 3> c{&mesh.corners[triangle[0]], &mesh.corners[triangle[1]], &mesh.corners[triangle[2]]};
+  std::array<const WindowCorner*, 3> c{&mesh.corners[triangle[0]], &mesh.corners[triangle[1]],
+                                       &mesh.corners[triangle[2]]};
   const auto area = [&] {
-    return std::int64_t{c[1]->x - c[0]->x} * (c[2]->y - c[0]->y) - std::int64_t{c[1]->y - c[0]->y} * (c[2]->x - c[0]->x);
+    return std::int64_t{c[1]->x - c[0]->x} * (c[2]->y - c[0]->y) -
+           std::int64_t{c[1]->y - c[0]->y} * (c[2]->x - c[0]->x);
   };
   if (area() == 0) return false;
   if (area() < 0) std::swap(c[1], c[2]);
@@ -54,15 +58,17 @@ bool shape_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& tria
 /// Kept unless all 64 pixels are outside one edge: an edge function is greatest at a corner.
 bool tile_kept(const Shape& shape, std::int64_t tx, std::int64_t ty) {
   const std::int64_t x0 = tx * kTile, y0 = ty * kTile, x1 = x0 + kTile - 1, y1 = y0 + kTile - 1;
-  return std::ranges::all_of(shape.edges,
-                             [&](const Edge& e) { return e.inside(x0, y0) || e.inside(x1, y0) || e.inside(x0, y1) || e.inside(x1, y1); });
+  return std::ranges::all_of(shape.edges, [&](const Edge& e) {
+    return e.inside(x0, y0) || e.inside(x1, y0) || e.inside(x0, y1) || e.inside(x1, y1);
+  });
 }
 
 Coverage tile_coverage(const Shape& shape, std::int64_t tx, std::int64_t ty) {
   Coverage covered;
   std::array<bool, 16> quad{};
   for (std::int64_t y = std::max(shape.top, ty * kTile); y < std::min(shape.bottom, (ty + 1) * kTile); ++y) {
-    for (std::int64_t x = std::max(shape.left, tx * kTile); x < std::min(shape.right, (tx + 1) * kTile); ++x) {
+    for (std::int64_t x = std::max(shape.left, tx * kTile); x < std::min(shape.right, (tx + 1) * kTile);
+         ++x) {
       if (!shape.covers(x, y)) continue;
       ++covered.pixels;
       quad[static_cast<std::size_t>(4 * (y % kTile / 2) + x % kTile / 2)] = true;
@@ -73,10 +79,14 @@ Coverage tile_coverage(const Shape& shape, std::int64_t tx, std::int64_t ty) {
 }
 
 /// Pixels of the quad with a covered sample.
-std::uint64_t pixels_of_quad(const Shape& shape, std::span<const Sample> samples, std::int64_t x, std::int64_t y) {
+std::uint64_t pixels_of_quad(const Shape& shape, std::span<const Sample> samples, std::int64_t x,
+                             std::int64_t y) {
   std::uint64_t pixels = 0;
   for (int i = 0; i < 4; ++i)
-    pixels += std::ranges::any_of(samples, [&](const Sample& s) { return shape.covers(x + i % 2, y + i / 2, s); }) ? 1 : 0;
+    pixels +=
+        std::ranges::any_of(samples, [&](const Sample& s) { return shape.covers(x + i % 2, y + i / 2, s); })
+            ? 1
+            : 0;
   return pixels;
 }
 
@@ -98,7 +108,8 @@ void count_blocks(const Shape& shape, std::span<const Sample> samples, Coverage&
 
 std::uint64_t parts(std::uint64_t whole, std::uint64_t part) { return (whole + part - 1) / part; }
 
-void count_tile(const Shape& shape, std::int64_t tx, std::int64_t ty, const Rates& rates, TriangleWork& work) {
+void count_tile(const Shape& shape, std::int64_t tx, std::int64_t ty, const Rates& rates,
+                TriangleWork& work) {
   const Coverage covered = tile_coverage(shape, tx, ty);
   ++work.tiles;
   work.fine_clk += std::max<std::uint64_t>(1, parts(covered.quads, rates.fine_quads));
@@ -118,9 +129,12 @@ void count_triangle(const Shape& shape, const Rates& rates, TriangleWork& work) 
       to = tx;
       count_tile(shape, tx, ty, rates, work);
     }
-    // A row is tested from one failing tile to the next, and those at the ends of the bounding box need no test to stop.
+    // A row is tested from one failing tile to the next, and those at the ends of the bounding box need no
+    // test to stop.
     kept += from > to ? 0 : static_cast<std::uint64_t>(to - from + 1);
-    tests += from > to ? 1 : static_cast<std::uint64_t>(to - from + 1) + (from > first ? 1 : 0) + (to < last ? 1 : 0);
+    tests += from > to
+                 ? 1
+                 : static_cast<std::uint64_t>(to - from + 1) + (from > first ? 1 : 0) + (to < last ? 1 : 0);
   }
   work.tile_tests += tests;
   work.coarse_clk += std::max({std::uint64_t{1}, kept, parts(tests, rates.tile_tests)});
@@ -162,7 +176,8 @@ TriangleWork work_of(const TriangleMesh& mesh, const Rates& rates) {
   count_batches(mesh, rates, work);
   Shape shape;
   for (const auto& triangle : mesh.triangles) {
-    if (shape_of(mesh, triangle, shape) && shape.left < shape.right && shape.top < shape.bottom) count_triangle(shape, rates, work);
+    if (shape_of(mesh, triangle, shape) && shape.left < shape.right && shape.top < shape.bottom)
+      count_triangle(shape, rates, work);
   }
   work.pack_clk += rates.launch_clk * parts(work.quads, kWarpQuads);
   const std::uint64_t messages = work.triangles / std::max(1u, rates.triangle_slots / 8);

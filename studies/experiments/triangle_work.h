@@ -1,5 +1,6 @@
-/// What a mesh of triangles asks of the machine, counted from its corners alone: a rasteriser of its own, which tries every pixel, and none of the
-/// machine's code. Work over rate is the closed form that an experiment holds the machine to.
+/// What a mesh of triangles asks of the machine, counted from its corners alone: a rasteriser of its own,
+/// which tries every pixel, and none of the machine's code. Work over rate is the closed form that an
+/// experiment holds the machine to.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ struct Rates {
   std::uint32_t pack_quads = 4;  ///< quads a cycle of a warp packer
   std::uint32_t launch_clk = 1;  ///< cycles of it a warp that it launches
   std::uint32_t batch_vertices = 32, batch_triangles = 32;
-  std::uint32_t triangle_slots = 1024;  ///< of the triangle store; for each eighth of them a message goes through the rasterisers
+  /// of the triangle store; for each eighth of them a message goes through the rasterisers
+  std::uint32_t triangle_slots = 1024;
 };
 
 struct TriangleWork {
@@ -25,7 +27,8 @@ struct TriangleWork {
   std::uint64_t tiles = 0;       ///< that pass
   std::uint64_t coarse_clk = 0;  ///< cycles of the coarse rasteriser: a tile out a cycle, tests at their rate
   std::uint64_t fine_clk = 0;    ///< cycles of the fine rasteriser: quads at their rate, at least one a tile
-  std::uint64_t pack_clk = 0;    ///< cycles to pack the quads of each tile and launch the warps, summed over partitions
+  /// cycles to pack the quads of each tile and launch the warps, summed over partitions
+  std::uint64_t pack_clk = 0;
   std::uint64_t quads = 0, fragments = 0;
 };
 
@@ -38,7 +41,8 @@ struct Coverage {
   std::uint64_t pixels = 0;  ///< of a triangle, with a covered sample
   std::uint64_t blocks = 0;  ///< of 4x4 pixels, of a triangle, with a covered sample
 };
-/// Quads, pixels and blocks that the triangles of the mesh touch, each triangle by itself, with these samples a pixel.
+/// Quads, pixels and blocks that the triangles of the mesh touch, each triangle by itself, with these samples
+/// a pixel.
 [[nodiscard]] Coverage coverage_of(const TriangleMesh& mesh, std::span<const Sample> samples);
 
 /// Counts the mesh with every triangle drawn: none culled, hidden or off screen.

@@ -1,4 +1,5 @@
-/// Vertices shaded, by the policy of their reuse, against an analyser written by others and the published steps.
+/// Vertices shaded, by the policy of their reuse, against an analyser written by others and the published
+/// steps.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,7 +24,11 @@ const std::vector<Policy>& policies() {
   static const std::vector<Policy> all{
       {"batch of 32, 32 triangles", {}, 32, 32, 32},
       {"batch of 32, 128 triangles", {"vertex_fetch.batch_triangles=128"}, 32, 32, 128},
-      {"batch of 16, 16 triangles", {"vertex_fetch.batch_vertices=16", "vertex_fetch.batch_triangles=16"}, 16, 16, 16},
+      {"batch of 16, 16 triangles",
+       {"vertex_fetch.batch_vertices=16", "vertex_fetch.batch_triangles=16"},
+       16,
+       16,
+       16},
       {"FIFO of 16", {"vertex_fetch.reuse=fifo", "vertex_fetch.reuse_entries=16"}, 16, 0, 0},
       {"FIFO of 128", {"vertex_fetch.reuse=fifo", "vertex_fetch.reuse_entries=128"}, 128, 0, 0},
       {"none", {"vertex_fetch.reuse=none"}, 0, 0, 0}};
@@ -47,8 +52,9 @@ const std::vector<Step>& steps() {
 }
 
 traces::CommandStream repeated(std::uint32_t indices) {
-  const stability::Corners corners{
-      {{-0.5F, -0.5F, 0, 1}, {1, 0, 0, 1}, {}}, {{0, 0.5F, 0, 1}, {0, 1, 0, 1}, {}}, {{0.5F, -0.5F, 0, 1}, {0, 0, 1, 1}, {}}};
+  const stability::Corners corners{{{-0.5F, -0.5F, 0, 1}, {1, 0, 0, 1}, {}},
+                                   {{0, 0.5F, 0, 1}, {0, 1, 0, 1}, {}},
+                                   {{0.5F, -0.5F, 0, 1}, {0, 0, 1, 1}, {}}};
   std::vector<std::uint32_t> list(indices);
   for (std::uint32_t i = 0; i < indices; ++i) list[i] = i % 3;
   stability::StreamBuilder builder(fmt::format("0,1,2 to {} indices", indices), 64, 64);
@@ -60,15 +66,19 @@ struct Scene {
   traces::CommandStream stream;
   std::vector<DrawMesh> meshes;
   [[nodiscard]] double sum(const std::function<double(const DrawMesh&)>& value) const {
-    return std::accumulate(meshes.begin(), meshes.end(), 0.0, [&](double total, const DrawMesh& m) { return total + value(m); });
+    return std::accumulate(meshes.begin(), meshes.end(), 0.0,
+                           [&](double total, const DrawMesh& m) { return total + value(m); });
   }
 };
 
-double triangles(const DrawMesh& m) { return static_cast<double>(m.instances) * static_cast<double>(m.corners.size()) / 3; }
+double triangles(const DrawMesh& m) {
+  return static_cast<double>(m.instances) * static_cast<double>(m.corners.size()) / 3;
+}
 
 double analysed(const Scene& scene, const Policy& p) {
   return scene.sum([&](const DrawMesh& m) {
-    return p.cache == 0 ? 3 * triangles(m) : static_cast<double>(analysed_vertices(m, p.cache, p.warp, p.group));
+    return p.cache == 0 ? 3 * triangles(m)
+                        : static_cast<double>(analysed_vertices(m, p.cache, p.warp, p.group));
   });
 }
 
@@ -83,7 +93,8 @@ std::vector<Scene> scenes_of(const Setting& setting) {
 
 /// A row a policy; the verdict is that of all.
 void add_scene(const Scene& scene, const Readings* readings, Result& result, std::string& data) {
-  const double count = scene.sum(triangles), distinct = scene.sum([](const DrawMesh&m) { return 1.0 * m.vertices * m.instances; });
+  const double count = scene.sum(triangles),
+               distinct = scene.sum([](const DrawMesh&m) { return 1.0 * m.vertices * m.instances; });
   double apart = 0;
   data += quoted(scene.name);
   for (const Policy& p : policies()) {
@@ -91,24 +102,28 @@ void add_scene(const Scene& scene, const Readings* readings, Result& result, std
     const double shaded = r["core.vertices"], counted = analysed(scene, p);
     apart += std::abs(shaded - counted);
     const bool first = &p == &policies().front();
-    result.table.rows.push_back({first ? scene.name : "", first ? fmt::format("{}", scene.meshes.size()) : "",
-                                 first ? fmt::format("{:.0f}", count) : "", first ? fmt::format("{:.0f}", distinct) : "", p.name,
-                                 fmt::format("{:.0f}", shaded), fmt::format("{:.0f}", counted), fmt::format("{:.3f}", shaded / count),
-                                 fmt::format("{:.0f}", r["core.vertex_warps"]), fmt::format("{:.0f}", r["frame.render_cycles"])});
+    result.table.rows.push_back(
+        {first ? scene.name : "", first ? fmt::format("{}", scene.meshes.size()) : "",
+         first ? fmt::format("{:.0f}", count) : "", first ? fmt::format("{:.0f}", distinct) : "", p.name,
+         fmt::format("{:.0f}", shaded), fmt::format("{:.0f}", counted), fmt::format("{:.3f}", shaded / count),
+         fmt::format("{:.0f}", r["core.vertex_warps"]), fmt::format("{:.0f}", r["frame.render_cycles"])});
     data += fmt::format(" {}", shaded / count);
   }
   data += "\n";
-  result.verdicts.push_back({fmt::format("{}: vertices shaded apart from the analyser's, all policies", scene.name), apart, 0, 0});
+  result.verdicts.push_back(
+      {fmt::format("{}: vertices shaded apart from the analyser's, all policies", scene.name), apart, 0, 0});
 }
 
 void add_step(const Step& step, const Readings& r, Result& result) {
   const double shaded = r["core.vertices"];
-  result.table.rows.push_back({fmt::format("0,1,2 to {} indices", step.indices), "1", fmt::format("{}", step.indices / 3), "3",
-                               fmt::format("batch, as {}", step.card), fmt::format("{:.0f}", shaded),
-                               fmt::format("{} (measured)", step.vertices), fmt::format("{:.3f}", 3 * shaded / step.indices),
-                               fmt::format("{:.0f}", r["core.vertex_warps"]), fmt::format("{:.0f}", r["frame.render_cycles"])});
+  result.table.rows.push_back(
+      {fmt::format("0,1,2 to {} indices", step.indices), "1", fmt::format("{}", step.indices / 3), "3",
+       fmt::format("batch, as {}", step.card), fmt::format("{:.0f}", shaded),
+       fmt::format("{} (measured)", step.vertices), fmt::format("{:.3f}", 3 * shaded / step.indices),
+       fmt::format("{:.0f}", r["core.vertex_warps"]), fmt::format("{:.0f}", r["frame.render_cycles"])});
   const double least = step.vertices;
-  result.verdicts.push_back({fmt::format("{}, {} indices: vertices shaded", step.card, step.indices), shaded, least, least});
+  result.verdicts.push_back(
+      {fmt::format("{}, {} indices: vertices shaded", step.card, step.indices), shaded, least, least});
 }
 
 }  // namespace
@@ -134,12 +149,15 @@ Result vertex_reuse(const Setting& setting) {
   }
   for (const Step& step : steps()) add_step(step, *next++, result);
   result.remarks = {
-      "Expected is the analyser's sum over the draws, each with its own mesh: no reuse reaches from one draw or instance to the next. Its "
+      "Expected is the analyser's sum over the draws, each with its own mesh: no reuse reaches from one draw "
+      "or instance to the next. Its "
       "three "
-      "numbers (FIFO, vertices of a warp, triangles of a group) are (n, n, m) for batches of n vertices and m triangles, and (n, 0, 0) for "
+      "numbers (FIFO, vertices of a warp, triangles of a group) are (n, n, m) for batches of n vertices and "
+      "m triangles, and (n, 0, 0) for "
       "a FIFO of n vertices; without reuse it is every corner."};
   result.plot =
-      "set style data histograms\nset style fill solid 0.8\nset xtics rotate by -30 font ',9'\nset ylabel 'vertices shaded a "
+      "set style data histograms\nset style fill solid 0.8\nset xtics rotate by -30 font ',9'\nset ylabel "
+      "'vertices shaded a "
       "triangle'\nset yrange "
       "[0:*]\nset key outside top center horizontal\nset grid y\n$d << EOD\n" +
       data + "EOD\nplot ";

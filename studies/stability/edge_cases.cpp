@@ -1,4 +1,5 @@
-/// Cases of clipping and coverage: w through zero, edges that triangles share, slivers, T-junctions, vertices on samples, triangles far wider than the screen.
+/// Cases of clipping and coverage: w through zero, edges that triangles share, slivers, T-junctions, vertices
+/// on samples, triangles far wider than the screen.
 #include "studies/stability/measures.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stream_builder.h"
@@ -26,12 +27,14 @@ StreamBuilder counting(const std::string& name) {
   return stream;
 }
 
-// w through zero -----------------------------------------------------------------------------------------------------------------------------------
+// w through zero
+// --------------------------------------------------------------------------------------------------
 
 constexpr int kCells = 4;
 constexpr std::uint32_t kCell = 64;
 
-/// Sixteen triangles whose w go through every pattern of sign, each in a cell of its own. z = w / 2, so that only w decides what is behind.
+/// Sixteen triangles whose w go through every pattern of sign, each in a cell of its own. z = w / 2, so that
+/// only w decides what is behind.
 traces::CommandStream w_through_zero() {
   constexpr std::array<std::array<float, 3>, kCells * kCells> kW{{{1, 1, 0},
                                                                   {1, 0, 0},
@@ -52,7 +55,8 @@ traces::CommandStream w_through_zero() {
   StreamBuilder stream("w-through-zero", kCells * kCell, kCells * kCell);
   for (int i = 0; i < kCells * kCells; ++i) {
     const auto& w = kW[static_cast<std::size_t>(i)];
-    const Area cell{static_cast<std::int32_t>(kCell) * (i % kCells), static_cast<std::int32_t>(kCell) * (i / kCells), kCell, kCell};
+    const Area cell{static_cast<std::int32_t>(kCell) * (i % kCells),
+                    static_cast<std::int32_t>(kCell) * (i / kCells), kCell, kCell};
     stream.area(cell, {cell.x + 2, cell.y + 2, kCell - 4, kCell - 4});
     // Where a corner would be at |w|: a triangle around the cell's centre.
     constexpr std::array<std::array<float, 2>, 3> kAt{{{-0.8F, 0.7F}, {0.75F, 0.6F}, {0.1F, -0.8F}}};
@@ -74,7 +78,8 @@ void check_w_through_zero(const Observed& o, Findings& f) {
   f.at_least("inner pixels compared, covered", static_cast<double>(d.covered), 5000);
 }
 
-// shared edges ---------------------------------------------------------------------------------------------------------------------------------
+// shared edges
+// --------------------------------------------------------------------------------------------------
 
 /// A mesh of triangles with wandering corners over more than the drawn area.
 traces::CommandStream shared_edges() {
@@ -119,15 +124,20 @@ traces::CommandStream fan() {
   return counting("fan").draw(corners).finish();
 }
 
-void check_once(const Observed& o, Findings& f) { f.equal("pixels not covered exactly once", not_once(o), 0); }
+void check_once(const Observed& o, Findings& f) {
+  f.equal("pixels not covered exactly once", not_once(o), 0);
+}
 
-// T-junctions ----------------------------------------------------------------------------------------------------------------------------------
+// T-junctions
+// --------------------------------------------------------------------------------------------------
 
-/// A long edge with triangles on one side, and short ones that end in its middle on the other: the window's halves below and above a line.
+/// A long edge with triangles on one side, and short ones that end in its middle on the other: the window's
+/// halves below and above a line.
 traces::CommandStream t_junctions(double left_y, double right_y) {
   constexpr int kPieces = 37;
   const auto on_line = [&](double t) { return pixel_corner(t * kSide, left_y + t * (right_y - left_y)); };
-  Corners corners{on_line(0), pixel_corner(0, 0), pixel_corner(kSide, 0), on_line(0), pixel_corner(kSide, 0), on_line(1)};
+  Corners corners{on_line(0), pixel_corner(0, 0),     pixel_corner(kSide, 0),
+                  on_line(0), pixel_corner(kSide, 0), on_line(1)};
   for (int i = 0; i < kPieces; ++i) {
     const double a = static_cast<double>(i) / kPieces, b = static_cast<double>(i + 1) / kPieces;
     const Corner low_a = pixel_corner(a * kSide, kSide), low_b = pixel_corner(b * kSide, kSide);
@@ -139,26 +149,31 @@ traces::CommandStream t_junctions(double left_y, double right_y) {
 void check_slanted_junctions(const Observed& o, Findings& f) {
   const models::reference::Result given = given_reference(o);
   std::uint64_t other = 0;
-  for (std::size_t i = 0; i < given.color.size(); ++i) other += (given.color[i] & 0xffu) != (o.image().color[i] & 0xffu) ? 1 : 0;
+  for (std::size_t i = 0; i < given.color.size(); ++i)
+    other += (given.color[i] & 0xffu) != (o.image().color[i] & 0xffu) ? 1 : 0;
   f.equal("pixels unlike the reference from the same snapped corners", other, 0);
-  // A corner is at most half a step of the grid off the line: of 184 columns one in 32 holds a sample that near to it, and as many again by chance.
+  // A corner is at most half a step of the grid off the line: of 184 columns one in 32 holds a sample that
+  // near to it, and as many again by chance.
   f.at_most("pixels not covered exactly once", static_cast<double>(not_once(o)), 12);
 }
 
-// vertices on samples --------------------------------------------------------------------------------------------------------------------------
+// vertices on samples
+// --------------------------------------------------------------------------------------------------
 
 constexpr std::array<std::array<int, 4>, 3> kSquares{
     {{20, 20, 80, 80}, {100, 30, 180, 90}, {30, 110, 150, 170}}};  // left, top, right, bottom
 
-/// Squares with corners on pixel centres, cut into triangles around a centre that lies on a sample as well; one turned the other way round.
+/// Squares with corners on pixel centres, cut into triangles around a centre that lies on a sample as well;
+/// one turned the other way round.
 traces::CommandStream on_samples() {
   Corners corners;
   for (std::size_t s = 0; s < kSquares.size(); ++s) {
     const auto [left, top, right, bottom] = kSquares[s];
     const auto at = [](int x, int y) { return pixel_corner(x + 0.5, y + 0.5); };
     const Corner middle = at((left + right) / 2, (top + bottom) / 2);
-    const std::array<Corner, 8> rim{at(left, top),     at((left + right) / 2, top),    at(right, top),   at(right, (top + bottom) / 2),
-                                    at(right, bottom), at((left + right) / 2, bottom), at(left, bottom), at(left, (top + bottom) / 2)};
+    const std::array<Corner, 8> rim{
+        at(left, top),     at((left + right) / 2, top),    at(right, top),   at(right, (top + bottom) / 2),
+        at(right, bottom), at((left + right) / 2, bottom), at(left, bottom), at(left, (top + bottom) / 2)};
     for (std::size_t i = 0; i < 8; ++i) {
       const Corner &a = rim[i], &b = rim[(i + 1) % 8];
       if (s == 1) corners.insert(corners.end(), {middle, b, a});
@@ -185,7 +200,8 @@ void check_on_samples(const Observed& o, Findings& f) {
   f.note("pixels inside, by the closed form", std::to_string(inside));
 }
 
-// slivers --------------------------------------------------------------------------------------------------------------------------------------
+// slivers
+// --------------------------------------------------------------------------------------------------
 
 /// Needles: two corners a whole screen apart, the third one to four sub-pixel steps beside the first.
 traces::CommandStream slivers() {
@@ -196,8 +212,8 @@ traces::CommandStream slivers() {
     const double x = chance.between(-20, kSide + 20), y = chance.between(-20, kSide + 20);
     const double steps = std::floor(chance.between(1, 5));
     const double dx = i % 2 == 0 ? steps * kStep : 0, dy = i % 2 == 0 ? 0 : steps * kStep;
-    corners.insert(corners.end(),
-                   {pixel_corner(x, y), pixel_corner(x + dx, y + dy), pixel_corner(chance.between(0, kSide), chance.between(0, kSide))});
+    corners.insert(corners.end(), {pixel_corner(x, y), pixel_corner(x + dx, y + dy),
+                                   pixel_corner(chance.between(0, kSide), chance.between(0, kSide))});
   }
   return counting("slivers").draw(corners).finish();
 }
@@ -213,18 +229,23 @@ void check_slivers(const Observed& o, Findings& f) {
   f.at_least("samples hit", static_cast<double>(covered), 100);
 }
 
-// triangles far wider than the screen -----------------------------------------------------------------------------------------------------------
+// triangles far wider than the screen
+// --------------------------------------------------------------------------------------------------
 
 constexpr std::uint32_t kWide = 128;
 
-/// Two cells: a triangle a million pixels wide (within the guard band) and one 10^9 wide (cut), their edges crossing the cell, under a thin ramp of colour.
+/// Two cells: a triangle a million pixels wide (within the guard band) and one 10^9 wide (cut), their edges
+/// crossing the cell, under a thin ramp of colour.
 traces::CommandStream wide_triangles() {
   StreamBuilder stream("wide-triangles", 2 * kWide, kWide);
   for (int cell = 0; cell < 2; ++cell) {
     const double reach = cell == 0 ? 5e5 : 5e8;
-    const auto corner = [&](double x, double y, const glm::vec4& color) { return Corner{at_pixel(x, y, kWide, kWide), color, {}}; };
-    stream.area({cell * static_cast<std::int32_t>(kWide), 0, kWide, kWide},
-                {cell * static_cast<std::int32_t>(kWide) + kInset, kInset, kWide - 2 * kInset, kWide - 2 * kInset});
+    const auto corner = [&](double x, double y, const glm::vec4& color) {
+      return Corner{at_pixel(x, y, kWide, kWide), color, {}};
+    };
+    stream.area(
+        {cell * static_cast<std::int32_t>(kWide), 0, kWide, kWide},
+        {cell * static_cast<std::int32_t>(kWide) + kInset, kInset, kWide - 2 * kInset, kWide - 2 * kInset});
     // Both long edges pass through the cell: y = 40 + x / 8 and y = 100 - x / 4.
     const double meet = 160;  // x at which they meet
     const double left = meet - reach;
@@ -235,10 +256,13 @@ traces::CommandStream wide_triangles() {
 }
 
 void check_wide_triangles(const Observed& o, Findings& f) {
-  f.equal("pixels covered unlike the reference from the same snapped corners", coverage_difference(o, given_reference(o)), 0);
+  f.equal("pixels covered unlike the reference from the same snapped corners",
+          coverage_difference(o, given_reference(o)), 0);
   const models::reference::Result ideal = ideal_reference(o);
-  // A float32 window position 5e5 pixels away is good to 1/64 pixel, so the edge may miss a sample in about 112 columns x 4 edges / 32.
-  f.at_most("pixels covered unlike the ideal reference", static_cast<double>(coverage_difference(o, ideal)), 16);
+  // A float32 window position 5e5 pixels away is good to 1/64 pixel, so the edge may miss a sample in about
+  // 112 columns x 4 edges / 32.
+  f.at_most("pixels covered unlike the ideal reference", static_cast<double>(coverage_difference(o, ideal)),
+            16);
   const InnerDifference d = inner_difference(o, ideal);
   f.at_most("worst channel of the inner pixels", d.worst, 2, "of 255");
   f.at_least("inner pixels compared, covered", static_cast<double>(d.covered), 3000);
@@ -277,19 +301,21 @@ void add_edge_cases(std::vector<Case>& cases) {
   cases.push_back(
       {.name = "t-junctions-slanted",
        .group = "numbers",
-       .purpose = "the same with a slanted edge, on a grid of a 16th of a pixel: corners snap beside the edge, as on any rasteriser",
+       .purpose = "the same with a slanted edge, on a grid of a 16th of a pixel: corners snap beside the "
+                  "edge, as on any rasteriser",
        .must = "coverage is that of the snapped corners, and no more pixels go wrong than the grid explains",
        .build = [] { return t_junctions(61.37, 141.83); },
        .machine = [](pipeline::MachineConfig& machine) { machine.gpu.subpixel_bits.set(4); },
        .check = check_slanted_junctions,
        .picture = counted});
-  cases.push_back({.name = "on-samples",
-                   .group = "numbers",
-                   .purpose = "corners and edges exactly on samples, in both directions of turning",
-                   .must = "the top-left rule to the pixel: left and top edges belong, right and bottom ones do not",
-                   .build = on_samples,
-                   .check = check_on_samples,
-                   .picture = counted});
+  cases.push_back(
+      {.name = "on-samples",
+       .group = "numbers",
+       .purpose = "corners and edges exactly on samples, in both directions of turning",
+       .must = "the top-left rule to the pixel: left and top edges belong, right and bottom ones do not",
+       .build = on_samples,
+       .check = check_on_samples,
+       .picture = counted});
   cases.push_back({.name = "slivers",
                    .group = "numbers",
                    .purpose = "400 needles, one to four 256ths of a pixel wide and up to a screen long",
@@ -297,12 +323,13 @@ void add_edge_cases(std::vector<Case>& cases) {
                    .build = slivers,
                    .check = check_slivers,
                    .picture = counted});
-  cases.push_back({.name = "wide-triangles",
-                   .group = "numbers",
-                   .purpose = "a triangle 10^6 pixels wide, within the guard band, and one 10^9 wide, which is cut",
-                   .must = "coverage of the snapped corners exactly, edges and colours as the ideal reference has them",
-                   .build = wide_triangles,
-                   .check = check_wide_triangles});
+  cases.push_back(
+      {.name = "wide-triangles",
+       .group = "numbers",
+       .purpose = "a triangle 10^6 pixels wide, within the guard band, and one 10^9 wide, which is cut",
+       .must = "coverage of the snapped corners exactly, edges and colours as the ideal reference has them",
+       .build = wide_triangles,
+       .check = check_wide_triangles});
 }
 
 }  // namespace quadrille::studies::stability

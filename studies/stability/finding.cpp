@@ -32,7 +32,9 @@ void Findings::is(std::string_view what, std::string_view measured, std::string_
   add({std::string(what), std::string(measured), fmt::format("= {}", wanted), measured == wanted});
 }
 
-void Findings::note(std::string_view what, std::string measured) { add({std::string(what), std::move(measured), "", true}); }
+void Findings::note(std::string_view what, std::string measured) {
+  add({std::string(what), std::move(measured), "", true});
+}
 
 bool Findings::hold() const { return std::ranges::all_of(all_, &Finding::holds); }
 

@@ -24,7 +24,8 @@ constexpr std::array<Share, 5> kShares{{{&pipeline::UnitFigures::busy, {60, 170,
 void draw_bar(scenes::Rgba8Image& out, std::uint32_t top, const pipeline::UnitGroup& group) {
   double from = 0;
   for (const Share& share : kShares) {
-    const double part = static_cast<double>(group.sum(share.member)) / static_cast<double>(std::max<std::int64_t>(1, group.cycles()));
+    const double part = static_cast<double>(group.sum(share.member)) /
+                        static_cast<double>(std::max<std::int64_t>(1, group.cycles()));
     const auto left = static_cast<std::uint32_t>(from * out.width),
                right = static_cast<std::uint32_t>(std::lround((from + part) * out.width));
     for (std::uint32_t y = top; y < top + kBar; ++y) {

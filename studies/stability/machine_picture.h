@@ -5,7 +5,8 @@
 
 namespace quadrille::studies::stability {
 
-/// The frame, and a bar for each kind of unit in the order of the pipeline: busy green, starved blue, blocked red, idle grey.
+/// The frame, and a bar for each kind of unit in the order of the pipeline: busy green, starved blue, blocked
+/// red, idle grey.
 [[nodiscard]] scenes::Rgba8Image machine_picture(const Observed& observed);
 
 }  // namespace quadrille::studies::stability

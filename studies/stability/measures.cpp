@@ -23,7 +23,8 @@ bool is_inner(const ref::Result& r, std::uint32_t x, std::uint32_t y) {
 int channel_distance(std::uint32_t a, std::uint32_t b) {
   int worst = 0;
   for (int c = 0; c < 32; c += 8)
-    worst = std::max(worst, std::abs(static_cast<int>((a >> c) & 0xffu) - static_cast<int>((b >> c) & 0xffu)));
+    worst =
+        std::max(worst, std::abs(static_cast<int>((a >> c) & 0xffu) - static_cast<int>((b >> c) & 0xffu)));
   return worst;
 }
 
@@ -67,7 +68,10 @@ std::uint64_t coverage_difference(const Observed& o, const ref::Result& r) {
   std::uint64_t count = 0;
   for (std::uint32_t y = 0; y < r.height; ++y) {
     for (std::uint32_t x = 0; x < r.width; ++x)
-      count += ((o.pixel(x, y) >> 24) != 0) != (r.triangle_id[std::size_t{y} * r.width + x] != ref::kNoTriangle) ? 1 : 0;
+      count +=
+          ((o.pixel(x, y) >> 24) != 0) != (r.triangle_id[std::size_t{y} * r.width + x] != ref::kNoTriangle)
+              ? 1
+              : 0;
   }
   return count;
 }

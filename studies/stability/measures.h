@@ -1,4 +1,5 @@
-/// Measures that several cases share: how often pixels were covered, and how far the picture's inner pixels are from a reference.
+/// Measures that several cases share: how often pixels were covered, and how far the picture's inner pixels
+/// are from a reference.
 #pragma once
 
 #include "studies/stability/observed.h"
@@ -14,7 +15,8 @@ namespace quadrille::studies::stability {
 /// Those that were not covered exactly once.
 [[nodiscard]] std::uint64_t not_once(const Observed& observed);
 
-/// Compares pixels whose eight neighbours show the same triangle (or background) in the reference, so that an edge a little off is not counted.
+/// Compares pixels whose eight neighbours show the same triangle (or background) in the reference, so that an
+/// edge a little off is not counted.
 struct InnerDifference {
   std::uint64_t pixels = 0, covered = 0;
   std::uint64_t coverage = 0;  ///< covered in one, background in the other
@@ -22,16 +24,20 @@ struct InnerDifference {
   std::uint64_t over_two = 0;  ///< pixels covered in both with a channel more than 2 off
 };
 /// The target is cleared to alpha 0 and every draw writes alpha 1.
-[[nodiscard]] InnerDifference inner_difference(const Observed& observed, const models::reference::Result& reference);
+[[nodiscard]] InnerDifference inner_difference(const Observed& observed,
+                                               const models::reference::Result& reference);
 /// Pixels covered in one and not in the other, edges and all.
-[[nodiscard]] std::uint64_t coverage_difference(const Observed& observed, const models::reference::Result& reference);
+[[nodiscard]] std::uint64_t coverage_difference(const Observed& observed,
+                                                const models::reference::Result& reference);
 
 /// Chance that is the same on every computer: a fixed generator, and fractions made of its bits.
 class Chance {
  public:
   explicit Chance(std::uint64_t seed) : engine_(seed) {}
   /// Uniform in [low, high).
-  double between(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53; }
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
 
  private:
   std::mt19937_64 engine_;

@@ -20,7 +20,8 @@ DrawnArea drawn_area(const traces::CommandStream& stream) {
     }
     if (const auto* set = std::get_if<traces::SetScissor>(&command)) scissor = *set;
     if (!std::holds_alternative<traces::Draw>(command)) continue;
-    const auto left = static_cast<std::uint32_t>(std::max(0, scissor.x)), top = static_cast<std::uint32_t>(std::max(0, scissor.y));
+    const auto left = static_cast<std::uint32_t>(std::max(0, scissor.x)),
+               top = static_cast<std::uint32_t>(std::max(0, scissor.y));
     area.left = std::min(area.left, left);
     area.top = std::min(area.top, top);
     area.right = std::max(area.right, std::min(width, left + scissor.width));
@@ -36,7 +37,9 @@ Observed observe(traces::CommandStream stream, std::unique_ptr<pipeline::Machine
   return o;
 }
 
-ref::Result given_reference(const Observed& o) { return render_with_reference(o.stream, o.machine->precision()).reference; }
+ref::Result given_reference(const Observed& o) {
+  return render_with_reference(o.stream, o.machine->precision()).reference;
+}
 
 ref::Result ideal_reference(const Observed& o) { return ref::render(o.stream, {}); }
 
@@ -48,7 +51,8 @@ scenes::Rgba8Image as_picture(const pipeline::FrameImage& image) {
 }
 
 scenes::Rgba8Image count_picture(const pipeline::FrameImage& image, const DrawnArea& area) {
-  constexpr std::array<std::array<std::uint8_t, 3>, 4> kColors{{{0, 0, 0}, {40, 170, 90}, {240, 210, 40}, {220, 40, 40}}};
+  constexpr std::array<std::array<std::uint8_t, 3>, 4> kColors{
+      {{0, 0, 0}, {40, 170, 90}, {240, 210, 40}, {220, 40, 40}}};
   scenes::Rgba8Image out{image.width, image.height, std::vector<std::uint8_t>(image.color.size() * 4, 255)};
   for (std::uint32_t y = 0; y < image.height; ++y) {
     for (std::uint32_t x = 0; x < image.width; ++x) {
@@ -64,7 +68,8 @@ scenes::Rgba8Image count_picture(const pipeline::FrameImage& image, const DrawnA
 scenes::Rgba8Image reduced(const scenes::Rgba8Image& image, std::uint32_t side) {
   const std::uint32_t factor = (std::max(image.width, image.height) + side - 1) / side;
   if (factor <= 1) return image;
-  const std::uint32_t width = (image.width + factor - 1) / factor, height = (image.height + factor - 1) / factor;
+  const std::uint32_t width = (image.width + factor - 1) / factor,
+                      height = (image.height + factor - 1) / factor;
   scenes::Rgba8Image out{width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height)};
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
@@ -72,22 +77,26 @@ scenes::Rgba8Image reduced(const scenes::Rgba8Image& image, std::uint32_t side) 
       std::uint64_t count = 0;
       for (std::uint32_t v = y * factor; v < std::min(image.height, (y + 1) * factor); ++v) {
         for (std::uint32_t u = x * factor; u < std::min(image.width, (x + 1) * factor); ++u, ++count) {
-          for (std::size_t c = 0; c < 4; ++c) sum[c] += image.pixels[4 * (std::size_t{v} * image.width + u) + c];
+          for (std::size_t c = 0; c < 4; ++c)
+            sum[c] += image.pixels[4 * (std::size_t{v} * image.width + u) + c];
         }
       }
       for (std::size_t c = 0; c < 4; ++c)
-        out.pixels[4 * (std::size_t{y} * width + x) + c] = static_cast<std::uint8_t>((sum[c] + count / 2) / count);
+        out.pixels[4 * (std::size_t{y} * width + x) + c] =
+            static_cast<std::uint8_t>((sum[c] + count / 2) / count);
     }
   }
   return out;
 }
 
 scenes::Rgba8Image enlarged(const scenes::Rgba8Image& image, std::uint32_t side) {
-  const std::uint32_t longest = std::max({1u, image.width, image.height}), factor = (side + longest - 1) / longest;
+  const std::uint32_t longest = std::max({1u, image.width, image.height}),
+                      factor = (side + longest - 1) / longest;
   scenes::Rgba8Image out{image.width * factor, image.height * factor, {}};
   for (std::uint32_t y = 0; y < out.height; ++y) {
     for (std::uint32_t x = 0; x < out.width; ++x) {
-      const auto from = image.pixels.begin() + static_cast<std::ptrdiff_t>(4 * (std::size_t{y / factor} * image.width + x / factor));
+      const auto from = image.pixels.begin() +
+                        static_cast<std::ptrdiff_t>(4 * (std::size_t{y / factor} * image.width + x / factor));
       out.pixels.insert(out.pixels.end(), from, from + 4);
     }
   }

@@ -1,4 +1,5 @@
-/// Cases of range: near and far planes far apart, depths that cannot be told apart, worlds very small, very large and very far away.
+/// Cases of range: near and far planes far apart, depths that cannot be told apart, worlds very small, very
+/// large and very far away.
 #include "studies/stability/measures.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stream_builder.h"
@@ -18,12 +19,14 @@ namespace quadrille::studies::stability {
 
 namespace {
 
-// near and far --------------------------------------------------------------------------------------------------------------------------------
+// near and far
+// --------------------------------------------------------------------------------------------------
 
 constexpr std::uint32_t kStrip = 8, kHeight = 96;
 constexpr double kApart = 0.01;  // of the distance: how far the two sheets of a column are apart
 
-/// A row of columns, each with two sheets that fill it, `kApart` of their distance apart. The farther one is red and drawn first, the nearer one green.
+/// A row of columns, each with two sheets that fill it, `kApart` of their distance apart. The farther one is
+/// red and drawn first, the nearer one green.
 struct Sheets {
   double near = 1, far = 1, first = 1, step = 10;  ///< distance of column k: first * step^k
   int columns = 1;
@@ -45,27 +48,36 @@ glm::mat4 projection(const Sheets& s) {
   m[0][0] = m[1][1] = 1;
   m[2][3] = -1;
   m[2][2] = static_cast<float>(s.reversed ? s.near / (s.far - s.near) : s.far / (s.near - s.far));
-  m[3][2] = static_cast<float>(s.reversed ? s.far * s.near / (s.far - s.near) : s.far * s.near / (s.near - s.far));
+  m[3][2] =
+      static_cast<float>(s.reversed ? s.far * s.near / (s.far - s.near) : s.far * s.near / (s.near - s.far));
   return m;
 }
 
 Corners sheet(const Sheets& s, int column, double distance, const glm::vec4& color) {
   const double left = 2.0 * column / s.columns - 1, right = 2.0 * (column + 1) / s.columns - 1;
   const auto corner = [&](double x, double y) {
-    return Corner{{static_cast<float>(x * distance), static_cast<float>(y * distance), static_cast<float>(-distance), 1}, color, {}};
+    return Corner{{static_cast<float>(x * distance), static_cast<float>(y * distance),
+                   static_cast<float>(-distance), 1},
+                  color,
+                  {}};
   };
-  return {corner(left, -0.8), corner(left, 0.8), corner(right, 0.8), corner(left, -0.8), corner(right, 0.8), corner(right, -0.8)};
+  return {corner(left, -0.8), corner(left, 0.8),  corner(right, 0.8),
+          corner(left, -0.8), corner(right, 0.8), corner(right, -0.8)};
 }
 
 traces::CommandStream sheets(const std::string& name, const Sheets& s) {
-  StreamBuilder stream(name, kStrip * static_cast<std::uint32_t>(s.columns), kHeight, true, s.reversed ? 0.0F : 1.0F);
+  StreamBuilder stream(name, kStrip * static_cast<std::uint32_t>(s.columns), kHeight, true,
+                       s.reversed ? 0.0F : 1.0F);
   using enum traces::CompareOp;
   for (const bool nearer : {false, true}) {
     // The farther sheet may be as far as the cleared depth; the nearer one has to be truly nearer.
-    stream.state({.depth = {true, true, nearer ? (s.reversed ? kGreater : kLess) : (s.reversed ? kGreaterOrEqual : kLessOrEqual)}});
+    stream.state({.depth = {true, true,
+                            nearer ? (s.reversed ? kGreater : kLess)
+                                   : (s.reversed ? kGreaterOrEqual : kLessOrEqual)}});
     for (int k = 0; k < s.columns; ++k) {
       const double d = s.distance(k) * (nearer ? 1 : 1 + kApart);
-      stream.draw(sheet(s, k, d, nearer ? glm::vec4(0.1F, 0.8F, 0.2F, 1) : glm::vec4(0.9F, 0.1F, 0.1F, 1)), projection(s));
+      stream.draw(sheet(s, k, d, nearer ? glm::vec4(0.1F, 0.8F, 0.2F, 1) : glm::vec4(0.9F, 0.1F, 0.1F, 1)),
+                  projection(s));
     }
   }
   return stream.finish();
@@ -82,7 +94,9 @@ double ordered_up_to(const Observed& o, const Sheets& s) {
 }
 
 /// Distance at which the two sheets' depths are one float32 step apart.
-double theory(const Sheets& s) { return s.near * (s.far / (s.far - s.near)) * (kApart / (1 + kApart)) * 0x1p24; }
+double theory(const Sheets& s) {
+  return s.near * (s.far / (s.far - s.near)) * (kApart / (1 + kApart)) * 0x1p24;
+}
 
 void check_sheets(const Observed& o, const Sheets& s, Findings& f) {
   std::uint64_t drawn = 0;
@@ -96,8 +110,10 @@ void check_sheets(const Observed& o, const Sheets& s, Findings& f) {
     worst = std::max(worst, std::abs(depth - ideal) / (s.reversed ? ideal * 0x1p-23 : 0x1p-24));
   }
   f.equal("columns drawn", drawn, static_cast<std::uint64_t>(s.columns));
-  f.equal("inner pixels covered unlike the ideal reference", inner_difference(o, ideal_reference(o)).coverage, 0);
-  f.at_most("worst depth against double precision", worst, 4, s.reversed ? "relative float32 steps" : "float32 steps below 1");
+  f.equal("inner pixels covered unlike the ideal reference", inner_difference(o, ideal_reference(o)).coverage,
+          0);
+  f.at_most("worst depth against double precision", worst, 4,
+            s.reversed ? "relative float32 steps" : "float32 steps below 1");
   const double reached = ordered_up_to(o, s);
   if (s.reversed) {
     f.at_least("sheets 1 % apart are in order up to", reached, 0.99 * s.distance(s.columns - 1));
@@ -112,12 +128,14 @@ Case sheets_case(const std::string& name, const std::string& purpose, const Shee
           .group = "numbers",
           .purpose = purpose,
           .must = s.reversed ? "every column is drawn, and its nearer sheet is in front at every distance"
-                             : "every column is drawn; the nearer sheet is in front up to the distance that float32 depth explains",
+                             : "every column is drawn; the nearer sheet is in front up to the distance that "
+                               "float32 depth explains",
           .build = [name, s] { return sheets(name, s); },
           .check = [s](const Observed& o, Findings& f) { check_sheets(o, s, f); }};
 }
 
-// worlds --------------------------------------------------------------------------------------------------------------------------------------
+// worlds
+// --------------------------------------------------------------------------------------------------
 
 constexpr std::uint32_t kWorldWidth = 192, kWorldHeight = 144;
 
@@ -149,8 +167,10 @@ scenes::SceneData one_cube(const glm::dvec3& offset) {
 }
 
 models::reference::ImageDifference difference_to(const Observed& o, const scenes::SceneData& scene) {
-  const pipeline::FrameImage plain = pipeline::render_functional_frame(recorded(scene), o.machine->precision()).image;
-  return models::reference::compare_images({plain.width, plain.height, plain.color}, {plain.width, plain.height, o.image().color});
+  const pipeline::FrameImage plain =
+      pipeline::render_functional_frame(recorded(scene), o.machine->precision()).image;
+  return models::reference::compare_images({plain.width, plain.height, plain.color},
+                                           {plain.width, plain.height, o.image().color});
 }
 
 /// `exact`: bit for bit; otherwise a pixel in a thousand may be a rounding off.
@@ -170,23 +190,28 @@ Case world_case(const std::string& name, double scale, bool power_of_two) {
           .group = "numbers",
           .purpose = power_of_two ? fmt::format("the cubes in a world 2^{} times as large", std::ilogb(scale))
                                   : fmt::format("the cubes in a world {:.3g} times as large", scale),
-          .must = power_of_two ? "the picture of the plain world, bit for bit" : "the picture of the plain world, but for roundings",
+          .must = power_of_two ? "the picture of the plain world, bit for bit"
+                               : "the picture of the plain world, but for roundings",
           .build = [scale] { return recorded(cubes(scale, glm::dvec3(0))); },
-          .check = [=](const Observed& o, Findings& f) { check_same_picture(o, cubes(1, glm::dvec3(0)), power_of_two, f); }};
+          .check = [=](const Observed& o,
+                       Findings& f) { check_same_picture(o, cubes(1, glm::dvec3(0)), power_of_two, f); }};
 }
 
-// vertex positions far from the origin ------------------------------------------------------------------------------------------------------------
+// vertex positions far from the origin
+// --------------------------------------------------------------------------------------------------
 
 constexpr float kFarAway = 1e7F;
 constexpr std::uint32_t kFarSide = 128;
 
-/// Points of a small grid at (10^7, 10^7, 10^7), 64 units before an eye that is as far away; all in one float32 matrix product, as a shader has them.
+/// Points of a small grid at (10^7, 10^7, 10^7), 64 units before an eye that is as far away; all in one
+/// float32 matrix product, as a shader has them.
 struct FarGrid {
   static constexpr int kCount = 8;
   static glm::vec4 point(int x, int y) {
     return {kFarAway + 3.0F * static_cast<float>(x), kFarAway + 3.0F * static_cast<float>(y), kFarAway, 1};
   }
-  /// World to clip: the eye at (10^7 + 10.4, 10^7 + 10.4, 10^7 + 64) looks along -z, a unit of tangent 0.3 to each side.
+  /// World to clip: the eye at (10^7 + 10.4, 10^7 + 10.4, 10^7 + 64) looks along -z, a unit of tangent 0.3 to
+  /// each side.
   static glm::dmat4 matrix() {
     const double zoom = 1 / 0.3, near = 1, far = 1000, away = static_cast<double>(kFarAway);
     glm::dmat4 p(0);
@@ -206,14 +231,15 @@ traces::CommandStream far_object() {
     for (int x = 0; x + 1 < FarGrid::kCount; ++x) {
       const glm::vec4 color((x + y) % 2 == 0 ? 0.9F : 0.3F, 0.5F, 0.2F + 0.1F * static_cast<float>(x), 1);
       const auto corner = [&](int u, int v) { return Corner{FarGrid::point(u, v), color, {}}; };
-      corners.insert(corners.end(),
-                     {corner(x, y), corner(x, y + 1), corner(x + 1, y + 1), corner(x, y), corner(x + 1, y + 1), corner(x + 1, y)});
+      corners.insert(corners.end(), {corner(x, y), corner(x, y + 1), corner(x + 1, y + 1), corner(x, y),
+                                     corner(x + 1, y + 1), corner(x + 1, y)});
     }
   }
   return StreamBuilder("far-object", kFarSide, kFarSide).draw(corners, glm::mat4(FarGrid::matrix())).finish();
 }
 
-/// Corners in the window against double precision, from the same positions and, by `matrix`, from the matrix as stored or as meant.
+/// Corners in the window against double precision, from the same positions and, by `matrix`, from the matrix
+/// as stored or as meant.
 double worst_jitter(const Observed& o, const glm::dmat4& matrix) {
   double worst = 0;
   std::size_t n = 0;
@@ -223,7 +249,8 @@ double worst_jitter(const Observed& o, const glm::dmat4& matrix) {
     const auto cell = static_cast<int>(t.primitive) / 2;
     for (std::size_t i = 0; i < 3; ++i, ++n) {
       const auto& offset = kOffsets[3 * (t.primitive % 2) + i];
-      const glm::dvec4 clip = matrix * glm::dvec4(FarGrid::point(cell % kCells + offset[0], cell / kCells + offset[1]));
+      const glm::dvec4 clip =
+          matrix * glm::dvec4(FarGrid::point(cell % kCells + offset[0], cell / kCells + offset[1]));
       const double x = (clip.x / clip.w + 1) * kFarSide / 2, y = (clip.y / clip.w + 1) * kFarSide / 2;
       worst = std::max({worst, std::abs(t.vertices[i].x / 256.0 - x), std::abs(t.vertices[i].y / 256.0 - y)});
     }
@@ -234,7 +261,8 @@ double worst_jitter(const Observed& o, const glm::dmat4& matrix) {
 
 void check_far_object(const Observed& o, Findings& f) {
   const glm::dmat4 meant = FarGrid::matrix(), stored{glm::mat4(meant)};
-  // Three terms of 3.3e7 are added in float32, each rounded to within 2, and clip x of 64 (which is w) is half the target, 64 pixels: 6 pixels, and w is off too.
+  // Three terms of 3.3e7 are added in float32, each rounded to within 2, and clip x of 64 (which is w) is
+  // half the target, 64 pixels: 6 pixels, and w is off too.
   f.at_most("jitter of the corners against double, same matrix", worst_jitter(o, stored), 8, "pixels");
   f.note("jitter against the matrix as meant", fmt::format("{:.3g} pixels", worst_jitter(o, meant)));
 }
@@ -242,30 +270,36 @@ void check_far_object(const Observed& o, Findings& f) {
 }  // namespace
 
 void add_range_cases(std::vector<Case>& cases) {
-  cases.push_back(sheets_case("near-1e-6-far-1e12", "near plane at 10^-6, far plane at 10^12, sheets 1 % apart in between",
+  cases.push_back(sheets_case("near-1e-6-far-1e12",
+                              "near plane at 10^-6, far plane at 10^12, sheets 1 % apart in between",
                               {.near = 1e-6, .far = 1e12, .first = 2e-6, .step = 3.5, .columns = 32}));
-  cases.push_back(sheets_case("near-1e-6-far-1e12-reversed", "the same with reversed depth: near 1, far 0",
-                              {.near = 1e-6, .far = 1e12, .first = 2e-6, .step = 3.5, .columns = 32, .reversed = true}));
+  cases.push_back(
+      sheets_case("near-1e-6-far-1e12-reversed", "the same with reversed depth: near 1, far 0",
+                  {.near = 1e-6, .far = 1e12, .first = 2e-6, .step = 3.5, .columns = 32, .reversed = true}));
   cases.push_back(sheets_case("depth-ratio-1e9", "near plane at 10^-3, far plane at 10^6",
                               {.near = 1e-3, .far = 1e6, .first = 2e-3, .step = 1.8, .columns = 33}));
-  cases.push_back(sheets_case("depth-ratio-1e9-reversed", "the same with reversed depth",
-                              {.near = 1e-3, .far = 1e6, .first = 2e-3, .step = 1.8, .columns = 33, .reversed = true}));
+  cases.push_back(
+      sheets_case("depth-ratio-1e9-reversed", "the same with reversed depth",
+                  {.near = 1e-3, .far = 1e6, .first = 2e-3, .step = 1.8, .columns = 33, .reversed = true}));
   cases.push_back(world_case("world-1e30", 1e30, false));
   cases.push_back(world_case("world-1e-30", 1e-30, false));
   cases.push_back(world_case("world-2p100", 0x1p100, true));
   cases.push_back(world_case("world-2p-100", 0x1p-100, true));
-  cases.push_back({.name = "far-object",
-                   .group = "numbers",
-                   .purpose = "a grid 10^7 from the origin under one float32 matrix, as a shader without further care has it",
-                   .must = "no corner jitters more than float32 explains",
-                   .build = far_object,
-                   .check = check_far_object});
+  cases.push_back(
+      {.name = "far-object",
+       .group = "numbers",
+       .purpose =
+           "a grid 10^7 from the origin under one float32 matrix, as a shader without further care has it",
+       .must = "no corner jitters more than float32 explains",
+       .build = far_object,
+       .check = check_far_object});
   cases.push_back({.name = "far-scene",
                    .group = "numbers",
                    .purpose = "a cube of a scene, its node 10^7 from the origin",
                    .must = "the picture of the cube at the origin",
                    .build = [] { return recorded(one_cube(glm::dvec3(static_cast<double>(kFarAway)))); },
-                   .check = [](const Observed& o, Findings& f) { check_same_picture(o, one_cube(glm::dvec3(0)), false, f); }});
+                   .check = [](const Observed& o,
+                               Findings& f) { check_same_picture(o, one_cube(glm::dvec3(0)), false, f); }});
 }
 
 }  // namespace quadrille::studies::stability

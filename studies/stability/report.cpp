@@ -11,7 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kAlways = 6;  // findings of `check_always`, which lead each case's own; the memory is the last
+// findings of `check_always`, which lead each case's own; the memory is the last
+constexpr std::size_t kAlways = 6;
 
 /// What every case must hold to and does is worth no row of its own.
 bool is_usual(const CaseResult& result, std::size_t i) {
@@ -25,7 +26,8 @@ std::string verdict(const CaseResult& result) {
 
 std::string html(std::string_view text) {
   std::string out;
-  for (const char c : text) out += c == '<' ? std::string("&lt;") : c == '&' ? std::string("&amp;") : std::string(1, c);
+  for (const char c : text)
+    out += c == '<' ? std::string("&lt;") : c == '&' ? std::string("&amp;") : std::string(1, c);
   return out;
 }
 
@@ -64,11 +66,14 @@ std::string case_markdown(const CaseResult& r, const std::string& pictures) {
   const Case& c = *r.about;
   std::string text = fmt::format("\n### {}\n\n{}. Must hold: {}.\n\n", c.name, sentence(c.purpose), c.must);
   text += fmt::format("![{}]({}{}.png)\n\n", c.name, pictures, c.name);
-  if (r.run.end != ChildEnd::kDone) return text + fmt::format("**{}**: {}\n", child_end_name(r.run.end), r.run.output);
+  if (r.run.end != ChildEnd::kDone)
+    return text + fmt::format("**{}**: {}\n", child_end_name(r.run.end), r.run.output);
   text += "| | measured | bound |\n|---|---|---|\n";
   for (std::size_t i = 0; i < r.findings.all().size(); ++i) {
     const Finding& f = r.findings.all()[i];
-    if (!is_usual(r, i)) text += fmt::format("| {} | {}{} | {} |\n", f.what, f.measured, f.holds ? "" : " **does not hold**", f.bound);
+    if (!is_usual(r, i))
+      text += fmt::format("| {} | {}{} | {} |\n", f.what, f.measured, f.holds ? "" : " **does not hold**",
+                          f.bound);
   }
   return text + fmt::format("\n{}x{}, {} cycles. Limit: {}.\n", r.width, r.height, r.cycles, r.limit);
 }
@@ -76,13 +81,14 @@ std::string case_markdown(const CaseResult& r, const std::string& pictures) {
 }  // namespace
 
 std::string case_text(const CaseResult& r, bool all) {
-  std::string text = fmt::format("{:<27} {:<13} {:>6.2f} s {:>6.0f} MiB {:>14} cycles\n", r.about->name, verdict(r), r.run.wall_s,
-                                 r.run.peak_rss_mib, r.cycles);
+  std::string text = fmt::format("{:<27} {:<13} {:>6.2f} s {:>6.0f} MiB {:>14} cycles\n", r.about->name,
+                                 verdict(r), r.run.wall_s, r.run.peak_rss_mib, r.cycles);
   if (r.run.end != ChildEnd::kDone) return text + fmt::format("    {}\n", r.run.output);
   for (std::size_t i = 0; i < r.findings.all().size(); ++i) {
     const Finding& f = r.findings.all()[i];
     if (!all && is_usual(r, i)) continue;
-    text += fmt::format("    {:<66} {:>22}  {:<26}{}\n", f.what, f.measured, f.bound, f.holds ? "" : "  <-- does not hold");
+    text += fmt::format("    {:<66} {:>22}  {:<26}{}\n", f.what, f.measured, f.bound,
+                        f.holds ? "" : "  <-- does not hold");
   }
   return text + fmt::format("    limit: {}\n", r.limit);
 }
@@ -101,7 +107,8 @@ std::string results_json(std::span<const CaseResult> results) {
   for (const CaseResult& r : results) {
     Json findings = Json::array();
     for (const Finding& f : r.findings.all())
-      findings.push_back({{"what", f.what}, {"measured", f.measured}, {"bound", f.bound}, {"holds", f.holds}});
+      findings.push_back(
+          {{"what", f.what}, {"measured", f.measured}, {"bound", f.bound}, {"holds", f.holds}});
     cases.push_back({{"name", r.about->name},
                      {"group", r.about->group},
                      {"purpose", r.about->purpose},
@@ -139,12 +146,15 @@ std::string results_markdown(std::span<const CaseResult> results, const std::str
 std::string contact_html(std::span<const CaseResult> results) {
   std::string text =
       "<!doctype html><meta charset=\"utf-8\"><title>Quadrille: stiff and extreme</title>\n"
-      "<style>body{font:14px sans-serif}figure{display:inline-block;vertical-align:top;width:270px;margin:6px}"
+      "<style>body{font:14px "
+      "sans-serif}figure{display:inline-block;vertical-align:top;width:270px;margin:6px}"
       "img{image-rendering:pixelated;max-width:256px}.bad{color:#c00}</style>\n";
   for (const CaseResult& r : results) {
-    text +=
-        fmt::format("<figure><img src=\"{0}.png\" alt=\"{0}\"><figcaption><b{1}>{0}: {2}</b><br>{3}<br><i>{4}</i></figcaption></figure>\n",
-                    r.about->name, r.holds() ? "" : " class=\"bad\"", verdict(r), html(r.about->purpose), html(r.about->must));
+    text += fmt::format(
+        "<figure><img src=\"{0}.png\" alt=\"{0}\"><figcaption><b{1}>{0}: "
+        "{2}</b><br>{3}<br><i>{4}</i></figcaption></figure>\n",
+        r.about->name, r.holds() ? "" : " class=\"bad\"", verdict(r), html(r.about->purpose),
+        html(r.about->must));
   }
   return text;
 }

@@ -1,4 +1,5 @@
-/// What the catalogue's results look like: a table for the terminal, JSON, a page of docs/ and a page of pictures.
+/// What the catalogue's results look like: a table for the terminal, JSON, a page of docs/ and a page of
+/// pictures.
 #pragma once
 
 #include "studies/stability/stability.h"
@@ -7,7 +8,8 @@
 
 namespace quadrille::studies::stability {
 
-/// Rows of one case: its verdict and cost, what limits its frame, and its findings: what holds in one line together unless `all`.
+/// Rows of one case: its verdict and cost, what limits its frame, and its findings: what holds in one line
+/// together unless `all`.
 [[nodiscard]] std::string case_text(const CaseResult& result, bool all);
 /// "38 of 40 cases hold", with the names of those that do not.
 [[nodiscard]] std::string verdict_text(std::span<const CaseResult> results);

@@ -25,7 +25,8 @@ template <class T>
 std::uint64_t different(const std::vector<T>& a, const std::vector<T>& b) {
   if (a.size() != b.size()) return std::max(a.size(), b.size());
   std::uint64_t count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) count += std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i]) ? 1 : 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    count += std::bit_cast<std::uint32_t>(a[i]) != std::bit_cast<std::uint32_t>(b[i]) ? 1 : 0;
   return count;
 }
 
@@ -36,14 +37,16 @@ std::uint64_t outside_touched(const Observed& o) {
   if (image.color.empty() || area.holds(0, 0)) return 0;
   std::uint64_t count = 0;
   for (std::uint32_t y = 0; y < image.height; ++y) {
-    for (std::uint32_t x = 0; x < image.width; ++x) count += !area.holds(x, y) && o.pixel(x, y) != o.pixel(0, 0) ? 1 : 0;
+    for (std::uint32_t x = 0; x < image.width; ++x)
+      count += !area.holds(x, y) && o.pixel(x, y) != o.pixel(0, 0) ? 1 : 0;
   }
   return count;
 }
 
 std::uint64_t unbalanced_units(const pipeline::Figures& figures) {
-  return static_cast<std::uint64_t>(std::ranges::count_if(
-      figures.units, [](const pipeline::UnitFigures& u) { return u.busy + u.waiting + u.starved + u.blocked + u.idle != u.cycles; }));
+  return static_cast<std::uint64_t>(std::ranges::count_if(figures.units, [](const pipeline::UnitFigures& u) {
+    return u.busy + u.waiting + u.starved + u.blocked + u.idle != u.cycles;
+  }));
 }
 
 std::uint64_t negative_accounts(const pipeline::Figures& figures) {
@@ -75,7 +78,8 @@ CaseResult unpacked(const Case& one, const ChildRun& run) {
   if (run.end != ChildEnd::kDone) return result;
   const std::size_t line = run.output.find('\n');
   const Json head = Json::parse(run.output.substr(0, line));
-  for (const Json& f : head["findings"]) result.findings.add({f["what"], f["measured"], f["bound"], f["holds"]});
+  for (const Json& f : head["findings"])
+    result.findings.add({f["what"], f["measured"], f["bound"], f["holds"]});
   result.width = head["width"];
   result.height = head["height"];
   result.cycles = head["cycles"];
@@ -91,14 +95,19 @@ CaseResult unpacked(const Case& one, const ChildRun& run) {
 
 void check_always(const Observed& o, Findings& findings) {
   const pipeline::Figures& figures = o.exact.figures;
-  findings.equal("pixels unlike the functional image", different(o.exact.image.color, o.functional.image.color), 0);
-  findings.equal("depths unlike the functional ones", different(o.exact.image.depth, o.functional.image.depth), 0);
-  findings.equal("laws that hold", static_cast<std::uint64_t>(std::ranges::count_if(figures.checks, &pipeline::Check::holds)),
+  findings.equal("pixels unlike the functional image",
+                 different(o.exact.image.color, o.functional.image.color), 0);
+  findings.equal("depths unlike the functional ones",
+                 different(o.exact.image.depth, o.functional.image.depth), 0);
+  findings.equal("laws that hold",
+                 static_cast<std::uint64_t>(std::ranges::count_if(figures.checks, &pipeline::Check::holds)),
                  figures.checks.size());
-  findings.equal("units whose cycles do not add up", unbalanced_units(figures) + negative_accounts(figures), 0);
+  findings.equal("units whose cycles do not add up", unbalanced_units(figures) + negative_accounts(figures),
+                 0);
   findings.equal("pixels touched outside the scissor", outside_touched(o), 0);
   const double cycles = std::max(1.0, static_cast<double>(figures.frame.cycles));
-  findings.at_most("greatest use of a unit or link", 100 * pipeline::speed_of_light(figures).cycles / cycles, 100, "%");
+  findings.at_most("greatest use of a unit or link", 100 * pipeline::speed_of_light(figures).cycles / cycles,
+                   100, "%");
 }
 
 const std::vector<Case>& catalogue() {
@@ -117,7 +126,9 @@ const std::vector<Case>& catalogue() {
 std::vector<const Case*> select(std::span<const std::string> patterns) {
   std::vector<const Case*> chosen;
   for (const Case& one : catalogue()) {
-    const auto matches = [&](const std::string& pattern) { return fnmatch(pattern.c_str(), one.name.c_str(), 0) == 0; };
+    const auto matches = [&](const std::string& pattern) {
+      return fnmatch(pattern.c_str(), one.name.c_str(), 0) == 0;
+    };
     if (patterns.empty() || std::ranges::any_of(patterns, matches)) chosen.push_back(&one);
   }
   for (const std::string& pattern : patterns) {
@@ -125,7 +136,8 @@ std::vector<const Case*> select(std::span<const std::string> patterns) {
     if (std::ranges::any_of(chosen, matches)) continue;
     std::vector<std::string> names;
     for (const Case& one : catalogue()) names.push_back(one.name);
-    throw user_error("stability: no case matches '{}'; --list prints their names{}", pattern, did_you_mean(pattern, names));
+    throw user_error("stability: no case matches '{}'; --list prints their names{}", pattern,
+                     did_you_mean(pattern, names));
   }
   return chosen;
 }
@@ -140,7 +152,8 @@ std::string run_here(const Case& one) {
   return packed(o, findings, enlarged(reduced(one.picture(o), kPictureSide), kLeastSide));
 }
 
-std::vector<CaseResult> run_cases(std::span<const Case* const> cases, int jobs, const std::function<void(const CaseResult&)>& done) {
+std::vector<CaseResult> run_cases(std::span<const Case* const> cases, int jobs,
+                                  const std::function<void(const CaseResult&)>& done) {
   std::vector<CaseResult> results(cases.size());
   std::vector<ChildWork> works;
   for (const Case* one : cases) works.push_back({[one] { return run_here(*one); }, {one->seconds, 0}});

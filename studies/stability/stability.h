@@ -1,8 +1,10 @@
 /// The catalogue of stiff and extreme cases: `quadrille stability`.
 ///
-/// Each case is a frame at the edge of what numbers or a machine can be, with what must hold of it. It runs in a process of its own under a limit of time,
-/// functionally and on the machine; whatever the case, the run has to end, every law and every unit's account has to hold, and image and depth have to
-/// be those of the functional run, and the process must not have taken more memory than the case allows. What else must hold is the case's own.
+/// Each case is a frame at the edge of what numbers or a machine can be, with what must hold of it. It runs
+/// in a process of its own under a limit of time, functionally and on the machine; whatever the case, the run
+/// has to end, every law and every unit's account has to hold, and image and depth have to be those of the
+/// functional run, and the process must not have taken more memory than the case allows. What else must hold
+/// is the case's own.
 #pragma once
 
 #include "studies/child_run.h"
@@ -25,7 +27,9 @@ struct Case {
   std::function<traces::CommandStream()> build;
   std::function<void(pipeline::MachineConfig&)> machine = [](pipeline::MachineConfig&) {};
   std::function<void(const Observed&, Findings&)> check = [](const Observed&, Findings&) {};
-  std::function<scenes::Rgba8Image(const Observed&)> picture = [](const Observed& o) { return as_picture(o.image()); };
+  std::function<scenes::Rgba8Image(const Observed&)> picture = [](const Observed& o) {
+    return as_picture(o.image());
+  };
   double seconds = 600;      ///< of wall time, against a hang: the host may be slow and busy
   double memory_mib = 1024;  ///< and takes at most
   bool slow = false;         ///< takes more than a few seconds
@@ -33,7 +37,8 @@ struct Case {
 
 /// Every case, in the order of the page.
 [[nodiscard]] const std::vector<Case>& catalogue();
-/// Those whose names match one of the patterns (`*` and `?` as in a shell); all for no pattern. Throws `UserError` for a pattern that matches none.
+/// Those whose names match one of the patterns (`*` and `?` as in a shell); all for no pattern. Throws
+/// `UserError` for a pattern that matches none.
 [[nodiscard]] std::vector<const Case*> select(std::span<const std::string> patterns);
 
 struct CaseResult {
@@ -51,7 +56,8 @@ struct CaseResult {
 void check_always(const Observed& observed, Findings& findings);
 /// Runs a case here, in this process: once a process.
 [[nodiscard]] std::string run_here(const Case& one);
-/// Runs cases in children, up to `jobs` at a time; `done` is called in the order in which they end. The results are in the order of `cases`.
+/// Runs cases in children, up to `jobs` at a time; `done` is called in the order in which they end. The
+/// results are in the order of `cases`.
 [[nodiscard]] std::vector<CaseResult> run_cases(std::span<const Case* const> cases, int jobs,
                                                 const std::function<void(const CaseResult&)>& done);
 

@@ -61,10 +61,11 @@ traces::Image checks() {
 
 }  // namespace
 
-StreamBuilder::StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, bool depth, float clear_depth) {
+StreamBuilder::StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, bool depth,
+                             float clear_depth) {
   stream_.name = std::move(name);
-  stream_.targets.push_back(
-      {width, height, traces::Format::kR8G8B8A8Unorm, depth ? traces::Format::kD32Float : traces::Format::kUndefined});
+  stream_.targets.push_back({width, height, traces::Format::kR8G8B8A8Unorm,
+                             depth ? traces::Format::kD32Float : traces::Format::kUndefined});
   pass_ = {0, {0, 0, 0, 0}, clear_depth};
   const traces::Index image = append(stream_.images, checks());
   traces::Sampler sampler;
@@ -79,13 +80,15 @@ StreamBuilder& StreamBuilder::clear(const std::array<float, 4>& color) {
 }
 
 StreamBuilder& StreamBuilder::area(const Area& v, const Area& s) {
-  commands_.emplace_back(traces::SetViewport{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.width),
-                                             static_cast<float>(v.height), 0, 1});
+  commands_.emplace_back(traces::SetViewport{static_cast<float>(v.x), static_cast<float>(v.y),
+                                             static_cast<float>(v.width), static_cast<float>(v.height), 0,
+                                             1});
   commands_.emplace_back(traces::SetScissor{s.x, s.y, s.width, s.height});
   return *this;
 }
 
-traces::Index StreamBuilder::shader(const std::string& name, traces::ShaderStage stage, std::string_view source) {
+traces::Index StreamBuilder::shader(const std::string& name, traces::ShaderStage stage,
+                                    std::string_view source) {
   const auto found = std::ranges::find(stream_.shaders, name, &traces::Shader::name);
   if (found != stream_.shaders.end()) return static_cast<traces::Index>(found - stream_.shaders.begin());
   return append(stream_.shaders, {name, stage, scenes::compile_glsl(source, stage, name)});
@@ -131,7 +134,8 @@ StreamBuilder& StreamBuilder::draw(std::span<const Corner> corners, const glm::m
   return *this;
 }
 
-StreamBuilder& StreamBuilder::draw_indexed(std::span<const Corner> corners, std::span<const std::uint32_t> indices) {
+StreamBuilder& StreamBuilder::draw_indexed(std::span<const Corner> corners,
+                                           std::span<const std::uint32_t> indices) {
   draw(corners);
   auto& draw = std::get<traces::Draw>(commands_.back());
   draw.indexed = true;
@@ -152,8 +156,8 @@ traces::CommandStream StreamBuilder::finish() const {
 
 Corners quad(const glm::vec2& low, const glm::vec2& high, float z, const glm::vec4& color) {
   const auto corner = [&](float x, float y, float u, float v) { return Corner{{x, y, z, 1}, color, {u, v}}; };
-  const Corner a = corner(low.x, low.y, 0, 0), b = corner(low.x, high.y, 0, 1), c = corner(high.x, high.y, 1, 1),
-               d = corner(high.x, low.y, 1, 0);
+  const Corner a = corner(low.x, low.y, 0, 0), b = corner(low.x, high.y, 0, 1),
+               c = corner(high.x, high.y, 1, 1), d = corner(high.x, low.y, 1, 0);
   return {a, b, c, a, c, d};
 }
 

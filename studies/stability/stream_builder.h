@@ -1,4 +1,5 @@
-/// Small command streams written by hand: triangles in clip space or under a matrix, in cells of a target, with blending and depth as a case needs them.
+/// Small command streams written by hand: triangles in clip space or under a matrix, in cells of a target,
+/// with blending and depth as a case needs them.
 #pragma once
 
 #include "traces/command_stream.h"
@@ -41,8 +42,10 @@ struct DrawState {
 class StreamBuilder {
  public:
   /// A target of RGBA8 UNORM, cleared to `clear` and `clear_depth`.
-  StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, bool depth = false, float clear_depth = 1);
-  /// Viewport and scissor of the draws that follow. Two areas, since a scissor may be smaller than its viewport.
+  StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, bool depth = false,
+                float clear_depth = 1);
+  /// Viewport and scissor of the draws that follow. Two areas, since a scissor may be smaller than its
+  /// viewport.
   StreamBuilder& area(const Area& viewport, const Area& scissor);
   StreamBuilder& area(const Area& both) { return area(both, both); }
   StreamBuilder& state(const DrawState& state);
@@ -55,7 +58,8 @@ class StreamBuilder {
   [[nodiscard]] traces::CommandStream finish() const;
 
  private:
-  [[nodiscard]] traces::Index shader(const std::string& name, traces::ShaderStage stage, std::string_view source);
+  [[nodiscard]] traces::Index shader(const std::string& name, traces::ShaderStage stage,
+                                     std::string_view source);
   [[nodiscard]] traces::Index fragment_shader(Paint paint);
 
   traces::CommandStream stream_;
@@ -63,9 +67,11 @@ class StreamBuilder {
   std::vector<traces::Command> commands_;
 };
 
-/// Corners of a quad (two triangles), counter-clockwise in the window: x, y of two opposite corners in clip space with w = 1.
+/// Corners of a quad (two triangles), counter-clockwise in the window: x, y of two opposite corners in clip
+/// space with w = 1.
 [[nodiscard]] Corners quad(const glm::vec2& low, const glm::vec2& high, float z, const glm::vec4& color);
 /// A position of a target of `width` x `height` pixels as clip space with w = 1.
-[[nodiscard]] glm::vec4 at_pixel(double x, double y, std::uint32_t width, std::uint32_t height, float z = 0.5F);
+[[nodiscard]] glm::vec4 at_pixel(double x, double y, std::uint32_t width, std::uint32_t height,
+                                 float z = 0.5F);
 
 }  // namespace quadrille::studies::stability

@@ -1,4 +1,5 @@
-/// Cases of values that are no numbers or hardly any: NaN, infinity, denormals and the largest float, in every attribute and in every entry of a matrix.
+/// Cases of values that are no numbers or hardly any: NaN, infinity, denormals and the largest float, in
+/// every attribute and in every entry of a matrix.
 #include "studies/stability/measures.h"
 #include "studies/stability/stability.h"
 #include "studies/stability/stream_builder.h"
@@ -12,7 +13,8 @@ namespace quadrille::studies::stability {
 namespace {
 
 constexpr std::uint32_t kCell = 20;
-constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity(),
+                kNaN = std::numeric_limits<float>::quiet_NaN();
 
 struct Odd {
   std::string_view name;
@@ -45,7 +47,8 @@ void for_cell(const Observed& o, std::size_t row, std::size_t column, const Visi
   }
 }
 
-// attributes ------------------------------------------------------------------------------------------------------------------------------------
+// attributes
+// --------------------------------------------------------------------------------------------------
 
 /// Position x y z w, colour r g b a, texture coordinate u v.
 constexpr std::size_t kFloats = 10;
@@ -69,8 +72,9 @@ traces::CommandStream attributes() {
   return stream.finish();
 }
 
-/// The first triangle lies below the diagonal from the upper left to the lower right corner of its quad (window y points down), which runs through samples
-/// and is the lower one's right edge: those samples are the other's.
+/// The first triangle lies below the diagonal from the upper left to the lower right corner of its quad
+/// (window y points down), which runs through samples and is the lower one's right edge: those samples are
+/// the other's.
 bool of_first_triangle(std::uint32_t x, std::uint32_t y) { return y > x; }
 
 void check_attributes(const Observed& o, Findings& f) {
@@ -95,7 +99,8 @@ void check_attributes(const Observed& o, Findings& f) {
   f.equal("stored values that are neither 0 nor 1, nor a texel (D12, D70)", stored, 0);
 }
 
-// matrices --------------------------------------------------------------------------------------------------------------------------------------
+// matrices
+// --------------------------------------------------------------------------------------------------
 
 constexpr std::size_t kEntries = 16;
 
@@ -132,21 +137,21 @@ void check_matrices(const Observed& o, Findings& f) {
 }  // namespace
 
 void add_value_cases(std::vector<Case>& cases) {
-  cases.push_back(
-      {.name = "odd-attributes",
-       .group = "numbers",
-       .purpose = "NaN, infinities, denormals, -0 and the largest float in each component of position, colour and texture coordinate",
-       .must =
-           "a triangle without a finite position is dropped, a coordinate reads as 0, a colour is stored as 0 or 1; nothing else changes",
-       .build = attributes,
-       .check = check_attributes});
-  cases.push_back(
-      {.name = "odd-matrices",
-       .group = "numbers",
-       .purpose = "the same values in each of the sixteen entries of a draw's matrix",
-       .must = "the draw is dropped where its positions are not finite, denormals change nothing, and no other draw does either",
-       .build = matrices,
-       .check = check_matrices});
+  cases.push_back({.name = "odd-attributes",
+                   .group = "numbers",
+                   .purpose = "NaN, infinities, denormals, -0 and the largest float in each component of "
+                              "position, colour and texture coordinate",
+                   .must = "a triangle without a finite position is dropped, a coordinate reads as 0, a "
+                           "colour is stored as 0 or 1; nothing else changes",
+                   .build = attributes,
+                   .check = check_attributes});
+  cases.push_back({.name = "odd-matrices",
+                   .group = "numbers",
+                   .purpose = "the same values in each of the sixteen entries of a draw's matrix",
+                   .must = "the draw is dropped where its positions are not finite, denormals change "
+                           "nothing, and no other draw does either",
+                   .build = matrices,
+                   .check = check_matrices});
 }
 
 }  // namespace quadrille::studies::stability

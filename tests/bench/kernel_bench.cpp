@@ -1,8 +1,10 @@
-/// What a token-hop costs in four styles of SystemC, and why hw/base is written as it is: a thread a unit with sc_fifo and wait, a method a unit, the kernel's
-/// native driver and its dispatcher. The first two run a chain of 50 units (their best case: no arbiter, no feedback); the drivers run that chain and the
-/// machine of 50 units with arbiters, feedback and a shared memory (world_spec.h), with links of 2 cycles forward and 1 back (the least look-ahead that a real
-/// machine leaves) and of 4 cycles each way. One simulation a process: each measurement runs in a forked child, which
-/// times only `run`, in processor time, and reports through a pipe. Time shown is per action (one token moved by one unit).
+/// What a token-hop costs in four styles of SystemC, and why hw/base is written as it is: a thread a unit
+/// with sc_fifo and wait, a method a unit, the kernel's native driver and its dispatcher. The first two run a
+/// chain of 50 units (their best case: no arbiter, no feedback); the drivers run that chain and the machine
+/// of 50 units with arbiters, feedback and a shared memory (world_spec.h), with links of 2 cycles forward and
+/// 1 back (the least look-ahead that a real machine leaves) and of 4 cycles each way. One simulation a
+/// process: each measurement runs in a forked child, which times only `run`, in processor time, and reports
+/// through a pipe. Time shown is per action (one token moved by one unit).
 #include "hw/base/dispatcher.h"
 #include "hw/base/native_driver.h"
 #include "tests/hw/base/worlds.h"
@@ -65,7 +67,8 @@ class ThreadStage : public sc_core::sc_module {
   }
 };
 
-/// One SC_METHOD a unit: takes a token when there is one and room, and comes back a cycle later; else waits for the FIFO that stopped it.
+/// One SC_METHOD a unit: takes a token when there is one and room, and comes back a cycle later; else waits
+/// for the FIFO that stopped it.
 class MethodStage : public sc_core::sc_module {
  public:
   sc_core::sc_fifo_in<RawToken> in{"in"};
@@ -90,7 +93,8 @@ class MethodStage : public sc_core::sc_module {
 template <class Stage>
 Timing raw_chain() {
   std::vector<std::unique_ptr<sc_core::sc_fifo<RawToken>>> fifos;
-  for (int i = 0; i <= kUnits; ++i) fifos.push_back(std::make_unique<sc_core::sc_fifo<RawToken>>(fmt::format("fifo_{}", i).c_str(), 8));
+  for (int i = 0; i <= kUnits; ++i)
+    fifos.push_back(std::make_unique<sc_core::sc_fifo<RawToken>>(fmt::format("fifo_{}", i).c_str(), 8));
   std::vector<std::unique_ptr<Stage>> stages;
   for (int i = 0; i < kUnits; ++i) {
     stages.push_back(std::make_unique<Stage>(fmt::format("stage_{}", i).c_str()));
@@ -129,7 +133,8 @@ Timing kernel_world(const WorldSpec& spec) {
   DriverType driver("driver");
   const World world(spec, driver, {}, false);
   const double time = seconds([&] { driver.run({}); });
-  QUADRILLE_CHECK(tokens_in_links(driver.units()) == 0, "{}", deadlock_report(driver.units(), driver.last_action()));
+  QUADRILLE_CHECK(tokens_in_links(driver.units()) == 0, "{}",
+                  deadlock_report(driver.units(), driver.last_action()));
   return {time, static_cast<double>(driver.actions())};
 }
 
@@ -149,7 +154,8 @@ void measure(benchmark::State& state, const std::function<Timing()>& body) {
 
 int main(int argc, char** argv) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
-  const WorldSpec short_links = benchmark_world(20000), long_links = benchmark_world(20000, {.depth = 16, .latency = 4, .credit = 4});
+  const WorldSpec short_links = benchmark_world(20000),
+                  long_links = benchmark_world(20000, {.depth = 16, .latency = 4, .credit = 4});
   const auto add = [](const char* name, const std::function<Timing()>& body) {
     benchmark::RegisterBenchmark(name, [body](benchmark::State& state) { measure(state, body); })
         ->UseManualTime()

@@ -1,7 +1,9 @@
-/// What an action of a unit costs in whole machines, the narrow and the wide: builtin:cubes on the default machine and with 64 of all that can be had many times
-/// (30,000 links). The small frame on the wide machine is mostly its start and its end, which must stay a small multiple of the number of links.
-/// One simulation a process: each measurement runs in a forked child. Times are processor time: of the simulation an action (elaboration by SystemC and the
-/// closing of the accounts included), and of building, running and destroying the machine together.
+/// What an action of a unit costs in whole machines, the narrow and the wide: builtin:cubes on the default
+/// machine and with 64 of all that can be had many times (30,000 links). The small frame on the wide machine
+/// is mostly its start and its end, which must stay a small multiple of the number of links. One simulation a
+/// process: each measurement runs in a forked child. Times are processor time: of the simulation an action
+/// (elaboration by SystemC and the closing of the accounts included), and of building, running and destroying
+/// the machine together.
 #include "pipeline/render.h"
 #include "scenes/scene.h"
 #include "studies/child_run.h"
@@ -33,7 +35,8 @@ Timing render(const traces::CommandStream& stream, int of_everything) {
     }
     const std::clock_t start = std::clock();
     const pipeline::HostFigures host = pipeline::render_exact(stream, config, {}).figures.host;
-    return fmt::format("{} {} {}", host.simulate_cpu_s, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, host.actions);
+    return fmt::format("{} {} {}", host.simulate_cpu_s,
+                       static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, host.actions);
   };
   const std::string text = studies::output_of(studies::run_in_child(body), "machine_bench");
   Timing t;
@@ -65,7 +68,8 @@ void measure(benchmark::State& state, std::uint32_t width, std::uint32_t height,
 int main(int argc, char** argv) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
   const auto add = [](const char* name, std::uint32_t width, std::uint32_t height, int of_everything) {
-    benchmark::RegisterBenchmark(name, [=](benchmark::State& state) { measure(state, width, height, of_everything); })
+    benchmark::RegisterBenchmark(
+        name, [=](benchmark::State& state) { measure(state, width, height, of_everything); })
         ->UseManualTime()
         ->Unit(benchmark::kMillisecond)
         ->Iterations(5);

@@ -1,4 +1,5 @@
-/// Speed of the functions that a frame calls millions of times: coverage, interpolation, texturing, blending, cache tags.
+/// Speed of the functions that a frame calls millions of times: coverage, interpolation, texturing, blending,
+/// cache tags.
 #include "models/cache/tag_array.h"
 #include "models/raster/coarse.h"
 #include "models/raster/fine.h"
@@ -20,10 +21,12 @@ using namespace quadrille::models;
 
 TriangleSetup triangle_of_size(int pixels) {
   const auto at = [](float x, float y, float z) {
-    return WindowVertex{static_cast<std::int32_t>(x * 256.0f), static_cast<std::int32_t>(y * 256.0f), z, 1.0f - 0.5f * z};
+    return WindowVertex{static_cast<std::int32_t>(x * 256.0f), static_cast<std::int32_t>(y * 256.0f), z,
+                        1.0f - 0.5f * z};
   };
   const auto size = static_cast<float>(pixels);
-  const std::array<WindowVertex, 3> v{at(100.3f, 100.7f, 0.2f), at(100.3f + size, 130.0f, 0.5f), at(120.0f, 100.0f + size, 0.9f)};
+  const std::array<WindowVertex, 3> v{at(100.3f, 100.7f, 0.2f), at(100.3f + size, 130.0f, 0.5f),
+                                      at(120.0f, 100.0f + size, 0.9f)};
   SetupState state;
   state.scissor = {0, 0, 1920, 1080};
   TriangleSetup t;
@@ -32,7 +35,8 @@ TriangleSetup triangle_of_size(int pixels) {
 }
 
 void setup(benchmark::State& state) {
-  const std::array<WindowVertex, 3> v{WindowVertex{1000, 1000, 0.5f, 1.0f}, WindowVertex{9000, 2000, 0.6f, 0.9f},
+  const std::array<WindowVertex, 3> v{WindowVertex{1000, 1000, 0.5f, 1.0f},
+                                      WindowVertex{9000, 2000, 0.6f, 0.9f},
                                       WindowVertex{3000, 8000, 0.7f, 0.8f}};
   SetupState s;
   s.scissor = {0, 0, 1920, 1080};
@@ -119,7 +123,8 @@ struct TextureScene {
       r.active = ~0u;
       r.op = Op::kTexImplicit;
       for (int lane = 0; lane < kWarpLanes; ++lane) {
-        const int x = 8 * (warp % 64) + 2 * (lane / 4 % 4) + lane % 2, y = 4 * (warp / 64) + 2 * (lane / 16) + lane / 2 % 2;
+        const int x = 8 * (warp % 64) + 2 * (lane / 4 % 4) + lane % 2,
+                  y = 4 * (warp / 64) + 2 * (lane / 16) + lane / 2 % 2;
         r.u[static_cast<std::size_t>(lane)] = c * static_cast<float>(x) - s * static_cast<float>(y);
         r.v[static_cast<std::size_t>(lane)] = s * static_cast<float>(x) + c * static_cast<float>(y);
         r.lod[static_cast<std::size_t>(lane)] = 0;
@@ -144,7 +149,8 @@ void trilinear(benchmark::State& state, TexelFormat format, bool plan_only) {
   }
   const auto warps = static_cast<double>(state.iterations()) * static_cast<double>(scene.requests.size());
   state.counters["lines/warp"] = static_cast<double>(lines) / warps;
-  state.counters["ns/lane"] = benchmark::Counter(warps * kWarpLanes * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["ns/lane"] = benchmark::Counter(warps * kWarpLanes * 1e-9,
+                                                 benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK_CAPTURE(trilinear, srgb, TexelFormat::kR8G8B8A8Srgb, false)->Arg(30)->Arg(140)->Arg(800);
 BENCHMARK_CAPTURE(trilinear, unorm, TexelFormat::kR8G8B8A8Unorm, false)->Arg(30)->Arg(140)->Arg(800);
@@ -157,7 +163,8 @@ void blend(benchmark::State& state, bool enable, ColorFormat format) {
   s.dst_color = BlendFactor::kOneMinusSrcAlpha;
   s.src_alpha = BlendFactor::kOne;
   s.dst_alpha = BlendFactor::kOneMinusSrcAlpha;
-  const float rgba[4][4] = {{0.1f, 0.2f, 0.3f, 0.4f}, {0.5f, 0.6f, 0.7f, 0.8f}, {0.9f, 1.0f, 0.0f, 0.1f}, {0.2f, 0.4f, 0.6f, 0.8f}};
+  const float rgba[4][4] = {
+      {0.1f, 0.2f, 0.3f, 0.4f}, {0.5f, 0.6f, 0.7f, 0.8f}, {0.9f, 1.0f, 0.0f, 0.1f}, {0.2f, 0.4f, 0.6f, 0.8f}};
   std::uint32_t pixels[4] = {0x80402010, 0xff00ff00, 0x12345678, 0x87654321};
   for (auto _ : state) {
     blend_quad(s, format, rgba, pixels, 0xf);

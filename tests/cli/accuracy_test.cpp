@@ -19,7 +19,9 @@ void accuracy_refused(std::vector<std::string> more, const std::vector<std::stri
 /// Sets PATH while it lives.
 class PathOf {
  public:
-  explicit PathOf(const std::string& folder) : old_(std::getenv("PATH")) { setenv("PATH", folder.c_str(), 1); }
+  explicit PathOf(const std::string& folder) : old_(std::getenv("PATH")) {
+    setenv("PATH", folder.c_str(), 1);
+  }
   ~PathOf() { setenv("PATH", old_.c_str(), 1); }
   PathOf(const PathOf&) = delete;
   PathOf& operator=(const PathOf&) = delete;
@@ -33,13 +35,16 @@ class PathOf {
 TEST_CASE("a window that cannot be is refused") {
   for (const std::string window : {"-1", "many", "1.5", "1000001", ""})
     refused({"render", "builtin:triangle", "--window", window}, {"--window", "1000000"});
-  refused({"render", "builtin:triangle", "--window", "4", "--driver", "native"}, {"--window", "native", "exact"});
-  refused({"render", "builtin:triangle", "--window", "4", "--fidelity", "functional"}, {"--window", "functional"});
+  refused({"render", "builtin:triangle", "--window", "4", "--driver", "native"},
+          {"--window", "native", "exact"});
+  refused({"render", "builtin:triangle", "--window", "4", "--fidelity", "functional"},
+          {"--window", "functional"});
 }
 
 TEST_CASE("a run with a window says that it is approximate, one with a window of 0 is exact") {
   const ScratchFolder folder;
-  const std::vector<std::string> base{"render", "builtin:quad", "--size", "48x32", "--stats", "s.json", "--window"};
+  const std::vector<std::string> base{"render",  "builtin:quad", "--size",  "48x32",
+                                      "--stats", "s.json",       "--window"};
   const auto with = [&](const std::string& window) {
     std::vector<std::string> arguments = base;
     arguments.push_back(window);
@@ -48,8 +53,8 @@ TEST_CASE("a run with a window says that it is approximate, one with a window of
     return std::pair(run.out, json::parse(folder.read("s.json")));
   };
   const auto [table, stats] = with("64");
-  CHECK_THAT(table, Catch::Contains("approximate (window of 64 cycles") && Catch::Contains("UNITS (approximate)") &&
-                        Catch::Contains("BANDWIDTH (approximate)"));
+  CHECK_THAT(table, Catch::Contains("approximate (window of 64 cycles") &&
+                        Catch::Contains("UNITS (approximate)") && Catch::Contains("BANDWIDTH (approximate)"));
   CHECK(stats.at("fidelity") == "approximate");
   CHECK(stats.at("window_cycles") == 64);
   const auto [exact_table, exact_stats] = with("0");
@@ -62,7 +67,8 @@ TEST_CASE("a study that cannot be is refused before anything runs") {
   refused({"accuracy"}, {"SCENE"});
   refused({"accuracy", "builtin:triangle", "nothing.obj"}, {"nothing.obj"});
   refused({"accuracy", "builtin:triangle", "builtin:nothing", "--repeat", "0"}, {"--repeat", "1000"});
-  for (const std::string windows : {"", "0", "4,", "4,4", "4;8", "x", "1000001"}) accuracy_refused({"--windows", windows}, {"--windows"});
+  for (const std::string windows : {"", "0", "4,", "4,4", "4;8", "x", "1000001"})
+    accuracy_refused({"--windows", windows}, {"--windows"});
   accuracy_refused({"--size", "0x4"}, {"--size"});
   accuracy_refused({"--set", "gpu.cores=0"}, {"gpu.cores"});
   accuracy_refused({"--json", "x.txt"}, {"--json", ".json"});
@@ -91,13 +97,15 @@ TEST_CASE("plots without gnuplot are refused before anything runs") {
 
 TEST_CASE("a study of two scenes prints their tables and writes JSON and plots") {
   const ScratchFolder folder;
-  const ProgramRun run = run_quadrille(folder, {"accuracy", "builtin:triangle", "builtin:quad", "--size", "32x24", "--repeat", "1",
-                                                "--windows", "16", "--json", "a.json", "--plot", "a.svg", "--precision-plot", "p.png"});
+  const ProgramRun run = run_quadrille(
+      folder, {"accuracy", "builtin:triangle", "builtin:quad", "--size", "32x24", "--repeat", "1",
+               "--windows", "16", "--json", "a.json", "--plot", "a.svg", "--precision-plot", "p.png"});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
   CHECK(run.err.empty());
-  for (const char* line : {"ACCURACY  builtin:triangle, 32x24", "ACCURACY  builtin:quad, 32x24", "  functional ", "  exact ",
-                           "  window 16 ", "PICTURE  against", "PRECISION  pictures", "  subpixel_bits "})
+  for (const char* line :
+       {"ACCURACY  builtin:triangle, 32x24", "ACCURACY  builtin:quad, 32x24", "  functional ", "  exact ",
+        "  window 16 ", "PICTURE  against", "PRECISION  pictures", "  subpixel_bits "})
     CHECK_THAT(run.out, Catch::Contains(line));
   const json document = json::parse(folder.read("a.json"));
   CHECK(document.at("schema") == "quadrille-accuracy-1");
@@ -109,8 +117,10 @@ TEST_CASE("a study of two scenes prints their tables and writes JSON and plots")
 
 TEST_CASE("a recorded trace is a scene too, without a table of triangles") {
   const ScratchFolder folder;
-  REQUIRE(run_quadrille(folder, {"trace", "record", "builtin:triangle", "--size", "24x16", "-o", "t.qtrace"}).exit_code == 0);
-  const ProgramRun run = run_quadrille(folder, {"accuracy", "t.qtrace", "--repeat", "1", "--windows", "4", "--no-precision"});
+  REQUIRE(run_quadrille(folder, {"trace", "record", "builtin:triangle", "--size", "24x16", "-o", "t.qtrace"})
+              .exit_code == 0);
+  const ProgramRun run =
+      run_quadrille(folder, {"accuracy", "t.qtrace", "--repeat", "1", "--windows", "4", "--no-precision"});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
   CHECK_THAT(run.out, Catch::Contains("t.qtrace, 24x16") && !Catch::Contains("PRECISION"));

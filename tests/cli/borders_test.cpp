@@ -1,4 +1,5 @@
-/// The program's borders: standard streams that are closed, full or read by nobody, files that may not grow, signals while files are written.
+/// The program's borders: standard streams that are closed, full or read by nobody, files that may not grow,
+/// signals while files are written.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/inotify.h>
@@ -51,7 +52,9 @@ std::function<void()> files_of_at_most(rlim_t bytes) {
 
 /// A scene with something to say on standard error, which draws nevertheless.
 void write_talkative(const ScratchFolder& folder) {
-  folder.write("t.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["X_y"],"scenes":[{"nodes":[0]}],"nodes":[{}]})");
+  folder.write(
+      "t.gltf",
+      R"({"asset":{"version":"2.0"},"extensionsUsed":["X_y"],"scenes":[{"nodes":[0]}],"nodes":[{}]})");
 }
 
 }  // namespace
@@ -69,14 +72,17 @@ TEST_CASE("a message that cannot be written ends nothing: the exit code is that 
       CHECK(run.out.empty());
     }
     write_talkative(folder);
-    CHECK(run_quadrille(folder, {"render", "t.gltf", "--size", "16x16", "--fidelity", "functional", "-q"}, lost).exit_code == 0);
+    CHECK(
+        run_quadrille(folder, {"render", "t.gltf", "--size", "16x16", "--fidelity", "functional", "-q"}, lost)
+            .exit_code == 0);
   }
 }
 
 TEST_CASE("a table that cannot be written is the user's error, and the files are there") {
   for (const auto& lost : {closed({1}), full(1)}) {
     const ScratchFolder folder;
-    const ProgramRun run = run_quadrille(folder, {"render", "builtin:triangle", "--size", "16x16", "--out", "x.png"}, lost);
+    const ProgramRun run =
+        run_quadrille(folder, {"render", "builtin:triangle", "--size", "16x16", "--out", "x.png"}, lost);
     CHECK(run.exit_code == 2);
     CHECK_THAT(run.err, Catch::StartsWith("quadrille: standard output cannot be written"));
     CHECK(folder.has("x.png"));
@@ -90,7 +96,9 @@ TEST_CASE("a table that cannot be written is the user's error, and the files are
       CAPTURE(prints);
       CHECK(run_quadrille(folder, prints, lost).exit_code == 2);
     }
-    CHECK(run_quadrille(folder, {"render", "builtin:triangle", "--size", "16x16", "-q"}, lost).exit_code == 0);  // which prints nothing
+    // which prints nothing
+    CHECK(run_quadrille(folder, {"render", "builtin:triangle", "--size", "16x16", "-q"}, lost).exit_code ==
+          0);
   }
 }
 
@@ -98,29 +106,36 @@ TEST_CASE("who reads no further ends the program as it ends others: by SIGPIPE, 
   const ScratchFolder folder;
   for (const std::vector<std::string>& prints :
        {std::vector<std::string>{"describe"},
-        {"render", "builtin:flag", "--size", "16x16", "--frames", "3", "--jobs", "2", "--fidelity", "functional", "--out", "f#.png"}}) {
+        {"render", "builtin:flag", "--size", "16x16", "--frames", "3", "--jobs", "2", "--fidelity",
+         "functional", "--out", "f#.png"}}) {
     const ProgramRun run = run_quadrille(folder, prints, broken(1));
     CHECK(run.signal == SIGPIPE);
     CHECK(run.err.empty());
   }
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) CHECK(entry.path().extension() == ".png");
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    CHECK(entry.path().extension() == ".png");
 }
 
 TEST_CASE("a file that is opened never takes the place of a closed stream") {
   const ScratchFolder folder;
   write_talkative(folder);
   const auto draw = [&](const std::string& name, const std::function<void()>& prepare) {
-    return run_quadrille(folder, {"render", "t.gltf", "--size", "16x16", "-q", "--out", name + ".png", "--stats", name + ".json"}, prepare)
+    return run_quadrille(folder,
+                         {"render", "t.gltf", "--size", "16x16", "-q", "--out", name + ".png", "--stats",
+                          name + ".json"},
+                         prepare)
         .exit_code;
   };
   CHECK(draw("open", {}) == 0);
   CHECK(draw("shut", closed({0, 1, 2})) == 0);
   CHECK(folder.read("open.png") == folder.read("shut.png"));
-  CHECK(json::parse(folder.read("shut.json")).at("units") == json::parse(folder.read("open.json")).at("units"));
+  CHECK(json::parse(folder.read("shut.json")).at("units") ==
+        json::parse(folder.read("open.json")).at("units"));
 }
 
 TEST_CASE("a file that may not grow is refused with its name, and nothing of it is left") {
-  const std::vector<std::string> draw{"render", "builtin:courtyard", "--size", "160x120", "--fidelity", "functional", "-q"};
+  const std::vector<std::string> draw{"render",     "builtin:courtyard", "--size", "160x120",
+                                      "--fidelity", "functional",        "-q"};
   for (const std::vector<std::string>& output : {std::vector<std::string>{"--out", "x.png"},
                                                  {"--out", "x.exr"},
                                                  {"--depth", "d.png"},
@@ -136,7 +151,9 @@ TEST_CASE("a file that may not grow is refused with its name, and nothing of it 
     CHECK(folder.empty());
   }
   const ScratchFolder folder;
-  require_refused(run_quadrille(folder, {"trace", "record", "builtin:courtyard", "-o", "c.qtrace"}, files_of_at_most(1000)), {"c.qtrace"});
+  require_refused(run_quadrille(folder, {"trace", "record", "builtin:courtyard", "-o", "c.qtrace"},
+                                files_of_at_most(1000)),
+                  {"c.qtrace"});
   CHECK(folder.empty());
 }
 
@@ -152,11 +169,11 @@ TEST_CASE("a signal while a picture is written leaves no part of it, from a fram
         into(1, "/dev/null");
         into(2, "/dev/null");
         if (frames)
-          execl(QUADRILLE_PROGRAM, "quadrille", "render", "builtin:flag", "--size", "1024x1024", "--fidelity", "functional", "--frames",
-                "2", "--jobs", "2", "--out", "f#.exr", nullptr);
+          execl(QUADRILLE_PROGRAM, "quadrille", "render", "builtin:flag", "--size", "1024x1024", "--fidelity",
+                "functional", "--frames", "2", "--jobs", "2", "--out", "f#.exr", nullptr);
         else
-          execl(QUADRILLE_PROGRAM, "quadrille", "render", "builtin:flag", "--size", "1024x1024", "--fidelity", "functional", "--out",
-                "f.exr", nullptr);
+          execl(QUADRILLE_PROGRAM, "quadrille", "render", "builtin:flag", "--size", "1024x1024", "--fidelity",
+                "functional", "--out", "f.exr", nullptr);
         _exit(127);
       }
       pollfd noticed{notices, POLLIN, 0};

@@ -15,17 +15,19 @@ TEST_CASE("experiment names its experiments, and refuses one that is not there w
 
 TEST_CASE("experiment vertex-reuse finds as many vertices shaded as the analyser and the published steps") {
   const ScratchFolder folder;
-  const auto run = run_quadrille(folder, {"experiment", "vertex-reuse", "--scene", "builtin:cubes", "--size", "32x32"});
+  const auto run =
+      run_quadrille(folder, {"experiment", "vertex-reuse", "--scene", "builtin:cubes", "--size", "32x32"});
   CHECK(run.exit_code == 0);
   CHECK_THAT(run.out, Catch::Contains("holds  builtin:cubes: vertices shaded apart from the analyser's") &&
                           Catch::Contains("holds  GeForce GTX 1080 Ti, 96 indices: vertices shaded: 3") &&
-                          Catch::Contains("holds  GeForce GTX 1080 Ti, 99 indices: vertices shaded: 6") && !Catch::Contains("FAILS"));
+                          Catch::Contains("holds  GeForce GTX 1080 Ti, 99 indices: vertices shaded: 6") &&
+                          !Catch::Contains("FAILS"));
 }
 
 TEST_CASE("experiment prints a table and writes a page with its plot") {
   const ScratchFolder folder;
-  const auto run =
-      run_quadrille(folder, {"experiment", "memory-scheduling", "--scene", "builtin:quad", "--size", "64x64", "--out", "pages"});
+  const auto run = run_quadrille(folder, {"experiment", "memory-scheduling", "--scene", "builtin:quad",
+                                          "--size", "64x64", "--out", "pages"});
   CHECK(run.exit_code == 0);  // memory does not limit it: nothing is held to the band
   CHECK(run.out.find("memory is not the limit") != std::string::npos);
   CHECK(folder.read("pages/memory-scheduling.md").find("memory-scheduling.png") != std::string::npos);

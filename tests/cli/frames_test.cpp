@@ -28,7 +28,8 @@ const char* const kMovingTriangle =
 {"bufferView":0,"byteOffset":44,"componentType":5126,"count":2,"type":"VEC3"}],
 "animations":[{"samplers":[{"input":1,"output":2}],"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}]}]})";
 
-void require_equal(const ScratchFolder& folder, const std::string& a, const std::string& b, bool equal = true) {
+void require_equal(const ScratchFolder& folder, const std::string& a, const std::string& b,
+                   bool equal = true) {
   CAPTURE(a, b);
   CHECK((run_quadrille(folder, {"diff", a, b, "--max-lsb", "0"}).exit_code == 0) == equal);
 }
@@ -37,7 +38,8 @@ void require_equal(const ScratchFolder& folder, const std::string& a, const std:
 
 TEST_CASE("frames of an animation are those that --time draws, one file and one row each") {
   const ScratchFolder folder;
-  const ProgramRun run = frames(folder, "builtin:flag", {"--frames", "4", "--out", "f_##.png", "--stats", "f.json"});
+  const ProgramRun run =
+      frames(folder, "builtin:flag", {"--frames", "4", "--out", "f_##.png", "--stats", "f.json"});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
   CHECK(run.err.empty());
@@ -54,22 +56,27 @@ TEST_CASE("frames of an animation are those that --time draws, one file and one 
     CHECK(frame["figures"]["schema"] == "quadrille-figures-1");
     CHECK(frame["figures"]["frame"]["cycles"] > 0);
     const json& limit = frame["figures"]["limit"];
-    CHECK_THAT(run.out,
-               Catch::Contains(fmt::format("  {} {:.1f}\n", limit["name"].get<std::string>(), 100 * limit["share"].get<double>())));
+    CHECK_THAT(run.out, Catch::Contains(fmt::format("  {} {:.1f}\n", limit["name"].get<std::string>(),
+                                                    100 * limit["share"].get<double>())));
   }
   // Exact frames here, a functional picture of one moment there.
-  CHECK(frames(folder, "builtin:flag", {"--time", "1.5", "--fidelity", "functional", "--out", "one.png", "-q"}).exit_code == 0);
+  CHECK(
+      frames(folder, "builtin:flag", {"--time", "1.5", "--fidelity", "functional", "--out", "one.png", "-q"})
+          .exit_code == 0);
   require_equal(folder, "f_03.png", "one.png");
   require_equal(folder, "f_02.png", "one.png", false);
 }
 
 TEST_CASE("frames a second step through the animation from --time on") {
   const ScratchFolder folder;
-  const ProgramRun run =
-      frames(folder, "builtin:flag", {"--frames", "2", "--fps", "4", "--time", "0.5", "--fidelity", "functional", "--out", "f#.png", "-q"});
+  const ProgramRun run = frames(
+      folder, "builtin:flag",
+      {"--frames", "2", "--fps", "4", "--time", "0.5", "--fidelity", "functional", "--out", "f#.png", "-q"});
   REQUIRE(run.exit_code == 0);
   CHECK(run.out.empty());
-  CHECK(frames(folder, "builtin:flag", {"--time", "0.75", "--fidelity", "functional", "--out", "one.png", "-q"}).exit_code == 0);
+  CHECK(
+      frames(folder, "builtin:flag", {"--time", "0.75", "--fidelity", "functional", "--out", "one.png", "-q"})
+          .exit_code == 0);
   require_equal(folder, "f1.png", "one.png");
 }
 
@@ -77,7 +84,8 @@ TEST_CASE("frames after the end of a file's animation show its last pose, which 
   const ScratchFolder folder;
   folder.write("move.gltf", kMovingTriangle);
   const auto run = [&](const std::string& scene, const std::string& count, std::vector<std::string> more) {
-    more.insert(more.end(), {"--frames", count, "--fps", "1", "--fidelity", "functional", "--stats", "s.json"});
+    more.insert(more.end(),
+                {"--frames", count, "--fps", "1", "--fidelity", "functional", "--stats", "s.json"});
     const ProgramRun done = frames(folder, scene, more);
     CAPTURE(done.err);
     REQUIRE(done.exit_code == 0);
@@ -85,8 +93,10 @@ TEST_CASE("frames after the end of a file's animation show its last pose, which 
   };
   CHECK_THAT(run("move.gltf", "3", {}), !Catch::Contains("note"));  // the third is at the end
   CHECK(json::parse(folder.read("s.json"))["notes"].empty());
-  CHECK_THAT(run("move.gltf", "4", {"--out", "f#.png"}),
-             Catch::Contains("note: the last 1 of 4 frames are after the animation's end at 2 s and show its last pose\n"));
+  CHECK_THAT(
+      run("move.gltf", "4", {"--out", "f#.png"}),
+      Catch::Contains(
+          "note: the last 1 of 4 frames are after the animation's end at 2 s and show its last pose\n"));
   CHECK(json::parse(folder.read("s.json"))["notes"].size() == 1);
   require_equal(folder, "f2.png", "f3.png");
   require_equal(folder, "f1.png", "f2.png", false);
@@ -96,17 +106,21 @@ TEST_CASE("frames after the end of a file's animation show its last pose, which 
 
 TEST_CASE("frames of a scene without an animation, or with --orbit, go around it") {
   const ScratchFolder folder;
-  REQUIRE(
-      frames(folder, "builtin:cubes", {"--frames", "4", "--fidelity", "functional", "--out", "c#.png", "--stats", "c.json"}).exit_code ==
-      0);
+  REQUIRE(frames(folder, "builtin:cubes",
+                 {"--frames", "4", "--fidelity", "functional", "--out", "c#.png", "--stats", "c.json"})
+              .exit_code == 0);
   const json all = json::parse(folder.read("c.json"));
   CHECK(all["animation_s"].is_null());
   CHECK(all["frames"][3]["time_s"].is_null());
   CHECK(all["frames"][3]["turn"] == 0.75);
   CHECK(all["frames"][3]["figures"]["frame"]["draws"] == 125);
   require_equal(folder, "c0.png", "c2.png", false);
-  REQUIRE(frames(folder, "builtin:flag", {"--frames", "2", "--orbit", "--fidelity", "functional", "--out", "o#.png", "-q"}).exit_code == 0);
-  REQUIRE(frames(folder, "builtin:flag", {"--fidelity", "functional", "--out", "still.png", "-q"}).exit_code == 0);
+  REQUIRE(frames(folder, "builtin:flag",
+                 {"--frames", "2", "--orbit", "--fidelity", "functional", "--out", "o#.png", "-q"})
+              .exit_code == 0);
+  REQUIRE(
+      frames(folder, "builtin:flag", {"--fidelity", "functional", "--out", "still.png", "-q"}).exit_code ==
+      0);
   require_equal(folder, "o0.png", "still.png");
   require_equal(folder, "o1.png", "still.png", false);
 }
@@ -115,7 +129,8 @@ TEST_CASE("frames drawn at the same time are those drawn in turn, and their rows
   const ScratchFolder folder;
   const auto draw = [&](const std::string& jobs, const std::string& name) {
     const ProgramRun run =
-        frames(folder, "builtin:flag", {"--frames", "7", "--jobs", jobs, "--out", name + "#.png", "--stats", name + ".json"});
+        frames(folder, "builtin:flag",
+               {"--frames", "7", "--jobs", jobs, "--out", name + "#.png", "--stats", name + ".json"});
     REQUIRE(run.exit_code == 0);
     json all = json::parse(folder.read(name + ".json"));
     for (json& frame : all["frames"]) frame["figures"].erase("host");
@@ -145,20 +160,23 @@ TEST_CASE("frames: the scan-out of each overlaps the drawing of the next, as far
     shown.push_back(std::max(drawn[i], i > 0 ? shown[i - 1] : 0) + scan_out);
     one_after_another += drawing + scan_out;
     all_drawing += drawing;
-    CHECK(all["frames"][i]["overlapped"] == json{{"drawn_from", from}, {"drawn_at", drawn[i]}, {"shown_at", shown[i]}});
+    CHECK(all["frames"][i]["overlapped"] ==
+          json{{"drawn_from", from}, {"drawn_at", drawn[i]}, {"shown_at", shown[i]}});
   }
   CHECK(all["cycles"]["one_after_another"] == one_after_another);
   CHECK(all["cycles"]["overlapped"] == shown.back());
   CHECK(shown.back() < one_after_another);
   CHECK(shown.back() > all_drawing);
-  CHECK_THAT(run.out, Catch::Contains("one after another") && Catch::Contains("overlaps the drawing of the next"));
+  CHECK_THAT(run.out,
+             Catch::Contains("one after another") && Catch::Contains("overlaps the drawing of the next"));
 }
 
 TEST_CASE("a frame that fails names its number, and those before it stay") {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.path() / "f_1.png");  // the second frame cannot be written
   const ProgramRun run =
-      frames(folder, "builtin:flag", {"--frames", "3", "--fidelity", "functional", "--out", "f_#.png", "--stats", "s.json", "-q"});
+      frames(folder, "builtin:flag",
+             {"--frames", "3", "--fidelity", "functional", "--out", "f_#.png", "--stats", "s.json", "-q"});
   require_refused(run, {"frame 1", "f_1.png"});
   CHECK(folder.has("f_0.png"));
   CHECK_FALSE(folder.has("f_2.png"));
@@ -168,24 +186,34 @@ TEST_CASE("a frame that fails names its number, and those before it stay") {
 TEST_CASE("frames that cannot be are refused before any is drawn") {
   const ScratchFolder folder;
   require_refused(frames(folder, "builtin:flag", {"--frames", "0"}), {"--frames", "1..100000"});
-  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--out", "f.png"}), {"--out", "frame_####.png"});
-  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--out", "f#_#.png"}), {"--out", "frame_####.png"});
+  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--out", "f.png"}),
+                  {"--out", "frame_####.png"});
+  require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--out", "f#_#.png"}),
+                  {"--out", "frame_####.png"});
   require_refused(frames(folder, "builtin:flag", {"--frames", "2", "--fps", "0"}), {"--fps"});
   require_refused(frames(folder, "builtin:flag", {"--fps", "3"}), {"--fps", "--frames"});
   require_refused(frames(folder, "builtin:flag", {"--orbit"}), {"--orbit", "--frames"});
-  require_refused(frames(folder, "builtin:cubes", {"--frames", "2", "--fps", "3"}), {"--fps", "no animation"});
+  require_refused(frames(folder, "builtin:cubes", {"--frames", "2", "--fps", "3"}),
+                  {"--fps", "no animation"});
   require_refused(frames(folder, "builtin:flag", {"--time", "-1"}), {"--time"});
   require_refused(frames(folder, "builtin:flag", {"--time", "nan"}), {"--time"});
-  require_refused(frames(folder, "builtin:flag", {"--animation", "walk"}), {"animation 'walk' does not exist", "0"});
+  require_refused(frames(folder, "builtin:flag", {"--animation", "walk"}),
+                  {"animation 'walk' does not exist", "0"});
   require_refused(frames(folder, "builtin:flag", {"--scene", "1"}), {"one scene"});
   CHECK(folder.empty());
 }
 
 TEST_CASE("a trace of a posed moment replays to its picture") {
   const ScratchFolder folder;
-  REQUIRE(run_quadrille(folder, {"trace", "record", "builtin:flag", "--size", "64x48", "--time", "0.7", "-o", "f.qtrace"}).exit_code == 0);
-  REQUIRE(run_quadrille(folder, {"trace", "replay", "f.qtrace", "--fidelity", "functional", "--out", "a.png", "-q"}).exit_code == 0);
-  REQUIRE(frames(folder, "builtin:flag", {"--time", "0.7", "--fidelity", "functional", "--out", "b.png", "-q"}).exit_code == 0);
+  REQUIRE(run_quadrille(folder, {"trace", "record", "builtin:flag", "--size", "64x48", "--time", "0.7", "-o",
+                                 "f.qtrace"})
+              .exit_code == 0);
+  REQUIRE(run_quadrille(folder,
+                        {"trace", "replay", "f.qtrace", "--fidelity", "functional", "--out", "a.png", "-q"})
+              .exit_code == 0);
+  REQUIRE(
+      frames(folder, "builtin:flag", {"--time", "0.7", "--fidelity", "functional", "--out", "b.png", "-q"})
+          .exit_code == 0);
   require_equal(folder, "a.png", "b.png");
   require_refused(run_quadrille(folder, {"render", "f.qtrace", "--frames", "2"}), {"--frames", "f.qtrace"});
   require_refused(run_quadrille(folder, {"render", "f.qtrace", "--time", "1"}), {"--time"});
@@ -203,9 +231,10 @@ TEST_CASE("the scenes, cameras and animations of a file are listed with their nu
 TEST_CASE("scenes: names of a file, and its warnings, are printed in one line whatever they hold") {
   const ScratchFolder folder;
   const std::string name = "a\nb.gltf", evil = R"("name":"x\n\u001b[2J")";
-  folder.write(name, R"({"asset":{"version":"2.0"},"extensionsUsed":["X_y"],"scenes":[{)" + evil + R"(}],"cameras":[{)" + evil +
-                         R"(,"type":"perspective","perspective":{"yfov":1,"znear":1}}],"animations":[{)" + evil +
-                         R"(,"channels":[],"samplers":[]}]})");
+  folder.write(name, R"({"asset":{"version":"2.0"},"extensionsUsed":["X_y"],"scenes":[{)" + evil +
+                         R"(}],"cameras":[{)" + evil +
+                         R"(,"type":"perspective","perspective":{"yfov":1,"znear":1}}],"animations":[{)" +
+                         evil + R"(,"channels":[],"samplers":[]}]})");
   const ProgramRun run = run_quadrille(folder, {"scenes", name});
   CAPTURE(run.out, run.err);
   CHECK(run.exit_code == 0);

@@ -18,7 +18,8 @@ ProgramRun render(const ScratchFolder& folder, std::vector<std::string> more) {
 }
 
 json described(const ScratchFolder& folder, const std::string& machine) {
-  const ProgramRun run = run_quadrille(folder, {"describe", "--only", "parameters", "--json", "--machine", machine});
+  const ProgramRun run =
+      run_quadrille(folder, {"describe", "--only", "parameters", "--json", "--machine", machine});
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
   const json all = json::parse(run.out);
@@ -33,20 +34,24 @@ TEST_CASE("a report says what was changed from what") {
   const ScratchFolder folder;
   CHECK_THAT(render(folder, {}).out, Catch::Contains("machine default, exact"));
   CHECK_THAT(render(folder, {"--set", "gpu.cores=8", "--set", "gpu.channels=2"}).out,
-             Catch::Contains("machine default with gpu.cores=8 (4), exact"));  // a value that it had is no change
+             // a value that it had is no change
+             Catch::Contains("machine default with gpu.cores=8 (4), exact"));
   CHECK_THAT(render(folder, {"--machine", "large", "--set", "gpu.cores=8"}).out,
              Catch::Contains("machine large with gpu.cores=8 (16), exact"));
   folder.write("mine.toml", "[gpu]\ncores = 8\n");
-  CHECK_THAT(render(folder, {"--machine", "mine.toml"}).out, Catch::Contains("machine mine.toml: default with gpu.cores=8 (4), exact"));
+  CHECK_THAT(render(folder, {"--machine", "mine.toml"}).out,
+             Catch::Contains("machine mine.toml: default with gpu.cores=8 (4), exact"));
   folder.write("named.toml", "name = \"mine\"\n[gpu]\ncores = 8\n");
-  CHECK_THAT(render(folder, {"--machine", "named.toml"}).out, Catch::Contains("machine mine: default with gpu.cores=8 (4), exact"));
+  CHECK_THAT(render(folder, {"--machine", "named.toml"}).out,
+             Catch::Contains("machine mine: default with gpu.cores=8 (4), exact"));
   std::vector<std::string> many{"--frames", "1"};
   for (const char* parameter : {"depth", "width", "latency", "credit_latency"}) {
     for (const char* link : {"core_to_rop", "rop_to_depth"})
       many.insert(many.end(), {"--set", std::string("link.") + link + "." + parameter + "=5"});
   }
   CHECK_THAT(render(folder, many).out,
-             Catch::Contains("machine default with link.core_to_rop.depth=5 (8), ") && Catch::Contains(" and 2 more, exact"));
+             Catch::Contains("machine default with link.core_to_rop.depth=5 (8), ") &&
+                 Catch::Contains(" and 2 more, exact"));
 }
 
 TEST_CASE("the JSON holds the whole machine, its base and what was changed") {
@@ -99,7 +104,8 @@ TEST_CASE("a base that is none, or goes in a circle, is refused with its place")
   folder.write("x.toml", "base = \"y.toml\"\n");
   folder.write("y.toml", "base = \"./x.toml\"\n");
   refuse("x.toml", {"x.toml:1: base: y.toml:1: base", "in a circle: x.toml -> y.toml -> ./x.toml"});
-  for (int i = 0; i < 40; ++i) folder.write(std::to_string(i) + ".toml", "base = \"" + std::to_string(i + 1) + ".toml\"\n");
+  for (int i = 0; i < 40; ++i)
+    folder.write(std::to_string(i) + ".toml", "base = \"" + std::to_string(i + 1) + ".toml\"\n");
   refuse("0.toml", {"at most 32"});
   folder.write("wrong.toml", "[gpu]\ncores = 0\n");
   folder.write("above.toml", "base = \"wrong.toml\"\n");
@@ -111,14 +117,15 @@ TEST_CASE("what must hold between parameters is asked of the whole, not of a lay
   folder.write("half.toml", "[texture]\ncache_lines = 3\n");
   folder.write("whole.toml", "base = \"half.toml\"\n[texture]\ncache_ways = 3\n");
   CHECK(described(folder, "whole.toml").at("texture.cache_lines") == 3);
-  require_refused(run_quadrille(folder, {"describe", "--machine", "half.toml"}), {"half.toml", "texture.cache_lines"});
+  require_refused(run_quadrille(folder, {"describe", "--machine", "half.toml"}),
+                  {"half.toml", "texture.cache_lines"});
 }
 
 TEST_CASE("a cache is whole sets: other numbers of lines are refused with the nearest legal ones") {
   for (const std::string cache : {"vertex_fetch", "texture", "depth", "rop", "l2"}) {
     const auto with = [&](int lines, int ways) {
-      return std::vector<std::string>{"describe", "--set", cache + ".cache_lines=" + std::to_string(lines), "--set",
-                                      cache + ".cache_ways=" + std::to_string(ways)};
+      return std::vector<std::string>{"describe", "--set", cache + ".cache_lines=" + std::to_string(lines),
+                                      "--set", cache + ".cache_ways=" + std::to_string(ways)};
     };
     refused(with(12, 8), {cache + ".cache_lines (12)", cache + ".cache_ways (8)", "8 or 16"});
     refused(with(8, 16), {cache + ".cache_lines (8)", cache + ".cache_ways (16)", "can be 16"});
@@ -131,15 +138,19 @@ TEST_CASE("a cache is whole sets: other numbers of lines are refused with the ne
 
 TEST_CASE("a machine is written out whole, and read back it is the same") {
   const ScratchFolder folder;
-  folder.write("mine.toml", "name = \"a\\nb\"\nbase = \"large\"\ngpu.clock_mhz = 1.5\ngpu.linear_log2 = true\nmemory.path_clk = 7\n");
+  folder.write("mine.toml",
+               "name = \"a\\nb\"\nbase = \"large\"\ngpu.clock_mhz = 1.5\ngpu.linear_log2 = "
+               "true\nmemory.path_clk = 7\n");
   for (const std::string machine : {"default", "small", "large", "mine.toml"}) {
     const ProgramRun run = run_quadrille(folder, {"describe", "machine", machine, "--toml"});
     REQUIRE(run.exit_code == 0);
     folder.write("whole.toml", run.out);
     CHECK(described(folder, "whole.toml") == described(folder, machine));
   }
-  const ProgramRun changed = run_quadrille(folder, {"describe", "machine", "large", "--set", "gpu.cores=8", "--toml"});
-  CHECK_THAT(changed.out, Catch::StartsWith("# large with gpu.cores=8 (16)\n") && Catch::Contains("\ncores = 8  # core, 1 to 64: "));
+  const ProgramRun changed =
+      run_quadrille(folder, {"describe", "machine", "large", "--set", "gpu.cores=8", "--toml"});
+  CHECK_THAT(changed.out, Catch::StartsWith("# large with gpu.cores=8 (16)\n") &&
+                              Catch::Contains("\ncores = 8  # core, 1 to 64: "));
   refused({"describe", "texture", "large"}, {"'large'", "describe machine"});
   refused({"describe", "machine", "larg"}, {"larg", "large"});
 }

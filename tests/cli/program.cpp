@@ -20,14 +20,16 @@ std::string read_file(const std::filesystem::path& path) {
 }
 
 /// In the child: never returns.
-[[noreturn]] void become_program(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                                 const std::filesystem::path& out, const std::filesystem::path& err, const std::function<void()>& prepare) {
+[[noreturn]] void become_program(const std::string& program, const std::vector<std::string>& arguments,
+                                 const std::filesystem::path& folder, const std::filesystem::path& out,
+                                 const std::filesystem::path& err, const std::function<void()>& prepare) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600),
             err_file = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  if (chdir(folder.c_str()) != 0 || dup2(out_file, STDOUT_FILENO) < 0 || dup2(err_file, STDERR_FILENO) < 0) _exit(126);
+  if (chdir(folder.c_str()) != 0 || dup2(out_file, STDOUT_FILENO) < 0 || dup2(err_file, STDERR_FILENO) < 0)
+    _exit(126);
   unsetenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE");  // the program has to be quiet without it
   if (prepare) prepare();
   execv(argv[0], argv.data());
@@ -36,8 +38,8 @@ std::string read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                       const std::function<void()>& prepare) {
+ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
+                       const std::filesystem::path& folder, const std::function<void()>& prepare) {
   const ScratchFolder outputs;
   const std::filesystem::path out = outputs.path() / "out", err = outputs.path() / "err";
   const pid_t child = fork();
@@ -45,7 +47,8 @@ ProgramRun run_program(const std::string& program, const std::vector<std::string
   if (child == 0) become_program(program, arguments, folder, out, err, prepare);
   int status = 0;
   waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0, read_file(out), read_file(err)};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
+          read_file(out), read_file(err)};
 }
 
 ScratchFolder::ScratchFolder() {
@@ -59,7 +62,9 @@ ScratchFolder::~ScratchFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-void ScratchFolder::write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name, std::ios::binary) << text; }
+void ScratchFolder::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path_ / name, std::ios::binary) << text;
+}
 
 std::string ScratchFolder::read(const std::string& name) const { return read_file(path_ / name); }
 

@@ -14,9 +14,11 @@ struct ProgramRun {
   std::string out, err;
 };
 
-/// Runs `program` with these arguments, in `folder`, its outputs in files. `prepare` is called in its process before it starts, to close streams or set limits.
+/// Runs `program` with these arguments, in `folder`, its outputs in files. `prepare` is called in its process
+/// before it starts, to close streams or set limits.
 [[nodiscard]] ProgramRun run_program(const std::string& program, const std::vector<std::string>& arguments,
-                                     const std::filesystem::path& folder, const std::function<void()>& prepare = {});
+                                     const std::filesystem::path& folder,
+                                     const std::function<void()>& prepare = {});
 
 /// A new empty folder, removed with all it holds.
 class ScratchFolder {

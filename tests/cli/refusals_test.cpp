@@ -26,12 +26,16 @@ TEST_CASE("a wrong command line is refused in one line") {
 }
 
 TEST_CASE("a name that is nearly one is refused with the one that may be meant") {
-  refused({"rende", "builtin:triangle"}, {"quadrille: unknown subcommand 'rende'; did you mean 'render'?; see quadrille --help"});
+  refused({"rende", "builtin:triangle"},
+          {"quadrille: unknown subcommand 'rende'; did you mean 'render'?; see quadrille --help"});
   refused({"builtin:triangle", "rende"}, {"unknown subcommand 'builtin:triangle'; there are render, diff, "});
-  refused({"trace", "recrod", "builtin:triangle"}, {"unknown subcommand 'recrod'; did you mean 'record'?; see quadrille trace --help"});
-  render_refused({"--sizes", "3x3"}, {"unknown option '--sizes'; did you mean '--size'?; see quadrille render --help"});
+  refused({"trace", "recrod", "builtin:triangle"},
+          {"unknown subcommand 'recrod'; did you mean 'record'?; see quadrille trace --help"});
+  render_refused({"--sizes", "3x3"},
+                 {"unknown option '--sizes'; did you mean '--size'?; see quadrille render --help"});
   render_refused({"--stat=x.json"}, {"'--stat=x.json'; did you mean '--stats'"});
-  refused({"render", "--siz", "3x3"}, {"unknown option '--siz'; did you mean '--size'?"});  // not that SCENE were missing
+  // not that SCENE were missing
+  refused({"render", "--siz", "3x3"}, {"unknown option '--siz'; did you mean '--size'?"});
   refused({"trace", "record", "builtin:triangle", "--ou", "x.qtrace"},
           {"'--ou'; did you mean '--out'?; see quadrille trace record --help"});
   render_refused({"second.gltf", "third.gltf"}, {"unexpected argument 'second.gltf'"});
@@ -46,7 +50,8 @@ TEST_CASE("a name that is nearly one is refused with the one that may be meant")
   refused({"describe", "texure"}, {"did you mean 'texture'?"});
   refused({"describe", "texture.cache_linse"}, {"did you mean 'texture.cache_lines'?"});
   refused({"describe", "cache_hit"}, {"did you mean "});
-  refused({"stability", "empty-pas"}, {"stability: no case matches 'empty-pas'", "did you mean 'empty-pass'?"});
+  refused({"stability", "empty-pas"},
+          {"stability: no case matches 'empty-pas'", "did you mean 'empty-pass'?"});
   refused({"describe", "bicycle"}, {"bicycle", "groups: "});
   refused({"describe", ""}, {"WHAT is empty"});
   refused({"describe", "machine", "large", "--machine", "small"}, {"named twice"});
@@ -72,21 +77,23 @@ TEST_CASE("a damaged scene is refused with its name") {
 }
 
 TEST_CASE("a size is two numbers within 1..16384") {
-  for (const std::string size :
-       {"", "x", "12", "0x4", "4x0", "16385x4", "4x16385", "-4x4", "4x4x4", "4 x4", "1e3x4", "99999999999999999999x1"}) {
+  for (const std::string size : {"", "x", "12", "0x4", "4x0", "16385x4", "4x16385", "-4x4", "4x4x4", "4 x4",
+                                 "1e3x4", "99999999999999999999x1"}) {
     refused({"render", "builtin:triangle", "--size", size}, {"--size", "16384"});
   }
 }
 
 TEST_CASE("a view is numbers, and a camera that exists") {
-  for (const std::string point : {"", "1", "1,2", "1,2,3,4", "a,b,c", "1,2,nan", "1,2,inf", "1,2,", ",,", "1;2;3"}) {
+  for (const std::string point :
+       {"", "1", "1,2", "1,2,3,4", "a,b,c", "1,2,nan", "1,2,inf", "1,2,", ",,", "1;2;3"}) {
     render_refused({"--eye", point}, {"--eye", "X,Y,Z"});
     render_refused({"--at", point}, {"--at", "X,Y,Z"});
   }
   render_refused({"--camera", "99"}, {"camera '99'", "cameras: "});
   render_refused({"--camera", "-1"}, {"camera '-1'"});
   render_refused({"--camera", "one"}, {"camera 'one'"});
-  for (const char* flag : {"--camera", "--scene", "--animation", "--vert", "--frag"}) render_refused({flag, ""}, {flag});
+  for (const char* flag : {"--camera", "--scene", "--animation", "--vert", "--frag"})
+    render_refused({flag, ""}, {flag});
   refused({"experiment", "--jobs", "0", "--list"}, {"--jobs"});
   render_refused({"--camera", "0", "--eye", "1,2,3"}, {"--camera", "--eye"});
   render_refused({"--eye", "1,2,3", "--at", "1,2,3"}, {"eye"});
@@ -96,7 +103,8 @@ TEST_CASE("a shader that is missing or wrong is refused with its name") {
   render_refused({"--frag", "missing.frag"}, {"missing.frag"});
   const ScratchFolder folder;
   folder.write("wrong.frag", "#version 450\nvoid main() { nonsense; }\n");
-  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--frag", "wrong.frag"}), {"wrong.frag", "nonsense"});
+  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--frag", "wrong.frag"}),
+                  {"wrong.frag", "nonsense"});
 }
 
 TEST_CASE("a machine or setting that is none is refused with what is legal") {
@@ -111,7 +119,8 @@ TEST_CASE("a machine or setting that is none is refused with what is legal") {
   render_refused({"--set", "rop.cache_lines=1", "--set", "rop.cache_ways=8"}, {"rop.cache_lines"});
   const ScratchFolder folder;
   folder.write("m.toml", "[gpu]\ncores = 2\nclock = 3\n");
-  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--machine", "m.toml"}), {"m.toml:3", "clock"});
+  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--machine", "m.toml"}),
+                  {"m.toml:3", "clock"});
 }
 
 TEST_CASE("a choice is one of its words") {
@@ -119,12 +128,16 @@ TEST_CASE("a choice is one of its words") {
   render_refused({"--leave-out", "all"}, {"--leave-out", "auto"});
   render_refused({"--driver", "diesel"}, {"--driver", "native"});
   render_refused({"--units", "some"}, {"--units", "folded"});
-  for (const std::string cycles : {"0", "-5", "many", "1.5"}) render_refused({"--max-cycles", cycles}, {"--max-cycles"});
+  for (const std::string cycles : {"0", "-5", "many", "1.5"})
+    render_refused({"--max-cycles", cycles}, {"--max-cycles"});
 }
 
 TEST_CASE("an option that would change nothing is refused") {
-  const std::vector<std::vector<std::string>> of_machines{
-      {"--window", "0"}, {"--max-cycles", "10"}, {"--driver", "native"}, {"--driver", "dispatcher"}, {"--units", "all"}};
+  const std::vector<std::vector<std::string>> of_machines{{"--window", "0"},
+                                                          {"--max-cycles", "10"},
+                                                          {"--driver", "native"},
+                                                          {"--driver", "dispatcher"},
+                                                          {"--units", "all"}};
   for (std::vector<std::string> option : of_machines) {
     const std::string name = option.front();
     option.insert(option.end(), {"--fidelity", "functional"});
@@ -144,7 +157,8 @@ TEST_CASE("an output that cannot be written is refused before anything runs") {
   refused({"trace", "record", "builtin:triangle", "-o", "x.trace"}, {"--out", ".qtrace"});
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.path() / "x.png");
-  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--out", "x.png"}), {"--out", "x.png", "plain file"});
+  require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--out", "x.png"}),
+                  {"--out", "x.png", "plain file"});
   CHECK(std::filesystem::is_empty(folder.path() / "x.png"));
 }
 
@@ -158,8 +172,8 @@ TEST_CASE("a wrong output spares the other one") {
 
 TEST_CASE("a frame that takes longer than it may is given up with who waits for whom") {
   const ScratchFolder folder;
-  const ProgramRun run =
-      run_quadrille(folder, {"render", "builtin:triangle", "--size", "64x64", "--max-cycles", "10", "--out", "x.png", "--stats", "x.json"});
+  const ProgramRun run = run_quadrille(folder, {"render", "builtin:triangle", "--size", "64x64",
+                                                "--max-cycles", "10", "--out", "x.png", "--stats", "x.json"});
   CHECK(run.exit_code == 2);
   CHECK(run.out.empty());
   CHECK_THAT(run.err, Catch::StartsWith("quadrille: the limit of "));
@@ -173,11 +187,14 @@ TEST_CASE("pictures that do not compare are refused") {
   const ScratchFolder folder;
   folder.write("a.png", "no picture");
   require_refused(run_quadrille(folder, {"diff", "a.png", "a.png"}), {"a.png"});
-  require_refused(run_quadrille(folder, {"diff", "a.png", "a.png", "--max-lsb", "256"}), {"--max-lsb", "255"});
+  require_refused(run_quadrille(folder, {"diff", "a.png", "a.png", "--max-lsb", "256"}),
+                  {"--max-lsb", "255"});
   require_refused(run_quadrille(folder, {"diff", "a.png", "a.png", "--heat", "h.jpg"}), {"--heat", ".png"});
 }
 
-TEST_CASE("a group that is none is refused with the groups") { refused({"describe", "engine"}, {"engine", "coarse_raster", "link"}); }
+TEST_CASE("a group that is none is refused with the groups") {
+  refused({"describe", "engine"}, {"engine", "coarse_raster", "link"});
+}
 
 TEST_CASE("a trace command wants a trace, and a trace takes no view") {
   refused({"trace", "info", "builtin:triangle"}, {".qtrace"});
@@ -190,6 +207,8 @@ TEST_CASE("details that are none, or that nothing would show, are refused") {
   render_refused({"--detail", "draw"}, {"--detail: draw not in {draws,tiles}"});
   render_refused({"--detail", "draws,"}, {"--detail: an empty word not in {draws,tiles}"});
   render_refused({"--detail", "tiles"}, {"--detail: tiles are in the JSON alone; add --stats"});
-  render_refused({"--detail", "draws", "--frames", "2"}, {"--detail: with --frames each frame is one row; add --stats"});
-  render_refused({"--detail", "draws", "--fidelity", "functional"}, {"--detail: a functional run has no units and no cycles"});
+  render_refused({"--detail", "draws", "--frames", "2"},
+                 {"--detail: with --frames each frame is one row; add --stats"});
+  render_refused({"--detail", "draws", "--fidelity", "functional"},
+                 {"--detail: a functional run has no units and no cycles"});
 }

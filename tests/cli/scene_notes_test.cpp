@@ -1,4 +1,5 @@
-/// What is drawn otherwise than a file says, said in a line each on standard error; and a file's light, brought into the picture.
+/// What is drawn otherwise than a file says, said in a line each on standard error; and a file's light,
+/// brought into the picture.
 #include "tests/cli/quadrille.h"
 
 #include <fmt/format.h>
@@ -7,8 +8,10 @@ using namespace quadrille::tests;
 
 namespace {
 
-/// A triangle; its second accessor holds two normals of zero and one that is not a number, its third and fourth joints and weights that sum to 0.75, 1 and 0.
-std::string triangle(const std::string& attributes, const std::string& node = "", const std::string& more = "") {
+/// A triangle; its second accessor holds two normals of zero and one that is not a number, its third and
+/// fourth joints and weights that sum to 0.75, 1 and 0.
+std::string triangle(const std::string& attributes, const std::string& node = "",
+                     const std::string& more = "") {
   return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0)" + node +
          R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0)" + attributes +
          R"(}}]}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":1,"byteLength":36},{"buffer":2,"byteLength":12},{"buffer":3,"byteLength":48}],"accessors":[)"
@@ -38,13 +41,15 @@ TEST_CASE("a file that is drawn as it is says nothing") { CHECK(said(triangle(""
 
 TEST_CASE("normals without a direction are named in one line") {
   CHECK(said(triangle(R"(,"NORMAL":1)")) ==
-        "t.gltf: meshes[0].primitives[0]: 3 of 3 vertices have a normal without a direction; faces of such vertices are drawn with their "
+        "t.gltf: meshes[0].primitives[0]: 3 of 3 vertices have a normal without a direction; faces of such "
+        "vertices are drawn with their "
         "own\n");
 }
 
 TEST_CASE("joint weights that do not sum to one are named in one line") {
   CHECK(said(triangle(R"(,"JOINTS_0":2,"WEIGHTS_0":3)", R"(,"skin":0)", R"(,"skins":[{"joints":[0]}])")) ==
-        "t.gltf: meshes[0].primitives[0]: 2 of 3 vertices have joint weights that do not sum to 1; they are divided by their sum, and "
+        "t.gltf: meshes[0].primitives[0]: 2 of 3 vertices have joint weights that do not sum to 1; they are "
+        "divided by their sum, and "
         "without any weight "
         "the first joint moves the vertex\n");
 }
@@ -57,7 +62,8 @@ TEST_CASE("members that are null are named in one line, by the first") {
 
 TEST_CASE("instances without a number are drawn once, which a line says") {
   CHECK_THAT(said(triangle("", R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{}}})")),
-             Catch::Contains("nodes[0]: EXT_mesh_gpu_instancing has no attribute that says how many copies there are; it is drawn once\n"));
+             Catch::Contains("nodes[0]: EXT_mesh_gpu_instancing has no attribute that says how many copies "
+                             "there are; it is drawn once\n"));
 }
 
 TEST_CASE("an animation of a scene without one is refused, whatever it is called") {
@@ -71,7 +77,8 @@ TEST_CASE("an animation of a scene without one is refused, whatever it is called
 }
 
 TEST_CASE("exposure is a factor or auto, which says what it chose") {
-  const std::string sun = R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":2000}]}})";
+  const std::string sun =
+      R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":2000}]}})";
   const std::string file = triangle("", R"(,"extensions":{"KHR_lights_punctual":{"light":0}})", sun);
   CHECK(said(file, {"--exposure", "auto"}) == "t.gltf: exposure 0.0012\n");
   CHECK(said(file, {"--exposure", "0.0012"}).empty());
@@ -85,7 +92,8 @@ TEST_CASE("exposure brings a file that is lit by the sun out of the white") {
   const ScratchFolder folder;
   folder.write("t.gltf", triangle("", R"(,"extensions":{"KHR_lights_punctual":{"light":0}})", sun));
   const auto picture = [&](const std::string& name, std::vector<std::string> more) {
-    std::vector<std::string> arguments{"render", "t.gltf", "--size", "32x32", "--fidelity", "functional", "--out", name};
+    std::vector<std::string> arguments{"render",     "t.gltf",     "--size", "32x32",
+                                       "--fidelity", "functional", "--out",  name};
     arguments.insert(arguments.end(), more.begin(), more.end());
     CHECK(run_quadrille(folder, arguments).exit_code == 0);
     return folder.read(name);

@@ -7,7 +7,8 @@
 
 namespace quadrille::clocked {
 
-/// Something on its way to one end: it is noticed on the receiver's next edge, unless it left on one, and arrives after `edges_left` further edges.
+/// Something on its way to one end: it is noticed on the receiver's next edge, unless it left on one, and
+/// arrives after `edges_left` further edges.
 struct Travelling {
   bool noticed = false;
   int edges_left = 0;
@@ -19,7 +20,8 @@ struct Travelling {
 
 class ClockedLink {
  public:
-  ClockedLink(const hw::world::WireSpec& wire, bool crosses) : wire_(wire), penalty_(crosses ? 2 : 0), free_(wire.depth) {}
+  ClockedLink(const hw::world::WireSpec& wire, bool crosses)
+      : wire_(wire), penalty_(crosses ? 2 : 0), free_(wire.depth) {}
 
   /// Called before any unit ticks, once for each edge of the respective end.
   void consumer_edge() {
@@ -35,7 +37,9 @@ class ClockedLink {
   }
 
   [[nodiscard]] bool can_push() const { return free_ > 0 && pushed_this_edge_ < wire_.width; }
-  [[nodiscard]] bool can_pop() const { return !tokens_.empty() && tokens_.front().first.noticed && tokens_.front().first.edges_left == 0; }
+  [[nodiscard]] bool can_pop() const {
+    return !tokens_.empty() && tokens_.front().first.noticed && tokens_.front().first.edges_left == 0;
+  }
   [[nodiscard]] const hw::world::Token& front() const { return tokens_.front().second; }
   /// `together`: the other end's clock has an edge at this moment, too.
   void push(const hw::world::Token& token, bool together) {

@@ -25,8 +25,10 @@ class Simulation {
     for (const auto& w : spec.wires) {
       const bool crosses = spec.clocks_hz[clock_of(w.from.unit)] != spec.clocks_hz[clock_of(w.to.unit)];
       links_.push_back(std::make_unique<ClockedLink>(w, crosses));
-      units_[static_cast<std::size_t>(w.from.unit)].out[static_cast<std::size_t>(w.from.port)].link = links_.back().get();
-      units_[static_cast<std::size_t>(w.to.unit)].in[static_cast<std::size_t>(w.to.port)].link = links_.back().get();
+      units_[static_cast<std::size_t>(w.from.unit)].out[static_cast<std::size_t>(w.from.port)].link =
+          links_.back().get();
+      units_[static_cast<std::size_t>(w.to.unit)].in[static_cast<std::size_t>(w.to.port)].link =
+          links_.back().get();
     }
   }
 
@@ -39,7 +41,9 @@ class Simulation {
   }
 
  private:
-  [[nodiscard]] std::size_t clock_of(int unit) const { return static_cast<std::size_t>(spec_.units[static_cast<std::size_t>(unit)].clock); }
+  [[nodiscard]] std::size_t clock_of(int unit) const {
+    return static_cast<std::size_t>(spec_.units[static_cast<std::size_t>(unit)].clock);
+  }
 
   [[nodiscard]] std::int64_t next_moment() const {
     std::int64_t soonest = std::numeric_limits<std::int64_t>::max();
@@ -47,7 +51,8 @@ class Simulation {
     return soonest;
   }
 
-  /// Everything that happens at one femtosecond: links see the edges first, then units tick; no unit can see what another does in the same moment.
+  /// Everything that happens at one femtosecond: links see the edges first, then units tick; no unit can see
+  /// what another does in the same moment.
   void moment(std::int64_t now) {
     for (TickingClock& c : clocks_) c.ticks = c.next == now;
     for (std::size_t i = 0; i < links_.size(); ++i) {

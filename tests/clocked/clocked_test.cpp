@@ -13,18 +13,21 @@ using namespace quadrille::hw::world;
 
 namespace {
 
-/// Fast edges after the last action during which the clocked simulator must stay silent, too: more than any latency or service time of a random world.
+/// Fast edges after the last action during which the clocked simulator must stay silent, too: more than any
+/// latency or service time of a random world.
 constexpr std::int64_t kSilence = 500'000'000;
 
 std::string first_difference(const WorldSpec& spec, const Trace& kernel, const Trace& clocked) {
   for (std::size_t u = 0; u < kernel.size(); ++u) {
     for (std::size_t i = 0; i < std::max(kernel[u].size(), clocked[u].size()); ++i) {
       const auto text = [i](const std::vector<Event>& events) {
-        return i < events.size() ? fmt::format("{} {}{} {:x}", events[i].at, events[i].what, events[i].port, events[i].id)
-                                 : std::string("nothing");
+        return i < events.size()
+                   ? fmt::format("{} {}{} {:x}", events[i].at, events[i].what, events[i].port, events[i].id)
+                   : std::string("nothing");
       };
       if (text(kernel[u]) != text(clocked[u])) {
-        return fmt::format("{}, action {}: kernel {}, clocked {}", spec.units[u].name, i, text(kernel[u]), text(clocked[u]));
+        return fmt::format("{}, action {}: kernel {}, clocked {}", spec.units[u].name, i, text(kernel[u]),
+                           text(clocked[u]));
       }
     }
   }
@@ -43,7 +46,8 @@ std::string compare(const WorldSpec& spec, std::uint64_t order_seed) {
   std::string text = first_difference(spec, world.trace(), truth.trace);
   std::int64_t left = 0;
   for (const int n : truth.tokens_in_links) left += n;
-  if (tokens_in_links(driver.units()) != left) text += fmt::format(" {} tokens left, clocked {}", tokens_in_links(driver.units()), left);
+  if (tokens_in_links(driver.units()) != left)
+    text += fmt::format(" {} tokens left, clocked {}", tokens_in_links(driver.units()), left);
   return text;
 }
 
@@ -67,14 +71,16 @@ TEST_CASE("kernel: the native driver equals the clocked simulator on random worl
 }
 
 TEST_CASE("kernel: both drivers equal the clocked simulator on the benchmark's machine of 50 units") {
-  for (const WorldSpec& spec : {benchmark_world(40), benchmark_world(40, {.depth = 16, .latency = 4, .credit = 4})}) {
+  for (const WorldSpec& spec :
+       {benchmark_world(40), benchmark_world(40, {.depth = 16, .latency = 4, .credit = 4})}) {
     REQUIRE(spec.units.size() == 50);
     CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, 7); }) == "");
     CHECK(contract::in_child([&] { return compare<NativeDriver>(spec, 7); }) == "");
   }
 }
 
-TEST_CASE("kernel: machines of more units than a word has marks equal the clocked simulator in any host order") {
+TEST_CASE(
+    "kernel: machines of more units than a word has marks equal the clocked simulator in any host order") {
   WorldSpec spec;
   const int merge = spec.add({.role = Role::kArbiter});
   for (int lane = 0; lane < 4; ++lane) {
@@ -88,6 +94,7 @@ TEST_CASE("kernel: machines of more units than a word has marks equal the clocke
   }
   spec.wire({merge, 0}, {spec.add({.role = Role::kSink, .period = 2}), 0}, {.depth = 3});
   REQUIRE(spec.units.size() > 128);
-  for (const std::uint64_t order : {0u, 1u, 2u, 3u}) CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, order); }) == "");
+  for (const std::uint64_t order : {0u, 1u, 2u, 3u})
+    CHECK(contract::in_child([&] { return compare<Dispatcher>(spec, order); }) == "");
   CHECK(contract::in_child([&] { return compare<NativeDriver>(spec, 1); }) == "");
 }

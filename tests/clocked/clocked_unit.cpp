@@ -96,8 +96,11 @@ int ClockedUnit::hold_one() {
       return done('<', 0, token.id, cost(spec_, held_.id));
     }
     held_ = token;
-    held_count_ = spec_.role == Role::kSerial ? 1 : 1 + static_cast<int>(mix(token.id, 9) % static_cast<std::uint32_t>(spec_.count));
-    return done('<', 0, token.id, spec_.role == Role::kSerial ? service(spec_, token.id) : cost(spec_, token.id));
+    held_count_ = spec_.role == Role::kSerial
+                      ? 1
+                      : 1 + static_cast<int>(mix(token.id, 9) % static_cast<std::uint32_t>(spec_.count));
+    return done('<', 0, token.id,
+                spec_.role == Role::kSerial ? service(spec_, token.id) : cost(spec_, token.id));
   }
   Token token = held_;
   if (spec_.role == Role::kPack) {
@@ -177,8 +180,8 @@ int ClockedUnit::memory() {
   Place* longest = nullptr;  // done for the longest time, of those whose output has room
   for (Place& p : places_) {
     if (p.phase != Phase::kWait || p.cycles_left > 0 || !room(p.port)) continue;
-    const bool before =
-        longest == nullptr || p.cycles_left < longest->cycles_left || (p.cycles_left == longest->cycles_left && p.order < longest->order);
+    const bool before = longest == nullptr || p.cycles_left < longest->cycles_left ||
+                        (p.cycles_left == longest->cycles_left && p.order < longest->order);
     if (before) longest = &p;
   }
   if (longest != nullptr) {

@@ -1,4 +1,5 @@
-/// The committed corpus through every target, in the normal build: seeds, and every input that once crashed, hung or took too much.
+/// The committed corpus through every target, in the normal build: seeds, and every input that once crashed,
+/// hung or took too much.
 #include "tests/fuzz/targets.h"
 
 #include <catch2/catch.hpp>
@@ -15,7 +16,8 @@ namespace {
 
 /// Runs every file of the target's folder; a crash ends the process and so the test.
 void replay(std::string_view name) {
-  const std::filesystem::path folder = std::filesystem::path(QUADRILLE_SOURCE_DIR) / "tests/fuzz/corpus" / name;
+  const std::filesystem::path folder =
+      std::filesystem::path(QUADRILLE_SOURCE_DIR) / "tests/fuzz/corpus" / name;
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string path = entry.path().string();

@@ -1,4 +1,5 @@
-/// Writes the seeds of the corpus below a folder: small files of every kind that our own code makes. What fuzzing adds to it is committed beside them.
+/// Writes the seeds of the corpus below a folder: small files of every kind that our own code makes. What
+/// fuzzing adds to it is committed beside them.
 ///   make_fuzz_corpus tests/fuzz/corpus
 #include <fmt/format.h>
 
@@ -29,8 +30,12 @@ class Corpus {
   explicit Corpus(fs::path root) : root_(std::move(root)) {
     for (const Target& t : targets()) fs::create_directories(root_ / t.name);
   }
-  void write(const std::string& name, Bytes bytes) const { traces::write_whole_file((root_ / name).string(), bytes); }
-  void write(const std::string& name, std::string_view text) const { write(name, std::as_bytes(std::span(text))); }
+  void write(const std::string& name, Bytes bytes) const {
+    traces::write_whole_file((root_ / name).string(), bytes);
+  }
+  void write(const std::string& name, std::string_view text) const {
+    write(name, std::as_bytes(std::span(text)));
+  }
   [[nodiscard]] std::string path(const std::string& name) const { return (root_ / name).string(); }
 
  private:
@@ -40,7 +45,8 @@ class Corpus {
 scenes::Rgba8Image checkers(std::uint32_t width, std::uint32_t height) {
   scenes::Rgba8Image image{width, height, {}};
   for (std::uint32_t i = 0; i < width * height; ++i)
-    for (const unsigned v : {i * 37U, i * 11U, 255 - i, 255U - (i % 7)}) image.pixels.push_back(static_cast<std::uint8_t>(v));
+    for (const unsigned v : {i * 37U, i * 11U, 255 - i, 255U - (i % 7)})
+      image.pixels.push_back(static_cast<std::uint8_t>(v));
   return image;
 }
 
@@ -50,19 +56,21 @@ scenes::Rgba8Image checkers(std::uint32_t width, std::uint32_t height) {
 class BufferText {
  public:
   template <class T>
-  int add(const std::vector<T>& values, int component, int count, const std::string& type, const std::string& more = "") {
+  int add(const std::vector<T>& values, int component, int count, const std::string& type,
+          const std::string& more = "") {
     const auto bytes = std::as_bytes(std::span(values));
-    views_ += fmt::format("{}{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}}}", count_ > 0 ? "," : "", data_.size(), bytes.size());
-    accessors_ += fmt::format("{}{{\"bufferView\":{},\"componentType\":{},\"count\":{},\"type\":\"{}\"{}}}", count_ > 0 ? "," : "", count_,
-                              component, count, type, more);
+    views_ += fmt::format("{}{{\"buffer\":0,\"byteOffset\":{},\"byteLength\":{}}}", count_ > 0 ? "," : "",
+                          data_.size(), bytes.size());
+    accessors_ += fmt::format("{}{{\"bufferView\":{},\"componentType\":{},\"count\":{},\"type\":\"{}\"{}}}",
+                              count_ > 0 ? "," : "", count_, component, count, type, more);
     data_.insert(data_.end(), bytes.begin(), bytes.end());
     data_.resize((data_.size() + 3) / 4 * 4);
     return count_++;
   }
   [[nodiscard]] std::string text(bool with_uri) const {
     const std::string uri = with_uri ? ",\"uri\":\"" + scenes::data_uri(data_) + "\"" : "";
-    return fmt::format("\"bufferViews\":[{}],\"accessors\":[{}],\"buffers\":[{{\"byteLength\":{}{}}}]", views_, accessors_, data_.size(),
-                       uri);
+    return fmt::format("\"bufferViews\":[{}],\"accessors\":[{}],\"buffers\":[{{\"byteLength\":{}{}}}]",
+                       views_, accessors_, data_.size(), uri);
   }
   [[nodiscard]] const Buffer& data() const { return data_; }
 
@@ -74,26 +82,31 @@ class BufferText {
 
 constexpr int kUbyte = 5121, kUshort = 5123, kFloat = 5126;
 
-/// A square of two triangles with every attribute, skin, morph target and animation; `material` and `more` are put in as they are.
+/// A square of two triangles with every attribute, skin, morph target and animation; `material` and `more`
+/// are put in as they are.
 std::string rich_scene(const Corpus& corpus, bool with_uri, Buffer* data) {
   BufferText b;
   const std::vector<float> corners{-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   b.add(corners, kFloat, 4, "VEC3", R"(,"min":[-1,-1,0],"max":[1,1,0])");
   b.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, kFloat, 4, "VEC3");
   b.add(std::vector<float>{1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, kFloat, 4, "VEC4");
-  b.add(std::vector<std::uint16_t>{0, 0, 65535, 0, 65535, 65535, 0, 65535}, kUshort, 4, "VEC2", R"(,"normalized":true)");
+  b.add(std::vector<std::uint16_t>{0, 0, 65535, 0, 65535, 65535, 0, 65535}, kUshort, 4, "VEC2",
+        R"(,"normalized":true)");
   b.add(std::vector<std::uint8_t>(16, 200), kUbyte, 4, "VEC4", R"(,"normalized":true)");
   b.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, kUshort, 6, "SCALAR");
   b.add(std::vector<std::uint8_t>(16, 0), kUbyte, 4, "VEC4");
   b.add(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, kFloat, 4, "VEC4");
   b.add(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, kFloat, 1, "MAT4");
-  b.add(std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, kFloat, 4, "VEC3", R"(,"min":[0,0,0],"max":[0,0,1])");
+  b.add(std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, kFloat, 4, "VEC3",
+        R"(,"min":[0,0,0],"max":[0,0,1])");
   b.add(std::vector<float>{0, 1}, kFloat, 2, "SCALAR", R"(,"min":[0],"max":[1])");
   b.add(std::vector<float>{0, 0, 0, 1, 0, 0.7F, 0, 0.7F}, kFloat, 2, "VEC4");
   b.add(std::vector<float>{0, 1}, kFloat, 2, "SCALAR");
   if (data != nullptr) *data = b.data();
   scenes::save_png(corpus.path("image/checkers.png"), checkers(4, 4));
-  const std::string png = scenes::data_uri(traces::read_whole_file(corpus.path("image/checkers.png"), 1 << 20)).replace(5, 24, "image/png");
+  const std::string png =
+      scenes::data_uri(traces::read_whole_file(corpus.path("image/checkers.png"), 1 << 20))
+          .replace(5, 24, "image/png");
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,2,3]}],
 "extensionsUsed":["KHR_texture_transform","KHR_lights_punctual","KHR_materials_emissive_strength","KHR_materials_unlit"],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","intensity":9,"range":50,"spot":{"outerConeAngle":0.5}},{"type":"point"}]}},
@@ -125,8 +138,8 @@ Buffer binary_gltf(std::string text, Buffer data) {
     const auto v = static_cast<std::uint32_t>(value);
     append(std::as_bytes(std::span(&v, 1)));
   };
-  for (const std::size_t value :
-       {std::size_t{0x46546c67}, std::size_t{2}, 28 + text.size() + data.size(), text.size(), std::size_t{0x4e4f534a}})
+  for (const std::size_t value : {std::size_t{0x46546c67}, std::size_t{2}, 28 + text.size() + data.size(),
+                                  text.size(), std::size_t{0x4e4f534a}})
     word(value);
   append(std::as_bytes(std::span(text)));
   word(data.size());
@@ -142,7 +155,9 @@ void write_scenes(const Corpus& corpus) {
   corpus.write("scene/points.gltf", scenes::triangle_gltf(R"(,"mode":0)"));
   corpus.write("scene/scale.gltf", scenes::triangle_gltf("", "", R"(,"scale":[1e30,1e-30,0])"));
   corpus.write("scene/empty.gltf", R"({"asset":{"version":"2.0"}})");
-  corpus.write("scene/loop.gltf", R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]})");
+  corpus.write(
+      "scene/loop.gltf",
+      R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"children":[1]},{"children":[0]}]})");
   scenes::ArmOptions two_sets;
   two_sets.second_set = two_sets.wide_joints = true;
   two_sets.weight_bits = 16;
@@ -157,46 +172,60 @@ void write_scenes(const Corpus& corpus) {
 
 // ---- the others ----
 
-std::vector<std::uint32_t> glsl(traces::ShaderStage stage, std::string_view text) { return scenes::compile_glsl(text, stage, "seed"); }
+std::vector<std::uint32_t> glsl(traces::ShaderStage stage, std::string_view text) {
+  return scenes::compile_glsl(text, stage, "seed");
+}
 
 void write_spirv(const Corpus& corpus, const std::string& scene) {
   const auto write = [&](const std::string& name, const std::vector<std::uint32_t>& words) {
     corpus.write("spirv/" + name + ".spv", std::as_bytes(std::span(words)));
   };
   constexpr std::string_view kHead =
-      "#version 450\nlayout(location=0) in vec4 a; layout(location=1) in vec4 b; layout(location=2) flat in ivec4 i;\n"
+      "#version 450\nlayout(location=0) in vec4 a; layout(location=1) in vec4 b; layout(location=2) flat in "
+      "ivec4 i;\n"
       "layout(location=0) out vec4 color;\nlayout(set=1, binding=0) uniform sampler2D t;\n"
-      "layout(set=0, binding=1, std140) uniform U { mat4 m; vec4 l[4]; int n; } u;\nlayout(push_constant) uniform P { vec4 p; } c;\n";
+      "layout(set=0, binding=1, std140) uniform U { mat4 m; vec4 l[4]; int n; } u;\nlayout(push_constant) "
+      "uniform P { vec4 p; } c;\n";
   const auto fragment = [&](const std::string& name, const std::string& body) {
     write(name, glsl(traces::ShaderStage::kFragment, std::string(kHead) + body));
   };
   fragment("plain", "void main() { color = a; }");
   fragment("loop",
-           "void main() { vec4 s = a; for (int k = 0; k < i.x; ++k) { if (s.x > 3.0) break; if (s.y < 0.0) continue; s = s * b + u.l[k & "
+           "void main() { vec4 s = a; for (int k = 0; k < i.x; ++k) { if (s.x > 3.0) break; if (s.y < 0.0) "
+           "continue; s = s * b + u.l[k & "
            "3]; } color = s; }");
-  fragment(
-      "switch",
-      "void main() { vec4 s = a; switch (i.y) { case 0: s *= 2.0; case 1: s -= b; break; default: s = normalize(s); } color = u.m * s; }");
+  fragment("switch",
+           "void main() { vec4 s = a; switch (i.y) { case 0: s *= 2.0; case 1: s -= b; break; default: s = "
+           "normalize(s); } color = u.m * s; }");
   fragment("texture",
-           "void main() { if (a.x < 0.5) discard; color = texture(t, a.xy, 0.5) + textureLod(t, b.xy, 2.0) * vec4(textureSize(t, 0), 0, 1) "
+           "void main() { if (a.x < 0.5) discard; color = texture(t, a.xy, 0.5) + textureLod(t, b.xy, 2.0) * "
+           "vec4(textureSize(t, 0), 0, 1) "
            "+ c.p; }");
   fragment("calls",
-           "float f(float x) { return x > 0.0 ? sqrt(x) : exp2(x); }\nvoid main() { float r[4]; for (int k = 0; k < 4; ++k) r[k] = "
+           "float f(float x) { return x > 0.0 ? sqrt(x) : exp2(x); }\nvoid main() { float r[4]; for (int k = "
+           "0; k < 4; ++k) r[k] = "
            "f(a[k]); color = vec4(r[i.x & 3], dFdx(a.y), fwidth(b.x), pow(a.x, b.x)); }");
-  fragment("depth", "void main() { gl_FragDepth = gl_FragCoord.z * 0.5; color = gl_FrontFacing ? a : mix(a, b, bvec4(i)); }");
-  fragment("endless", "void main() { vec4 s = a; while (true) { s += b; if (s.x > 1e30) break; } color = s; }");
+  fragment("depth",
+           "void main() { gl_FragDepth = gl_FragCoord.z * 0.5; color = gl_FrontFacing ? a : mix(a, b, "
+           "bvec4(i)); }");
+  fragment("endless",
+           "void main() { vec4 s = a; while (true) { s += b; if (s.x > 1e30) break; } color = s; }");
   fragment("integers",
-           "void main() { uvec4 k = uvec4(i); k = (k << 3u) ^ (k >> 1u) | bitfieldReverse(k); color = vec4(k % 7u) * vec4(i / 3) * "
+           "void main() { uvec4 k = uvec4(i); k = (k << 3u) ^ (k >> 1u) | bitfieldReverse(k); color = vec4(k "
+           "% 7u) * vec4(i / 3) * "
            "uintBitsToFloat(k.x & 0x3fffffffu); }");
   write("vertex", glsl(traces::ShaderStage::kVertex,
-                       "#version 450\nlayout(location=0) in vec3 p; layout(location=1) in vec4 q; layout(location=0) out vec4 v;\n"
-                       "layout(set=0, binding=0) uniform U { mat4 m; } u;\nvoid main() { v = q * float(gl_VertexIndex + gl_InstanceIndex); "
+                       "#version 450\nlayout(location=0) in vec3 p; layout(location=1) in vec4 q; "
+                       "layout(location=0) out vec4 v;\n"
+                       "layout(set=0, binding=0) uniform U { mat4 m; } u;\nvoid main() { v = q * "
+                       "float(gl_VertexIndex + gl_InstanceIndex); "
                        "gl_Position = u.m * vec4(p, 1); }"));
   scenes::SceneOptions options;
   options.width = options.height = 8;
   for (const traces::Shader& shader : scenes::load_scene(scene, options).shaders)
     if (shader.spirv.size() < 4000)
-      write(shader.stage == traces::ShaderStage::kVertex ? "material_vertex" : "material_fragment", shader.spirv);
+      write(shader.stage == traces::ShaderStage::kVertex ? "material_vertex" : "material_fragment",
+            shader.spirv);
 }
 
 void write_traces(const Corpus& corpus, const std::string& scene) {
@@ -207,7 +236,8 @@ void write_traces(const Corpus& corpus, const std::string& scene) {
   }
   scenes::SceneOptions options;
   options.width = options.height = 8;
-  corpus.write("trace/triangle.qtrace", traces::encode_trace(scenes::load_scene("builtin:triangle", options)));
+  corpus.write("trace/triangle.qtrace",
+               traces::encode_trace(scenes::load_scene("builtin:triangle", options)));
   corpus.write("trace/rich.qtrace", traces::encode_trace(scenes::load_scene(scene, options)));
 }
 
@@ -220,11 +250,16 @@ void write_images(const Corpus& corpus) {
 }
 
 void write_machines(const Corpus& corpus) {
-  corpus.write("machine/small.toml", "name = \"small\"\n[gpu]\ncores = 1\nclock_mhz = 1e3\n[link.core_to_rop]\ndepth = 2\n");
-  corpus.write("machine/dotted.toml", "gpu.cores = 2\nlink.client_to_l2 = {depth = 4, latency = 9}\ntexture.cache_lines=0x40\n");
-  corpus.write("machine/settings", "gpu.cores=4\ngpu.clock_mhz=1.5e3\nrop.cache_lines=32\nlink.rop_to_depth.latency=1000000\n=\n.=.\n");
+  corpus.write("machine/small.toml",
+               "name = \"small\"\n[gpu]\ncores = 1\nclock_mhz = 1e3\n[link.core_to_rop]\ndepth = 2\n");
+  corpus.write("machine/dotted.toml",
+               "gpu.cores = 2\nlink.client_to_l2 = {depth = 4, latency = 9}\ntexture.cache_lines=0x40\n");
+  corpus.write(
+      "machine/settings",
+      "gpu.cores=4\ngpu.clock_mhz=1.5e3\nrop.cache_lines=32\nlink.rop_to_depth.latency=1000000\n=\n.=.\n");
   corpus.write("machine/wrong.toml", "[gpu]\ncores = \"two\"\nclock = 1\n[[depth]]\nx = 1979-05-27\n");
-  corpus.write("machine/numbers.toml", "[gpu]\ncores = -1\nclock_mhz = nan\nmemory_mhz = inf\nmemory_mib = 9223372036854775807\n");
+  corpus.write("machine/numbers.toml",
+               "[gpu]\ncores = -1\nclock_mhz = nan\nmemory_mhz = inf\nmemory_mib = 9223372036854775807\n");
 }
 
 void write_all(const Corpus& corpus) {

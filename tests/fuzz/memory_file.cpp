@@ -7,7 +7,8 @@
 
 namespace quadrille::fuzz {
 
-MemoryFile::MemoryFile() : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)), path_(fmt::format("/proc/self/fd/{}", descriptor_)) {
+MemoryFile::MemoryFile()
+    : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)), path_(fmt::format("/proc/self/fd/{}", descriptor_)) {
   QUADRILLE_CHECK(descriptor_ >= 0, "no file in memory");
 }
 
@@ -15,7 +16,9 @@ MemoryFile::~MemoryFile() { close(descriptor_); }
 
 void MemoryFile::put(std::span<const std::byte> bytes) const {
   const auto size = static_cast<off_t>(bytes.size());
-  QUADRILLE_CHECK(ftruncate(descriptor_, size) == 0 && pwrite(descriptor_, bytes.data(), bytes.size(), 0) == size, "{} bytes", size);
+  QUADRILLE_CHECK(
+      ftruncate(descriptor_, size) == 0 && pwrite(descriptor_, bytes.data(), bytes.size(), 0) == size,
+      "{} bytes", size);
 }
 
 }  // namespace quadrille::fuzz

@@ -1,4 +1,5 @@
-/// The contract of every input: done, or refused by a `UserError` (or for want of memory) in one line that names the input.
+/// The contract of every input: done, or refused by a `UserError` (or for want of memory) in one line that
+/// names the input.
 #pragma once
 
 #include <new>
@@ -8,7 +9,8 @@
 
 namespace quadrille::fuzz {
 
-/// Does the work; returns whether it was done. Aborts when the refusal has more than one line or does not say `name`. Anything else thrown ends the process.
+/// Does the work; returns whether it was done. Aborts when the refusal has more than one line or does not say
+/// `name`. Anything else thrown ends the process.
 template <class Work>
 bool done_or_refused(std::string_view name, const Work& work) {
   try {
@@ -16,8 +18,8 @@ bool done_or_refused(std::string_view name, const Work& work) {
     return true;
   } catch (const UserError& error) {
     const std::string_view text = error.what();
-    QUADRILLE_CHECK(text.find('\n') == std::string_view::npos && text.find(name) != std::string_view::npos, "refused with '{}', input {}",
-                    text, name);
+    QUADRILLE_CHECK(text.find('\n') == std::string_view::npos && text.find(name) != std::string_view::npos,
+                    "refused with '{}', input {}", text, name);
   } catch (const std::bad_alloc&) {  // the program says "out of memory" and ends with exit code 2
   }
   return false;

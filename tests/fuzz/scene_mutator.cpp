@@ -1,4 +1,5 @@
-/// glTF is JSON, in a binary file with a chunk of data behind it: changes are made to its values and members, so that the text stays JSON.
+/// glTF is JSON, in a binary file with a chunk of data behind it: changes are made to its values and members,
+/// so that the text stays JSON.
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,7 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kHeader = 20;  ///< of a binary file with the header of its first chunk [glTF2.0 #binary-gltf-layout]
+/// of a binary file with the header of its first chunk [glTF2.0 #binary-gltf-layout]
+constexpr std::size_t kHeader = 20;
 constexpr std::array kMembers{"accessors",
                               "alphaCutoff",
                               "alphaMode",
@@ -107,13 +109,15 @@ constexpr std::array kMembers{"accessors",
                               "KHR_draco_mesh_compression",
                               "KHR_texture_basisu",
                               "KHR_materials_variants"};
-constexpr std::array kNumbers{0.0,    1.0,    -1.0,         2.0,          3.0,          4.0,           5.0,     255.0,
-                              5120.0, 5121.0, 5123.0,       5125.0,       5126.0,       9729.0,        33071.0, 1e-40,
-                              1e30,   1e308,  2147483647.0, 2147483648.0, 4294967295.0, -2147483648.0, 1.8e19,  0.5};
-constexpr std::array kStrings{"",          "SCALAR",      "VEC2",        "VEC3",          "VEC4",   "MAT4",
-                              "MASK",      "BLEND",       "perspective", "data:;base64,", "data:,", "LINEAR",
-                              "STEP",      "CUBICSPLINE", "translation", "weights",       "2.0",    "image/png",
-                              "TRIANGLES", "ATTRIBUTES",  "OCTAHEDRAL",  "/dev/null",     "."};
+constexpr std::array kNumbers{0.0,          1.0,          -1.0,         2.0,           3.0,    4.0,
+                              5.0,          255.0,        5120.0,       5121.0,        5123.0, 5125.0,
+                              5126.0,       9729.0,       33071.0,      1e-40,         1e30,   1e308,
+                              2147483647.0, 2147483648.0, 4294967295.0, -2147483648.0, 1.8e19, 0.5};
+constexpr std::array kStrings{"",           "SCALAR",    "VEC2",      "VEC3",        "VEC4",
+                              "MAT4",       "MASK",      "BLEND",     "perspective", "data:;base64,",
+                              "data:,",     "LINEAR",    "STEP",      "CUBICSPLINE", "translation",
+                              "weights",    "2.0",       "image/png", "TRIANGLES",   "ATTRIBUTES",
+                              "OCTAHEDRAL", "/dev/null", "."};
 
 /// All values below and including `root`; what holds other values comes before them.
 void collect(Json& root, std::vector<Json*>& out) {
@@ -194,7 +198,8 @@ Buffer with_text(Bytes old, std::string text, std::size_t old_length) {
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const Bytes rest = old.subspan(kHeader + old_length);
   Buffer out(old.begin(), old.begin() + kHeader);
-  const auto total = static_cast<std::uint32_t>(kHeader + text.size() + rest.size()), length = static_cast<std::uint32_t>(text.size());
+  const auto total = static_cast<std::uint32_t>(kHeader + text.size() + rest.size()),
+             length = static_cast<std::uint32_t>(text.size());
   std::memcpy(out.data() + 8, &total, 4);
   std::memcpy(out.data() + 12, &length, 4);
   const auto bytes = std::as_bytes(std::span(text));

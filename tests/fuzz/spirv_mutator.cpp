@@ -1,4 +1,5 @@
-/// SPIR-V keeps its instructions' lengths in their first words: changes are made to whole instructions, and ids stay mostly below the bound.
+/// SPIR-V keeps its instructions' lengths in their first words: changes are made to whole instructions, and
+/// ids stay mostly below the bound.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -29,7 +30,8 @@ void change_word(Words& words, Dice& dice) {
     case 1: word = static_cast<std::uint32_t>(dice.below(words[kBoundWord])); break;
     case 2: word = words[kHeaderWords + dice.below(words.size() - kHeaderWords)]; break;
     case 3: word += static_cast<std::uint32_t>(dice.below(3)) - 1; break;
-    case 4: word = (word & 0xffff0000u) | static_cast<std::uint32_t>(dice.below(400)); break;  // another instruction of the same length
+    // another instruction of the same length
+    case 4: word = (word & 0xffff0000u) | static_cast<std::uint32_t>(dice.below(400)); break;
     default: word = dice.pick(kExtremes); break;
   }
 }
@@ -38,7 +40,9 @@ void move_instruction(Words& words, Dice& dice) {
   const std::vector<std::size_t> at = starts(words);
   if (at.size() < 3) return;
   const std::size_t from = dice.below(at.size() - 1), to = dice.below(at.size() - 1);
-  const auto place = [&](std::size_t i) { return words.begin() + static_cast<std::ptrdiff_t>(std::min(at[i], words.size())); };
+  const auto place = [&](std::size_t i) {
+    return words.begin() + static_cast<std::ptrdiff_t>(std::min(at[i], words.size()));
+  };
   const Words moved(place(from), place(from + 1));
   const std::size_t how = dice.below(3);  // remove, copy, or both
   if (how != 0) words.insert(place(to), moved.begin(), moved.end());
@@ -54,7 +58,8 @@ void move_instruction(Words& words, Dice& dice) {
 Buffer mutate_spirv(Bytes bytes, const RawMutation& raw, unsigned seed) {
   Dice dice(seed);
   Words words(bytes.size() / 4);
-  if (words.size() <= kHeaderWords || words.size() > kMaxWords || dice.one_in(32)) return mutate_raw(bytes, raw, seed);
+  if (words.size() <= kHeaderWords || words.size() > kMaxWords || dice.one_in(32))
+    return mutate_raw(bytes, raw, seed);
   std::memcpy(words.data(), bytes.data(), words.size() * 4);
   for (std::size_t n = 1 + dice.below(3); n > 0 && words.size() > kHeaderWords; --n) {
     if (dice.below(3) == 0) {

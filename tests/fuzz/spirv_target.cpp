@@ -16,7 +16,8 @@ using Words = std::vector<std::uint32_t>;
 constexpr std::string_view kVertex = R"(#version 450
 layout(location=0) out vec4 a; layout(location=1) out vec4 b; layout(location=2) flat out ivec4 i;
 void main() { a = vec4(1); b = vec4(2); i = ivec4(3); gl_Position = vec4(0); })";
-constexpr std::string_view kFragment = "#version 450\nlayout(location=0) out vec4 color;\nvoid main() { color = vec4(1); }";
+constexpr std::string_view kFragment =
+    "#version 450\nlayout(location=0) out vec4 color;\nvoid main() { color = vec4(1); }";
 
 }  // namespace
 

@@ -20,7 +20,8 @@ std::span<const Target> targets() { return kTargets; }
 
 const Target& target(std::string_view name) {
   const auto* const found = std::ranges::find(kTargets, name, &Target::name);
-  if (found == kTargets.end()) throw user_error("target '{}' is unknown; there are scene, trace, machine, spirv and image", name);
+  if (found == kTargets.end())
+    throw user_error("target '{}' is unknown; there are scene, trace, machine, spirv and image", name);
   return *found;
 }
 

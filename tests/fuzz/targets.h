@@ -1,7 +1,9 @@
-/// What is fuzzed: each target takes any bytes the way a user's file takes, and either does its work or is refused in one line.
+/// What is fuzzed: each target takes any bytes the way a user's file takes, and either does its work or is
+/// refused in one line.
 ///
-/// The same functions serve two programs: libFuzzer's (one a target, the `asan` preset, scripts/fuzz) and the replay of the committed corpus, which needs no
-/// Clang and runs with every other test (tests/fuzz/corpus_test.cpp).
+/// The same functions serve two programs: libFuzzer's (one a target, the `asan` preset, scripts/fuzz) and the
+/// replay of the committed corpus, which needs no Clang and runs with every other test
+/// (tests/fuzz/corpus_test.cpp).
 #pragma once
 
 #include <cstddef>
@@ -19,7 +21,8 @@ using Buffer = std::vector<std::byte>;
 /// libFuzzer's own mutation of a buffer: `size` bytes in use, room for `room`; returns the new size.
 using RawMutation = std::function<std::size_t(std::byte* data, std::size_t size, std::size_t room)>;
 
-/// A glTF file, .gltf or .glb: loaded, recorded and, now and then, drawn with the material's shaders at 8x8 pixels.
+/// A glTF file, .gltf or .glb: loaded, recorded and, now and then, drawn with the material's shaders at 8x8
+/// pixels.
 void run_scene(Bytes bytes);
 /// A .qtrace file: decoded, validated and, where it is small, compiled and drawn.
 void run_trace(Bytes bytes);
@@ -30,7 +33,8 @@ void run_spirv(Bytes bytes);
 /// An image file: decoded to bytes and to floats.
 void run_image(Bytes bytes);
 
-// Mutations that know the format, so that changes reach what lies behind the parser. Each falls back to `raw` for what it cannot take apart.
+// Mutations that know the format, so that changes reach what lies behind the parser. Each falls back to `raw`
+// for what it cannot take apart.
 [[nodiscard]] Buffer mutate_scene(Bytes bytes, const RawMutation& raw, unsigned seed);
 [[nodiscard]] Buffer mutate_trace(Bytes bytes, const RawMutation& raw, unsigned seed);
 [[nodiscard]] Buffer mutate_spirv(Bytes bytes, const RawMutation& raw, unsigned seed);

@@ -5,8 +5,8 @@
 
 namespace quadrille::fuzz {
 
-/// Compiles the stream's shaders and draws it if its targets, textures and vertices are few and no program loops; otherwise does nothing.
-/// Throws what `build_frame` and `render_functional` throw.
+/// Compiles the stream's shaders and draws it if its targets, textures and vertices are few and no program
+/// loops; otherwise does nothing. Throws what `build_frame` and `render_functional` throw.
 void draw_if_small(const traces::CommandStream& stream);
 
 }  // namespace quadrille::fuzz

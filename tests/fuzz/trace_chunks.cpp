@@ -32,7 +32,8 @@ void append_chunk(Buffer& out, const TraceChunk& chunk) {
   append(out, std::uint32_t{0});
   append(out, std::uint64_t{packed.size()});
   append(out, std::uint64_t{chunk.payload.size()});
-  append(out, std::uint64_t{XXH3_64bits_withSeed(packed.data(), packed.size(), XXH3_64bits(out.data() + header, 24))});
+  append(out, std::uint64_t{
+                  XXH3_64bits_withSeed(packed.data(), packed.size(), XXH3_64bits(out.data() + header, 24))});
   out.insert(out.end(), packed.begin(), packed.end());
 }
 
@@ -43,11 +44,13 @@ std::optional<std::vector<TraceChunk>> take_trace_apart(Bytes file) {
   for (std::size_t at = kFileHeader; at < file.size();) {
     if (file.size() - at < kChunkHeader) return std::nullopt;
     TraceChunk chunk{number_at<std::array<char, 4>>(file, at), {}};
-    const auto stored = number_at<std::uint64_t>(file, at + 8), decoded = number_at<std::uint64_t>(file, at + 16);
+    const auto stored = number_at<std::uint64_t>(file, at + 8),
+               decoded = number_at<std::uint64_t>(file, at + 16);
     at += kChunkHeader;
     if (stored > file.size() - at || decoded > kMaxPayload) return std::nullopt;
     chunk.payload.resize(decoded);
-    if (ZSTD_decompress(chunk.payload.data(), decoded, file.data() + at, stored) != decoded) return std::nullopt;
+    if (ZSTD_decompress(chunk.payload.data(), decoded, file.data() + at, stored) != decoded)
+      return std::nullopt;
     at += stored;
     chunks.push_back(std::move(chunk));
   }

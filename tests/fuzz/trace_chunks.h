@@ -1,4 +1,5 @@
-/// A trace file taken apart and put together again, checksums and all, from docs/trace_format.md: what a hostile writer of traces would have.
+/// A trace file taken apart and put together again, checksums and all, from docs/trace_format.md: what a
+/// hostile writer of traces would have.
 #pragma once
 
 #include <array>

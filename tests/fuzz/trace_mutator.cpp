@@ -1,4 +1,5 @@
-/// A trace is compressed and checked: changes are made to decoded chunks, and the file around them is made to hold again.
+/// A trace is compressed and checked: changes are made to decoded chunks, and the file around them is made to
+/// hold again.
 #include <cstring>
 
 #include "tests/fuzz/dice.h"
@@ -7,12 +8,14 @@
 namespace quadrille::fuzz {
 namespace {
 
-constexpr std::array<std::uint32_t, 8> kNumbers{0, 1, 2, 16384, 0x3f800000u, 0x7f800000u, 0x7fffffffu, 0xffffffffu};
+constexpr std::array<std::uint32_t, 8> kNumbers{0,           1,           2,           16384,
+                                                0x3f800000u, 0x7f800000u, 0x7fffffffu, 0xffffffffu};
 
 /// A number anywhere becomes one that means something: a count, a limit, one, infinity.
 void set_number(Buffer& payload, Dice& dice) {
   if (payload.size() < 4) return;
-  const std::uint32_t value = dice.one_in(3) ? static_cast<std::uint32_t>(dice.below(64)) : dice.pick(kNumbers);
+  const std::uint32_t value =
+      dice.one_in(3) ? static_cast<std::uint32_t>(dice.below(64)) : dice.pick(kNumbers);
   std::memcpy(payload.data() + dice.below(payload.size() - 3), &value, sizeof(value));
 }
 

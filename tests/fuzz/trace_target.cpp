@@ -10,7 +10,8 @@ void run_trace(Bytes bytes) {
   traces::CommandStream stream;
   if (!done_or_refused("t.qtrace", [&] { stream = traces::decode_trace(bytes, "t.qtrace"); })) return;
   const std::vector<std::byte> again = traces::encode_trace(stream);
-  QUADRILLE_CHECK(traces::encode_trace(traces::decode_trace(again, "t.qtrace")) == again, "what was read is not what is written");
+  QUADRILLE_CHECK(traces::encode_trace(traces::decode_trace(again, "t.qtrace")) == again,
+                  "what was read is not what is written");
   (void)traces::trace_info(stream);
   done_or_refused("", [&] { draw_if_small(stream); });
 }

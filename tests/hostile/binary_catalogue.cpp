@@ -16,7 +16,9 @@ using Words = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kMagic = 0x46546c67, kJson = 0x4e4f534a, kBin = 0x004e4942;
 
-std::string raw(const Words& words) { return {reinterpret_cast<const char*>(words.data()), words.size() * 4}; }
+std::string raw(const Words& words) {
+  return {reinterpret_cast<const char*>(words.data()), words.size() * 4};
+}
 
 std::string padded_json() {
   std::string text = scenes::triangle_gltf();
@@ -30,7 +32,9 @@ std::string binary(std::uint32_t version, std::uint32_t total, std::uint32_t jso
   return raw({kMagic, version, total, json_length, type}) + padded_json() + behind;
 }
 
-std::string text_of(const std::vector<std::byte>& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+std::string text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 Case trace_case(const std::string& what, const std::string& bytes, Expect expect = Expect::kRefused,
                 const std::string& fidelity = "exact") {
@@ -62,15 +66,19 @@ Group binary_scene_cases() {
     add(fmt::format("version {}", version), binary(version, total, json, kJson), Expect::kEither);
   for (const std::uint32_t length : {0U, 12U, 20U, total - 4, total + 4, 0x7fffffffU, 0xffffffffU})
     add(fmt::format("length {}", length), binary(2, length, json, kJson), Expect::kEither);
-  for (const std::uint32_t length : {0U, 1U, 4U, json - 1, json + 1, json + 8, 0x7fffffffU, 0x80000000U, 0xfffffffcU, 0xffffffffU})
+  for (const std::uint32_t length :
+       {0U, 1U, 4U, json - 1, json + 1, json + 8, 0x7fffffffU, 0x80000000U, 0xfffffffcU, 0xffffffffU})
     add(fmt::format("JSON length {}", length), binary(2, total, length, kJson), Expect::kEither);
-  for (const std::uint32_t type : {0U, kBin, 0xffffffffU}) add(fmt::format("JSON chunk of type {:#x}", type), binary(2, total, json, type));
+  for (const std::uint32_t type : {0U, kBin, 0xffffffffU})
+    add(fmt::format("JSON chunk of type {:#x}", type), binary(2, total, json, type));
   for (const std::uint32_t length : {0U, 4U, 8U, 0x7fffffffU, 0xffffffffU})
-    add(fmt::format("BIN length {}", length), binary(2, total + 12, json, kJson, raw({length, kBin, 0})), Expect::kEither);
+    add(fmt::format("BIN length {}", length), binary(2, total + 12, json, kJson, raw({length, kBin, 0})),
+        Expect::kEither);
   add("two BIN chunks", binary(2, total + 24, json, kJson, raw({4, kBin, 0, 4, kBin, 0})), Expect::kEither);
   add("an unknown chunk", binary(2, total + 12, json, kJson, raw({4, 0x12345678, 0})), Expect::kEither);
   const std::string good = binary(2, total + 12, json, kJson, raw({4, kBin, 0}));
-  for (std::size_t size = 1; size < good.size(); size += size < 24 ? 1 : 41) add(fmt::format("cut at byte {}", size), good.substr(0, size));
+  for (std::size_t size = 1; size < good.size(); size += size < 24 ? 1 : 41)
+    add(fmt::format("cut at byte {}", size), good.substr(0, size));
   for (std::size_t i = 0; i < 24; ++i) {
     std::string bad = good;
     bad[i] = static_cast<char>(~bad[i]);
@@ -80,7 +88,8 @@ Group binary_scene_cases() {
 }
 
 Group trace_cases() {
-  Group group{"traces", "cut, changed, and with checksums that hold around counts and numbers that do not", {}};
+  Group group{
+      "traces", "cut, changed, and with checksums that hold around counts and numbers that do not", {}};
   const auto file = triangle_trace();
   const std::string good = text_of(file);
   group.cases.push_back(trace_case("the triangle itself", good, Expect::kRendered));
@@ -99,9 +108,11 @@ Group trace_cases() {
       for (std::size_t at = 0; at + 4 <= chunks[c].payload.size(); at += at < 16 ? 4 : 36) {
         auto bad = chunks;
         std::memcpy(bad[c].payload.data() + at, &value, 4);
-        group.cases.push_back(trace_case(fmt::format("{} word {} is {:#x}", name, at / 4, value), text_of(fuzz::put_trace_together(bad)),
-                                         Expect::kEither, "functional"));
-        group.cases.back().culprit = "";  // what is wrong may be a shader of the trace, which has a name of its own
+        group.cases.push_back(trace_case(fmt::format("{} word {} is {:#x}", name, at / 4, value),
+                                         text_of(fuzz::put_trace_together(bad)), Expect::kEither,
+                                         "functional"));
+        // what is wrong may be a shader of the trace, which has a name of its own
+        group.cases.back().culprit = "";
         if (at > 300) break;
       }
     }
@@ -122,16 +133,18 @@ Group trace_cases() {
                          "t.qtrace",
                          [](const fs::path& f) { fs::create_directory(f / "t.qtrace"); },
                          Expect::kRefused});
-  group.cases.push_back({"three sparse gigabytes",
-                         {"trace", "info", "t.qtrace"},
-                         "t.qtrace",
-                         [](const fs::path& f) { write_file(f / "t.qtrace", ""), fs::resize_file(f / "t.qtrace", 3ULL << 30); },
-                         Expect::kRefused});
-  group.cases.push_back({"a sparse gigabyte",
-                         {"trace", "info", "t.qtrace"},
-                         "t.qtrace",
-                         [](const fs::path& f) { write_file(f / "t.qtrace", ""), fs::resize_file(f / "t.qtrace", 1ULL << 30); },
-                         Expect::kRefused});
+  group.cases.push_back(
+      {"three sparse gigabytes",
+       {"trace", "info", "t.qtrace"},
+       "t.qtrace",
+       [](const fs::path& f) { write_file(f / "t.qtrace", ""), fs::resize_file(f / "t.qtrace", 3ULL << 30); },
+       Expect::kRefused});
+  group.cases.push_back(
+      {"a sparse gigabyte",
+       {"trace", "info", "t.qtrace"},
+       "t.qtrace",
+       [](const fs::path& f) { write_file(f / "t.qtrace", ""), fs::resize_file(f / "t.qtrace", 1ULL << 30); },
+       Expect::kRefused});
   return group;
 }
 

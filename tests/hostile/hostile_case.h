@@ -1,8 +1,9 @@
 /// Hostile input through the program: what is tried, under which limits, and what must hold afterwards.
 ///
-/// A case prepares files in a folder of its own and gives the program's arguments. Whatever it is, the program ends by itself with exit code 0 or 2 within
-/// 2 GiB and 10 s of processor time (on a slower or busy host as much more as a fixed piece of work takes longer there: tests/host_speed.h); a refusal is one
-/// line that names the culprit; an output file is whole or absent, and nothing else is left behind.
+/// A case prepares files in a folder of its own and gives the program's arguments. Whatever it is, the
+/// program ends by itself with exit code 0 or 2 within 2 GiB and 10 s of processor time (on a slower or busy
+/// host as much more as a fixed piece of work takes longer there: tests/host_speed.h); a refusal is one line
+/// that names the culprit; an output file is whole or absent, and nothing else is left behind.
 #pragma once
 
 #include <filesystem>
@@ -54,7 +55,8 @@ struct Group {
 [[nodiscard]] Group output_cases();
 /// Files that this project did not write; empty where they are absent. Twice each: functional and exact.
 [[nodiscard]] Group outside_cases();
-/// All of the above, to be made one after another: a run inherits the pages of the process that starts it, so the texts of a group should go before the next.
+/// All of the above, to be made one after another: a run inherits the pages of the process that starts it, so
+/// the texts of a group should go before the next.
 [[nodiscard]] std::vector<Group (*)()> all_groups();
 
 [[nodiscard]] inline std::string repeated(const std::string& text, std::size_t count) {
@@ -67,9 +69,10 @@ struct Group {
 /// Puts text or bytes into a file.
 void write_file(const fs::path& path, std::string_view text);
 /// A case that renders the scene file `name`, made of `text`, at 64x64.
-[[nodiscard]] Case scene_case(const std::string& what, const std::string& text, const std::string& name = "t.gltf",
-                              Expect expect = Expect::kEither);
+[[nodiscard]] Case scene_case(const std::string& what, const std::string& text,
+                              const std::string& name = "t.gltf", Expect expect = Expect::kEither);
 /// The arguments that render `scene` at 64x64 with both outputs.
-[[nodiscard]] std::vector<std::string> render_arguments(const std::string& scene, const std::string& fidelity = "exact");
+[[nodiscard]] std::vector<std::string> render_arguments(const std::string& scene,
+                                                        const std::string& fidelity = "exact");
 
 }  // namespace quadrille::hostile

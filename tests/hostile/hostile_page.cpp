@@ -1,4 +1,5 @@
-/// Writes the table of docs/robustness.md: every group of the hostile run with its counts. `scripts/pages hostile` calls it.
+/// Writes the table of docs/robustness.md: every group of the hostile run with its counts. `scripts/pages
+/// hostile` calls it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +13,8 @@ extern "C" int sc_main(int, char**) { return 0; }
 
 int main() {
   int problems = 0;
-  fmt::print("| input | tried | drawn or read | refused | slowest | most memory |\n|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| input | tried | drawn or read | refused | slowest | most memory |\n|---|---|---|---|---|---|\n");
   for (Group (*const make)() : all_groups()) {
     const Group group = make();
     int done = 0, refused = 0;
@@ -27,8 +29,8 @@ int main() {
         ++problems;
       }
     }
-    fmt::print("| {}: {} | {} | {} | {} | {:.1f} s | {:.0f} MiB |\n", group.name, group.about, group.cases.size(), done, refused,
-               most.seconds, most.peak_mib);
+    fmt::print("| {}: {} | {} | {} | {} | {:.1f} s | {:.0f} MiB |\n", group.name, group.about,
+               group.cases.size(), done, refused, most.seconds, most.peak_mib);
     std::fflush(stdout);
   }
   return problems == 0 ? 0 : 1;

@@ -11,7 +11,8 @@ void run_group(const Group& group) {
   for (const Case& c : group.cases) {
     const Outcome outcome = run_case(c);
     for (const std::string& problem : outcome.problems)
-      FAIL_CHECK(group.name << ": " << c.name << ": " << problem << "; it said: " << outcome.error.substr(0, 500));
+      FAIL_CHECK(group.name << ": " << c.name << ": " << problem
+                            << "; it said: " << outcome.error.substr(0, 500));
   }
   SUCCEED(group.cases.size() << " cases");
 }
@@ -20,7 +21,9 @@ void run_group(const Group& group) {
 
 TEST_CASE("hostile glTF is drawn or refused in one line") { run_group(scene_cases()); }
 TEST_CASE("hostile GLB is drawn or refused in one line") { run_group(binary_scene_cases()); }
-TEST_CASE("glTF in numbers that nobody draws is drawn in time or refused in one line", "[slow]") { run_group(large_scene_cases()); }
+TEST_CASE("glTF in numbers that nobody draws is drawn in time or refused in one line", "[slow]") {
+  run_group(large_scene_cases());
+}
 TEST_CASE("hostile images are read or refused in one line", "[slow]") { run_group(image_cases()); }
 TEST_CASE("hostile traces are drawn or refused in one line") { run_group(trace_cases()); }
 TEST_CASE("hostile machine files and settings are refused in one line") { run_group(machine_cases()); }

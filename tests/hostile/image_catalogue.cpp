@@ -11,22 +11,24 @@ namespace {
 
 std::string png_of(std::uint32_t width, std::uint32_t height) {
   const tests::ScratchFolder folder;
-  scenes::save_png((folder.path() / "a.png").string(), {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, 99)});
+  scenes::save_png((folder.path() / "a.png").string(),
+                   {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, 99)});
   return folder.read("a.png");
 }
 
 std::string exr_of(std::uint32_t width, std::uint32_t height) {
   const tests::ScratchFolder folder;
-  scenes::save_exr((folder.path() / "a.exr").string(), {width, height, 3, std::vector<float>(std::size_t{3} * width * height, 0.5F)});
+  scenes::save_exr((folder.path() / "a.exr").string(),
+                   {width, height, 3, std::vector<float>(std::size_t{3} * width * height, 0.5F)});
   return folder.read("a.exr");
 }
 
 /// A JPEG header of this size and nothing behind it but the end.
 std::string jpeg_header(unsigned width, unsigned height) {
   const auto byte = [](unsigned v) { return std::string(1, static_cast<char>(v & 255)); };
-  return "\xff\xd8\xff\xc0" + byte(0) + byte(11) + byte(8) + byte(height >> 8) + byte(height) + byte(width >> 8) + byte(width) + byte(1) +
-         byte(1) + byte(0x11) + byte(0) + "\xff\xda" + byte(0) + byte(8) + byte(1) + byte(1) + byte(0) + byte(0) + byte(63) + byte(0) +
-         "\xff\xd9";
+  return "\xff\xd8\xff\xc0" + byte(0) + byte(11) + byte(8) + byte(height >> 8) + byte(height) +
+         byte(width >> 8) + byte(width) + byte(1) + byte(1) + byte(0x11) + byte(0) + "\xff\xda" + byte(0) +
+         byte(8) + byte(1) + byte(1) + byte(0) + byte(0) + byte(63) + byte(0) + "\xff\xd9";
 }
 
 std::string big_endian(std::uint32_t v) {
@@ -38,7 +40,8 @@ std::string big_endian(std::uint32_t v) {
 std::string textured(const std::string& image) {
   return scenes::triangle_gltf(
       R"(,"material":0)",
-      R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[)" + image + "]");
+      R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],"textures":[{"source":0}],"images":[)" +
+          image + "]");
 }
 
 }  // namespace
@@ -60,7 +63,8 @@ Group image_cases() {
     add("text named " + name, "no picture", name, Expect::kRefused);
   for (std::size_t size = 1; size < png.size(); size += 9)
     add(fmt::format("a PNG cut at byte {}", size), png.substr(0, size), "a.png", Expect::kRefused);
-  for (std::size_t size = 1; size < exr.size(); size += 17) add(fmt::format("an EXR cut at byte {}", size), exr.substr(0, size), "a.exr");
+  for (std::size_t size = 1; size < exr.size(); size += 17)
+    add(fmt::format("an EXR cut at byte {}", size), exr.substr(0, size), "a.exr");
   for (std::size_t i = 0; i < png.size(); i += 5) {
     std::string bad = png;
     bad[i] = static_cast<char>(bad[i] ^ 0x40);
@@ -72,14 +76,18 @@ Group image_cases() {
     add(fmt::format("an EXR with byte {} changed", i), bad, "a.exr");
   }
   for (const std::uint32_t side : {0U, 16385U, 65535U, 0x7fffffffU, 0xffffffffU})
-    add(fmt::format("a PNG of {0}x{0} by its header", side), png.substr(0, 16) + big_endian(side) + big_endian(side) + png.substr(24),
-        "a.png", Expect::kRefused);
+    add(fmt::format("a PNG of {0}x{0} by its header", side),
+        png.substr(0, 16) + big_endian(side) + big_endian(side) + png.substr(24), "a.png", Expect::kRefused);
   for (const unsigned side : {0U, 1U, 4000U, 65535U})
     add(fmt::format("a JPEG of {0}x{0} without data", side), jpeg_header(side, side), "a.jpg");
   add("a PNG bomb of 8192x8192", png_of(8192, 8192));
-  group.cases.push_back(
-      {"a folder", {"diff", "a.png", "a.png"}, "a.png", [](const fs::path& f) { fs::create_directory(f / "a.png"); }, Expect::kRefused});
-  const auto scene = [&](const std::string& what, const std::string& image, const std::string& bytes, Expect expect = Expect::kRefused) {
+  group.cases.push_back({"a folder",
+                         {"diff", "a.png", "a.png"},
+                         "a.png",
+                         [](const fs::path& f) { fs::create_directory(f / "a.png"); },
+                         Expect::kRefused});
+  const auto scene = [&](const std::string& what, const std::string& image, const std::string& bytes,
+                         Expect expect = Expect::kRefused) {
     Case c = scene_case("texture: " + what, textured(image), "t.gltf", expect);
     const auto write = c.prepare;
     c.prepare = [=](const fs::path& folder) { write(folder), write_file(folder / "a.png", bytes); };
@@ -102,19 +110,24 @@ Group image_cases() {
   std::string materials, textures, primitives;
   for (int i = 0; i < 40; ++i) {
     const char* const comma = i > 0 ? "," : "";
-    materials += fmt::format("{}{{\"pbrMetallicRoughness\":{{\"baseColorTexture\":{{\"index\":{}}}}}}}", comma, i);
+    materials +=
+        fmt::format("{}{{\"pbrMetallicRoughness\":{{\"baseColorTexture\":{{\"index\":{}}}}}}}", comma, i);
     textures += fmt::format("{}{{\"source\":{}}}", comma, i);
     primitives += fmt::format("{}{{\"attributes\":{{\"POSITION\":0}},\"material\":{}}}", comma, i);
   }
   std::string text = textured(bombs);
-  const auto replace = [&](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
   replace(R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})", materials);
   replace(R"({"source":0})", textures);
   replace(R"({"attributes":{"POSITION":0},"material":0})", primitives);
   group.cases.push_back(scene_case("forty textures that unpack a thousandfold", text));
   const auto write = group.cases.back().prepare;
   const std::string bomb = png_of(4096, 4096);
-  group.cases.back().prepare = [=](const fs::path& folder) { write(folder), write_file(folder / "a.png", bomb); };
+  group.cases.back().prepare = [=](const fs::path& folder) {
+    write(folder), write_file(folder / "a.png", bomb);
+  };
   return group;
 }
 

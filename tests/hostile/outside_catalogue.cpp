@@ -1,4 +1,5 @@
-/// The hostile files of others: malformed, out of range, recursive, infinite, truncated. A list beside them says which a validator finds without errors.
+/// The hostile files of others: malformed, out of range, recursive, infinite, truncated. A list beside them
+/// says which a validator finds without errors.
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -42,11 +43,14 @@ Group outside_cases() {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string path = entry.path().string(), name = fs::relative(entry.path(), folder).string(),
                       end = entry.path().extension().string();
-    if (end == ".png" || end == ".jpg") group.cases.push_back({name, {"diff", path, path}, path, {}, Expect::kEither});
+    if (end == ".png" || end == ".jpg")
+      group.cases.push_back({name, {"diff", path, path}, path, {}, Expect::kEither});
     if (end != ".gltf" && end != ".glb") continue;
     const auto found = valid.find(name);
-    const bool excepted = std::ranges::any_of(kRefusedThoughValid, [&](std::string_view s) { return name.ends_with(s); });
-    const Expect expect = found != valid.end() && found->second && !excepted ? Expect::kRendered : Expect::kEither;
+    const bool excepted =
+        std::ranges::any_of(kRefusedThoughValid, [&](std::string_view s) { return name.ends_with(s); });
+    const Expect expect =
+        found != valid.end() && found->second && !excepted ? Expect::kRendered : Expect::kEither;
     for (const std::string fidelity : {"functional", "exact"})
       group.cases.push_back({name + ", " + fidelity, render_arguments(path, fidelity), path, {}, expect});
   }

@@ -30,8 +30,8 @@
 namespace quadrille::hostile {
 namespace {
 
-constexpr double kPatience =
-    900;  ///< seconds of wall time until a run is killed, against a hang: the host may be slow and busy with others
+/// seconds of wall time until a run is killed, against a hang: the host may be slow and busy with others
+constexpr double kPatience = 900;
 
 std::string contents(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -58,7 +58,9 @@ std::string contents(const fs::path& path) {
   _exit(127);
 }
 
-double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
 
 /// Waits for the child, or kills it; returns its status and fills what it used.
 int wait_for(pid_t child, Outcome& outcome) {
@@ -66,7 +68,8 @@ int wait_for(pid_t child, Outcome& outcome) {
   int status = 0;
   rusage usage{};
   while (wait4(child, &status, WNOHANG, &usage) == 0) {
-    if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kPatience)) kill(child, SIGKILL);
+    if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kPatience))
+      kill(child, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   outcome.seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
@@ -77,7 +80,8 @@ int wait_for(pid_t child, Outcome& outcome) {
 void judge_refusal(const Case& c, const std::string& out, Outcome& outcome) {
   const auto problem = [&](std::string text) { outcome.problems.push_back(std::move(text)); };
   if (!out.empty()) problem("a refusal that prints to standard output");
-  if (std::ranges::count(outcome.error, '\n') != 1 || !outcome.error.starts_with("quadrille: ")) problem("a refusal that is not one line");
+  if (std::ranges::count(outcome.error, '\n') != 1 || !outcome.error.starts_with("quadrille: "))
+    problem("a refusal that is not one line");
   if (outcome.error.find(c.culprit) == std::string::npos) problem("a refusal without '" + c.culprit + "'");
   if (c.expect == Expect::kRendered) problem("refused, but legal");
 }
@@ -96,11 +100,13 @@ void judge_folder(const fs::path& folder, const std::vector<fs::path>& before, O
     const fs::path& path = entry.path();
     if (std::ranges::find(before, path) != before.end()) continue;
     const std::string name = path.filename().string(), text = contents(path);
-    const bool whole = (name.ends_with(".png") && text.size() > 12 && text.substr(text.size() - 8, 4) == "IEND") ||
-                       (name.ends_with(".json") && text.ends_with("}\n")) ||
-                       (name.ends_with(".exr") && reads(scenes::load_float_image, path)) ||
-                       (name.ends_with(".qtrace") && reads(traces::read_trace, path));
-    if (outcome.exit_code != 0 || !whole) outcome.problems.push_back(fmt::format("{} is left behind, {} bytes", name, text.size()));
+    const bool whole =
+        (name.ends_with(".png") && text.size() > 12 && text.substr(text.size() - 8, 4) == "IEND") ||
+        (name.ends_with(".json") && text.ends_with("}\n")) ||
+        (name.ends_with(".exr") && reads(scenes::load_float_image, path)) ||
+        (name.ends_with(".qtrace") && reads(traces::read_trace, path));
+    if (outcome.exit_code != 0 || !whole)
+      outcome.problems.push_back(fmt::format("{} is left behind, {} bytes", name, text.size()));
   }
 }
 
@@ -124,15 +130,18 @@ Outcome run_case(const Case& c) {
   outcome.error = contents(streams.path() / "err");
   if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) outcome.problems.push_back(fmt::format("ended by signal {}", WTERMSIG(status)));
-  else if (outcome.exit_code != 0 && outcome.exit_code != 2) outcome.problems.push_back(fmt::format("exit code {}", outcome.exit_code));
+  else if (outcome.exit_code != 0 && outcome.exit_code != 2)
+    outcome.problems.push_back(fmt::format("exit code {}", outcome.exit_code));
   if (outcome.exit_code == 2) judge_refusal(c, contents(streams.path() / "out"), outcome);
-  if (outcome.exit_code == 0 && c.expect == Expect::kRefused) outcome.problems.emplace_back("accepted, but not legal");
+  if (outcome.exit_code == 0 && c.expect == Expect::kRefused)
+    outcome.problems.emplace_back("accepted, but not legal");
 #ifndef QUADRILLE_SANITIZED
   if (outcome.seconds > kMaxSeconds) {  // only then is it worth asking how slow the host is
     const double slowness = tests::host_slowness();
     if (outcome.seconds > kMaxSeconds * slowness)
       outcome.problems.push_back(
-          fmt::format("{:.1f} s of processor time on a host {:.1f} times slower than that of the bound", outcome.seconds, slowness));
+          fmt::format("{:.1f} s of processor time on a host {:.1f} times slower than that of the bound",
+                      outcome.seconds, slowness));
   }
   if (outcome.peak_mib > kMaxMib) outcome.problems.push_back(fmt::format("{:.0f} MiB", outcome.peak_mib));
 #endif
@@ -145,11 +154,13 @@ void write_file(const fs::path& path, std::string_view text) {
 }
 
 std::vector<std::string> render_arguments(const std::string& scene, const std::string& fidelity) {
-  return {"render", scene, "--size", "64x64", "--fidelity", fidelity, "--out", "x.png", "--stats", "x.json", "-q"};
+  return {"render", scene,   "--size",  "64x64",  "--fidelity", fidelity,
+          "--out",  "x.png", "--stats", "x.json", "-q"};
 }
 
 Case scene_case(const std::string& what, const std::string& text, const std::string& name, Expect expect) {
-  return {what, render_arguments(name), name, [=](const fs::path& folder) { write_file(folder / name, text); }, expect};
+  return {what, render_arguments(name), name,
+          [=](const fs::path& folder) { write_file(folder / name, text); }, expect};
 }
 
 std::vector<Group (*)()> all_groups() {

@@ -1,7 +1,8 @@
 /// A bench for one unit: a scripted stub on each of its ports, one clock of 1 GHz, and times in cycles.
 ///
-/// What a stub pushes at cycle c the unit sees at c + 1, and what the unit pushes at c a sink pops at c + 1 (unless told to wait), so that "not at n - 1, but
-/// at n" is one number in a sink's `text()`. A bench is a `Specimen`: the contract harness runs it too, with all links one token deep among other things.
+/// What a stub pushes at cycle c the unit sees at c + 1, and what the unit pushes at c a sink pops at c + 1
+/// (unless told to wait), so that "not at n - 1, but at n" is one number in a sink's `text()`. A bench is a
+/// `Specimen`: the contract harness runs it too, with all links one token deep among other things.
 #pragma once
 
 #include "hw/base/dispatcher.h"
@@ -48,7 +49,9 @@ class StubSource final : public StubUnit {
   StubSource(sc_core::sc_module_name name, const Clock& clock, std::vector<Timed<T>> script)
       : StubUnit(name, Kind::kFixedOrder, clock), script_(std::move(script)) {}
   FifoOut<T> out{*this, "out"};
-  Wake next() const override { return sent_ == script_.size() ? Wake(kNever) : Wake(script_[sent_].cycle * kCycle).output(out); }
+  Wake next() const override {
+    return sent_ == script_.size() ? Wake(kNever) : Wake(script_[sent_].cycle * kCycle).output(out);
+  }
   void act(Tick now) override { out.push(now, script_[sent_++].token); }
   bool finished() const override { return sent_ == script_.size(); }
 
@@ -76,7 +79,8 @@ class StubSink final : public StubUnit {
   /// "cycle:key" of each token.
   [[nodiscard]] std::string text() const {
     std::string all;
-    for (const Timed<T>& t : got) all += fmt::format("{}{}:{}", all.empty() ? "" : " ", t.cycle, key_(t.token));
+    for (const Timed<T>& t : got)
+      all += fmt::format("{}{}:{}", all.empty() ? "" : " ", t.cycle, key_(t.token));
     return all;
   }
   std::string keys() const override {
@@ -92,10 +96,12 @@ class StubSink final : public StubUnit {
   Tick free_ = 0;
 };
 
-/// One slice of a memory: takes a request a cycle and pushes the answer of a read or fence `latency` cycles after it took it in, in order.
+/// One slice of a memory: takes a request a cycle and pushes the answer of a read or fence `latency` cycles
+/// after it took it in, in order.
 class StubMemory final : public StubUnit {
  public:
-  StubMemory(sc_core::sc_module_name name, const Clock& clock, int latency) : StubUnit(name, Kind::kChooser, clock), latency_(latency) {}
+  StubMemory(sc_core::sc_module_name name, const Clock& clock, int latency)
+      : StubUnit(name, Kind::kChooser, clock), latency_(latency) {}
   FifoIn<MemoryRequest> in{*this, "in"};
   FifoOut<MemoryResponse> out{*this, "out", LinkRole::kReply};
   Wake next() const override {
@@ -118,8 +124,8 @@ class StubMemory final : public StubUnit {
   [[nodiscard]] std::string text() const {
     std::string all;
     for (const Timed<MemoryRequest>& t : got) {
-      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle, "rwpf"[static_cast<int>(t.token.kind)], t.token.line,
-                         t.token.sectors);
+      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle,
+                         "rwpf"[static_cast<int>(t.token.kind)], t.token.line, t.token.sectors);
     }
     return all;
   }
@@ -138,7 +144,8 @@ class StubMemory final : public StubUnit {
   Tick free_ = 0;
 };
 
-/// Owns the stubs and links around a unit. Derive from it, with the unit and its stores as members, and call `add` and the wiring in the constructor.
+/// Owns the stubs and links around a unit. Derive from it, with the unit and its stores as members, and call
+/// `add` and the wiring in the constructor.
 class Bench : public contract::Specimen {
  public:
   Bench(Driver& driver, const contract::Variation& variation) : driver_(driver), variation_(variation) {}
@@ -157,7 +164,9 @@ class Bench : public contract::Specimen {
     return keep(std::move(stub));
   }
   /// Answers a memory port of one slice.
-  StubMemory& serve(MemoryPort& port, int latency) { return serve(*port.request_out[0], port.response_in[0], latency); }
+  StubMemory& serve(MemoryPort& port, int latency) {
+    return serve(*port.request_out[0], port.response_in[0], latency);
+  }
   StubMemory& serve(FifoOut<MemoryRequest>& requests, FifoIn<MemoryResponse>& answers, int latency) {
     auto stub = std::make_unique<StubMemory>(name("memory").c_str(), clock, latency);
     connect<MemoryRequest>(requests, stub->in, kWide);
@@ -191,7 +200,9 @@ class Bench : public contract::Specimen {
   }
 
   /// What the machine would tell the unit: one of each neighbour unless `machine` says more.
-  [[nodiscard]] UnitContext context(MachineCounts machine = {}, int number = 0) { return {clock, frame, device, machine, number}; }
+  [[nodiscard]] UnitContext context(MachineCounts machine = {}, int number = 0) {
+    return {clock, frame, device, machine, number};
+  }
   const Clock clock{1'000'000'000};
   Frame frame;
   models::DeviceMemory device;
@@ -241,15 +252,17 @@ std::string run(const typename B::Setup& setup, Read read) {
   });
 }
 
-/// The contract harness over a bench: no violation is an empty text. `same_order` is false where a shallow link may change the order of tokens.
+/// The contract harness over a bench: no violation is an empty text. `same_order` is false where a shallow
+/// link may change the order of tokens.
 template <class B>
 std::string contract_text(const typename B::Setup& setup, bool same_order = true) {
-  const contract::Builder build = [&](Driver& driver, const contract::Variation& v) -> std::unique_ptr<contract::Specimen> {
+  const contract::Builder build = [&](Driver& driver,
+                                      const contract::Variation& v) -> std::unique_ptr<contract::Specimen> {
     return std::make_unique<B>(driver, v, setup);
   };
   std::string all;
-  for (const std::string& line :
-       contract::violations(build, {.shuffles = 2, .creations = 0, .digest_at_depth_one = same_order, .timeout_s = 20}))
+  for (const std::string& line : contract::violations(
+           build, {.shuffles = 2, .creations = 0, .digest_at_depth_one = same_order, .timeout_s = 20}))
     all += line + '\n';
   return all;
 }

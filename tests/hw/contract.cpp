@@ -23,7 +23,8 @@ namespace {
 std::string read_all(int fd) {
   std::string text;
   std::array<char, 4096> buffer{};
-  for (ssize_t n = 0; (n = read(fd, buffer.data(), buffer.size())) > 0;) text.append(buffer.data(), static_cast<std::size_t>(n));
+  for (ssize_t n = 0; (n = read(fd, buffer.data(), buffer.size())) > 0;)
+    text.append(buffer.data(), static_cast<std::size_t>(n));
   return text;
 }
 
@@ -46,7 +47,8 @@ void add_unit_figures(const Unit& unit, std::map<std::string, std::int64_t>& fig
   figures[path + ".actions"] = static_cast<std::int64_t>(unit.actions());
   for (const PortBase* port : unit.ports()) figures[path + '.' + port->name() + ".waited"] = port->waited();
   if (unit.stats() == nullptr) return;
-  for (const Counter* c : unit.stats()->counters()) figures[path + '.' + std::string(c->name())] = static_cast<std::int64_t>(c->value());
+  for (const Counter* c : unit.stats()->counters())
+    figures[path + '.' + std::string(c->name())] = static_cast<std::int64_t>(c->value());
 }
 
 /// The edge after the last action, on the clock of the unit that acted.
@@ -61,24 +63,29 @@ Tick default_end(const std::vector<Unit*>& units) {
 std::string attribution_failures(const std::vector<Unit*>& units, Tick end) {
   std::string text;
   for (const Unit* unit : units) {
-    const std::int64_t sum =
-        unit->busy_cycles() + unit->waiting_cycles() + unit->starved_cycles() + unit->blocked_cycles() + unit->idle_cycles();
+    const std::int64_t sum = unit->busy_cycles() + unit->waiting_cycles() + unit->starved_cycles() +
+                             unit->blocked_cycles() + unit->idle_cycles();
     const std::int64_t smallest =
-        std::min({unit->busy_cycles(), unit->waiting_cycles(), unit->starved_cycles(), unit->blocked_cycles(), unit->idle_cycles()});
+        std::min({unit->busy_cycles(), unit->waiting_cycles(), unit->starved_cycles(), unit->blocked_cycles(),
+                  unit->idle_cycles()});
     std::int64_t starved = 0, blocked = 0;
-    for (const PortBase* port : unit->ports()) (port->direction() == PortBase::Direction::kIn ? starved : blocked) += port->waited();
+    for (const PortBase* port : unit->ports())
+      (port->direction() == PortBase::Direction::kIn ? starved : blocked) += port->waited();
     if (sum != unit->clock().edges_before(end))
-      text += fmt::format("{}: the four charges sum to {}, not to its {} cycles\n", unit->name(), sum, unit->clock().edges_before(end));
+      text += fmt::format("{}: the four charges sum to {}, not to its {} cycles\n", unit->name(), sum,
+                          unit->clock().edges_before(end));
     if (smallest < 0)
-      text += fmt::format("{}: a negative charge: busy {}, waiting {}, starved {}, blocked {}, idle {}\n", unit->name(),
-                          unit->busy_cycles(), unit->waiting_cycles(), unit->starved_cycles(), unit->blocked_cycles(), unit->idle_cycles());
+      text += fmt::format("{}: a negative charge: busy {}, waiting {}, starved {}, blocked {}, idle {}\n",
+                          unit->name(), unit->busy_cycles(), unit->waiting_cycles(), unit->starved_cycles(),
+                          unit->blocked_cycles(), unit->idle_cycles());
     if (starved != unit->starved_cycles() || blocked != unit->blocked_cycles())
       text += fmt::format("{}: its ports' waits do not sum to starved and blocked\n", unit->name());
   }
   return text;
 }
 
-/// Builds, runs and closes a machine in this process; the outcome as text for the pipe: digest, end, then one figure a line.
+/// Builds, runs and closes a machine in this process; the outcome as text for the pipe: digest, end, then one
+/// figure a line.
 std::string run_here(const Builder& build, const Variation& v) {
   std::unique_ptr<Driver> driver;
   if (v.native) driver = std::make_unique<NativeDriver>("driver");
@@ -87,13 +94,15 @@ std::string run_here(const Builder& build, const Variation& v) {
   if (v.order_seed != 0) driver->shuffle(v.order_seed);
   driver->run({});
   const std::vector<Unit*>& units = driver->units();
-  if (!specimen->finished()) return "failed: did not finish; " + deadlock_report(units, std::max<Tick>(0, driver->last_action()));
+  if (!specimen->finished())
+    return "failed: did not finish; " + deadlock_report(units, std::max<Tick>(0, driver->last_action()));
   const Tick end = specimen->end() == kNever ? default_end(units) : specimen->end();
   close_accounts(units, end);
   if (const std::string text = attribution_failures(units, end); !text.empty()) return "failed: " + text;
   std::map<std::string, std::int64_t> figures;
   for (const Unit* unit : units) add_unit_figures(*unit, figures);
-  for (const FifoBase* link : links_of(units)) figures[link->path() + ".pushes"] = static_cast<std::int64_t>(link->pushes());
+  for (const FifoBase* link : links_of(units))
+    figures[link->path() + ".pushes"] = static_cast<std::int64_t>(link->pushes());
   specimen->add_figures(figures);
   std::string text = fmt::format("{} {}\n", specimen->digest(), end);
   for (const auto& [name, value] : figures) text += fmt::format("{} {}\n", name, value);
@@ -103,8 +112,8 @@ std::string run_here(const Builder& build, const Variation& v) {
 }  // namespace
 
 std::string Variation::text() const {
-  return fmt::format("{} driver, host order {}, creation order {}{}", native ? "native" : "dispatcher", order_seed, creation_seed,
-                     depth_one ? ", all links one deep" : "");
+  return fmt::format("{} driver, host order {}, creation order {}{}", native ? "native" : "dispatcher",
+                     order_seed, creation_seed, depth_one ? ", all links one deep" : "");
 }
 
 std::string in_child(const std::function<std::string()>& body, unsigned timeout_s) {
@@ -165,7 +174,8 @@ std::vector<std::string> differences(const Outcome& a, const Outcome& b, std::si
     if (it == b.figures.end()) all.push_back(fmt::format("{} is missing", name));
     else if (it->second != value) all.push_back(fmt::format("{} is {}, not {}", name, it->second, value));
   }
-  if (b.figures.size() > a.figures.size()) all.push_back(fmt::format("{} figures, not {}", b.figures.size(), a.figures.size()));
+  if (b.figures.size() > a.figures.size())
+    all.push_back(fmt::format("{} figures, not {}", b.figures.size(), a.figures.size()));
   if (all.size() > limit) all.resize(limit);
   return all;
 }
@@ -185,14 +195,18 @@ std::vector<std::string> violations(const Builder& build, const Options& options
   const Outcome plain = run({});
   hold_to(plain, {.native = true});
   if (options.shuffles > 0) hold_to(plain, {.native = true, .order_seed = 1});
-  for (int i = 0; i < options.shuffles; ++i) hold_to(plain, {.order_seed = static_cast<std::uint64_t>(i) + 2});
-  for (int i = 0; i < options.creations; ++i) hold_to(plain, {.creation_seed = static_cast<std::uint64_t>(i) + 1});
+  for (int i = 0; i < options.shuffles; ++i)
+    hold_to(plain, {.order_seed = static_cast<std::uint64_t>(i) + 2});
+  for (int i = 0; i < options.creations; ++i)
+    hold_to(plain, {.creation_seed = static_cast<std::uint64_t>(i) + 1});
   if (!options.depth_one) return all;
   const Outcome narrow = run({.depth_one = true});
   hold_to(narrow, {.native = true, .depth_one = true});
   hold_to(narrow, {.order_seed = 1, .depth_one = true});
-  if (options.digest_at_depth_one && plain.failure.empty() && narrow.failure.empty() && plain.digest != narrow.digest) {
-    all.push_back(fmt::format("all links one deep: digest {:016x}, not {:016x}", narrow.digest, plain.digest));
+  if (options.digest_at_depth_one && plain.failure.empty() && narrow.failure.empty() &&
+      plain.digest != narrow.digest) {
+    all.push_back(
+        fmt::format("all links one deep: digest {:016x}, not {:016x}", narrow.digest, plain.digest));
   }
   return all;
 }

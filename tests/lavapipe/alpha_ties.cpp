@@ -33,7 +33,8 @@ traces::CommandStream with_cutoffs_moved(const traces::CommandStream& stream, fl
   return moved;
 }
 
-std::vector<std::uint8_t> alpha_ties(const traces::CommandStream& triangles, const Rendered& base, const Renderer& render) {
+std::vector<std::uint8_t> alpha_ties(const traces::CommandStream& triangles, const Rendered& base,
+                                     const Renderer& render) {
   std::vector<std::uint8_t> ties(base.color.size(), 0);
   for (const float delta : {-kStep, kStep}) {
     const Rendered moved = render(with_cutoffs_moved(triangles, delta));

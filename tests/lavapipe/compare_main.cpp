@@ -1,6 +1,8 @@
-/// quadrille_lavapipe_compare: renders a scene on Quadrille and on lavapipe and says whether the pictures agree, with figures.
+/// quadrille_lavapipe_compare: renders a scene on Quadrille and on lavapipe and says whether the pictures
+/// agree, with figures.
 ///
-/// Exit code: 0 they agree, 1 they do not, 2 a mistake in what was given, 77 no Vulkan driver (a skipped test for CTest).
+/// Exit code: 0 they agree, 1 they do not, 2 a mistake in what was given, 77 no Vulkan driver (a skipped test
+/// for CTest).
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -50,7 +52,8 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--report", a.report, "write the figures to this JSON file");
   app.add_option("--images", a.images, "write both pictures and their difference to this folder");
   app.add_flag("--lavapipe-only", a.lavapipe_only, "render and time lavapipe; compare nothing");
-  app.add_flag("--validate", a.validate, "run lavapipe under the Khronos validation layer; any message is a failure");
+  app.add_flag("--validate", a.validate,
+               "run lavapipe under the Khronos validation layer; any message is a failure");
   app.add_option("--time", a.time_frames, "time lavapipe over this many frames");
   app.add_option("--threads", a.threads, "lavapipe's raster threads (0: none beside the submitting one)");
   app.add_option("--subpixel-bits", a.subpixel_bits, "Quadrille's, instead of what the driver reports");
@@ -76,12 +79,15 @@ scenes::SceneOptions scene_options(const Arguments& a) {
   return options;
 }
 
-/// Mesa's llvmpipe reports 4 bits for the level of detail but keeps the whole fraction of a logarithm that is linear between powers of two
-/// (measured bit by bit in numerics_test.cpp); 8 bits are the nearest Quadrille has.
+/// Mesa's llvmpipe reports 4 bits for the level of detail but keeps the whole fraction of a logarithm that is
+/// linear between powers of two (measured bit by bit in numerics_test.cpp); 8 bits are the nearest Quadrille
+/// has.
 constexpr std::uint32_t kLlvmpipeLodBits = 8;
 
 models::Precision machine_precision(const Arguments& a, const DeviceInfo& device) {
-  const auto choose = [](int given, std::uint32_t reported) { return given > 0 ? given : static_cast<int>(reported); };
+  const auto choose = [](int given, std::uint32_t reported) {
+    return given > 0 ? given : static_cast<int>(reported);
+  };
   const bool llvmpipe = device.name.starts_with("llvmpipe");
   return {.subpixel_bits = choose(a.subpixel_bits, device.subpixel_bits),
           .subtexel_bits = choose(a.subtexel_bits, device.subtexel_bits),
@@ -90,18 +96,21 @@ models::Precision machine_precision(const Arguments& a, const DeviceInfo& device
 }
 
 /// Pixels that hang on an alpha at its cut-off, in either picture. Empty when nothing needs that excuse.
-std::vector<std::uint8_t> alphas_at_cutoff(const traces::CommandStream& triangles, const FramePair& ours, const FramePair& theirs,
-                                           VulkanRenderer& renderer, const models::Precision& precision) {
+std::vector<std::uint8_t> alphas_at_cutoff(const traces::CommandStream& triangles, const FramePair& ours,
+                                           const FramePair& theirs, VulkanRenderer& renderer,
+                                           const models::Precision& precision) {
   const std::vector<std::uint8_t> marks = unexplained_pixels(ours, theirs);
   if (std::find(marks.begin(), marks.end(), 1) == marks.end()) return {};
-  std::vector<std::uint8_t> ties = alpha_ties(triangles, theirs.triangles, [&](const auto& stream) { return renderer.render(stream); });
-  const std::vector<std::uint8_t> our_ties =
-      alpha_ties(triangles, ours.triangles, [&](const auto& stream) { return render_on_machine(stream, precision); });
+  std::vector<std::uint8_t> ties =
+      alpha_ties(triangles, theirs.triangles, [&](const auto& stream) { return renderer.render(stream); });
+  const std::vector<std::uint8_t> our_ties = alpha_ties(
+      triangles, ours.triangles, [&](const auto& stream) { return render_on_machine(stream, precision); });
   for (std::size_t i = 0; i < ties.size(); ++i) ties[i] = static_cast<std::uint8_t>(ties[i] | our_ties[i]);
   return ties;
 }
 
-void save_picture(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, const std::vector<std::uint32_t>& pixels) {
+void save_picture(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                  const std::vector<std::uint32_t>& pixels) {
   scenes::Rgba8Image image{width, height, {}};
   image.pixels.reserve(4 * pixels.size());
   for (const std::uint32_t p : pixels) {
@@ -118,9 +127,11 @@ void save_pictures(const std::string& folder, const FramePair& ours, const Frame
   save_picture(base / "quadrille.png", width, height, ours.color.color);
   save_picture(base / "lavapipe.png", width, height, theirs.color.color);
   save_picture(base / "difference.png", width, height,
-               models::reference::difference_heat_map({width, height, ours.color.color}, {width, height, theirs.color.color}));
+               models::reference::difference_heat_map({width, height, ours.color.color},
+                                                      {width, height, theirs.color.color}));
   save_picture(base / "triangle_difference.png", width, height,
-               models::reference::difference_heat_map({width, height, ours.triangles.color}, {width, height, theirs.triangles.color}));
+               models::reference::difference_heat_map({width, height, ours.triangles.color},
+                                                      {width, height, theirs.triangles.color}));
 }
 
 void write_file(const std::string& path, const std::string& text) {
@@ -130,7 +141,8 @@ void write_file(const std::string& path, const std::string& text) {
 }
 
 int report_validation(const VulkanRenderer& renderer) {
-  for (const std::string& message : renderer.validation_messages()) fmt::print(stderr, "validation: {}\n", message);
+  for (const std::string& message : renderer.validation_messages())
+    fmt::print(stderr, "validation: {}\n", message);
   return renderer.validation_messages().empty() ? 0 : 1;
 }
 
@@ -149,8 +161,9 @@ int run(const Arguments& arguments, VulkanRenderer& renderer) {
   const FramePair theirs{renderer.render(color), renderer.render(triangles)};
   if (arguments.time_frames > 0) report.lavapipe_times = renderer.time_frames(color, arguments.time_frames);
   if (arguments.lavapipe_only) {
-    fmt::print("{} {}x{}: lavapipe median {:.2f} ms, least {:.2f} ms, processor {:.2f} ms, of {} frames\n", report.scene, report.width,
-               report.height, report.lavapipe_times.median_ms, report.lavapipe_times.min_ms, report.lavapipe_times.median_cpu_ms,
+    fmt::print("{} {}x{}: lavapipe median {:.2f} ms, least {:.2f} ms, processor {:.2f} ms, of {} frames\n",
+               report.scene, report.width, report.height, report.lavapipe_times.median_ms,
+               report.lavapipe_times.min_ms, report.lavapipe_times.median_cpu_ms,
                report.lavapipe_times.frames);
     if (!arguments.images.empty()) save_pictures(arguments.images, theirs, theirs);
     return report_validation(renderer);
@@ -158,10 +171,12 @@ int run(const Arguments& arguments, VulkanRenderer& renderer) {
 
   const auto begin = std::chrono::steady_clock::now();
   Rendered our_color = render_on_machine(color, report.precision);
-  report.machine_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  report.machine_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   const FramePair ours{std::move(our_color), render_on_machine(triangles, report.precision)};
   if (!arguments.images.empty()) save_pictures(arguments.images, ours, theirs);
-  report.result = compare_frames(ours, theirs, alphas_at_cutoff(triangles, ours, theirs, renderer, report.precision), report.limits);
+  report.result = compare_frames(
+      ours, theirs, alphas_at_cutoff(triangles, ours, theirs, renderer, report.precision), report.limits);
   fmt::print("{}", to_text(report));
   if (!arguments.report.empty()) write_file(arguments.report, to_json(report));
   const int validation = report_validation(renderer);

@@ -12,7 +12,9 @@ std::string criterion(bool ok, std::string_view what, const std::string& figure,
   return fmt::format("  {:4}  {:<40} {:>24}   {}\n", ok ? "ok" : "FAIL", what, figure, limit);
 }
 
-std::string share(std::uint64_t count, double fraction) { return fmt::format("{} px ({:.5f} %)", count, 100 * fraction); }
+std::string share(std::uint64_t count, double fraction) {
+  return fmt::format("{} px ({:.5f} %)", count, 100 * fraction);
+}
 
 /// The histogram up to its last entry that is not zero.
 nlohmann::json trimmed(const std::array<std::uint64_t, 256>& histogram) {
@@ -26,24 +28,33 @@ nlohmann::json trimmed(const std::array<std::uint64_t, 256>& histogram) {
 std::string to_text(const Report& report) {
   const Comparison& r = report.result;
   const Limits& limits = report.limits;
-  std::string text = fmt::format("{} {}x{} against {}\n", report.scene, report.width, report.height, report.device.driver);
-  text += fmt::format("        precision: {} sub-pixel, {} sub-texel, {} level-of-detail bits{}\n", report.precision.subpixel_bits,
-                      report.precision.subtexel_bits, report.precision.lod_bits, report.precision.linear_log2 ? ", linear log2" : "");
-  text += criterion(r.coverage_ok, "covered in one only", share(r.shape.only_a + r.shape.only_b, r.shape.coverage_fraction()),
+  std::string text =
+      fmt::format("{} {}x{} against {}\n", report.scene, report.width, report.height, report.device.driver);
+  text += fmt::format("        precision: {} sub-pixel, {} sub-texel, {} level-of-detail bits{}\n",
+                      report.precision.subpixel_bits, report.precision.subtexel_bits,
+                      report.precision.lod_bits, report.precision.linear_log2 ? ", linear log2" : "");
+  text += criterion(r.coverage_ok, "covered in one only",
+                    share(r.shape.only_a + r.shape.only_b, r.shape.coverage_fraction()),
                     fmt::format("at most {:.5f} %", 100 * limits.coverage_fraction));
-  text += criterion(r.triangles_ok, "another triangle seen", share(r.shape.other_triangle, r.shape.triangle_fraction()),
+  text += criterion(r.triangles_ok, "another triangle seen",
+                    share(r.shape.other_triangle, r.shape.triangle_fraction()),
                     fmt::format("at most {:.5f} %", 100 * limits.triangle_fraction));
   text += criterion(r.color_ok, fmt::format("colour within {}/255", limits.within_lsb),
                     fmt::format("{:.5f} %", 100 * r.color.fraction_within(limits.within_lsb)),
                     fmt::format("at least {:.3f} %", 100 * limits.within_fraction));
-  text += criterion(r.blocks_ok, "8x8 blocks with a quarter off by > 8", fmt::format("{} of {}", r.color.bad_blocks, r.color.blocks),
+  text += criterion(r.blocks_ok, "8x8 blocks with a quarter off by > 8",
+                    fmt::format("{} of {}", r.color.bad_blocks, r.color.blocks),
                     fmt::format("at most {}", limits.bad_blocks));
-  text += fmt::format("        excused: {} depth ties (2 ULP), {} alphas at the cut-off; largest difference {} LSB; PSNR {:.1f} dB\n",
-                      r.depth_ties, r.alpha_ties, r.color.max_lsb, r.color.psnr_db);
+  text += fmt::format(
+      "        excused: {} depth ties (2 ULP), {} alphas at the cut-off; largest difference {} LSB; PSNR "
+      "{:.1f} dB\n",
+      r.depth_ties, r.alpha_ties, r.color.max_lsb, r.color.psnr_db);
   if (report.lavapipe_times.frames > 0)
-    text +=
-        fmt::format("        host time: lavapipe {:.1f} ms wall, {:.1f} ms processor (medians of {}), Quadrille {:.1f} ms\n",
-                    report.lavapipe_times.median_ms, report.lavapipe_times.median_cpu_ms, report.lavapipe_times.frames, report.machine_ms);
+    text += fmt::format(
+        "        host time: lavapipe {:.1f} ms wall, {:.1f} ms processor (medians of {}), Quadrille {:.1f} "
+        "ms\n",
+        report.lavapipe_times.median_ms, report.lavapipe_times.median_cpu_ms, report.lavapipe_times.frames,
+        report.machine_ms);
   return text;
 }
 
@@ -63,9 +74,10 @@ std::string to_json(const Report& report) {
                                 {"subtexel_bits", report.device.subtexel_bits},
                                 {"lod_bits", report.device.mipmap_bits}};
   json["passed"] = r.passed();
-  json["criteria"]["coverage"] = {{"pixels", r.shape.only_a + r.shape.only_b}, {"only_quadrille", r.shape.only_a},
-                                  {"only_lavapipe", r.shape.only_b},           {"fraction", r.shape.coverage_fraction()},
-                                  {"limit", report.limits.coverage_fraction},  {"passed", r.coverage_ok}};
+  json["criteria"]["coverage"] = {
+      {"pixels", r.shape.only_a + r.shape.only_b}, {"only_quadrille", r.shape.only_a},
+      {"only_lavapipe", r.shape.only_b},           {"fraction", r.shape.coverage_fraction()},
+      {"limit", report.limits.coverage_fraction},  {"passed", r.coverage_ok}};
   json["criteria"]["triangle"] = {{"pixels", r.shape.other_triangle},
                                   {"fraction", r.shape.triangle_fraction()},
                                   {"limit", report.limits.triangle_fraction},

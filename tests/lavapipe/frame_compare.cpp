@@ -13,13 +13,15 @@ namespace reference = models::reference;
 
 void require_same_size(const Rendered& a, const Rendered& b) {
   if (a.width != b.width || a.height != b.height)
-    throw user_error("images of different size cannot be compared: {}x{} and {}x{}", a.width, a.height, b.width, b.height);
+    throw user_error("images of different size cannot be compared: {}x{} and {}x{}", a.width, a.height,
+                     b.width, b.height);
 }
 
 /// Is the pixel a depth tie? Only where both show a triangle, and not the same.
 bool is_depth_tie(const FramePair& a, const FramePair& b, std::size_t pixel) {
   const std::uint32_t id_a = a.triangles.color[pixel], id_b = b.triangles.color[pixel];
-  if (id_a == id_b || id_a == 0 || id_b == 0 || a.triangles.depth.empty() || b.triangles.depth.empty()) return false;
+  if (id_a == id_b || id_a == 0 || id_b == 0 || a.triangles.depth.empty() || b.triangles.depth.empty())
+    return false;
   return ulps_apart(a.triangles.depth[pixel], b.triangles.depth[pixel]) <= kTieUlps;
 }
 
@@ -29,7 +31,9 @@ std::int64_t ordered(float value) {
   return bits >= 0 ? bits : -static_cast<std::int64_t>(bits & 0x7fffffff);
 }
 
-std::vector<std::uint64_t> triangle_ids(const Rendered& image) { return {image.color.begin(), image.color.end()}; }
+std::vector<std::uint64_t> triangle_ids(const Rendered& image) {
+  return {image.color.begin(), image.color.end()};
+}
 
 reference::ImageView view(const Rendered& image) { return {image.width, image.height, image.color}; }
 
@@ -43,11 +47,13 @@ std::uint32_t ulps_apart(float a, float b) {
 std::vector<std::uint8_t> unexplained_pixels(const FramePair& a, const FramePair& b) {
   require_same_size(a.triangles, b.triangles);
   std::vector<std::uint8_t> marks(a.triangles.color.size());
-  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = a.triangles.color[i] != b.triangles.color[i] && !is_depth_tie(a, b, i) ? 1 : 0;
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    marks[i] = a.triangles.color[i] != b.triangles.color[i] && !is_depth_tie(a, b, i) ? 1 : 0;
   return marks;
 }
 
-Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const std::uint8_t> alpha_ties, const Limits& limits) {
+Comparison compare_frames(const FramePair& ours, const FramePair& theirs,
+                          std::span<const std::uint8_t> alpha_ties, const Limits& limits) {
   require_same_size(ours.color, theirs.color);
   require_same_size(ours.triangles, theirs.triangles);
   require_same_size(ours.color, ours.triangles);
@@ -61,7 +67,8 @@ Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::s
     result.alpha_ties += alpha_tie ? 1 : 0;
     excused[i] = depth_tie || alpha_tie ? 1 : 0;
   }
-  result.shape = reference::compare_triangles(triangle_ids(ours.triangles), triangle_ids(theirs.triangles), 0, excused);
+  result.shape =
+      reference::compare_triangles(triangle_ids(ours.triangles), triangle_ids(theirs.triangles), 0, excused);
   result.color = reference::compare_images(view(ours.color), view(theirs.color), excused);
   result.coverage_ok = result.shape.coverage_fraction() <= limits.coverage_fraction;
   result.triangles_ok = result.shape.triangle_fraction() <= limits.triangle_fraction;

@@ -1,8 +1,9 @@
 /// Do two renderers show the same picture? The criteria by which Quadrille is held against lavapipe.
 ///
-/// Each renderer gives two images of a frame: which triangle every pixel shows, and its colour. Shape is judged on the first, colour on the
-/// second. A pixel is excused only for a stated reason: the two winners' depths are within 2 units in the last place, or an alpha was
-/// within 1/255 of the cut-off that discards; how many were is part of the result. An excused pixel is left out of every criterion.
+/// Each renderer gives two images of a frame: which triangle every pixel shows, and its colour. Shape is
+/// judged on the first, colour on the second. A pixel is excused only for a stated reason: the two winners'
+/// depths are within 2 units in the last place, or an alpha was within 1/255 of the cut-off that discards;
+/// how many were is part of the result. An excused pixel is left out of every criterion.
 #pragma once
 
 #include <array>
@@ -28,7 +29,8 @@ inline constexpr std::uint32_t kTieUlps = 2;
 
 /// Both images of one renderer.
 struct FramePair {
-  Rendered color, triangles;  ///< `triangles.color` holds an id a pixel, 0 for the background; its depth is the winner's
+  /// `triangles.color` holds an id a pixel, 0 for the background; its depth is the winner's
+  Rendered color, triangles;
 };
 
 struct Comparison {
@@ -43,12 +45,13 @@ struct Comparison {
 /// Distance in representable floats; the largest value if either is NaN. Both zeros are the same.
 [[nodiscard]] std::uint32_t ulps_apart(float a, float b);
 
-/// Pixels where the triangles differ and depth does not say why: only an alpha at its cut-off may excuse them. One entry a pixel, 1 or 0.
+/// Pixels where the triangles differ and depth does not say why: only an alpha at its cut-off may excuse
+/// them. One entry a pixel, 1 or 0.
 [[nodiscard]] std::vector<std::uint8_t> unexplained_pixels(const FramePair& a, const FramePair& b);
 
-/// Judges `ours` against `theirs`, which have one size (`UserError` otherwise). `alpha_ties` (empty: none) marks the pixels with an alpha
-/// within 1/255 of the cut-off (tests/lavapipe/alpha_ties.h).
-[[nodiscard]] Comparison compare_frames(const FramePair& ours, const FramePair& theirs, std::span<const std::uint8_t> alpha_ties,
-                                        const Limits& limits);
+/// Judges `ours` against `theirs`, which have one size (`UserError` otherwise). `alpha_ties` (empty: none)
+/// marks the pixels with an alpha within 1/255 of the cut-off (tests/lavapipe/alpha_ties.h).
+[[nodiscard]] Comparison compare_frames(const FramePair& ours, const FramePair& theirs,
+                                        std::span<const std::uint8_t> alpha_ties, const Limits& limits);
 
 }  // namespace quadrille::lavapipe

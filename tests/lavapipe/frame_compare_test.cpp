@@ -16,7 +16,8 @@ constexpr std::uint32_t kSide = 128;
 /// A frame whose left half shows triangle 1 in grey at depth 0.5, the rest background.
 FramePair half_covered() {
   Rendered color{kSide, kSide, std::vector<std::uint32_t>(kSide * kSide, 0xff000000u), {}};
-  Rendered triangles{kSide, kSide, std::vector<std::uint32_t>(kSide * kSide, 0), std::vector<float>(kSide * kSide, 1.0f)};
+  Rendered triangles{kSide, kSide, std::vector<std::uint32_t>(kSide * kSide, 0),
+                     std::vector<float>(kSide * kSide, 1.0f)};
   for (std::uint32_t y = 0; y < kSide; ++y)
     for (std::uint32_t x = 0; x < kSide / 2; ++x) {
       color.color[y * kSide + x] = 0xff808080u;
@@ -81,18 +82,21 @@ TEST_CASE("frame_compare: coverage is excused only by an alpha at its cut-off, a
 }
 
 TEST_CASE("alpha_ties: marks the pixels whose alpha is within 1/255 of the cut-off, and no others") {
-  // The fake renderer covers pixel i if alpha i / 1020 reaches the cut-off, which the stream holds where scenes put it.
+  // The fake renderer covers pixel i if alpha i / 1020 reaches the cut-off, which the stream holds where
+  // scenes put it.
   constexpr float kCutoff = 0.5f;
   traces::CommandStream stream;
   stream.buffers.push_back({"material", std::vector<std::byte>(64)});
   std::memcpy(stream.buffers[0].data.data() + 28 + 32, &kCutoff, sizeof kCutoff);
   stream.descriptor_sets.push_back({{{0, 0, 32, 32}}, {}});
-  stream.commands = {traces::BindDescriptorSet{1, 0}, traces::BindDescriptorSet{0, 0}, traces::BindDescriptorSet{1, 0}};
+  stream.commands = {traces::BindDescriptorSet{1, 0}, traces::BindDescriptorSet{0, 0},
+                     traces::BindDescriptorSet{1, 0}};
   const auto render = [](const traces::CommandStream& s) {
     float cutoff = 0;
     std::memcpy(&cutoff, s.buffers[0].data.data() + 32 + 28, sizeof cutoff);
     Rendered image{1020, 1, std::vector<std::uint32_t>(1020, 0), {}};
-    for (std::uint32_t i = 0; i < 1020; ++i) image.color[i] = static_cast<float>(i) / 1020.0f >= cutoff ? 1 : 0;
+    for (std::uint32_t i = 0; i < 1020; ++i)
+      image.color[i] = static_cast<float>(i) / 1020.0f >= cutoff ? 1 : 0;
     return image;
   };
   const std::vector<std::uint8_t> ties = alpha_ties(stream, render(stream), render);

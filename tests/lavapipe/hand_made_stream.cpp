@@ -34,13 +34,15 @@ void main() {
 })";
 }
 
-HandMadeStream::HandMadeStream(std::uint32_t width, std::uint32_t height, traces::Format color, traces::Format depth) {
+HandMadeStream::HandMadeStream(std::uint32_t width, std::uint32_t height, traces::Format color,
+                               traces::Format depth) {
   stream_.name = "hand-made";
   stream_.targets.push_back({width, height, color, depth});
   stream_.descriptor_sets.emplace_back();
   traces::Pipeline pipeline;
   pipeline.bindings = {{0, sizeof(Corner), false}};
-  pipeline.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0}, {1, 0, traces::Format::kR32G32Float, sizeof(Corner::position)}};
+  pipeline.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0},
+                         {1, 0, traces::Format::kR32G32Float, sizeof(Corner::position)}};
   stream_.pipelines.push_back(pipeline);
   pass_.clear_color = {0, 0, 0, 0};
   state_ = {traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1},
@@ -49,10 +51,12 @@ HandMadeStream::HandMadeStream(std::uint32_t width, std::uint32_t height, traces
 
 HandMadeStream& HandMadeStream::shaders(std::string_view vertex, std::string_view fragment) {
   using traces::ShaderStage;
-  pipeline().vertex_shader =
-      append(stream_.shaders, {"vertex", ShaderStage::kVertex, scenes::compile_glsl(vertex, ShaderStage::kVertex, "hand-made.vert")});
-  pipeline().fragment_shader = append(
-      stream_.shaders, {"fragment", ShaderStage::kFragment, scenes::compile_glsl(fragment, ShaderStage::kFragment, "hand-made.frag")});
+  pipeline().vertex_shader = append(
+      stream_.shaders,
+      {"vertex", ShaderStage::kVertex, scenes::compile_glsl(vertex, ShaderStage::kVertex, "hand-made.vert")});
+  pipeline().fragment_shader =
+      append(stream_.shaders, {"fragment", ShaderStage::kFragment,
+                               scenes::compile_glsl(fragment, ShaderStage::kFragment, "hand-made.frag")});
   return *this;
 }
 
@@ -61,14 +65,17 @@ HandMadeStream& HandMadeStream::corners(std::span<const Corner> corners) {
   return *this;
 }
 
-HandMadeStream& HandMadeStream::texture(std::uint32_t binding, traces::Image image, const traces::Sampler& sampler) {
-  stream_.descriptor_sets[0].textures.push_back({binding, append(stream_.images, std::move(image)), append(stream_.samplers, sampler)});
+HandMadeStream& HandMadeStream::texture(std::uint32_t binding, traces::Image image,
+                                        const traces::Sampler& sampler) {
+  stream_.descriptor_sets[0].textures.push_back(
+      {binding, append(stream_.images, std::move(image)), append(stream_.samplers, sampler)});
   return *this;
 }
 
 HandMadeStream& HandMadeStream::uniforms(std::uint32_t binding, std::span<const float> values) {
   const traces::Index buffer = append(stream_.buffers, buffer_of("uniforms", values));
-  stream_.descriptor_sets[0].uniforms.push_back({binding, buffer, 0, static_cast<std::uint32_t>(values.size_bytes())});
+  stream_.descriptor_sets[0].uniforms.push_back(
+      {binding, buffer, 0, static_cast<std::uint32_t>(values.size_bytes())});
   return *this;
 }
 
@@ -87,7 +94,8 @@ HandMadeStream& HandMadeStream::draw(std::uint32_t count, std::uint32_t first, s
 }
 
 HandMadeStream& HandMadeStream::draw_indexed(std::span<const std::uint8_t> indices) {
-  draws_.emplace_back(traces::BindIndexBuffer{append(stream_.buffers, buffer_of("indices", indices)), 0, traces::IndexType::kUint8});
+  draws_.emplace_back(traces::BindIndexBuffer{append(stream_.buffers, buffer_of("indices", indices)), 0,
+                                              traces::IndexType::kUint8});
   traces::Draw draw;
   draw.indexed = true;
   draw.count = static_cast<std::uint32_t>(indices.size());

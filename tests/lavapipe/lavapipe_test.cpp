@@ -1,4 +1,5 @@
-/// The ruler itself is measured: pictures of hand-made streams against closed forms, under the validation layer where it is installed.
+/// The ruler itself is measured: pictures of hand-made streams against closed forms, under the validation
+/// layer where it is installed.
 #include <catch2/catch.hpp>
 
 #include <bit>
@@ -19,8 +20,8 @@ layout(location = 0) in vec2 v_value;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(v_value, 0.0, 1.0); })";
 
-/// Renders, or returns nothing after saying that the test is skipped for want of a driver. Any message of the validation layer fails the
-/// test.
+/// Renders, or returns nothing after saying that the test is skipped for want of a driver. Any message of the
+/// validation layer fails the test.
 std::optional<Rendered> render(const traces::CommandStream& stream) {
   std::optional<VulkanRenderer> renderer;
   try {
@@ -47,7 +48,8 @@ std::array<Corner, 6> full_target(float depth) {
 }  // namespace
 
 TEST_CASE("lavapipe: covers exactly the pixels whose centres are inside, by the top-left rule") {
-  // The hypotenuse from (16, 0) to (0, 16) passes through pixel centres; it is neither a top nor a left edge, so they are outside.
+  // The hypotenuse from (16, 0) to (0, 16) passes through pixel centres; it is neither a top nor a left edge,
+  // so they are outside.
   const auto image = render(HandMadeStream(16, 16, Format::kR8G8B8A8Unorm, Format::kUndefined)
                                 .shaders(pass_through_vertex_shader(), kWriteValue)
                                 .corners(full_target(0))
@@ -118,13 +120,15 @@ void main() { color = texture(image, v_value); })")
                                 .finish());
   if (!image) return;
   for (unsigned i = 0; i < 64; ++i)
-    for (unsigned c = 0; c < 4; ++c) CHECK((image->color[i] >> 8 * c & 0xffu) == std::to_integer<unsigned>(texture.texels[4 * i + c]));
+    for (unsigned c = 0; c < 4; ++c)
+      CHECK((image->color[i] >> 8 * c & 0xffu) == std::to_integer<unsigned>(texture.texels[4 * i + c]));
 }
 
 TEST_CASE("lavapipe: a minified texture is read from the mip level of its footprint") {
   traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 32, 32, 6, {}, nullptr};
   for (unsigned level = 0; level < 6; ++level)
-    texture.texels.insert(texture.texels.end(), std::size_t{4} << (2 * (5 - level)), static_cast<std::byte>(40 * level));
+    texture.texels.insert(texture.texels.end(), std::size_t{4} << (2 * (5 - level)),
+                          static_cast<std::byte>(40 * level));
   const auto image = render(HandMadeStream(8, 8, Format::kR8G8B8A8Unorm, Format::kUndefined)
                                 .shaders(pass_through_vertex_shader(), R"(#version 450
 layout(location = 0) in vec2 v_value;
@@ -142,9 +146,11 @@ void main() { color = texture(image, v_value); })")
 TEST_CASE("lavapipe: an sRGB target stores encoded values and clears to them") {
   HandMadeStream made(4, 4, Format::kR8G8B8A8Srgb, Format::kUndefined);
   made.pass().clear_color = {0.5f, 0, 1, 0.5f};
-  const auto image = render(made.shaders(pass_through_vertex_shader(), kWriteValue).corners(full_target(0)).draw(0).finish());
+  const auto image = render(
+      made.shaders(pass_through_vertex_shader(), kWriteValue).corners(full_target(0)).draw(0).finish());
   if (!image) return;
-  for (const std::uint32_t pixel : image->color) CHECK(pixel == (0x80u << 24 | 0xffu << 16 | 0xbcu));  // 0.5 linear is 188 encoded
+  // 0.5 linear is 188 encoded
+  for (const std::uint32_t pixel : image->color) CHECK(pixel == (0x80u << 24 | 0xffu << 16 | 0xbcu));
 }
 
 TEST_CASE("lavapipe: byte indices, uniforms, push constants and instances reach the shaders") {

@@ -7,8 +7,10 @@
 
 namespace quadrille::lavapipe {
 
-/// Executes the stream on Quadrille, functions only: timing never changes pixels, and other tests hold it to that.
-/// `precision`: what the driver reports of itself, where Vulkan leaves a choice. Throws what Quadrille throws.
-[[nodiscard]] Rendered render_on_machine(const traces::CommandStream& stream, const models::Precision& precision);
+/// Executes the stream on Quadrille, functions only: timing never changes pixels, and other tests hold it to
+/// that. `precision`: what the driver reports of itself, where Vulkan leaves a choice. Throws what Quadrille
+/// throws.
+[[nodiscard]] Rendered render_on_machine(const traces::CommandStream& stream,
+                                         const models::Precision& precision);
 
 }  // namespace quadrille::lavapipe

@@ -22,11 +22,13 @@ PassStatistics statistics_of(const Readings& r) {
 
 }  // namespace
 
-Measurement simulate_all(const std::vector<MeasuredExperiment>& experiments, const std::vector<std::string>& settings, int jobs,
+Measurement simulate_all(const std::vector<MeasuredExperiment>& experiments,
+                         const std::vector<std::string>& settings, int jobs,
                          const std::function<void(const std::string&)>& progress) {
   Measurement measurement;
-  measurement.device =
-      settings.empty() ? "default machine, simulated" : fmt::format("default machine with {}, simulated", fmt::join(settings, ", "));
+  measurement.device = settings.empty()
+                           ? "default machine, simulated"
+                           : fmt::format("default machine with {}, simulated", fmt::join(settings, ", "));
   measurement.driver = "Quadrille";
   measurement.time_unit = "clk";
   studies::experiments::Setting setting;

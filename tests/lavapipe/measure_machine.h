@@ -8,9 +8,10 @@
 
 namespace quadrille::lavapipe {
 
-/// All points on the default machine with these settings `KEY=VALUE`, `jobs` at a time, each in a process of its own. Call it with no other thread running.
-/// Throws `UserError` as a refused run does.
-[[nodiscard]] Measurement simulate_all(const std::vector<MeasuredExperiment>& experiments, const std::vector<std::string>& settings,
-                                       int jobs, const std::function<void(const std::string&)>& progress);
+/// All points on the default machine with these settings `KEY=VALUE`, `jobs` at a time, each in a process of
+/// its own. Call it with no other thread running. Throws `UserError` as a refused run does.
+[[nodiscard]] Measurement simulate_all(const std::vector<MeasuredExperiment>& experiments,
+                                       const std::vector<std::string>& settings, int jobs,
+                                       const std::function<void(const std::string&)>& progress);
 
 }  // namespace quadrille::lavapipe

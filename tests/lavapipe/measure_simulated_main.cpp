@@ -1,4 +1,5 @@
-/// quadrille_measure_simulated: the experiments of quadrille_measure_vulkan on the simulated machine, as the same JSON.
+/// quadrille_measure_simulated: the experiments of quadrille_measure_vulkan on the simulated machine, as the
+/// same JSON.
 ///
 /// Exit code: 0 measured, 2 a mistake in what was given.
 #include <fmt/format.h>
@@ -22,14 +23,19 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("experiment", a.experiments, "which experiments; default: all");
-  app.add_option("--scene", a.scenes, "measure this instead: builtin:NAME, a glTF file or a trace (.qtrace); again for more")
+  app.add_option("--scene", a.scenes,
+                 "measure this instead: builtin:NAME, a glTF file or a trace (.qtrace); again for more")
       ->allow_extra_args(false);
-  app.add_option("--set", a.settings, "KEY=VALUE: what differs from the default machine; again for more")->allow_extra_args(false);
+  app.add_option("--set", a.settings, "KEY=VALUE: what differs from the default machine; again for more")
+      ->allow_extra_args(false);
   app.add_option("--size", a.size, "of the target in pixels, WIDTHxHEIGHT")->capture_default_str();
   app.add_option("--jobs", a.jobs, "frames at a time")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--out", a.out, "JSON file; -: standard output; the last of several counts")->take_last()->capture_default_str();
+  app.add_option("--out", a.out, "JSON file; -: standard output; the last of several counts")
+      ->take_last()
+      ->capture_default_str();
   app.add_option("--traces", a.traces,
-                 "folder that receives each point as a trace, for quadrille render and all its figures; nothing is simulated");
+                 "folder that receives each point as a trace, for quadrille render and all its figures; "
+                 "nothing is simulated");
   app.add_flag("--list", a.list, "name the experiments and their points; draw nothing");
   app.add_flag("-q,--quiet", a.quiet, "say nothing while simulating");
 }
@@ -39,7 +45,8 @@ void write_traces(const std::string& folder, const std::vector<MeasuredExperimen
   if (!std::filesystem::is_directory(folder, error)) throw user_error("--traces: {}: not a folder", folder);
   for (const MeasuredExperiment& e : experiments) {
     for (const Point& p : e.points)
-      traces::write_trace(p.stream(), (std::filesystem::path(folder) / (file_name(e, p) + ".qtrace")).string());
+      traces::write_trace(p.stream(),
+                          (std::filesystem::path(folder) / (file_name(e, p) + ".qtrace")).string());
   }
 }
 
@@ -73,7 +80,8 @@ void run(const Arguments& a) {
 extern "C" int sc_main(int, char**) { return 0; }
 
 int main(int argc, char** argv) {
-  CLI::App app("Draws the experiments' meshes on the simulated machine and writes cycles and statistics as JSON.");
+  CLI::App app(
+      "Draws the experiments' meshes on the simulated machine and writes cycles and statistics as JSON.");
   quadrille::lavapipe::Arguments arguments;
   quadrille::lavapipe::declare(app, arguments);
   try {

@@ -1,7 +1,9 @@
-/// Statistics of a Vulkan device against the counters of the simulated machine, mesh by mesh, and what the measuring programs refuse.
+/// Statistics of a Vulkan device against the counters of the simulated machine, mesh by mesh, and what the
+/// measuring programs refuse.
 ///
-/// Where Vulkan fixes the meaning of a statistic, the two are equal. Where it leaves it to the driver (vertices that are not shaded again, fragment shaders run
-/// beside covered pixels), each side is held to its own meaning, counted from the mesh: docs/hardware.md.
+/// Where Vulkan fixes the meaning of a statistic, the two are equal. Where it leaves it to the driver
+/// (vertices that are not shaded again, fragment shaders run beside covered pixels), each side is held to its
+/// own meaning, counted from the mesh: docs/hardware.md.
 #include <catch2/catch.hpp>
 
 #include <sys/wait.h>
@@ -27,7 +29,8 @@ struct Pair {
   studies::experiments::TriangleMesh mesh;
 };
 
-/// Each point of the experiment on both; empty where there is no driver. The machine comes first: it forks, which no thread of a driver survives.
+/// Each point of the experiment on both; empty where there is no driver. The machine comes first: it forks,
+/// which no thread of a driver survives.
 std::vector<Pair> both(const std::string& name) {
   const std::vector<MeasuredExperiment> experiment = chosen_experiments({name}, kWidth, kHeight);
   const Measurement ours = simulate_all(experiment, {}, 1, [](const std::string&) {});
@@ -41,8 +44,8 @@ std::vector<Pair> both(const std::string& name) {
   const Measurement theirs = measure_all(*device, experiment, statistics_alone(), [](const std::string&) {});
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < experiment.front().points.size(); ++i) {
-    pairs.push_back(
-        {*ours.curves.front().points[i].statistics, *theirs.curves.front().points[i].statistics, experiment.front().points[i].mesh()});
+    pairs.push_back({*ours.curves.front().points[i].statistics, *theirs.curves.front().points[i].statistics,
+                     experiment.front().points[i].mesh()});
   }
   return pairs;
 }
@@ -112,7 +115,8 @@ TEST_CASE("statistics of culled, off-screen and one-pixel triangles equal the ma
     check_vertices(p);
   }
   check_fragments(pairs[2]);
-  CHECK(pairs[0].theirs.clipping_primitives == pairs[0].theirs.input_primitives);  // culling comes after clipping
+  // culling comes after clipping
+  CHECK(pairs[0].theirs.clipping_primitives == pairs[0].theirs.input_primitives);
   CHECK(pairs[1].theirs.clipping_primitives == 0);
   for (std::size_t i = 0; i < 2; ++i) {
     CHECK(pairs[i].theirs.fragment_invocations == 0);
@@ -149,8 +153,15 @@ TEST_CASE("statistics of layers equal the machine's counters, llvmpipe counts hi
 TEST_CASE("a time is a median of what was measured, and the JSON holds each") {
   CHECK(median({3, 1, 2}) == 2);
   CHECK(median({4, 1, 2, 3}) == 2.5);
-  const Measurement m{"a device", "a driver", std::nullopt, "ns", 4, 2, {{"curve", "axis", {{"first", 1, {30, 10, 20}, std::nullopt}}}}};
-  CHECK_THAT(to_json(m), Catch::Contains("\"median\": 20.0") && Catch::Contains("\"least\": 10.0") && !Catch::Contains("statistics"));
+  const Measurement m{"a device",
+                      "a driver",
+                      std::nullopt,
+                      "ns",
+                      4,
+                      2,
+                      {{"curve", "axis", {{"first", 1, {30, 10, 20}, std::nullopt}}}}};
+  CHECK_THAT(to_json(m), Catch::Contains("\"median\": 20.0") && Catch::Contains("\"least\": 10.0") &&
+                             !Catch::Contains("statistics"));
 }
 
 TEST_CASE("a device's times are one positive number a repetition") {
@@ -173,15 +184,18 @@ TEST_CASE("a device's times are one positive number a repetition") {
 }
 
 TEST_CASE("a device that cannot measure what is asked is refused by the feature's name") {
-  DeviceInfo able{.name = "a GPU", .pipeline_statistics = true, .precise_occlusion = true, .timestamp_bits = 36};
+  DeviceInfo able{
+      .name = "a GPU", .pipeline_statistics = true, .precise_occlusion = true, .timestamp_bits = 36};
   CHECK_NOTHROW(require_features(able, {}));
   DeviceInfo device = able;
   device.timestamp_bits = 0;
-  CHECK_THROWS_WITH(require_features(device, {}), Catch::Contains("a GPU has no timestamps") && Catch::Contains("--no-times"));
+  CHECK_THROWS_WITH(require_features(device, {}),
+                    Catch::Contains("a GPU has no timestamps") && Catch::Contains("--no-times"));
   CHECK_NOTHROW(require_features(device, {.times = false}));
   device = able;
   device.pipeline_statistics = false;
-  CHECK_THROWS_WITH(require_features(device, {}), Catch::Contains("pipelineStatisticsQuery") && Catch::Contains("--no-statistics"));
+  CHECK_THROWS_WITH(require_features(device, {}),
+                    Catch::Contains("pipelineStatisticsQuery") && Catch::Contains("--no-statistics"));
   CHECK_NOTHROW(require_features(device, {.statistics = false}));
   device = able;
   device.precise_occlusion = false;
@@ -208,10 +222,13 @@ TEST_CASE("the measuring programs refuse with one line and exit code 2") {
     return;
   }
   check_refused(kVulkan + " --device 'no such card'", "no device named 'no such card'; there are: '");
-  check_refused("VK_ICD_FILENAMES=$(ls /usr/share/vulkan/icd.d/lvp* /etc/vulkan/icd.d/lvp* 2>/dev/null | head -1) " + kVulkan,
-                "no GPU; there are: 'llvmpipe");
+  check_refused(
+      "VK_ICD_FILENAMES=$(ls /usr/share/vulkan/icd.d/lvp* /etc/vulkan/icd.d/lvp* 2>/dev/null | head -1) " +
+          kVulkan,
+      "no GPU; there are: 'llvmpipe");
   check_refused(kVulkan + " --device llvmpipe --scene builtin:none -q", "none");
-  check_refused(kVulkan + " --device llvmpipe vertex-reuse -q --no-times --size 8x8 --out /no/folder/x.json", "--out: /no/folder/x.json");
+  check_refused(kVulkan + " --device llvmpipe vertex-reuse -q --no-times --size 8x8 --out /no/folder/x.json",
+                "--out: /no/folder/x.json");
 }
 
 }  // namespace quadrille::lavapipe

@@ -13,11 +13,13 @@ namespace quadrille::lavapipe {
 namespace {
 
 std::uint32_t passes_of(const traces::CommandStream& stream) {
-  return static_cast<std::uint32_t>(
-      std::ranges::count_if(stream.commands, [](const auto& command) { return std::holds_alternative<traces::BeginPass>(command); }));
+  return static_cast<std::uint32_t>(std::ranges::count_if(stream.commands, [](const auto& command) {
+    return std::holds_alternative<traces::BeginPass>(command);
+  }));
 }
 
-std::vector<double> times_of(const VulkanDevice& device, const traces::CommandStream& stream, const MeasureOptions& options) {
+std::vector<double> times_of(const VulkanDevice& device, const traces::CommandStream& stream,
+                             const MeasureOptions& options) {
   const PassQueries queries(device, PassQueries::What::kTimes, passes_of(stream));
   const VulkanFrame frame(device, stream, &queries);
   const auto enough = [&] { return std::chrono::steady_clock::now() >= options.enough; };
@@ -51,21 +53,30 @@ void save_picture(const std::filesystem::path& path, const Rendered& picture) {
 
 void require_features(const DeviceInfo& device, const MeasureOptions& options) {
   if (options.times && device.timestamp_bits == 0)
-    throw user_error("Vulkan: {} has no timestamps on its graphics queue; --no-times measures statistics alone", device.name);
+    throw user_error(
+        "Vulkan: {} has no timestamps on its graphics queue; --no-times measures statistics alone",
+        device.name);
   if (options.statistics && !device.pipeline_statistics)
-    throw user_error("Vulkan: {} has no pipeline statistics (pipelineStatisticsQuery); --no-statistics measures times alone", device.name);
+    throw user_error(
+        "Vulkan: {} has no pipeline statistics (pipelineStatisticsQuery); --no-statistics measures times "
+        "alone",
+        device.name);
   if (options.statistics && !device.precise_occlusion)
-    throw user_error("Vulkan: {} does not count samples (occlusionQueryPrecise); --no-statistics measures times alone", device.name);
+    throw user_error(
+        "Vulkan: {} does not count samples (occlusionQueryPrecise); --no-statistics measures times alone",
+        device.name);
 }
 
-MeasuredPoint measure(const VulkanDevice& device, const traces::CommandStream& stream, const MeasureOptions& options) {
+MeasuredPoint measure(const VulkanDevice& device, const traces::CommandStream& stream,
+                      const MeasureOptions& options) {
   MeasuredPoint point;
   if (options.statistics) point.statistics = statistics_of(device, stream);
   if (options.times) point.times = times_of(device, stream, options);
   return point;
 }
 
-Measurement measure_all(const VulkanDevice& device, const std::vector<MeasuredExperiment>& experiments, const MeasureOptions& options,
+Measurement measure_all(const VulkanDevice& device, const std::vector<MeasuredExperiment>& experiments,
+                        const MeasureOptions& options,
                         const std::function<void(const std::string&)>& progress) {
   require_features(device.info(), options);
   Measurement measurement;

@@ -25,10 +25,13 @@ inline constexpr int kWarmUps = 5;
 void require_features(const DeviceInfo& device, const MeasureOptions& options);
 
 /// One stream, its passes summed. The device can do what the options ask.
-[[nodiscard]] MeasuredPoint measure(const VulkanDevice& device, const traces::CommandStream& stream, const MeasureOptions& options);
+[[nodiscard]] MeasuredPoint measure(const VulkanDevice& device, const traces::CommandStream& stream,
+                                    const MeasureOptions& options);
 
 /// All points of the experiments, in order; `progress` is told of each before it is drawn.
-[[nodiscard]] Measurement measure_all(const VulkanDevice& device, const std::vector<MeasuredExperiment>& experiments,
-                                      const MeasureOptions& options, const std::function<void(const std::string&)>& progress);
+[[nodiscard]] Measurement measure_all(const VulkanDevice& device,
+                                      const std::vector<MeasuredExperiment>& experiments,
+                                      const MeasureOptions& options,
+                                      const std::function<void(const std::string&)>& progress);
 
 }  // namespace quadrille::lavapipe

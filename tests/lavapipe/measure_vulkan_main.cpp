@@ -1,4 +1,5 @@
-/// quadrille_measure_vulkan: draws the experiments' meshes, or a scene, on a Vulkan device without a window, and writes times and statistics as JSON.
+/// quadrille_measure_vulkan: draws the experiments' meshes, or a scene, on a Vulkan device without a window,
+/// and writes times and statistics as JSON.
 ///
 /// Exit code: 0 measured, 2 a mistake in what was given or a device that is not there or cannot do it.
 #include <fmt/format.h>
@@ -22,16 +23,23 @@ struct Arguments {
 
 void declare(CLI::App& app, Arguments& a) {
   app.add_option("experiment", a.experiments, "which experiments; default: all");
-  app.add_option("--device", a.device, "part of the device's name, which may be a software driver's (llvmpipe); default: a GPU");
-  app.add_option("--scene", a.scenes, "measure this instead: builtin:NAME, a glTF file or a trace (.qtrace); again for more")
+  app.add_option("--device", a.device,
+                 "part of the device's name, which may be a software driver's (llvmpipe); default: a GPU");
+  app.add_option("--scene", a.scenes,
+                 "measure this instead: builtin:NAME, a glTF file or a trace (.qtrace); again for more")
       ->allow_extra_args(false);
-  app.add_option("--size", a.size, "of the target in pixels, WIDTHxHEIGHT; a trace has its own")->capture_default_str();
-  app.add_option("--repeats", a.repeats, "times that each frame is timed")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--size", a.size, "of the target in pixels, WIDTHxHEIGHT; a trace has its own")
+      ->capture_default_str();
+  app.add_option("--repeats", a.repeats, "times that each frame is timed")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_option("--seconds", a.seconds, "after this long, the frames that are left are timed once")
       ->take_last()
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  app.add_option("--out", a.out, "JSON file; -: standard output; the last of several counts")->take_last()->capture_default_str();
+  app.add_option("--out", a.out, "JSON file; -: standard output; the last of several counts")
+      ->take_last()
+      ->capture_default_str();
   app.add_option("--pictures", a.pictures, "folder that receives what each point drew, as .ppm");
   app.add_flag("--no-times", a.no_times, "statistics alone");
   app.add_flag("--no-statistics", a.no_statistics, "times alone");
@@ -47,7 +55,8 @@ int run(const Arguments& a) {
     fmt::print("{}", listed(experiments));
     return 0;
   }
-  if (a.no_times && a.no_statistics) throw user_error("--no-times with --no-statistics leaves nothing to measure");
+  if (a.no_times && a.no_statistics)
+    throw user_error("--no-times with --no-statistics leaves nothing to measure");
   std::error_code error;
   if (!a.pictures.empty() && !std::filesystem::is_directory(a.pictures, error))
     throw user_error("--pictures: {}: not a folder", a.pictures);
@@ -73,7 +82,9 @@ int run(const Arguments& a) {
 }  // namespace quadrille::lavapipe
 
 int main(int argc, char** argv) {
-  CLI::App app("Draws the experiments' meshes, or a scene, on a Vulkan device and writes times and statistics as JSON.");
+  CLI::App app(
+      "Draws the experiments' meshes, or a scene, on a Vulkan device and writes times and statistics as "
+      "JSON.");
   quadrille::lavapipe::Arguments arguments;
   quadrille::lavapipe::declare(app, arguments);
   try {

@@ -37,7 +37,9 @@ Json json_of(const DeviceInfo& d) {
 
 Json json_of(const MeasuredPoint& p) {
   Json json = {{"name", p.name}, {"x", p.x}};
-  if (!p.times.empty()) json["time"] = {{"median", median(p.times)}, {"least", *std::ranges::min_element(p.times)}, {"all", p.times}};
+  if (!p.times.empty())
+    json["time"] = {
+        {"median", median(p.times)}, {"least", *std::ranges::min_element(p.times)}, {"all", p.times}};
   if (p.statistics) json["statistics"] = json_of(*p.statistics);
   return json;
 }
@@ -80,9 +82,10 @@ void write_measurement(const std::string& path, const Measurement& measurement) 
 std::pair<std::uint32_t, std::uint32_t> parse_target_size(const std::string& text) {
   std::uint32_t width = 0, height = 0;
   char extra = 0;
-  if (std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &extra) != 2 || width < 1 || height < 1 || width > kLargestSide ||
-      height > kLargestSide)
-    throw user_error("--size {}: expected WIDTHxHEIGHT, each 1 to {}, for example 1920x1080", text, kLargestSide);
+  if (std::sscanf(text.c_str(), "%5ux%5u%c", &width, &height, &extra) != 2 || width < 1 || height < 1 ||
+      width > kLargestSide || height > kLargestSide)
+    throw user_error("--size {}: expected WIDTHxHEIGHT, each 1 to {}, for example 1920x1080", text,
+                     kLargestSide);
   return {width, height};
 }
 

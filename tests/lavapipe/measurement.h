@@ -1,4 +1,5 @@
-/// What was measured, of a device or of the simulated machine, and its JSON: one form for both, so that a program that compares needs to know only one.
+/// What was measured, of a device or of the simulated machine, and its JSON: one form for both, so that a
+/// program that compares needs to know only one.
 #pragma once
 
 #include <cstdint>

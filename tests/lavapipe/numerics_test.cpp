@@ -1,6 +1,8 @@
-/// How lavapipe computes what the specification leaves open, measured bit by bit: docs/sources.md and docs/deviations.md cite these cases.
+/// How lavapipe computes what the specification leaves open, measured bit by bit: docs/sources.md and
+/// docs/deviations.md cite these cases.
 ///
-/// A shader writes the bits of a float into the four bytes of its pixel, and the test recomputes them in fp32. The cases hold for Mesa
+/// A shader writes the bits of a float into the four bytes of its pixel, and the test recomputes them in
+/// fp32. The cases hold for Mesa
 /// 22.3's llvmpipe; on another driver they say so and judge nothing.
 #include <catch2/catch.hpp>
 
@@ -46,9 +48,12 @@ struct Inputs {
   }
 };
 
-std::array<Corner, 3> covering_triangle() { return {Corner{{-1, -1, 0, 1}, {}}, Corner{{3, -1, 0, 1}, {}}, Corner{{-1, 3, 0, 1}, {}}}; }
+std::array<Corner, 3> covering_triangle() {
+  return {Corner{{-1, -1, 0, 1}, {}}, Corner{{3, -1, 0, 1}, {}}, Corner{{-1, 3, 0, 1}, {}}};
+}
 
-/// A stream whose pixel i holds the bits of the GLSL expression `result`, a function of `a` and `b` (vec4 i of the inputs).
+/// A stream whose pixel i holds the bits of the GLSL expression `result`, a function of `a` and `b` (vec4 i
+/// of the inputs).
 HandMadeStream bits_of(const std::string& result, const Inputs& inputs) {
   const std::string fragment = R"(#version 450
 layout(set = 0, binding = 0, std140) uniform A { vec4 all_a[1024]; };
@@ -64,7 +69,11 @@ void main() {
   color = vec4(uvec4(bits, bits >> 8, bits >> 16, bits >> 24) & 255u) / 255.0;
 })";
   HandMadeStream made(kSide, kSide, Format::kR8G8B8A8Unorm, Format::kUndefined);
-  made.shaders(pass_through_vertex_shader(), fragment).uniforms(0, inputs.a).uniforms(1, inputs.b).corners(covering_triangle()).draw(3);
+  made.shaders(pass_through_vertex_shader(), fragment)
+      .uniforms(0, inputs.a)
+      .uniforms(1, inputs.b)
+      .corners(covering_triangle())
+      .draw(3);
   return made;
 }
 
@@ -72,12 +81,15 @@ void main() {
 template <class Expected>
 std::optional<std::size_t> equal_bits(const std::string& expression, Expected expected) {
   const Inputs inputs(7);
-  const auto image = render(
-      bits_of(expression, inputs).texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4), nullptr}, {}).finish());
+  const auto image =
+      render(bits_of(expression, inputs)
+                 .texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4), nullptr}, {})
+                 .finish());
   if (!image) return std::nullopt;
   std::size_t equal = 0;
   for (std::size_t i = 0; i < kInputs; ++i)
-    equal += image->color[i] == std::bit_cast<std::uint32_t>(expected(&inputs.a[4 * i], &inputs.b[4 * i])) ? 1 : 0;
+    equal +=
+        image->color[i] == std::bit_cast<std::uint32_t>(expected(&inputs.a[4 * i], &inputs.b[4 * i])) ? 1 : 0;
   return equal;
 }
 
@@ -86,30 +98,36 @@ float dot3(const float* a, const float* b) { return (a[0] * b[0] + a[1] * b[1]) 
 }  // namespace
 
 TEST_CASE("lavapipe numerics: matrix times vector adds the last column first and rounds every step") {
-  const auto equal = equal_bits("(mat4(a, b, a.yzwx, b.wxyz) * b).x",
-                                [](const float* a, const float* b) { return ((b[3] * b[3] + a[1] * b[2]) + b[0] * b[1]) + a[0] * b[0]; });
+  const auto equal = equal_bits("(mat4(a, b, a.yzwx, b.wxyz) * b).x", [](const float* a, const float* b) {
+    return ((b[3] * b[3] + a[1] * b[2]) + b[0] * b[1]) + a[0] * b[0];
+  });
   if (equal) CHECK(*equal == kInputs);
 }
 
 TEST_CASE("lavapipe numerics: dot products add x first, and normalize divides by the length") {
-  const auto dots = equal_bits("dot(a, b)", [](const float* a, const float* b) { return dot3(a, b) + a[3] * b[3]; });
-  const auto units = equal_bits("normalize(a.xyz).x", [](const float* a, const float*) { return a[0] / std::sqrt(dot3(a, a)); });
+  const auto dots =
+      equal_bits("dot(a, b)", [](const float* a, const float* b) { return dot3(a, b) + a[3] * b[3]; });
+  const auto units = equal_bits("normalize(a.xyz).x",
+                                [](const float* a, const float*) { return a[0] / std::sqrt(dot3(a, a)); });
   if (dots) CHECK(*dots == kInputs);
   if (units) CHECK(*units == kInputs);
 }
 
 TEST_CASE("lavapipe numerics: mix is a (1 - t) + b t, and fma rounds twice") {
-  const auto mixed = equal_bits("mix(a.x, b.x, a.y)", [](const float* a, const float* b) { return a[0] * (1 - a[1]) + b[0] * a[1]; });
-  const auto fused = equal_bits("fma(a.x, b.x, a.y)", [](const float* a, const float* b) { return a[0] * b[0] + a[1]; });
+  const auto mixed = equal_bits(
+      "mix(a.x, b.x, a.y)", [](const float* a, const float* b) { return a[0] * (1 - a[1]) + b[0] * a[1]; });
+  const auto fused =
+      equal_bits("fma(a.x, b.x, a.y)", [](const float* a, const float* b) { return a[0] * b[0] + a[1]; });
   if (mixed) CHECK(*mixed == kInputs);
   if (fused) CHECK(*fused == kInputs);
 }
 
 TEST_CASE("lavapipe numerics: every derivative is the fine one") {
   const Inputs inputs(7);
-  const auto image = render(bits_of("dFdxCoarse(a.x)", inputs)
-                                .texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4), nullptr}, {})
-                                .finish());
+  const auto image =
+      render(bits_of("dFdxCoarse(a.x)", inputs)
+                 .texture(2, {"", Format::kR8G8B8A8Unorm, 1, 1, 1, std::vector<std::byte>(4), nullptr}, {})
+                 .finish());
   if (!image) return;
   for (std::size_t i = 0; i < kInputs; ++i) {
     const std::size_t left = i & ~std::size_t{1};
@@ -117,14 +135,18 @@ TEST_CASE("lavapipe numerics: every derivative is the fine one") {
   }
 }
 
-TEST_CASE("lavapipe numerics: level of detail is half the piecewise linear logarithm of the squared footprint, once a quad") {
+TEST_CASE(
+    "lavapipe numerics: level of detail is half the piecewise linear logarithm of the squared footprint, "
+    "once a quad") {
   Inputs inputs(5);
   for (std::size_t i = 0; i < inputs.a.size(); ++i) inputs.a[i] *= std::exp2(-static_cast<float>(i / 4 % 8));
   traces::Image texture{"levels", Format::kR8G8B8A8Unorm, 256, 128, 9, {}, nullptr};
   for (unsigned level = 0; level < 9; ++level)
-    texture.texels.resize(texture.texels.size() + std::size_t{4} * std::max(1u, 256u >> level) * std::max(1u, 128u >> level));
+    texture.texels.resize(texture.texels.size() +
+                          std::size_t{4} * std::max(1u, 256u >> level) * std::max(1u, 128u >> level));
   const std::string coordinates =
-      "textureQueryLod(image, vec2(0.3, 0.4) + a.xy * 0.0 + all_a[(pixel.y & ~1) * 32 + (pixel.x & ~1)].xy * float(pixel.x & 1)"
+      "textureQueryLod(image, vec2(0.3, 0.4) + a.xy * 0.0 + all_a[(pixel.y & ~1) * 32 + (pixel.x & ~1)].xy * "
+      "float(pixel.x & 1)"
       " + all_a[(pixel.y & ~1) * 32 + (pixel.x & ~1)].zw * float(pixel.y & 1)).y";
   const auto image = render(bits_of(coordinates, inputs).texture(2, texture, {}).finish());
   if (!image) return;
@@ -134,7 +156,8 @@ TEST_CASE("lavapipe numerics: level of detail is half the piecewise linear logar
       const float ax = ((0.3f + step[0]) - 0.3f) * 256, ay = ((0.4f + step[1]) - 0.4f) * 128;
       const float bx = ((0.3f + step[2]) - 0.3f) * 256, by = ((0.4f + step[3]) - 0.4f) * 128;
       const auto rho2 = std::bit_cast<std::uint32_t>(std::max(ax * ax + ay * ay, bx * bx + by * by));
-      const float log2 = static_cast<float>(static_cast<int>(rho2 >> 23) - 128) + std::bit_cast<float>((rho2 & 0x7fffffu) | 0x3f800000u);
+      const float log2 = static_cast<float>(static_cast<int>(rho2 >> 23) - 128) +
+                         std::bit_cast<float>((rho2 & 0x7fffffu) | 0x3f800000u);
       CHECK(std::bit_cast<float>(image->color[y * kSide + x]) == 0.5f * log2);
     }
 }
@@ -148,7 +171,8 @@ TEST_CASE("lavapipe numerics: our viewport transform and snapping give its cover
     const float x = centre(random), y = centre(random);
     for (int i = 0; i < 3; ++i) {
       const float w = depth(random);
-      corners.push_back({{(x + offset(random)) * w, (y + offset(random)) * w, 0.5f * w, w}, {static_cast<float>(triangle + 1), 0}});
+      corners.push_back({{(x + offset(random)) * w, (y + offset(random)) * w, 0.5f * w, w},
+                         {static_cast<float>(triangle + 1), 0}});
     }
   }
   const auto image = render(HandMadeStream(kWidth, kHeight, Format::kR8G8B8A8Unorm, Format::kD32Float)
@@ -194,9 +218,12 @@ void main() { color = vec4(uvec4(id, id >> 8, 0, 0) & 255u) / 255.0; })")
     };
     const auto [left, right] = std::minmax_element(x.begin(), x.end());
     const auto [top, bottom] = std::minmax_element(y.begin(), y.end());
-    for (std::int64_t py = std::max<std::int64_t>(0, *top >> 8); py <= std::min<std::int64_t>(kHeight - 1, *bottom >> 8); ++py)
-      for (std::int64_t px = std::max<std::int64_t>(0, *left >> 8); px <= std::min<std::int64_t>(kWidth - 1, *right >> 8); ++px)
-        if (inside(256 * px + 128, 256 * py + 128)) expected[static_cast<std::size_t>(py * kWidth + px)] = t + 1;
+    for (std::int64_t py = std::max<std::int64_t>(0, *top >> 8);
+         py <= std::min<std::int64_t>(kHeight - 1, *bottom >> 8); ++py)
+      for (std::int64_t px = std::max<std::int64_t>(0, *left >> 8);
+           px <= std::min<std::int64_t>(kWidth - 1, *right >> 8); ++px)
+        if (inside(256 * px + 128, 256 * py + 128))
+          expected[static_cast<std::size_t>(py * kWidth + px)] = t + 1;
   }
   std::size_t different = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) different += image->color[i] != expected[i] ? 1 : 0;

@@ -1,4 +1,5 @@
-/// Random structured programs, compiled by us, against the Vulkan driver's compiler, pixel by pixel. QUADRILLE_SHADER_SEEDS="FIRST COUNT" runs other seeds.
+/// Random structured programs, compiled by us, against the Vulkan driver's compiler, pixel by pixel.
+/// QUADRILLE_SHADER_SEEDS="FIRST COUNT" runs other seeds.
 #include "tests/pipeline/compiler/random_shader_run.h"
 
 #include <fmt/format.h>
@@ -43,10 +44,12 @@ traces::CommandStream stream_of(const std::vector<std::string>& programs) {
   stream.buffers.push_back({"corners", std::vector<std::byte>(sizeof(kCorners))});
   std::memcpy(stream.buffers[0].data.data(), kCorners, sizeof(kCorners));
   const traces::Index vertex =
-      add_shader(stream, "#version 450\nlayout(location = 0) in vec4 p;\nvoid main() { gl_Position = p; }", ShaderStage::kVertex);
+      add_shader(stream, "#version 450\nlayout(location = 0) in vec4 p;\nvoid main() { gl_Position = p; }",
+                 ShaderStage::kVertex);
   traces::BeginPass pass;
   for (std::size_t c = 0; c < 4; ++c) pass.clear_color[c] = static_cast<float>(kClear[c]) / 255.0f;
-  stream.commands = {pass, traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1}};
+  stream.commands = {pass,
+                     traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1}};
   for (std::uint32_t k = 0; k < programs.size(); ++k) {
     traces::Pipeline pipeline;
     pipeline.vertex_shader = vertex;
@@ -57,7 +60,8 @@ traces::CommandStream stream_of(const std::vector<std::string>& programs) {
     stream.commands.emplace_back(traces::BindPipeline{k});
     stream.commands.emplace_back(traces::BindVertexBuffer{0, 0, 0});
     stream.commands.emplace_back(traces::SetScissor{static_cast<std::int32_t>(k % kColumns * kTileWidth),
-                                                    static_cast<std::int32_t>(k / kColumns * kTileHeight), kTileWidth, kTileHeight});
+                                                    static_cast<std::int32_t>(k / kColumns * kTileHeight),
+                                                    kTileWidth, kTileHeight});
     traces::Draw draw;
     draw.count = 3;
     stream.commands.emplace_back(draw);
@@ -71,13 +75,15 @@ traces::CommandStream stream_of(const std::vector<std::string>& programs) {
 RandomShaderResult tile_of(const Rendered& image, std::uint32_t k) {
   RandomShaderResult result{};
   for (std::size_t lane = 0; lane < result.size(); ++lane) {
-    const std::size_t x = k % kColumns * kTileWidth + 2 * (lane / 4) + lane % 2, y = k / kColumns * kTileHeight + lane % 4 / 2;
+    const std::size_t x = k % kColumns * kTileWidth + 2 * (lane / 4) + lane % 2,
+                      y = k / kColumns * kTileHeight + lane % 4 / 2;
     result[lane] = image.color[y * image.width + x];
   }
   return result;
 }
 
-/// Ours, with the clear colour where the program discarded; nothing for a program beyond a limit of the machine.
+/// Ours, with the clear colour where the program discarded; nothing for a program beyond a limit of the
+/// machine.
 std::optional<RandomShaderResult> ours(const RandomShader& shader) {
   try {
     RandomShaderResult result = pipeline::run_compiled(shader);
@@ -88,12 +94,15 @@ std::optional<RandomShaderResult> ours(const RandomShader& shader) {
   } catch (const UserError&) { return std::nullopt; }  // the reference's test judges refusals
 }
 
-/// What the driver draws where every lane of its vector is the same pixel: a program for each pixel, with the pixel's place in it as a constant.
+/// What the driver draws where every lane of its vector is the same pixel: a program for each pixel, with the
+/// pixel's place in it as a constant.
 ///
-/// Beside other pixels, llvmpipe (Mesa 22.3) goes wrong in two ways, both shown below. A discarded pixel only loses its coverage and runs on: in a loop whose
-/// body always ends in a discard it never comes to the next step, and goes round until the 65535 rounds that all loops of a program share are used up; from
-/// then on the loops of the pixels beside it end after one round. And what a loop computes in its last round, and is read after it, is computed again for
-/// pixels that have left the loop, from what they have made of its operands since, as long as a pixel beside them goes round.
+/// Beside other pixels, llvmpipe (Mesa 22.3) goes wrong in two ways, both shown below. A discarded pixel only
+/// loses its coverage and runs on: in a loop whose body always ends in a discard it never comes to the next
+/// step, and goes round until the 65535 rounds that all loops of a program share are used up; from then on
+/// the loops of the pixels beside it end after one round. And what a loop computes in its last round, and is
+/// read after it, is computed again for pixels that have left the loop, from what they have made of its
+/// operands since, as long as a pixel beside them goes round.
 RandomShaderResult drawn_alone(VulkanRenderer& renderer, const RandomShader& shader) {
   RandomShaderResult result{};
   std::vector<std::string> programs;
@@ -109,7 +118,8 @@ RandomShaderResult drawn_alone(VulkanRenderer& renderer, const RandomShader& sha
 bool differs(VulkanRenderer& renderer, const RandomShader& shader) {
   try {
     const std::optional<RandomShaderResult> expected = ours(shader);
-    return expected && tile_of(renderer.render(stream_of({shader.source()})), 0) != *expected && drawn_alone(renderer, shader) != *expected;
+    return expected && tile_of(renderer.render(stream_of({shader.source()})), 0) != *expected &&
+           drawn_alone(renderer, shader) != *expected;
   } catch (const UserError&) { return false; }  // what was left out of it made it no program
 }
 
@@ -126,14 +136,16 @@ std::unique_ptr<VulkanRenderer> driver() {
 RandomShader program_of(const std::string& statements) {
   RandomShader shader;
   shader.functions.push_back(
-      {"void main() {\n  int x0 = int(gl_FragCoord.x) & 15, x1 = int(gl_FragCoord.y) & 1, x2 = (x0 * 5 + x1 * 3) & 7;\n",
+      {"void main() {\n  int x0 = int(gl_FragCoord.x) & 15, x1 = int(gl_FragCoord.y) & 1, x2 = (x0 * 5 + x1 "
+       "* 3) & 7;\n",
        "  color = vec4(x0, x1, x2, 1) / 255.0;\n",
        {{{statements}, {}}}});
   return shader;
 }
 
 /// `by_hand` computes x0, x1 and x2 of a pixel, and whether it lives.
-void check_by_hand(const std::string& statements, bool (*by_hand)(std::uint32_t& x0, std::uint32_t& x1, std::uint32_t& x2)) {
+void check_by_hand(const std::string& statements,
+                   bool (*by_hand)(std::uint32_t& x0, std::uint32_t& x1, std::uint32_t& x2)) {
   const RandomShader shader = program_of(statements);
   RandomShaderResult expected{};
   for (std::uint32_t lane = 0; lane < expected.size(); ++lane) {
@@ -145,27 +157,32 @@ void check_by_hand(const std::string& statements, bool (*by_hand)(std::uint32_t&
   if (!renderer) return;
   CHECK(drawn_alone(*renderer, shader) == expected);
   if (tile_of(renderer->render(stream_of({shader.source()})), 0) == expected)
-    WARN(renderer->info().name << " draws this right beside other pixels too: drawn_alone is not needed for it");
+    WARN(renderer->info().name
+         << " draws this right beside other pixels too: drawn_alone is not needed for it");
 }
 
 }  // namespace
 
 TEST_CASE("lavapipe random shaders: a loop whose body always ends in a discard") {
-  check_by_hand("[[dont_unroll]] for (int i = 3; i > 0; --i) { ++x1; for (int k = 0, end = (x2 & 3); k < end; ++k) { discard; } }",
-                [](std::uint32_t&, std::uint32_t& x1, std::uint32_t& x2) {
-                  x1 += 3;
-                  return (x2 & 3) == 0;
-                });
+  check_by_hand(
+      "[[dont_unroll]] for (int i = 3; i > 0; --i) { ++x1; for (int k = 0, end = (x2 & 3); k < end; ++k) { "
+      "discard; } }",
+      [](std::uint32_t&, std::uint32_t& x1, std::uint32_t& x2) {
+        x1 += 3;
+        return (x2 & 3) == 0;
+      });
 }
 
 TEST_CASE("lavapipe random shaders: what the last round of a loop computes") {
-  check_by_hand("int k = 0, end = (x2 & 3); do { ++k; x0 = (x1 * 5 + x2) & 255; x2 = min(x2, 200) + 2; } while (k < end);",
-                [](std::uint32_t& x0, std::uint32_t& x1, std::uint32_t& x2) {
-                  const std::uint32_t rounds = std::max(x2 & 3, 1u);
-                  x2 += 2 * rounds;
-                  x0 = x1 * 5 + x2 - 2;
-                  return true;
-                });
+  check_by_hand(
+      "int k = 0, end = (x2 & 3); do { ++k; x0 = (x1 * 5 + x2) & 255; x2 = min(x2, 200) + 2; } while (k < "
+      "end);",
+      [](std::uint32_t& x0, std::uint32_t& x1, std::uint32_t& x2) {
+        const std::uint32_t rounds = std::max(x2 & 3, 1u);
+        x2 += 2 * rounds;
+        x0 = x1 * 5 + x2 - 2;
+        return true;
+      });
 }
 
 TEST_CASE("lavapipe random shaders: every pixel is the driver's") {
@@ -187,9 +204,10 @@ TEST_CASE("lavapipe random shaders: every pixel is the driver's") {
       if (!expected) continue;
       ++compared;
       if (tile_of(image, k) == *expected || drawn_alone(*renderer, programs[k]) == *expected) continue;
-      const RandomShader small =
-          pipeline::shrink(programs[k], [&](const RandomShader& candidate) { return differs(*renderer, candidate); });
-      FAIL_CHECK("seed " << seeds.first + first + k << " differs from " << renderer->info().name << "\n" << small.source());
+      const RandomShader small = pipeline::shrink(
+          programs[k], [&](const RandomShader& candidate) { return differs(*renderer, candidate); });
+      FAIL_CHECK("seed " << seeds.first + first + k << " differs from " << renderer->info().name << "\n"
+                         << small.source());
     }
   }
   CHECK(compared * 50 >= seeds.count * 49);

@@ -14,10 +14,12 @@ namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
-/// Names lavapipe's driver manifest to the loader, so that drivers of absent GPUs are not opened. Does nothing if the user chose drivers.
+/// Names lavapipe's driver manifest to the loader, so that drivers of absent GPUs are not opened. Does
+/// nothing if the user chose drivers.
 void prefer_lavapipe() {
   if (std::getenv("VK_ICD_FILENAMES") != nullptr || std::getenv("VK_DRIVER_FILES") != nullptr) return;
-  for (const char* folder : {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
+  for (const char* folder :
+       {"/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"}) {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
       if (!entry.path().filename().string().starts_with("lvp_icd")) continue;
@@ -27,7 +29,8 @@ void prefer_lavapipe() {
   }
 }
 
-VKAPI_ATTR VkBool32 VKAPI_CALL collect_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL collect_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                               VkDebugUtilsMessageTypeFlagsEXT,
                                                const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
   static_cast<std::vector<std::string>*>(user)->emplace_back(data->pMessage);
   return VK_FALSE;
@@ -36,8 +39,10 @@ VKAPI_ATTR VkBool32 VKAPI_CALL collect_message(VkDebugUtilsMessageSeverityFlagBi
 VkDebugUtilsMessengerCreateInfoEXT messenger_info(std::vector<std::string>* messages) {
   VkDebugUtilsMessengerCreateInfoEXT info{};
   info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-  info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
+  info.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  info.messageType =
+      VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
   info.pfnUserCallback = collect_message;
   info.pUserData = messages;
   return info;
@@ -45,9 +50,11 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(std::vector<std::string>* mess
 
 std::set<std::string> device_extensions(VkPhysicalDevice device) {
   std::uint32_t count = 0;
-  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
+  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr),
+          "vkEnumerateDeviceExtensionProperties");
   std::vector<VkExtensionProperties> found(count);
-  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()), "vkEnumerateDeviceExtensionProperties");
+  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()),
+          "vkEnumerateDeviceExtensionProperties");
   std::set<std::string> names;
   for (const auto& extension : found) names.emplace(extension.extensionName);
   return names;
@@ -79,7 +86,8 @@ DeviceInfo describe(VkPhysicalDevice device) {
           .mipmap_bits = limits.mipmapPrecisionBits,
           .max_push_constants = limits.maxPushConstantsSize,
           .type = type_name(properties.properties.deviceType),
-          .api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api), VK_API_VERSION_PATCH(api)),
+          .api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api),
+                                     VK_API_VERSION_PATCH(api)),
           .pipeline_statistics = features.pipelineStatisticsQuery == VK_TRUE,
           .precise_occlusion = features.occlusionQueryPrecise == VK_TRUE,
           .timestamp_bits = 0,  // of a queue: filled in with its choice
@@ -95,7 +103,8 @@ std::string lower(std::string text) {
 int rank(const VkPhysicalDeviceProperties& device, const DeviceWish& wish) {
   switch (wish.kind) {
     case DeviceWish::Kind::kLavapipe: return device.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU ? 2 : 1;
-    case DeviceWish::Kind::kNamed: return lower(device.deviceName).find(lower(wish.name)) == std::string::npos ? 0 : 1;
+    case DeviceWish::Kind::kNamed:
+      return lower(device.deviceName).find(lower(wish.name)) == std::string::npos ? 0 : 1;
     case DeviceWish::Kind::kGpu: break;
   }
   if (device.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU) return 4;
@@ -106,7 +115,8 @@ int rank(const VkPhysicalDeviceProperties& device, const DeviceWish& wish) {
 }  // namespace
 
 void require(VkResult result, const char* what) {
-  if (result != VK_SUCCESS) throw user_error("Vulkan: {} failed with VkResult {}", what, static_cast<int>(result));
+  if (result != VK_SUCCESS)
+    throw user_error("Vulkan: {} failed with VkResult {}", what, static_cast<int>(result));
 }
 
 Cleanup::~Cleanup() {
@@ -143,15 +153,18 @@ void VulkanDevice::create_instance(bool validate) {
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-    throw user_error("Vulkan: no driver found; a GPU's comes with its vendor's packages, lavapipe, in software, with mesa-vulkan-drivers");
-  if (result == VK_ERROR_LAYER_NOT_PRESENT) throw user_error("Vulkan: no validation layer; it is in the package vulkan-validationlayers");
+    throw user_error(
+        "Vulkan: no driver found; a GPU's comes with its vendor's packages, lavapipe, in software, with "
+        "mesa-vulkan-drivers");
+  if (result == VK_ERROR_LAYER_NOT_PRESENT)
+    throw user_error("Vulkan: no validation layer; it is in the package vulkan-validationlayers");
   require(result, "vkCreateInstance");
   cleanup_.add([this] { vkDestroyInstance(instance_, nullptr); });
   if (!validate) return;
-  const auto create =
-      reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
-  const auto destroy =
-      reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+  const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+  const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+      vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
   VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
   require(create(instance_, &messenger, nullptr, &handle), "vkCreateDebugUtilsMessengerEXT");
   cleanup_.add([this, destroy, handle] { destroy(instance_, handle, nullptr); });
@@ -177,7 +190,8 @@ void VulkanDevice::choose_physical_device(const DeviceWish& wish) {
   }
   if (names.empty()) throw user_error("Vulkan: none of {} device(s) offers Vulkan 1.3", count);
   if (physical_ == VK_NULL_HANDLE) {
-    const std::string wished = wish.kind == DeviceWish::Kind::kNamed ? fmt::format("device named '{}'", wish.name) : "GPU";
+    const std::string wished =
+        wish.kind == DeviceWish::Kind::kNamed ? fmt::format("device named '{}'", wish.name) : "GPU";
     throw user_error("Vulkan: no {}; there are: {}", wished, fmt::join(names, ", "));
   }
   info_ = describe(physical_);
@@ -239,14 +253,17 @@ void VulkanDevice::create_device() {
   cleanup_.add([this] { vkDestroyCommandPool(device_, pool_, nullptr); });
 }
 
-VkDeviceMemory VulkanDevice::allocate(Cleanup& owner, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties) const {
+VkDeviceMemory VulkanDevice::allocate(Cleanup& owner, const VkMemoryRequirements& needs,
+                                      VkMemoryPropertyFlags properties) const {
   VkPhysicalDeviceMemoryProperties memory{};
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory);
   std::uint32_t type = 0;
   while (type < memory.memoryTypeCount &&
-         ((needs.memoryTypeBits >> type & 1u) == 0 || (memory.memoryTypes[type].propertyFlags & properties) != properties))
+         ((needs.memoryTypeBits >> type & 1u) == 0 ||
+          (memory.memoryTypes[type].propertyFlags & properties) != properties))
     ++type;
-  if (type == memory.memoryTypeCount) throw user_error("Vulkan: {} has no memory type with properties {:#x}", info_.name, properties);
+  if (type == memory.memoryTypeCount)
+    throw user_error("Vulkan: {} has no memory type with properties {:#x}", info_.name, properties);
   VkMemoryAllocateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needs.size;
@@ -257,7 +274,8 @@ VkDeviceMemory VulkanDevice::allocate(Cleanup& owner, const VkMemoryRequirements
   return handle;
 }
 
-VulkanDevice::BoundBuffer VulkanDevice::create_buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage,
+VulkanDevice::BoundBuffer VulkanDevice::create_buffer(Cleanup& owner, VkDeviceSize bytes,
+                                                      VkBufferUsageFlags usage,
                                                       VkMemoryPropertyFlags properties) const {
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
@@ -274,14 +292,17 @@ VulkanDevice::BoundBuffer VulkanDevice::create_buffer(Cleanup& owner, VkDeviceSi
 }
 
 HostBuffer VulkanDevice::buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const {
-  const BoundBuffer made = create_buffer(owner, bytes, usage, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  const BoundBuffer made = create_buffer(
+      owner, bytes, usage, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
   HostBuffer result{made.buffer, nullptr};
   require(vkMapMemory(device_, made.memory, 0, VK_WHOLE_SIZE, 0, &result.mapped), "vkMapMemory");
   return result;
 }
 
-VkBuffer VulkanDevice::device_buffer(Cleanup& owner, std::span<const std::byte> data, VkBufferUsageFlags usage) const {
-  const BoundBuffer made = create_buffer(owner, data.size(), usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+VkBuffer VulkanDevice::device_buffer(Cleanup& owner, std::span<const std::byte> data,
+                                     VkBufferUsageFlags usage) const {
+  const BoundBuffer made = create_buffer(owner, data.size(), usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                         VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
   if (data.empty()) return made.buffer;
   Cleanup upload;
   const HostBuffer staging = buffer(upload, data.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
@@ -293,15 +314,15 @@ VkBuffer VulkanDevice::device_buffer(Cleanup& owner, std::span<const std::byte> 
   barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
   barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
   barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT;
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &barrier, 0, nullptr, 0,
-                       nullptr);
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1,
+                       &barrier, 0, nullptr, 0, nullptr);
   require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   submit(commands);
   return made.buffer;
 }
 
-DeviceImage VulkanDevice::image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels, VkImageUsageFlags usage,
-                                VkImageAspectFlags aspect) const {
+DeviceImage VulkanDevice::image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels,
+                                VkImageUsageFlags usage, VkImageAspectFlags aspect) const {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;

@@ -63,10 +63,11 @@ class VulkanDevice {
   /// A buffer of at least `bytes` (and never none) that lives until `owner` ends.
   [[nodiscard]] HostBuffer buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const;
   /// A buffer in the device's own memory that holds `data`.
-  [[nodiscard]] VkBuffer device_buffer(Cleanup& owner, std::span<const std::byte> data, VkBufferUsageFlags usage) const;
+  [[nodiscard]] VkBuffer device_buffer(Cleanup& owner, std::span<const std::byte> data,
+                                       VkBufferUsageFlags usage) const;
   /// A 2D image with a view of all its levels that lives until `owner` ends.
-  [[nodiscard]] DeviceImage image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels, VkImageUsageFlags usage,
-                                  VkImageAspectFlags aspect) const;
+  [[nodiscard]] DeviceImage image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels,
+                                  VkImageUsageFlags usage, VkImageAspectFlags aspect) const;
   /// A command buffer in the recording state that lives until `owner` ends.
   [[nodiscard]] VkCommandBuffer begin_commands(Cleanup& owner) const;
   /// Submits and waits. `commands` must have been ended.
@@ -83,7 +84,8 @@ class VulkanDevice {
   };
   [[nodiscard]] BoundBuffer create_buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage,
                                           VkMemoryPropertyFlags properties) const;
-  [[nodiscard]] VkDeviceMemory allocate(Cleanup& owner, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties) const;
+  [[nodiscard]] VkDeviceMemory allocate(Cleanup& owner, const VkMemoryRequirements& needs,
+                                        VkMemoryPropertyFlags properties) const;
 
   Cleanup cleanup_;
   VkInstance instance_ = VK_NULL_HANDLE;

@@ -28,7 +28,9 @@ VkFormat vk_format(traces::Format format) {
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }
 
-VkFilter vk_filter(traces::Filter filter) { return filter == traces::Filter::kLinear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST; }
+VkFilter vk_filter(traces::Filter filter) {
+  return filter == traces::Filter::kLinear ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
+}
 
 VkSamplerMipmapMode vk_mip_mode(traces::Filter filter) {
   return filter == traces::Filter::kLinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;

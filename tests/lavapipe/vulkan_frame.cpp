@@ -17,8 +17,10 @@ struct Overloaded : Lambdas... {
 template <class... Lambdas>
 Overloaded(Lambdas...) -> Overloaded<Lambdas...>;
 
-/// Makes everything before visible to everything after and moves the image to `to`. A whole-pipeline barrier: this is a ruler, not a race.
-void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to) {
+/// Makes everything before visible to everything after and moves the image to `to`. A whole-pipeline barrier:
+/// this is a ruler, not a race.
+void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
+                VkImageLayout to) {
   VkImageMemoryBarrier barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
   barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
@@ -28,8 +30,8 @@ void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspe
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image;
   barrier.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1,
-                       &barrier);
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
+                       nullptr, 0, nullptr, 1, &barrier);
 }
 
 VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, const VkClearValue& clear) {
@@ -45,7 +47,8 @@ VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, con
 
 }  // namespace
 
-VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream, const PassQueries* queries)
+VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream,
+                         const PassQueries* queries)
     : device_(device), stream_(stream), queries_(queries) {
   upload_buffers();
   upload_images();
@@ -57,14 +60,17 @@ VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream
 
 void VulkanFrame::upload_buffers() {
   for (const traces::Buffer& source : stream_.buffers)
-    buffers_.push_back(device_.device_buffer(
-        cleanup_, source.data, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
+    buffers_.push_back(device_.device_buffer(cleanup_, source.data,
+                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
+                                                 VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                                                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
 }
 
 void VulkanFrame::upload_images() {
   for (const traces::Image& source : stream_.images) {
-    const DeviceImage image = device_.image(cleanup_, vk_format(source.format), {source.width, source.height}, source.levels,
-                                            VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    const DeviceImage image = device_.image(
+        cleanup_, vk_format(source.format), {source.width, source.height}, source.levels,
+        VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
     images_.push_back(image);
     Cleanup upload;
     const HostBuffer staging = device_.buffer(upload, source.texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
@@ -80,7 +86,8 @@ void VulkanFrame::upload_images() {
       levels.push_back(copy);
     }
     const VkCommandBuffer commands = device_.begin_commands(upload);
-    transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                            static_cast<std::uint32_t>(levels.size()), levels.data());
     transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -115,11 +122,13 @@ void VulkanFrame::create_targets() {
     const VkExtent2D size{source.width, source.height};
     Target target;
     target.color = device_.image(cleanup_, vk_format(source.color), size, 1,
-                                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+                                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                                 VK_IMAGE_ASPECT_COLOR_BIT);
     if (source.depth != traces::Format::kUndefined)
       target.depth =
           device_.image(cleanup_, vk_format(source.depth), size, 1,
-                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_DEPTH_BIT);
+                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                        VK_IMAGE_ASPECT_DEPTH_BIT);
     targets_.push_back(target);
   }
 }
@@ -137,8 +146,12 @@ void VulkanFrame::record() {
         if (bound_.sets.size() <= c.set) bound_.sets.resize(c.set + std::size_t{1}, traces::kNone);
         bound_.sets[c.set] = c.descriptors;
       },
-      [&](const traces::BindVertexBuffer& c) { vkCmdBindVertexBuffers(commands, c.binding, 1, &buffers[c.buffer], &c.offset); },
-      [&](const traces::BindIndexBuffer& c) { vkCmdBindIndexBuffer(commands, buffers[c.buffer], c.offset, vk_index_type(c.type)); },
+      [&](const traces::BindVertexBuffer& c) {
+        vkCmdBindVertexBuffers(commands, c.binding, 1, &buffers[c.buffer], &c.offset);
+      },
+      [&](const traces::BindIndexBuffer& c) {
+        vkCmdBindIndexBuffer(commands, buffers[c.buffer], c.offset, vk_index_type(c.type));
+      },
       [this](const traces::PushConstants& c) {
         bound_.push_constants.resize(std::max(bound_.push_constants.size(), c.offset + c.data.size()));
         std::copy(c.data.begin(), c.data.end(), bound_.push_constants.begin() + c.offset);
@@ -163,9 +176,12 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
   VkClearValue clear_color{}, clear_depth{};
   std::copy(pass.clear_color.begin(), pass.clear_color.end(), clear_color.color.float32);
   clear_depth.depthStencil.depth = pass.clear_depth;
-  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  const VkRenderingAttachmentInfo color = attachment(target.color.view, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, clear_color);
-  const VkRenderingAttachmentInfo depth = attachment(target.depth.view, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, clear_depth);
+  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+  const VkRenderingAttachmentInfo color =
+      attachment(target.color.view, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, clear_color);
+  const VkRenderingAttachmentInfo depth =
+      attachment(target.depth.view, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, clear_depth);
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
   info.renderArea.extent = {source.width, source.height};
@@ -186,11 +202,11 @@ void VulkanFrame::end_pass() {
   if (queries_ != nullptr) queries_->end(commands_, passes_);
   ++passes_;
   const Target& target = targets_[bound_.target];
-  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT,
+             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   if (target.depth.image != VK_NULL_HANDLE)
-    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-               VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT,
+               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
 }
 
 void VulkanFrame::draw(const traces::Draw& draw) {
@@ -198,13 +214,16 @@ void VulkanFrame::draw(const traces::Draw& draw) {
   vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, objects.pipeline);
   for (std::uint32_t set = 0; set < bound_.sets.size(); ++set) {
     if (bound_.sets[set] == traces::kNone) continue;
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, objects.layout, set, 1, &descriptor_sets_[bound_.sets[set]], 0,
-                            nullptr);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, objects.layout, set, 1,
+                            &descriptor_sets_[bound_.sets[set]], 0, nullptr);
   }
   if (!bound_.push_constants.empty())
-    vkCmdPushConstants(commands_, objects.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                       static_cast<std::uint32_t>(bound_.push_constants.size()), bound_.push_constants.data());
-  if (draw.indexed) vkCmdDrawIndexed(commands_, draw.count, draw.instances, draw.first, draw.vertex_offset, draw.first_instance);
+    vkCmdPushConstants(commands_, objects.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+                       0, static_cast<std::uint32_t>(bound_.push_constants.size()),
+                       bound_.push_constants.data());
+  if (draw.indexed)
+    vkCmdDrawIndexed(commands_, draw.count, draw.instances, draw.first, draw.vertex_offset,
+                     draw.first_instance);
   else vkCmdDraw(commands_, draw.count, draw.instances, draw.first, draw.first_instance);
 }
 
@@ -220,9 +239,12 @@ Rendered VulkanFrame::read_back() const {
   VkBufferImageCopy copy{};
   copy.imageExtent = {source.width, source.height, 1};
   copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  vkCmdCopyImageToBuffer(commands, target.color.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, color.buffer, 1, &copy);
+  vkCmdCopyImageToBuffer(commands, target.color.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, color.buffer, 1,
+                         &copy);
   copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
-  if (has_depth) vkCmdCopyImageToBuffer(commands, target.depth.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, depth.buffer, 1, &copy);
+  if (has_depth)
+    vkCmdCopyImageToBuffer(commands, target.depth.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, depth.buffer,
+                           1, &copy);
   require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   device_.submit(commands);
 

@@ -1,4 +1,5 @@
-/// One command stream as Vulkan objects: uploaded once, recorded into one command buffer, submitted as often as asked.
+/// One command stream as Vulkan objects: uploaded once, recorded into one command buffer, submitted as often
+/// as asked.
 #pragma once
 
 #include <map>
@@ -13,8 +14,10 @@ namespace quadrille::lavapipe {
 
 class VulkanFrame {
  public:
-  /// Uploads and records. `device` and `stream` must outlive the frame, and so must `queries`, which are asked around each pass.
-  VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream, const PassQueries* queries = nullptr);
+  /// Uploads and records. `device` and `stream` must outlive the frame, and so must `queries`, which are
+  /// asked around each pass.
+  VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream,
+              const PassQueries* queries = nullptr);
 
   void submit() const { device_.submit(commands_); }
   /// The attachments of the last pass, as the last submission left them.
@@ -31,7 +34,8 @@ class VulkanFrame {
   struct Target {
     DeviceImage color, depth;
   };
-  /// State that a stream sets piecemeal and Vulkan wants whole: a pipeline layout needs the shapes of all sets bound with it.
+  /// State that a stream sets piecemeal and Vulkan wants whole: a pipeline layout needs the shapes of all
+  /// sets bound with it.
   struct Bound {
     traces::Index target = 0, pipeline = traces::kNone;
     std::vector<traces::Index> sets;
@@ -49,7 +53,8 @@ class VulkanFrame {
   [[nodiscard]] VkPipelineLayout pipeline_layout(const SetShapes& shapes);
   [[nodiscard]] VkShaderModule shader_module(traces::Index shader);
   [[nodiscard]] const PipelineObjects& pipeline_for(const Bound& bound);
-  [[nodiscard]] VkPipeline create_pipeline(const traces::Pipeline& pipeline, const traces::RenderTarget& target, VkPipelineLayout layout);
+  [[nodiscard]] VkPipeline create_pipeline(const traces::Pipeline& pipeline,
+                                           const traces::RenderTarget& target, VkPipelineLayout layout);
 
   void record();
   void begin_pass(const traces::BeginPass& pass);
@@ -69,8 +74,8 @@ class VulkanFrame {
   std::map<SetShape, VkDescriptorSetLayout> set_layouts_;
   std::map<SetShapes, VkPipelineLayout> pipeline_layouts_;
   std::map<traces::Index, VkShaderModule> modules_;
-  std::map<std::pair<std::pair<traces::Index, traces::Index>, SetShapes>, PipelineObjects>
-      pipelines_;  ///< by (pipeline, target), set shapes
+  /// by (pipeline, target), set shapes
+  std::map<std::pair<std::pair<traces::Index, traces::Index>, SetShapes>, PipelineObjects> pipelines_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   Bound bound_;
 };

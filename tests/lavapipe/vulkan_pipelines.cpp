@@ -1,7 +1,7 @@
 /// Descriptor sets, pipeline layouts and pipelines of a frame.
 ///
-/// The stream has no layouts: a set's layout follows from what it holds, and a pipeline is made for each combination of sets it is drawn
-/// with.
+/// The stream has no layouts: a set's layout follows from what it holds, and a pipeline is made for each
+/// combination of sets it is drawn with.
 #include <algorithm>
 
 #include "models/base/error.h"
@@ -30,8 +30,10 @@ struct VertexInput {
 
   explicit VertexInput(const traces::Pipeline& pipeline) {
     for (const auto& b : pipeline.bindings)
-      bindings.push_back({b.binding, b.stride, b.per_instance ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX});
-    for (const auto& a : pipeline.attributes) attributes.push_back({a.location, a.binding, vk_format(a.format), a.offset});
+      bindings.push_back({b.binding, b.stride,
+                          b.per_instance ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX});
+    for (const auto& a : pipeline.attributes)
+      attributes.push_back({a.location, a.binding, vk_format(a.format), a.offset});
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
     info.vertexBindingDescriptionCount = static_cast<std::uint32_t>(bindings.size());
     info.pVertexBindingDescriptions = bindings.data();
@@ -78,8 +80,10 @@ VkPipelineDepthStencilStateCreateInfo depth_state(const traces::DepthState& dept
 VulkanFrame::SetShape VulkanFrame::shape_of(traces::Index set) const {
   SetShape shape;
   if (set == traces::kNone) return shape;
-  for (const auto& uniform : stream_.descriptor_sets[set].uniforms) shape[uniform.binding] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-  for (const auto& texture : stream_.descriptor_sets[set].textures) shape[texture.binding] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  for (const auto& uniform : stream_.descriptor_sets[set].uniforms)
+    shape[uniform.binding] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  for (const auto& texture : stream_.descriptor_sets[set].textures)
+    shape[texture.binding] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   return shape;
 }
 
@@ -93,7 +97,8 @@ VkDescriptorSetLayout VulkanFrame::set_layout(const SetShape& shape) {
   info.bindingCount = static_cast<std::uint32_t>(bindings.size());
   info.pBindings = bindings.data();
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-  require(vkCreateDescriptorSetLayout(device_.handle(), &info, nullptr, &layout), "vkCreateDescriptorSetLayout");
+  require(vkCreateDescriptorSetLayout(device_.handle(), &info, nullptr, &layout),
+          "vkCreateDescriptorSetLayout");
   cleanup_.add([this, layout] { vkDestroyDescriptorSetLayout(device_.handle(), layout, nullptr); });
   return set_layouts_[shape] = layout;
 }
@@ -138,7 +143,8 @@ void VulkanFrame::create_descriptor_sets() {
       vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
     }
     for (const auto& texture : source.textures) {
-      const VkDescriptorImageInfo image{samplers_[texture.sampler], images_[texture.image].view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      const VkDescriptorImageInfo image{samplers_[texture.sampler], images_[texture.image].view,
+                                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.dstBinding = texture.binding;
       write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
       write.pImageInfo = &image;
@@ -152,7 +158,8 @@ VkPipelineLayout VulkanFrame::pipeline_layout(const SetShapes& shapes) {
   if (known != pipeline_layouts_.end()) return known->second;
   std::vector<VkDescriptorSetLayout> sets;
   for (const SetShape& shape : shapes) sets.push_back(set_layout(shape));
-  const VkPushConstantRange range{kStages, 0, std::min(traces::kMaxPushConstantBytes, device_.info().max_push_constants)};
+  const VkPushConstantRange range{kStages, 0,
+                                  std::min(traces::kMaxPushConstantBytes, device_.info().max_push_constants)};
   VkPipelineLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
   info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
@@ -182,8 +189,8 @@ VkShaderModule VulkanFrame::shader_module(traces::Index shader) {
 const VulkanFrame::PipelineObjects& VulkanFrame::pipeline_for(const Bound& bound) {
   const std::uint32_t limit = device_.info().max_push_constants;
   if (bound.push_constants.size() > limit)
-    throw user_error("{}: pushes {} bytes of constants; {} takes at most {}", stream_.name, bound.push_constants.size(),
-                     device_.info().name, limit);
+    throw user_error("{}: pushes {} bytes of constants; {} takes at most {}", stream_.name,
+                     bound.push_constants.size(), device_.info().name, limit);
   SetShapes shapes;
   for (const traces::Index set : bound.sets) shapes.push_back(shape_of(set));
   const auto key = std::pair{std::pair{bound.pipeline, bound.target}, shapes};
@@ -191,14 +198,17 @@ const VulkanFrame::PipelineObjects& VulkanFrame::pipeline_for(const Bound& bound
   if (known != pipelines_.end()) return known->second;
   PipelineObjects objects;
   objects.layout = pipeline_layout(shapes);
-  objects.pipeline = create_pipeline(stream_.pipelines[bound.pipeline], stream_.targets[bound.target], objects.layout);
+  objects.pipeline =
+      create_pipeline(stream_.pipelines[bound.pipeline], stream_.targets[bound.target], objects.layout);
   cleanup_.add([this, handle = objects.pipeline] { vkDestroyPipeline(device_.handle(), handle, nullptr); });
   return pipelines_[key] = objects;
 }
 
-VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const traces::RenderTarget& target, VkPipelineLayout layout) {
-  const VkPipelineShaderStageCreateInfo stages[] = {stage_info(VK_SHADER_STAGE_VERTEX_BIT, shader_module(pipeline.vertex_shader)),
-                                                    stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, shader_module(pipeline.fragment_shader))};
+VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const traces::RenderTarget& target,
+                                        VkPipelineLayout layout) {
+  const VkPipelineShaderStageCreateInfo stages[] = {
+      stage_info(VK_SHADER_STAGE_VERTEX_BIT, shader_module(pipeline.vertex_shader)),
+      stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, shader_module(pipeline.fragment_shader))};
   const VertexInput input(pipeline);
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
@@ -243,7 +253,8 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   info.pDynamicState = &dynamic;
   info.layout = layout;
   VkPipeline handle = VK_NULL_HANDLE;
-  require(vkCreateGraphicsPipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &handle), "vkCreateGraphicsPipelines");
+  require(vkCreateGraphicsPipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+          "vkCreateGraphicsPipelines");
   return handle;
 }
 

@@ -7,14 +7,18 @@ namespace {
 
 /// In the order of their bits, in which Vulkan writes the values.
 constexpr VkQueryPipelineStatisticFlags kCounted =
-    VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT | VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
-    VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT | VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
-    VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT;
+    VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT;
 constexpr std::uint32_t kValues = 6;
 
 }  // namespace
 
-PassQueries::PassQueries(const VulkanDevice& device, What what, std::uint32_t passes) : device_(device), what_(what), passes_(passes) {
+PassQueries::PassQueries(const VulkanDevice& device, What what, std::uint32_t passes)
+    : device_(device), what_(what), passes_(passes) {
   const DeviceInfo& info = device_.info();
   if (what_ == What::kTimes) {
     QUADRILLE_CHECK(info.timestamp_bits > 0, "{} has no timestamps", info.name);
@@ -26,7 +30,8 @@ PassQueries::PassQueries(const VulkanDevice& device, What what, std::uint32_t pa
   samples_ = create_pool(VK_QUERY_TYPE_OCCLUSION, passes_, 0);
 }
 
-VkQueryPool PassQueries::create_pool(VkQueryType type, std::uint32_t count, VkQueryPipelineStatisticFlags counted) {
+VkQueryPool PassQueries::create_pool(VkQueryType type, std::uint32_t count,
+                                     VkQueryPipelineStatisticFlags counted) {
   VkQueryPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   info.queryType = type;
@@ -66,10 +71,11 @@ void PassQueries::end(VkCommandBuffer commands, std::uint32_t pass) const {
   vkCmdEndQuery(commands, statistics_, pass);
 }
 
-std::vector<std::uint64_t> PassQueries::results(VkQueryPool pool, std::uint32_t queries, std::uint32_t values) const {
+std::vector<std::uint64_t> PassQueries::results(VkQueryPool pool, std::uint32_t queries,
+                                                std::uint32_t values) const {
   std::vector<std::uint64_t> all(std::size_t{queries} * values);
-  require(vkGetQueryPoolResults(device_.handle(), pool, 0, queries, 8 * all.size(), all.data(), VkDeviceSize{8} * values,
-                                VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+  require(vkGetQueryPoolResults(device_.handle(), pool, 0, queries, 8 * all.size(), all.data(),
+                                VkDeviceSize{8} * values, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
           "vkGetQueryPoolResults");
   return all;
 }
@@ -79,12 +85,14 @@ double PassQueries::time_ns() const {
   const std::uint32_t bits = device_.info().timestamp_bits;
   const std::uint64_t valid = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
   double sum = 0;
-  for (std::size_t i = 0; i < ticks.size(); i += 2) sum += static_cast<double>((ticks[i + 1] - ticks[i]) & valid);
+  for (std::size_t i = 0; i < ticks.size(); i += 2)
+    sum += static_cast<double>((ticks[i + 1] - ticks[i]) & valid);
   return sum * device_.info().timestamp_ns;
 }
 
 PassStatistics PassQueries::statistics() const {
-  const std::vector<std::uint64_t> counts = results(statistics_, passes_, kValues), samples = results(samples_, passes_, 1);
+  const std::vector<std::uint64_t> counts = results(statistics_, passes_, kValues),
+                                   samples = results(samples_, passes_, 1);
   PassStatistics sum;
   for (std::uint32_t pass = 0; pass < passes_; ++pass) {
     const std::uint64_t* of_pass = &counts[std::size_t{pass} * kValues];

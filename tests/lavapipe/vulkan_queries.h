@@ -1,6 +1,7 @@
 /// What a device says of the passes it drew: how long each took, and how much work its stages did.
 ///
-/// Vulkan leaves room in what a stage counts [VK1.3 #queries-pipestats]: docs/hardware.md says what each driver makes of it.
+/// Vulkan leaves room in what a stage counts [VK1.3 #queries-pipestats]: docs/hardware.md says what each
+/// driver makes of it.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -20,7 +21,8 @@ struct PassStatistics {
   std::uint64_t clipping_invocations = 0;  ///< primitives that reached clipping
   std::uint64_t clipping_primitives = 0;   ///< primitives that clipping gave out
   std::uint64_t fragment_invocations = 0;  ///< of the fragment shader
-  std::uint64_t samples_passed = 0;        ///< samples that passed the depth test, by a precise occlusion query
+  /// samples that passed the depth test, by a precise occlusion query
+  std::uint64_t samples_passed = 0;
 
   bool operator==(const PassStatistics&) const = default;
 };
@@ -35,7 +37,8 @@ class PassQueries {
   /// `device` must outlive the queries.
   PassQueries(const VulkanDevice& device, What what, std::uint32_t passes);
 
-  // Recorded into the frame: `reset` before all passes, the others around each pass, outside of its rendering.
+  // Recorded into the frame: `reset` before all passes, the others around each pass, outside of its
+  // rendering.
   void reset(VkCommandBuffer commands) const;
   void begin(VkCommandBuffer commands, std::uint32_t pass) const;
   void end(VkCommandBuffer commands, std::uint32_t pass) const;
@@ -46,8 +49,10 @@ class PassQueries {
   [[nodiscard]] PassStatistics statistics() const;
 
  private:
-  [[nodiscard]] VkQueryPool create_pool(VkQueryType type, std::uint32_t count, VkQueryPipelineStatisticFlags counted);
-  [[nodiscard]] std::vector<std::uint64_t> results(VkQueryPool pool, std::uint32_t queries, std::uint32_t values) const;
+  [[nodiscard]] VkQueryPool create_pool(VkQueryType type, std::uint32_t count,
+                                        VkQueryPipelineStatisticFlags counted);
+  [[nodiscard]] std::vector<std::uint64_t> results(VkQueryPool pool, std::uint32_t queries,
+                                                   std::uint32_t values) const;
 
   const VulkanDevice& device_;
   What what_;

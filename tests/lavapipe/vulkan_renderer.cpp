@@ -20,7 +20,9 @@ VulkanRenderer::VulkanRenderer(bool validate) : state_(std::make_unique<State>(v
 VulkanRenderer::~VulkanRenderer() = default;
 
 const DeviceInfo& VulkanRenderer::info() const { return state_->device.info(); }
-const std::vector<std::string>& VulkanRenderer::validation_messages() const { return state_->device.messages(); }
+const std::vector<std::string>& VulkanRenderer::validation_messages() const {
+  return state_->device.messages();
+}
 
 Rendered VulkanRenderer::render(const traces::CommandStream& stream) {
   const VulkanFrame frame(state_->device, stream);
@@ -38,12 +40,16 @@ FrameTimes VulkanRenderer::time_frames(const traces::CommandStream& stream, int 
     const std::clock_t cpu_begin = std::clock();
     frame.submit();
     cpu_ms.push_back(1e3 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC);
-    wall_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    wall_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
   std::sort(wall_ms.begin(), wall_ms.end());
   std::sort(cpu_ms.begin(), cpu_ms.end());
   const std::size_t middle = wall_ms.size() / 2;
-  return {.median_ms = wall_ms[middle], .min_ms = wall_ms.front(), .median_cpu_ms = cpu_ms[middle], .frames = frames};
+  return {.median_ms = wall_ms[middle],
+          .min_ms = wall_ms.front(),
+          .median_cpu_ms = cpu_ms[middle],
+          .frames = frames};
 }
 
 }  // namespace quadrille::lavapipe

@@ -1,8 +1,10 @@
-/// The outside ruler: executes a command stream with a headless Vulkan driver that this project had no hand in.
+/// The outside ruler: executes a command stream with a headless Vulkan driver that this project had no hand
+/// in.
 ///
-/// The driver wanted is Mesa's software rasterizer *lavapipe* (its ICD is chosen when VK_ICD_FILENAMES is not set), because it runs on any
-/// machine, is deterministic and publishes how it rounds. Every object of the stream becomes the Vulkan object of the same name, every
-/// command the command of the same name, so a difference between the two images is a difference between the two renderers.
+/// The driver wanted is Mesa's software rasterizer *lavapipe* (its ICD is chosen when VK_ICD_FILENAMES is not
+/// set), because it runs on any machine, is deterministic and publishes how it rounds. Every object of the
+/// stream becomes the Vulkan object of the same name, every command the command of the same name, so a
+/// difference between the two images is a difference between the two renderers.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +18,12 @@ namespace quadrille::lavapipe {
 
 /// What the driver says of itself.
 struct DeviceInfo {
-  std::string name{};                    ///< for example "llvmpipe (LLVM 15.0.6, 256 bits)"
-  std::string driver{};                  ///< for example "llvmpipe: Mesa 22.3.6 (LLVM 15.0.6)"
-  std::uint32_t subpixel_bits = 0;       ///< fractional bits of a snapped window coordinate
-  std::uint32_t subtexel_bits = 0;       ///< fractional bits of a texel coordinate when filtering
-  std::uint32_t mipmap_bits = 0;         ///< fractional bits of the level of detail when filtering between levels
+  std::string name{};               ///< for example "llvmpipe (LLVM 15.0.6, 256 bits)"
+  std::string driver{};             ///< for example "llvmpipe: Mesa 22.3.6 (LLVM 15.0.6)"
+  std::uint32_t subpixel_bits = 0;  ///< fractional bits of a snapped window coordinate
+  std::uint32_t subtexel_bits = 0;  ///< fractional bits of a texel coordinate when filtering
+  /// fractional bits of the level of detail when filtering between levels
+  std::uint32_t mipmap_bits = 0;
   std::uint32_t max_push_constants = 0;  ///< bytes
   std::string type{};                    ///< "cpu", "discrete GPU", ...
   std::string api_version{};             ///< for example "1.3.230"
@@ -40,15 +43,17 @@ struct Rendered {
 /// Time of one submission of the whole stream, uploads and read-back excluded.
 struct FrameTimes {
   double median_ms = 0, min_ms = 0;  ///< wall time
-  double median_cpu_ms =
-      0;  ///< processor time of the whole process: what the frame costs on one thread of a machine that is busy otherwise
+  /// processor time of the whole process: what the frame costs on one thread of a machine that is busy
+  /// otherwise
+  double median_cpu_ms = 0;
   int frames = 0;
 };
 
 class VulkanRenderer {
  public:
-  /// Opens the driver, preferring a CPU device. With `validate` the Khronos validation layer is loaded and its messages are kept.
-  /// Throws `UserError` when there is no loader, no device or no Vulkan 1.3 with what the stream needs.
+  /// Opens the driver, preferring a CPU device. With `validate` the Khronos validation layer is loaded and
+  /// its messages are kept. Throws `UserError` when there is no loader, no device or no Vulkan 1.3 with what
+  /// the stream needs.
   explicit VulkanRenderer(bool validate = false);
   ~VulkanRenderer();
   VulkanRenderer(const VulkanRenderer&) = delete;
@@ -57,7 +62,8 @@ class VulkanRenderer {
   [[nodiscard]] const DeviceInfo& info() const;
 
   /// Executes a stream that `traces::validate` accepts and reads the attachments of its last pass back.
-  /// Throws `UserError` for what the device cannot do (push constants beyond its limit) and for Vulkan's own failures.
+  /// Throws `UserError` for what the device cannot do (push constants beyond its limit) and for Vulkan's own
+  /// failures.
   [[nodiscard]] Rendered render(const traces::CommandStream& stream);
 
   /// Submits the stream `frames` times after one that warms the driver's shader caches, and reports times.

@@ -21,7 +21,8 @@ std::string broken_laws(const std::function<void(const Machine&)>& inject, Detai
     inject(machine);
     machine.run({});
     std::string lines;
-    for (const Check& c : collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt).checks) {
+    for (const Check& c :
+         collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt).checks) {
       if (!c.holds()) lines += c.law + "\n";
     }
     return lines;

@@ -20,7 +20,9 @@ hw::Fifo<T>& link(const Machine& machine, std::string_view name) {
   throw std::runtime_error("no such link");
 }
 
-/// Runs a random frame on the default machine with a fault, in a process of its own; gives the broken laws, one a line.
-[[nodiscard]] std::string broken_laws(const std::function<void(const Machine&)>& inject, DetailOptions detail = {});
+/// Runs a random frame on the default machine with a fault, in a process of its own; gives the broken laws,
+/// one a line.
+[[nodiscard]] std::string broken_laws(const std::function<void(const Machine&)>& inject,
+                                      DetailOptions detail = {});
 
 }  // namespace quadrille::pipeline::test

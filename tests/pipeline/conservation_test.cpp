@@ -1,4 +1,5 @@
-/// The laws are worth something only if they break: each case loses something on a wire on purpose and finds the law that notices.
+/// The laws are worth something only if they break: each case loses something on a wire on purpose and finds
+/// the law that notices.
 #include "tests/pipeline/broken_laws.h"
 
 #include <catch2/catch.hpp>
@@ -27,7 +28,9 @@ TEST_CASE("conservation: a lost fragment is noticed") {
 
 TEST_CASE("conservation: fragments that miss their late test are noticed") {
   const std::string broken = broken_laws([](const Machine& machine) {
-    link<hw::CoverageToken>(machine, "depth_to_packer_0").inject_fault([](hw::CoverageToken& t) { t.late = false; });
+    link<hw::CoverageToken>(machine, "depth_to_packer_0").inject_fault([](hw::CoverageToken& t) {
+      t.late = false;
+    });
   });
   CHECK(broken.find("fragments deferred = tested late + discarded before that") != std::string::npos);
 }
@@ -43,9 +46,10 @@ TEST_CASE("conservation: a fragment lost between test and packing is noticed") {
 
 TEST_CASE("conservation: a lost triangle is noticed") {
   const std::string broken = broken_laws([](const Machine& machine) {
-    link<hw::PrimitiveToken>(machine, "assembly_to_clipper").inject_fault([n = 0](hw::PrimitiveToken& t) mutable {
-      if (t.kind == hw::TokenKind::kWork && ++n == 4) t.kind = hw::TokenKind::kSync;
-    });
+    link<hw::PrimitiveToken>(machine, "assembly_to_clipper")
+        .inject_fault([n = 0](hw::PrimitiveToken& t) mutable {
+          if (t.kind == hw::TokenKind::kWork && ++n == 4) t.kind = hw::TokenKind::kSync;
+        });
   });
   CHECK(broken.find("triangles assembled = triangles to clip") != std::string::npos);
 }
@@ -69,6 +73,8 @@ TEST_CASE("conservation: lost bytes are noticed, read and written") {
       }
     };
   };
-  CHECK(broken_laws(shorten(hw::MemoryRequest::Kind::kRead)).find("bytes asked by clients = bytes answered by L2") != std::string::npos);
-  CHECK(broken_laws(shorten(hw::MemoryRequest::Kind::kWrite)).find("bytes written by clients = bytes taken by L2") != std::string::npos);
+  CHECK(broken_laws(shorten(hw::MemoryRequest::Kind::kRead))
+            .find("bytes asked by clients = bytes answered by L2") != std::string::npos);
+  CHECK(broken_laws(shorten(hw::MemoryRequest::Kind::kWrite))
+            .find("bytes written by clients = bytes taken by L2") != std::string::npos);
 }

@@ -1,4 +1,5 @@
-/// What single draws and parts of the screen did: known by construction, adding up to the frame, and without influence on it.
+/// What single draws and parts of the screen did: known by construction, adding up to the frame, and without
+/// influence on it.
 #include "pipeline/report/detail_log.h"
 
 #include <fmt/ranges.h>
@@ -42,13 +43,15 @@ std::string outcome(const traces::CommandStream& stream, const MachineConfig& co
   });
 }
 
-/// Renders a built-in scene of 96x64 pixels in a process of its own, and gives what `tell` says of its details.
+/// Renders a built-in scene of 96x64 pixels in a process of its own, and gives what `tell` says of its
+/// details.
 std::string told(const std::string& scene, const std::function<std::string(const Detail&)>& tell) {
   return hw::contract::in_child([&] {
     scenes::SceneOptions options;
     options.width = 96;
     options.height = 64;
-    const RenderedFrame frame = render_exact(scenes::load_scene(scene, options), MachineConfig(), {}, {}, kBoth);
+    const RenderedFrame frame =
+        render_exact(scenes::load_scene(scene, options), MachineConfig(), {}, {}, kBoth);
     return frame.figures.checks_hold() ? tell(*frame.figures.detail) : failed_checks(frame.figures);
   });
 }
@@ -78,8 +81,9 @@ TEST_CASE("detail: with and without it pixels, cycles and figures are the same, 
 
 TEST_CASE("detail: layers over the whole screen are draws of as many fragments as it has pixels") {
   const auto tell = [](const Detail& d) {
-    return fmt::format("{} draws: ", d.draws.size()) + values(d, DrawCount::kTrianglesIn) + values(d, DrawCount::kCovered) +
-           values(d, DrawCount::kShaded) + values(d, DrawCount::kWritten) + values(d, DrawCount::kKilledEarly);
+    return fmt::format("{} draws: ", d.draws.size()) + values(d, DrawCount::kTrianglesIn) +
+           values(d, DrawCount::kCovered) + values(d, DrawCount::kShaded) + values(d, DrawCount::kWritten) +
+           values(d, DrawCount::kKilledEarly);
   };
   CHECK(told("builtin:fill", tell) == "8 draws: 2 6144 6144 6144 0 ");
   CHECK(told("builtin:overdraw", tell) == "16 draws: 2 6144 6144 6144 0 ");
@@ -89,8 +93,8 @@ TEST_CASE("detail: squares of the screen hold the fragments of their pixels") {
   const auto tell = [](const Detail& d) {
     const auto& shaded = d.tiles.counts[static_cast<std::size_t>(TileCount::kShaded)];
     const auto& written = d.tiles.counts[static_cast<std::size_t>(TileCount::kWritten)];
-    return fmt::format("{}x{} of {}: {} | {}", d.tiles.width, d.tiles.height, d.tiles.pixels, fmt::join(shaded, " "),
-                       fmt::join(written, " "));
+    return fmt::format("{}x{} of {}: {} | {}", d.tiles.width, d.tiles.height, d.tiles.pixels,
+                       fmt::join(shaded, " "), fmt::join(written, " "));
   };
   const std::string all = "8192 8192 8192 8192 8192 8192 0";
   CHECK(told("builtin:fill", tell) == "3x2 of 32: " + all + " | " + all);
@@ -107,8 +111,8 @@ TEST_CASE("detail: work of a pass that is not shown has no place on the screen")
     for (const DrawFigures& draw : d.draws) (draw.pass == 0 ? hidden : shown) += draw.of(DrawCount::kShaded);
     const auto& cells = d.tiles.counts[static_cast<std::size_t>(TileCount::kShaded)];
     const std::uint64_t placed = std::accumulate(cells.begin(), cells.end() - 1, std::uint64_t{0});
-    return failed_checks(frame.figures) +
-           fmt::format("{} {} {}", hidden > 0 && hidden == cells.back(), shown == placed, d.draws.back().pass);
+    return failed_checks(frame.figures) + fmt::format("{} {} {}", hidden > 0 && hidden == cells.back(),
+                                                      shown == placed, d.draws.back().pass);
   });
   CHECK(text == "true true 1");
 }
@@ -119,8 +123,8 @@ TEST_CASE("detail: what is written back counts for the draw that wrote it last, 
     std::uint64_t before = 0;
     for (std::size_t i = 0; i + 1 < d.draws.size(); ++i) before += d.draws[i].of(DrawCount::kColorBytes);
     const auto& bytes = d.tiles.counts[static_cast<std::size_t>(TileCount::kBytes)];
-    return fmt::format("{} {} {} {}", before, d.draws.back().of(DrawCount::kColorBytes), d.outside_draws.of(DrawCount::kColorBytes),
-                       fmt::join(bytes, " "));
+    return fmt::format("{} {} {} {}", before, d.draws.back().of(DrawCount::kColorBytes),
+                       d.outside_draws.of(DrawCount::kColorBytes), fmt::join(bytes, " "));
   };
   CHECK(told("builtin:fill", tell) == "0 24576 0 4096 4096 4096 4096 4096 4096 0");
 }
@@ -130,10 +134,12 @@ TEST_CASE("detail: draws retire in their order, within the frame, and their work
     std::string wrong;
     for (std::size_t i = 0; i < d.draws.size(); ++i) {
       const DrawFigures& draw = d.draws[i];
-      if (draw.in_flight() <= 0 || (i > 0 && draw.retired < d.draws[i - 1].retired)) wrong += fmt::format("draw {} ", i);
+      if (draw.in_flight() <= 0 || (i > 0 && draw.retired < d.draws[i - 1].retired))
+        wrong += fmt::format("draw {} ", i);
       if (draw.label.empty()) wrong += fmt::format("label {} ", i);
       const DrawLimiter l = d.limiter(draw);
-      if (l.unit.empty() || l.work > static_cast<double>(draw.in_flight())) wrong += fmt::format("limiter {} ", i);
+      if (l.unit.empty() || l.work > static_cast<double>(draw.in_flight()))
+        wrong += fmt::format("limiter {} ", i);
     }
     return wrong;
   };
@@ -160,17 +166,19 @@ TEST_CASE("detail: a draw that nobody worked for, or for a short time, is limite
 TEST_CASE("detail: work that is charged to another draw is noticed") {
   const std::string requests = test::broken_laws(
       [](const Machine& machine) {
-        link<hw::MemoryRequest>(machine, "vertex_fetch_to_l2_0").inject_fault([n = 0](hw::MemoryRequest& r) mutable {
-          if (++n == 3) r.draw = r.draw == 0 ? 1 : 0;
-        });
+        link<hw::MemoryRequest>(machine, "vertex_fetch_to_l2_0")
+            .inject_fault([n = 0](hw::MemoryRequest& r) mutable {
+              if (++n == 3) r.draw = r.draw == 0 ? 1 : 0;
+            });
       },
       kBoth);
   CHECK(requests == "each draw: requests of clients = requests looked up in L2\n");
   const std::string fills = test::broken_laws(
       [](const Machine& machine) {
-        link<hw::MemoryRequest>(machine, "l2_to_memory_0").inject_fault([n = 0](hw::MemoryRequest& r) mutable {
-          if (r.kind == hw::MemoryRequest::Kind::kRead && ++n == 3) r.draw = hw::kNoDraw;
-        });
+        link<hw::MemoryRequest>(machine, "l2_to_memory_0")
+            .inject_fault([n = 0](hw::MemoryRequest& r) mutable {
+              if (r.kind == hw::MemoryRequest::Kind::kRead && ++n == 3) r.draw = hw::kNoDraw;
+            });
       },
       kBoth);
   CHECK(fills == "each draw: bytes filled into L2 = bytes read from memory\n");

@@ -1,4 +1,5 @@
-/// Instanced draws and layered materials through the machine: the same picture as without them, and on every machine.
+/// Instanced draws and layered materials through the machine: the same picture as without them, and on every
+/// machine.
 #include <catch2/catch.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -34,10 +35,12 @@ SceneData boxes(bool instanced, bool blended, bool mirrors = true) {
   std::array<std::vector<glm::dmat4>, 2> sides;
   for (int i = 0; i < 12; ++i) {
     const glm::mat4 at = glm::translate(
-        glm::mat4(1), glm::vec3(1.5F * static_cast<float>(i % 4), 1.5F * static_cast<float>(i / 4), -0.3F * static_cast<float>(i)));
+        glm::mat4(1), glm::vec3(1.5F * static_cast<float>(i % 4), 1.5F * static_cast<float>(i / 4),
+                                -0.3F * static_cast<float>(i)));
     const glm::mat4 turned = glm::rotate(at, 0.4F * static_cast<float>(i), glm::vec3(0.6F, 0.8F, 0));
     const bool mirrored = mirrors && i % 3 == 0;
-    sides[mirrored ? 1 : 0].emplace_back(glm::scale(turned, glm::vec3(mirrored ? -1.0F : 1.0F, 0.4F + 0.1F * static_cast<float>(i), 1)));
+    sides[mirrored ? 1 : 0].emplace_back(
+        glm::scale(turned, glm::vec3(mirrored ? -1.0F : 1.0F, 0.4F + 0.1F * static_cast<float>(i), 1)));
   }
   for (const auto& side : sides) {
     if (side.empty()) continue;
@@ -58,7 +61,9 @@ SceneOptions small(std::uint32_t width, std::uint32_t height) {
   return options;
 }
 
-pipeline::FrameImage functional(const traces::CommandStream& stream) { return pipeline::render_functional_frame(stream, {}).image; }
+pipeline::FrameImage functional(const traces::CommandStream& stream) {
+  return pipeline::render_functional_frame(stream, {}).image;
+}
 
 std::size_t differing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
   std::size_t count = a.size() == b.size() ? 0 : 1;
@@ -67,7 +72,8 @@ std::size_t differing(const std::vector<std::uint32_t>& a, const std::vector<std
 }
 
 /// Empty where the machine's picture is `expected` and it keeps all laws.
-std::string exact_differs(const traces::CommandStream& stream, const std::string& machine, const std::vector<std::uint32_t>& expected) {
+std::string exact_differs(const traces::CommandStream& stream, const std::string& machine,
+                          const std::vector<std::uint32_t>& expected) {
   return hw::contract::in_child([&]() -> std::string {
     pipeline::MachineConfig config;
     pipeline::load_machine(config, machine);
@@ -89,7 +95,8 @@ TEST_CASE("instanced draws: the picture is that of the copies one by one, mirror
   CHECK(exact_differs(stream, "default", image.color) == "");
   SceneOptions ids = options;
   ids.visibility = true;
-  CHECK(differing(functional(Recorder(together, ids).record()).color, functional(Recorder(apart, ids).record()).color) == 0);
+  CHECK(differing(functional(Recorder(together, ids).record()).color,
+                  functional(Recorder(apart, ids).record()).color) == 0);
 }
 
 TEST_CASE("instanced draws: blended copies are drawn as the copies one by one, from back to front") {
@@ -131,7 +138,8 @@ SceneData everything(bool metallic_roughness) {
   scene.materials.push_back(m);
   MeshBuilder mesh;
   mesh.box(glm::vec3(-0.5F), glm::vec3(0.5F), 1);
-  place(scene, mesh.finish(scene, "box", 0, {.normal = true, .tangent = metallic_roughness, .uv = true, .color = true}));
+  place(scene, mesh.finish(scene, "box", 0,
+                           {.normal = true, .tangent = metallic_roughness, .uv = true, .color = true}));
   for (const Light::Kind kind : {Light::Kind::kDirectional, Light::Kind::kPoint, Light::Kind::kSpot})
     scene.lights.push_back({kind, glm::vec3(1), {1, 1, 2}, {0, -0.6F, -0.8F}, 9, 0.2F, 0.7F});
   return scene;
@@ -139,11 +147,14 @@ SceneData everything(bool metallic_roughness) {
 
 }  // namespace
 
-TEST_CASE("material layers: all of them together fit the registers of every machine, and draw the same picture there") {
+TEST_CASE(
+    "material layers: all of them together fit the registers of every machine, and draw the same picture "
+    "there") {
   for (const bool metallic_roughness : {true, false}) {
     const traces::CommandStream stream = Recorder(everything(metallic_roughness), small(48, 48)).record();
     REQUIRE(stream.shaders.size() == 2);
-    const auto compiled = pipeline::compile_pipeline(stream.shaders[0].spirv, "vertex", stream.shaders[1].spirv, "fragment");
+    const auto compiled =
+        pipeline::compile_pipeline(stream.shaders[0].spirv, "vertex", stream.shaders[1].spirv, "fragment");
     CHECK(compiled.fragment.num_regs <= 128);
     const pipeline::FrameImage image = functional(stream);
     for (const char* machine : {"small", "default", "large"}) {
@@ -153,7 +164,9 @@ TEST_CASE("material layers: all of them together fit the registers of every mach
   }
 }
 
-TEST_CASE("material layers: every machine that comes with the program draws builtin:materials as the functional rendering does") {
+TEST_CASE(
+    "material layers: every machine that comes with the program draws builtin:materials as the functional "
+    "rendering does") {
   const traces::CommandStream stream = load_scene("builtin:materials", small(140, 140));
   const pipeline::FrameImage image = functional(stream);
   for (const char* machine : {"small", "default", "large"}) {

@@ -24,7 +24,8 @@ UnitFigures unit(const std::string& path, std::int64_t busy, const std::vector<W
   return u;
 }
 
-LinkFigures link(const std::string& path, const std::string& from, const std::string& to, int latency, double use = 0) {
+LinkFigures link(const std::string& path, const std::string& from, const std::string& to, int latency,
+                 double use = 0) {
   return {path, "link." + path, from, to, 4, 1, latency, 1, 10, use};
 }
 
@@ -32,8 +33,9 @@ LinkFigures link(const std::string& path, const std::string& from, const std::st
 Figures waiting() {
   Figures f;
   f.frame.cycles = f.frame.render_cycles = 1000;
-  f.links = {link("rop_to_command", "rop_0", "command_processor", 2), link("core_to_rop", "core_0", "rop_0", 2),
-             link("texture_to_core", "texture_0", "core_0", 700), link("core_to_texture", "core_0", "texture_0", 3)};
+  f.links = {link("rop_to_command", "rop_0", "command_processor", 2),
+             link("core_to_rop", "core_0", "rop_0", 2), link("texture_to_core", "texture_0", "core_0", 700),
+             link("core_to_texture", "core_0", "texture_0", 3)};
   f.units = {unit("command_processor", 10, {{"retire_in", true, 900, "rop_to_command"}}),
              unit("rop_0", 50, {{"done_in", true, 800, "core_to_rop"}}),
              unit("core_0", 100, {{"texture_in", true, 850, "texture_to_core"}}),
@@ -54,9 +56,13 @@ std::string limit_of(const char* scene, const std::vector<std::pair<std::string,
 
 }  // namespace
 
-TEST_CASE("limiter: a frame that was not simulated has none") { CHECK(find_limiter(Figures{}).kind == Limiter::Kind::kNothing); }
+TEST_CASE("limiter: a frame that was not simulated has none") {
+  CHECK(find_limiter(Figures{}).kind == Limiter::Kind::kNothing);
+}
 
-TEST_CASE("limiter: a rate that is used all the time is named with what its doubling saves: half the frame if nothing else bounds it") {
+TEST_CASE(
+    "limiter: a rate that is used all the time is named with what its doubling saves: half the frame if "
+    "nothing else bounds it") {
   Figures f = waiting();
   f.units[3].resources[0].cycles = 1000;
   const Limiter limiter = find_limiter(f);
@@ -79,7 +85,8 @@ TEST_CASE("limiter: a second bound nearly as long as the first leaves little to 
 TEST_CASE("limiter: a rate and its losses add up, halving one leaves the other, and losses are no work") {
   Figures f = waiting();
   f.units.push_back(unit("memory_0", 0, {}));
-  f.units.back().resources = {{"bus", "data bus", hw::Resource::Kind::kRate, 700}, {"rows", "data bus", hw::Resource::Kind::kLoss, 300}};
+  f.units.back().resources = {{"bus", "data bus", hw::Resource::Kind::kRate, 700},
+                              {"rows", "data bus", hw::Resource::Kind::kLoss, 300}};
   const Sensitivity s = sensitivity(f);
   REQUIRE(s.gains.size() >= 2);
   CHECK(s.gains[0].resource == "memory.bus");
@@ -90,7 +97,8 @@ TEST_CASE("limiter: a rate and its losses add up, halving one leaves the other, 
   CHECK(speed_of_light(f).cycles == Approx(0.7 * static_cast<double>(f.frame.cycles)));
 }
 
-TEST_CASE("limiter: places that are all taken while no rate is used up are named, those furthest downstream") {
+TEST_CASE(
+    "limiter: places that are all taken while no rate is used up are named, those furthest downstream") {
   Figures f = waiting();
   f.units[2].resources.push_back({"warp_slots", "", hw::Resource::Kind::kPlaces, 950});
   f.units[3].resources.push_back({"cache_misses", "", hw::Resource::Kind::kPlaces, 800});
@@ -158,13 +166,15 @@ TEST_CASE("limiter: the walk ends at a unit that works more than it waits") {
   CHECK(limiter.name == "core");
 }
 
-TEST_CASE("limiter: a frame that is mostly scan-out says so, with what scan-out waited for after the passes") {
+TEST_CASE(
+    "limiter: a frame that is mostly scan-out says so, with what scan-out waited for after the passes") {
   Figures f = waiting();
   f.links.push_back(link("command_to_scan", "command_processor", "scan_out", 2));
   f.links.push_back(link("scan_to_command", "scan_out", "command_processor", 2));
   f.links.push_back(link("l2_0_to_scan_out", "l2_0", "scan_out", 4));
   f.links.push_back(link("l2_1_to_scan_out", "l2_1", "scan_out", 4));
-  f.units[0].waits = {{"scan_done_in", true, 550, "scan_to_command"}, {"retire_in", true, 440, "rop_to_command"}};
+  f.units[0].waits = {{"scan_done_in", true, 550, "scan_to_command"},
+                      {"retire_in", true, 440, "rop_to_command"}};
   f.units.push_back(unit("scan_out", 120,
                          {{"scan_in", true, 450, "command_to_scan"},
                           {"memory_in_0", true, 230, "l2_0_to_scan_out"},
@@ -175,15 +185,19 @@ TEST_CASE("limiter: a frame that is mostly scan-out says so, with what scan-out 
   CHECK(limiter.kind == Limiter::Kind::kWork);
   CHECK(limiter.name == "scan_out");
   CHECK(limiter.share == Approx(0.55));
-  CHECK(limiter.text == "scan-out: 55.0 % of the frame, after all passes were flushed; busy 12.0 %, waits for l2 43.0 %");
+  CHECK(limiter.text ==
+        "scan-out: 55.0 % of the frame, after all passes were flushed; busy 12.0 %, waits for l2 43.0 %");
   f.frame.render_cycles = 500;
-  f.units[0].waits = {{"retire_in", true, 500, "rop_to_command"}, {"scan_done_in", true, 490, "scan_to_command"}};
+  f.units[0].waits = {{"retire_in", true, 500, "rop_to_command"},
+                      {"scan_done_in", true, 490, "scan_to_command"}};
   CHECK(find_limiter(f).name == "link.texture_to_core");
   // The longest wait decides, not the half; and nobody else waits for scan-out, whatever its own ports say.
-  f.units[0].waits = {{"scan_done_in", true, 480, "scan_to_command"}, {"retire_in", true, 440, "rop_to_command"}};
+  f.units[0].waits = {{"scan_done_in", true, 480, "scan_to_command"},
+                      {"retire_in", true, 440, "rop_to_command"}};
   f.frame.render_cycles = 520;
   CHECK(find_limiter(f).text.starts_with("scan-out: 48.0 % of the frame"));
-  f.units[0].waits = {{"retire_in", true, 500, "rop_to_command"}, {"scan_done_in", true, 490, "scan_to_command"}};
+  f.units[0].waits = {{"retire_in", true, 500, "rop_to_command"},
+                      {"scan_done_in", true, 490, "scan_to_command"}};
   f.links.push_back(link("scan_to_core", "scan_out", "core_0", 9000));
   for (UnitFigures& u : f.units) {
     if (u.path == "core_0") u.waits.push_back({"request_in", true, 990, "scan_to_core"});
@@ -193,7 +207,9 @@ TEST_CASE("limiter: a frame that is mostly scan-out says so, with what scan-out 
 
 TEST_CASE("limiter: machines made narrow at one place are limited there") {
   CHECK(limit_of("builtin:cubes", {{"gpu.cores", "1"}}) == "core");
-  CHECK(limit_of("builtin:overdraw", {{"memory.t_burst", "1000"}, {"rop.cache_lines", "16"}, {"l2.cache_lines", "16"}}) == "memory");
+  CHECK(limit_of("builtin:overdraw",
+                 {{"memory.t_burst", "1000"}, {"rop.cache_lines", "16"}, {"l2.cache_lines", "16"}}) ==
+        "memory");
   CHECK(limit_of("builtin:fill", {{"gpu.cores", "64"}, {"fine_raster.quads_per_clk", "1"}}) == "fine_raster");
   CHECK(limit_of("builtin:cubes", {{"link.coarse_to_fine.latency", "100000"}}) == "link.coarse_to_fine");
   CHECK(limit_of("builtin:overdraw", {{"link.memory_to_l2.latency", "1000000"}}) == "link.memory_to_l2");
@@ -206,13 +222,18 @@ TEST_CASE("limiter: no unit or link of a real frame is used more than all of the
     options.width = 96;
     options.height = 64;
     const MachineConfig machine;
-    return std::to_string(sensitivity(render_exact(scenes::load_scene("builtin:cubes", options), machine).figures).uses.front().use);
+    return std::to_string(
+        sensitivity(render_exact(scenes::load_scene("builtin:cubes", options), machine).figures)
+            .uses.front()
+            .use);
   }));
   CHECK(worst <= 1);
   CHECK(worst > 0.3);
 }
 
-TEST_CASE("limiter: the page on it says what every doubling sets, and doublings change something on the default machine") {
+TEST_CASE(
+    "limiter: the page on it says what every doubling sets, and doublings change something on the default "
+    "machine") {
   std::ifstream file(QUADRILLE_SOURCE_DIR "/docs/limit.md");
   std::stringstream page;
   page << file.rdbuf();
@@ -220,7 +241,8 @@ TEST_CASE("limiter: the page on it says what every doubling sets, and doublings 
   for (const Doubling& doubling : doublings()) {
     std::string row = fmt::format("| `{}` | {} | ", doubling.resource, doubling.words);
     for (const DoublingStep& step : doubling.steps)
-      row += fmt::format("{}`{}` {}", &step == &doubling.steps.front() ? "" : ", ", step.parameter, step.factor == 2 ? "x 2" : "/ 2");
+      row += fmt::format("{}`{}` {}", &step == &doubling.steps.front() ? "" : ", ", step.parameter,
+                         step.factor == 2 ? "x 2" : "/ 2");
     INFO(row);
     CHECK(page.str().find(row + " |") != std::string::npos);
     CHECK_FALSE(settings_of(doubling, machine).empty());

@@ -12,8 +12,8 @@ std::uint64_t mix(std::uint64_t hash, std::uint64_t value) { return (hash ^ valu
 
 class MachineSpecimen final : public hw::contract::Specimen {
  public:
-  MachineSpecimen(const traces::CommandStream& stream, std::uint64_t machine_seed, bool leave_out, hw::Driver& driver,
-                  const hw::contract::Variation& variation)
+  MachineSpecimen(const traces::CommandStream& stream, std::uint64_t machine_seed, bool leave_out,
+                  hw::Driver& driver, const hw::contract::Variation& variation)
       : frame_(std::uint64_t{1} << 30) {
     if (machine_seed != 0) randomize(config_, machine_seed);
     if (variation.depth_one) {
@@ -61,7 +61,8 @@ std::uint64_t functional_digest(const traces::CommandStream& stream) {
   return image_digest(frame);
 }
 
-hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed, bool leave_out) {
+hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed,
+                                      bool leave_out) {
   return [&stream, machine_seed, leave_out](hw::Driver& driver, const hw::contract::Variation& variation) {
     return std::make_unique<MachineSpecimen>(stream, machine_seed, leave_out, driver, variation);
   };

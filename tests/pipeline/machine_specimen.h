@@ -1,4 +1,5 @@
-/// The whole machine for the contract harness: random stream, random machine, rendered in any driver and order.
+/// The whole machine for the contract harness: random stream, random machine, rendered in any driver and
+/// order.
 #pragma once
 
 #include "pipeline/machine/machine.h"
@@ -12,7 +13,9 @@ namespace quadrille::pipeline::test {
 /// The same for the functional rendering of a stream.
 [[nodiscard]] std::uint64_t functional_digest(const traces::CommandStream& stream);
 
-/// Builds the machine of `machine_seed` (0: the default one) for the stream; without `leave_out` with every unit, needed or not.
-[[nodiscard]] hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::uint64_t machine_seed, bool leave_out = true);
+/// Builds the machine of `machine_seed` (0: the default one) for the stream; without `leave_out` with every
+/// unit, needed or not.
+[[nodiscard]] hw::contract::Builder machine_builder(const traces::CommandStream& stream,
+                                                    std::uint64_t machine_seed, bool leave_out = true);
 
 }  // namespace quadrille::pipeline::test

@@ -1,4 +1,5 @@
-/// The three laws on the whole machine: timing never changes pixels, every cycle is counted once, every byte and fragment is accounted for.
+/// The three laws on the whole machine: timing never changes pixels, every cycle is counted once, every byte
+/// and fragment is accounted for.
 #include "scenes/scene.h"
 #include "tests/pipeline/machine_specimen.h"
 #include "tests/pipeline/random_stream.h"
@@ -24,11 +25,13 @@ void check_image_and_laws(const hw::contract::Outcome& outcome, std::uint64_t ex
 
 }  // namespace
 
-TEST_CASE("machine: a hundred random machines give the pixels of the functional rendering, and keep all laws") {
+TEST_CASE(
+    "machine: a hundred random machines give the pixels of the functional rendering, and keep all laws") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const traces::CommandStream stream = random_stream(1 + seed / 10);
     INFO("machine " << seed);
-    check_image_and_laws(hw::contract::run_forked(machine_builder(stream, seed), {}), functional_digest(stream));
+    check_image_and_laws(hw::contract::run_forked(machine_builder(stream, seed), {}),
+                         functional_digest(stream));
   }
 }
 
@@ -39,13 +42,15 @@ TEST_CASE("machine: a window of any size keeps pixels and laws, and never deadlo
     hw::contract::Variation variation;
     variation.window = kCycle << (seed * 5 % 13);  // 1 to 4096 cycles
     INFO("machine " << seed << ", window of " << variation.window / kCycle << " cycles");
-    check_image_and_laws(hw::contract::run_forked(machine_builder(stream, seed), variation), functional_digest(stream));
+    check_image_and_laws(hw::contract::run_forked(machine_builder(stream, seed), variation),
+                         functional_digest(stream));
   }
 }
 
 TEST_CASE("machine: the end of a frame under a window is a few per cent off, however large the window") {
   constexpr hw::Tick kCycle = 1'000'000;
-  // Frames this short, which memory limits, move by some per cent for any reason at all: the mean over several is what a window does.
+  // Frames this short, which memory limits, move by some per cent for any reason at all: the mean over
+  // several is what a window does.
   constexpr std::uint64_t kStreams[] = {7, 8, 9, 10, 11, 12};
   for (const hw::Tick window : {1, 16, 256, 4096, 1'000'000}) {
     double sum = 0;
@@ -55,7 +60,8 @@ TEST_CASE("machine: the end of a frame under a window is a few per cent off, how
       hw::contract::Variation variation;
       variation.window = window * kCycle;
       const auto ahead = hw::contract::run_forked(machine_builder(stream, 0), variation);
-      INFO("window of " << window << " cycles, stream " << seed << ": " << ahead.end << " fs, exact " << exact.end << " fs");
+      INFO("window of " << window << " cycles, stream " << seed << ": " << ahead.end << " fs, exact "
+                        << exact.end << " fs");
       REQUIRE(ahead.failure.empty());
       const double off = std::abs(static_cast<double>(ahead.end) / static_cast<double>(exact.end) - 1);
       UNSCOPED_INFO("stream " << seed << " off by " << off);
@@ -74,7 +80,8 @@ TEST_CASE("machine: random streams give the pixels of the functional rendering o
   }
 }
 
-TEST_CASE("machine: both drivers, any host order, any order of creating modules: the same cycles and figures") {
+TEST_CASE(
+    "machine: both drivers, any host order, any order of creating modules: the same cycles and figures") {
   const traces::CommandStream stream = random_stream(7, {64, 48, 8, 6});
   for (const std::uint64_t machine : {0u, 3u, 12u}) {
     INFO("machine " << machine);

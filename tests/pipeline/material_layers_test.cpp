@@ -1,4 +1,5 @@
-/// The material layers against closed forms: what their shaders compute, as the double-precision reference executes them.
+/// The material layers against closed forms: what their shaders compute, as the double-precision reference
+/// executes them.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
@@ -30,10 +31,12 @@ std::array<double, 3> seen(const Stage& stage) {
   scene.materials.push_back(stage.material);
   MeshBuilder mesh;
   mesh.patch(1, 1, [](float u, float v) { return PatchPoint{{40 * (u - 0.5F), 40 * (0.5F - v), 0}}; });
-  place(scene, mesh.finish(scene, "square", 0, {.normal = true, .tangent = false, .uv = false, .color = false}),
+  place(scene,
+        mesh.finish(scene, "square", 0, {.normal = true, .tangent = false, .uv = false, .color = false}),
         glm::rotate(glm::mat4(1), static_cast<float>(stage.angle), glm::vec3(0, 1, 0)));
   scene.lights.push_back({Light::Kind::kDirectional, stage.light, {}, {0, 0, -1}, 0, 0, 0.7F});
-  scene.environment = {glm::vec3(stage.environment / 0.35F), glm::vec3(stage.environment / 0.35F)};  // beside lights it counts 0.35
+  // beside lights it counts 0.35
+  scene.environment = {glm::vec3(stage.environment / 0.35F), glm::vec3(stage.environment / 0.35F)};
   scene.background = stage.background;
   Camera camera;
   camera.perspective = false;
@@ -88,7 +91,9 @@ TEST_CASE("material layers: weight and colour of the specular reflection, which 
   REQUIRE(seen(stage)[0] == near(0.4 / kPi * 0.5 * peak(0.6)));
 }
 
-TEST_CASE("material layers: specular-glossiness is its diffuse part less the strongest reflectance, and the reflection") {
+TEST_CASE(
+    "material layers: specular-glossiness is its diffuse part less the strongest reflectance, and the "
+    "reflection") {
   Stage stage{dielectric(0.5F, 0.4F), glm::vec3(0.4F)};
   stage.material.layers.specular = stage.material.layers.specular_glossiness = true;
   stage.material.layers.specular_color = {0.3F, 0.1F, 0.05F};
@@ -115,7 +120,8 @@ TEST_CASE("material layers: the fit of the sheen's albedo is that of its lobe, i
       const double without = seen(stage)[0];
       stage.material.layers.sheen_color = glm::vec3(1);
       stage.material.layers.sheen_roughness = static_cast<float>(roughness);
-      const double with = seen(stage)[0], fit = (with - without) / (1 - without);  // with = without * (1 - E) + E
+      // with = without * (1 - E) + E
+      const double with = seen(stage)[0], fit = (with - without) / (1 - without);
       const double exponent = 1 / (roughness * roughness), sine = std::sqrt(1 - n_dot_v * n_dot_v);
       double integral = 0;
       constexpr int kSteps = 96;
@@ -124,7 +130,8 @@ TEST_CASE("material layers: the fit of the sheen's albedo is that of its lobe, i
           const double z = (i + 0.5) / kSteps, phi = kPi * (j + 0.5) / kSteps, s = std::sqrt(1 - z * z);
           const double hx = s * std::cos(phi) + sine, hy = s * std::sin(phi), hz = z + n_dot_v;
           const double cosine = hz / std::sqrt(hx * hx + hy * hy + hz * hz);
-          const double d = (2 + exponent) * std::pow(std::sqrt(std::max(0.0, 1 - cosine * cosine)), exponent) / (2 * kPi);
+          const double d =
+              (2 + exponent) * std::pow(std::sqrt(std::max(0.0, 1 - cosine * cosine)), exponent) / (2 * kPi);
           integral += d / (4 * (z + n_dot_v - z * n_dot_v)) * z * 2 * kPi / kSteps / kSteps;
         }
       }
@@ -133,7 +140,9 @@ TEST_CASE("material layers: the fit of the sheen's albedo is that of its lobe, i
   }
 }
 
-TEST_CASE("material layers: clear glass shows what lies behind less what it reflects, tinted glass takes the rest from the sky") {
+TEST_CASE(
+    "material layers: clear glass shows what lies behind less what it reflects, tinted glass takes the rest "
+    "from the sky") {
   Stage stage{dielectric(1, 0), glm::vec3(0), 0, glm::vec3(0.6F, 0.4F, 0.2F)};
   stage.material.layers.transmission = 1;
   const auto clear = seen(stage);
@@ -191,5 +200,6 @@ TEST_CASE("material layers: a layer of weight zero is the plain material") {
   layered.layers.absorption = glm::vec3(-1);
   Primitive primitive;
   primitive.attributes = {0, 1, 2, 3, 4, 5};
-  REQUIRE(choose_variant(layered, primitive, ShaderSet::kMaterial) == choose_variant(plain, primitive, ShaderSet::kMaterial));
+  REQUIRE(choose_variant(layered, primitive, ShaderSet::kMaterial) ==
+          choose_variant(plain, primitive, ShaderSet::kMaterial));
 }

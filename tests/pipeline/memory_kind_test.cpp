@@ -1,4 +1,5 @@
-/// `memory.kind`: the default machine is its own kind's data file, and another kind brings its clock and its numbers.
+/// `memory.kind`: the default machine is its own kind's data file, and another kind brings its clock and its
+/// numbers.
 #include "pipeline/machine/machine_config.h"
 
 #include "models/base/error.h"
@@ -25,7 +26,8 @@ TEST_CASE("memory kind: the default machine has the values of its kind's data fi
   }
 }
 
-TEST_CASE("memory kind: setting it sets the clock and all that its file holds, but for what the same layer sets") {
+TEST_CASE(
+    "memory kind: setting it sets the clock and all that its file holds, but for what the same layer sets") {
   for (const std::string kind : {"ddr4", "lpddr5", "gddr6", "hbm2"}) {
     MachineConfig before, after;
     before.begin_layer();
@@ -48,7 +50,9 @@ TEST_CASE("memory kind: setting it sets the clock and all that its file holds, b
   }
 }
 
-TEST_CASE("memory kind: words are in quotes in a machine file, numbers are not, and a kind that is not there is refused with the list") {
+TEST_CASE(
+    "memory kind: words are in quotes in a machine file, numbers are not, and a kind that is not there is "
+    "refused with the list") {
   const auto refusal = [](const char* text) {
     MachineConfig config;
     try {
@@ -63,8 +67,10 @@ TEST_CASE("memory kind: words are in quotes in a machine file, numbers are not, 
 }
 
 TEST_CASE("memory kind: a geometry that cannot be is refused") {
-  for (const auto& [key, value] :
-       {std::pair{"memory.bank_groups", "3"}, {"memory.burst_bytes", "96"}, {"memory.row_bytes", "200"}, {"memory.write_low", "95"}}) {
+  for (const auto& [key, value] : {std::pair{"memory.bank_groups", "3"},
+                                   {"memory.burst_bytes", "96"},
+                                   {"memory.row_bytes", "200"},
+                                   {"memory.write_low", "95"}}) {
     INFO(key);
     MachineConfig config;
     config.set(key, value, "test");

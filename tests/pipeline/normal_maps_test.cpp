@@ -1,4 +1,5 @@
-/// Bumps and faces from both sides: a frame derived on the screen equals the one that tangents give, and a face without normals is its own.
+/// Bumps and faces from both sides: a frame derived on the screen equals the one that tangents give, and a
+/// face without normals is its own.
 #include <catch2/catch.hpp>
 
 #include <glm/ext/matrix_transform.hpp>
@@ -45,7 +46,8 @@ SceneData scene_of(const Sheet& sheet) {
   m.double_sided = true;
   m.alpha = sheet.alpha;
   m.texture(sheet.slot).image = add_image(scene, "ridges", ridges());
-  if (sheet.slot == TextureSlot::kClearcoatNormal) m.layers.clearcoat = 1, m.layers.clearcoat_roughness = 0.4F;
+  if (sheet.slot == TextureSlot::kClearcoatNormal)
+    m.layers.clearcoat = 1, m.layers.clearcoat_roughness = 0.4F;
   scene.materials.push_back(m);
   MeshBuilder mesh;
   for (int corner = 0; corner < 4; ++corner) {
@@ -58,8 +60,12 @@ SceneData scene_of(const Sheet& sheet) {
   }
   mesh.triangle(0, 2, 3);
   mesh.triangle(0, 3, 1);
-  const glm::mat4 turn = glm::rotate(glm::mat4(1), (sheet.back ? 3.14159265F : 0.0F) + 0.5F, glm::vec3(0.2F, 0.95F, 0.1F));
-  place(scene, mesh.finish(scene, "sheet", 0, {.normal = sheet.normals, .tangent = sheet.tangents, .uv = true, .color = false}), turn);
+  const glm::mat4 turn =
+      glm::rotate(glm::mat4(1), (sheet.back ? 3.14159265F : 0.0F) + 0.5F, glm::vec3(0.2F, 0.95F, 0.1F));
+  place(scene,
+        mesh.finish(scene, "sheet", 0,
+                    {.normal = sheet.normals, .tangent = sheet.tangents, .uv = true, .color = false}),
+        turn);
   Light lamp;
   lamp.kind = Light::Kind::kPoint;
   lamp.color = glm::vec3(40);
@@ -121,19 +127,24 @@ namespace {
 void put_zeros(SceneData& scene, std::size_t first, std::size_t count) {
   Primitive& primitive = scene.primitives[0];
   Array& normals = scene.arrays[static_cast<std::size_t>(primitive.attributes[1])];
-  std::fill_n(normals.data.begin() + static_cast<std::ptrdiff_t>(sizeof(glm::vec3) * first), sizeof(glm::vec3) * count, std::byte{0});
+  std::fill_n(normals.data.begin() + static_cast<std::ptrdiff_t>(sizeof(glm::vec3) * first),
+              sizeof(glm::vec3) * count, std::byte{0});
   primitive.partial_normals = true;
 }
 
 }  // namespace
 
-TEST_CASE("faces whose normals are all zero are drawn with their own, on both sides, with bumps and without") {
+TEST_CASE(
+    "faces whose normals are all zero are drawn with their own, on both sides, with bumps and without") {
   for (const bool back : {false, true}) {
     for (const bool bumps : {false, true}) {
       for (const bool tangents : {false, true}) {
         CAPTURE(back, bumps, tangents);
-        SceneData with = scene_of({.tangents = tangents, .back = back}), without = scene_of({.normals = false, .back = back});
-        if (!bumps) with.materials[0].texture(TextureSlot::kNormal).image = without.materials[0].texture(TextureSlot::kNormal).image = -1;
+        SceneData with = scene_of({.tangents = tangents, .back = back}),
+                  without = scene_of({.normals = false, .back = back});
+        if (!bumps)
+          with.materials[0].texture(TextureSlot::kNormal).image =
+              without.materials[0].texture(TextureSlot::kNormal).image = -1;
         put_zeros(with, 0, 4);
         CHECK(difference(picture(with), picture(without)).fraction_within(2) >= 0.999);
       }

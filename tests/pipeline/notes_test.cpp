@@ -37,7 +37,8 @@ TEST_CASE("notes: a frame in which a fragment was written has none") {
 
 TEST_CASE("notes: a frame without a written fragment says what became of its triangles and fragments") {
   FrameFigures frame;
-  CHECK(note_on(frame) == "nothing was drawn: the frame has no draws; has the scene a mesh with positions, and is it shown?");
+  CHECK(note_on(frame) ==
+        "nothing was drawn: the frame has no draws; has the scene a mesh with positions, and is it shown?");
   frame.draws = 2;
   CHECK(note_on(frame) == "nothing was drawn: the 2 draws of the frame have no triangles");
   frame.triangles = 5000;
@@ -46,7 +47,8 @@ TEST_CASE("notes: a frame without a written fragment says what became of its tri
   frame.fates.no_sample = 3;
   frame.fates.rasterised = 1;
   CHECK(note_on(frame) ==
-        "nothing was drawn: no triangle covers a pixel: 4,990 off screen, 6 culled by their facing, 4 between pixel centres");
+        "nothing was drawn: no triangle covers a pixel: 4,990 off screen, 6 culled by their facing, 4 "
+        "between pixel centres");
   frame.fates.tiles_hidden = 1;
   CHECK(note_on(frame) == "nothing was drawn: every fragment failed the depth test");
   frame.fragments_shaded = 70;
@@ -65,7 +67,9 @@ TEST_CASE("notes: the machine and the functional run agree on what becomes of tr
   CHECK(functional.off_screen > 0);
   CHECK(functional.culled > 0);
   CHECK(functional.rasterised > 0);
-  const std::string exact = hw::contract::in_child(
-      [&] { return fmt::format("{}", fmt::join(triangle_fates(render_exact(stream, machine).figures.frame.fates), " ")); });
+  const std::string exact = hw::contract::in_child([&] {
+    return fmt::format("{}",
+                       fmt::join(triangle_fates(render_exact(stream, machine).figures.frame.fates), " "));
+  });
   CHECK(exact == fmt::format("{}", fmt::join(triangle_fates(functional), " ")));
 }

@@ -27,7 +27,8 @@ scenes::ArmOptions eight_joints() {
 
 constexpr std::uint32_t kSide = 160;
 
-std::vector<std::uint32_t> picture(const std::string& file, double time, const std::string& vertex_shader = "") {
+std::vector<std::uint32_t> picture(const std::string& file, double time,
+                                   const std::string& vertex_shader = "") {
   scenes::SceneOptions options;
   options.width = options.height = kSide;
   options.time = time;
@@ -38,7 +39,8 @@ std::vector<std::uint32_t> picture(const std::string& file, double time, const s
 /// The materials' own vertex shader without its part about poses, as a user might give it.
 class PlainShader {
  public:
-  PlainShader() : file_(std::string(scenes::kInterfaceGlsl) + std::string(scenes::kMaterialVert), "plain.vert") {}
+  PlainShader()
+      : file_(std::string(scenes::kInterfaceGlsl) + std::string(scenes::kMaterialVert), "plain.vert") {}
   [[nodiscard]] std::string path() const { return file_.path(); }
 
  private:
@@ -59,7 +61,9 @@ void require_other(const std::vector<std::uint32_t>& a, const std::vector<std::u
 /// The whole arm hung on a root that mirrors it.
 std::string mirrored_arm() {
   std::string text = scenes::arm_gltf();
-  const auto put = [&](const std::string& what, const std::string& with) { text.replace(text.find(what), what.size(), with); };
+  const auto put = [&](const std::string& what, const std::string& with) {
+    text.replace(text.find(what), what.size(), with);
+  };
   put(R"({"name":"lower")", R"({"name":"lower","scale":[-1,1,1])");
   put(R"("doubleSided":true)", R"("doubleSided":false)");
   return text;
@@ -67,10 +71,12 @@ std::string mirrored_arm() {
 
 }  // namespace
 
-TEST_CASE("posed pictures: the vertex shader and the host pose alike, for skins, mirrored skins, morph targets and both") {
+TEST_CASE(
+    "posed pictures: the vertex shader and the host pose alike, for skins, mirrored skins, morph targets and "
+    "both") {
   const PlainShader plain;
-  for (const std::string& text :
-       {scenes::arm_gltf(), scenes::arm_gltf(eight_joints()), mirrored_arm(), scenes::morph_gltf(4, "[0,0,0,0]")}) {
+  for (const std::string& text : {scenes::arm_gltf(), scenes::arm_gltf(eight_joints()), mirrored_arm(),
+                                  scenes::morph_gltf(4, "[0,0,0,0]")}) {
     const scenes::TempGltf file(text);
     const auto by_shader = picture(file.path(), 0.6);
     require_same(by_shader, picture(file.path(), 0.6, plain.path()));
@@ -80,7 +86,9 @@ TEST_CASE("posed pictures: the vertex shader and the host pose alike, for skins,
   require_other(picture("builtin:flag", 0.3), picture("builtin:flag", 0.9));
 }
 
-TEST_CASE("posed pictures: weights that do not sum to one draw what those divided by their sum do, by the vertex shader and by the host") {
+TEST_CASE(
+    "posed pictures: weights that do not sum to one draw what those divided by their sum do, by the vertex "
+    "shader and by the host") {
   const PlainShader plain;
   const scenes::TempGltf whole(scenes::arm_gltf());
   for (const int bits : {8, 16, 32}) {
@@ -98,11 +106,13 @@ TEST_CASE("posed pictures: weights that do not sum to one draw what those divide
 
 TEST_CASE("posed pictures: a mirrored skin shows its front faces, and is lit from the same side") {
   const scenes::TempGltf mirrored(mirrored_arm()), plain(scenes::arm_gltf());
-  const auto a = picture(mirrored.path(), 0), b = picture(plain.path(), 0);  // a rectangle is its own mirror image
+  // a rectangle is its own mirror image
+  const auto a = picture(mirrored.path(), 0), b = picture(plain.path(), 0);
   require_same(a, b);
 }
 
-TEST_CASE("posed pictures: a skin ten thousand kilometres away, between whole metres, is drawn as at the origin") {
+TEST_CASE(
+    "posed pictures: a skin ten thousand kilometres away, between whole metres, is drawn as at the origin") {
   std::string text = scenes::arm_gltf();
   const scenes::TempGltf near(text);
   const std::string lower = R"({"name":"lower")";
@@ -131,7 +141,9 @@ scenes::SceneData posed_copies() {
 
 }  // namespace
 
-TEST_CASE("posed pictures: instanced and posed, colours and ids cover the same pixels, with a vertex shader of the user's too") {
+TEST_CASE(
+    "posed pictures: instanced and posed, colours and ids cover the same pixels, with a vertex shader of the "
+    "user's too") {
   const PlainShader plain;
   const scenes::SceneData scene = posed_copies();
   const auto drawn = [&](bool visibility, const std::string& shader) {
@@ -153,10 +165,13 @@ TEST_CASE("posed pictures: instanced and posed, colours and ids cover the same p
   CHECK(unlike == 0);
 }
 
-TEST_CASE("posed pictures: too many targets for the shader's locations are blended by the host, to the same picture") {
+TEST_CASE(
+    "posed pictures: too many targets for the shader's locations are blended by the host, to the same "
+    "picture") {
   // Twelve targets, of which each four move what one of three would.
   std::string many = "[";
-  for (int i = 0; i < 12; ++i) many += (i == 0 ? "" : ",") + std::string(i % 3 == 0 ? "0.075" : i % 3 == 1 ? "0.05" : "0.025");
+  for (int i = 0; i < 12; ++i)
+    many += (i == 0 ? "" : ",") + std::string(i % 3 == 0 ? "0.075" : i % 3 == 1 ? "0.05" : "0.025");
   const auto at_rest = [](const std::string& text) {
     const scenes::TempGltf file(text);
     scenes::SceneOptions options;
@@ -165,7 +180,8 @@ TEST_CASE("posed pictures: too many targets for the shader's locations are blend
     options.at = glm::vec3(0.5F, 0.5F, 0);
     return pipeline::render_functional_frame(scenes::load_scene(file.path(), options), {}).image.color;
   };
-  require_same(at_rest(scenes::morph_gltf(12, many + "]")), at_rest(scenes::morph_gltf(12, "[0.3,0.2,0.1,0,0,0,0,0,0,0,0,0]")));
+  require_same(at_rest(scenes::morph_gltf(12, many + "]")),
+               at_rest(scenes::morph_gltf(12, "[0.3,0.2,0.1,0,0,0,0,0,0,0,0,0]")));
 }
 
 TEST_CASE("posed pictures: integers that a shader reads are supplied as integers, or the draw is refused") {

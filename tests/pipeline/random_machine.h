@@ -1,4 +1,5 @@
-/// Random legal machines, from comfortable to absurd: depths of one, latencies up to 10^5 cycles, one-line caches, one to eight of each unit.
+/// Random legal machines, from comfortable to absurd: depths of one, latencies up to 10^5 cycles, one-line
+/// caches, one to eight of each unit.
 #pragma once
 
 #include "pipeline/machine/machine_config.h"

@@ -14,7 +14,9 @@ class RandomSource {
   int integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine_); }
   /// low <= result < high.
   float real(float low, float high) { return std::uniform_real_distribution<float>(low, high)(engine_); }
-  int pick(std::initializer_list<int> values) { return *(values.begin() + integer(0, static_cast<int>(values.size()) - 1)); }
+  int pick(std::initializer_list<int> values) {
+    return *(values.begin() + integer(0, static_cast<int>(values.size()) - 1));
+  }
   bool chance(double p) { return std::bernoulli_distribution(p)(engine_); }
 
  private:

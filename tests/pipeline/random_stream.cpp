@@ -79,7 +79,8 @@ traces::Pipeline random_pipeline(RandomSource& random, traces::Index fragment) {
   p.depth.test = random.integer(0, 5) != 0;
   p.depth.write = random.integer(0, 2) != 0;
   // Mostly "less", so that Hi-Z and early kills are at work; now and then a change of direction.
-  p.depth.compare = random.integer(0, 3) != 0 ? traces::CompareOp::kLess : static_cast<traces::CompareOp>(random.integer(0, 7));
+  p.depth.compare = random.integer(0, 3) != 0 ? traces::CompareOp::kLess
+                                              : static_cast<traces::CompareOp>(random.integer(0, 7));
   p.depth_clamp = random.integer(0, 6) == 0;
   p.blend.enable = random.integer(0, 2) == 0;
   p.blend.src_color = static_cast<traces::BlendFactor>(random.integer(0, 9));
@@ -87,15 +88,18 @@ traces::Pipeline random_pipeline(RandomSource& random, traces::Index fragment) {
   p.blend.src_alpha = traces::BlendFactor::kOne;
   p.blend.dst_alpha = traces::BlendFactor::kOneMinusSrcAlpha;
   p.blend.color = static_cast<traces::BlendOp>(random.integer(0, 4));
-  p.blend.write_mask = random.integer(0, 5) == 0 ? static_cast<std::uint8_t>(random.integer(1, 15)) : std::uint8_t{0xf};
+  p.blend.write_mask =
+      random.integer(0, 5) == 0 ? static_cast<std::uint8_t>(random.integer(1, 15)) : std::uint8_t{0xf};
   return p;
 }
 
 void add_texture(RandomSource& random, traces::CommandStream& stream) {
   traces::Image image{"noise", traces::Format::kR8G8B8A8Srgb, 32, 16, 6, {}, nullptr};
   std::size_t texels = 0;
-  for (std::uint32_t l = 0; l < image.levels; ++l) texels += std::size_t{std::max(1u, image.width >> l)} * std::max(1u, image.height >> l);
-  for (std::size_t i = 0; i < 4 * texels; ++i) image.texels.push_back(static_cast<std::byte>(random.integer(0, 255)));
+  for (std::uint32_t l = 0; l < image.levels; ++l)
+    texels += std::size_t{std::max(1u, image.width >> l)} * std::max(1u, image.height >> l);
+  for (std::size_t i = 0; i < 4 * texels; ++i)
+    image.texels.push_back(static_cast<std::byte>(random.integer(0, 255)));
   stream.images.push_back(image);
   stream.samplers.push_back({});
   stream.descriptor_sets.push_back({{}, {{0, 0, 0}}});
@@ -104,10 +108,11 @@ void add_texture(RandomSource& random, traces::CommandStream& stream) {
 const std::vector<traces::Shader>& shaders() {
   static const std::vector<traces::Shader> all = [] {
     std::vector<traces::Shader> s;
-    s.push_back({"random.vert", traces::ShaderStage::kVertex, scenes::compile_glsl(kVertex, traces::ShaderStage::kVertex, "random.vert")});
+    s.push_back({"random.vert", traces::ShaderStage::kVertex,
+                 scenes::compile_glsl(kVertex, traces::ShaderStage::kVertex, "random.vert")});
     for (const char* text : kFragments) {
-      s.push_back(
-          {"random.frag", traces::ShaderStage::kFragment, scenes::compile_glsl(text, traces::ShaderStage::kFragment, "random.frag")});
+      s.push_back({"random.frag", traces::ShaderStage::kFragment,
+                   scenes::compile_glsl(text, traces::ShaderStage::kFragment, "random.frag")});
     }
     return s;
   }();
@@ -122,20 +127,23 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
   stream.name = "random";
   stream.shaders = shaders();
   add_texture(random, stream);
-  stream.targets.push_back({shape.width, shape.height, traces::Format::kR8G8B8A8Srgb, traces::Format::kD32Float});
+  stream.targets.push_back(
+      {shape.width, shape.height, traces::Format::kR8G8B8A8Srgb, traces::Format::kD32Float});
   stream.commands.push_back(traces::BeginPass{0, {0.2f, 0.3f, 0.4f, 1.0f}, 1.0f});
-  stream.commands.push_back(traces::SetViewport{0, 0, static_cast<float>(shape.width), static_cast<float>(shape.height), 0, 1});
+  stream.commands.push_back(
+      traces::SetViewport{0, 0, static_cast<float>(shape.width), static_cast<float>(shape.height), 0, 1});
   stream.commands.push_back(traces::SetScissor{0, 0, shape.width, shape.height});
   for (int d = 0; d < shape.draws; ++d) {
-    stream.pipelines.push_back(
-        random_pipeline(random, static_cast<traces::Index>(1 + random.integer(0, static_cast<int>(kFragments.size()) - 1))));
+    stream.pipelines.push_back(random_pipeline(
+        random, static_cast<traces::Index>(1 + random.integer(0, static_cast<int>(kFragments.size()) - 1))));
     stream.commands.push_back(traces::BindPipeline{static_cast<traces::Index>(stream.pipelines.size() - 1)});
     stream.commands.push_back(traces::BindDescriptorSet{0, 0});
     std::vector<Vertex> vertices;
     const int triangles = random.integer(1, 2 * shape.triangles - 1);
     for (int t = 0; t < triangles; ++t) add_triangle(random, vertices);
     stream.buffers.push_back({"vertices", bytes_of(vertices.data(), vertices.size() * sizeof(Vertex))});
-    stream.commands.push_back(traces::BindVertexBuffer{0, static_cast<traces::Index>(stream.buffers.size() - 1), 0});
+    stream.commands.push_back(
+        traces::BindVertexBuffer{0, static_cast<traces::Index>(stream.buffers.size() - 1), 0});
     traces::Draw draw;
     draw.count = static_cast<std::uint32_t>(vertices.size());
     if (random.integer(0, 1) == 0) {
@@ -145,8 +153,8 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
         indices.push_back(static_cast<std::uint16_t>(index));
       }
       stream.buffers.push_back({"indices", bytes_of(indices.data(), indices.size() * 2)});
-      stream.commands.push_back(
-          traces::BindIndexBuffer{static_cast<traces::Index>(stream.buffers.size() - 1), 0, traces::IndexType::kUint16});
+      stream.commands.push_back(traces::BindIndexBuffer{static_cast<traces::Index>(stream.buffers.size() - 1),
+                                                        0, traces::IndexType::kUint16});
       draw.indexed = true;
     }
     stream.commands.push_back(draw);

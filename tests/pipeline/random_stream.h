@@ -1,4 +1,5 @@
-/// Random command streams: many small draws that mix depth comparisons, blending, discard, depth output, textures and divergent shaders on one small target.
+/// Random command streams: many small draws that mix depth comparisons, blending, discard, depth output,
+/// textures and divergent shaders on one small target.
 #pragma once
 
 #include "traces/command_stream.h"

@@ -1,4 +1,5 @@
-/// The machine against the double-precision reference in *given* mode: the same snapped triangles and precisions, none of the same code.
+/// The machine against the double-precision reference in *given* mode: the same snapped triangles and
+/// precisions, none of the same code.
 #include "models/reference/compare.h"
 #include "scenes/scene.h"
 #include "studies/given_reference.h"
@@ -21,7 +22,8 @@ void check_scene(const std::string& scene) {
   options.width = kWidth;
   options.height = kHeight;
   const auto color = studies::render_with_reference(scenes::load_scene(scene, options), {});
-  const auto difference = ref::compare_images({kWidth, kHeight, color.machine.color}, {kWidth, kHeight, color.reference.color});
+  const auto difference =
+      ref::compare_images({kWidth, kHeight, color.machine.color}, {kWidth, kHeight, color.reference.color});
   CHECK(difference.fraction_within(2) >= 0.999);
   CHECK(difference.bad_blocks == 0);
 
@@ -40,8 +42,8 @@ void check_scene(const std::string& scene) {
 }  // namespace
 
 TEST_CASE("machine: built-in scenes equal the reference in given mode") {
-  for (const char* scene : {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:overdraw", "builtin:fill", "builtin:flag",
-                            "builtin:courtyard", "builtin:materials"})
+  for (const char* scene : {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:overdraw",
+                            "builtin:fill", "builtin:flag", "builtin:courtyard", "builtin:materials"})
     check_scene(scene);
 }
 
@@ -51,10 +53,11 @@ TEST_CASE("machine: real scenes equal the reference in given mode") {
     WARN("skipped: the folder of real scenes is absent");
     return;
   }
-  for (const char* scene : {"Box/Box.gltf", "BoxVertexColors/BoxVertexColors.glb", "BoxTextured_interleaved/BoxTextured.gltf",
-                            "CornellBox/CornellBox.glb", "TextureTransformTest/TextureTransformTest.gltf", "Suzanne/Suzanne.gltf",
-                            "ManyCubes_u8idx/many-cubes.gltf", "TerrainBevy/terrain.glb", "Engine2Cyl/2CylinderEngine.glb",
-                            "FlightHelmet_512/FlightHelmet.gltf", "STK_CandelaCity/candela_city.gltf"}) {
+  for (const char* scene :
+       {"Box/Box.gltf", "BoxVertexColors/BoxVertexColors.glb", "BoxTextured_interleaved/BoxTextured.gltf",
+        "CornellBox/CornellBox.glb", "TextureTransformTest/TextureTransformTest.gltf", "Suzanne/Suzanne.gltf",
+        "ManyCubes_u8idx/many-cubes.gltf", "TerrainBevy/terrain.glb", "Engine2Cyl/2CylinderEngine.glb",
+        "FlightHelmet_512/FlightHelmet.gltf", "STK_CandelaCity/candela_city.gltf"}) {
     check_scene((*folder / scene).string());
   }
 }

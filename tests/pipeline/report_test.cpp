@@ -19,8 +19,8 @@ UnitFigures memory_unit(const std::string& path, std::int64_t busy, std::int64_t
   u.starved = starved;
   u.idle = 1000 - busy - starved;
   u.waits = {{"request_in", true, starved}};
-  for (const auto& [name, value] :
-       std::vector<std::pair<std::string, std::uint64_t>>{{"reads", 30}, {"writes", 10}, {"read_bytes", 960}, {"write_bytes", 320}})
+  for (const auto& [name, value] : std::vector<std::pair<std::string, std::uint64_t>>{
+           {"reads", 30}, {"writes", 10}, {"read_bytes", 960}, {"write_bytes", 320}})
     u.counters.push_back({name, "access", "for a test", value});
   u.row = {hw::count("accesses", 40),
            hw::share("row hit", 20, 40),
@@ -48,8 +48,8 @@ TEST_CASE("report: a broken law is listed with both sides, in table and JSON") {
   CHECK(failed_checks(f).empty());
   f.checks.push_back({"draws = draws", "a.draws", "b.draws", 3, 4});
   const MachineConfig machine;
-  CHECK_THAT(failed_checks(f),
-             Contains("draws = draws") && Contains("a.draws is 3") && Contains("b.draws is 4") && !Contains("left.bytes"));
+  CHECK_THAT(failed_checks(f), Contains("draws = draws") && Contains("a.draws is 3") &&
+                                   Contains("b.draws is 4") && !Contains("left.bytes"));
   CHECK_THAT(report_table({f, machine, 10, 10}), Contains("1 of 2 laws hold") && Contains("a.draws is 3"));
   const auto checks = nlohmann::json::parse(report_json({f, machine, 10, 10})).at("checks");
   CHECK(checks.at(0).at("holds") == true);
@@ -70,8 +70,8 @@ TEST_CASE("report: units of a kind share a row of means with the spread of busy"
   const std::string table = report_table({f, machine, 10, 10});
   CHECK_THAT(table, Contains("memory x2" + std::string(13, ' ') + "0.0   25.0 +-5.0"));
   CHECK_THAT(table, Contains("request_in       60.0"));  // of 2000 cycles of both
-  CHECK_THAT(table,
-             Contains("accesses 80") && Contains("row hit 50.0 %") && Contains("in queue 0.01") && Contains("bursts 0.10/clk (5 % of 2)"));
+  CHECK_THAT(table, Contains("accesses 80") && Contains("row hit 50.0 %") && Contains("in queue 0.01") &&
+                        Contains("bursts 0.10/clk (5 % of 2)"));
   CHECK_THAT(report_table({f, machine, 10, 10}, UnitRows::kAll),
              Contains("memory_1" + std::string(14, ' ') + "0.0   30.0") && !Contains("x2"));
 }
@@ -87,8 +87,10 @@ TEST_CASE("report: bytes of memory are those of its channels, in JSON too") {
 
 TEST_CASE("report: bandwidth is a rate in GPU cycles and a share of what all channels can move") {
   MachineConfig machine;
-  CHECK(peak_memory_bytes_per_cycle(machine) == 64.0);                                        // two channels of 32 bytes a cycle, one clock
-  CHECK_THAT(report_table({two_channels(), machine, 10, 10}), Contains("2.560        4.0"));  // 2560 bytes in 1000 cycles
+  // two channels of 32 bytes a cycle, one clock
+  CHECK(peak_memory_bytes_per_cycle(machine) == 64.0);
+  // 2560 bytes in 1000 cycles
+  CHECK_THAT(report_table({two_channels(), machine, 10, 10}), Contains("2.560        4.0"));
   machine.set("gpu.memory_mhz", "500", "test");
   machine.set("memory.t_burst", "4", "test");
   machine.set("gpu.channels", "4", "test");

@@ -31,10 +31,11 @@ traces::CommandStream counted(scenes::SceneOptions options, const std::shared_pt
   for (traces::Image& image : stream.images) {
     REQUIRE(image.packed);
     CHECK(image.texels.empty());
-    image.packed = std::make_shared<const traces::UnpackTexels>([inner = image.packed, unpacked](const traces::LevelSink& sink) {
-      ++*unpacked;
-      (*inner)(sink);
-    });
+    image.packed = std::make_shared<const traces::UnpackTexels>(
+        [inner = image.packed, unpacked](const traces::LevelSink& sink) {
+          ++*unpacked;
+          (*inner)(sink);
+        });
   }
   return stream;
 }
@@ -52,17 +53,20 @@ bool names_texels(const pipeline::Figures& figures) {
 }
 
 /// The picture of a machine as text, and what it unpacked; or its error.
-std::string exact(const traces::CommandStream& stream, const std::shared_ptr<int>& unpacked, bool leave_out = true) {
+std::string exact(const traces::CommandStream& stream, const std::shared_ptr<int>& unpacked,
+                  bool leave_out = true) {
   return hw::contract::in_child([&]() -> std::string {
     try {
       const pipeline::RenderedFrame frame = pipeline::render_exact(stream, {}, {.leave_out = leave_out});
-      return fmt::format("{} {} {} {}", frame.figures.frame.cycles, fmt::join(frame.image.color, " "), *unpacked,
-                         names_texels(frame.figures));
+      return fmt::format("{} {} {} {}", frame.figures.frame.cycles, fmt::join(frame.image.color, " "),
+                         *unpacked, names_texels(frame.figures));
     } catch (const UserError& error) { return error.what(); }
   });
 }
 
-TEST_CASE("texture fill: each texture that fragments sample is unpacked once, and the picture is that of an unpacked stream") {
+TEST_CASE(
+    "texture fill: each texture that fragments sample is unpacked once, and the picture is that of an "
+    "unpacked stream") {
   const auto unpacked = std::make_shared<int>(0);
   const traces::CommandStream stream = counted(small(true), unpacked);
   const pipeline::RenderedFrame frame = pipeline::render_functional_frame(stream, {});
@@ -71,7 +75,8 @@ TEST_CASE("texture fill: each texture that fragments sample is unpacked once, an
   const traces::CommandStream whole = scenes::load_scene("builtin:cubes", small(false));
   CHECK(frame.image.color == pipeline::render_functional_frame(whole, {}).image.color);
   *unpacked = 0;
-  const auto one = std::make_shared<int>(static_cast<int>(whole.images.size()));  // what the other side will have counted
+  // what the other side will have counted
+  const auto one = std::make_shared<int>(static_cast<int>(whole.images.size()));
   CHECK(exact(stream, unpacked) == exact(whole, one));
 }
 
@@ -85,11 +90,14 @@ TEST_CASE("texture fill: a texture that no fragment samples is never unpacked, a
   CHECK_THAT(exact(stream, unpacked, false), Catch::EndsWith(fmt::format(" {} false", stream.images.size())));
 }
 
-TEST_CASE("texture fill: an image that cannot be unpacked ends the run with its own error, where something samples it") {
+TEST_CASE(
+    "texture fill: an image that cannot be unpacked ends the run with its own error, where something samples "
+    "it") {
   const auto broken = [](const scenes::SceneOptions& options) {
     traces::CommandStream stream = scenes::load_scene("builtin:cubes", options);
     for (traces::Image& image : stream.images)
-      image.packed = std::make_shared<const traces::UnpackTexels>([](const traces::LevelSink&) { throw user_error("a.png: torn"); });
+      image.packed = std::make_shared<const traces::UnpackTexels>(
+          [](const traces::LevelSink&) { throw user_error("a.png: torn"); });
     return stream;
   };
   const auto none = std::make_shared<int>(0);

@@ -12,7 +12,9 @@ Keyframes scalars(Interpolation interpolation, std::vector<float> times, std::ve
 }
 
 /// A turn around z by an angle, as (x, y, z, w).
-std::array<float, 4> turn(double angle) { return {0, 0, static_cast<float>(std::sin(angle / 2)), static_cast<float>(std::cos(angle / 2))}; }
+std::array<float, 4> turn(double angle) {
+  return {0, 0, static_cast<float>(std::sin(angle / 2)), static_cast<float>(std::cos(angle / 2))};
+}
 
 Keyframes turns(const std::array<float, 4>& a, const std::array<float, 4>& b) {
   Keyframes keys{Interpolation::kLinear, 4, true, {0, 1}, {}};
@@ -47,7 +49,8 @@ TEST_CASE("animation: a cubic spline is Hermite's with tangents a second") {
   const float out = 3, to = 5, in = -2, from = 1;
   const Keyframes keys = scalars(Interpolation::kCubicSpline, {1, 3}, {7, from, out, in, to, 7});
   for (const double t : {0.0, 0.25, 0.5, 0.9, 1.0}) {
-    const double h00 = (1 + 2 * t) * (1 - t) * (1 - t), h10 = t * (1 - t) * (1 - t), h01 = t * t * (3 - 2 * t), h11 = t * t * (t - 1);
+    const double h00 = (1 + 2 * t) * (1 - t) * (1 - t), h10 = t * (1 - t) * (1 - t),
+                 h01 = t * t * (3 - 2 * t), h11 = t * t * (t - 1);
     const double expected = h00 * from + h10 * 2 * out + h01 * to + h11 * 2 * in;
     CHECK(value_at(keys, 1 + 2 * t)[0] == Approx(expected).epsilon(1e-12));
   }
@@ -72,7 +75,8 @@ TEST_CASE("animation: rotations go along the arc at even speed, the shorter way"
   CHECK(std::abs(half[3]) == Approx(std::cos(quarter / 4)));
 }
 
-TEST_CASE("animation: rotations that hardly differ, and ones that are not of unit length, give unit quaternions") {
+TEST_CASE(
+    "animation: rotations that hardly differ, and ones that are not of unit length, give unit quaternions") {
   const auto near = value_at(turns(turn(0.3), turn(0.3 + 1e-6)), 0.5);
   CHECK(std::hypot(near[2], near[3]) == Approx(1));
   const auto halves = value_at(turns({0, 0, 0, 0.5F}, {0, 0, 0.5F, 0}), 0.5);  // a half turn, half way

@@ -19,20 +19,24 @@ TEST_CASE("built-in scenes: every listed one records, in colour and in visibilit
     REQUIRE(traces::stream_totals(stream).triangles > 0);
     REQUIRE(load_scene(name, options) == stream);
     options.visibility = true;
-    REQUIRE(traces::stream_totals(load_scene(name, options)).triangles == traces::stream_totals(stream).triangles);
+    REQUIRE(traces::stream_totals(load_scene(name, options)).triangles ==
+            traces::stream_totals(stream).triangles);
   }
 }
 
 TEST_CASE("built-in scenes: an unknown name lists the legal ones") {
-  REQUIRE_THROWS_WITH(load_scene("builtin:castle", {}), Catch::Contains("builtin:courtyard") && Catch::Contains("builtin:fill"));
+  REQUIRE_THROWS_WITH(load_scene("builtin:castle", {}),
+                      Catch::Contains("builtin:courtyard") && Catch::Contains("builtin:fill"));
 }
 
 TEST_CASE("built-in scenes: the courtyard has what a front page needs") {
   const traces::CommandStream stream = load_scene("builtin:courtyard", {});
   REQUIRE(traces::stream_totals(stream).triangles >= 100000);
   REQUIRE(stream.images.size() >= 10);
-  REQUIRE(std::ranges::any_of(stream.pipelines, [](const traces::Pipeline& p) { return p.blend.enable && !p.depth.write; }));
-  REQUIRE(std::ranges::any_of(stream.pipelines, [](const traces::Pipeline& p) { return p.cull == traces::CullMode::kNone; }));
+  REQUIRE(std::ranges::any_of(stream.pipelines,
+                              [](const traces::Pipeline& p) { return p.blend.enable && !p.depth.write; }));
+  REQUIRE(std::ranges::any_of(stream.pipelines,
+                              [](const traces::Pipeline& p) { return p.cull == traces::CullMode::kNone; }));
 }
 
 TEST_CASE("built-in scenes: fill needs no depth, blending or textures") {

@@ -17,7 +17,9 @@ namespace {
 
 SceneData boxes(std::uint32_t seed) {
   std::mt19937 dice(seed);
-  const auto random = [&](float low, float high) { return low + (high - low) * static_cast<float>(dice() % 1000) / 1000; };
+  const auto random = [&](float low, float high) {
+    return low + (high - low) * static_cast<float>(dice() % 1000) / 1000;
+  };
   SceneData scene;
   scene.name = "boxes";
   scene.materials.resize(1);
@@ -29,7 +31,9 @@ SceneData boxes(std::uint32_t seed) {
   for (int i = 0; i < 5; ++i) {
     const glm::mat4 turn = glm::rotate(glm::mat4(1), random(0, 6), glm::vec3(random(0, 1), 1, random(0, 1)));
     scene.instances.push_back(
-        {0, glm::translate(glm::mat4(1), spread * glm::vec3(random(-9, 9), random(-9, 9), random(-9, 9))) * turn, ""});
+        {0,
+         glm::translate(glm::mat4(1), spread * glm::vec3(random(-9, 9), random(-9, 9), random(-9, 9))) * turn,
+         ""});
   }
   return scene;
 }
@@ -43,7 +47,8 @@ bool all_inside(const SceneData& scene, const View& view) {
       const glm::dvec4 corner((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y,
                               (c & 4) != 0 ? box.high.z : box.low.z, 1);
       const glm::vec4 clip = view.view_projection * glm::vec4(instance.world * corner);
-      inside = inside && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z >= 0 && clip.z <= clip.w;
+      inside = inside && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z >= 0 &&
+               clip.z <= clip.w;
     }
   }
   return inside;
@@ -72,13 +77,15 @@ SceneData points(const std::vector<glm::vec3>& positions, const glm::dmat4& worl
   p.count = static_cast<std::uint32_t>(positions.size());
   for (const glm::vec3& at : positions) p.bounds.add(at);
   const auto bytes = std::as_bytes(std::span(positions));
-  scene.arrays.push_back({"positions", traces::Format::kR32G32B32Float, p.count, {bytes.begin(), bytes.end()}});
+  scene.arrays.push_back(
+      {"positions", traces::Format::kR32G32B32Float, p.count, {bytes.begin(), bytes.end()}});
   scene.primitives.push_back(p);
   scene.instances.push_back({0, world, ""});
   return scene;
 }
 
-/// A ball, a slanting needle, a flat square, a point and a thing far from the origin: none of them fills its box.
+/// A ball, a slanting needle, a flat square, a point and a thing far from the origin: none of them fills its
+/// box.
 std::vector<SceneData> shapes() {
   std::vector<glm::vec3> ball, square;
   for (int i = 0; i < 60; ++i) {
@@ -90,7 +97,8 @@ std::vector<SceneData> shapes() {
   for (const float x : {-1.0F, 1.0F}) {
     for (const float y : {-1.0F, 1.0F}) square.emplace_back(x, y, 0);
   }
-  const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(500, 30, -70)), 0.7, glm::dvec3(0.6, 0, 0.8));
+  const glm::dmat4 turned =
+      glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(500, 30, -70)), 0.7, glm::dvec3(0.6, 0, 0.8));
   return {points(ball), points({{0, 0, 0}, {1e-3F, 2e-3F, 1e-3F}}), points(square),
           points(ball, glm::scale(turned, glm::dvec3(3, 0.1, 1)))};
 }
@@ -106,7 +114,8 @@ Shown shown(const SceneData& scene, const View& view) {
   for (std::size_t i = 0; i < positions.count; ++i) {
     glm::vec3 at;
     std::memcpy(&at, &positions.data[i * sizeof(at)], sizeof(at));
-    const glm::vec4 clip = view.view_projection * glm::vec4(glm::vec3(scene.instances[0].world * glm::dvec4(at, 1)), 1);
+    const glm::vec4 clip =
+        view.view_projection * glm::vec4(glm::vec3(scene.instances[0].world * glm::dvec4(at, 1)), 1);
     s.low = glm::min(s.low, glm::vec2(clip) / clip.w);
     s.high = glm::max(s.high, glm::vec2(clip) / clip.w);
   }
@@ -115,7 +124,8 @@ Shown shown(const SceneData& scene, const View& view) {
 
 }  // namespace
 
-TEST_CASE("camera: what is framed takes 80 % of the picture's height or width, whatever its shape, in the middle") {
+TEST_CASE(
+    "camera: what is framed takes 80 % of the picture's height or width, whatever its shape, in the middle") {
   for (const SceneData& scene : shapes()) {
     for (const double aspect : {0.3, 1.0, 16.0 / 9, 5.0}) {
       CAPTURE(aspect);
@@ -133,7 +143,8 @@ TEST_CASE("camera: one that goes around keeps the scene within 80 %, and fills t
     float most = 0;
     for (int i = 0; i < 32; ++i) {
       const Shown s = shown(scene, framing_view(scene, 1.5, i / 32.0));
-      for (const glm::vec2& side : {s.low, s.high}) most = std::max({most, std::abs(side.x), std::abs(side.y)});
+      for (const glm::vec2& side : {s.low, s.high})
+        most = std::max({most, std::abs(side.x), std::abs(side.y)});
     }
     CHECK(most == Approx(0.8).epsilon(0.01));
   }

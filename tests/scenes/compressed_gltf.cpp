@@ -23,7 +23,8 @@ Grid wavy_grid(int n) {
   Grid grid;
   for (int y = 0; y <= n; ++y) {
     for (int x = 0; x <= n; ++x) {
-      const float u = static_cast<float>(x) / static_cast<float>(n), v = static_cast<float>(y) / static_cast<float>(n);
+      const float u = static_cast<float>(x) / static_cast<float>(n),
+                  v = static_cast<float>(y) / static_cast<float>(n);
       const float slope = 0.25F * (u - 0.5F), length = std::sqrt(1 + slope * slope);
       grid.positions.insert(grid.positions.end(), {u, 0.125F * (u - 0.5F) * (u - 0.5F), v});
       grid.normals.insert(grid.normals.end(), {-slope / length, 1 / length, 0});
@@ -42,7 +43,8 @@ Grid wavy_grid(int n) {
 
 std::vector<View> plain_views(const Grid& grid) {
   std::vector<View> views;
-  for (const auto& bytes : {bytes_of(grid.positions), bytes_of(grid.normals), bytes_of(grid.uvs), bytes_of(grid.indices)})
+  for (const auto& bytes :
+       {bytes_of(grid.positions), bytes_of(grid.normals), bytes_of(grid.uvs), bytes_of(grid.indices)})
     views.push_back({bytes, bytes.size(), ""});
   return views;
 }
@@ -52,13 +54,14 @@ std::string grid_gltf(const Grid& grid, const std::vector<View>& views, const st
   std::string table;
   std::size_t offset = 0;  // in the fallback buffer, number 1
   for (const View& view : views) {
-    const std::string place = fmt::format(R"("byteOffset":{},"byteLength":{})", data.size(), view.bytes.size());
+    const std::string place =
+        fmt::format(R"("byteOffset":{},"byteLength":{})", data.size(), view.bytes.size());
     if (view.extension.empty()) {
       table += fmt::format(R"({}{{"buffer":0,{}}})", table.empty() ? "" : ",", place);
     } else {
-      table +=
-          fmt::format(R"({}{{"buffer":1,"byteOffset":{},"byteLength":{},"extensions":{{"EXT_meshopt_compression":{{"buffer":0,{},{}}}}}}})",
-                      table.empty() ? "" : ",", offset, view.expanded, place, view.extension);
+      table += fmt::format(
+          R"({}{{"buffer":1,"byteOffset":{},"byteLength":{},"extensions":{{"EXT_meshopt_compression":{{"buffer":0,{},{}}}}}}})",
+          table.empty() ? "" : ",", offset, view.expanded, place, view.extension);
     }
     offset += (view.expanded + 3) / 4 * 4;
     data.insert(data.end(), view.bytes.begin(), view.bytes.end());
@@ -72,7 +75,8 @@ std::string grid_gltf(const Grid& grid, const std::vector<View>& views, const st
       R"({{"bufferView":2,"componentType":5126,"count":{0},"type":"VEC2"}},{{"bufferView":3,"componentType":5125,"count":{2},"type":"SCALAR"}}],)"
       R"("bufferViews":[{3}],"buffers":[{{"byteLength":{4},"uri":"{5}"}},)"
       R"({{"byteLength":{6},"extensions":{{"EXT_meshopt_compression":{{"fallback":true}}}}}}]}})",
-      vertices, normals, grid.indices.size(), table, data.size(), data_uri(data), std::max<std::size_t>(offset, 1));
+      vertices, normals, grid.indices.size(), table, data.size(), data_uri(data),
+      std::max<std::size_t>(offset, 1));
 }
 
 }  // namespace quadrille::scenes

@@ -1,4 +1,5 @@
-/// glTF files with a curved grid as their only mesh, plain or compressed by the encoders of the libraries that the product decodes with.
+/// glTF files with a curved grid as their only mesh, plain or compressed by the encoders of the libraries
+/// that the product decodes with.
 #pragma once
 
 #include <cstddef>
@@ -20,10 +21,12 @@ struct Grid {
 struct View {
   std::vector<std::byte> bytes;
   std::size_t expanded = 0;
-  std::string extension;  ///< of EXT_meshopt_compression without buffer, byteOffset and byteLength; empty: plain
+  /// of EXT_meshopt_compression without buffer, byteOffset and byteLength; empty: plain
+  std::string extension;
 };
 
-/// A file whose mesh has the views as accessors: positions, normals, texture coordinates, indices. `normals` describes the second accessor's type.
+/// A file whose mesh has the views as accessors: positions, normals, texture coordinates, indices. `normals`
+/// describes the second accessor's type.
 [[nodiscard]] std::string grid_gltf(const Grid& grid, const std::vector<View>& views,
                                     const std::string& normals = R"("componentType":5126)");
 

@@ -56,7 +56,9 @@ SceneData square_under(const Light& light, float size = 1) {
 
 }  // namespace
 
-TEST_CASE("exposure: twice is as if the file's lights were twice as strong and its materials glowed twice as much") {
+TEST_CASE(
+    "exposure: twice is as if the file's lights were twice as strong and its materials glowed twice as "
+    "much") {
   for (const char* type : {"directional", "point"}) {
     const auto a = recorded(lit(type, 8, 0.25), 2), b = recorded(lit(type, 16, 0.5), 1);
     REQUIRE(a.buffers == b.buffers);
@@ -91,7 +93,9 @@ TEST_CASE("exposure: chosen, a light of any strength brings what the default lig
   }
 }
 
-TEST_CASE("exposure: chosen where no light reaches anything, it is one, and it is finite where a lamp touches what it lights") {
+TEST_CASE(
+    "exposure: chosen where no light reaches anything, it is one, and it is finite where a lamp touches what "
+    "it lights") {
   Light spot;
   spot.kind = Light::Kind::kSpot;
   spot.color = glm::vec3(100);

@@ -28,7 +28,8 @@ tinygltf::BufferView view(std::size_t offset, std::size_t length, std::size_t st
   return v;
 }
 
-tinygltf::Accessor accessor(int buffer_view, int component, int type, std::size_t count, bool normalized = false) {
+tinygltf::Accessor accessor(int buffer_view, int component, int type, std::size_t count,
+                            bool normalized = false) {
   tinygltf::Accessor a;
   a.bufferView = buffer_view;
   a.componentType = component;
@@ -38,7 +39,8 @@ tinygltf::Accessor accessor(int buffer_view, int component, int type, std::size_
   return a;
 }
 
-GltfFile file_with(std::vector<unsigned char> data, std::vector<tinygltf::BufferView> views, tinygltf::Accessor a) {
+GltfFile file_with(std::vector<unsigned char> data, std::vector<tinygltf::BufferView> views,
+                   tinygltf::Accessor a) {
   GltfFile file;
   file.path = "t.gltf";
   file.model.buffers.resize(1);
@@ -78,13 +80,16 @@ TEST_CASE("accessor: tightly packed and interleaved elements are the same elemen
 TEST_CASE("accessor: normalized integers end at exactly one and minus one") {
   std::vector<unsigned char> data;
   append<std::int8_t>(data, {-128, -127, 0, 127});
-  REQUIRE(values(file_with(data, {view(0, 4)}, accessor(0, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_TYPE_SCALAR, 4, true))) ==
+  REQUIRE(values(file_with(data, {view(0, 4)},
+                           accessor(0, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_TYPE_SCALAR, 4, true))) ==
           std::vector<float>{-1, -1, 0, 1});
   data.clear();
   append<std::uint16_t>(data, {0, 65535, 257});
-  REQUIRE(values(file_with(data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, 3, true))) ==
-          std::vector<float>{0, 1, 257.0F / 65535});
-  REQUIRE(values(file_with(data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, 3))) ==
+  REQUIRE(values(file_with(data, {view(0, 6)},
+                           accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, 3,
+                                    true))) == std::vector<float>{0, 1, 257.0F / 65535});
+  REQUIRE(values(file_with(data, {view(0, 6)},
+                           accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, 3))) ==
           std::vector<float>{0, 65535, 257});
 }
 
@@ -112,14 +117,18 @@ TEST_CASE("accessor: whatever reaches beyond its bytes is refused with file, pla
   const std::vector<unsigned char> data(24);
   const auto a = accessor(0, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 2);
   REQUIRE(refusal(file_with(data, {view(0, 24)}, a)) == "read");
-  REQUIRE_THAT(refusal(file_with(data, {view(0, 23)}, a)), Catch::StartsWith("t.gltf: here: accessor 0: 2 elements"));
-  REQUIRE_THAT(refusal(file_with(data, {view(1, 24)}, a)), Catch::Contains("bufferViews[0]: bytes 1+24 reach beyond"));
+  REQUIRE_THAT(refusal(file_with(data, {view(0, 23)}, a)),
+               Catch::StartsWith("t.gltf: here: accessor 0: 2 elements"));
+  REQUIRE_THAT(refusal(file_with(data, {view(1, 24)}, a)),
+               Catch::Contains("bufferViews[0]: bytes 1+24 reach beyond"));
   REQUIRE_THAT(refusal(file_with(data, {view(SIZE_MAX, 24)}, a)), Catch::Contains("reach beyond"));
-  REQUIRE_THAT(refusal(file_with(data, {view(0, 24, 13)}, a)), Catch::Contains("2 elements of 12 bytes, 13 apart"));
+  REQUIRE_THAT(refusal(file_with(data, {view(0, 24, 13)}, a)),
+               Catch::Contains("2 elements of 12 bytes, 13 apart"));
   REQUIRE_THAT(refusal(file_with(data, {view(0, 24, 8)}, a)), Catch::Contains("byteStride 8"));
   REQUIRE_THAT(refusal(file_with(data, {}, a)), Catch::Contains("bufferView 0 does not exist"));
   REQUIRE_THAT(refusal(file_with(data, {view(0, 24)}, a), 1), Catch::Contains("accessor 1: does not exist"));
-  REQUIRE_THAT(refusal(file_with(data, {view(0, 24)}, a), -2), Catch::Contains("accessor -2: does not exist"));
+  REQUIRE_THAT(refusal(file_with(data, {view(0, 24)}, a), -2),
+               Catch::Contains("accessor -2: does not exist"));
   auto shifted = a;
   shifted.byteOffset = SIZE_MAX - 3;
   REQUIRE_THAT(refusal(file_with(data, {view(0, 24)}, shifted)), Catch::Contains("reach beyond"));
@@ -135,18 +144,23 @@ TEST_CASE("accessor: counts that would take gigabytes are refused before allocat
 TEST_CASE("vertex array: colours keep their 8 and 16 bits, three components get an alpha of one") {
   std::vector<unsigned char> data;
   append<std::uint8_t>(data, {1, 2, 3, 250, 251, 252});
-  const GltfFile file = file_with(data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC3, 2, true));
+  const GltfFile file = file_with(
+      data, {view(0, 6)}, accessor(0, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC3, 2, true));
   const Array array = to_vertex_array(file, read_accessor(file, 0, "c"), Semantic::kColor, "c");
   REQUIRE(array.format == traces::Format::kR8G8B8A8UnormVertex);
-  REQUIRE(array.data == std::vector<std::byte>{std::byte{1}, std::byte{2}, std::byte{3}, std::byte{255}, std::byte{250}, std::byte{251},
-                                               std::byte{252}, std::byte{255}});
+  REQUIRE(array.data == std::vector<std::byte>{std::byte{1}, std::byte{2}, std::byte{3}, std::byte{255},
+                                               std::byte{250}, std::byte{251}, std::byte{252},
+                                               std::byte{255}});
 }
 
 TEST_CASE("vertex array: a type that glTF does not allow, and values that are not finite, are refused") {
   std::vector<unsigned char> data;
   append<float>(data, {0, 1, std::numeric_limits<float>::quiet_NaN()});
-  const GltfFile file = file_with(data, {view(0, 12)}, accessor(0, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 1));
+  const GltfFile file =
+      file_with(data, {view(0, 12)}, accessor(0, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3, 1));
   const Elements elements = read_accessor(file, 0, "p");
-  REQUIRE_THROWS_WITH(to_vertex_array(file, elements, Semantic::kPosition, "p"), "t.gltf: p: element 0 is not finite");
-  REQUIRE_THROWS_WITH(to_vertex_array(file, elements, Semantic::kUv0, "p"), Catch::Contains("not allowed for TEXCOORD_0"));
+  REQUIRE_THROWS_WITH(to_vertex_array(file, elements, Semantic::kPosition, "p"),
+                      "t.gltf: p: element 0 is not finite");
+  REQUIRE_THROWS_WITH(to_vertex_array(file, elements, Semantic::kUv0, "p"),
+                      Catch::Contains("not allowed for TEXCOORD_0"));
 }

@@ -56,7 +56,9 @@ std::string triangle_bytes() {
 std::string triangle_from(const std::string& uri, std::size_t bytes = 36) {
   std::string text = triangle_gltf();
   const std::size_t start = text.find(R"("byteLength":36,"uri":)"), end = text.find('}', start);
-  return text.replace(start, end - start, fmt::format(R"("byteLength":{}{})", bytes, uri.empty() ? "" : R"(,"uri":")" + uri + "\""));
+  return text.replace(
+      start, end - start,
+      fmt::format(R"("byteLength":{}{})", bytes, uri.empty() ? "" : R"(,"uri":")" + uri + "\""));
 }
 
 /// Loads the triangle from a file beside it.
@@ -76,16 +78,21 @@ std::string load_beside(const std::string& uri, const std::string& name) {
 TEST_CASE("binary glTF: chunks of unknown types are passed over, and the BIN chunk's padding") {
   const std::string json = triangle_from("");
   REQUIRE(load_binary(binary_file({{"JSON", json}, {kBin, triangle_bytes()}})) == "loaded");
-  REQUIRE(load_binary(binary_file({{"JSON", json}, {kBin, triangle_bytes() + std::string(3, '\0')}, {"XYZ1", "what"}})) == "loaded");
+  REQUIRE(load_binary(binary_file(
+              {{"JSON", json}, {kBin, triangle_bytes() + std::string(3, '\0')}, {"XYZ1", "what"}})) ==
+          "loaded");
 }
 
 TEST_CASE("binary glTF: chunks that do not fit, come in another order or are missing are refused") {
   const std::string json = triangle_from("");
-  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}, {kBin, "short"}})), Contains("buffers[0]: byteLength 36 where there are 5 bytes"));
-  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}})), Contains("buffer 0 has no bytes (no uri, no BIN chunk)"));
+  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}, {kBin, "short"}})),
+               Contains("buffers[0]: byteLength 36 where there are 5 bytes"));
+  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}})),
+               Contains("buffer 0 has no bytes (no uri, no BIN chunk)"));
   REQUIRE_THAT(load_binary(binary_file({{kBin, triangle_bytes()}, {"JSON", json}})),
                Contains("the first chunk, and only it, holds JSON; chunk 0"));
-  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}, {"XYZ1", "what"}, {kBin, triangle_bytes()}})), Contains("chunk 2 is BIN"));
+  REQUIRE_THAT(load_binary(binary_file({{"JSON", json}, {"XYZ1", "what"}, {kBin, triangle_bytes()}})),
+               Contains("chunk 2 is BIN"));
   REQUIRE_THAT(load_binary(binary_file({{"JSON", json}, {"JSON", json}})), Contains("chunk 1 breaks that"));
   REQUIRE_THAT(load_binary(binary_file({})), Contains("is truncated"));
   std::string bytes = binary_file({{"JSON", json}, {kBin, triangle_bytes()}});
@@ -105,15 +112,20 @@ TEST_CASE("uris: files beside the scene or below it, plain or percent-encoded") 
   REQUIRE_THAT(load_beside("b.bin", "a.bin"), Contains("buffers[0]: ") && Contains("b.bin"));
 }
 
-TEST_CASE("uris: absolute paths, other schemes and ways out of the folder are refused before anything is opened") {
-  REQUIRE_THAT(load_result(triangle_from("/etc/passwd")), Contains("buffers[0]: '/etc/passwd': an absolute path"));
+TEST_CASE(
+    "uris: absolute paths, other schemes and ways out of the folder are refused before anything is opened") {
+  REQUIRE_THAT(load_result(triangle_from("/etc/passwd")),
+               Contains("buffers[0]: '/etc/passwd': an absolute path"));
   REQUIRE_THAT(load_result(triangle_from("../a.bin")), Contains("leads out of the scene's folder"));
-  REQUIRE_THAT(load_result(triangle_from("a/%2e%2e/..%2fb.bin")), Contains("leads out of the scene's folder"));
-  REQUIRE_THAT(load_result(triangle_from("file:///a.bin")), Contains("only data URIs and files beside the scene are read"));
+  REQUIRE_THAT(load_result(triangle_from("a/%2e%2e/..%2fb.bin")),
+               Contains("leads out of the scene's folder"));
+  REQUIRE_THAT(load_result(triangle_from("file:///a.bin")),
+               Contains("only data URIs and files beside the scene are read"));
   REQUIRE_THAT(load_result(triangle_from("https://a.b/c.bin")), Contains("only data URIs"));
   REQUIRE_THAT(load_result(triangle_from("C:\\\\a.bin")), Contains("only data URIs"));
   REQUIRE_THAT(load_result(triangle_from(R"(\\\\host\\a.bin)")), Contains("an absolute path"));
-  REQUIRE_THAT(load_result(triangle_from(R"(a\\..\\..\\b.bin)")), Contains("leads out of the scene's folder"));
+  REQUIRE_THAT(load_result(triangle_from(R"(a\\..\\..\\b.bin)")),
+               Contains("leads out of the scene's folder"));
   REQUIRE_THAT(load_result(triangle_from("a%00b.bin")), Contains("no zero byte"));
   REQUIRE_THAT(load_result(triangle_from(".")), Contains("buffers[0]: "));
 }
@@ -125,7 +137,8 @@ TEST_CASE("uris: data with and without base64 and padding, and what is no base64
   std::string more = triangle_gltf();
   more.replace(more.find(R"("buffers":[)"), 11, R"("buffers":[{"byteLength":9,"uri":""},)")
       .replace(more.find(R"("buffer":0)"), 10, R"("buffer":1)");
-  REQUIRE(load_result(more) == "loaded");                     // a buffer without a name is none; nothing is read from it
+  // a buffer without a name is none; nothing is read from it
+  REQUIRE(load_result(more) == "loaded");
   REQUIRE(load_result(triangle_from(good, 35)) != "loaded");  // the view reaches beyond
   const auto fetched = [](const std::string& uri) {
     const std::vector<std::byte> bytes = fetch_uri("t.gltf", uri, "t.gltf: here", 1000);
@@ -138,8 +151,8 @@ TEST_CASE("uris: data with and without base64 and padding, and what is no base64
   REQUIRE(fetched("data:;base64,YWJjZA%3D%3D") == "abcd");
   REQUIRE(fetched("data:;base64,Pz8%2FPj4%2B") == "\?\?\?>>>");
   REQUIRE(fetched("data:,plain") == "plain");
-  for (const char* bad :
-       {"data:;base64,YWJjZA=", "data:;base64,Y", "data:;base64,YW*j", "data:;base64,Y=Wj", "data:;base64,YW-_", "data:base64"}) {
+  for (const char* bad : {"data:;base64,YWJjZA=", "data:;base64,Y", "data:;base64,YW*j", "data:;base64,Y=Wj",
+                          "data:;base64,YW-_", "data:base64"}) {
     CAPTURE(bad);
     REQUIRE_THROWS_WITH(fetched(bad), Catch::StartsWith("t.gltf: here: its data URI"));
   }
@@ -153,14 +166,17 @@ TEST_CASE("gltf: JSON that is not UTF-8 is refused") {
 
 TEST_CASE("gltf: Basis textures fall back to the plain image, and are refused where there is none") {
   const auto file = [](const std::string& texture, const std::string& more) {
-    return triangle_gltf(R"(,"material":0)",
-                         R"(,"materials":[{"emissiveTexture":{"index":0}}],"textures":[{)" + texture +
-                             R"("extensions":{"KHR_texture_basisu":{"source":1}}}],"images":[{"uri":"none.png"},{"uri":"none.ktx2"}])" +
-                             more);
+    return triangle_gltf(
+        R"(,"material":0)",
+        R"(,"materials":[{"emissiveTexture":{"index":0}}],"textures":[{)" + texture +
+            R"("extensions":{"KHR_texture_basisu":{"source":1}}}],"images":[{"uri":"none.png"},{"uri":"none.ktx2"}])" +
+            more);
   };
-  REQUIRE_THAT(load_result(file("", "")),
-               Contains("textures[0]: its only image is KHR_texture_basisu's; Basis textures are not supported"));
-  REQUIRE_THAT(load_result(file(R"("source":0,)", "")), Contains("images[0]") && Contains("none.png"));  // the fallback is what is opened
+  REQUIRE_THAT(
+      load_result(file("", "")),
+      Contains("textures[0]: its only image is KHR_texture_basisu's; Basis textures are not supported"));
+  // the fallback is what is opened
+  REQUIRE_THAT(load_result(file(R"("source":0,)", "")), Contains("images[0]") && Contains("none.png"));
   REQUIRE_THAT(load_result(file(R"("source":0,)", R"(,"extensionsRequired":["KHR_texture_basisu"])")),
                Contains("extensionsRequired: KHR_texture_basisu not supported"));
 }
@@ -186,31 +202,38 @@ TEST_CASE("gltf: the layers of a material are read from its extensions, wrong va
     return load_gltf(file.path()).materials[0].layers;
   };
   REQUIRE_FALSE(
-      layers(R"("KHR_materials_ior":{"ior":1.5},"KHR_materials_specular":{},"KHR_materials_clearcoat":{},"KHR_materials_sheen":{})").any());
+      layers(
+          R"("KHR_materials_ior":{"ior":1.5},"KHR_materials_specular":{},"KHR_materials_clearcoat":{},"KHR_materials_sheen":{})")
+          .any());
   REQUIRE(layers(R"("KHR_materials_ior":{"ior":3})").specular_color == glm::vec3(0.25F));
   REQUIRE(layers(R"("KHR_materials_ior":{"ior":0})").specular_color == glm::vec3(1));
-  REQUIRE(layers(R"("KHR_materials_ior":{"ior":3},"KHR_materials_specular":{"specularFactor":0.5,"specularColorFactor":[1,2,0]})")
-              .specular_color == glm::vec3(0.25F, 0.5F, 0));
+  REQUIRE(
+      layers(
+          R"("KHR_materials_ior":{"ior":3},"KHR_materials_specular":{"specularFactor":0.5,"specularColorFactor":[1,2,0]})")
+          .specular_color == glm::vec3(0.25F, 0.5F, 0));
   const MaterialLayers glass = layers(
       R"("KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_volume":{"thicknessFactor":2,"attenuationDistance":1,"attenuationColor":[1,0.5,0.25]})");
   REQUIRE(glass.transmits());
   REQUIRE(glass.absorption == glm::vec3(0, -2, -4));
   REQUIRE_THAT(load_result(material(R"("KHR_materials_ior":{"ior":0.5})")),
                Contains("materials[0].KHR_materials_ior.ior: 0.5 is neither 0 nor at least 1"));
-  REQUIRE_THAT(load_result(material(R"("KHR_materials_clearcoat":{"clearcoatFactor":2})")), Contains("clearcoatFactor: 2 is outside 0..1"));
-  REQUIRE_THAT(load_result(material(R"("KHR_materials_sheen":{"sheenColorFactor":[1,1]})")),
-               Contains("materials[0].extensions.KHR_materials_sheen.sheenColorFactor: an array of 3 numbers is due"));
+  REQUIRE_THAT(load_result(material(R"("KHR_materials_clearcoat":{"clearcoatFactor":2})")),
+               Contains("clearcoatFactor: 2 is outside 0..1"));
   REQUIRE_THAT(
-      load_result(material(R"("KHR_materials_transmission":{"transmissionTexture":{"index":4}})")),
-      Contains("materials[0].extensions.KHR_materials_transmission.transmissionTexture.index: texture 4 does not exist (the file has 0)"));
+      load_result(material(R"("KHR_materials_sheen":{"sheenColorFactor":[1,1]})")),
+      Contains("materials[0].extensions.KHR_materials_sheen.sheenColorFactor: an array of 3 numbers is due"));
+  REQUIRE_THAT(load_result(material(R"("KHR_materials_transmission":{"transmissionTexture":{"index":4}})")),
+               Contains("materials[0].extensions.KHR_materials_transmission.transmissionTexture.index: "
+                        "texture 4 does not exist (the file has 0)"));
 }
 
 TEST_CASE("gltf: numbers of an extension beyond 32 bits are read as they are written") {
   const auto material = [](const std::string& distance) {
-    return triangle_gltf(R"(,"material":0)",
-                         R"(,"materials":[{"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_volume":)"
-                         R"({"thicknessFactor":1e10,"attenuationColor":[0.5,0.5,0.5],"attenuationDistance":)" +
-                             distance + "}}}]");
+    return triangle_gltf(
+        R"(,"material":0)",
+        R"(,"materials":[{"extensions":{"KHR_materials_transmission":{"transmissionFactor":1},"KHR_materials_volume":)"
+        R"({"thicknessFactor":1e10,"attenuationColor":[0.5,0.5,0.5],"attenuationDistance":)" +
+            distance + "}}}]");
   };
   const auto absorption = [&](const std::string& distance) {
     const TempGltf file(material(distance));
@@ -223,21 +246,28 @@ TEST_CASE("gltf: numbers of an extension beyond 32 bits are read as they are wri
   REQUIRE(absorption("3e9") == Approx(-10 / 3.0));
   REQUIRE(absorption("2147483648") == Approx(-1e10 / 2147483648.0));
   REQUIRE(absorption("2147483647") == Approx(-1e10 / 2147483647.0));
-  REQUIRE_THAT(load_result(material("-3000000000")), Contains("attenuationDistance: -3000000000 is not positive"));
-  REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":{"light":4294967296}})")),
-               Contains("nodes[0].extensions.KHR_lights_punctual.light: light 4294967296 does not exist (the file has 0)"));
+  REQUIRE_THAT(load_result(material("-3000000000")),
+               Contains("attenuationDistance: -3000000000 is not positive"));
+  REQUIRE_THAT(
+      load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":{"light":4294967296}})")),
+      Contains(
+          "nodes[0].extensions.KHR_lights_punctual.light: light 4294967296 does not exist (the file has 0)"));
 }
 
-TEST_CASE("gltf: numbers of an extension that are words or beyond all indices are refused, not taken for zero") {
+TEST_CASE(
+    "gltf: numbers of an extension that are words or beyond all indices are refused, not taken for zero") {
   const std::string lights = R"(,"extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}})";
   for (const std::string light : {"\"x\"", "1e300", "0.5", "-1", "null"}) {
     CAPTURE(light);
-    REQUIRE_THAT(load_result(triangle_gltf("", lights, R"(,"extensions":{"KHR_lights_punctual":{"light":)" + light + "}}")),
+    REQUIRE_THAT(load_result(triangle_gltf(
+                     "", lights, R"(,"extensions":{"KHR_lights_punctual":{"light":)" + light + "}}")),
                  Contains("nodes[0].extensions.KHR_lights_punctual.light: "));
   }
-  REQUIRE_THAT(load_result(triangle_gltf(R"(,"material":0)",
-                                         R"(,"materials":[{"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":"x"}}}])")),
-               Contains("materials[0].extensions.KHR_materials_emissive_strength.emissiveStrength: a number is due"));
+  REQUIRE_THAT(
+      load_result(triangle_gltf(
+          R"(,"material":0)",
+          R"(,"materials":[{"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":"x"}}}])")),
+      Contains("materials[0].extensions.KHR_materials_emissive_strength.emissiveStrength: a number is due"));
 }
 
 TEST_CASE("uris: a scene named without its folder lacks a file as any other does") {
@@ -252,7 +282,8 @@ TEST_CASE("uris: a scene named without its folder lacks a file as any other does
   CHECK_THAT(said, Contains("missing.bin") && Contains("no such file"));
 }
 
-TEST_CASE("uris: a link that leads out of the folder is refused, a scene file that is a link itself is read") {
+TEST_CASE(
+    "uris: a link that leads out of the folder is refused, a scene file that is a link itself is read") {
   namespace fs = std::filesystem;
   const std::vector<float> corners{0, 0, 0, 1, 0, 0, 0, 1, 0};
   const TempGltf inner(triangle_from("a.bin")), outer(triangle_from("a.bin"));
@@ -266,7 +297,8 @@ TEST_CASE("uris: a link that leads out of the folder is refused, a scene file th
   traces::write_whole_file((other / "real.bin").string(), std::as_bytes(std::span(corners)));
   traces::write_whole_file((folder / "real.bin").string(), std::as_bytes(std::span(corners)));
   fs::create_symlink(other / "real.bin", folder / "a.bin");
-  REQUIRE_THAT(result(inner.path()), Contains("buffers[0]: 'a.bin': a link that leads out of the scene's folder"));
+  REQUIRE_THAT(result(inner.path()),
+               Contains("buffers[0]: 'a.bin': a link that leads out of the scene's folder"));
   fs::remove(folder / "a.bin");
   fs::create_symlink("real.bin", folder / "a.bin");
   REQUIRE(result(inner.path()) == "loaded");
@@ -287,8 +319,10 @@ TEST_CASE("gltf: images of one buffer view share its bytes, and their pixels are
   std::vector<std::byte> bytes = traces::read_whole_file(png, 1 << 20);
   const auto load = [&](const std::string& images, SceneData& data) -> std::string {
     std::string all = triangle_gltf("", R"(,"images":[)" + images + "]");
-    all.insert(all.find(R"("byteLength":36})") + 16, fmt::format(R"(,{{"buffer":1,"byteLength":{}}})", bytes.size()));
-    all.insert(all.find(']', all.find(R"("buffers":[)")), fmt::format(R"(,{{"byteLength":{},"uri":"{}"}})", bytes.size(), data_uri(bytes)));
+    all.insert(all.find(R"("byteLength":36})") + 16,
+               fmt::format(R"(,{{"buffer":1,"byteLength":{}}})", bytes.size()));
+    all.insert(all.find(']', all.find(R"("buffers":[)")),
+               fmt::format(R"(,{{"byteLength":{},"uri":"{}"}})", bytes.size(), data_uri(bytes)));
     const TempGltf file(all);
     GltfChoice choice;
     choice.leave_out = false;
@@ -308,5 +342,6 @@ TEST_CASE("gltf: images of one buffer view share its bytes, and their pixels are
   bytes[19] = bytes[23] = std::byte{0};
   bytes.resize(1500000);
   REQUIRE(load(one, data) == "loaded");
-  REQUIRE_THAT(load(one + "," + one, data), Contains("images[1]: the images up to here are 134217728 pixels in 1500000 bytes of files"));
+  REQUIRE_THAT(load(one + "," + one, data),
+               Contains("images[1]: the images up to here are 134217728 pixels in 1500000 bytes of files"));
 }

@@ -32,15 +32,18 @@ std::string instanced(const std::vector<Stream>& streams, const std::string& mat
   for (std::size_t i = 0; i < streams.size(); ++i) {
     const Stream& s = streams[i];
     const std::size_t components = std::string(s.type) == "VEC4" ? 4 : 3;
-    accessors +=
-        fmt::format(R"(,{{"bufferView":{},"componentType":5126,"count":{},"type":"{}"}})", i + 1, s.values.size() / components, s.type);
+    accessors += fmt::format(R"(,{{"bufferView":{},"componentType":5126,"count":{},"type":"{}"}})", i + 1,
+                             s.values.size() / components, s.type);
     views += fmt::format(R"(,{{"buffer":{},"byteLength":{}}})", i + 1, 4 * s.values.size());
     buffers += fmt::format(R"(,{{"byteLength":{},"uri":"{}"}})", 4 * s.values.size(), data_uri_of(s.values));
     attributes += fmt::format(R"({}"{}":{})", i == 0 ? "" : ",", s.name, i + 1);
   }
-  std::string text = triangle_gltf(material.empty() ? "" : R"(,"material":0)", material,
-                                   R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{)" + attributes + "}}}");
-  const auto put = [&](const std::string& before, const std::string& what) { text.insert(text.find(before) + before.size(), what); };
+  std::string text =
+      triangle_gltf(material.empty() ? "" : R"(,"material":0)", material,
+                    R"(,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{)" + attributes + "}}}");
+  const auto put = [&](const std::string& before, const std::string& what) {
+    text.insert(text.find(before) + before.size(), what);
+  };
   put(R"("max":[1,1,0]})", accessors);
   put(R"("byteLength":36})", views);
   text.insert(text.find(']', text.find(R"("buffers":[)")), buffers);
@@ -81,8 +84,9 @@ TEST_CASE("instancing: copies that mirror are a draw of their own, with the othe
 
 TEST_CASE("instancing: matrices are scale, then rotation, then translation, under the node's own") {
   const float half = 0.70710678F;
-  std::string text =
-      instanced({{"TRANSLATION", "VEC3", {1, 2, 3}}, {"ROTATION", "VEC4", {0, 0, half, half}}, {"SCALE", "VEC3", {2, 3, 4}}});
+  std::string text = instanced({{"TRANSLATION", "VEC3", {1, 2, 3}},
+                                {"ROTATION", "VEC4", {0, 0, half, half}},
+                                {"SCALE", "VEC3", {2, 3, 4}}});
   text.insert(text.find(R"("mesh":0)"), R"("translation":[10,0,0],)");
   const glm::dmat4 m = load(text).copies[0][0];
   const glm::vec4 x = m * glm::dvec4(1, 0, 0, 1), y = m * glm::dvec4(0, 1, 0, 1);
@@ -92,12 +96,14 @@ TEST_CASE("instancing: matrices are scale, then rotation, then translation, unde
 
 TEST_CASE("instancing: blended copies are sorted from back to front, opaque ones keep their order") {
   for (const bool blended : {false, true}) {
-    SceneData scene = load(instanced({{"TRANSLATION", "VEC3", {0, 0, 1, 0, 0, 5, 0, 0, 3}}}, R"(,"materials":[{}])"));
+    SceneData scene =
+        load(instanced({{"TRANSLATION", "VEC3", {0, 0, 1, 0, 0, 5, 0, 0, 3}}}, R"(,"materials":[{}])"));
     if (blended) scene.materials[0].alpha = AlphaMode::kBlend;
     scene.cameras.resize(1);
     scene.cameras[0].pose = glm::translate(glm::mat4(1), glm::vec3(0, 0, 10));
     const traces::CommandStream stream = Recorder(scene, {}).record();
-    const auto found = std::ranges::find_if(stream.buffers, [](const traces::Buffer& b) { return b.name.ends_with(" instances"); });
+    const auto found = std::ranges::find_if(
+        stream.buffers, [](const traces::Buffer& b) { return b.name.ends_with(" instances"); });
     REQUIRE(found != stream.buffers.end());
     std::vector<float> z;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -108,7 +114,8 @@ TEST_CASE("instancing: blended copies are sorted from back to front, opaque ones
   }
 }
 
-TEST_CASE("instancing: in visibility mode each copy is a draw, so that its triangles have their own numbers") {
+TEST_CASE(
+    "instancing: in visibility mode each copy is a draw, so that its triangles have their own numbers") {
   const SceneData scene = load(instanced({kThree}));
   SceneOptions options;
   options.visibility = true;
@@ -130,7 +137,8 @@ SceneData posed_copies(const std::string& weight, std::vector<glm::dmat4> copies
 }
 
 /// What the host has posed, in the order of recording.
-std::vector<std::vector<std::byte>> posed_buffers(const SceneData& scene, const SceneOptions& options, const std::string& semantic) {
+std::vector<std::vector<std::byte>> posed_buffers(const SceneData& scene, const SceneOptions& options,
+                                                  const std::string& semantic) {
   std::vector<std::vector<std::byte>> found;
   for (const traces::Buffer& buffer : Recorder(scene, options).record().buffers) {
     if (buffer.name.ends_with(semantic + " posed")) found.push_back(buffer.data);
@@ -140,8 +148,11 @@ std::vector<std::vector<std::byte>> posed_buffers(const SceneData& scene, const 
 
 }  // namespace
 
-TEST_CASE("instancing: posed copies share one posed mesh, the same one in colours, in ids, and under a vertex shader of the user's") {
-  SceneData scene = posed_copies("[0.3]", {glm::dmat4(1), glm::translate(glm::dmat4(1), glm::dvec3(2, 0, 0))});
+TEST_CASE(
+    "instancing: posed copies share one posed mesh, the same one in colours, in ids, and under a vertex "
+    "shader of the user's") {
+  SceneData scene =
+      posed_copies("[0.3]", {glm::dmat4(1), glm::translate(glm::dmat4(1), glm::dvec3(2, 0, 0))});
   Instance mirrored = scene.instances[0];
   mirrored.copies = 1;
   scene.instances.push_back(mirrored);
@@ -164,11 +175,13 @@ TEST_CASE("instancing: posed copies share one posed mesh, the same one in colour
 
 TEST_CASE("instancing: blended copies are sorted by where their pose has put them") {
   // At rest the turned copy is nearer by one; posed, ten along its own x takes it ten back.
-  const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 1)), 1.5707963267948966, glm::dvec3(0, 1, 0));
+  const glm::dmat4 turned = glm::rotate(glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 1)),
+                                        1.5707963267948966, glm::dvec3(0, 1, 0));
   SceneData scene = posed_copies("[10]", {glm::dmat4(1), turned});
   for (Material& material : scene.materials) material.alpha = AlphaMode::kBlend;
   const traces::CommandStream stream = Recorder(scene, {}).record();
-  const auto found = std::ranges::find_if(stream.buffers, [](const traces::Buffer& b) { return b.name.ends_with(" instances"); });
+  const auto found = std::ranges::find_if(
+      stream.buffers, [](const traces::Buffer& b) { return b.name.ends_with(" instances"); });
   REQUIRE(found != stream.buffers.end());
   float first = 0;
   std::memcpy(&first, &found->data[44], sizeof(first));  // of the first copy: third row, last column
@@ -191,9 +204,11 @@ TEST_CASE("instancing: attributes that only an application knows say how many co
   const SceneData scene = load(text);
   REQUIRE(scene.copies.size() == 1);
   REQUIRE(scene.copies[0].size() == 2);
-  for (const glm::dmat4& copy : scene.copies[0]) CHECK(copy == glm::translate(glm::dmat4(1), glm::dvec3(10, 0, 0)));
+  for (const glm::dmat4& copy : scene.copies[0])
+    CHECK(copy == glm::translate(glm::dmat4(1), glm::dvec3(10, 0, 0)));
   CHECK(load(instanced({ids, {"SCALE", "VEC3", {1, 1, 1, 2, 2, 2}}})).copies[0][1][0].x == 2);
-  CHECK_THAT(load_result(instanced({kThree, ids})), Contains("attributes._FEATURE_ID_0: 2 elements where another attribute has 3"));
+  CHECK_THAT(load_result(instanced({kThree, ids})),
+             Contains("attributes._FEATURE_ID_0: 2 elements where another attribute has 3"));
 }
 
 TEST_CASE("instancing: without any attribute the mesh is drawn once") {
@@ -202,13 +217,20 @@ TEST_CASE("instancing: without any attribute the mesh is drawn once") {
   CHECK(scene.instances[0].copies == -1);
 }
 
-TEST_CASE("instancing: unequal counts, other types and values that are not finite are refused with their place") {
-  REQUIRE_THAT(load_result(instanced({kThree, {"SCALE", "VEC3", {1, 1, 1}}})),
-               Contains("nodes[0].EXT_mesh_gpu_instancing.attributes.SCALE: 1 elements where another attribute has 3"));
-  REQUIRE_THAT(load_result(instanced({{"ROTATION", "VEC3", {1, 1, 1}}})), Contains("ROTATION: accessor 1 is not of 4 floats"));
-  REQUIRE_THAT(load_result(instanced({{"ROTATION", "VEC4", {0, 0, 0, 0}}})), Contains("element 0 is not a quaternion"));
-  REQUIRE_THAT(load_result(instanced({{"SCALE", "VEC3", {1, INFINITY, 1}}})), Contains("element 0 is not finite"));
-  REQUIRE_THAT(load_result(instanced({{"SCALE", "VEC3", {1e38F, 1e38F, 1e38F}}, {"TRANSLATION", "VEC3", {3e38F, 3e38F, 3e38F}}})),
+TEST_CASE(
+    "instancing: unequal counts, other types and values that are not finite are refused with their place") {
+  REQUIRE_THAT(
+      load_result(instanced({kThree, {"SCALE", "VEC3", {1, 1, 1}}})),
+      Contains(
+          "nodes[0].EXT_mesh_gpu_instancing.attributes.SCALE: 1 elements where another attribute has 3"));
+  REQUIRE_THAT(load_result(instanced({{"ROTATION", "VEC3", {1, 1, 1}}})),
+               Contains("ROTATION: accessor 1 is not of 4 floats"));
+  REQUIRE_THAT(load_result(instanced({{"ROTATION", "VEC4", {0, 0, 0, 0}}})),
+               Contains("element 0 is not a quaternion"));
+  REQUIRE_THAT(load_result(instanced({{"SCALE", "VEC3", {1, INFINITY, 1}}})),
+               Contains("element 0 is not finite"));
+  REQUIRE_THAT(load_result(instanced({{"SCALE", "VEC3", {1e38F, 1e38F, 1e38F}},
+                                      {"TRANSLATION", "VEC3", {3e38F, 3e38F, 3e38F}}})),
                Catch::Equals("loaded"));
 }
 
@@ -220,5 +242,6 @@ TEST_CASE("instancing: copies count once for each primitive of their mesh, over 
   text.insert(text.find(one) + one.size(), more);
   REQUIRE(load_result(text) == "loaded");  // 2^20
   text.insert(text.find(one) + one.size(), "," + one);
-  REQUIRE_THAT(load_result(text), Contains("nodes[0]: the scene has more than 1048576 instances of primitives"));
+  REQUIRE_THAT(load_result(text),
+               Contains("nodes[0]: the scene has more than 1048576 instances of primitives"));
 }

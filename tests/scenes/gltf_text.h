@@ -31,8 +31,10 @@ class TempGltf {
   std::string name_;
 };
 
-/// One triangle as a complete file. `primitive` is put into its primitive, `extra` at the top level (both with a leading comma, or empty).
-[[nodiscard]] std::string triangle_gltf(const std::string& primitive = "", const std::string& extra = "", const std::string& node = "");
+/// One triangle as a complete file. `primitive` is put into its primitive, `extra` at the top level (both
+/// with a leading comma, or empty).
+[[nodiscard]] std::string triangle_gltf(const std::string& primitive = "", const std::string& extra = "",
+                                        const std::string& node = "");
 
 /// The message of the UserError that loading the text raises, or "loaded".
 [[nodiscard]] std::string load_result(const std::string& text);

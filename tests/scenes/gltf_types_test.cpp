@@ -62,7 +62,8 @@ std::string spelled(const std::string& pointer) {
   for (std::size_t from = 1; from <= pointer.size();) {
     const std::size_t to = std::min(pointer.find('/', from), pointer.size());
     const std::string part = pointer.substr(from, to - from);
-    text += part.find_first_not_of("0123456789") == std::string::npos ? "[" + part + "]" : (text.empty() ? "" : ".") + part;
+    text += part.find_first_not_of("0123456789") == std::string::npos ? "[" + part + "]"
+                                                                      : (text.empty() ? "" : ".") + part;
     from = to + 1;
   }
   return text;
@@ -92,11 +93,14 @@ TEST_CASE("gltf types: every member of every depth is refused by its place when 
       ++places;
       for (const Json& bad : wrong) {
         // What may stand there: its own type; numbers may be fractions or negative; an array may be empty.
-        if (bad.type() == good.type() || (bad.is_number() && good.is_number()) || (bad.is_array() && good.is_array())) continue;
+        if (bad.type() == good.type() || (bad.is_number() && good.is_number()) ||
+            (bad.is_array() && good.is_array()))
+          continue;
         Json changed = document;
         changed[here] = bad;
         const std::string whole = spelled(at),
-                          around = whole.ends_with(']') ? whole.substr(0, whole.rfind('[')) : whole;  // or that of three numbers
+                          // or that of three numbers
+            around = whole.ends_with(']') ? whole.substr(0, whole.rfind('[')) : whole;
         INFO(at << " = " << bad.dump());
         REQUIRE_THAT(result(changed), Contains("f.gltf: " + around) && Contains(" is due"));
       }
@@ -107,8 +111,9 @@ TEST_CASE("gltf types: every member of every depth is refused by its place when 
 
 TEST_CASE("gltf types: indices, counts and offsets are integers of 0 or more") {
   for (const std::string at :
-       {"/scene", "/nodes/0/mesh", "/nodes/0/children/0", "/accessors/0/count", "/accessors/0/byteOffset", "/bufferViews/0/byteLength",
-        "/meshes/0/primitives/0/attributes/POSITION", "/skins/0/joints/0", "/animations/0/channels/0/target/node"}) {
+       {"/scene", "/nodes/0/mesh", "/nodes/0/children/0", "/accessors/0/count", "/accessors/0/byteOffset",
+        "/bufferViews/0/byteLength", "/meshes/0/primitives/0/attributes/POSITION", "/skins/0/joints/0",
+        "/animations/0/channels/0/target/node"}) {
     for (const double bad : {-1.0, 0.5}) {
       Json document = everything();
       document[Json::json_pointer(at)] = bad;
@@ -118,10 +123,11 @@ TEST_CASE("gltf types: indices, counts and offsets are integers of 0 or more") {
 }
 
 TEST_CASE("gltf types: what is kept in 31 bits is refused beyond them, not wrapped") {
-  for (const std::string at :
-       {"/accessors/0/sparse/count", "/accessors/0/sparse/indices/byteOffset", "/accessors/0/sparse/values/byteOffset",
-        "/bufferViews/0/target", "/meshes/0/primitives/0/mode", "/samplers/0/wrapS", "/samplers/0/magFilter"}) {
-    for (const std::uint64_t bad : {std::uint64_t{1} << 31, (std::uint64_t{1} << 32) + 4, std::uint64_t{1} << 53}) {
+  for (const std::string at : {"/accessors/0/sparse/count", "/accessors/0/sparse/indices/byteOffset",
+                               "/accessors/0/sparse/values/byteOffset", "/bufferViews/0/target",
+                               "/meshes/0/primitives/0/mode", "/samplers/0/wrapS", "/samplers/0/magFilter"}) {
+    for (const std::uint64_t bad :
+         {std::uint64_t{1} << 31, (std::uint64_t{1} << 32) + 4, std::uint64_t{1} << 53}) {
       Json document = everything();
       document[Json::json_pointer(at)] = bad;
       REQUIRE(result(document) == "f.gltf: " + spelled(at) + ": an integer of 0 to 2147483647 is due");
@@ -139,7 +145,8 @@ TEST_CASE("gltf types: vectors and matrices have their number of numbers") {
     for (const std::size_t size : {count - 1, count + 1, std::size_t{0}}) {
       Json document = everything();
       document[Json::json_pointer(at)] = Json(std::vector<double>(size, 1));
-      REQUIRE(result(document) == fmt::format("f.gltf: {}: an array of {} numbers is due", spelled(at), count));
+      REQUIRE(result(document) ==
+              fmt::format("f.gltf: {}: an array of {} numbers is due", spelled(at), count));
     }
   }
 }
@@ -166,7 +173,8 @@ TEST_CASE("gltf types: what must be there is named when it is missing") {
                                        {"/materials/0/normalTexture", "index"}}) {
     Json document = everything();
     document[Json::json_pointer(around)].erase(member);
-    REQUIRE_THAT(result(document), Contains("f.gltf: " + spelled(around + "/" + member) + ": is missing; ") && Contains(" is due"));
+    REQUIRE_THAT(result(document), Contains("f.gltf: " + spelled(around + "/" + member) + ": is missing; ") &&
+                                       Contains(" is due"));
     ++refused;
   }
   REQUIRE(refused == 18);
@@ -180,18 +188,22 @@ TEST_CASE("gltf types: every index leads to something, also where nothing is dra
   int indices = 0;
   const Json flat = everything().flatten();
   for (const auto& [pointer, value] : flat.items()) {
-    const std::string member = pointer.substr(pointer.rfind('/') + 1), around = pointer.substr(0, pointer.rfind('/'));
+    const std::string member = pointer.substr(pointer.rfind('/') + 1),
+                      around = pointer.substr(0, pointer.rfind('/'));
     const bool index = std::string(
-                           " scene mesh camera skin light index source sampler material indices bufferView buffer node input output "
+                           " scene mesh camera skin light index source sampler material indices bufferView "
+                           "buffer node input output "
                            "skeleton inverseBindMatrices ")
                            .find(" " + member + " ") != std::string::npos;
-    const bool in_list = around.ends_with("/nodes") || around.ends_with("children") || around.ends_with("joints") ||
-                         around.ends_with("attributes") || around.find("/targets/") != std::string::npos;
+    const bool in_list = around.ends_with("/nodes") || around.ends_with("children") ||
+                         around.ends_with("joints") || around.ends_with("attributes") ||
+                         around.find("/targets/") != std::string::npos;
     if (!value.is_number() || (!index && !in_list)) continue;
     Json document = everything();
     document[Json::json_pointer(pointer)] = 2U;  // one table has two elements, the others one
     CAPTURE(pointer);
-    REQUIRE_THAT(result(document), Contains("f.gltf: " + spelled(pointer) + ": ") && Contains(" 2 does not exist (the "));
+    REQUIRE_THAT(result(document),
+                 Contains("f.gltf: " + spelled(pointer) + ": ") && Contains(" 2 does not exist (the "));
     ++indices;
   }
   REQUIRE(indices == 32);
@@ -203,16 +215,20 @@ TEST_CASE("gltf types: words and component types are those of glTF, and a type b
     document[Json::json_pointer(at)] = value;
     return result(document);
   };
-  REQUIRE(changed("/cameras/0/type", "fisheye\n") == "f.gltf: cameras[0].type: one of perspective, orthographic is due");
-  REQUIRE(changed("/accessors/0/type", "VEC5") == "f.gltf: accessors[0].type: one of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4 is due");
+  REQUIRE(changed("/cameras/0/type", "fisheye\n") ==
+          "f.gltf: cameras[0].type: one of perspective, orthographic is due");
+  REQUIRE(changed("/accessors/0/type", "VEC5") ==
+          "f.gltf: accessors[0].type: one of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4 is due");
   REQUIRE(changed("/accessors/0/componentType", 5124) ==
           "f.gltf: accessors[0].componentType: one of 5120, 5121, 5122, 5123, 5125, 5126 is due");
   REQUIRE(changed("/extensions/KHR_lights_punctual/lights/0/type", "") ==
           "f.gltf: extensions.KHR_lights_punctual.lights[0].type: one of directional, point, spot is due");
-  REQUIRE(changed("/cameras/1/type", "perspective") == "f.gltf: cameras[1].perspective: is missing; an object is due");
+  REQUIRE(changed("/cameras/1/type", "perspective") ==
+          "f.gltf: cameras[1].perspective: is missing; an object is due");
   Json document = everything();
   document["extensions"]["KHR_lights_punctual"]["lights"][0].erase("spot");
-  REQUIRE(result(document) == "f.gltf: extensions.KHR_lights_punctual.lights[0].spot: is missing; an object is due");
+  REQUIRE(result(document) ==
+          "f.gltf: extensions.KHR_lights_punctual.lights[0].spot: is missing; an object is due");
   document["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "point";
   REQUIRE(result(document) == "passed");
 }
@@ -232,14 +248,17 @@ TEST_CASE("gltf types: a file of glTF 1.0 is refused by its version, not by what
   for (const std::string version : {"1.0", "1.1", "3.0", "2", "", "two"})
     REQUIRE_THAT(load_result(R"({"accessors":{},"asset":{"version":")" + version + R"("},"scene":"main"})"),
                  Contains(": asset.version '" + version + "'; glTF 2.x is read"));
-  REQUIRE_THAT(load_result(R"({"accessors":{},"asset":{}})"), Contains(": asset.version: is missing; a string is due"));
-  REQUIRE_THAT(load_result(R"({"asset":{"version":"2.0"},"scene":0})"), Contains(": scene: scene 0 does not exist (the file has 0)"));
+  REQUIRE_THAT(load_result(R"({"accessors":{},"asset":{}})"),
+               Contains(": asset.version: is missing; a string is due"));
+  REQUIRE_THAT(load_result(R"({"asset":{"version":"2.0"},"scene":0})"),
+               Contains(": scene: scene 0 does not exist (the file has 0)"));
 }
 
 TEST_CASE("gltf types: a whole file is refused before anything of it is drawn") {
   REQUIRE_THAT(load_result(triangle_gltf(R"(,"mode":"4")")),
                Contains("meshes[0].primitives[0].mode: an integer of 0 to 2147483647 is due"));
-  REQUIRE_THAT(load_result(triangle_gltf("", R"(,"materials":{})")), Contains(": materials: an array is due"));
+  REQUIRE_THAT(load_result(triangle_gltf("", R"(,"materials":{})")),
+               Contains(": materials: an array is due"));
   REQUIRE_THAT(load_result(triangle_gltf("", "", R"(,"extensions":{"KHR_lights_punctual":"sun"})")),
                Contains("nodes[0].extensions.KHR_lights_punctual: an object is due"));
 }
@@ -254,7 +273,8 @@ TEST_CASE("gltf types: a place is spelled with names of bounded length, and an e
 }
 
 TEST_CASE("gltf types: a stride is a multiple of 4 that glTF allows") {
-  for (const std::int64_t bad : {std::int64_t{3}, std::int64_t{256}, std::int64_t{-4}, std::int64_t{1} << 40}) {
+  for (const std::int64_t bad :
+       {std::int64_t{3}, std::int64_t{256}, std::int64_t{-4}, std::int64_t{1} << 40}) {
     Json document = everything();
     document["bufferViews"][0]["byteStride"] = bad;
     REQUIRE(result(document) == "f.gltf: bufferViews[0].byteStride: a multiple of 4 from 4 to 252 is due");

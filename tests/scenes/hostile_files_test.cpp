@@ -34,7 +34,8 @@ void load_or_refuse(const std::string& path, std::optional<double> time = std::n
 
 }  // namespace
 
-TEST_CASE("hostile files: every one loads or is refused with its name, within 10 s of processor time and 2 GiB") {
+TEST_CASE(
+    "hostile files: every one loads or is refused with its name, within 10 s of processor time and 2 GiB") {
   const auto folder = scene_folder();
   if (!folder || !std::filesystem::is_directory(*folder / "Hostile")) {
     WARN("skipped: no folder of hostile scenes");
@@ -59,19 +60,23 @@ TEST_CASE("hostile files: every one loads or is refused with its name, within 10
 
 TEST_CASE("hostile files: random damage to a good file never crashes the loader") {
   const std::string good = triangle_gltf(
-      R"(,"material":0)", R"(,"materials":[{"alphaMode":"MASK"}],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])",
+      R"(,"material":0)",
+      R"(,"materials":[{"alphaMode":"MASK"}],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])",
       R"(,"camera":0)");
   std::mt19937 dice(1);
   for (int i = 0; i < 3000; ++i) {
     std::string bad = good;
-    for (unsigned k = 0; k < 1 + dice() % 3; ++k) bad[dice() % bad.size()] = static_cast<char>(dice() % 96 + 32);
+    for (unsigned k = 0; k < 1 + dice() % 3; ++k)
+      bad[dice() % bad.size()] = static_cast<char>(dice() % 96 + 32);
     if (dice() % 4 == 0) bad.resize(dice() % bad.size());
     const std::string result = load_result(bad);
     REQUIRE(result.find('\n') == std::string::npos);
   }
 }
 
-TEST_CASE("hostile files: random damage to skins, morph targets and animations never crashes loader, posing or recorder") {
+TEST_CASE(
+    "hostile files: random damage to skins, morph targets and animations never crashes loader, posing or "
+    "recorder") {
   std::mt19937 dice(3);
   const TempGltf file("");
   for (int i = 0; i < 600; ++i) {
@@ -96,12 +101,14 @@ TEST_CASE("hostile files: random damage to a binary file never crashes the loade
     WARN("skipped: no folder of scenes");
     return;
   }
-  const std::vector<std::byte> good = traces::read_whole_file((*folder / "BoxVertexColors/BoxVertexColors.glb").string(), 1 << 20);
+  const std::vector<std::byte> good =
+      traces::read_whole_file((*folder / "BoxVertexColors/BoxVertexColors.glb").string(), 1 << 20);
   const TempGltf file("", "t.glb");
   std::mt19937 dice(2);
   for (int i = 0; i < 2000; ++i) {
     std::vector<std::byte> bad = good;
-    for (unsigned k = 0; k < 1 + dice() % 4; ++k) bad[dice() % (i % 2 == 0 ? 32 : bad.size())] = static_cast<std::byte>(dice() % 256);
+    for (unsigned k = 0; k < 1 + dice() % 4; ++k)
+      bad[dice() % (i % 2 == 0 ? 32 : bad.size())] = static_cast<std::byte>(dice() % 256);
     if (dice() % 4 == 0) bad.resize(dice() % bad.size());
     traces::write_whole_file(file.path(), bad);
     load_or_refuse(file.path());

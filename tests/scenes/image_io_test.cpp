@@ -24,7 +24,8 @@ namespace {
 Rgba8Image gradient(std::uint32_t width, std::uint32_t height) {
   Rgba8Image image{width, height, {}};
   for (std::uint32_t i = 0; i < width * height; ++i) {
-    for (std::uint32_t c = 0; c < 4; ++c) image.pixels.push_back(static_cast<std::uint8_t>(i * (c + 3) + 17 * c));
+    for (std::uint32_t c = 0; c < 4; ++c)
+      image.pixels.push_back(static_cast<std::uint8_t>(i * (c + 3) + 17 * c));
   }
   return image;
 }
@@ -37,7 +38,8 @@ void put_big_endian(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint3
   for (int shift = 24; shift >= 0; shift -= 8) bytes[at++] = static_cast<std::uint8_t>(value >> shift);
 }
 
-/// An ICC colour profile of a display whose table names `tags` tags that no standard knows, from `first_tag` on.
+/// An ICC colour profile of a display whose table names `tags` tags that no standard knows, from `first_tag`
+/// on.
 std::vector<std::uint8_t> color_profile(std::uint32_t first_tag, std::uint32_t tags) {
   constexpr std::size_t kHeader = 128;
   constexpr std::uint32_t kTagBytes = 12;
@@ -91,7 +93,8 @@ std::vector<std::uint8_t> stored_zlib(const std::vector<std::uint8_t>& data) {
 }
 
 /// The PNG file with a colour profile behind its header.
-std::vector<std::byte> with_profile(const std::vector<std::byte>& png, const std::vector<std::uint8_t>& profile) {
+std::vector<std::byte> with_profile(const std::vector<std::byte>& png,
+                                    const std::vector<std::uint8_t>& profile) {
   constexpr std::size_t kBehindHeader = 33;
   std::vector<std::uint8_t> chunk{'i', 'C', 'C', 'P', 'p', 0, 0};
   const std::vector<std::uint8_t> stream = stored_zlib(profile);
@@ -107,7 +110,8 @@ std::vector<std::byte> with_profile(const std::vector<std::byte>& png, const std
 }
 
 /// The image has this size, and this colour everywhere.
-void require_plain(const Rgba8Image& image, std::uint32_t width, std::uint32_t height, const std::array<std::uint8_t, 4>& color) {
+void require_plain(const Rgba8Image& image, std::uint32_t width, std::uint32_t height,
+                   const std::array<std::uint8_t, 4>& color) {
   REQUIRE(image.width == width);
   REQUIRE(image.height == height);
   REQUIRE(image.pixels.size() == std::size_t{4} * width * height);
@@ -130,7 +134,8 @@ TEST_CASE("image_io: EXR keeps floats exactly, infinities included") {
   const TempGltf folder("", "a.exr");
   for (const std::uint32_t channels : {1U, 3U, 4U}) {
     FloatImage image{5, 3, channels, {}};
-    for (std::uint32_t i = 0; i < 15 * channels; ++i) image.pixels.push_back(std::ldexp(1.1F, static_cast<int>(i) - 30));
+    for (std::uint32_t i = 0; i < 15 * channels; ++i)
+      image.pixels.push_back(std::ldexp(1.1F, static_cast<int>(i) - 30));
     image.pixels[2] = INFINITY;
     save_exr(folder.path(), image);
     const FloatImage back = load_float_image(folder.path());
@@ -179,7 +184,10 @@ TEST_CASE("image_io: images with colour profiles are decoded by several threads 
       threads.emplace_back([&, t] {
         for (std::uint32_t i = 0; i < kImages; ++i) {
           const std::uint32_t first_tag = 0x20000000 + (t * kImages + i) * kTags;
-          right += decode_any_image(with_profile(plain, color_profile(first_tag, kTags)), "a.png").pixels == image.pixels ? 1 : 0;
+          right += decode_any_image(with_profile(plain, color_profile(first_tag, kTags)), "a.png").pixels ==
+                           image.pixels
+                       ? 1
+                       : 0;
         }
       });
     }
@@ -192,9 +200,10 @@ TEST_CASE("image_io: a PNG of any kind has the pixels that OpenImageIO gives it"
     int color_type, bits, channels;
     bool keyed;  ///< a colour, or the first entry of the palette, is transparent
   };
-  constexpr std::array kKinds{Kind{0, 1, 1, false}, Kind{0, 2, 1, true},  Kind{0, 8, 1, false}, Kind{0, 8, 1, true},
-                              Kind{4, 8, 2, false}, Kind{2, 8, 3, false}, Kind{2, 8, 3, true},  Kind{6, 8, 4, false},
-                              Kind{3, 1, 1, false}, Kind{3, 4, 1, true},  Kind{3, 8, 1, true},  Kind{2, 16, 3, false}};
+  constexpr std::array kKinds{Kind{0, 1, 1, false}, Kind{0, 2, 1, true},  Kind{0, 8, 1, false},
+                              Kind{0, 8, 1, true},  Kind{4, 8, 2, false}, Kind{2, 8, 3, false},
+                              Kind{2, 8, 3, true},  Kind{6, 8, 4, false}, Kind{3, 1, 1, false},
+                              Kind{3, 4, 1, true},  Kind{3, 8, 1, true},  Kind{2, 16, 3, false}};
   constexpr std::uint32_t kWidth = 13, kHeight = 5;
   for (const Kind& kind : kKinds) {
     std::vector<std::uint8_t> file{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
@@ -208,7 +217,8 @@ TEST_CASE("image_io: a PNG of any kind has the pixels that OpenImageIO gives it"
     std::vector<std::uint8_t> header;
     append_big_endian(header, kWidth);
     append_big_endian(header, kHeight);
-    header.insert(header.end(), {static_cast<std::uint8_t>(kind.bits), static_cast<std::uint8_t>(kind.color_type), 0, 0, 0});
+    header.insert(header.end(), {static_cast<std::uint8_t>(kind.bits),
+                                 static_cast<std::uint8_t>(kind.color_type), 0, 0, 0});
     chunk("IHDR", header);
     if (kind.color_type == 3) {
       std::vector<std::uint8_t> palette(std::size_t{3} << kind.bits);
@@ -216,13 +226,15 @@ TEST_CASE("image_io: a PNG of any kind has the pixels that OpenImageIO gives it"
       chunk("PLTE", palette);
     }
     if (kind.keyed)
-      chunk("tRNS", kind.color_type == 3 ? std::vector<std::uint8_t>{77, 9}
-                                         : std::vector<std::uint8_t>(2 * static_cast<std::size_t>(kind.channels), 0));
+      chunk("tRNS", kind.color_type == 3
+                        ? std::vector<std::uint8_t>{77, 9}
+                        : std::vector<std::uint8_t>(2 * static_cast<std::size_t>(kind.channels), 0));
     const std::uint32_t row = (kWidth * static_cast<std::uint32_t>(kind.channels * kind.bits) + 7) / 8;
     std::vector<std::uint8_t> rows;
     for (std::uint32_t y = 0; y < kHeight; ++y) {
       rows.push_back(0);
-      for (std::uint32_t i = 0; i < row; ++i) rows.push_back(static_cast<std::uint8_t>(y == 0 && i < 6 ? 0 : (y * row + i) * 29));
+      for (std::uint32_t i = 0; i < row; ++i)
+        rows.push_back(static_cast<std::uint8_t>(y == 0 && i < 6 ? 0 : (y * row + i) * 29));
     }
     chunk("IDAT", stored_zlib(rows));
     chunk("IEND", {});
@@ -236,7 +248,8 @@ TEST_CASE("image_io: a PNG of any kind has the pixels that OpenImageIO gives it"
   }
 }
 
-TEST_CASE("image_io: what the plain reader cannot read without a warning is left to OpenImageIO, with its words") {
+TEST_CASE(
+    "image_io: what the plain reader cannot read without a warning is left to OpenImageIO, with its words") {
   const TempGltf scratch("");
   const std::string path = scratch.path() + ".png";
   save_png(path, gradient(40, 30));
@@ -269,15 +282,18 @@ TEST_CASE("image_io: every truncation of a PNG is refused with its name") {
   const TempGltf folder("", "a.png");
   save_png(folder.path(), gradient(16, 16));
   const std::vector<std::byte> bytes = traces::read_whole_file(folder.path(), 1 << 20);
-  for (std::size_t size = 0; size + 20 < bytes.size(); size += 7) {  // the last bytes are the end marker, which holds no pixels
+  // the last bytes are the end marker, which holds no pixels
+  for (std::size_t size = 0; size + 20 < bytes.size(); size += 7) {
     CAPTURE(size);
-    REQUIRE_THROWS_WITH(decode_image(std::span(bytes).first(size), "some.png"), Catch::StartsWith("some.png: "));
+    REQUIRE_THROWS_WITH(decode_image(std::span(bytes).first(size), "some.png"),
+                        Catch::StartsWith("some.png: "));
   }
 }
 
 TEST_CASE("image_io: what is no image, and what cannot be written, is the user's error") {
   const std::vector<std::byte> noise(100, std::byte{42});
-  REQUIRE_THROWS_WITH(decode_image(noise, "x.png"), "x.png: not a PNG, JPEG, WebP, DDS or EXR image (by its first bytes)");
+  REQUIRE_THROWS_WITH(decode_image(noise, "x.png"),
+                      "x.png: not a PNG, JPEG, WebP, DDS or EXR image (by its first bytes)");
   const std::vector<std::byte> jpeg{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}, std::byte{0xe0}};
   REQUIRE_THROWS_WITH(decode_image(jpeg, "x.jpg"), "x.jpg: the JPEG image is truncated");
   REQUIRE_THROWS_AS(load_image("/nonexistent/x.png"), UserError);
@@ -286,9 +302,10 @@ TEST_CASE("image_io: what is no image, and what cannot be written, is the user's
 
 TEST_CASE("image_io: a WebP image is decoded, a truncated one is refused") {
   // 3 x 2 texels of (200, 100, 50), lossless, written by libwebp.
-  const std::vector<unsigned char> file{0x52, 0x49, 0x46, 0x46, 0x1e, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56,
-                                        0x50, 0x38, 0x4c, 0x11, 0x00, 0x00, 0x00, 0x2f, 0x02, 0x40, 0x00, 0x00, 0x07,
-                                        0x50, 0xb2, 0x22, 0x57, 0xa6, 0xff, 0x81, 0x88, 0xe8, 0x7f, 0x00, 0x00};
+  const std::vector<unsigned char> file{0x52, 0x49, 0x46, 0x46, 0x1e, 0x00, 0x00, 0x00, 0x57, 0x45,
+                                        0x42, 0x50, 0x56, 0x50, 0x38, 0x4c, 0x11, 0x00, 0x00, 0x00,
+                                        0x2f, 0x02, 0x40, 0x00, 0x00, 0x07, 0x50, 0xb2, 0x22, 0x57,
+                                        0xa6, 0xff, 0x81, 0x88, 0xe8, 0x7f, 0x00, 0x00};
   const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
   require_plain(decode_image(bytes, "a.webp"), 3, 2, {200, 100, 50, 255});
   for (std::size_t size = 12; size < bytes.size() - 4; size += 3)
@@ -297,12 +314,14 @@ TEST_CASE("image_io: a WebP image is decoded, a truncated one is refused") {
 
 TEST_CASE("image_io: the colours of a WebP image with alpha are as they were written, not multiplied by it") {
   // 2 x 2 texels of (200, 100, 50, 60), lossless, written by libwebp.
-  std::vector<unsigned char> file{82, 73, 70, 70, 30, 0,  0, 0,  87,  69, 66, 80,  86, 80,  56,  76,  17,  0, 0,
-                                  0,  47, 1,  64, 0,  16, 7, 80, 178, 34, 87, 166, 60, 129, 136, 232, 127, 0, 0};
+  std::vector<unsigned char> file{82, 73,  70, 70, 30,  0,  0,   0,   87,  69,  66, 80, 86,
+                                  80, 56,  76, 17, 0,   0,  0,   47,  1,   64,  0,  16, 7,
+                                  80, 178, 34, 87, 166, 60, 129, 136, 232, 127, 0,  0};
   const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
   require_plain(decode_image(bytes, "a.webp"), 2, 2, {200, 100, 50, 60});
   for (std::size_t i = 25; i < 32; ++i) file[i] = 0;
-  REQUIRE_THROWS_WITH(decode_image(bytes, "a.webp"), Catch::StartsWith("a.webp: cannot be decoded as webp: "));
+  REQUIRE_THROWS_WITH(decode_image(bytes, "a.webp"),
+                      Catch::StartsWith("a.webp: cannot be decoded as webp: "));
 }
 
 TEST_CASE("image_io: a DDS image of one DXT1 block is decoded, a truncated one is refused") {
@@ -317,13 +336,16 @@ TEST_CASE("image_io: a DDS image of one DXT1 block is decoded, a truncated one i
   const Rgba8Image image = decode_image(bytes, "a.dds");
   REQUIRE(image.width == 4);
   REQUIRE(image.height == 4);
-  REQUIRE(std::vector<std::uint8_t>(image.pixels.begin(), image.pixels.begin() + 4) == std::vector<std::uint8_t>{255, 0, 0, 255});
-  REQUIRE(std::vector<std::uint8_t>(image.pixels.end() - 4, image.pixels.end()) == std::vector<std::uint8_t>{0, 255, 0, 255});
+  REQUIRE(std::vector<std::uint8_t>(image.pixels.begin(), image.pixels.begin() + 4) ==
+          std::vector<std::uint8_t>{255, 0, 0, 255});
+  REQUIRE(std::vector<std::uint8_t>(image.pixels.end() - 4, image.pixels.end()) ==
+          std::vector<std::uint8_t>{0, 255, 0, 255});
   for (const std::size_t size : {4U, 60U, 127U, 130U})
     REQUIRE_THROWS_WITH(decode_image(bytes.first(size), "a.dds"), Catch::StartsWith("a.dds: "));
 }
 
 TEST_CASE("image_io: a KTX image is refused by that name") {
   const std::vector<unsigned char> file{0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, 13, 10, 26, 10};
-  REQUIRE_THROWS_WITH(decode_image(std::as_bytes(std::span(file)), "a.ktx2"), Catch::Contains("a.ktx2: a KTX image"));
+  REQUIRE_THROWS_WITH(decode_image(std::as_bytes(std::span(file)), "a.ktx2"),
+                      Catch::Contains("a.ktx2: a KTX image"));
 }

@@ -1,4 +1,5 @@
-/// Every feature on and off: what the shaders are compiled for must compile, and be valid SPIR-V for Vulkan 1.1.
+/// Every feature on and off: what the shaders are compiled for must compile, and be valid SPIR-V for Vulkan
+/// 1.1.
 #include "scenes/material/material_variant.h"
 
 #include <catch2/catch.hpp>
@@ -18,7 +19,8 @@ namespace {
 std::string validation(const std::vector<std::uint32_t>& words) {
   std::string messages;
   spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
-  tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { messages += text; });
+  tools.SetMessageConsumer(
+      [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { messages += text; });
   return tools.Validate(words) ? std::string() : messages + " (invalid)";
 }
 
@@ -41,14 +43,16 @@ Material material_with(unsigned features) {
   m.layers.sheen_color = glm::vec3((layers & 8) != 0 ? 1.0F : 0.0F);
   m.layers.transmission = (layers & 16) != 0 ? 1.0F : 0.0F;
   if ((layers & 32) == 0) m.layers = {};
-  if ((features >> 10 & 1) != 0) m.texture(TextureSlot::kOcclusion) = m.texture(TextureSlot::kMetallicRoughness);
+  if ((features >> 10 & 1) != 0)
+    m.texture(TextureSlot::kOcclusion) = m.texture(TextureSlot::kMetallicRoughness);
   return m;
 }
 
 Primitive primitive_with(unsigned features) {
   Primitive p;
   p.attributes[0] = 0;
-  for (std::size_t i = 1; i < kSemantics; ++i) p.attributes[i] = (features >> i & 1) != 0 ? static_cast<int>(i) : -1;
+  for (std::size_t i = 1; i < kSemantics; ++i)
+    p.attributes[i] = (features >> i & 1) != 0 ? static_cast<int>(i) : -1;
   return p;
 }
 
@@ -69,7 +73,8 @@ void compile_all(const SceneOptions& options, const std::vector<std::string>& fr
   std::vector<traces::Shader> shaders;
   ShaderLibrary library(options, frame, shaders);
   for (unsigned features = 0; features < 2048; features += step) {
-    const Variant v = choose_variant(material_with(features), primitive_with(features * 7 + features / 64), library.set());
+    const Variant v =
+        choose_variant(material_with(features), primitive_with(features * 7 + features / 64), library.set());
     (void)library.vertex(v);
     (void)library.fragment(v);
   }
@@ -94,9 +99,11 @@ TEST_CASE("material variants: the visibility shader compiles, and knows only wha
   options.visibility = true;
   compile_all(options, defines_for(1, 0, 0, false), 101);
   Material m = material_with(0x1f);
-  REQUIRE(choose_variant(m, primitive_with(0xff), ShaderSet::kVisibility).textures == std::array<bool, kTextureSlots>{});
+  REQUIRE(choose_variant(m, primitive_with(0xff), ShaderSet::kVisibility).textures ==
+          std::array<bool, kTextureSlots>{});
   m.alpha = AlphaMode::kMask;
-  REQUIRE(choose_variant(m, primitive_with(0xff), ShaderSet::kVisibility).textures == std::array<bool, kTextureSlots>{true});
+  REQUIRE(choose_variant(m, primitive_with(0xff), ShaderSet::kVisibility).textures ==
+          std::array<bool, kTextureSlots>{true});
 }
 
 TEST_CASE("material variants: the same features share shaders, a texture without coordinates is left out") {
@@ -105,7 +112,8 @@ TEST_CASE("material variants: the same features share shaders, a texture without
   Material a = material_with(1), b = a;
   b.base_color = glm::vec4(0.5F);
   b.textures[0].image = 77;
-  const Variant v = choose_variant(a, primitive_with(0xff), library.set()), w = choose_variant(b, primitive_with(0xff), library.set());
+  const Variant v = choose_variant(a, primitive_with(0xff), library.set()),
+                w = choose_variant(b, primitive_with(0xff), library.set());
   REQUIRE(library.fragment(v) == library.fragment(w));
   REQUIRE(shaders.size() == 1);
   REQUIRE_FALSE(choose_variant(a, primitive_with(0), library.set()).textures[0]);
@@ -120,9 +128,12 @@ TEST_CASE("material variants: occlusion in the metallic-roughness texture is rea
   REQUIRE(std::ranges::count(v.defines, "OCCLUSION_IN_METALLIC_ROUGHNESS") == 1);
 }
 
-TEST_CASE("material variants: a user's fragment shader is compiled with the same interface, its mistakes carry its name") {
+TEST_CASE(
+    "material variants: a user's fragment shader is compiled with the same interface, its mistakes carry its "
+    "name") {
   const TempGltf good(
-      "#version 450\nlayout(location = 0) out vec4 c;\nlayout(location = 1) in vec3 v_normal;\nvoid main() { c = vec4(v_normal, 1.0); }\n",
+      "#version 450\nlayout(location = 0) out vec4 c;\nlayout(location = 1) in vec3 v_normal;\nvoid main() { "
+      "c = vec4(v_normal, 1.0); }\n",
       "good.frag");
   const TempGltf bad("#version 450\nvoid main() { oops }\n", "bad.frag");
   SceneOptions options;
@@ -131,7 +142,8 @@ TEST_CASE("material variants: a user's fragment shader is compiled with the same
   options.fragment_shader = bad.path();
   std::vector<traces::Shader> shaders;
   ShaderLibrary library(options, defines_for(1, 0, 0, false), shaders);
-  REQUIRE_THROWS_WITH(library.fragment(choose_variant({}, primitive_with(1), library.set())), Catch::Contains("bad.frag"));
+  REQUIRE_THROWS_WITH(library.fragment(choose_variant({}, primitive_with(1), library.set())),
+                      Catch::Contains("bad.frag"));
   options.fragment_shader = "/nonexistent.frag";
   REQUIRE_THROWS_AS(ShaderLibrary(options, defines_for(1, 0, 0, false), shaders), UserError);
 }

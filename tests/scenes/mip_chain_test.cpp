@@ -7,7 +7,8 @@ using namespace quadrille::scenes;
 
 namespace {
 
-Rgba8Image constant(std::uint32_t width, std::uint32_t height, std::uint8_t r, std::uint8_t g, std::uint8_t b, std::uint8_t a) {
+Rgba8Image constant(std::uint32_t width, std::uint32_t height, std::uint8_t r, std::uint8_t g, std::uint8_t b,
+                    std::uint8_t a) {
   Rgba8Image image{width, height, {}};
   for (std::uint32_t i = 0; i < width * height; ++i) image.pixels.insert(image.pixels.end(), {r, g, b, a});
   return image;
@@ -26,7 +27,8 @@ TEST_CASE("mip chain: a constant image stays that constant at every level, every
   for (const bool srgb : {false, true}) {
     for (int code = 0; code < 256; ++code) {
       const auto c = static_cast<std::uint8_t>(code);
-      for (const std::byte b : build_mip_chain(constant(7, 5, c, c, c, c), srgb)) REQUIRE(b == static_cast<std::byte>(code));
+      for (const std::byte b : build_mip_chain(constant(7, 5, c, c, c, c), srgb))
+        REQUIRE(b == static_cast<std::byte>(code));
     }
   }
 }

@@ -24,7 +24,8 @@ namespace {
 constexpr double kQuarter = 1.5707963267948966;
 
 /// The positions, or another attribute, of an instance as the host poses them, in the world.
-std::vector<glm::vec3> posed(const SceneData& scene, std::size_t instance = 0, Semantic semantic = Semantic::kPosition) {
+std::vector<glm::vec3> posed(const SceneData& scene, std::size_t instance = 0,
+                             Semantic semantic = Semantic::kPosition) {
   const Instance& i = scene.instances.at(instance);
   const Primitive& primitive = scene.primitives[i.primitive];
   const Pose& pose = scene.poses.at(static_cast<std::size_t>(i.pose));
@@ -78,7 +79,8 @@ TEST_CASE("pose: a two-bone arm bends as its joints turn, at the keys, between t
 }
 
 TEST_CASE("pose: joints of 16 bits, weights of 8 and 16 bits and a second set of four give the same arm") {
-  for (const auto& [wide, bits, second] : {std::tuple{true, 32, false}, {false, 16, false}, {true, 8, false}, {false, 32, true}}) {
+  for (const auto& [wide, bits, second] :
+       {std::tuple{true, 32, false}, {false, 16, false}, {true, 8, false}, {false, 32, true}}) {
     CAPTURE(wide, bits, second);
     ArmOptions options;
     options.wide_joints = wide;
@@ -93,7 +95,8 @@ TEST_CASE("pose: joints of 16 bits, weights of 8 and 16 bits and a second set of
   }
 }
 
-TEST_CASE("pose: weights that do not sum to one are divided by their sum, in every format, over one set or two") {
+TEST_CASE(
+    "pose: weights that do not sum to one are divided by their sum, in every format, over one set or two") {
   for (const int bits : {8, 16, 32}) {
     for (const bool second : {false, true}) {
       for (const float weight : {0.98F, 0.3F, 1e-3F, 0.0F}) {
@@ -119,7 +122,8 @@ TEST_CASE("pose: weights that do not sum to one are divided by their sum, in eve
 }
 
 TEST_CASE("pose: weights that sum to one but for the rounding of their floats stay as they are") {
-  Elements joints{Component::kUint8, 4, false, 2, std::vector<std::byte>(8)}, weights{Component::kFloat, 4, false, 2, {}};
+  Elements joints{Component::kUint8, 4, false, 2, std::vector<std::byte>(8)},
+      weights{Component::kFloat, 4, false, 2, {}};
   const std::array<float, 8> values{0.1F, 0.2F, 0.3F, 0.4F, 0.25F, 0.25F, 0.25F, 0.2500002F};
   weights.data.resize(sizeof(values));
   std::memcpy(weights.data.data(), values.data(), sizeof(values));
@@ -133,7 +137,9 @@ TEST_CASE("pose: weights that sum to one but for the rounding of their floats st
   CHECK(mend_weights(sets) == 0);
 }
 
-TEST_CASE("pose: without an animation the skin follows its bones at rest, and the node's own matrix counts for nothing") {
+TEST_CASE(
+    "pose: without an animation the skin follows its bones at rest, and the node's own matrix counts for "
+    "nothing") {
   ArmOptions options;
   options.node_of_mesh = R"(,"translation":[50,60,70],"scale":[3,3,3])";
   const TempGltf file(arm_gltf(options));
@@ -146,7 +152,8 @@ TEST_CASE("pose: a skin far from the origin, or far from the size of one, keeps 
     CAPTURE(place, scale);
     std::string text = arm_gltf();
     const std::string lower = R"({"name":"lower")";
-    text.insert(text.find(lower) + lower.size(), fmt::format(R"(,"translation":[{0},0,0],"scale":[{1},{1},{1}])", place, scale));
+    text.insert(text.find(lower) + lower.size(),
+                fmt::format(R"(,"translation":[{0},0,0],"scale":[{1},{1},{1}])", place, scale));
     GltfScene arm = opened(text);
     arm.pose(1);
     const Instance& instance = arm.data().instances[0];
@@ -163,7 +170,8 @@ TEST_CASE("pose: a skin far from the origin, or far from the size of one, keeps 
 }
 
 TEST_CASE("pose: a skin faces as most of its joints do") {
-  for (const auto& [bone, mirrored] : {std::pair{"upper", false}, {"lower", true}}) {  // of two joints, one is mirrored, or both are
+  // of two joints, one is mirrored, or both are
+  for (const auto& [bone, mirrored] : {std::pair{"upper", false}, {"lower", true}}) {
     std::string text = arm_gltf();
     const std::string name = fmt::format(R"({{"name":"{}")", bone);
     text.insert(text.find(name) + name.size(), R"(,"scale":[-1,1,1])");
@@ -220,7 +228,8 @@ TEST_CASE("pose: animated weights replace the mesh's") {
 }
 
 TEST_CASE("pose: only targets with weight become streams, and what does not fit is left to the host") {
-  const std::array<bool, kSemantics> lit{true, true, false, false, false, false}, flat{true, false, false, false, false, false};
+  const std::array<bool, kSemantics> lit{true, true, false, false, false, false},
+      flat{true, false, false, false, false, false};
   const TempGltf file(morph_gltf(11, "[1,1,1,1,1,0,0,0,0,0,0]"));
   const SceneData scene = load_gltf(file.path());
   Pose pose = scene.poses[0];
@@ -251,13 +260,15 @@ TEST_CASE("pose: a skin of more joints than a block holds is posed on the host")
 TEST_CASE("pose: malformed skins are refused with their place") {
   ArmOptions options;
   options.last_joint = 2;
-  CHECK_THAT(message(arm_gltf(options)), Contains("meshes[0].primitives[0]: JOINTS name joint 2; skins[0] has 2 joints"));
+  CHECK_THAT(message(arm_gltf(options)),
+             Contains("meshes[0].primitives[0]: JOINTS name joint 2; skins[0] has 2 joints"));
   options = {};
   options.inverse_binds = 1;
   CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].inverseBindMatrices: 1 matrices for 2 joints"));
   options = {};
   options.joints = "[1,9]";
-  CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].joints[1]: node 9 does not exist (the file has 4)"));
+  CHECK_THAT(message(arm_gltf(options)),
+             Contains("skins[0].joints[1]: node 9 does not exist (the file has 4)"));
   options.joints = "[]";
   CHECK_THAT(message(arm_gltf(options)), Contains("skins[0].joints"));
   options = {};
@@ -276,23 +287,26 @@ TEST_CASE("pose: malformed skins are refused with their place") {
 
 TEST_CASE("pose: malformed animations are refused with their place, and only when they are played") {
   ArmOptions options;
-  for (const auto& [times, words] : {std::pair{std::vector<float>{0, 0}, "input: key 1 at 0 s is not after the one before it"},
-                                     {std::vector<float>{1, 0.5F}, "key 1 at 0.5 s is not after"},
-                                     {std::vector<float>{0, std::nanf("")}, "key 1 is at nan s"},
-                                     {std::vector<float>{-1, 0}, "key 0 is at -1 s"},
-                                     {std::vector<float>{0, 1, 2}, "output: 2 elements where 3 keys take 3"}}) {
+  for (const auto& [times, words] :
+       {std::pair{std::vector<float>{0, 0}, "input: key 1 at 0 s is not after the one before it"},
+        {std::vector<float>{1, 0.5F}, "key 1 at 0.5 s is not after"},
+        {std::vector<float>{0, std::nanf("")}, "key 1 is at nan s"},
+        {std::vector<float>{-1, 0}, "key 0 is at -1 s"},
+        {std::vector<float>{0, 1, 2}, "output: 2 elements where 3 keys take 3"}}) {
     options.key_times = times;
     CHECK_THAT(message(arm_gltf(options)), Contains("animations[0].samplers[0]") && Contains(words));
   }
   CHECK(load_result(arm_gltf(options)) == "loaded");
   options = {};
   options.interpolation = "BOUNCE";
-  CHECK_THAT(message(arm_gltf(options)), Contains("interpolation 'BOUNCE' is not STEP, LINEAR or CUBICSPLINE"));
+  CHECK_THAT(message(arm_gltf(options)),
+             Contains("interpolation 'BOUNCE' is not STEP, LINEAR or CUBICSPLINE"));
   options.interpolation = "CUBICSPLINE";
   CHECK_THAT(message(arm_gltf(options)), Contains("output: 2 elements where 2 keys take 6"));
   std::string text = arm_gltf();
   text.replace(text.find(R"("path":"rotation")"), 17, R"("path":"weights")");
-  CHECK_THAT(message(text), Contains("animations[0].channels[0]: weights of node 2, which has no morph targets"));
+  CHECK_THAT(message(text),
+             Contains("animations[0].channels[0]: weights of node 2, which has no morph targets"));
   text = arm_gltf();
   text.replace(text.find(R"("path":"rotation")"), 17, R"("path":"colour")");
   CHECK_THAT(message(text), Contains("path 'colour' is not translation, rotation, scale or weights"));
@@ -301,8 +315,9 @@ TEST_CASE("pose: malformed animations are refused with their place, and only whe
 TEST_CASE("pose: channels of KHR_animation_pointer are left out, and the others play") {
   std::string text = arm_gltf();
   const std::string channels = R"("channels":[)";
-  text.insert(text.find(channels) + channels.size(),
-              R"({"sampler":0,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/nodes/2/scale"}}}},)");
+  text.insert(
+      text.find(channels) + channels.size(),
+      R"({"sampler":0,"target":{"path":"pointer","extensions":{"KHR_animation_pointer":{"pointer":"/nodes/2/scale"}}}},)");
   text.insert(text.rfind('}'), R"(,"extensionsUsed":["KHR_animation_pointer"])");
   GltfScene arm = opened(text);
   arm.pose(1);
@@ -329,13 +344,16 @@ TEST_CASE("pose: a skin that is shown without end is refused before it takes all
   CHECK_THAT(message(text), Contains("poses more than 4194304 joints and weights"));
 }
 
-TEST_CASE("pose: an animation and a scene are chosen by number or name, and a wrong choice lists what there is") {
+TEST_CASE(
+    "pose: an animation and a scene are chosen by number or name, and a wrong choice lists what there is") {
   CHECK(message(arm_gltf(), {"", true, "bend"}) == "loaded");
   CHECK(message(arm_gltf(), {"", true, "all"}) == "loaded");
-  CHECK_THAT(message(arm_gltf(), {"", true, "1"}), Contains("animation '1' does not exist; animations: 0 'bend'"));
+  CHECK_THAT(message(arm_gltf(), {"", true, "1"}),
+             Contains("animation '1' does not exist; animations: 0 'bend'"));
   CHECK(opened(arm_gltf(), {"bones", false, ""}).data().instances.empty());
   CHECK(opened(arm_gltf(), {"0", false, ""}).data().instances.size() == 1);
-  CHECK_THAT(message(arm_gltf(), {"legs", false, ""}), Contains("scene 'legs' does not exist; scenes: 0 'all', 1 'bones'"));
+  CHECK_THAT(message(arm_gltf(), {"legs", false, ""}),
+             Contains("scene 'legs' does not exist; scenes: 0 'all', 1 'bones'"));
 }
 
 TEST_CASE("pose: morph targets that do not match their mesh are refused") {
@@ -352,13 +370,15 @@ TEST_CASE("pose: primitives over the same joints have the same boxes") {
   const int positions = b.accessor(std::vector<std::int8_t>(3 * kVertices, 1), "VEC3");
   const int joints = b.accessor(std::vector<std::uint8_t>(4 * kVertices, 1), "VEC4");
   const int weights = b.accessor(std::vector<std::uint8_t>(4 * kVertices, 64), "VEC4", true);
-  const std::string one = fmt::format(R"({{"attributes":{{"POSITION":{},"JOINTS_0":{},"WEIGHTS_0":{}}}}})", positions, joints, weights);
+  const std::string one = fmt::format(R"({{"attributes":{{"POSITION":{},"JOINTS_0":{},"WEIGHTS_0":{}}}}})",
+                                      positions, joints, weights);
   std::string all = one;
   for (int i = 1; i < 300; ++i) all += "," + one;
   const auto text = [&](const std::string& bones) {
-    return b.text(R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{}],"extensionsUsed":["KHR_mesh_quantization"],)"
-                  R"("skins":[{"joints":)" +
-                  bones + R"(}],"meshes":[{"primitives":[)" + all + "]}]");
+    return b.text(
+        R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{}],"extensionsUsed":["KHR_mesh_quantization"],)"
+        R"("skins":[{"joints":)" +
+        bones + R"(}],"meshes":[{"primitives":[)" + all + "]}]");
   };
   const TempGltf file(text("[1,1]"));
   const SceneData scene = load_gltf(file.path());
@@ -376,12 +396,14 @@ TEST_CASE("pose: primitives that hang on more joints than memory is meant for ar
   const int positions = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
   const int joints = b.accessor<std::uint16_t>({9999, 0, 0, 0, 9999, 0, 0, 0, 9999, 0, 0, 0}, "VEC4");
   const int weights = b.accessor<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
-  const std::string one = fmt::format(R"({{"attributes":{{"POSITION":{},"JOINTS_0":{},"WEIGHTS_0":{}}}}})", positions, joints, weights);
+  const std::string one = fmt::format(R"({{"attributes":{{"POSITION":{},"JOINTS_0":{},"WEIGHTS_0":{}}}}})",
+                                      positions, joints, weights);
   std::string all = one, bones = "1";
   for (int i = 1; i < 2000; ++i) all += "," + one;
   for (int i = 1; i < 10000; ++i) bones += ",1";
-  CHECK_THAT(load_result(b.text(R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{}],"skins":[{"joints":[)" + bones +
-                                R"(]}],"meshes":[{"primitives":[)" + all + "]}]")),
+  CHECK_THAT(load_result(b.text(
+                 R"("scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0,"skin":0},{}],"skins":[{"joints":[)" +
+                 bones + R"(]}],"meshes":[{"primitives":[)" + all + "]}]")),
              Contains("joints") && Contains("more than 4194304"));
 }
 
@@ -396,7 +418,8 @@ TEST_CASE("pose: more morph targets of weight than can be added are refused befo
   }
   const auto text = [&](const std::string& members) {
     return b.text(R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{)" + members +
-                  fmt::format(R"("primitives":[{{"attributes":{{"POSITION":{}}},"targets":[{}]}}]}}])", positions, list));
+                  fmt::format(R"("primitives":[{{"attributes":{{"POSITION":{}}},"targets":[{}]}}]}}])",
+                              positions, list));
   };
   CHECK(load_result(text("")) == "loaded");  // none has weight
   CHECK_THAT(load_result(text("\"weights\":[" + weights + "],")),

@@ -41,7 +41,8 @@ TEST_CASE("real scenes: triangles and draws are those of the manifest, in colour
     for (const bool visibility : {false, true}) {
       SceneOptions options;
       options.visibility = visibility;
-      const traces::StreamTotals totals = traces::stream_totals(load_scene((*folder / expected.file).string(), options));
+      const traces::StreamTotals totals =
+          traces::stream_totals(load_scene((*folder / expected.file).string(), options));
       REQUIRE(totals.triangles == expected.triangles);
       REQUIRE(totals.draws == expected.draws);
     }
@@ -54,7 +55,8 @@ TEST_CASE("real scenes: images are read with their size, levels and colour space
     WARN("skipped: no folder of scenes");
     return;
   }
-  const traces::CommandStream stream = load_scene((*folder / "FlightHelmet_512/FlightHelmet.gltf").string(), {});
+  const traces::CommandStream stream =
+      load_scene((*folder / "FlightHelmet_512/FlightHelmet.gltf").string(), {});
   REQUIRE(stream.images.size() == 15);
   std::size_t srgb = 0, large = 0;
   for (const traces::Image& image : stream.images) {

@@ -26,7 +26,8 @@ SceneData row_of_boxes() {
     (void)mesh.finish(scene, i == 0 ? "solid" : "clear", i, {});
   }
   for (int i = 0; i < 6; ++i)
-    place(scene, static_cast<std::uint32_t>(i % 2), glm::translate(glm::mat4(1), glm::vec3(0.01F * static_cast<float>(i), 0, -2 * i)));
+    place(scene, static_cast<std::uint32_t>(i % 2),
+          glm::translate(glm::mat4(1), glm::vec3(0.01F * static_cast<float>(i), 0, -2 * i)));
   scene.cameras.resize(1);
   scene.cameras[0].pose = glm::translate(glm::mat4(1), glm::vec3(0, 0, 5));
   return scene;
@@ -43,7 +44,8 @@ std::vector<Drawn> draws(const traces::CommandStream& stream) {
   std::vector<Drawn> result;
   Drawn current;
   for (const traces::Command& command : stream.commands) {
-    if (const auto* bind = std::get_if<traces::BindPipeline>(&command)) current.pipeline = stream.pipelines[bind->pipeline];
+    if (const auto* bind = std::get_if<traces::BindPipeline>(&command))
+      current.pipeline = stream.pipelines[bind->pipeline];
     if (const auto* push = std::get_if<traces::PushConstants>(&command))
       std::memcpy(static_cast<void*>(&current.constants), push->data.data(), push->data.size());
     if (const auto* draw = std::get_if<traces::Draw>(&command)) {
@@ -56,7 +58,9 @@ std::vector<Drawn> draws(const traces::CommandStream& stream) {
 
 }  // namespace
 
-TEST_CASE("recorder: opaque draws first in scene order, then blended ones from back to front without depth writes") {
+TEST_CASE(
+    "recorder: opaque draws first in scene order, then blended ones from back to front without depth "
+    "writes") {
   const SceneData scene = row_of_boxes();
   const std::vector<Drawn> drawn = draws(Recorder(scene, {}).record());
   REQUIRE(drawn.size() == 6);
@@ -79,7 +83,9 @@ TEST_CASE("recorder: draw ids count up, and first_triangle sums the triangles be
   }
 }
 
-TEST_CASE("recorder: in visibility mode blended draws are solid, in the same order, into an UNORM target cleared to zero") {
+TEST_CASE(
+    "recorder: in visibility mode blended draws are solid, in the same order, into an UNORM target cleared "
+    "to zero") {
   const SceneData scene = row_of_boxes();
   SceneOptions options;
   options.visibility = true;
@@ -101,7 +107,8 @@ TEST_CASE("recorder: instances share buffers, and a mirrored one turns the front
   REQUIRE(drawn[3].pipeline.front == traces::FrontFace::kClockwise);
   REQUIRE(drawn[3].constants.handedness == -1);
   REQUIRE(drawn[0].pipeline.front == traces::FrontFace::kCounterClockwise);
-  REQUIRE(drawn[3].constants.normal_matrix[0] == glm::vec4(-1, 0, 0, 0));  // a normal along x turns with the mirror
+  // a normal along x turns with the mirror
+  REQUIRE(drawn[3].constants.normal_matrix[0] == glm::vec4(-1, 0, 0, 0));
   REQUIRE(drawn[3].constants.normal_matrix[1] == glm::vec4(0, 1, 0, 0));
 }
 

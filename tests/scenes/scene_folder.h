@@ -1,4 +1,5 @@
-/// Where the scenes lie that this project did not write: $QUADRILLE_SCENES, or ../shared/scenes beside the source tree. Tests skip without them.
+/// Where the scenes lie that this project did not write: $QUADRILLE_SCENES, or ../shared/scenes beside the
+/// source tree. Tests skip without them.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,5 @@
-/// Shaders that came with the program: found by what they are compiled for, and the same words that the compiler makes of their source.
+/// Shaders that came with the program: found by what they are compiled for, and the same words that the
+/// compiler makes of their source.
 #include "scenes/material/shader_pack.h"
 
 #include <catch2/catch.hpp>
@@ -32,14 +33,18 @@ TEST_CASE("shader pack: every shader is found by its key, and no other") {
 }
 
 TEST_CASE("shader pack: stages and the order of defines tell shaders apart") {
-  REQUIRE(shader_key(traces::ShaderStage::kVertex, {"A", "B 1"}) != shader_key(traces::ShaderStage::kFragment, {"A", "B 1"}));
-  REQUIRE(shader_key(traces::ShaderStage::kVertex, {"A", "B 1"}) != shader_key(traces::ShaderStage::kVertex, {"B 1", "A"}));
-  REQUIRE(shader_key(traces::ShaderStage::kVertex, {"A"}) != shader_key(traces::ShaderStage::kVertex, {"A", "B"}));
+  REQUIRE(shader_key(traces::ShaderStage::kVertex, {"A", "B 1"}) !=
+          shader_key(traces::ShaderStage::kFragment, {"A", "B 1"}));
+  REQUIRE(shader_key(traces::ShaderStage::kVertex, {"A", "B 1"}) !=
+          shader_key(traces::ShaderStage::kVertex, {"B 1", "A"}));
+  REQUIRE(shader_key(traces::ShaderStage::kVertex, {"A"}) !=
+          shader_key(traces::ShaderStage::kVertex, {"A", "B"}));
 }
 
 TEST_CASE("shader pack: what came with the program is what its source compiles to") {
   std::size_t from_source = 0;
-  for (const char* name : {"triangle", "quad", "cubes", "courtyard", "overdraw", "fill", "flag", "materials"}) {
+  for (const char* name :
+       {"triangle", "quad", "cubes", "courtyard", "overdraw", "fill", "flag", "materials"}) {
     INFO(name);
     SceneOptions options;
     options.width = options.height = 16;
@@ -75,6 +80,7 @@ TEST_CASE("shader pack: the typical shaders are many, of both stages, and compil
   std::size_t number = 0;
   for (const auto& [key, shader] : distinct) {
     if (number++ % 23 != 0) continue;
-    REQUIRE(compile_glsl(material_shader_glsl(shader->stage), shader->stage, "t", shader->defines).size() > 100);
+    REQUIRE(compile_glsl(material_shader_glsl(shader->stage), shader->stage, "t", shader->defines).size() >
+            100);
   }
 }

@@ -14,8 +14,9 @@ using traces::ShaderStage;
 constexpr std::size_t kHeaderWords = 5, kNameWord = 3;
 
 Words fragment() {
-  return compile_glsl("#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1); }\n", ShaderStage::kFragment,
-                      "f");
+  return compile_glsl(
+      "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1); }\n",
+      ShaderStage::kFragment, "f");
 }
 
 std::size_t place_of_entry(const Words& spirv) {
@@ -61,7 +62,8 @@ TEST_CASE("spir-v entry point: main stays as it is, in silence") {
 TEST_CASE("spir-v entry point: several, or none of the stage, are refused with their names") {
   Words spirv = renamed(fragment(), kShade);
   const std::size_t at = place_of_entry(spirv);
-  const Words entry(spirv.begin() + static_cast<std::ptrdiff_t>(at), spirv.begin() + static_cast<std::ptrdiff_t>(at + (spirv[at] >> 16)));
+  const Words entry(spirv.begin() + static_cast<std::ptrdiff_t>(at),
+                    spirv.begin() + static_cast<std::ptrdiff_t>(at + (spirv[at] >> 16)));
   spirv.insert(spirv.begin() + static_cast<std::ptrdiff_t>(at), entry.begin(), entry.end());
   spirv[at + kNameWord] = 0x6c616873;  // "shal", so "shale"
   std::string note;

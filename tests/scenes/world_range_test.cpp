@@ -18,7 +18,8 @@ namespace {
 SceneData cubes_times(float scale) {
   SceneData scene = build_cubes();
   for (Instance& instance : scene.instances) {
-    for (int c = 0; c < 4; ++c) instance.world[c] = glm::vec4(glm::vec3(instance.world[c]) * scale, instance.world[c].w);
+    for (int c = 0; c < 4; ++c)
+      instance.world[c] = glm::vec4(glm::vec3(instance.world[c]) * scale, instance.world[c].w);
   }
   return scene;
 }
@@ -30,17 +31,20 @@ std::vector<std::byte> placed(const traces::CommandStream& stream) {
     if (buffer.name == "frame") bytes.insert(bytes.end(), buffer.data.begin(), buffer.data.end());
   }
   for (const traces::Command& command : stream.commands) {
-    if (const auto* push = std::get_if<traces::PushConstants>(&command)) bytes.insert(bytes.end(), push->data.begin(), push->data.end());
+    if (const auto* push = std::get_if<traces::PushConstants>(&command))
+      bytes.insert(bytes.end(), push->data.begin(), push->data.end());
   }
   return bytes;
 }
 
 TEST_CASE("world range: every built-in scene is within range and left alone") {
-  for (const BuiltinScene& scene : builtin_scenes()) CHECK_FALSE(needed_range(build_builtin(std::string(scene.name)), SceneOptions{}));
+  for (const BuiltinScene& scene : builtin_scenes())
+    CHECK_FALSE(needed_range(build_builtin(std::string(scene.name)), SceneOptions{}));
   CHECK_FALSE(needed_range(SceneData{}, SceneOptions{}));
 }
 
-TEST_CASE("world range: worlds that differ by a power of two record the same matrices once they are out of range") {
+TEST_CASE(
+    "world range: worlds that differ by a power of two record the same matrices once they are out of range") {
   const auto large = placed(Recorder(cubes_times(0x1p60F), {}).record());
   CHECK(large == placed(Recorder(cubes_times(0x1p100F), {}).record()));
   CHECK(large == placed(Recorder(cubes_times(0x1p-60F), {}).record()));
@@ -97,13 +101,16 @@ struct Seen {
 Seen seen(const traces::CommandStream& stream) {
   Seen result;
   for (const traces::Buffer& buffer : stream.buffers) {
-    const auto vector_at = [&](std::size_t offset, glm::vec3& v) { std::memcpy(&v, &buffer.data[offset], sizeof(v)); };
+    const auto vector_at = [&](std::size_t offset, glm::vec3& v) {
+      std::memcpy(&v, &buffer.data[offset], sizeof(v));
+    };
     if (buffer.name == "frame") vector_at(64, result.eye), vector_at(128, result.light);
     if (!buffer.name.ends_with(" instances")) continue;
     for (std::size_t copy = 0; copy < buffer.data.size(); copy += 96) {
       result.places.emplace_back();
       for (int row = 0; row < 3; ++row)
-        std::memcpy(&result.places.back()[row], &buffer.data[copy + static_cast<std::size_t>(row) * 16 + 12], sizeof(float));
+        std::memcpy(&result.places.back()[row], &buffer.data[copy + static_cast<std::size_t>(row) * 16 + 12],
+                    sizeof(float));
     }
   }
   const bool instanced = !result.places.empty();
@@ -117,20 +124,23 @@ Seen seen(const traces::CommandStream& stream) {
   return result;
 }
 
-/// Two triangles 0.4 m apart, a camera that looks at them and a lamp between them, all 10^7 m away; `camera`: how far it has moved.
+/// Two triangles 0.4 m apart, a camera that looks at them and a lamp between them, all 10^7 m away; `camera`:
+/// how far it has moved.
 std::string far_pair(double camera) {
-  std::string text =
-      triangle_gltf("",
-                    R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],"extensionsUsed":["KHR_lights_punctual"],)"
-                    R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}})",
-                    R"(,"translation":[10000000.3,0,0]},{"mesh":0,"translation":[10000000.7,0,0]},)"
-                    R"({"translation":[10000000.5,0,0],"extensions":{"KHR_lights_punctual":{"light":0}}},)" +
-                        fmt::format(R"({{"camera":0,"translation":[{:.3f},0,5])", 1e7 + camera));
+  std::string text = triangle_gltf(
+      "",
+      R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],"extensionsUsed":["KHR_lights_punctual"],)"
+      R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point"}]}})",
+      R"(,"translation":[10000000.3,0,0]},{"mesh":0,"translation":[10000000.7,0,0]},)"
+      R"({"translation":[10000000.5,0,0],"extensions":{"KHR_lights_punctual":{"light":0}}},)" +
+          fmt::format(R"({{"camera":0,"translation":[{:.3f},0,5])", 1e7 + camera));
   const std::string nodes = R"("nodes":[0]})";
   return text.replace(text.find(nodes), nodes.size(), R"("nodes":[0,1,2,3]})");
 }
 
-TEST_CASE("world range: what is close together far away stays apart, and a camera moves by as little as it is told") {
+TEST_CASE(
+    "world range: what is close together far away stays apart, and a camera moves by as little as it is "
+    "told") {
   std::vector<Seen> frames;
   for (const double camera : {0.0, 0.1}) {
     const TempGltf file(far_pair(camera));
@@ -147,7 +157,8 @@ TEST_CASE("world range: copies of an instanced draw stay apart far away") {
   scene.instances.resize(1);
   scene.instances[0].copies = 0;
   scene.copies.emplace_back();
-  for (const double x : {0.3, 0.7}) scene.copies[0].push_back(glm::translate(glm::dmat4(1), glm::dvec3(1e7 + x, 0, 0)));
+  for (const double x : {0.3, 0.7})
+    scene.copies[0].push_back(glm::translate(glm::dmat4(1), glm::dvec3(1e7 + x, 0, 0)));
   scene.cameras.resize(1);
   scene.cameras[0].pose = glm::translate(glm::dmat4(1), glm::dvec3(1e7 + 0.1, 0, 5));
   const Seen frame = seen(Recorder(scene, {}).record());
@@ -168,7 +179,8 @@ TEST_CASE("world range: the nearest copy decides, not the box around all copies"
   CHECK(range->origin.x == 1e7F);
 }
 
-TEST_CASE("world range: a scene that is moved is not copied, and its images are unpacked once for all frames") {
+TEST_CASE(
+    "world range: a scene that is moved is not copied, and its images are unpacked once for all frames") {
   SceneData scene = build_cubes();
   int unpacked = 0;
   scene.images[0] = SceneImage("counted", std::nullopt, [&] {

@@ -16,7 +16,9 @@ namespace {
 using Catch::Matchers::Contains;
 using nlohmann::json;
 
-MachineCost small_cost() { return {1000, {{"core_0", 90}, {"rop_0", 10}, {"l2_0", 50}}, {{"texture", 4000}, {"color", 100}}, 2000}; }
+MachineCost small_cost() {
+  return {1000, {{"core_0", 90}, {"rop_0", 10}, {"l2_0", 50}}, {{"texture", 4000}, {"color", 100}}, 2000};
+}
 
 StudyScene scene_of(const std::string& name, std::uint32_t width, std::uint32_t height) {
   scenes::SceneOptions options;
@@ -83,7 +85,8 @@ TEST_CASE("accuracy: a picture's error counts colours and leaves out what it is 
   CHECK(part.rmse == Approx(std::sqrt(1.0 / 9.0)));
 }
 
-TEST_CASE("accuracy: a study of a small scene: one picture, exact without error, errors that fall as bits rise") {
+TEST_CASE(
+    "accuracy: a study of a small scene: one picture, exact without error, errors that fall as bits rise") {
   AccuracyOptions options;
   options.windows = {16, 4096};
   options.repeat = 2;
@@ -125,8 +128,8 @@ TEST_CASE("accuracy: a study of a small scene: one picture, exact without error,
   CHECK(coarse_texels.rmse > fine_texels.rmse);
 
   const std::string table = accuracy_table(result, machine);
-  for (const char* word :
-       {"ACCURACY  builtin:quad, 48x32", "functional", "window 4096", "approximate", "PICTURE", "PRECISION", "subtexel_bits"})
+  for (const char* word : {"ACCURACY  builtin:quad, 48x32", "functional", "window 4096", "approximate",
+                           "PICTURE", "PRECISION", "subtexel_bits"})
     CHECK_THAT(table, Contains(word));
   CHECK_THAT(table, !Contains("DIFFERS"));
 

@@ -29,7 +29,8 @@ TEST_CASE("a child hands back everything that its work returned") {
 }
 
 TEST_CASE("each way in which a child can end is told apart") {
-  const ChildRun refused = run_in_child([]() -> std::string { throw user_error("file: no such {}", "thing"); });
+  const ChildRun refused =
+      run_in_child([]() -> std::string { throw user_error("file: no such {}", "thing"); });
   CHECK(refused.end == ChildEnd::kRefused);
   CHECK(refused.output == "file: no such thing");
   CHECK(run_in_child([]() -> std::string { throw std::logic_error("ours"); }).end == ChildEnd::kFailed);
@@ -46,9 +47,11 @@ TEST_CASE("each way in which a child can end is told apart") {
 
 TEST_CASE("what a child came to is its output, a user's mistake, or our fault, and keeps its lines") {
   CHECK(output_of(run_in_child([] { return std::string("all"); }), "frame 3") == "all");
-  CHECK_THROWS_WITH(output_of(run_in_child([]() -> std::string { throw UserError("stuck:\n  a waits for b"); }), "frame 3"),
-                    "frame 3: stuck:\n  a waits for b");
-  CHECK_THROWS_AS(output_of(run_in_child([]() -> std::string { throw std::logic_error("ours"); }), "frame 3"), std::runtime_error);
+  CHECK_THROWS_WITH(
+      output_of(run_in_child([]() -> std::string { throw UserError("stuck:\n  a waits for b"); }), "frame 3"),
+      "frame 3: stuck:\n  a waits for b");
+  CHECK_THROWS_AS(output_of(run_in_child([]() -> std::string { throw std::logic_error("ours"); }), "frame 3"),
+                  std::runtime_error);
 }
 
 TEST_CASE("children are ended when what takes their results fails") {
@@ -57,7 +60,9 @@ TEST_CASE("children are ended when what takes their results fails") {
                                         while (true) pause();
                                       },
                                       {}}};
-  CHECK_THROWS_WITH(run_in_children(works, 2, [](std::size_t, const ChildRun&) { throw std::runtime_error("no use"); }), "no use");
+  CHECK_THROWS_WITH(
+      run_in_children(works, 2, [](std::size_t, const ChildRun&) { throw std::runtime_error("no use"); }),
+      "no use");
 }
 
 TEST_CASE("a child that is ended for its parent's failure removes what it was writing") {
@@ -75,7 +80,9 @@ TEST_CASE("a child that is ended for its parent's failure removes what it was wr
     return std::string("done");
   };
   const std::vector<ChildWork> works{{writes, {}}, {fails, {}}};
-  CHECK_THROWS_WITH(run_in_children(works, 2, [](std::size_t, const ChildRun&) { throw std::runtime_error("no use"); }), "no use");
+  CHECK_THROWS_WITH(
+      run_in_children(works, 2, [](std::size_t, const ChildRun&) { throw std::runtime_error("no use"); }),
+      "no use");
   CHECK(std::filesystem::exists(other));
   CHECK_FALSE(std::filesystem::exists(part));
   std::filesystem::remove_all(folder);
@@ -98,7 +105,8 @@ TEST_CASE("a child ends with its parent, however that ends") {
   const auto for_ever = []() -> std::string {
     while (true) pause();
   };
-  CHECK(run_in_child([&] { return run_in_child(for_ever).output; }, {.seconds = 0.3}).end == ChildEnd::kTimedOut);
+  CHECK(run_in_child([&] { return run_in_child(for_ever).output; }, {.seconds = 0.3}).end ==
+        ChildEnd::kTimedOut);
   close(alive[1]);
   pollfd ended{alive[0], POLLIN, 0};
   CHECK(poll(&ended, 1, 300'000) == 1);
@@ -112,8 +120,9 @@ TEST_CASE("a child ends with its parent, however that ends") {
 #endif
 #ifndef RESERVES_TERABYTES
 TEST_CASE("a child that asks for more memory than it may is refused") {
-  const ChildRun run = run_in_child([] { return std::to_string(std::vector<char>(std::size_t{1} << 30).size()); },
-                                    {.seconds = 600, .memory_bytes = std::uint64_t{512} << 20});
+  const ChildRun run =
+      run_in_child([] { return std::to_string(std::vector<char>(std::size_t{1} << 30).size()); },
+                   {.seconds = 600, .memory_bytes = std::uint64_t{512} << 20});
   CHECK(run.end == ChildEnd::kRefused);
   CHECK_THAT(run.output, Contains("memory"));
 }
@@ -129,7 +138,8 @@ TEST_CASE("children run side by side, and each is reported once with its own end
   const auto never = []() -> std::string {
     while (true) pause();
   };
-  const std::vector<ChildWork> works{{waits, {}}, {[] { return std::string("quick"); }, {}}, {never, {.seconds = 0.2}}};
+  const std::vector<ChildWork> works{
+      {waits, {}}, {[] { return std::string("quick"); }, {}}, {never, {.seconds = 0.2}}};
   std::vector<std::pair<std::size_t, std::string>> ends;
   run_in_children(works, 2, [&](std::size_t i, const ChildRun& run) {
     ends.emplace_back(i, run.end == ChildEnd::kDone ? run.output : child_end_name(run.end));
@@ -137,7 +147,8 @@ TEST_CASE("children run side by side, and each is reported once with its own end
   });
   close(gate[0]);
   close(gate[1]);
-  CHECK(ends == std::vector<std::pair<std::size_t, std::string>>{{1, "quick"}, {2, "timed out"}, {0, "slow"}});
+  CHECK(ends ==
+        std::vector<std::pair<std::size_t, std::string>>{{1, "quick"}, {2, "timed out"}, {0, "slow"}});
 }
 
 }  // namespace

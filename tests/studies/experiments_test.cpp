@@ -29,7 +29,8 @@ TEST_CASE("experiments: a figure outside its band fails, and the text and the pa
   const Experiment& experiment = experiments().front();
   CHECK_THAT(result_text(experiment, result),
              Catch::Contains("holds  gain of fill: 1.5") && Catch::Contains("FAILS  gain of overdraw: 1.94"));
-  CHECK_THAT(result_markdown(experiment, result, "x.png"), Catch::Contains("FAILS  gain of overdraw") && Catch::Contains("(x.png)"));
+  CHECK_THAT(result_markdown(experiment, result, "x.png"),
+             Catch::Contains("FAILS  gain of overdraw") && Catch::Contains("(x.png)"));
 }
 
 namespace {
@@ -61,7 +62,9 @@ void check_holds(const std::vector<Verdict>& verdicts) {
 
 }  // namespace
 
-TEST_CASE("experiments: the set-up rate is the closed form") { check_holds(setup_rate(sized(128, 128)).verdicts); }
+TEST_CASE("experiments: the set-up rate is the closed form") {
+  check_holds(setup_rate(sized(128, 128)).verdicts);
+}
 
 TEST_CASE("experiments: of layers from front to back one is shaded, from back to front all") {
   check_holds(verdicts_of(hidden_surfaces(sized(100, 60)), "shaded a pixel"));

@@ -34,15 +34,17 @@ Json unit(std::uint64_t busy, std::uint64_t count) {
   return {{"busy", busy}, {"counters", {{"requests", count}}}, {"waits", Json::object()}};
 }
 
-const Json kFigures{
-    {"frame", {{"cycles", 100}}},
-    {"units", {{"core_0", unit(10, 5)}, {"texture_0", unit(0, 0)}}},
-    {"bandwidth", {{"color", {{"read_bytes", 32}, {"write_bytes", 64}}}, {"texture", {{"read_bytes", 0}, {"write_bytes", 0}}}}}};
+const Json kFigures{{"frame", {{"cycles", 100}}},
+                    {"units", {{"core_0", unit(10, 5)}, {"texture_0", unit(0, 0)}}},
+                    {"bandwidth",
+                     {{"color", {{"read_bytes", 32}, {"write_bytes", 64}}},
+                      {"texture", {{"read_bytes", 0}, {"write_bytes", 0}}}}}};
 
 TEST_CASE("built-in scenes are the same with and without what they do not need") {
   const pipeline::MachineConfig machine;
   for (const scenes::BuiltinScene& scene : scenes::builtin_scenes()) {
-    const LeaveOutResult result = measure_leave_out(builtin("builtin:" + std::string(scene.name)), machine, 1);
+    const LeaveOutResult result =
+        measure_leave_out(builtin("builtin:" + std::string(scene.name)), machine, 1);
     INFO(scene.name);
     CHECK(result.contradiction.empty());
     CHECK(result.everything.size() == 1);

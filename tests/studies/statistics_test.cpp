@@ -18,7 +18,8 @@ TEST_CASE("quartiles lie between neighbours in proportion") {
   CHECK(even.lower_quartile == Approx(17.5));
   CHECK(even.upper_quartile == Approx(32.5));
   const Spread one = spread_of({7});
-  CHECK((one.median == 7 && one.lower_quartile == 7 && one.upper_quartile == 7 && one.least == 7 && one.most == 7));
+  CHECK((one.median == 7 && one.lower_quartile == 7 && one.upper_quartile == 7 && one.least == 7 &&
+         one.most == 7));
 }
 
 TEST_CASE("one slow run moves the most and not the median") {
@@ -38,7 +39,9 @@ TEST_CASE("every round runs each setting once") {
   }
 }
 
-TEST_CASE("over as many rounds as settings each setting takes each turn once, over fewer it takes turns far apart") {
+TEST_CASE(
+    "over as many rounds as settings each setting takes each turn once, over fewer it takes turns far "
+    "apart") {
   std::vector<std::vector<bool>> taken(6, std::vector<bool>(6, false));
   for (std::size_t round = 0; round < 6; ++round) {
     const auto order = round_order(6, round, 6);

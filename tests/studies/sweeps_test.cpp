@@ -1,4 +1,5 @@
-/// The two sweeps that judge the simulator by itself, on small frames: what every parameter does, and how often the named limit is right.
+/// The two sweeps that judge the simulator by itself, on small frames: what every parameter does, and how
+/// often the named limit is right.
 #include <catch2/catch.hpp>
 
 #include "scenes/scene.h"
@@ -10,7 +11,8 @@ using namespace quadrille::studies::experiments;
 namespace {
 
 /// The experiment as its command runs it, at its own size unless another is given.
-Result run(std::string_view name, std::vector<const char*> scene_names, std::uint32_t width, std::uint32_t height) {
+Result run(std::string_view name, std::vector<const char*> scene_names, std::uint32_t width,
+           std::uint32_t height) {
   const auto found = std::ranges::find(experiments(), name, &Experiment::name);
   REQUIRE(found != experiments().end());
   if (scene_names.empty()) scene_names = found->scenes;

@@ -1,4 +1,5 @@
-/// Work counted from a mesh: by hand where it is small, and against the machine's counters, which count the same events without sharing code.
+/// Work counted from a mesh: by hand where it is small, and against the machine's counters, which count the
+/// same events without sharing code.
 #include "studies/experiments/triangle_work.h"
 #include "studies/experiments/experiment.h"
 
@@ -11,11 +12,15 @@ namespace {
 
 constexpr Sample kCentre[] = {{}};
 
-TriangleMesh one_triangle(std::array<WindowCorner, 3> corners) { return {64, 64, {corners.begin(), corners.end()}, {{0, 1, 2}}}; }
+TriangleMesh one_triangle(std::array<WindowCorner, 3> corners) {
+  return {64, 64, {corners.begin(), corners.end()}, {{0, 1, 2}}};
+}
 
 }  // namespace
 
-TEST_CASE("triangle_work: a tile of 8x8 pixels is two triangles of ten quads, three cycles each at four quads a cycle") {
+TEST_CASE(
+    "triangle_work: a tile of 8x8 pixels is two triangles of ten quads, three cycles each at four quads a "
+    "cycle") {
   const TriangleWork w = work_of(tiled_frame(8, 8, 8, 8), {});
   CHECK(w.triangles == 2);
   CHECK(w.fragments == 64);
@@ -26,7 +31,8 @@ TEST_CASE("triangle_work: a tile of 8x8 pixels is two triangles of ten quads, th
   CHECK(w.vertices == 4);
 }
 
-TEST_CASE("triangle_work: tiles of 2x1 pixels are triangles of one pixel, and neighbours never own a pixel twice") {
+TEST_CASE(
+    "triangle_work: tiles of 2x1 pixels are triangles of one pixel, and neighbours never own a pixel twice") {
   for (const auto& [width, height] : {std::pair{2u, 1u}, {1u, 1u}, {3u, 5u}, {7u, 2u}}) {
     const TriangleMesh mesh = tiled_frame(30, 20, width, height);
     INFO(width << "x" << height);
@@ -38,12 +44,14 @@ TEST_CASE("triangle_work: tiles of 2x1 pixels are triangles of one pixel, and ne
   CHECK(w.quads == w.fragments);
 }
 
-TEST_CASE("triangle_work: left and top edges own the centres that lie on them, whichever way the triangle turns") {
+TEST_CASE(
+    "triangle_work: left and top edges own the centres that lie on them, whichever way the triangle turns") {
   const WindowCorner a{128, 128}, b{128 + 4 * 256, 128}, c{128, 128 + 4 * 256};
   CHECK(coverage_of(one_triangle({a, b, c}), kCentre).pixels == 10);  // rows of 4, 3, 2, 1: not the diagonal
   CHECK(coverage_of(one_triangle({a, c, b}), kCentre).pixels == 10);
   const WindowCorner d{128 + 4 * 256, 128 + 4 * 256};
-  CHECK(coverage_of(one_triangle({b, d, c}), kCentre).pixels == 6);  // the diagonal is its left edge, its right and lower ones own nothing
+  // the diagonal is its left edge, its right and lower ones own nothing
+  CHECK(coverage_of(one_triangle({b, d, c}), kCentre).pixels == 6);
 }
 
 TEST_CASE("triangle_work: samples off the centre find pixels that the centre misses") {
@@ -54,7 +62,8 @@ TEST_CASE("triangle_work: samples off the centre find pixels that the centre mis
 }
 
 TEST_CASE("triangle_work: what is counted is what the machine counts") {
-  for (const auto& [width, height] : {std::pair{1u, 1u}, {3u, 5u}, {8u, 8u}, {16u, 16u}, {40u, 40u}, {256u, 1u}, {1u, 256u}, {100u, 7u}}) {
+  for (const auto& [width, height] :
+       {std::pair{1u, 1u}, {3u, 5u}, {8u, 8u}, {16u, 16u}, {40u, 40u}, {256u, 1u}, {1u, 256u}, {100u, 7u}}) {
     INFO(width << "x" << height);
     const TriangleMesh mesh = tiled_frame(93, 57, width, height);
     const auto stream = stream_of(mesh);

@@ -31,9 +31,15 @@ class Dice {
 };
 
 Image random_image(Dice& dice) {
-  Image image{dice.name(), dice.coin() ? Format::kR8G8B8A8Unorm : Format::kR8G8B8A8Srgb, 1 + dice.below(9), 1 + dice.below(9), 1, {},
+  Image image{dice.name(),
+              dice.coin() ? Format::kR8G8B8A8Unorm : Format::kR8G8B8A8Srgb,
+              1 + dice.below(9),
+              1 + dice.below(9),
+              1,
+              {},
               nullptr};
-  image.levels = 1 + dice.below(static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height))));
+  image.levels =
+      1 + dice.below(static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height))));
   std::size_t bytes = 0;
   for (std::uint32_t i = 0; i < image.levels; ++i)
     bytes += std::size_t{4} * std::max(1u, image.width >> i) * std::max(1u, image.height >> i);
@@ -71,9 +77,11 @@ Pipeline random_pipeline(Dice& dice) {
 
 void random_commands(Dice& dice, CommandStream& s) {
   auto& c = s.commands;
-  c.emplace_back(BeginPass{
-      dice.below(static_cast<std::uint32_t>(s.targets.size())), {dice.unit(), dice.unit(), dice.unit(), dice.unit()}, dice.unit()});
-  c.emplace_back(SetViewport{-dice.unit(), dice.unit(), 1 + dice.unit(), -1 - dice.unit(), dice.unit(), dice.unit()});
+  c.emplace_back(BeginPass{dice.below(static_cast<std::uint32_t>(s.targets.size())),
+                           {dice.unit(), dice.unit(), dice.unit(), dice.unit()},
+                           dice.unit()});
+  c.emplace_back(
+      SetViewport{-dice.unit(), dice.unit(), 1 + dice.unit(), -1 - dice.unit(), dice.unit(), dice.unit()});
   c.emplace_back(SetScissor{0, 0, 1, 1});
   c.emplace_back(BindVertexBuffer{0, 0, 4 * dice.below(4)});
   c.emplace_back(BindVertexBuffer{3, 0, 0});
@@ -84,8 +92,9 @@ void random_commands(Dice& dice, CommandStream& s) {
     c.emplace_back(BindDescriptorSet{dice.below(4), 0});
     c.emplace_back(PushConstants{4 * dice.below(8), dice.bytes(4 + 4 * dice.below(8))});
     const bool indexed = dice.coin();
-    c.emplace_back(Draw{indexed, dice.below(7), dice.below(3), indexed ? static_cast<std::int32_t>(dice.below(3)) : 0, dice.below(3),
-                        dice.below(2), dice.name()});
+    c.emplace_back(Draw{indexed, dice.below(7), dice.below(3),
+                        indexed ? static_cast<std::int32_t>(dice.below(3)) : 0, dice.below(3), dice.below(2),
+                        dice.name()});
   }
   c.emplace_back(EndPass{});
 }
@@ -100,8 +109,19 @@ CommandStream small_stream() {
                {"uniforms", std::vector<std::byte>(64)}};
   s.images = {{"white", Format::kR8G8B8A8Srgb, 2, 1, 2, std::vector<std::byte>(12, std::byte{255}), nullptr}};
   s.samplers = {Sampler{}};
-  s.shaders = {{"v", ShaderStage::kVertex, {kSpirvMagic, 0, 0, 0, 0}}, {"f", ShaderStage::kFragment, {kSpirvMagic, 0, 0, 0, 0}}};
-  s.pipelines = {{"p", 0, 1, {{0, 12, false}}, {{0, 0, Format::kR32G32B32Float, 0}}, {}, {}, {}, {}, {true, true, CompareOp::kLess}, {}}};
+  s.shaders = {{"v", ShaderStage::kVertex, {kSpirvMagic, 0, 0, 0, 0}},
+               {"f", ShaderStage::kFragment, {kSpirvMagic, 0, 0, 0, 0}}};
+  s.pipelines = {{"p",
+                  0,
+                  1,
+                  {{0, 12, false}},
+                  {{0, 0, Format::kR32G32B32Float, 0}},
+                  {},
+                  {},
+                  {},
+                  {},
+                  {true, true, CompareOp::kLess},
+                  {}}};
   s.descriptor_sets = {{{{0, 2, 16, 48}}, {{1, 0, 0}}}};
   s.targets = {{64, 32, Format::kR8G8B8A8Srgb, Format::kD32Float}};
   s.commands = {BeginPass{},
@@ -122,17 +142,22 @@ CommandStream random_stream(std::uint32_t seed) {
   Dice dice(seed);
   CommandStream s;
   s.name = dice.name();
-  s.buffers = {{dice.name(), dice.bytes(512)}, {dice.name(), std::vector<std::byte>(64)}, {dice.name(), dice.bytes(256)}};
-  for (std::size_t i = 0; i < 64; ++i) s.buffers[1].data[i] = static_cast<std::byte>(i % 4 == 0 ? dice.below(16) : 0);
+  s.buffers = {{dice.name(), dice.bytes(512)},
+               {dice.name(), std::vector<std::byte>(64)},
+               {dice.name(), dice.bytes(256)}};
+  for (std::size_t i = 0; i < 64; ++i)
+    s.buffers[1].data[i] = static_cast<std::byte>(i % 4 == 0 ? dice.below(16) : 0);
   for (std::uint32_t i = 0; i < 1 + dice.below(3); ++i) s.images.push_back(random_image(dice));
-  s.samplers = {{dice.choice(Filter::kLinear), dice.choice(Filter::kLinear), dice.choice(Filter::kLinear), dice.choice(Wrap::kClampToEdge),
-                 dice.choice(Wrap::kClampToEdge), dice.unit(), dice.unit(), 1 + dice.unit()}};
+  s.samplers = {{dice.choice(Filter::kLinear), dice.choice(Filter::kLinear), dice.choice(Filter::kLinear),
+                 dice.choice(Wrap::kClampToEdge), dice.choice(Wrap::kClampToEdge), dice.unit(), dice.unit(),
+                 1 + dice.unit()}};
   s.shaders = {{dice.name(), ShaderStage::kVertex, {kSpirvMagic, dice.below(9), 0, 0, dice.below(9)}},
                {"f", ShaderStage::kFragment, {kSpirvMagic, 1, 2, 3, 4}}};
   for (std::uint32_t i = 0; i < 1 + dice.below(4); ++i) s.pipelines.push_back(random_pipeline(dice));
-  s.descriptor_sets = {{{{dice.below(4), 2, 16 * dice.below(4), 1 + dice.below(192)}}, {{4 + dice.below(9), 0, 0}}}};
-  s.targets = {
-      {1 + dice.below(16384), 1 + dice.below(16384), dice.coin() ? Format::kR8G8B8A8Srgb : Format::kR8G8B8A8Unorm, Format::kD32Float}};
+  s.descriptor_sets = {
+      {{{dice.below(4), 2, 16 * dice.below(4), 1 + dice.below(192)}}, {{4 + dice.below(9), 0, 0}}}};
+  s.targets = {{1 + dice.below(16384), 1 + dice.below(16384),
+                dice.coin() ? Format::kR8G8B8A8Srgb : Format::kR8G8B8A8Unorm, Format::kD32Float}};
   random_commands(dice, s);
   return s;
 }

@@ -16,7 +16,8 @@ using namespace quadrille::traces;
 namespace {
 
 struct TempFolder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() / ("quadrille_traces_" + std::to_string(getpid()));
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("quadrille_traces_" + std::to_string(getpid()));
   TempFolder() { std::filesystem::create_directories(path); }
   ~TempFolder() { std::filesystem::remove_all(path); }
 };
@@ -52,12 +53,15 @@ TEST_CASE("trace file: every change of one byte is refused with the file's name"
 
 TEST_CASE("trace file: every truncation and every appended byte is refused") {
   std::vector<std::byte> bytes = encode_trace(small_stream());
-  for (std::size_t size = 0; size < bytes.size(); ++size) REQUIRE_FALSE(refusal(std::span(bytes).first(size)).empty());
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    REQUIRE_FALSE(refusal(std::span(bytes).first(size)).empty());
   bytes.push_back(std::byte{0});
   REQUIRE(refusal(bytes) == "t.qtrace: 1 bytes follow the last chunk");
 }
 
-TEST_CASE("trace file: a chunk that announces more than the file holds, or than a trace may take, is refused before allocation") {
+TEST_CASE(
+    "trace file: a chunk that announces more than the file holds, or than a trace may take, is refused "
+    "before allocation") {
   std::vector<std::byte> bytes = encode_trace(small_stream());
   const std::uint64_t huge = std::uint64_t{1} << 60;
   std::memcpy(bytes.data() + 16 + 8, &huge, 8);  // stored size of the first chunk

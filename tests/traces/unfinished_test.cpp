@@ -51,7 +51,8 @@ int status_of(const std::function<void()>& work) {
 }  // namespace
 
 TEST_CASE("unfinished: a signal that ends the process removes what is listed, and still ends it") {
-  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGPIPE, SIGXFSZ, SIGXCPU, SIGABRT, SIGALRM, SIGUSR1, SIGSEGV}) {
+  for (const int number :
+       {SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGPIPE, SIGXFSZ, SIGXCPU, SIGABRT, SIGALRM, SIGUSR1, SIGSEGV}) {
     CAPTURE(number);
     const Folder folder;
     const int status = status_of([&] {

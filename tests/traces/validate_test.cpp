@@ -76,7 +76,8 @@ TEST_CASE("validate: objects") {
        }},
       {"location 16 is outside", [](auto& s) { s.pipelines[0].attributes[0].location = 16; }},
       {"reads binding 4, which is not declared", [](auto& s) { s.pipelines[0].attributes[0].binding = 4; }},
-      {"not one of an attribute", [](auto& s) { s.pipelines[0].attributes[0].format = Format::kR8G8B8A8Srgb; }},
+      {"not one of an attribute",
+       [](auto& s) { s.pipelines[0].attributes[0].format = Format::kR8G8B8A8Srgb; }},
       {"has offset 2048", [](auto& s) { s.pipelines[0].attributes[0].offset = 2048; }},
       {"write mask 0x1f", [](auto& s) { s.pipelines[0].blend.write_mask = 0x1f; }},
       {"buffer 3 does not exist", [](auto& s) { s.descriptor_sets[0].uniforms[0].buffer = 3; }},
@@ -84,7 +85,8 @@ TEST_CASE("validate: objects") {
       {"bytes 4294967280+48", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 0xfffffff0u; }},
       {"bytes 16+0", [](auto& s) { s.descriptor_sets[0].uniforms[0].range = 0; }},
       {"offset 8 is not a multiple", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 8; }},
-      {"descriptor set 0: binding 0 is given twice", [](auto& s) { s.descriptor_sets[0].textures[0].binding = 0; }},
+      {"descriptor set 0: binding 0 is given twice",
+       [](auto& s) { s.descriptor_sets[0].textures[0].binding = 0; }},
       {"image 1 does not exist", [](auto& s) { s.descriptor_sets[0].textures[0].image = 1; }},
       {"sampler 1 does not exist", [](auto& s) { s.descriptor_sets[0].textures[0].sampler = 1; }},
       {"render target 0: size 64x0", [](auto& s) { s.targets[0].height = 0; }},
@@ -97,7 +99,8 @@ TEST_CASE("validate: passes and bound state") {
   expect({
       {"command 1: a render pass begins inside another", [](auto& s) { s.commands[1] = BeginPass{}; }},
       {"the last render pass is not ended", [](auto& s) { s.commands.pop_back(); }},
-      {"command 11: a render pass ends that has not begun", [](auto& s) { s.commands.emplace_back(EndPass{}); }},
+      {"command 11: a render pass ends that has not begun",
+       [](auto& s) { s.commands.emplace_back(EndPass{}); }},
       {"there is no render pass", [](auto& s) { s.commands.clear(); }},
       {"command 0: draw outside a render pass", [](auto& s) { s.commands[0] = Draw{}; }},
       {"render target 1 does not exist", [](auto& s) { command<BeginPass>(s, 0).target = 1; }},
@@ -106,7 +109,8 @@ TEST_CASE("validate: passes and bound state") {
       {"command 8: draw without a viewport", [](auto& s) { s.commands[1] = s.commands[4]; }},
       {"command 8: draw without a scissor", [](auto& s) { s.commands[2] = s.commands[4]; }},
       {"command 8: draw without a pipeline", [](auto& s) { s.commands[3] = s.commands[4]; }},
-      {"command 8: draw without a vertex buffer at binding 0", [](auto& s) { s.commands[5] = s.commands[4]; }},
+      {"command 8: draw without a vertex buffer at binding 0",
+       [](auto& s) { s.commands[5] = s.commands[4]; }},
       {"command 8: indexed draw without an index buffer", [](auto& s) { s.commands[6] = s.commands[4]; }},
       {"pipeline 1 does not exist", [](auto& s) { command<BindPipeline>(s, 3).pipeline = 1; }},
       {"descriptor set number 4", [](auto& s) { command<BindDescriptorSet>(s, 4).set = 4; }},
@@ -140,7 +144,8 @@ TEST_CASE("validate: passes and bound state") {
 
 TEST_CASE("validate: bytes that a draw would fetch") {
   expect({
-      {"vertex 3 at location 0 ends at byte 48 of buffer 0, which has 36", [](auto& s) { command<Draw>(s, 9).count = 4; }},
+      {"vertex 3 at location 0 ends at byte 48 of buffer 0, which has 36",
+       [](auto& s) { command<Draw>(s, 9).count = 4; }},
       {"vertex 3 at location 0", [](auto& s) { s.buffers[1].data[1] = std::byte{3}; }},
       {"vertex 3 at location 0", [](auto& s) { command<Draw>(s, 8).vertex_offset = 1; }},
       {"vertices -1..1", [](auto& s) { command<Draw>(s, 8).vertex_offset = -1; }},
@@ -150,9 +155,11 @@ TEST_CASE("validate: bytes that a draw would fetch") {
       {"ends at byte 37", [](auto& s) { s.pipelines[0].attributes[0].offset = 1; }},
       {"ends at byte 40", [](auto& s) { command<BindVertexBuffer>(s, 5).offset = 4; }},
       {"vertex number 4294967297", [](auto& s) { command<Draw>(s, 9).first = 0xffffffffu; }},
-      {"instance number 4294967296", [](auto& s) { command<Draw>(s, 9).instances = 2, command<Draw>(s, 9).first_instance = 0xffffffffu; }},
+      {"instance number 4294967296",
+       [](auto& s) { command<Draw>(s, 9).instances = 2, command<Draw>(s, 9).first_instance = 0xffffffffu; }},
       {"more than 4294967296 vertices", [](auto& s) { command<Draw>(s, 9).instances = 0xffffffffu; }},
-      {"instance 3 at location 0", [](auto& s) { s.pipelines[0].bindings[0].per_instance = true, command<Draw>(s, 9).instances = 4; }},
+      {"instance 3 at location 0",
+       [](auto& s) { s.pipelines[0].bindings[0].per_instance = true, command<Draw>(s, 9).instances = 4; }},
   });
 }
 

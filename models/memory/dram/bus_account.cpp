@@ -19,12 +19,15 @@ void BusAccount::charge(BusUse use, std::int64_t to) {
     late_.back().to = to;
     return;
   }
-  if (late_.size() == 2 * kLatePieces) late_.erase(late_.begin(), late_.begin() + static_cast<std::ptrdiff_t>(kLatePieces));
+  if (late_.size() == 2 * kLatePieces)
+    late_.erase(late_.begin(), late_.begin() + static_cast<std::ptrdiff_t>(kLatePieces));
   late_.push_back({use, to});
 }
 
-void BusAccount::burst_after_gap(std::int64_t start, std::int64_t length, BusUse use, const BurstWaits& waits) {
-  QUADRILLE_CHECK(start >= charged_ || cycles_ == Cycles{}, "burst at {} while the bus is held until {}", start, charged_);
+void BusAccount::burst_after_gap(std::int64_t start, std::int64_t length, BusUse use,
+                                 const BurstWaits& waits) {
+  QUADRILLE_CHECK(start >= charged_ || cycles_ == Cycles{}, "burst at {} while the bus is held until {}",
+                  start, charged_);
   if (start > charged_) {
     charge(BusUse::kIdle, std::min(start, waits.pending));
     charge(BusUse::kRefresh, std::min(start, waits.refreshed));
@@ -43,7 +46,8 @@ BusAccount::Cycles BusAccount::until(std::int64_t end) const {
     cycles[static_cast<std::size_t>(late_[i].use)] -= charged - from;
     charged = from;
   }
-  QUADRILLE_CHECK(charged <= end, "the frame ended at {}, {} cycles before what is still known of the bus", end, charged - end);
+  QUADRILLE_CHECK(charged <= end, "the frame ended at {}, {} cycles before what is still known of the bus",
+                  end, charged - end);
   cycles[static_cast<std::size_t>(BusUse::kIdle)] += end - charged;
   return cycles;
 }

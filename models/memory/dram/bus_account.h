@@ -1,7 +1,8 @@
 /// Where the cycles of a DRAM data bus go: each is charged once, when the burst after it is known.
 ///
-/// A gap before a burst is gone through from its start: first the bus idles until a request was there and its data could have come from an open row; then what
-/// lasted longest is charged, in the order refresh, turn-around, activation; what is left is spacing (t_ccd_l between bursts of a bank group, the command bus,
+/// A gap before a burst is gone through from its start: first the bus idles until a request was there and its
+/// data could have come from an open row; then what lasted longest is charged, in the order refresh,
+/// turn-around, activation; what is left is spacing (t_ccd_l between bursts of a bank group, the command bus,
 /// and what the policy held back).
 #pragma once
 
@@ -30,7 +31,8 @@ class BusAccount {
   /// A burst holds the bus during [start, start + length). In order of time.
   void burst(std::int64_t start, std::int64_t length, bool write, const BurstWaits& waits) {
     const BusUse use = write ? BusUse::kWrite : BusUse::kRead;
-    if (start != charged_ || late_.empty() || late_.back().use != use) return burst_after_gap(start, length, use, waits);
+    if (start != charged_ || late_.empty() || late_.back().use != use)
+      return burst_after_gap(start, length, use, waits);
     cycles_[static_cast<std::size_t>(use)] += length;
     late_.back().to = charged_ = start + length;
   }
@@ -38,7 +40,8 @@ class BusAccount {
   [[nodiscard]] std::int64_t charged() const { return charged_; }
   /// Cycles of a use so far.
   [[nodiscard]] std::int64_t charged(BusUse use) const { return cycles_[static_cast<std::size_t>(use)]; }
-  /// The cycles of [0, end): what was charged before it, and idleness behind the last burst. A burst that outlives `end` counts up to there.
+  /// The cycles of [0, end): what was charged before it, and idleness behind the last burst. A burst that
+  /// outlives `end` counts up to there.
   [[nodiscard]] Cycles until(std::int64_t end) const;
 
  private:

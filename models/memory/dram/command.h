@@ -1,11 +1,21 @@
-/// What a memory controller sends to DRAM, one record a command: the trace that tests check against the standards' rules.
+/// What a memory controller sends to DRAM, one record a command: the trace that tests check against the
+/// standards' rules.
 #pragma once
 
 #include <cstdint>
 
 namespace quadrille::models {
 
-enum class DramCommandKind : std::uint8_t { kActivate, kPrecharge, kRead, kWrite, kReadPrecharge, kWritePrecharge, kRefresh, kRefreshBank };
+enum class DramCommandKind : std::uint8_t {
+  kActivate,
+  kPrecharge,
+  kRead,
+  kWrite,
+  kReadPrecharge,
+  kWritePrecharge,
+  kRefresh,
+  kRefreshBank
+};
 
 /// One command to one pseudo-channel. What a kind does not use is 0.
 struct DramCommand {

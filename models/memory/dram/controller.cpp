@@ -27,10 +27,13 @@ std::uint32_t bursts_of(std::uint8_t sectors, int burst_bytes) {
 }  // namespace
 
 DramController::DramController(const DramControllerParams& params)
-    : params_(params), mapping_(params.timing, params.interleave, params.hash), parts_(std::make_unique<PseudoChannels>()) {
+    : params_(params),
+      mapping_(params.timing, params.interleave, params.hash),
+      parts_(std::make_unique<PseudoChannels>()) {
   const DramTiming& t = params_.timing;
-  QUADRILLE_CHECK(t.burst_bytes >= static_cast<int>(kSectorBytes) && t.burst_bytes <= static_cast<int>(kLineBytes), "bursts of {} bytes",
-                  t.burst_bytes);
+  QUADRILLE_CHECK(
+      t.burst_bytes >= static_cast<int>(kSectorBytes) && t.burst_bytes <= static_cast<int>(kLineBytes),
+      "bursts of {} bytes", t.burst_bytes);
   const auto count = static_cast<std::size_t>(t.pseudo_channels);
   parts_->buses.assign(t.shared_commands ? 1 : count, DramCommandBus(t));
   parts_->all.reserve(count);

@@ -1,8 +1,11 @@
-/// A memory controller and the DRAM behind it: takes requests for lines, sends commands, and says when each request's data have moved.
+/// A memory controller and the DRAM behind it: takes requests for lines, sends commands, and says when each
+/// request's data have moved.
 ///
-/// Cycles are those of the command clock. A caller puts requests in while there is `room`, asks for the `next` cycle in which a command can go out, and steps
-/// the controller at that cycle or later; requests arrive in order of time. Between two requests nothing else happens: refresh and idle rows of a controller
-/// without requests are caught up with when the next one arrives. A pseudo-channel sends at most one command a cycle on each of its buses.
+/// Cycles are those of the command clock. A caller puts requests in while there is `room`, asks for the
+/// `next` cycle in which a command can go out, and steps the controller at that cycle or later; requests
+/// arrive in order of time. Between two requests nothing else happens: refresh and idle rows of a controller
+/// without requests are caught up with when the next one arrives. A pseudo-channel sends at most one command
+/// a cycle on each of its buses.
 #pragma once
 
 #include "models/memory/dram/bus_account.h"
@@ -42,7 +45,8 @@ struct DramRequest {
   std::uint32_t id = 0;  ///< comes back with the answer
 };
 
-enum class DramRowOutcome : std::uint8_t { kHit, kMiss, kConflict };  ///< its row was open; its bank was closed; another row was open
+/// its row was open; its bank was closed; another row was open
+enum class DramRowOutcome : std::uint8_t { kHit, kMiss, kConflict };
 
 struct DramDone {
   std::uint32_t id = 0;
@@ -65,7 +69,9 @@ class DramController {
   DramController(const DramController&) = delete;
   DramController& operator=(const DramController&) = delete;
 
-  [[nodiscard]] bool room(bool write) const { return held_[write] < (write ? params_.writes : params_.reads); }
+  [[nodiscard]] bool room(bool write) const {
+    return held_[write] < (write ? params_.writes : params_.reads);
+  }
   [[nodiscard]] int held(bool write) const { return held_[write]; }
   /// At `now`, not before any earlier call.
   void take(const DramRequest& request, Cycle now);
@@ -74,9 +80,11 @@ class DramController {
     if (!fresh_) update();
     return next_;
   }
-  /// Sends the commands of cycle `now`, which is not before next(). Requests whose last command went out are added to `done`.
+  /// Sends the commands of cycle `now`, which is not before next(). Requests whose last command went out are
+  /// added to `done`.
   void step(Cycle now, std::vector<DramDone>& done);
-  /// The cycles of the data buses up to `end`, summed over the pseudo-channels: `end` times their number. Nothing may be held.
+  /// The cycles of the data buses up to `end`, summed over the pseudo-channels: `end` times their number.
+  /// Nothing may be held.
   [[nodiscard]] BusAccount::Cycles bus_cycles(Cycle end) const;
   /// Cycles of a use so far, summed over the pseudo-channels.
   [[nodiscard]] std::int64_t charged(BusUse use) const;

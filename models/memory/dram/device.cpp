@@ -20,10 +20,12 @@ DramDevice::DramDevice(const DramTiming& timing)
       groups_(static_cast<std::size_t>(timing.ranks * timing.bank_groups)),
       ranks_(static_cast<std::size_t>(timing.ranks)),
       bounds_((kGroupRules * groups_.size() + 1 + kLanes - 1) / kLanes * kLanes, 0) {
-  QUADRILLE_CHECK(
-      timing.banks > 0 && timing.bank_groups > 0 && timing.banks % timing.bank_groups == 0 && timing.ranks > 0 && timing.t_burst > 0,
-      "{} ranks of {} banks in {} groups, burst of {}", timing.ranks, timing.banks, timing.bank_groups, timing.t_burst);
-  for (std::uint32_t g = 0; g < groups_.size(); ++g) groups_[g].rank = g / static_cast<std::uint32_t>(timing.bank_groups);
+  QUADRILLE_CHECK(timing.banks > 0 && timing.bank_groups > 0 && timing.banks % timing.bank_groups == 0 &&
+                      timing.ranks > 0 && timing.t_burst > 0,
+                  "{} ranks of {} banks in {} groups, burst of {}", timing.ranks, timing.banks,
+                  timing.bank_groups, timing.t_burst);
+  for (std::uint32_t g = 0; g < groups_.size(); ++g)
+    groups_[g].rank = g / static_cast<std::uint32_t>(timing.bank_groups);
   for (std::uint32_t b = 0; b < banks_.size(); ++b) {
     banks_[b].group = b / static_cast<std::uint32_t>(timing.group_banks());
     banks_[b].rank = b / static_cast<std::uint32_t>(timing.banks);
@@ -33,7 +35,8 @@ DramDevice::DramDevice(const DramTiming& timing)
     for (std::uint32_t from = 0; from < groups_.size(); ++from) {
       for (std::uint32_t to = 0; to < groups_.size(); ++to) {
         const Relation is = relation(from, groups_[from].rank, to);
-        for (const bool write : {false, true}) gaps_[wrote][from * bounds_.size() + column_rule(to, write)] = column_gap(wrote, write, is);
+        for (const bool write : {false, true})
+          gaps_[wrote][from * bounds_.size() + column_rule(to, write)] = column_gap(wrote, write, is);
       }
     }
   }
@@ -58,13 +61,15 @@ DramDevice::Cycle DramDevice::turned(std::uint32_t bank, bool write) const {
 DramDevice::Cycle DramDevice::earliest_refresh(std::uint32_t rank) const {
   Cycle at = ranks_[rank].activate;
   const auto first = static_cast<std::size_t>(rank) * static_cast<std::size_t>(t_.banks);
-  for (std::size_t b = first; b < first + static_cast<std::size_t>(t_.banks); ++b) raise(at, banks_[b].activate);
+  for (std::size_t b = first; b < first + static_cast<std::size_t>(t_.banks); ++b)
+    raise(at, banks_[b].activate);
   return at;
 }
 
 DramDevice::Cycle DramDevice::earliest_refresh_bank(std::uint32_t bank) const {
   const Rank& rank = ranks_[rank_of(bank)];
-  return std::max({banks_[bank].activate, groups_[group_of(bank)].activate, rank.activate, rank.refresh_bank});
+  return std::max(
+      {banks_[bank].activate, groups_[group_of(bank)].activate, rank.activate, rank.refresh_bank});
 }
 
 void DramDevice::activate(std::uint32_t bank, std::int32_t row, Cycle at) {
@@ -106,7 +111,8 @@ void DramDevice::column(std::uint32_t bank, bool write, bool precharge_after, Cy
   for (std::size_t rule = 0; rule < bounds_.size(); rule += kLanes) {
     auto* const bounds = reinterpret_cast<__m256i*>(&bounds_[rule]);
     const __m256i held = _mm256_loadu_si256(bounds);
-    const __m256i to = _mm256_add_epi64(now, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(gaps + rule)));
+    const __m256i to =
+        _mm256_add_epi64(now, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(gaps + rule)));
     _mm256_storeu_si256(bounds, _mm256_blendv_epi8(held, to, _mm256_cmpgt_epi64(to, held)));
   }
   raise(b.precharge, write ? data_start(true, at) + t_.t_burst + t_.t_wr : at + t_.t_rtp);

@@ -1,12 +1,16 @@
-/// The banks of one pseudo-channel: which rows are open, and the earliest cycle at which each next command keeps the standard's rules.
+/// The banks of one pseudo-channel: which rows are open, and the earliest cycle at which each next command
+/// keeps the standard's rules.
 ///
-/// A caller asks for the earliest cycle of a command, picks one at or after it and issues it; commands come in order of time. Rules between commands (their
-/// names are those of the parameters in timing.h):
-///   same bank     ACT -> RD/WR t_rcd, t_rcd_wr; ACT -> PRE t_ras; ACT -> ACT t_rc; PRE -> ACT t_rp; RD -> PRE t_rtp; end of write data -> PRE t_wr
-///   same rank     ACT -> ACT t_rrd_l (same group) or t_rrd_s, four within t_faw; RD -> RD, WR -> WR t_ccd_l or t_ccd_s; end of write data -> RD t_wtr_l or t_wtr_s
-///   the data bus  one burst at a time; t_rtw idle from read to write data, t_rtrs between ranks
-///   refresh       all banks of the rank (or the bank) closed and t_rp past; then t_rfc (t_rfc_pb) until the next ACT there, t_rrefd until one elsewhere
-/// As public simulators, examples and data sheets have them: [Ramulator 2, DRAMsim3, gem5 LPDDR5, gem5 HBM2, AMD LPDDR5, DRAMSys, Micron GDDR6].
+/// A caller asks for the earliest cycle of a command, picks one at or after it and issues it; commands come
+/// in order of time. Rules between commands (their names are those of the parameters in timing.h):
+///   same bank     ACT -> RD/WR t_rcd, t_rcd_wr; ACT -> PRE t_ras; ACT -> ACT t_rc; PRE -> ACT t_rp; RD ->
+///   PRE t_rtp; end of write data -> PRE t_wr same rank     ACT -> ACT t_rrd_l (same group) or t_rrd_s, four
+///   within t_faw; RD -> RD, WR -> WR t_ccd_l or t_ccd_s; end of write data -> RD t_wtr_l or t_wtr_s the data
+///   bus  one burst at a time; t_rtw idle from read to write data, t_rtrs between ranks refresh       all
+///   banks of the rank (or the bank) closed and t_rp past; then t_rfc (t_rfc_pb) until the next ACT there,
+///   t_rrefd until one elsewhere
+/// As public simulators, examples and data sheets have them: [Ramulator 2, DRAMsim3, gem5 LPDDR5, gem5 HBM2,
+/// AMD LPDDR5, DRAMSys, Micron GDDR6].
 #pragma once
 
 #include "models/memory/dram/timing.h"
@@ -33,12 +37,15 @@ class DramDevice {
   [[nodiscard]] Cycle earliest_column(std::uint32_t bank, bool write) const {
     return std::max(row_ready(bank, write), shared_bound(column_rule(group_of(bank), write)));
   }
-  // The same in two parts, of which the later counts: what the bank allows, and what it shares with others by a rule: the columns and activates of a group, each
-  // bound by its rank too. The rule of no group bounds nothing.
+  // The same in two parts, of which the later counts: what the bank allows, and what it shares with others by
+  // a rule: the columns and activates of a group, each bound by its rank too. The rule of no group bounds
+  // nothing.
   [[nodiscard]] Cycle bank_activate(std::uint32_t bank) const { return banks_[bank].activate; }
   [[nodiscard]] Cycle shared_bound(std::uint32_t rule) const { return bounds_[rule]; }
   [[nodiscard]] const Cycle* shared_bounds() const { return bounds_.data(); }
-  [[nodiscard]] static std::uint32_t column_rule(std::uint32_t group, bool write) { return kGroupRules * group + (write ? 1 : 0); }
+  [[nodiscard]] static std::uint32_t column_rule(std::uint32_t group, bool write) {
+    return kGroupRules * group + (write ? 1 : 0);
+  }
   [[nodiscard]] static std::uint32_t activate_rule(std::uint32_t group) { return kGroupRules * group + 2; }
   [[nodiscard]] std::uint32_t no_rule() const { return kGroupRules * groups(); }
   /// Of all ranks.
@@ -59,8 +66,11 @@ class DramDevice {
   /// First cycle of the data of a column command at `at`.
   [[nodiscard]] Cycle data_start(bool write, Cycle at) const { return at + (write ? t_.t_cwl : t_.t_cas); }
   /// First column command that the row's activation allowed.
-  [[nodiscard]] Cycle row_ready(std::uint32_t bank, bool write) const { return write ? banks_[bank].row_write : banks_[bank].row_read; }
-  /// First column command that a change of the bus's direction or rank since the last burst allows; 0 without a change.
+  [[nodiscard]] Cycle row_ready(std::uint32_t bank, bool write) const {
+    return write ? banks_[bank].row_write : banks_[bank].row_read;
+  }
+  /// First column command that a change of the bus's direction or rank since the last burst allows; 0 without
+  /// a change.
   [[nodiscard]] Cycle turned(std::uint32_t bank, bool write) const;
   /// End of the latest refresh that kept the bank closed.
   [[nodiscard]] Cycle refreshed(std::uint32_t bank) const { return banks_[bank].refreshed; }
@@ -101,8 +111,8 @@ class DramDevice {
   std::vector<Group> groups_;
   std::vector<Rank> ranks_;
   std::vector<Cycle> bounds_;  ///< by rule; filled up to whole vectors
-  std::array<std::vector<Cycle>, 2>
-      gaps_;  ///< column_gap() of reads and of writes to each rule, one row of rules for each group that the burst is of
+  /// column_gap() of reads and of writes to each rule, one row of rules for each group that the burst is of
+  std::array<std::vector<Cycle>, 2> gaps_;
   // The data bus.
   bool used_ = false, wrote_ = false;
   std::uint32_t last_rank_ = 0;

@@ -34,7 +34,8 @@ DramMapping::DramMapping(const DramTiming& t, DramInterleave interleave, bool ha
       row_lines_(static_cast<std::uint32_t>(t.row_bytes) / kLineBytes),
       interleave_(interleave),
       hash_(hash) {
-  QUADRILLE_CHECK(row_lines_ > 0 && group_banks_ > 0, "row of {} bytes, {} banks in {} groups", t.row_bytes, t.banks, t.bank_groups);
+  QUADRILLE_CHECK(row_lines_ > 0 && group_banks_ > 0, "row of {} bytes, {} banks in {} groups", t.row_bytes,
+                  t.banks, t.bank_groups);
 }
 
 DramPlace DramMapping::place(std::uint64_t line) const {

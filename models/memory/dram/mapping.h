@@ -3,9 +3,10 @@
 /// From the least significant part of the line's number upward:
 ///   group   pseudo-channel, bank group, line of the row, bank of the group, rank, row
 ///   row     pseudo-channel, line of the row, bank group, bank of the group, rank, row
-/// The first sends neighbouring lines to different bank groups, whose bursts may follow each other more closely; the second fills a row before it opens the next.
-/// With `hash`, bank and group are exchanged by the row's number, so that surfaces at a distance of whole rows meet in different banks.
-/// [P: Zhang, Zhu, Zhang, A permutation-based page interleaving scheme, MICRO 2000]
+/// The first sends neighbouring lines to different bank groups, whose bursts may follow each other more
+/// closely; the second fills a row before it opens the next. With `hash`, bank and group are exchanged by the
+/// row's number, so that surfaces at a distance of whole rows meet in different banks. [P: Zhang, Zhu, Zhang,
+/// A permutation-based page interleaving scheme, MICRO 2000]
 #pragma once
 
 #include "models/memory/dram/timing.h"
@@ -18,7 +19,8 @@ enum class DramInterleave { kGroup, kRow };
 
 struct DramPlace {
   std::uint32_t pseudo_channel = 0;
-  std::uint32_t bank = 0;  ///< over all ranks of the pseudo-channel: (rank * groups + group) * banks of a group + bank
+  /// over all ranks of the pseudo-channel: (rank * groups + group) * banks of a group + bank
+  std::uint32_t bank = 0;
   std::int32_t row = 0;
   std::uint32_t column = 0;  ///< first line of the row = 0, in lines of 128 bytes
 };

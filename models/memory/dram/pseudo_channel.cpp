@@ -7,7 +7,8 @@
 
 namespace quadrille::models {
 
-DramController::PseudoChannel::PseudoChannel(const DramControllerParams& params, DramCommandBus& commands, std::uint8_t number)
+DramController::PseudoChannel::PseudoChannel(const DramControllerParams& params, DramCommandBus& commands,
+                                             std::uint8_t number)
     : params_(params),
       commands_(commands),
       number_(number),
@@ -88,7 +89,8 @@ bool DramController::PseudoChannel::update_view(Cycle now) {
     else holds_until = std::min(holds_until, starves_at);
   }
   view_holds_until_ = any_must_ ? 0 : holds_until;
-  const bool same = view.reads == view_.reads && view.writes == view_.writes && view.starving == view_.starving;
+  const bool same =
+      view.reads == view_.reads && view.writes == view_.writes && view.starving == view_.starving;
   view_.reads = view.reads;
   view_.writes = view.writes;
   view_.starving = view.starving;
@@ -100,7 +102,8 @@ bool DramController::PseudoChannel::update_view(Cycle now) {
 void DramController::PseudoChannel::consider_idle_rows(Action& best, Cycle now) const {
   for (std::uint32_t bank = 0; bank < used_.size(); ++bank) {
     if (device_.open_row(bank) == DramDevice::kClosed || queue_.bank_count(bank) > 0) continue;
-    const Cycle at = std::max({device_.earliest_precharge(bank), page_.closes_at(used_[bank]), commands_.free(false)});
+    const Cycle at =
+        std::max({device_.earliest_precharge(bank), page_.closes_at(used_[bank]), commands_.free(false)});
     consider(best, now, {at, ~std::uint64_t{0} - 1, Step::kPrecharge, bank});
   }
 }
@@ -118,7 +121,8 @@ DramController::PseudoChannel::Action DramController::PseudoChannel::choose(Cycl
 // This loop takes a good part of the simulation's time.
 void DramController::PseudoChannel::choose_pick(Action& best, Cycle now) {
   const Cycle* shared = device_.shared_bounds();
-  const Cycle row_bus = std::max(now, commands_.free(false)), column_bus = std::max(now, commands_.free(true));
+  const Cycle row_bus = std::max(now, commands_.free(false)),
+              column_bus = std::max(now, commands_.free(true));
   Cycle best_at = best.at;
   std::uint64_t best_order = best.order;
   std::uint32_t chosen = DramQueue::kNone;
@@ -129,7 +133,8 @@ void DramController::PseudoChannel::choose_pick(Action& best, Cycle now) {
       const Pick& pick = picks_[bank];
       const Cycle own = std::max(pick.ready, shared[pick.rule]);
       const Cycle at = std::max(own, pick.step == Step::kColumn ? column_bus : row_bus);
-      if (at > best_at || (at == best_at && pick.order >= best_order) || (any_must_ && barred(bank, now))) continue;
+      if (at > best_at || (at == best_at && pick.order >= best_order) || (any_must_ && barred(bank, now)))
+        continue;
       best_at = at;
       best_order = pick.order;
       chosen = bank;
@@ -173,7 +178,8 @@ DramCommand DramController::PseudoChannel::command(Step step, std::uint32_t bank
   return c;
 }
 
-bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, std::vector<DramDone>& done, DramCommand* command) {
+bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, std::vector<DramDone>& done,
+                                               DramCommand* command) {
   DramEntry& entry = queue_[index];
   const std::uint32_t bank = entry.at.bank;
   const int burst = std::countr_zero(entry.bursts);
@@ -182,7 +188,9 @@ bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, s
   const bool closes = page_.closes_with(queue_, index, last);
   if (command != nullptr) {
     command->row = entry.at.row;
-    command->column = static_cast<std::int32_t>(entry.at.column) * static_cast<int>(kLineBytes) / params_.timing.burst_bytes + burst;
+    command->column = static_cast<std::int32_t>(entry.at.column) * static_cast<int>(kLineBytes) /
+                          params_.timing.burst_bytes +
+                      burst;
     command->kind = entry.write ? (closes ? DramCommandKind::kWritePrecharge : DramCommandKind::kWrite)
                                 : (closes ? DramCommandKind::kReadPrecharge : DramCommandKind::kRead);
   }
@@ -198,7 +206,9 @@ bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, s
   fresh_rows_[bank] = 0;
   commands_.hold_column(now);
   if (!last) return false;
-  const DramRowOutcome row = entry.closed_other ? DramRowOutcome::kConflict : entry.opened ? DramRowOutcome::kMiss : DramRowOutcome::kHit;
+  const DramRowOutcome row = entry.closed_other ? DramRowOutcome::kConflict
+                             : entry.opened     ? DramRowOutcome::kMiss
+                                                : DramRowOutcome::kHit;
   done.push_back({entry.id, entry.write, row, entry.arrived, end});
   queue_.remove(index);
   view_holds_until_ = 0;
@@ -206,7 +216,8 @@ bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, s
   return true;
 }
 
-void DramController::PseudoChannel::perform(const Action& action, Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts,
+void DramController::PseudoChannel::perform(const Action& action, Cycle now, std::vector<DramDone>& done,
+                                            DramCommandCounts& counts,
                                             const std::function<void(const DramCommand&)>& trace) {
   DramCommand sent;
   if (trace) sent = command(action.step, action.bank, now);
@@ -252,9 +263,11 @@ void DramController::PseudoChannel::perform(const Action& action, Cycle now, std
 }
 
 // When nothing else waits, the bursts of a request follow its first one without being chosen again.
-void DramController::PseudoChannel::chain_bursts(Action action, std::vector<DramDone>& done, DramCommandCounts& counts,
+void DramController::PseudoChannel::chain_bursts(Action action, std::vector<DramDone>& done,
+                                                 DramCommandCounts& counts,
                                                  const std::function<void(const DramCommand&)>& trace) {
-  if (params_.timing.shared_commands || params_.timing.separate_buses) return;  // there, others could send before them
+  // there, others could send before them
+  if (params_.timing.shared_commands || params_.timing.separate_buses) return;
   const std::size_t before = done.size();
   while (queue_.count(false) + queue_.count(true) == 1 && done.size() == before && !any_must_) {
     update_pick(action.bank);

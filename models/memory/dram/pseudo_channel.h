@@ -1,16 +1,20 @@
-/// One pseudo-channel of a controller: its requests, banks, data bus and refresh, and the choice of the next command.
+/// One pseudo-channel of a controller: its requests, banks, data bus and refresh, and the choice of the next
+/// command.
 ///
-/// Each possible command has an earliest cycle. The soonest goes out; among those that can go out now refresh comes first, then activations, then the oldest request's.
+/// Each possible command has an earliest cycle. The soonest goes out; among those that can go out now refresh
+/// comes first, then activations, then the oldest request's.
 #pragma once
 
 #include "models/memory/dram/controller.h"
 
 namespace quadrille::models {
 
-/// When each command bus is free again. Row commands and column commands share one unless the standard gives them a bus each.
+/// When each command bus is free again. Row commands and column commands share one unless the standard gives
+/// them a bus each.
 class DramCommandBus {
  public:
-  explicit DramCommandBus(const DramTiming& t) : separate_(t.separate_buses), act_slots_(t.act_slots), column_slots_(t.column_slots) {}
+  explicit DramCommandBus(const DramTiming& t)
+      : separate_(t.separate_buses), act_slots_(t.act_slots), column_slots_(t.column_slots) {}
   [[nodiscard]] std::int64_t free(bool column) const { return free_[column && separate_ ? 1 : 0]; }
   void hold_row(std::int64_t at, bool activate) { free_[0] = at + (activate ? act_slots_ : 1); }
   void hold_column(std::int64_t at) { free_[separate_ ? 1 : 0] = at + column_slots_; }
@@ -27,7 +31,8 @@ class DramController::PseudoChannel {
 
   void take(const DramEntry& entry, Cycle now);
   [[nodiscard]] bool empty() const { return queue_.empty(); }
-  /// The first cycle, not before `now`, at which something can be done, with or without requests. Kept until something changes.
+  /// The first cycle, not before `now`, at which something can be done, with or without requests. Kept until
+  /// something changes.
   [[nodiscard]] Cycle next(Cycle now) {
     if (stale_) plan(now);
     return planned_at_;
@@ -35,7 +40,8 @@ class DramController::PseudoChannel {
   /// The command bus was used by another pseudo-channel.
   void replan() { stale_ = true; }
   /// Sends at most one command a bus at `now`.
-  void step(Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts, const std::function<void(const DramCommand&)>& trace);
+  void step(Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts,
+            const std::function<void(const DramCommand&)>& trace);
   [[nodiscard]] const BusAccount& bus() const { return bus_; }
 
  private:
@@ -46,7 +52,8 @@ class DramController::PseudoChannel {
     Step step = Step::kNothing;
     std::uint32_t bank = 0, entry = DramQueue::kNone;  ///< `bank` is the rank of kRefresh
   };
-  /// What the scheduler picked for a bank, and what that needs next. Kept until the bank's requests or row change.
+  /// What the scheduler picked for a bank, and what that needs next. Kept until the bank's requests or row
+  /// change.
   struct Pick {
     Cycle ready = 0;  ///< as far as the bank itself is concerned
     std::uint64_t order = 0;
@@ -58,7 +65,8 @@ class DramController::PseudoChannel {
   [[nodiscard]] Action choose(Cycle now);
   void plan(Cycle now);
   [[nodiscard]] Cycle earliest(const Pick& pick) const {
-    return std::max({pick.ready, device_.shared_bound(pick.rule), commands_.free(pick.step == Step::kColumn)});
+    return std::max(
+        {pick.ready, device_.shared_bound(pick.rule), commands_.free(pick.step == Step::kColumn)});
   }
   /// True when something that every bank's pick depends on changed.
   bool update_view(Cycle now);
@@ -73,7 +81,8 @@ class DramController::PseudoChannel {
   void consider_idle_rows(Action& best, Cycle now) const;
   [[nodiscard]] bool rank_waits(std::uint32_t rank) const;
   [[nodiscard]] bool barred(std::uint32_t bank, Cycle now) const;
-  /// The row was opened and its first burst may still come: a refresh leaves it the time for that, so that every activation is of use.
+  /// The row was opened and its first burst may still come: a refresh leaves it the time for that, so that
+  /// every activation is of use.
   [[nodiscard]] bool keeps_row(std::uint32_t bank, Cycle now) const;
   void perform(const Action& action, Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts,
                const std::function<void(const DramCommand&)>& trace);
@@ -96,11 +105,13 @@ class DramController::PseudoChannel {
   Cycle waiting_since_ = 0;  ///< the queue was empty until then
   std::vector<Cycle> used_;  ///< by bank: its last burst
   DramView view_;
-  std::vector<Pick> picks_;                 ///< by bank
-  std::vector<std::uint8_t> must_refresh_;  ///< by rank: its requests wait for a refresh (of the bank in turn)
+  std::vector<Pick> picks_;  ///< by bank
+  /// by rank: its requests wait for a refresh (of the bank in turn)
+  std::vector<std::uint8_t> must_refresh_;
   bool any_must_ = false;
-  Cycle refresh_quiet_until_ = 0;         ///< until then no refresh concerns what is chosen
-  Cycle view_holds_until_ = 0;            ///< until then no request starves that did not; 0 when the queue changed
+  Cycle refresh_quiet_until_ = 0;  ///< until then no refresh concerns what is chosen
+  /// until then no request starves that did not; 0 when the queue changed
+  Cycle view_holds_until_ = 0;
   std::vector<std::uint8_t> fresh_rows_;  ///< by bank: the row was opened and no burst of it moved yet
   bool stale_ = true;                     ///< what follows must be found again
   Action planned_;

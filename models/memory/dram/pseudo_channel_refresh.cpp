@@ -7,7 +7,8 @@ namespace quadrille::models {
 
 bool DramController::PseudoChannel::rank_waits(std::uint32_t rank) const {
   const auto of_rank = [&](std::uint32_t bank) { return device_.rank_of(bank) == rank; };
-  return std::ranges::any_of(queue_.active_banks(false), of_rank) || std::ranges::any_of(queue_.active_banks(true), of_rank);
+  return std::ranges::any_of(queue_.active_banks(false), of_rank) ||
+         std::ranges::any_of(queue_.active_banks(true), of_rank);
 }
 
 bool DramController::PseudoChannel::consider_rank_refresh(Action& best, Cycle now, std::uint32_t rank) {
@@ -21,9 +22,13 @@ bool DramController::PseudoChannel::consider_rank_refresh(Action& best, Cycle no
     if (device_.open_row(bank) == DramDevice::kClosed) continue;
     closed = false;
     if (!keeps_row(bank, now))
-      consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
+      consider(
+          best, now,
+          {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
   }
-  if (closed) consider(best, now, {std::max(device_.earliest_refresh(rank), commands_.free(false)), 0, Step::kRefresh, rank});
+  if (closed)
+    consider(best, now,
+             {std::max(device_.earliest_refresh(rank), commands_.free(false)), 0, Step::kRefresh, rank});
   return false;
 }
 
@@ -35,8 +40,12 @@ bool DramController::PseudoChannel::consider_bank_refresh(Action& best, Cycle no
   if (!must && queue_.bank_count(bank) > 0) return true;
   if (keeps_row(bank, now)) return false;
   if (device_.open_row(bank) != DramDevice::kClosed)
-    consider(best, now, {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
-  else consider(best, now, {std::max(device_.earliest_refresh_bank(bank), commands_.free(false)), 0, Step::kRefreshBank, bank});
+    consider(best, now,
+             {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
+  else
+    consider(
+        best, now,
+        {std::max(device_.earliest_refresh_bank(bank), commands_.free(false)), 0, Step::kRefreshBank, bank});
   return false;
 }
 
@@ -53,7 +62,8 @@ void DramController::PseudoChannel::consider_refresh(Action& best, Cycle now) {
       continue;
     }
     // Postponed while requests wait: it stays so until it must be, or the last one of a bank leaves.
-    const bool postponed = clock.per_bank() ? consider_bank_refresh(best, now, rank) : consider_rank_refresh(best, now, rank);
+    const bool postponed =
+        clock.per_bank() ? consider_bank_refresh(best, now, rank) : consider_rank_refresh(best, now, rank);
     refresh_quiet_until_ = std::min(refresh_quiet_until_, postponed ? clock.must_at() : 0);
   }
 }
@@ -66,7 +76,8 @@ bool DramController::PseudoChannel::keeps_row(std::uint32_t bank, Cycle now) con
 bool DramController::PseudoChannel::barred(std::uint32_t bank, Cycle now) const {
   const std::uint32_t rank = device_.rank_of(bank);
   if (must_refresh_[rank] == 0 || keeps_row(bank, now)) return false;
-  return !refresh_[rank].per_bank() || bank == rank * static_cast<std::uint32_t>(params_.timing.banks) + refresh_[rank].bank();
+  return !refresh_[rank].per_bank() ||
+         bank == rank * static_cast<std::uint32_t>(params_.timing.banks) + refresh_[rank].bank();
 }
 
 }  // namespace quadrille::models

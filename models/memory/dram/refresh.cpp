@@ -16,11 +16,13 @@ std::int64_t interval(const DramTiming& t) {
   }
   return 0;
 }
-/// Intervals after which a refresh goes before all requests. Of single banks it does so a few intervals early: the bank may have to move a burst and to close first,
-/// and those of the other banks are before it. [G: a quarter of the banks]
+/// Intervals after which a refresh goes before all requests. Of single banks it does so a few intervals
+/// early: the bank may have to move a burst and to close first, and those of the other banks are before it.
+/// [G: a quarter of the banks]
 std::int64_t most_postponed(const DramTiming& t) {
-  const std::int64_t most =
-      t.refresh == DramRefresh::kPerBank ? std::int64_t{t.refresh_postpone} * t.banks - t.banks / 4 : t.refresh_postpone;
+  const std::int64_t most = t.refresh == DramRefresh::kPerBank
+                                ? std::int64_t{t.refresh_postpone} * t.banks - t.banks / 4
+                                : t.refresh_postpone;
   return std::max(std::int64_t{1}, most);
 }
 }  // namespace

@@ -1,6 +1,7 @@
-/// When a rank must be refreshed: one REF each t_refi, of all banks or of one bank in turn (then each t_refi / banks). A REF may be postponed while requests
-/// wait, up to `refresh_postpone` times (as many for each bank); beyond that it comes before them.
-/// [Ramulator 2, AMD LPDDR5, DRAMSys; Cisco UCS for the postponement]
+/// When a rank must be refreshed: one REF each t_refi, of all banks or of one bank in turn (then each t_refi
+/// / banks). A REF may be postponed while requests wait, up to `refresh_postpone` times (as many for each
+/// bank); beyond that it comes before them. [Ramulator 2, AMD LPDDR5, DRAMSys; Cisco UCS for the
+/// postponement]
 #pragma once
 
 #include "models/memory/dram/timing.h"

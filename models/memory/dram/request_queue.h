@@ -1,4 +1,5 @@
-/// The requests that a controller holds for one pseudo-channel: by age, and by bank and age, reads and writes apart. A request is taken out from anywhere.
+/// The requests that a controller holds for one pseudo-channel: by age, and by bank and age, reads and writes
+/// apart. A request is taken out from anywhere.
 #pragma once
 
 #include "models/memory/dram/mapping.h"
@@ -37,7 +38,9 @@ class DramQueue {
   [[nodiscard]] std::uint32_t younger(std::uint32_t i) const { return nodes_[i].next; }
   /// Over both kinds.
   [[nodiscard]] std::uint32_t oldest() const;
-  [[nodiscard]] std::uint32_t oldest(std::uint32_t bank, bool write) const { return banks_[bank].list[write].first; }
+  [[nodiscard]] std::uint32_t oldest(std::uint32_t bank, bool write) const {
+    return banks_[bank].list[write].first;
+  }
   /// The oldest request of the bank for `row`.
   [[nodiscard]] std::uint32_t oldest_of_row(std::uint32_t bank, bool write, std::int32_t row) const;
   /// Does a younger request of the same kind want the row of `entry`?

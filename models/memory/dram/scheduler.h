@@ -1,5 +1,6 @@
-/// Which requests a controller considers, one class a policy. It names requests; what each needs next (its row closed, opened, a burst moved) and when the rules
-/// allow it is the controller's: among what can be done now the oldest request comes first.
+/// Which requests a controller considers, one class a policy. It names requests; what each needs next (its
+/// row closed, opened, a burst moved) and when the rules allow it is the controller's: among what can be done
+/// now the oldest request comes first.
 #pragma once
 
 #include "models/memory/dram/device.h"
@@ -31,13 +32,16 @@ class DramScheduler {
   [[nodiscard]] virtual bool looks_beyond_bank() const = 0;
 };
 
-/// Bursts move in the order of arrival. With `ahead` of 0 what waits behind the oldest request waits for all of it [P: Rixner et al., Memory Access
-/// Scheduling, ISCA 2000: in order]; else the rows of that many requests behind it are closed and opened meanwhile, in banks that no older one needs.
+/// Bursts move in the order of arrival. With `ahead` of 0 what waits behind the oldest request waits for all
+/// of it [P: Rixner et al., Memory Access Scheduling, ISCA 2000: in order]; else the rows of that many
+/// requests behind it are closed and opened meanwhile, in banks that no older one needs.
 class InOrderScheduler final : public DramScheduler {
  public:
   explicit InOrderScheduler(int ahead) : ahead_(ahead) {}
   [[nodiscard]] std::uint32_t pick(const DramView& view, std::uint32_t bank) const override;
-  [[nodiscard]] bool moves(const DramView& view, std::uint32_t request) const override { return request == oldest(view); }
+  [[nodiscard]] bool moves(const DramView& view, std::uint32_t request) const override {
+    return request == oldest(view);
+  }
   [[nodiscard]] bool looks_beyond_bank() const override { return true; }
 
  private:
@@ -45,8 +49,9 @@ class InOrderScheduler final : public DramScheduler {
   int ahead_;
 };
 
-/// One request a bank: the oldest that hits the open row, else the oldest of all. Rows of other banks are prepared meanwhile. When the oldest request waits
-/// longer than the age cap, younger hits to its bank no longer go before it. [P: Rixner et al. 2000: first-ready]
+/// One request a bank: the oldest that hits the open row, else the oldest of all. Rows of other banks are
+/// prepared meanwhile. When the oldest request waits longer than the age cap, younger hits to its bank no
+/// longer go before it. [P: Rixner et al. 2000: first-ready]
 class FirstReadyScheduler final : public DramScheduler {
  public:
   [[nodiscard]] std::uint32_t pick(const DramView& view, std::uint32_t bank) const override;

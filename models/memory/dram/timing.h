@@ -1,5 +1,5 @@
-/// What a kind of DRAM is: its geometry and its least times, in cycles of its command clock. Names are those of the JEDEC standards, which define them;
-/// the values of each kind are in configs/memory/.
+/// What a kind of DRAM is: its geometry and its least times, in cycles of its command clock. Names are those
+/// of the JEDEC standards, which define them; the values of each kind are in configs/memory/.
 #pragma once
 
 namespace quadrille::models {
@@ -10,7 +10,8 @@ struct DramTiming {
   int pseudo_channels = 1;                     ///< independent data buses behind one controller
   int ranks = 1, bank_groups = 4, banks = 16;  ///< banks of a rank, in all its groups
   int rows = 16384, row_bytes = 2048;          ///< of a bank
-  int burst_bytes = 32, t_burst = 2;           ///< bytes of a column command, and how long they hold the data bus
+  /// bytes of a column command, and how long they hold the data bus
+  int burst_bytes = 32, t_burst = 2;
   int t_rcd = 14, t_rcd_wr = 14, t_rp = 14, t_ras = 28, t_rc = 42;
   int t_cas = 14, t_cwl = 6;
   int t_ccd_s = 2, t_ccd_l = 2, t_rrd_s = 4, t_rrd_l = 4, t_faw = 16;

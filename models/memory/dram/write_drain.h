@@ -1,8 +1,9 @@
 /// When writes are served: always, or kept back and drained in runs so that the data bus seldom turns around.
 ///
 /// Marks are of the pseudo-channel's share of the queue.
-/// With watermarks a drain begins when `high` writes wait, or when nothing else does; it ends at `low` writes, or with the last one where no read waits.
-/// [P: Stuecheli et al., The Virtual Write Queue, ISCA 2010, for the watermarks in use]
+/// With watermarks a drain begins when `high` writes wait, or when nothing else does; it ends at `low`
+/// writes, or with the last one where no read waits. [P: Stuecheli et al., The Virtual Write Queue, ISCA
+/// 2010, for the watermarks in use]
 #pragma once
 
 #include "models/memory/dram/request_queue.h"

@@ -1,4 +1,5 @@
-/// Where a unit's cycles go, in closed form. Every outcome has passed the law busy + starved + blocked + idle = cycles (contract.h).
+/// Where a unit's cycles go, in closed form. Every outcome has passed the law busy + starved + blocked + idle
+/// = cycles (contract.h).
 #include "tests/hw/base/scenario.h"
 
 #include <catch2/catch.hpp>
@@ -15,14 +16,17 @@ struct Charges {
   friend bool operator==(const Charges&, const Charges&) = default;
 };
 std::ostream& operator<<(std::ostream& os, const Charges& c) {
-  return os << "busy " << c.busy << " starved " << c.starved << " blocked " << c.blocked << " idle " << c.idle;
+  return os << "busy " << c.busy << " starved " << c.starved << " blocked " << c.blocked << " idle "
+            << c.idle;
 }
 Charges charges(const contract::Outcome& o, const std::string& unit) {
-  return {o.figures.at(unit + ".busy"), o.figures.at(unit + ".starved"), o.figures.at(unit + ".blocked"), o.figures.at(unit + ".idle")};
+  return {o.figures.at(unit + ".busy"), o.figures.at(unit + ".starved"), o.figures.at(unit + ".blocked"),
+          o.figures.at(unit + ".idle")};
 }
 
 /// source -> stage -> sink with links that never limit, unless their specs do.
-WorldSpec pipeline(UnitSpec source, UnitSpec stage, UnitSpec sink, WireSpec first = {.depth = 8}, WireSpec second = {.depth = 8}) {
+WorldSpec pipeline(UnitSpec source, UnitSpec stage, UnitSpec sink, WireSpec first = {.depth = 8},
+                   WireSpec second = {.depth = 8}) {
   WorldSpec w;
   source.name = "source";
   source.role = Role::kSource;
@@ -43,7 +47,8 @@ TEST_CASE("attribution: a slow source starves the stage") {
   REQUIRE(o.failure == "");
   CHECK(o.end == 48 * kCycle);
   CHECK(charges(o, "source") == Charges{48, 0, 0, 0});  // its slot is taken to cycle 50; the frame ends at 48
-  CHECK(charges(o, "stage") == Charges{10, 37, 0, 1});  // 1 before the first token and 4 between tokens; idle after the last one
+  // 1 before the first token and 4 between tokens; idle after the last one
+  CHECK(charges(o, "stage") == Charges{10, 37, 0, 1});
   CHECK(charges(o, "sink") == Charges{10, 38, 0, 0});
 }
 
@@ -84,17 +89,21 @@ TEST_CASE("attribution: what comes after the last token that can reach a unit is
   CHECK(charges(o, "sink") == Charges{4, 2, 0, 94});
 }
 
-TEST_CASE("attribution: a unit behind a filter is starved as long as a token upstream could still come to it") {
-  // The router sends every token to one of two sinks; the other one stays starved until the last token has passed the router.
+TEST_CASE(
+    "attribution: a unit behind a filter is starved as long as a token upstream could still come to it") {
+  // The router sends every token to one of two sinks; the other one stays starved until the last token has
+  // passed the router.
   WorldSpec w;
   const int source = w.add({.name = "source", .role = Role::kSource, .period = 3, .count = 20});
   const int route = w.add({.name = "route", .role = Role::kRoute});
-  const int sinks[] = {w.add({.name = "sink0", .role = Role::kSink}), w.add({.name = "sink1", .role = Role::kSink})};
+  const int sinks[] = {w.add({.name = "sink0", .role = Role::kSink}),
+                       w.add({.name = "sink1", .role = Role::kSink})};
   w.wire({source, 0}, {route, 0}, {.depth = 8});
   for (const int i : {0, 1}) w.wire({route, i}, {sinks[i], 0}, {.depth = 8});
   const auto o = outcome_of(w, 200 * kCycle);
   REQUIRE(o.failure == "");
-  // The last token leaves the source at 57 and the router at 58. One sink gets it at 59, the other can expect one until 58.
+  // The last token leaves the source at 57 and the router at 58. One sink gets it at 59, the other can expect
+  // one until 58.
   const Charges a = charges(o, "sink0"), b = charges(o, "sink1");
   CHECK(a.busy + b.busy == 20);
   CHECK(std::min(a.idle, b.idle) == 140);
@@ -113,7 +122,8 @@ TEST_CASE("attribution: cycles are those of the unit's own clock") {
   CHECK(o.figures.at("sink.busy") == 10);
 }
 
-TEST_CASE("attribution: intervals in which no draw is in flight are idle for every unit, also inside a wait") {
+TEST_CASE(
+    "attribution: intervals in which no draw is in flight are idle for every unit, also inside a wait") {
   const std::string text = contract::in_child([] {
     const WorldSpec w = pipeline({.period = 50, .count = 2}, {}, {});
     QuietLog quiet;
@@ -127,15 +137,19 @@ TEST_CASE("attribution: intervals in which no draw is in flight are idle for eve
     std::string all;
     for (int i = 0; i < 3; ++i) {
       const Unit& u = world.unit(i);
-      all += fmt::format("{} {} {} {};", u.busy_cycles(), u.starved_cycles(), u.blocked_cycles(), u.idle_cycles());
+      all += fmt::format("{} {} {} {};", u.busy_cycles(), u.starved_cycles(), u.blocked_cycles(),
+                         u.idle_cycles());
     }
     return all;
   });
-  // Stage: acts at 1 and 51; waits of 1 and 49 cycles, 25 of them quiet; idle from 52 on. The source's own slot is busy whatever the log says.
+  // Stage: acts at 1 and 51; waits of 1 and 49 cycles, 25 of them quiet; idle from 52 on. The source's own
+  // slot is busy whatever the log says.
   CHECK(text == "60 0 0 0;2 25 0 33;2 26 0 32;");
 }
 
-TEST_CASE("attribution: the four charges sum to the cycles in every unit of random worlds, wherever the frame is cut") {
+TEST_CASE(
+    "attribution: the four charges sum to the cycles in every unit of random worlds, wherever the frame is "
+    "cut") {
   for (std::uint64_t seed = 301; seed <= 330; ++seed) {
     const WorldSpec spec = random_world(seed);
     INFO("seed " << seed);

@@ -11,8 +11,9 @@ using namespace quadrille::hw;
 TEST_CASE("clock: edge k is the exact floor of k periods, for any frequency and any k") {
   std::mt19937_64 random(1);
   for (const std::int64_t hz :
-       {std::int64_t{1'000'000'000}, std::int64_t{1'755'000'000}, std::int64_t{999'999'900}, std::int64_t{618'033'989}, std::int64_t{3},
-        std::int64_t{7'000'000'001}, std::int64_t{1'000'000'000'000'000}, std::int64_t{999'999'999'999'989}}) {
+       {std::int64_t{1'000'000'000}, std::int64_t{1'755'000'000}, std::int64_t{999'999'900},
+        std::int64_t{618'033'989}, std::int64_t{3}, std::int64_t{7'000'000'001},
+        std::int64_t{1'000'000'000'000'000}, std::int64_t{999'999'999'999'989}}) {
     const Clock clock(hz);
     for (int i = 0; i < 2000; ++i) {
       const auto k = static_cast<std::int64_t>(random() >> (1 + random() % 63)) % (hz * 9000);
@@ -23,8 +24,8 @@ TEST_CASE("clock: edge k is the exact floor of k periods, for any frequency and 
 
 TEST_CASE("clock: edges_before counts edges, align finds the next, after and cycles agree with them") {
   std::mt19937_64 random(2);
-  for (const std::int64_t hz :
-       {std::int64_t{1'000'000'000}, std::int64_t{1'755'000'000}, std::int64_t{999'999'900}, std::int64_t{2'414'213'562}}) {
+  for (const std::int64_t hz : {std::int64_t{1'000'000'000}, std::int64_t{1'755'000'000},
+                                std::int64_t{999'999'900}, std::int64_t{2'414'213'562}}) {
     const Clock clock(hz);
     CHECK(clock.edges_before(0) == 0);
     CHECK(clock.edges_before(1) == 1);

@@ -35,15 +35,18 @@ WorldSpec arbitration(bool lie) {
 
 }  // namespace
 
-TEST_CASE("contract: random worlds keep it, whatever the host order, the order of creation, the driver and the depths") {
+TEST_CASE(
+    "contract: random worlds keep it, whatever the host order, the order of creation, the driver and the "
+    "depths") {
   for (std::uint64_t seed = 401; seed <= 412; ++seed) {
     INFO("seed " << seed);
-    CHECK(joined(contract::violations(builder_of(random_world(seed)), {.shuffles = 3, .creations = 2, .digest_at_depth_one = false})) ==
-          "");
+    CHECK(joined(contract::violations(builder_of(random_world(seed)),
+                                      {.shuffles = 3, .creations = 2, .digest_at_depth_one = false})) == "");
   }
 }
 
-TEST_CASE("contract: a machine whose result does not depend on timing keeps its digest with all links one deep") {
+TEST_CASE(
+    "contract: a machine whose result does not depend on timing keeps its digest with all links one deep") {
   class Sum final : public contract::Specimen {
    public:
     Sum(const WorldSpec& s, Driver& d, const contract::Variation& v) : world_(s, d, v) {}
@@ -56,8 +59,9 @@ TEST_CASE("contract: a machine whose result does not depend on timing keeps its 
    private:
     World world_;
   };
-  CHECK(joined(contract::violations(
-            [](Driver& d, const contract::Variation& v) { return std::make_unique<Sum>(arbitration(false), d, v); })) == "");
+  CHECK(joined(contract::violations([](Driver& d, const contract::Variation& v) {
+          return std::make_unique<Sum>(arbitration(false), d, v);
+        })) == "");
 }
 
 TEST_CASE("contract: an arbiter declared fixed-order is caught") {
@@ -104,7 +108,8 @@ TEST_CASE("driver: a time limit stops both drivers after the same actions") {
       else driver = std::make_unique<Dispatcher>("driver");
       const World world(arbitration(false), *driver);
       const RunEnd end = driver->run({.max_time = limit, .progress = {}});
-      return fmt::format("{} {} {}", end == RunEnd::kTimeLimit ? "limit" : "quiescent", driver->actions(), world.digest());
+      return fmt::format("{} {} {}", end == RunEnd::kTimeLimit ? "limit" : "quiescent", driver->actions(),
+                         world.digest());
     });
   };
   for (const Tick limit : {Tick{0}, Tick{100'000'000}, Tick{100'500'000}, Tick{10'000'000'000}}) {

@@ -12,14 +12,17 @@ std::string report_of(const WorldSpec& spec) {
   return contract::in_child([&] {
     Dispatcher driver("driver");
     const World world(spec, driver);
-    if (driver.run({}) != RunEnd::kQuiescent || tokens_in_links(driver.units()) == 0) return std::string("no deadlock");
+    if (driver.run({}) != RunEnd::kQuiescent || tokens_in_links(driver.units()) == 0)
+      return std::string("no deadlock");
     return deadlock_report(driver.units(), driver.last_action());
   });
 }
 
 }  // namespace
 
-TEST_CASE("deadlock: a ring that feeds itself until every link is full is reported with its units, its cycle and its thinnest link") {
+TEST_CASE(
+    "deadlock: a ring that feeds itself until every link is full is reported with its units, its cycle and "
+    "its thinnest link") {
   WorldSpec w;
   const int source = w.add({.name = "source", .role = Role::kSource, .count = 100});
   const int merge = w.add({.name = "merge", .role = Role::kArbiter});
@@ -31,8 +34,9 @@ TEST_CASE("deadlock: a ring that feeds itself until every link is full is report
   w.wire({grow, 1}, {sink, 0}, {.depth = 4});
   const std::string text = report_of(w);
   INFO(text);
-  CHECK_THAT(
-      text, Catch::Contains("merge (cycle ") && Catch::Contains("waits for room in link_merge_0 (port out0, 3 of 3 slots taken, to grow)"));
+  CHECK_THAT(text,
+             Catch::Contains("merge (cycle ") &&
+                 Catch::Contains("waits for room in link_merge_0 (port out0, 3 of 3 slots taken, to grow)"));
   CHECK_THAT(text, Catch::Contains("cycle of waiting: merge -out0-> grow -out0-> merge") ||
                        Catch::Contains("cycle of waiting: grow -out0-> merge -out0-> grow"));
   CHECK_THAT(text, Catch::Contains("to blame: link link_grow_0 is full; raise its depth (2 now)"));
@@ -53,7 +57,8 @@ TEST_CASE("deadlock: a join behind a shallow branch waits for the fork that wait
   const std::string text = report_of(w);
   INFO(text);
   CHECK_THAT(text, Catch::Contains("join (cycle ") &&
-                       Catch::Contains("waits for a token in link_pack_0 (port in1, 0 of 4 slots taken, from pack)"));
+                       Catch::Contains(
+                           "waits for a token in link_pack_0 (port in1, 0 of 4 slots taken, from pack)"));
   CHECK_THAT(text, Catch::Contains("to blame: link link_fork_0 is full; raise its depth (2 now)"));
 }
 
@@ -68,8 +73,8 @@ TEST_CASE("deadlock: tokens that nobody takes because a partner ran out are name
   w.wire({join, 0}, {sink, 0});
   const std::string text = report_of(w);
   INFO(text);
-  CHECK_THAT(text, Catch::Contains(
-                       "to blame: link link_many_0 holds 4 tokens that join does not take; it waits for in1 of link link_few_0 by few"));
+  CHECK_THAT(text, Catch::Contains("to blame: link link_many_0 holds 4 tokens that join does not take; it "
+                                   "waits for in1 of link link_few_0 by few"));
 }
 
 TEST_CASE("deadlock: the contract harness reports it as a violation when a machine says it did not finish") {
@@ -84,7 +89,7 @@ TEST_CASE("deadlock: the contract harness reports it as a violation when a machi
   };
   WorldSpec w;
   w.wire({w.add({.role = Role::kSource, .count = 3}), 0}, {w.add({.role = Role::kSink}), 0});
-  const auto outcome =
-      contract::run_forked([&](Driver& d, const contract::Variation& v) { return std::make_unique<Unfinished>(w, d, v); }, {});
+  const auto outcome = contract::run_forked(
+      [&](Driver& d, const contract::Variation& v) { return std::make_unique<Unfinished>(w, d, v); }, {});
   CHECK_THAT(outcome.failure, Catch::Contains("did not finish") && Catch::Contains("nothing can act"));
 }

@@ -68,7 +68,8 @@ TEST_CASE("fifo: a crossing costs two cycles of the receiver each way, and says 
   CHECK(text == "true 5 3 10");  // pushed at 0, which is an edge of both: five periods of 2 ns later
 }
 
-TEST_CASE("fifo: a second producer, an unbound port, a push without room and an illegal shape are named errors") {
+TEST_CASE(
+    "fifo: a second producer, an unbound port, a push without room and an illegal shape are named errors") {
   const auto shape = [](LinkSpec spec) {
     return contract::in_child([spec] {
       Dispatcher d("driver");
@@ -76,25 +77,27 @@ TEST_CASE("fifo: a second producer, an unbound port, a push without room and an 
       return std::string();
     });
   };
-  for (const LinkSpec& bad :
-       {LinkSpec{0, 1, 1, 1}, LinkSpec{1, 0, 1, 1}, LinkSpec{1, 1, 0, 1}, LinkSpec{1, 1, 1, 0}, LinkSpec{-1, 1, 1, 1}}) {
+  for (const LinkSpec& bad : {LinkSpec{0, 1, 1, 1}, LinkSpec{1, 0, 1, 1}, LinkSpec{1, 1, 0, 1},
+                              LinkSpec{1, 1, 1, 0}, LinkSpec{-1, 1, 1, 1}}) {
     CHECK_THAT(shape(bad), Catch::Contains("link thin"));
   }
-  const auto two_units = [](const std::function<void(SyntheticUnit&, SyntheticUnit&, SyntheticUnit&, Fifo<Token>&)>& misuse) {
-    return contract::in_child([&] {
-      Dispatcher driver("driver");
-      UnitSpec s{.name = "a", .role = Role::kSource, .count = 9, .outputs = 1};
-      UnitSpec t{.name = "b", .role = Role::kSource, .count = 9, .outputs = 1};
-      UnitSpec u{.name = "c", .role = Role::kSink, .inputs = 1};
-      const Clock clock;
-      const auto a = make_unit(s, clock, {}), b = make_unit(t, clock, {}), c = make_unit(u, clock, {LinkRole::kFlow});
-      Fifo<Token> link("thin", {.depth = 1});
-      for (Unit* unit : {a.get(), b.get(), c.get()}) driver.add(*unit);
-      misuse(*a, *b, *c, link);
-      driver.run({});
-      return std::string("ran");
-    });
-  };
+  const auto two_units =
+      [](const std::function<void(SyntheticUnit&, SyntheticUnit&, SyntheticUnit&, Fifo<Token>&)>& misuse) {
+        return contract::in_child([&] {
+          Dispatcher driver("driver");
+          UnitSpec s{.name = "a", .role = Role::kSource, .count = 9, .outputs = 1};
+          UnitSpec t{.name = "b", .role = Role::kSource, .count = 9, .outputs = 1};
+          UnitSpec u{.name = "c", .role = Role::kSink, .inputs = 1};
+          const Clock clock;
+          const auto a = make_unit(s, clock, {}), b = make_unit(t, clock, {}),
+                     c = make_unit(u, clock, {LinkRole::kFlow});
+          Fifo<Token> link("thin", {.depth = 1});
+          for (Unit* unit : {a.get(), b.get(), c.get()}) driver.add(*unit);
+          misuse(*a, *b, *c, link);
+          driver.run({});
+          return std::string("ran");
+        });
+      };
   CHECK_THAT(two_units([](auto& a, auto& b, auto& c, auto& link) {
                a.out(0).bind(link);
                b.out(0).bind(link);

@@ -44,7 +44,8 @@ TEST_CASE("resources: slices of a long frame are joined in pairs, and none of th
   w.resources.finish(actions * kSlice, w.resources.slice());
   CHECK(w.resources.slice() == 8 * kSlice);
   CHECK(w.slices().size() == 5 * Resources::kMostSlices / 8);
-  for (std::size_t i = 0; i < w.slices().size(); ++i) REQUIRE(w.slices()[i] == 8.0 * static_cast<double>(i + 1));
+  for (std::size_t i = 0; i < w.slices().size(); ++i)
+    REQUIRE(w.slices()[i] == 8.0 * static_cast<double>(i + 1));
 }
 
 TEST_CASE("resources: a unit with longer slices sets those of all") {

@@ -44,7 +44,8 @@ class Spread final : public SyntheticUnit {
   using SyntheticUnit::SyntheticUnit;
   Wake next() const override {
     Wake wake = own().input(*inputs_[0]).output(*outputs_[0]);
-    for (std::size_t i = 1; i < outputs_.size(); ++i) wake = Wake::sooner(wake, own().input(*inputs_[0]).output(*outputs_[i]));
+    for (std::size_t i = 1; i < outputs_.size(); ++i)
+      wake = Wake::sooner(wake, own().input(*inputs_[0]).output(*outputs_[i]));
     return wake;
   }
   void act(Tick now) override {
@@ -63,7 +64,8 @@ class Spread final : public SyntheticUnit {
 
 class Core final : public SyntheticUnit {
  public:
-  Core(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& roles)
+  Core(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock,
+       const std::vector<LinkRole>& roles)
       : SyntheticUnit(name, spec, clock, roles),
         contexts_(static_cast<std::size_t>(spec.slots)),
         free_((std::uint64_t{1} << spec.slots) - 1) {}
@@ -80,7 +82,9 @@ class Core final : public SyntheticUnit {
     else if (ask_ != 0 && outputs_[1]->room_at(now)) ask(now);
     else accept(now);
   }
-  std::string state_text() const override { return fmt::format("{} of {} contexts", spec_.slots - std::popcount(free_), spec_.slots); }
+  std::string state_text() const override {
+    return fmt::format("{} of {} contexts", spec_.slots - std::popcount(free_), spec_.slots);
+  }
 
  private:
   struct Context {
@@ -133,7 +137,8 @@ class Memory final : public SyntheticUnit {
   using SyntheticUnit::SyntheticUnit;
 
   Wake next() const override {
-    Wake wake = slots_.size() < static_cast<std::size_t>(spec_.slots) ? own().input(earliest(inputs_)) : Wake::never(*inputs_[0]);
+    Wake wake = slots_.size() < static_cast<std::size_t>(spec_.slots) ? own().input(earliest(inputs_))
+                                                                      : Wake::never(*inputs_[0]);
     for (const Slot& s : slots_) {
       if (s.done >= wake.at()) break;
       const Wake reply = Wake(std::max(own().at(), s.done)).output(*outputs_[s.port]);
@@ -147,7 +152,9 @@ class Memory final : public SyntheticUnit {
     }
     accept(now);
   }
-  std::string state_text() const override { return fmt::format("{} of {} slots", slots_.size(), spec_.slots); }
+  std::string state_text() const override {
+    return fmt::format("{} of {} slots", slots_.size(), spec_.slots);
+  }
 
  private:
   struct Slot {
@@ -181,7 +188,8 @@ class Memory final : public SyntheticUnit {
 
 }  // namespace
 
-std::unique_ptr<SyntheticUnit> make_chooser(const UnitSpec& s, const Clock& clock, const std::vector<LinkRole>& roles) {
+std::unique_ptr<SyntheticUnit> make_chooser(const UnitSpec& s, const Clock& clock,
+                                            const std::vector<LinkRole>& roles) {
   const char* name = s.name.c_str();
   switch (s.role) {
     case Role::kArbiter:

@@ -149,7 +149,9 @@ class Expand final : public SyntheticUnit {
 class Pack final : public SyntheticUnit {
  public:
   using SyntheticUnit::SyntheticUnit;
-  Wake next() const override { return held_ < spec_.count ? own().input(*inputs_[0]) : own().output(*outputs_[0]); }
+  Wake next() const override {
+    return held_ < spec_.count ? own().input(*inputs_[0]) : own().output(*outputs_[0]);
+  }
   void act(Tick now) override {
     if (held_ < spec_.count) {
       const std::uint32_t id = inputs_[0]->pop(now).id;
@@ -171,7 +173,8 @@ class Pack final : public SyntheticUnit {
 
 }  // namespace
 
-std::unique_ptr<SyntheticUnit> make_fixed_order(const UnitSpec& s, const Clock& clock, const std::vector<LinkRole>& roles) {
+std::unique_ptr<SyntheticUnit> make_fixed_order(const UnitSpec& s, const Clock& clock,
+                                                const std::vector<LinkRole>& roles) {
   const char* name = s.name.c_str();
   switch (s.role) {
     case Role::kSource: return std::make_unique<Source>(name, s, clock, roles);

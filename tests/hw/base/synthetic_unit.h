@@ -1,4 +1,5 @@
-/// The units of synthetic machines, built from the kernel's own. What each role does is written at `Role` in world_spec.h.
+/// The units of synthetic machines, built from the kernel's own. What each role does is written at `Role` in
+/// world_spec.h.
 #pragma once
 
 #include "hw/base/unit.h"
@@ -14,7 +15,9 @@ namespace quadrille::hw::world {
 template <class Port>
 class Ports {
  public:
-  void add(Unit& owner, const std::string& name, LinkRole role) { ports_.at(count_++).emplace(owner, name.c_str(), role); }
+  void add(Unit& owner, const std::string& name, LinkRole role) {
+    ports_.at(count_++).emplace(owner, name.c_str(), role);
+  }
   [[nodiscard]] std::size_t size() const { return count_; }
   std::optional<Port>& operator[](std::size_t i) { return ports_[i]; }
   const std::optional<Port>& operator[](std::size_t i) const { return ports_[i]; }
@@ -31,7 +34,8 @@ class Ports {
 /// One unit of a world. Ports are `in0`.., `out0`..; what the roles do is written at `Role`.
 class SyntheticUnit : public Unit {
  public:
-  SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles);
+  SyntheticUnit(sc_core::sc_module_name name, const UnitSpec& spec, const Clock& clock,
+                const std::vector<LinkRole>& input_roles);
   [[nodiscard]] FifoIn<Token>& in(int i) { return *inputs_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] FifoOut<Token>& out(int i) { return *outputs_[static_cast<std::size_t>(i)]; }
   /// Where actions are recorded; none by default.
@@ -70,6 +74,7 @@ class SyntheticUnit : public Unit {
                                                               const std::vector<LinkRole>& input_roles);
 [[nodiscard]] std::unique_ptr<SyntheticUnit> make_chooser(const UnitSpec& spec, const Clock& clock,
                                                           const std::vector<LinkRole>& input_roles);
-[[nodiscard]] std::unique_ptr<SyntheticUnit> make_unit(const UnitSpec& spec, const Clock& clock, const std::vector<LinkRole>& input_roles);
+[[nodiscard]] std::unique_ptr<SyntheticUnit> make_unit(const UnitSpec& spec, const Clock& clock,
+                                                       const std::vector<LinkRole>& input_roles);
 
 }  // namespace quadrille::hw::world

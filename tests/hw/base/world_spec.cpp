@@ -7,7 +7,8 @@ namespace quadrille::hw::world {
 
 int WorldSpec::add(UnitSpec unit) {
   const int index = static_cast<int>(units.size());
-  if (unit.name.empty()) unit.name.append("u").append(std::to_string(index)).append("_").append(role_name(unit.role));
+  if (unit.name.empty())
+    unit.name.append("u").append(std::to_string(index)).append("_").append(role_name(unit.role));
   unit.seed += static_cast<std::uint32_t>(index) * 7919u;
   units.push_back(std::move(unit));
   return index;
@@ -24,12 +25,14 @@ void WorldSpec::wire(LinkEnd from, LinkEnd to, WireSpec spec) {
 }
 
 bool is_chooser(Role role) {
-  return role == Role::kArbiter || role == Role::kPriority || role == Role::kSpread || role == Role::kCore || role == Role::kMemory;
+  return role == Role::kArbiter || role == Role::kPriority || role == Role::kSpread || role == Role::kCore ||
+         role == Role::kMemory;
 }
 
 const char* role_name(Role role) {
-  static constexpr const char* kNames[] = {"source", "stage",   "serial",   "fork",   "route", "recycle", "join", "expand",
-                                           "pack",   "arbiter", "priority", "spread", "core",  "memory",  "sink"};
+  static constexpr const char* kNames[] = {"source",   "stage",  "serial", "fork",   "route",
+                                           "recycle",  "join",   "expand", "pack",   "arbiter",
+                                           "priority", "spread", "core",   "memory", "sink"};
   return kNames[static_cast<std::size_t>(role)];
 }
 
@@ -49,7 +52,9 @@ class Grower {
   }
 
  private:
-  int up_to(int low, int high) { return low + static_cast<int>(random_() % static_cast<std::uint64_t>(high - low + 1)); }
+  int up_to(int low, int high) {
+    return low + static_cast<int>(random_() % static_cast<std::uint64_t>(high - low + 1));
+  }
   bool chance(int per_cent) { return up_to(1, 100) <= per_cent; }
 
   void choose_clocks() {

@@ -1,4 +1,5 @@
-/// Small synthetic machines as plain data: what the kernel's units (worlds.h) and the clocked reference simulator (tests/clocked) are both built from.
+/// Small synthetic machines as plain data: what the kernel's units (worlds.h) and the clocked reference
+/// simulator (tests/clocked) are both built from.
 ///
 /// Nothing here knows of time or of the kernel; behaviour is written in words at `Role` and programmed twice.
 #pragma once
@@ -14,8 +15,9 @@ struct Token {
   std::uint32_t hops = 0;
 };
 
-/// What a unit does. An action takes place on an edge of the unit's clock; at most `rate` actions share an edge, and the one that fills the edge
-/// keeps the unit for `cost(key)` cycles. In0, Out0, ... are ports by index.
+/// What a unit does. An action takes place on an edge of the unit's clock; at most `rate` actions share an
+/// edge, and the one that fills the edge keeps the unit for `cost(key)` cycles. In0, Out0, ... are ports by
+/// index.
 enum class Role : std::uint8_t {
   kSource,    ///< pushes `count` tokens to Out0; cost by token number
   kStage,     ///< In0 -> Out0, one action a token
@@ -29,9 +31,13 @@ enum class Role : std::uint8_t {
   kArbiter,   ///< chooser: round robin over ready inputs -> Out0
   kPriority,  ///< chooser: the lowest ready input -> Out0
   kSpread,    ///< chooser: In0 -> round robin over outputs with room
-  kCore,      ///< chooser: In0 -> a free context -> `count` requests on Out1, replies on In1 -> Out0; prefers reply, emit, request, accept
-  kMemory,  ///< chooser: InI -> a free slot -> after `service(id)` cycles OutI; first done first among those with room; prefers to reply; accepts round robin
-  kSink,    ///< pops In0; cost by token number
+  /// chooser: In0 -> a free context -> `count` requests on Out1, replies on In1 -> Out0; prefers reply, emit,
+  /// request, accept
+  kCore,
+  /// chooser: InI -> a free slot -> after `service(id)` cycles OutI; first done first among those with room;
+  /// prefers to reply; accepts round robin
+  kMemory,
+  kSink,  ///< pops In0; cost by token number
 };
 
 struct UnitSpec {
@@ -75,10 +81,13 @@ struct WorldSpec {
 }
 /// Cycles that the action with this key (token number or id) keeps the unit.
 [[nodiscard]] constexpr int cost(const UnitSpec& u, std::uint32_t key) {
-  return u.jitter == 1 ? u.period : u.period + static_cast<int>(mix(u.seed, key) % static_cast<std::uint32_t>(u.jitter));
+  return u.jitter == 1 ? u.period
+                       : u.period + static_cast<int>(mix(u.seed, key) % static_cast<std::uint32_t>(u.jitter));
 }
 [[nodiscard]] constexpr int service(const UnitSpec& u, std::uint32_t id) {
-  return u.spread == 1 ? u.service : u.service + static_cast<int>(mix(u.seed + 1, id) % static_cast<std::uint32_t>(u.spread));
+  return u.spread == 1
+             ? u.service
+             : u.service + static_cast<int>(mix(u.seed + 1, id) % static_cast<std::uint32_t>(u.spread));
 }
 [[nodiscard]] bool is_chooser(Role role);
 [[nodiscard]] const char* role_name(Role role);
@@ -93,10 +102,11 @@ struct Event {
 };
 using Trace = std::vector<std::vector<Event>>;  ///< by unit of the spec
 
-/// A random machine: sources, then random operators on open streams (with arbiters, feedback loops, shared memories), then sinks. Some of them deadlock.
+/// A random machine: sources, then random operators on open streams (with arbiters, feedback loops, shared
+/// memories), then sinks. Some of them deadlock.
 [[nodiscard]] WorldSpec random_world(std::uint64_t seed);
-/// 50 units with arbiters and feedback on one clock, for the benchmark: 8 lanes of stages and cores, one shared memory, merged and recycled. `tokens` a source;
-/// every link is shaped like `link`.
+/// 50 units with arbiters and feedback on one clock, for the benchmark: 8 lanes of stages and cores, one
+/// shared memory, merged and recycled. `tokens` a source; every link is shaped like `link`.
 [[nodiscard]] WorldSpec benchmark_world(int tokens, WireSpec link = {.depth = 8, .latency = 2, .credit = 1});
 
 }  // namespace quadrille::hw::world

@@ -22,7 +22,8 @@ World::World(const WorldSpec& spec, Driver& driver, const contract::Variation& v
     const UnitSpec& u = spec.units[i];
     std::vector<LinkRole> roles(static_cast<std::size_t>(u.inputs), LinkRole::kFlow);
     for (const WireSpec& w : spec.wires) {
-      if (w.reply && w.to.unit == static_cast<int>(i)) roles[static_cast<std::size_t>(w.to.port)] = LinkRole::kReply;
+      if (w.reply && w.to.unit == static_cast<int>(i))
+        roles[static_cast<std::size_t>(w.to.port)] = LinkRole::kReply;
     }
     units_[i] = make_unit(u, Clock(spec.clocks_hz[static_cast<std::size_t>(u.clock)]), roles);
     if (record) units_[i]->record_into(trace_[i]);
@@ -31,8 +32,10 @@ World::World(const WorldSpec& spec, Driver& driver, const contract::Variation& v
     const WireSpec& w = spec.wires[i];
     SyntheticUnit& from = unit(w.from.unit);
     SyntheticUnit& to = unit(w.to.unit);
-    const LinkSpec link = variation.link({.depth = w.depth, .width = w.width, .latency = w.latency, .credit_latency = w.credit});
-    links_[i] = std::make_unique<Fifo<Token>>(fmt::format("link_{}_{}", from.basename(), w.from.port).c_str(), link);
+    const LinkSpec link = variation.link(
+        {.depth = w.depth, .width = w.width, .latency = w.latency, .credit_latency = w.credit});
+    links_[i] =
+        std::make_unique<Fifo<Token>>(fmt::format("link_{}_{}", from.basename(), w.from.port).c_str(), link);
     from.out(w.from.port).bind(*links_[i]);
     to.in(w.to.port).bind(*links_[i]);
   }

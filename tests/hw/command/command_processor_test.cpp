@@ -34,7 +34,8 @@ struct CommandBench final : Bench {
     feed(unit->retire_in[1], s.retire_1);
     feed(unit->scan_done_in, s.scan_done);
     issued = &drain<DrawToken>(
-        unit->draw_out, [](const DrawToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; }, s.pace, s.out);
+        unit->draw_out, [](const DrawToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; },
+        s.pace, s.out);
     scans = &drain<ScanToken>(unit->scan_out, [](const ScanToken& t) { return t.pass; });
   }
   [[nodiscard]] bool finished() const override { return Bench::finished() && unit->finished(); }
@@ -52,12 +53,16 @@ const RetireToken kRetired{TokenKind::kDrawEnd, 0}, kFlushed{TokenKind::kPassEnd
 
 TEST_CASE("command_processor: a draw takes draw_clk cycles, its end and the boundaries one each") {
   for (const int clk : {1, 16}) {
-    const auto text = run<CommandBench>({.draws_of_pass = {2}, .draw_clk = clk}, [](const CommandBench& b) { return b.issued->text(); });
-    CHECK(text == fmt::format("1:300 2:0 {}:200 {}:1 {}:201 {}:400", 2 + clk, 3 + clk, 3 + 2 * clk, 4 + 2 * clk));
+    const auto text = run<CommandBench>({.draws_of_pass = {2}, .draw_clk = clk},
+                                        [](const CommandBench& b) { return b.issued->text(); });
+    CHECK(text ==
+          fmt::format("1:300 2:0 {}:200 {}:1 {}:201 {}:400", 2 + clk, 3 + clk, 3 + 2 * clk, 4 + 2 * clk));
   }
 }
 
-TEST_CASE("command_processor: issues no more draws than may be in flight, one counts until every partition has retired it") {
+TEST_CASE(
+    "command_processor: issues no more draws than may be in flight, one counts until every partition has "
+    "retired it") {
   const CommandBench::Setup s{.draws_of_pass = {3},
                               .retire_0 = {{40, kRetired}, {41, kRetired}},
                               .retire_1 = {{50, kRetired}, {90, kRetired}},
@@ -65,36 +70,47 @@ TEST_CASE("command_processor: issues no more draws than may be in flight, one co
                               .in_flight = 1};
   const auto text = run<CommandBench>(s, [](const CommandBench& b) {
     const Resource& places = b.unit->resources().all().back();
-    return fmt::format("{} retired {}, {} full for {}", b.issued->text(), counter(*b.unit, "draws_retired"), places.name, places.taken);
+    return fmt::format("{} retired {}, {} full for {}", b.issued->text(), counter(*b.unit, "draws_retired"),
+                       places.name, places.taken);
   });
   // Full from the end of a draw until the last partition has retired it: 2 to 51, 52 to 91.
   CHECK(text == "1:300 2:0 3:200 52:1 53:201 92:2 93:202 94:400 retired 2, draws_in_flight full for 88");
 }
 
 TEST_CASE("command_processor: the next pass begins the cycle the last partition has flushed") {
-  const CommandBench::Setup s{.draws_of_pass = {0, 0}, .retire_0 = {{30, kFlushed}}, .retire_1 = {{60, kFlushed}}};
-  const auto text =
-      run<CommandBench>(s, [](const CommandBench& b) { return fmt::format("{} scans {}", b.issued->text(), b.scans->text()); });
+  const CommandBench::Setup s{
+      .draws_of_pass = {0, 0}, .retire_0 = {{30, kFlushed}}, .retire_1 = {{60, kFlushed}}};
+  const auto text = run<CommandBench>(
+      s, [](const CommandBench& b) { return fmt::format("{} scans {}", b.issued->text(), b.scans->text()); });
   CHECK(text == "1:300 2:400 62:301 63:401 scans ");
 }
 
-TEST_CASE("command_processor: the image is shown once the last pass is flushed, and the frame ends when it was read") {
-  const CommandBench::Setup s{.draws_of_pass = {0}, .retire_0 = {{30, kFlushed}}, .retire_1 = {{20, kFlushed}}, .scan_done = {{80, {}}}};
+TEST_CASE(
+    "command_processor: the image is shown once the last pass is flushed, and the frame ends when it was "
+    "read") {
+  const CommandBench::Setup s{.draws_of_pass = {0},
+                              .retire_0 = {{30, kFlushed}},
+                              .retire_1 = {{20, kFlushed}},
+                              .scan_done = {{80, {}}}};
   const auto text = run<CommandBench>(s, [](const CommandBench& b) {
-    return fmt::format("scan {} rendered {} ended {} finished {}", b.scans->text(), b.unit->render_end() / kCycle, b.unit->end() / kCycle,
-                       b.unit->finished());
+    return fmt::format("scan {} rendered {} ended {} finished {}", b.scans->text(),
+                       b.unit->render_end() / kCycle, b.unit->end() / kCycle, b.unit->finished());
   });
   CHECK(text == "scan 32:0 rendered 31 ended 81 finished true");
 }
 
 TEST_CASE("command_processor: a frame without passes is finished before it begins") {
-  CHECK(run<CommandBench>({.draws_of_pass = {}},
-                          [](const CommandBench& b) { return fmt::format("{}{}", b.unit->finished(), b.issued->text()); }) == "true");
+  CHECK(run<CommandBench>({.draws_of_pass = {}}, [](const CommandBench& b) {
+          return fmt::format("{}{}", b.unit->finished(), b.issued->text());
+        }) == "true");
 }
 
 TEST_CASE("command_processor: the time from a flush to the next pass's begin is logged as quiet") {
-  const CommandBench::Setup s{
-      .draws_of_pass = {0, 0}, .retire_0 = {{30, kFlushed}}, .retire_1 = {{30, kFlushed}}, .pace = {.from = 50}, .out = {.depth = 2}};
+  const CommandBench::Setup s{.draws_of_pass = {0, 0},
+                              .retire_0 = {{30, kFlushed}},
+                              .retire_1 = {{30, kFlushed}},
+                              .pace = {.from = 50},
+                              .out = {.depth = 2}};
   const auto text = run<CommandBench>(s, [](const CommandBench& b) {
     std::string all;
     for (const auto& q : b.quiet.intervals()) all += fmt::format("[{},{})", q.from / kCycle, q.to / kCycle);
@@ -104,12 +120,21 @@ TEST_CASE("command_processor: the time from a flush to the next pass's begin is 
 }
 
 TEST_CASE("command_processor: keeps the contract, one-deep links included") {
-  const CommandBench::Setup s{
-      .draws_of_pass = {2, 0, 1},
-      .retire_0 = {{60, kRetired}, {61, kRetired}, {100, kFlushed}, {200, kFlushed}, {280, kRetired}, {300, kFlushed}},
-      .retire_1 = {{60, kRetired}, {70, kRetired}, {110, kFlushed}, {190, kFlushed}, {290, kRetired}, {310, kFlushed}},
-      .scan_done = {{400, {}}},
-      .in_flight = 1,
-      .pace = {.from = 0, .period = 2}};
+  const CommandBench::Setup s{.draws_of_pass = {2, 0, 1},
+                              .retire_0 = {{60, kRetired},
+                                           {61, kRetired},
+                                           {100, kFlushed},
+                                           {200, kFlushed},
+                                           {280, kRetired},
+                                           {300, kFlushed}},
+                              .retire_1 = {{60, kRetired},
+                                           {70, kRetired},
+                                           {110, kFlushed},
+                                           {190, kFlushed},
+                                           {290, kRetired},
+                                           {310, kFlushed}},
+                              .scan_done = {{400, {}}},
+                              .in_flight = 1,
+                              .pace = {.from = 0, .period = 2}};
   CHECK(contract_text<CommandBench>(s) == "");
 }

@@ -46,12 +46,15 @@ TEST_CASE("scan_out: asks for one line a cycle and is done the cycle the last an
 }
 
 TEST_CASE("scan_out: keeps no more lines under way than allowed") {
-  CHECK(run<ScanBench>({.scans = {{0, {0}}}, .lines_in_flight = 1}, report) == "3:r2/f 15:r3/f 27:r4/f 39:r5/f done 51:0 lines 4");
-  CHECK(run<ScanBench>({.scans = {{0, {0}}}, .lines_in_flight = 2}, report) == "3:r2/f 4:r3/f 15:r4/f 16:r5/f done 28:0 lines 4");
+  CHECK(run<ScanBench>({.scans = {{0, {0}}}, .lines_in_flight = 1}, report) ==
+        "3:r2/f 15:r3/f 27:r4/f 39:r5/f done 51:0 lines 4");
+  CHECK(run<ScanBench>({.scans = {{0, {0}}}, .lines_in_flight = 2}, report) ==
+        "3:r2/f 4:r3/f 15:r4/f 16:r5/f done 28:0 lines 4");
 }
 
 TEST_CASE("scan_out: a line that a cache still holds dirty is noticed") {
-  CHECK_THAT(run<ScanBench>({.scans = {{0, {0}}}, .dirty = true}, report), Catch::StartsWith("failed: signal"));
+  CHECK_THAT(run<ScanBench>({.scans = {{0, {0}}}, .dirty = true}, report),
+             Catch::StartsWith("failed: signal"));
 }
 
 TEST_CASE("scan_out: keeps the contract, one-deep links included") {

@@ -6,7 +6,9 @@
 using namespace quadrille;
 using namespace quadrille::hw;
 
-TEST_CASE("batch_slots: a slot is free again when its batch is released, and when the last batch that names it is") {
+TEST_CASE(
+    "batch_slots: a slot is free again when its batch is released, and when the last batch that names it "
+    "is") {
   BatchSlots slots(3);
   const models::VertexReuse reuse;
   const std::uint32_t first = slots.take(), second = slots.take();

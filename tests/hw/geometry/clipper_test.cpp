@@ -32,7 +32,8 @@ struct ClipBench final : Bench {
     batches[0].outputs.resize(4);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     triangle(kInside, {0.5f, 0.5f, 0.5f}, 0);
-    triangle(kOneOut, {-0.5f, 0.5f, 0.5f}, 0);  // the near plane cuts one corner off: a quadrilateral, two pieces
+    // the near plane cuts one corner off: a quadrilateral, two pieces
+    triangle(kOneOut, {-0.5f, 0.5f, 0.5f}, 0);
     triangle(kTwoOut, {-0.5f, -0.5f, 0.5f}, 0);
     triangle(kBeside, {0.5f, 0.5f, 0.5f}, 5);
     triangle(kNan, {0.5f, nan, 0.5f}, 0);
@@ -43,14 +44,17 @@ struct ClipBench final : Bench {
     feed(unit->primitive_in, s.primitives);
     sink = &drain<ClippedToken>(
         unit->clipped_out,
-        [](const ClippedToken& t) { return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind); }, s.pace,
-        s.out);
+        [](const ClippedToken& t) {
+          return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind);
+        },
+        s.pace, s.out);
   }
   void triangle(Shape shape, std::array<float, 3> z, float x) {
     const float corner[3][2] = {{-0.5f, -0.5f}, {0.5f, -0.5f}, {0.0f, 0.5f}};
     for (std::size_t i = 0; i < 3; ++i) {
       const float position[4] = {corner[i][0] + x, corner[i][1], z[i], 1.0f};
-      for (std::size_t c = 0; c < 4; ++c) batches[0].outputs[c][3 * shape + i] = std::bit_cast<std::uint32_t>(position[c]);
+      for (std::size_t c = 0; c < 4; ++c)
+        batches[0].outputs[c][3 * shape + i] = std::bit_cast<std::uint32_t>(position[c]);
     }
   }
   Clipper::Params params;
@@ -69,7 +73,9 @@ ClipBench::Setup shapes(const std::vector<Shape>& list) {
                              0,
                              0,
                              shape,
-                             {{0, first}, {0, static_cast<std::uint8_t>(first + 1)}, {0, static_cast<std::uint8_t>(first + 2)}}}});
+                             {{0, first},
+                              {0, static_cast<std::uint8_t>(first + 1)},
+                              {0, static_cast<std::uint8_t>(first + 2)}}}});
   }
   return s;
 }
@@ -79,7 +85,9 @@ std::string cycles(const ClipBench::Setup& s) {
 
 }  // namespace
 
-TEST_CASE("clipper: one triangle a cycle while none is cut") { CHECK(cycles(shapes({kInside, kInside, kInside})) == "2:0 3:0 4:0"); }
+TEST_CASE("clipper: one triangle a cycle while none is cut") {
+  CHECK(cycles(shapes({kInside, kInside, kInside})) == "2:0 3:0 4:0");
+}
 
 TEST_CASE("clipper: a cut triangle takes clip_clk cycles and then one a piece") {
   for (const int clk : {1, 12, 40}) {
@@ -92,7 +100,9 @@ TEST_CASE("clipper: a cut triangle takes clip_clk cycles and then one a piece") 
   }
 }
 
-TEST_CASE("clipper: n triangles take n over triangles_per_clk, whether they pass or not, a cut one clip_clk and its pieces") {
+TEST_CASE(
+    "clipper: n triangles take n over triangles_per_clk, whether they pass or not, a cut one clip_clk and "
+    "its pieces") {
   constexpr int kCount = 600;
   for (const int rate : {1, 2, 4}) {
     for (const Shape shape : {kInside, kBeside, kNan, kOneOut}) {
@@ -101,7 +111,8 @@ TEST_CASE("clipper: n triangles take n over triangles_per_clk, whether they pass
       s.pace = {.from = 0, .period = 0};
       s.out = {.depth = 64, .width = 8};
       s.primitives.push_back({0, {TokenKind::kDrawEnd, 0, 0, 0, {}}});
-      const auto last = std::stod(run<ClipBench>(s, [](const ClipBench& b) { return fmt::format("{}", b.sink->got.back().cycle); }));
+      const auto last = std::stod(
+          run<ClipBench>(s, [](const ClipBench& b) { return fmt::format("{}", b.sink->got.back().cycle); }));
       const double each = shape == kOneOut ? 12 + 2.0 / rate : 1.0 / rate;
       CHECK(last == Approx(kCount * each).epsilon(0.02));
     }
@@ -109,19 +120,22 @@ TEST_CASE("clipper: n triangles take n over triangles_per_clk, whether they pass
 }
 
 TEST_CASE("clipper: dropped triangles cost a cycle each, and every triangle is accounted for once") {
-  const auto text = run<ClipBench>(shapes({kBeside, kNan, kInside, kOneOut, kTwoOut, kBeside}), [](const ClipBench& b) {
-    const Unit& u = *b.unit;
-    return fmt::format("{} of {}: {} passed {} clipped {} rejected {} not finite; {} pieces", b.sink->text(), counter(u, "triangles"),
-                       counter(u, "passed"), counter(u, "clipped"), counter(u, "rejected"), counter(u, "not_finite"), counter(u, "pieces"));
-  });
+  const auto text =
+      run<ClipBench>(shapes({kBeside, kNan, kInside, kOneOut, kTwoOut, kBeside}), [](const ClipBench& b) {
+        const Unit& u = *b.unit;
+        return fmt::format("{} of {}: {} passed {} clipped {} rejected {} not finite; {} pieces",
+                           b.sink->text(), counter(u, "triangles"), counter(u, "passed"),
+                           counter(u, "clipped"), counter(u, "rejected"), counter(u, "not_finite"),
+                           counter(u, "pieces"));
+      });
   CHECK(text == "4:0 17:1 18:1 31:2 of 6: 1 passed 2 clipped 2 rejected 1 not finite; 3 pieces");
 }
 
 TEST_CASE("clipper: the window position of a piece is there when its token is") {
   const auto text = run<ClipBench>(shapes({kInside}), [](const ClipBench& b) {
     const ClippedPiece& piece = b.pieces[b.sink->got[0].token.piece];
-    return fmt::format("{},{} {},{} {},{}", piece.vertices[0].x, piece.vertices[0].y, piece.vertices[1].x, piece.vertices[1].y,
-                       piece.vertices[2].x, piece.vertices[2].y);
+    return fmt::format("{},{} {},{} {},{}", piece.vertices[0].x, piece.vertices[0].y, piece.vertices[1].x,
+                       piece.vertices[1].y, piece.vertices[2].x, piece.vertices[2].y);
   });
   CHECK(text == "4096,4096 12288,4096 8192,12288");  // pixels 16, 48 and 32 in 1/256
 }

@@ -22,7 +22,8 @@ struct SetupBench final : Bench {
     LinkSpec out{.depth = 64};
   };
   /// Piece 0 is kept, 1 faces away, 2 has no area, 3 lies outside the scissor, 4 between pixel centres.
-  SetupBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), batches(1), pieces(5), triangles(s.slots) {
+  SetupBench(Driver& driver, const contract::Variation& v, const Setup& s)
+      : Bench(driver, v), batches(1), pieces(5), triangles(s.slots) {
     DrawState draw;
     program.varyings.resize(1);
     draw.vertex_program = &program;
@@ -47,8 +48,10 @@ struct SetupBench final : Bench {
     feed(unit->sync_in[1], s.sync_1);
     kept = &drain<TriangleToken>(
         unit->triangle_out,
-        [](const TriangleToken& t) { return t.kind == TokenKind::kWork ? t.triangle : 900u + static_cast<unsigned>(t.kind); }, s.pace,
-        s.out);
+        [](const TriangleToken& t) {
+          return t.kind == TokenKind::kWork ? t.triangle : 900u + static_cast<unsigned>(t.kind);
+        },
+        s.pace, s.out);
     released = &drain<ReleaseToken>(unit->release_out, [](const ReleaseToken& t) { return t.slot; });
   }
   void piece(std::uint64_t slot, glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
@@ -74,10 +77,15 @@ std::string kept(const SetupBench& b) { return b.kept->text(); }
 
 TEST_CASE("triangle_setup: a rate below one is several cycles a triangle, a boundary is a cycle at most") {
   for (const int clk : {1, 5}) {
-    const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, piece(2)}, {0, piece(0)}, {0, boundary(TokenKind::kDrawEnd)}, {0, piece(0)}},
+    const SetupBench::Setup s{.pieces = {{0, piece(0)},
+                                         {0, piece(2)},
+                                         {0, piece(0)},
+                                         {0, boundary(TokenKind::kDrawEnd)},
+                                         {0, piece(0)}},
                               .drawn_per_clk = 1.0 / clk,
                               .culled_per_clk = 1.0 / clk};
-    CHECK(run<SetupBench>(s, kept) == fmt::format("2:0 {}:1 {}:902 {}:2", 2 + 2 * clk, 2 + 3 * clk, 3 + 3 * clk));
+    CHECK(run<SetupBench>(s, kept) ==
+          fmt::format("2:0 {}:1 {}:902 {}:2", 2 + 2 * clk, 2 + 3 * clk, 3 + 3 * clk));
   }
 }
 
@@ -91,15 +99,18 @@ double last_of(std::uint32_t kind, int count, double drawn, double culled) {
                       .out = {.depth = 64, .width = 8}};
   for (int i = 0; i < count; ++i) s.pieces.push_back({0, piece(kind)});
   s.pieces.push_back({0, boundary(TokenKind::kDrawEnd)});
-  return std::stod(run<SetupBench>(s, [](const SetupBench& b) { return fmt::format("{}", b.kept->got.back().cycle); }));
+  return std::stod(
+      run<SetupBench>(s, [](const SetupBench& b) { return fmt::format("{}", b.kept->got.back().cycle); }));
 }
 
-TEST_CASE("triangle_setup: n triangles take n over their rate, those that are drawn and those that are culled") {
+TEST_CASE(
+    "triangle_setup: n triangles take n over their rate, those that are drawn and those that are culled") {
   constexpr int kCount = 600;
   for (const double rate : {0.5, 1.0, 2.0, 3.0, 4.0}) {
     const double other = rate == 1.0 ? 0.25 : 1.0;  // the rate of the kind that does not come
     CHECK(last_of(0, kCount, rate, other) == Approx(kCount / rate).epsilon(0.02));
-    for (const std::uint32_t kind : {1u, 2u, 3u, 4u}) CHECK(last_of(kind, kCount, other, rate) == Approx(kCount / rate).epsilon(0.02));
+    for (const std::uint32_t kind : {1u, 2u, 3u, 4u})
+      CHECK(last_of(kind, kCount, other, rate) == Approx(kCount / rate).epsilon(0.02));
   }
 }
 
@@ -108,35 +119,43 @@ TEST_CASE("triangle_setup: culled triangles go at their rate between drawn ones"
   SetupBench::Setup s{.pieces = {}, .drawn_per_clk = 0.5, .slots = 1024};
   for (std::uint32_t i = 0; i < 400; ++i) s.pieces.push_back({0, piece(i % 2)});
   s.pieces.push_back({0, boundary(TokenKind::kDrawEnd)});
-  const double last = std::stod(run<SetupBench>(s, [](const SetupBench& b) { return fmt::format("{}", b.kept->got.back().cycle); }));
+  const double last = std::stod(
+      run<SetupBench>(s, [](const SetupBench& b) { return fmt::format("{}", b.kept->got.back().cycle); }));
   CHECK(last == Approx(200 * 2 + 200).epsilon(0.02));
 }
 
 TEST_CASE("triangle_setup: every triangle is counted once by what became of it") {
-  const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, piece(1)}, {0, piece(2)}, {0, piece(3)}, {0, piece(4)}, {0, piece(1)}}};
+  const SetupBench::Setup s{
+      .pieces = {{0, piece(0)}, {0, piece(1)}, {0, piece(2)}, {0, piece(3)}, {0, piece(4)}, {0, piece(1)}}};
   const auto text = run<SetupBench>(s, [](const SetupBench& b) {
     const Unit& u = *b.unit;
-    return fmt::format("{}: kept {} culled {} zero {} offscreen {} no sample {}", counter(u, "triangles"), counter(u, "kept"),
-                       counter(u, "culled"), counter(u, "zero_area"), counter(u, "offscreen"), counter(u, "no_sample"));
+    return fmt::format("{}: kept {} culled {} zero {} offscreen {} no sample {}", counter(u, "triangles"),
+                       counter(u, "kept"), counter(u, "culled"), counter(u, "zero_area"),
+                       counter(u, "offscreen"), counter(u, "no_sample"));
   });
   CHECK(text == "6: kept 1 culled 2 zero 1 offscreen 1 no sample 1");
 }
 
 TEST_CASE("triangle_setup: varyings are the first corner's and the differences to it") {
   const auto text = run<SetupBench>({.pieces = {{0, piece(0)}}}, [](const SetupBench& b) {
-    return fmt::format("{} {} {}", b.triangles[0].varyings[0], b.triangles[0].varyings[1], b.triangles[0].varyings[2]);
+    return fmt::format("{} {} {}", b.triangles[0].varyings[0], b.triangles[0].varyings[1],
+                       b.triangles[0].varyings[2]);
   });
   CHECK(text == "1 1 4");
 }
 
 TEST_CASE("triangle_setup: a batch's end releases its slot in its turn") {
   const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, boundary(TokenKind::kBatchEnd)}, {0, piece(0)}}};
-  CHECK(run<SetupBench>(s, [](const SetupBench& b) { return b.kept->text() + " | " + b.released->text(); }) == "2:0 4:1 | 3:0");
+  CHECK(run<SetupBench>(s, [](const SetupBench& b) { return b.kept->text() + " | " + b.released->text(); }) ==
+        "2:0 4:1 | 3:0");
 }
 
-TEST_CASE("triangle_setup: waits while the triangle store is full, until every partition has retired its oldest") {
-  const SetupBench::Setup s{
-      .pieces = {{0, piece(0)}, {0, piece(0)}, {0, piece(0)}}, .sync_0 = {{30, {0, 1}}}, .sync_1 = {{70, {0, 2}}}, .slots = 2};
+TEST_CASE(
+    "triangle_setup: waits while the triangle store is full, until every partition has retired its oldest") {
+  const SetupBench::Setup s{.pieces = {{0, piece(0)}, {0, piece(0)}, {0, piece(0)}},
+                            .sync_0 = {{30, {0, 1}}},
+                            .sync_1 = {{70, {0, 2}}},
+                            .slots = 2};
   CHECK(run<SetupBench>(s, kept) == "2:0 3:1 72:2");
 }
 

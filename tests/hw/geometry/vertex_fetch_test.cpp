@@ -24,7 +24,8 @@ struct FetchBench final : Bench {
     std::vector<Timed<ReleaseToken>> releases{};
     Pace pace{};
   };
-  FetchBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), batches(s.slots) {
+  FetchBench(Driver& driver, const contract::Variation& v, const Setup& s)
+      : Bench(driver, v), batches(s.slots) {
     program.vertex_inputs.resize(3);
     const std::uint32_t vertices = 3 * s.triangles;
     DrawState draw;
@@ -36,25 +37,31 @@ struct FetchBench final : Bench {
     position.address = device.allocate(std::uint64_t{12} * vertices);
     for (std::uint32_t i = 0; i < vertices; ++i) {
       for (std::uint32_t c = 0; c < 3; ++c)
-        device.store(position.address + 12 * i + 4 * c, static_cast<float>(i) + 0.25F * static_cast<float>(c));
+        device.store(position.address + 12 * i + 4 * c,
+                     static_cast<float>(i) + 0.25F * static_cast<float>(c));
     }
     draw.attributes = {position};
     if (!s.indices.empty()) {
       draw.indexed = true;
       draw.index_address = device.allocate(2 * s.indices.size());
-      for (std::size_t i = 0; i < s.indices.size(); ++i) device.store(draw.index_address + 2 * i, s.indices[i]);
+      for (std::size_t i = 0; i < s.indices.size(); ++i)
+        device.store(draw.index_address + 2 * i, s.indices[i]);
     }
     frame.draws = {draw};
     params.indices_per_clk.set(s.indices_per_clk);
     params.attributes_per_clk.set(s.attributes_per_clk);
     unit = std::make_unique<VertexFetch>("unit", context(), params, batches);
     add(*unit);
-    feed(unit->draw_in, {{0, {TokenKind::kPassBegin, 0}}, {0, {TokenKind::kWork, 0}}, {0, {TokenKind::kDrawEnd, 0}}});
+    feed(unit->draw_in,
+         {{0, {TokenKind::kPassBegin, 0}}, {0, {TokenKind::kWork, 0}}, {0, {TokenKind::kDrawEnd, 0}}});
     feed(unit->release_in, s.releases);
     memory = &serve(unit->memory_port(), kLatency);
     warps = &drain<WarpToken>(unit->warp_out, [](const WarpToken& t) { return t.slot; });
     sink = &drain<BatchToken>(
-        unit->batch_out, [](const BatchToken& t) { return t.kind == TokenKind::kWork ? t.slot : 900u + static_cast<unsigned>(t.kind); },
+        unit->batch_out,
+        [](const BatchToken& t) {
+          return t.kind == TokenKind::kWork ? t.slot : 900u + static_cast<unsigned>(t.kind);
+        },
         s.pace);
   }
   /// Cycles from the first batch that left to the last.
@@ -82,13 +89,17 @@ float input(const FetchBench& b, std::size_t slot, std::size_t row, std::size_t 
 
 }  // namespace
 
-TEST_CASE("vertex_fetch: a batch leaves when its last line is there, between the marks of its pass and its draw") {
-  // Six vertices of 12 bytes: three sectors of one line. Two cycles of links, one each way of the memory, come to its latency.
+TEST_CASE(
+    "vertex_fetch: a batch leaves when its last line is there, between the marks of its pass and its draw") {
+  // Six vertices of 12 bytes: three sectors of one line. Two cycles of links, one each way of the memory,
+  // come to its latency.
   const auto text = run<FetchBench>({}, [](const FetchBench& b) {
     std::string order;
-    for (const auto& [cycle, token] : b.sink->got) order += fmt::format("{} ", token.kind == TokenKind::kWork ? "batch" : "mark");
+    for (const auto& [cycle, token] : b.sink->got)
+      order += fmt::format("{} ", token.kind == TokenKind::kWork ? "batch" : "mark");
     const std::int64_t waited = b.sink->got.at(1).cycle - b.memory->got.at(0).cycle;
-    return fmt::format("{}after {} cycles, {} line with sectors {:x}", order, waited, b.memory->got.size(), b.memory->got[0].token.sectors);
+    return fmt::format("{}after {} cycles, {} line with sectors {:x}", order, waited, b.memory->got.size(),
+                       b.memory->got[0].token.sectors);
   });
   CHECK(text == fmt::format("mark batch mark after {} cycles, 1 line with sectors 7", kLatency + 2));
 }
@@ -118,13 +129,19 @@ TEST_CASE("vertex_fetch: counters of a draw that shares corners") {
 }
 
 TEST_CASE("vertex_fetch: a batch of 30 vertices takes the slower of its indices and its attributes") {
-  // Ten triangles that share nothing fill a batch of 32 lanes: 30 indices and 30 attributes. The triangle that does not fit costs the next batch alone.
-  for (const auto& [indices, attributes, cycles] : {std::tuple{4, 8, 8}, {32, 8, 4}, {32, 2, 15}, {1, 64, 30}}) {
-    const FetchBench::Setup s{
-        .triangles = 1000, .indices_per_clk = indices, .attributes_per_clk = attributes, .slots = 128, .pace = {.period = 0}};
+  // Ten triangles that share nothing fill a batch of 32 lanes: 30 indices and 30 attributes. The triangle
+  // that does not fit costs the next batch alone.
+  for (const auto& [indices, attributes, cycles] :
+       {std::tuple{4, 8, 8}, {32, 8, 4}, {32, 2, 15}, {1, 64, 30}}) {
+    const FetchBench::Setup s{.triangles = 1000,
+                              .indices_per_clk = indices,
+                              .attributes_per_clk = attributes,
+                              .slots = 128,
+                              .pace = {.period = 0}};
     CAPTURE(indices, attributes);
-    const auto text =
-        run<FetchBench>(s, [](const FetchBench& b) { return fmt::format("{} {}", b.batch_cycles(), counter(*b.unit, "indices")); });
+    const auto text = run<FetchBench>(s, [](const FetchBench& b) {
+      return fmt::format("{} {}", b.batch_cycles(), counter(*b.unit, "indices"));
+    });
     CHECK(std::stod(text) == Approx(99 * cycles).epsilon(0.02));
     CHECK(text.ends_with(" 3000"));
   }
@@ -132,8 +149,9 @@ TEST_CASE("vertex_fetch: a batch of 30 vertices takes the slower of its indices 
 
 TEST_CASE("vertex_fetch: the rate of attributes moves nothing while the indices are slower") {
   const auto cycles = [](int attributes) {
-    return run<FetchBench>({.triangles = 100, .indices_per_clk = 1, .attributes_per_clk = attributes, .slots = 16},
-                           [](const FetchBench& b) { return fmt::format("{}", b.batch_cycles()); });
+    return run<FetchBench>(
+        {.triangles = 100, .indices_per_clk = 1, .attributes_per_clk = attributes, .slots = 16},
+        [](const FetchBench& b) { return fmt::format("{}", b.batch_cycles()); });
   };
   CHECK(cycles(2) == cycles(256));
 }
@@ -143,7 +161,8 @@ TEST_CASE("vertex_fetch: without a free slot the next batch waits for a release"
   const FetchBench::Setup s{.triangles = 30, .slots = 2, .releases = {{500, {0}}}};
   const auto text = run<FetchBench>(s, [](const FetchBench& b) {
     std::string late;
-    for (const auto& [cycle, token] : b.sink->got) late += token.kind == TokenKind::kWork ? (cycle < 500 ? "before " : "after ") : "";
+    for (const auto& [cycle, token] : b.sink->got)
+      late += token.kind == TokenKind::kWork ? (cycle < 500 ? "before " : "after ") : "";
     return late;
   });
   CHECK(text == "before before after ");

@@ -21,7 +21,8 @@ class CacheUser final : public StubUnit {
   struct Shape {
     int lines = 4, ways = 4, misses = 4;
   };
-  CacheUser(sc_core::sc_module_name name, const Clock& clock, Shape shape, models::DeviceMemory& memory, std::vector<Timed<Use>> script)
+  CacheUser(sc_core::sc_module_name name, const Clock& clock, Shape shape, models::DeviceMemory& memory,
+            std::vector<Timed<Use>> script)
       : StubUnit(name, Kind::kChooser, clock),
         cache(stats_, shape.lines, shape.ways, shape.misses),
         port(*this, stats_, 1),
@@ -37,7 +38,8 @@ class CacheUser final : public StubUnit {
     port.receive(now, [&](const MemoryResponse& answer) {
       cache.fill(answer, [&](std::uint32_t waiter) { log += fmt::format("ready {}; ", waiter); });
     });
-    while (played_ < script_.size() && script_[played_].cycle * kCycle <= now) script_[played_++].token(*this);
+    while (played_ < script_.size() && script_[played_].cycle * kCycle <= now)
+      script_[played_++].token(*this);
     port.send(now);
   }
   bool finished() const override { return played_ == script_.size() && port.queue_empty(); }
@@ -88,7 +90,8 @@ struct CacheBench final : Bench {
 /// What the user was told, and what reached memory as "kind line/sectors" without times.
 std::string seen(const CacheBench& b) {
   std::string text = b.unit->log + "|";
-  for (const auto& [cycle, r] : b.memory->got) text += fmt::format(" {}{}/{:x}", "rwpf"[static_cast<int>(r.kind)], r.line, r.sectors);
+  for (const auto& [cycle, r] : b.memory->got)
+    text += fmt::format(" {}{}/{:x}", "rwpf"[static_cast<int>(r.kind)], r.line, r.sectors);
   return text + fmt::format(" | dirty {}", b.device.dirty_lines());
 }
 std::string seen(std::vector<Timed<Use>> script, CacheUser::Shape shape = {}) {
@@ -105,45 +108,60 @@ TEST_CASE("l1_cache: a line under way serves all who ask for it, and is a hit af
 }
 
 TEST_CASE("l1_cache: every look-up is a hit, merged or a miss, and a place for a write is a hit") {
-  const CacheBench::Setup s{{{0, read(3, 0x3, 1)}, {1, read(3, 0x1, 2)}, {60, read(3, 0x3, 3)}, {61, claim(4, 0)}, {62, kFlush}}};
+  const CacheBench::Setup s{
+      {{0, read(3, 0x3, 1)}, {1, read(3, 0x1, 2)}, {60, read(3, 0x3, 3)}, {61, claim(4, 0)}, {62, kFlush}}};
   CHECK(run<CacheBench>(s, [](const CacheBench& b) {
           const L1CacheStats& c = b.unit->cache.stats();
-          return fmt::format("requests {} hits {} merged {} misses {}", c.requests.value(), c.hits.value(), c.merged.value(),
-                             c.misses.value());
+          return fmt::format("requests {} hits {} merged {} misses {}", c.requests.value(), c.hits.value(),
+                             c.merged.value(), c.misses.value());
         }) == "requests 4 hits 2 merged 1 misses 1");
 }
 
 TEST_CASE("l1_cache: no free way, or no free entry for a miss, is a stall") {
-  CHECK(seen({{0, read(1, 0xf, 1)}, {1, read(2, 0xf, 2)}, {60, read(2, 0xf, 2)}}, {.lines = 1, .ways = 1, .misses = 4}) ==
+  CHECK(seen({{0, read(1, 0xf, 1)}, {1, read(2, 0xf, 2)}, {60, read(2, 0xf, 2)}},
+             {.lines = 1, .ways = 1, .misses = 4}) ==
         "pending; stall; ready 1; pending; ready 2; | r1/f r2/f | dirty 0");
   CHECK(seen({{0, read(1, 0xf, 1)}, {1, read(2, 0xf, 2)}}, {.lines = 4, .ways = 4, .misses = 1}) ==
         "pending; stall; ready 1; | r1/f | dirty 0");
 }
 
 TEST_CASE("l1_cache: a sector that is written whole is never read") {
-  CHECK(seen({{0, claim(3, 0x1)}, {1, write(3, kFirstSector)}, {2, read(3, 0x1, 1)}, {3, kFlush}}) == "hit; | w3/1 | dirty 0");
-}
-
-TEST_CASE("l1_cache: two parts make a whole sector, which leaves as if it had been written at once") {
-  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, write(3, kOtherHalf)}, {3, read(3, 0x1, 1)}, {4, kFlush}}) ==
+  CHECK(seen({{0, claim(3, 0x1)}, {1, write(3, kFirstSector)}, {2, read(3, 0x1, 1)}, {3, kFlush}}) ==
         "hit; | w3/1 | dirty 0");
 }
 
-TEST_CASE("l1_cache: a sector written in part leaves in part, by a flush or as a victim") {
-  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf | kFirstSector << 16)}, {2, kFlush}}) == "| w3/4 p3/1 | dirty 0");
-  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, claim(4, 0x2)}}, {.lines = 1, .ways = 1}) == "| p3/1 | dirty 0");
+TEST_CASE("l1_cache: two parts make a whole sector, which leaves as if it had been written at once") {
+  CHECK(seen({{0, claim(3, 0)},
+              {1, write(3, kHalf)},
+              {2, write(3, kOtherHalf)},
+              {3, read(3, 0x1, 1)},
+              {4, kFlush}}) == "hit; | w3/1 | dirty 0");
 }
 
-TEST_CASE("l1_cache: reading a sector that was written in part fetches the rest, and it is dirty as a whole") {
-  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, read(3, 0x1, 1)}, {60, read(3, 0x1, 2)}, {61, kFlush}}) ==
-        "pending; ready 1; hit; | r3/1 w3/1 | dirty 0");
+TEST_CASE("l1_cache: a sector written in part leaves in part, by a flush or as a victim") {
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf | kFirstSector << 16)}, {2, kFlush}}) ==
+        "| w3/4 p3/1 | dirty 0");
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, claim(4, 0x2)}}, {.lines = 1, .ways = 1}) ==
+        "| p3/1 | dirty 0");
+}
+
+TEST_CASE(
+    "l1_cache: reading a sector that was written in part fetches the rest, and it is dirty as a whole") {
+  CHECK(seen({{0, claim(3, 0)},
+              {1, write(3, kHalf)},
+              {2, read(3, 0x1, 1)},
+              {60, read(3, 0x1, 2)},
+              {61, kFlush}}) == "pending; ready 1; hit; | r3/1 w3/1 | dirty 0");
 }
 
 TEST_CASE("l1_cache: a part written while its sector is under way is kept") {
-  CHECK(seen({{0, read(3, 0x1, 1)}, {1, write(3, kHalf)}, {60, kFlush}}) == "pending; ready 1; | r3/1 w3/1 | dirty 0");
-  CHECK(seen({{0, read(3, 0x1, 1)}, {1, write(3, kFirstSector)}, {60, kFlush}}) == "pending; ready 1; | r3/1 w3/1 | dirty 0");
+  CHECK(seen({{0, read(3, 0x1, 1)}, {1, write(3, kHalf)}, {60, kFlush}}) ==
+        "pending; ready 1; | r3/1 w3/1 | dirty 0");
+  CHECK(seen({{0, read(3, 0x1, 1)}, {1, write(3, kFirstSector)}, {60, kFlush}}) ==
+        "pending; ready 1; | r3/1 w3/1 | dirty 0");
 }
 
 TEST_CASE("l1_cache: overwriting a sector that was written in part keeps it dirty until it leaves") {
-  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, claim(3, 0x1)}, {3, kFlush}}) == "| w3/1 | dirty 0");
+  CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, claim(3, 0x1)}, {3, kFlush}}) ==
+        "| w3/1 | dirty 0");
 }

@@ -23,9 +23,11 @@ struct CoarseBench final : Bench {
     bool use_hiz = true;
     std::size_t store_slots = 64;
   };
-  CoarseBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), store(s.store_slots) {
+  CoarseBench(Driver& driver, const contract::Variation& v, const Setup& s)
+      : Bench(driver, v), store(s.store_slots) {
     make_frame();
-    // Sequence numbers: 0 is in the two tiles (0, 0) and (1, 0); 1 lies in tile (0, 0) alone; 2 the same but nearer; 3 like 1, farther; 4 like 1, of draw 1.
+    // Sequence numbers: 0 is in the two tiles (0, 0) and (1, 0); 1 lies in tile (0, 0) alone; 2 the same but
+    // nearer; 3 like 1, farther; 4 like 1, of draw 1.
     store[0] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {12, 0}});
     store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}});
     store[2] = flat_triangle({glm::ivec2{0, 0}, {0, 4}, {4, 0}}, 0.25f);
@@ -42,7 +44,8 @@ struct CoarseBench final : Bench {
     sink = &drain<TileToken>(
         unit->tile_out,
         [](const TileToken& t) {
-          return t.kind == TokenKind::kWork ? 10 * t.triangle + t.tile_x : kBoundary + static_cast<std::uint64_t>(t.kind);
+          return t.kind == TokenKind::kWork ? 10 * t.triangle + t.tile_x
+                                            : kBoundary + static_cast<std::uint64_t>(t.kind);
         },
         s.pace, s.out);
   }
@@ -53,8 +56,8 @@ struct CoarseBench final : Bench {
     pass.draws = 4;
     frame.passes = {pass};
     // Draws 0 and 2 write with "less", 1 writes with "greater", 3 only tests with "greater".
-    for (const models::CompareOp op :
-         {models::CompareOp::kLess, models::CompareOp::kGreater, models::CompareOp::kLess, models::CompareOp::kGreater}) {
+    for (const models::CompareOp op : {models::CompareOp::kLess, models::CompareOp::kGreater,
+                                       models::CompareOp::kLess, models::CompareOp::kGreater}) {
       DrawState draw;
       draw.fragment_program = &program;
       draw.depth_test = true;
@@ -70,7 +73,9 @@ struct CoarseBench final : Bench {
   StubSink<TileToken>* sink = nullptr;
 };
 
-TriangleToken triangle(std::uint64_t sequence, std::uint32_t draw = 0) { return {TokenKind::kWork, draw, sequence}; }
+TriangleToken triangle(std::uint64_t sequence, std::uint32_t draw = 0) {
+  return {TokenKind::kWork, draw, sequence};
+}
 const TriangleToken kBegin{TokenKind::kPassBegin, 0, 0};
 
 std::uint64_t counter(const CoarseBench& b, std::size_t i) { return b.unit->stats()->counters()[i]->value(); }
@@ -82,11 +87,13 @@ std::string tiles(const CoarseBench::Setup& setup) {
 
 TEST_CASE("coarse_raster: one tile a cycle, from one triangle to the next") {
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(1)}, {0, triangle(1)}}};
-  // Boundary at 1; tiles of the first triangle at 2 and 3, the only ones of the others at 4 and 5; all are seen a cycle later.
+  // Boundary at 1; tiles of the first triangle at 2 and 3, the only ones of the others at 4 and 5; all are
+  // seen a cycle later.
   CHECK(tiles(s) == "2:903 3:0 4:1 5:10 6:10");
 }
 
-TEST_CASE("coarse_raster: n triangles of one tile take n over tiles_per_clk, and no less than their tests take") {
+TEST_CASE(
+    "coarse_raster: n triangles of one tile take n over tiles_per_clk, and no less than their tests take") {
   for (const auto& [rate, tiles] : {std::pair{4, 1}, {4, 2}, {4, 4}, {2, 4}, {64, 8}}) {
     CoarseBench::Setup s{.triangles = {{0, kBegin}},
                          .rate = rate,
@@ -96,17 +103,21 @@ TEST_CASE("coarse_raster: n triangles of one tile take n over tiles_per_clk, and
                          .out = {.depth = 64, .width = 8},
                          .store_slots = 4096};
     for (int i = 0; i < 4000; ++i) s.triangles.push_back({0, triangle(1)});
-    const auto text =
-        run<CoarseBench>(s, [](const CoarseBench& b) { return fmt::format("{} {}", b.sink->got.back().cycle, counter(b, 1)); });
+    const auto text = run<CoarseBench>(s, [](const CoarseBench& b) {
+      return fmt::format("{} {}", b.sink->got.back().cycle, counter(b, 1));
+    });
     const double last = std::stod(text), tests = std::stod(text.substr(text.find(' ')));
     CHECK(last == Approx(std::max(4000.0 / tiles, tests / rate)).epsilon(0.02));
   }
 }
 
-TEST_CASE("coarse_raster: tests beyond a cycle's rate delay what follows, by tests divided by the rate, rounded up") {
+TEST_CASE(
+    "coarse_raster: tests beyond a cycle's rate delay what follows, by tests divided by the rate, rounded "
+    "up") {
   // A thin diagonal crosses many rows, each of which costs its kept tiles and the failing tests beside them.
   const auto cycles_at = [](int rate) {
-    CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(5)}, {0, {TokenKind::kDrawEnd, 0, 0}}}, .rate = rate};
+    CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(5)}, {0, {TokenKind::kDrawEnd, 0, 0}}},
+                         .rate = rate};
     return contract::in_child([&] {
       Dispatcher driver("driver");
       CoarseBench b(driver, {}, s);
@@ -117,12 +128,14 @@ TEST_CASE("coarse_raster: tests beyond a cycle's rate delay what follows, by tes
       (void)walk.next(hit);
       std::int64_t expected = 2, before = 0;  // taken at cycle 2
       for (bool more = true; more;) {
-        more = walk.next(hit);  // a tile is charged with what finds the one after it, the first one also with what found itself
+        // a tile is charged with what finds the one after it, the first one also with what found itself
+        more = walk.next(hit);
         const auto tests = static_cast<std::int64_t>(walk.tests()) - before;
         expected += std::max<std::int64_t>(1, (tests + rate - 1) / rate);
         before += tests;
       }
-      return fmt::format("{} {}", b.sink->got.back().cycle - 1 == expected, counter(b, 1) == static_cast<std::uint64_t>(before));
+      return fmt::format("{} {}", b.sink->got.back().cycle - 1 == expected,
+                         counter(b, 1) == static_cast<std::uint64_t>(before));
     });
   };
   for (const int rate : {1, 2, 4, 64}) CHECK(cycles_at(rate) == "true true");
@@ -144,22 +157,27 @@ TEST_CASE("coarse_raster: a tile that Hi-Z proves hidden is dropped, from the cy
 
 TEST_CASE("coarse_raster: with 'less' a triangle at the held depth is hidden, a nearer one is kept") {
   const HiZToken update{0, 0, 0, 0.5f};
-  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(1)}, {10, triangle(2)}}, .hiz = {{5, update}}};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(1)}, {10, triangle(2)}},
+                       .hiz = {{5, update}}};
   CHECK(tiles(s) == "2:903 13:20");  // the hidden one costs a cycle
 }
 
 TEST_CASE("coarse_raster: an update never raises what Hi-Z holds, and one of another pass changes nothing") {
-  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(3)}}, .hiz = {{4, {0, 0, 0, 0.5f}}, {5, {0, 0, 0, 0.9f}}}};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(3)}},
+                       .hiz = {{4, {0, 0, 0, 0.5f}}, {5, {0, 0, 0, 0.9f}}}};
   CHECK(tiles(s) == "2:903");
   s.hiz = {{4, {0, 0, 1, 0.5f}}};
   CHECK(tiles(s) == "2:903 12:30");
 }
 
-TEST_CASE("coarse_raster: Hi-Z is not trusted after a draw that may have raised depths, until the pass ends") {
+TEST_CASE(
+    "coarse_raster: Hi-Z is not trusted after a draw that may have raised depths, until the pass ends") {
   const HiZToken update{0, 0, 0, 0.5f};
-  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(4, 1)}, {20, triangle(3, 2)}}, .hiz = {{5, update}}};
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(4, 1)}, {20, triangle(3, 2)}},
+                       .hiz = {{5, update}}};
   CHECK(tiles(s) == "2:903 12:40 22:30");  // both kept although they lie behind what Hi-Z was told
-  s.triangles[1].token.index = 3;          // the draw that only tests with "greater": it is kept, but leaves the trust
+  // the draw that only tests with "greater": it is kept, but leaves the trust
+  s.triangles[1].token.index = 3;
   CHECK(tiles(s) == "2:903 12:40");
   s.triangles = {{0, kBegin}, {10, triangle(4, 1)}, {15, kBegin}, {20, triangle(3, 2)}};
   s.hiz = {{17, update}};
@@ -167,8 +185,9 @@ TEST_CASE("coarse_raster: Hi-Z is not trusted after a draw that may have raised 
 }
 
 TEST_CASE("coarse_raster: a sync follows every eighth part of the triangle store") {
-  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(1)}, {0, triangle(2)}, {0, triangle(3)}, {0, triangle(1)}},
-                       .store_slots = 16};
+  CoarseBench::Setup s{
+      .triangles = {{0, kBegin}, {0, triangle(1)}, {0, triangle(2)}, {0, triangle(3)}, {0, triangle(1)}},
+      .store_slots = 16};
   const auto text = run<CoarseBench>(s, [](const CoarseBench& b) {
     std::string all = b.sink->text();
     for (const auto& t : b.sink->got) {
@@ -181,14 +200,21 @@ TEST_CASE("coarse_raster: a sync follows every eighth part of the triangle store
 
 TEST_CASE("coarse_raster: stops while tile_out is full but still takes Hi-Z updates") {
   const HiZToken update{0, 0, 0, 0.6f};
-  CoarseBench::Setup s{
-      .triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(3)}}, .hiz = {{20, update}}, .pace = {.from = 100}, .out = {.depth = 1}};
-  const auto text = run<CoarseBench>(s, [](const CoarseBench& b) { return fmt::format("{} hidden {}", b.sink->text(), counter(b, 3)); });
+  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(3)}},
+                       .hiz = {{20, update}},
+                       .pace = {.from = 100},
+                       .out = {.depth = 1}};
+  const auto text = run<CoarseBench>(
+      s, [](const CoarseBench& b) { return fmt::format("{} hidden {}", b.sink->text(), counter(b, 3)); });
   CHECK(text == "100:903 102:0 104:1 hidden 1");
 }
 
 TEST_CASE("coarse_raster: keeps the contract, one-deep links included") {
-  CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(1)}, {0, triangle(4, 1)}, {0, triangle(2, 2)}},
+  CoarseBench::Setup s{.triangles = {{0, kBegin},
+                                     {0, triangle(0)},
+                                     {0, triangle(1)},
+                                     {0, triangle(4, 1)},
+                                     {0, triangle(2, 2)}},
                        .hiz = {{1, {0, 0, 0, 0.5f}}, {9, {1, 0, 0, 0.5f}}},
                        .rate = 1,
                        .pace = {.from = 0, .period = 3},

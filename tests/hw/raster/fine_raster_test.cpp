@@ -23,7 +23,8 @@ struct FineBench final : Bench {
     LinkSpec out{.depth = 64};
   };
   FineBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), store(4) {
-    // Triangle 0 has its right angle at (0, 0) and legs of 32 pixels; 1 covers the pixels of one column of a tile.
+    // Triangle 0 has its right angle at (0, 0) and legs of 32 pixels; 1 covers the pixels of one column of a
+    // tile.
     store[0] = flat_triangle({glm::ivec2{0, 0}, {0, 32}, {32, 0}});
     store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 8}, {1, 0}});
     params.quads_per_clk.set(s.rate);
@@ -33,8 +34,11 @@ struct FineBench final : Bench {
     feed(unit->tile_in, s.tiles);
     for (auto& out : unit->coverage_out) {
       sinks.push_back(&drain<CoverageToken>(
-          *out, [](const CoverageToken& t) { return t.kind == TokenKind::kWork ? t.tile_x : 900u + static_cast<unsigned>(t.kind); }, s.pace,
-          s.out));
+          *out,
+          [](const CoverageToken& t) {
+            return t.kind == TokenKind::kWork ? t.tile_x : 900u + static_cast<unsigned>(t.kind);
+          },
+          s.pace, s.out));
     }
   }
   FineRaster::Params params;
@@ -65,28 +69,34 @@ TEST_CASE("fine_raster: a tile keeps it for its covered quads divided by the rat
 
 TEST_CASE("fine_raster: n tiles of few quads take n over tiles_per_clk, and no less than their quads take") {
   // Triangle 1 covers the four pixels of the column whose centres lie under its hypotenuse: two quads.
-  for (const auto& [rate, tiles, each] : {std::tuple{16, 1, 1.0}, {16, 2, 0.5}, {16, 4, 0.25}, {16, 8, 0.125}, {8, 4, 0.25}, {2, 4, 1.0}}) {
+  for (const auto& [rate, tiles, each] :
+       {std::tuple{16, 1, 1.0}, {16, 2, 0.5}, {16, 4, 0.25}, {16, 8, 0.125}, {8, 4, 0.25}, {2, 4, 1.0}}) {
     auto s = tiles_of(std::vector<TileToken>(400, tile(0, 0, false, 1)), rate);
     s.tiles_per_clk = tiles;
     s.pace = {.from = 0, .period = 0};
     s.out = {.depth = 64, .width = 8};
-    const auto last = std::stod(run<FineBench>(s, [](const FineBench& b) { return fmt::format("{}", b.sinks[0]->got.back().cycle); }));
+    const auto last = std::stod(run<FineBench>(
+        s, [](const FineBench& b) { return fmt::format("{}", b.sinks[0]->got.back().cycle); }));
     CHECK(last == Approx(400 * each).epsilon(0.02));
   }
 }
 
 TEST_CASE("fine_raster: a tile with quads on its edge costs only those that are covered") {
-  // Tile (3, 0) lies under the hypotenuse from (24, 8) to (32, 0): pixels with x + y < 31, so quads in 4 + 3 + 2 + 1 = 10 places.
+  // Tile (3, 0) lies under the hypotenuse from (24, 8) to (32, 0): pixels with x + y < 31, so quads in 4 + 3
+  // + 2 + 1 = 10 places.
   const auto text = run<FineBench>(tiles_of({tile(3, 0), tile(0, 0, true)}), [](const FineBench& b) {
-    return fmt::format("{} quads {} fragments {}", b.sinks[0]->text(), counter(b, 3) - 16, counter(b, 4) - 64);
+    return fmt::format("{} quads {} fragments {}", b.sinks[0]->text(), counter(b, 3) - 16,
+                       counter(b, 4) - 64);
   });
   CHECK(text == "2:3 5:0 quads 10 fragments 28");
 }
 
 TEST_CASE("fine_raster: an empty tile costs a cycle and goes no further") {
-  const auto text = run<FineBench>(tiles_of({tile(7, 7), tile(7, 6), tile(1, 0, true)}), [](const FineBench& b) {
-    return fmt::format("{} tiles {} empty {} full {}", b.sinks[0]->text(), counter(b, 0), counter(b, 1), counter(b, 2));
-  });
+  const auto text =
+      run<FineBench>(tiles_of({tile(7, 7), tile(7, 6), tile(1, 0, true)}), [](const FineBench& b) {
+        return fmt::format("{} tiles {} empty {} full {}", b.sinks[0]->text(), counter(b, 0), counter(b, 1),
+                           counter(b, 2));
+      });
   CHECK(text == "4:1 tiles 3 empty 2 full 1");
 }
 
@@ -94,23 +104,36 @@ TEST_CASE("fine_raster: stops while coverage_out is full, and goes on the cycle 
   auto setup = tiles_of({tile(0, 0, true), tile(1, 0, true), tile(2, 0, true), tile(3, 0, true)}, 16);
   setup.out = {.depth = 2};
   setup.pace = {.from = 50, .period = 10};
-  // Two tiles wait in the link; each pop gives room one cycle later, and the tile that takes it is there before the sink looks again.
-  const auto text =
-      run<FineBench>(setup, [](const FineBench& b) { return fmt::format("{} blocked {}", b.sinks[0]->text(), b.unit->blocked_cycles()); });
+  // Two tiles wait in the link; each pop gives room one cycle later, and the tile that takes it is there
+  // before the sink looks again.
+  const auto text = run<FineBench>(setup, [](const FineBench& b) {
+    return fmt::format("{} blocked {}", b.sinks[0]->text(), b.unit->blocked_cycles());
+  });
   CHECK(text == "50:0 60:1 70:2 80:3 blocked 57");  // 3..51 and 52..61
 }
 
 TEST_CASE("fine_raster: tiles go to the partition that owns them, boundaries to all in one cycle") {
-  FineBench::Setup setup =
-      tiles_of({tile(0, 0, true), tile(1, 0, true), {TokenKind::kDrawEnd, false, 0, 0, 0, 0}, tile(0, 1, true), tile(1, 1, true)}, 16);
+  FineBench::Setup setup = tiles_of({tile(0, 0, true),
+                                     tile(1, 0, true),
+                                     {TokenKind::kDrawEnd, false, 0, 0, 0, 0},
+                                     tile(0, 1, true),
+                                     tile(1, 1, true)},
+                                    16);
   setup.partitions = 2;
-  const auto text = run<FineBench>(setup, [](const FineBench& b) { return b.sinks[0]->text() + " | " + b.sinks[1]->text(); });
+  const auto text = run<FineBench>(
+      setup, [](const FineBench& b) { return b.sinks[0]->text() + " | " + b.sinks[1]->text(); });
   CHECK(text == "2:0 4:902 5:0 | 3:1 4:902 6:1");
 }
 
 TEST_CASE("fine_raster: keeps the contract, one-deep links included") {
-  auto setup = tiles_of(
-      {tile(0, 0), tile(1, 0), tile(0, 0, false, 1), tile(7, 7), {TokenKind::kSync, false, 0, 0, 0, 1}, tile(2, 1), tile(1, 2)}, 2);
+  auto setup = tiles_of({tile(0, 0),
+                         tile(1, 0),
+                         tile(0, 0, false, 1),
+                         tile(7, 7),
+                         {TokenKind::kSync, false, 0, 0, 0, 1},
+                         tile(2, 1),
+                         tile(1, 2)},
+                        2);
   setup.partitions = 2;
   setup.pace = {.from = 0, .period = 3};
   CHECK(contract_text<FineBench>(setup) == "");

@@ -17,7 +17,8 @@ struct PackerBench final : Bench {
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
-  PackerBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), warps(static_cast<std::size_t>(s.slots)) {
+  PackerBench(Driver& driver, const contract::Variation& v, const Setup& s)
+      : Bench(driver, v), warps(static_cast<std::size_t>(s.slots)) {
     params.quads_per_clk.set(s.rate);
     params.patience_clk.set(s.patience);
     params.launch_clk.set(s.launch);
@@ -27,8 +28,9 @@ struct PackerBench final : Bench {
     feed(unit->release_in, s.releases);
     work = &drain<WarpToken>(
         unit->warp_out, [](const WarpToken& t) { return t.slot; }, s.pace, s.out);
-    order = &drain<OrderToken>(
-        unit->order_out, [](const OrderToken& t) { return t.kind == TokenKind::kWork ? t.slot : 900u + static_cast<unsigned>(t.kind); });
+    order = &drain<OrderToken>(unit->order_out, [](const OrderToken& t) {
+      return t.kind == TokenKind::kWork ? t.slot : 900u + static_cast<unsigned>(t.kind);
+    });
   }
   WarpPacker::Params params;
   Store<WarpSlot> warps;
@@ -38,11 +40,14 @@ struct PackerBench final : Bench {
 };
 
 /// The first `quads` quads of a tile, all four pixels of each.
-CoverageToken tile(int quads, std::uint32_t draw = 0, std::uint64_t triangle = 0, int x = 0, bool late = false) {
+CoverageToken tile(int quads, std::uint32_t draw = 0, std::uint64_t triangle = 0, int x = 0,
+                   bool late = false) {
   const std::uint64_t mask = quads == 16 ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * quads)) - 1;
   return {TokenKind::kWork, late, static_cast<std::uint16_t>(x), 0, draw, triangle, mask};
 }
-CoverageToken boundary(TokenKind kind, std::uint64_t triangle = 0) { return {kind, false, 0, 0, 0, triangle, 0}; }
+CoverageToken boundary(TokenKind kind, std::uint64_t triangle = 0) {
+  return {kind, false, 0, 0, 0, triangle, 0};
+}
 
 std::uint64_t counter(const PackerBench& b, std::size_t i) { return b.unit->stats()->counters()[i]->value(); }
 std::string warps(const PackerBench::Setup& setup) {
@@ -51,7 +56,8 @@ std::string warps(const PackerBench::Setup& setup) {
 
 }  // namespace
 
-TEST_CASE("warp_packer: a full tile makes two warps of eight quads, at the rate and one cycle to launch each") {
+TEST_CASE(
+    "warp_packer: a full tile makes two warps of eight quads, at the rate and one cycle to launch each") {
   // Quads at 1..2, launch at 3, quads at 4..5, launch at 6: a sink sees a launch one cycle later.
   CHECK(warps({.coverage = {{0, tile(16)}}}) == "4:0 7:1");
   CHECK(warps({.coverage = {{0, tile(16)}}, .rate = 1}) == "10:0 19:1");
@@ -64,18 +70,21 @@ TEST_CASE("warp_packer: launch_clk is the time between a full warp and the next 
 }
 
 TEST_CASE("warp_packer: quads of several triangles and tiles of a draw share a warp") {
-  const auto text =
-      run<PackerBench>({.coverage = {{0, tile(3, 0, 7, 1)}, {0, tile(3, 0, 8, 2)}, {0, tile(2, 0, 9, 3)}}}, [](const PackerBench& b) {
+  const auto text = run<PackerBench>(
+      {.coverage = {{0, tile(3, 0, 7, 1)}, {0, tile(3, 0, 8, 2)}, {0, tile(2, 0, 9, 3)}}},
+      [](const PackerBench& b) {
         std::string all = b.work->text();
         const WarpSlot& warp = b.warps[0];
         for (int q = 0; q < warp.quads; ++q) {
           const auto& quad = warp.quad[static_cast<std::size_t>(q)];
           all += fmt::format(" {}@{},{}", quad.triangle, quad.x, quad.y);
         }
-        return fmt::format("{} covered {:x} partition {} warps {} partial {}", all, warp.covered, b.work->got[0].token.partition,
-                           counter(b, 3), counter(b, 4));
+        return fmt::format("{} covered {:x} partition {} warps {} partial {}", all, warp.covered,
+                           b.work->got[0].token.partition, counter(b, 3), counter(b, 4));
       });
-  CHECK(text == "5:0 7@8,0 7@10,0 7@12,0 8@16,0 8@18,0 8@20,0 9@24,0 9@26,0 covered ffffffff partition 3 warps 1 partial 0");
+  CHECK(text ==
+        "5:0 7@8,0 7@10,0 7@12,0 8@16,0 8@18,0 8@20,0 9@24,0 9@26,0 covered ffffffff partition 3 warps 1 "
+        "partial 0");
 }
 
 TEST_CASE("warp_packer: a partial warp leaves exactly when its patience ends") {
@@ -86,14 +95,19 @@ TEST_CASE("warp_packer: a partial warp leaves exactly when its patience ends") {
     const PackerBench::Setup s{.coverage = {{0, tile(3)}}, .patience = patience};
     CHECK(run<PackerBench>(s, read) == fmt::format("{}:0 partial 1 timeouts 1", 1 + patience + 1));
   }
-  // A tile that comes in the very last cycle still joins, and starts the wait anew; one cycle later it opens another warp.
-  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {10, tile(3)}}, .patience = 10}, read) == "22:0 partial 1 timeouts 1");
-  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {11, tile(3)}}, .patience = 10}, read) == "12:0 23:1 partial 2 timeouts 2");
+  // A tile that comes in the very last cycle still joins, and starts the wait anew; one cycle later it opens
+  // another warp.
+  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {10, tile(3)}}, .patience = 10}, read) ==
+        "22:0 partial 1 timeouts 1");
+  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {11, tile(3)}}, .patience = 10}, read) ==
+        "12:0 23:1 partial 2 timeouts 2");
 }
 
-TEST_CASE("warp_packer: a boundary, another draw or another sort of depth test closes the open warp at once") {
+TEST_CASE(
+    "warp_packer: a boundary, another draw or another sort of depth test closes the open warp at once") {
   CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {0, boundary(TokenKind::kDrawEnd)}}},
-                         [](const PackerBench& b) { return b.work->text() + " | " + b.order->text(); }) == "3:0 | 3:0 4:902");
+                         [](const PackerBench& b) { return b.work->text() + " | " + b.order->text(); }) ==
+        "3:0 | 3:0 4:902");
   CHECK(warps({.coverage = {{0, tile(3)}, {0, tile(3, 1)}}, .patience = 10}) == "3:0 14:1");
   CHECK(warps({.coverage = {{0, tile(3)}, {0, tile(3, 0, 0, 0, true)}}, .patience = 10}) == "3:0 14:1");
 }
@@ -104,14 +118,18 @@ TEST_CASE("warp_packer: a sync travels with the open warp, alone when there is n
     for (const auto& t : b.order->got) all += fmt::format(" sync {}", t.token.sync);
     return all;
   };
-  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {0, boundary(TokenKind::kSync, 5)}, {0, tile(5)}}}, read) == "6:0 sync 5");
-  CHECK(run<PackerBench>({.coverage = {{0, boundary(TokenKind::kSync, 5)}, {0, tile(8)}}}, read) == "2:905 5:0 sync 5 sync 0");
+  CHECK(run<PackerBench>({.coverage = {{0, tile(3)}, {0, boundary(TokenKind::kSync, 5)}, {0, tile(5)}}},
+                         read) == "6:0 sync 5");
+  CHECK(run<PackerBench>({.coverage = {{0, boundary(TokenKind::kSync, 5)}, {0, tile(8)}}}, read) ==
+        "2:905 5:0 sync 5 sync 0");
 }
 
 TEST_CASE("warp_packer: opens no more warps than the reorder buffer has places") {
-  // Four warps; the second place comes free at cycle 51 and the others at 61 and 71: the quads of the waiting tile start then.
-  const PackerBench::Setup s{
-      .coverage = {{0, tile(16)}, {0, tile(16)}}, .releases = {{50, {0, 0}}, {60, {1, 0}}, {70, {2, 0}}}, .slots = 1};
+  // Four warps; the second place comes free at cycle 51 and the others at 61 and 71: the quads of the waiting
+  // tile start then.
+  const PackerBench::Setup s{.coverage = {{0, tile(16)}, {0, tile(16)}},
+                             .releases = {{50, {0, 0}}, {60, {1, 0}}, {70, {2, 0}}},
+                             .slots = 1};
   CHECK(warps(s) == "4:0 54:0 64:0 74:0");
   PackerBench::Setup wide = s;
   wide.slots = 3;
@@ -119,7 +137,8 @@ TEST_CASE("warp_packer: opens no more warps than the reorder buffer has places")
 }
 
 TEST_CASE("warp_packer: stops while warp_out is full") {
-  const PackerBench::Setup s{.coverage = {{0, tile(16)}, {0, tile(16)}}, .pace = {.from = 100, .period = 20}, .out = {.depth = 1}};
+  const PackerBench::Setup s{
+      .coverage = {{0, tile(16)}, {0, tile(16)}}, .pace = {.from = 100, .period = 20}, .out = {.depth = 1}};
   CHECK(warps(s) == "100:0 120:1 140:2 160:3");
 }
 

@@ -19,8 +19,10 @@ struct DepthBench final : Bench {
     int lines = 256, ways = 8, misses = 32;
     std::uint32_t width = 16, height = 8;
   };
-  /// Draws: 0 tests and writes with "less" early, 1 the same late, 2 without depth, 3 writes with "greater". Triangle i lies at depth i / 8.
-  DepthBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), triangles(8), warps(4) {
+  /// Draws: 0 tests and writes with "less" early, 1 the same late, 2 without depth, 3 writes with "greater".
+  /// Triangle i lies at depth i / 8.
+  DepthBench(Driver& driver, const contract::Variation& v, const Setup& s)
+      : Bench(driver, v), triangles(8), warps(4) {
     PassState pass;
     pass.has_depth = true;
     pass.depth = models::allocate_surface(device, s.width, s.height);
@@ -44,11 +46,14 @@ struct DepthBench final : Bench {
     feed(unit->coverage_in, s.coverage);
     feed(unit->late_in, s.late);
     out = &drain<CoverageToken>(unit->coverage_out, [](const CoverageToken& t) {
-      return t.kind == TokenKind::kWork ? 100u * static_cast<unsigned>(t.late) + static_cast<unsigned>(t.triangle)
-                                        : 900u + static_cast<unsigned>(t.kind);
+      return t.kind == TokenKind::kWork
+                 ? 100u * static_cast<unsigned>(t.late) + static_cast<unsigned>(t.triangle)
+                 : 900u + static_cast<unsigned>(t.kind);
     });
-    late = &drain<LateToken>(unit->late_out, [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
-    hiz = &drain<HiZToken>(unit->hiz_out, [](const HiZToken& t) { return static_cast<std::uint64_t>(1000 * t.max_depth); });
+    late = &drain<LateToken>(unit->late_out,
+                             [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
+    hiz = &drain<HiZToken>(unit->hiz_out,
+                           [](const HiZToken& t) { return static_cast<std::uint64_t>(1000 * t.max_depth); });
     memory = &serve(unit->memory_port(), 10);
   }
   /// The upper half of the left tile.
@@ -63,7 +68,8 @@ struct DepthBench final : Bench {
   }
   [[nodiscard]] std::string depths() const {
     std::string all;
-    for (const std::uint32_t word : models::detile(device, frame.passes[0].depth)) all += fmt::format("{:x} ", word);
+    for (const std::uint32_t word : models::detile(device, frame.passes[0].depth))
+      all += fmt::format("{:x} ", word);
     return all;
   }
   models::Program program;
@@ -80,7 +86,8 @@ struct DepthBench final : Bench {
 constexpr std::uint64_t kAll = ~std::uint64_t{0}, kUpperHalf = 0xffffffffu;
 const CoverageToken kBegin{TokenKind::kPassBegin, false, 0, 0, 0, 0, 0};
 
-CoverageToken tile(std::uint64_t triangle, std::uint32_t draw = 0, std::uint64_t mask = kAll, std::uint16_t x = 0) {
+CoverageToken tile(std::uint64_t triangle, std::uint32_t draw = 0, std::uint64_t mask = kAll,
+                   std::uint16_t x = 0) {
   return {TokenKind::kWork, false, x, 0, draw, triangle, mask};
 }
 std::string outputs(const DepthBench& b) { return b.out->text(); }
@@ -88,18 +95,24 @@ std::string outputs(const DepthBench& b) { return b.out->text(); }
 }  // namespace
 
 TEST_CASE("depth_unit: a tile is tested two cycles after it is there, sixteen quads at four a cycle") {
-  const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4)}, {10, tile(3)}, {10, tile(2, 0, 0xf)}, {10, tile(1)}}};
+  const DepthBench::Setup s{
+      .coverage = {{0, kBegin}, {10, tile(4)}, {10, tile(3)}, {10, tile(2, 0, 0xf)}, {10, tile(1)}}};
   CHECK(run<DepthBench>(s, outputs) == "3:903 13:4 17:3 21:2 22:1");
 }
 
-TEST_CASE("depth_unit: fragments that fail are killed, a tile without survivors goes no further but takes its time") {
-  const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4, 0, kUpperHalf)}, {10, tile(6, 0, kUpperHalf)}, {10, tile(6)}}};
+TEST_CASE(
+    "depth_unit: fragments that fail are killed, a tile without survivors goes no further but takes its "
+    "time") {
+  const DepthBench::Setup s{
+      .coverage = {{0, kBegin}, {10, tile(4, 0, kUpperHalf)}, {10, tile(6, 0, kUpperHalf)}, {10, tile(6)}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
     const Unit& u = *b.unit;
-    return fmt::format("{} coverage {:x} in {} killed {} out {} reads {}", b.out->text(), b.out->got[2].token.coverage,
-                       counter(u, "fragments_in"), counter(u, "early_killed"), counter(u, "fragments_out"), b.memory->got.size());
+    return fmt::format("{} coverage {:x} in {} killed {} out {} reads {}", b.out->text(),
+                       b.out->got[2].token.coverage, counter(u, "fragments_in"), counter(u, "early_killed"),
+                       counter(u, "fragments_out"), b.memory->got.size());
   });
-  CHECK(text == "3:903 13:4 17:6 coverage ffffffff00000000 in 128 killed 64 out 64 reads 0");  // a cleared tile is not fetched
+  // a cleared tile is not fetched
+  CHECK(text == "3:903 13:4 17:6 coverage ffffffff00000000 in 128 killed 64 out 64 reads 0");
 }
 
 TEST_CASE("depth_unit: a draw without depth test passes untouched") {
@@ -109,17 +122,22 @@ TEST_CASE("depth_unit: a draw without depth test passes untouched") {
         }) == "3:903 13:4 17:6 untested 64");
 }
 
-TEST_CASE("depth_unit: every fragment is counted where it went, also those of a late tile that are killed early") {
-  const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4, 0, kUpperHalf)}, {10, tile(6, 1)}, {10, tile(6, 2, 0xf)}}};
+TEST_CASE(
+    "depth_unit: every fragment is counted where it went, also those of a late tile that are killed early") {
+  const DepthBench::Setup s{
+      .coverage = {{0, kBegin}, {10, tile(4, 0, kUpperHalf)}, {10, tile(6, 1)}, {10, tile(6, 2, 0xf)}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
     const Unit& u = *b.unit;
-    return fmt::format("in {} = tested {} + deferred {} + untested {}, killed {}", counter(u, "fragments_in"), counter(u, "early_tested"),
-                       counter(u, "deferred"), counter(u, "untested"), counter(u, "early_killed"));
+    return fmt::format("in {} = tested {} + deferred {} + untested {}, killed {}", counter(u, "fragments_in"),
+                       counter(u, "early_tested"), counter(u, "deferred"), counter(u, "untested"),
+                       counter(u, "early_killed"));
   });
   CHECK(text == "in 100 = tested 64 + deferred 32 + untested 4, killed 32");
 }
 
-TEST_CASE("depth_unit: an early draw goes late while late fragments of its tile are in flight, and is early again after them") {
+TEST_CASE(
+    "depth_unit: an early draw goes late while late fragments of its tile are in flight, and is early again "
+    "after them") {
   const DepthBench::Setup s{.coverage = {{0, kBegin},
                                          {10, tile(4, 1, kUpperHalf)},
                                          {20, tile(3, 0, kUpperHalf)},
@@ -127,23 +145,32 @@ TEST_CASE("depth_unit: an early draw goes late while late fragments of its tile 
                                          {60, tile(1, 0, kUpperHalf)}},
                             .late = {{40, {TokenKind::kWork, 3}}, {40, {TokenKind::kWork, 2}}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
-    return fmt::format("{} | {} deferred {} late {}", b.out->text(), b.late->text(), counter(*b.unit, "deferred"),
-                       counter(*b.unit, "late_tested"));
+    return fmt::format("{} | {} deferred {} late {}", b.out->text(), b.late->text(),
+                       counter(*b.unit, "deferred"), counter(*b.unit, "late_tested"));
   });
-  CHECK(text == "3:903 13:104 23:103 28:3 63:1 | 42:3 44:2 deferred 64 late 64");  // tile (1, 0) is not concerned
+  // tile (1, 0) is not concerned
+  CHECK(text == "3:903 13:104 23:103 28:3 63:1 | 42:3 44:2 deferred 64 late 64");
 }
 
 TEST_CASE("depth_unit: late tests kill in their order and leave the survivors in the warp") {
-  const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4, 1, kUpperHalf)}, {20, tile(3, 1, kUpperHalf)}},
-                            .late = {{40, {TokenKind::kWork, 0}}, {40, {TokenKind::kWork, 2}}}};
+  const DepthBench::Setup s{
+      .coverage = {{0, kBegin}, {10, tile(4, 1, kUpperHalf)}, {20, tile(3, 1, kUpperHalf)}},
+      .late = {{40, {TokenKind::kWork, 0}}, {40, {TokenKind::kWork, 2}}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
-    return fmt::format("{:x} {:x} killed {}", b.warps[0].alive, b.warps[2].alive, counter(*b.unit, "late_killed"));
+    return fmt::format("{:x} {:x} killed {}", b.warps[0].alive, b.warps[2].alive,
+                       counter(*b.unit, "late_killed"));
   });
   CHECK(text == "ffffffff 0 killed 32");
 }
 
-TEST_CASE("depth_unit: Hi-Z is told when the greatest depth of a tile falls, and not after a draw that may raise depths") {
-  DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4, 0, kUpperHalf)}, {20, tile(4)}, {30, tile(3, 0, kUpperHalf)}, {40, tile(2)}}};
+TEST_CASE(
+    "depth_unit: Hi-Z is told when the greatest depth of a tile falls, and not after a draw that may raise "
+    "depths") {
+  DepthBench::Setup s{.coverage = {{0, kBegin},
+                                   {10, tile(4, 0, kUpperHalf)},
+                                   {20, tile(4)},
+                                   {30, tile(3, 0, kUpperHalf)},
+                                   {40, tile(2)}}};
   const auto text = [](const DepthBench& b) { return b.hiz->text(); };
   CHECK(run<DepthBench>(s, text) == "23:500 43:250");  // the half that was clear kept the greatest depth at 1
   s.coverage[3].token = tile(7, 3, kUpperHalf);        // raises some: nothing may be told any more
@@ -151,17 +178,20 @@ TEST_CASE("depth_unit: Hi-Z is told when the greatest depth of a tile falls, and
 }
 
 TEST_CASE("depth_unit: Hi-Z is told of a tile that the frame cuts, whose other pixels keep the clear depth") {
-  const DepthBench::Setup s{
-      .coverage = {{0, kBegin}, {10, tile(4, 0, models::pixels_within(8, 5))}, {20, tile(4, 0, models::pixels_within(3, 5), 1)}},
-      .width = 11,
-      .height = 5};
+  const DepthBench::Setup s{.coverage = {{0, kBegin},
+                                         {10, tile(4, 0, models::pixels_within(8, 5))},
+                                         {20, tile(4, 0, models::pixels_within(3, 5), 1)}},
+                            .width = 11,
+                            .height = 5};
   CHECK(run<DepthBench>(s, [](const DepthBench& b) { return b.hiz->text(); }) == "13:500 23:500");
 }
 
 TEST_CASE("depth_unit: the flush writes dirty lines, no cleared tiles, and answers after its fence") {
-  const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4)}}, .late = {{100, {TokenKind::kPassEnd, 0}}}};
+  const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4)}},
+                            .late = {{100, {TokenKind::kPassEnd, 0}}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
-    return fmt::format("{} writes {} dirty {}", b.late->text(), b.memory->count(MemoryRequest::Kind::kWrite), b.device.dirty_lines());
+    return fmt::format("{} writes {} dirty {}", b.late->text(), b.memory->count(MemoryRequest::Kind::kWrite),
+                       b.device.dirty_lines());
   });
   CHECK(text == "116:400 writes 2 dirty 0");
 }
@@ -170,10 +200,12 @@ TEST_CASE("depth_unit: a cache of one line gets through, and to the same depths"
   DepthBench::Setup s{.coverage = {{0, kBegin}}, .late = {{400, {TokenKind::kPassEnd, 0}}}};
   for (std::uint64_t i = 7; i > 0; --i) {
     s.coverage.push_back({0, tile(i, 0, kUpperHalf, static_cast<std::uint16_t>(i % 2))});
-    s.coverage.push_back({0, tile(i, 0, i % 2 == 0 ? kAll : 0xff00ff0000ff00ff, static_cast<std::uint16_t>(i / 2 % 2))});
+    s.coverage.push_back(
+        {0, tile(i, 0, i % 2 == 0 ? kAll : 0xff00ff0000ff00ff, static_cast<std::uint16_t>(i / 2 % 2))});
   }
   const auto text = [](const DepthBench& b) {
-    return fmt::format("{} out {} dirty {}", counter(*b.unit, "fragments_out"), b.device.dirty_lines(), b.depths());
+    return fmt::format("{} out {} dirty {}", counter(*b.unit, "fragments_out"), b.device.dirty_lines(),
+                       b.depths());
   };
   const auto expected = run<DepthBench>(s, text);
   CHECK_THAT(expected, !Catch::StartsWith("failed") && Catch::Contains(" out 0 dirty"));
@@ -182,10 +214,15 @@ TEST_CASE("depth_unit: a cache of one line gets through, and to the same depths"
 }
 
 TEST_CASE("depth_unit: keeps the contract, one-deep links included") {
-  DepthBench::Setup s{
-      .coverage = {{0, kBegin}, {0, tile(7)}, {0, tile(6, 1, kUpperHalf)}, {0, tile(5, 2)}, {9, tile(5, 0, kUpperHalf, 1)}, {80, tile(3)}},
-      .late = {{60, {TokenKind::kWork, 2}}, {300, {TokenKind::kPassEnd, 0}}}};
+  DepthBench::Setup s{.coverage = {{0, kBegin},
+                                   {0, tile(7)},
+                                   {0, tile(6, 1, kUpperHalf)},
+                                   {0, tile(5, 2)},
+                                   {9, tile(5, 0, kUpperHalf, 1)},
+                                   {80, tile(3)}},
+                      .late = {{60, {TokenKind::kWork, 2}}, {300, {TokenKind::kPassEnd, 0}}}};
   CHECK(contract_text<DepthBench>(s) == "");
-  s.lines = s.ways = s.misses = 1;  // slower: whether a tile meets late fragments in flight depends on the links
+  // slower: whether a tile meets late fragments in flight depends on the links
+  s.lines = s.ways = s.misses = 1;
   CHECK(contract_text<DepthBench>(s, false) == "");
 }

@@ -19,7 +19,8 @@ struct RopBench final : Bench {
     models::LaneMask alive = ~0u;
     int lines = 256, ways = 8, misses = 32, memory_latency = 10;
   };
-  /// The target has two tiles; even warps write the upper half of the left one, odd warps two quads of each row of the right one.
+  /// The target has two tiles; even warps write the upper half of the left one, odd warps two quads of each
+  /// row of the right one.
   RopBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), warps(4) {
     PassState pass;
     pass.color = models::allocate_surface(device, 16, 8);
@@ -36,11 +37,13 @@ struct RopBench final : Bench {
     feed(unit->order_in, s.order);
     feed(unit->done_in[0], s.done);
     feed(unit->late_in, s.late);
-    late = &drain<LateToken>(unit->late_out, [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
+    late = &drain<LateToken>(unit->late_out,
+                             [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
     released = &drain<ReleaseToken>(unit->release_out, [](const ReleaseToken& t) { return t.slot; });
     drain<ReleaseToken>(unit->load_out, [](const ReleaseToken& t) { return t.slot; });
     synced = &drain<ReleaseToken>(unit->sync_out, [](const ReleaseToken& t) { return t.sequence; });
-    retired = &drain<RetireToken>(unit->retire_out, [](const RetireToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; });
+    retired = &drain<RetireToken>(
+        unit->retire_out, [](const RetireToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; });
     memory = &serve(unit->memory_port(), s.memory_latency);
   }
   static void fill(WarpSlot& warp, std::uint32_t number, const Setup& s) {
@@ -50,16 +53,21 @@ struct RopBench final : Bench {
     warp.late = s.late_warps;
     for (std::size_t q = 0; q < 8; ++q) {
       const auto i = static_cast<std::uint16_t>(q);
-      if (number % 2 == 0) warp.quad[q] = {0, static_cast<std::uint16_t>(2 * (i % 4)), static_cast<std::uint16_t>(2 * (i / 4))};
-      else warp.quad[q] = {0, static_cast<std::uint16_t>(8 + 4 * (i % 2)), static_cast<std::uint16_t>(2 * (i / 2))};
+      if (number % 2 == 0)
+        warp.quad[q] = {0, static_cast<std::uint16_t>(2 * (i % 4)), static_cast<std::uint16_t>(2 * (i / 4))};
+      else
+        warp.quad[q] = {0, static_cast<std::uint16_t>(8 + 4 * (i % 2)),
+                        static_cast<std::uint16_t>(2 * (i / 2))};
     }
     for (std::size_t c = 0; c < 4; ++c) {
-      for (std::size_t lane = 0; lane < 32; ++lane) warp.color[c][lane] = static_cast<float>((7 * number + 3 * c + lane) % 16) / 16.0f;
+      for (std::size_t lane = 0; lane < 32; ++lane)
+        warp.color[c][lane] = static_cast<float>((7 * number + 3 * c + lane) % 16) / 16.0f;
     }
   }
   [[nodiscard]] std::uint64_t image() const {
     std::string bytes;
-    for (const std::uint8_t byte : models::detile_rgba8(device, frame.passes[0].color)) bytes += static_cast<char>(byte);
+    for (const std::uint8_t byte : models::detile_rgba8(device, frame.passes[0].color))
+      bytes += static_cast<char>(byte);
     return std::hash<std::string>{}(bytes);
   }
   [[nodiscard]] std::uint64_t digest() const override { return Bench::digest() ^ image(); }
@@ -73,14 +81,17 @@ struct RopBench final : Bench {
 };
 
 OrderToken warp(std::uint32_t slot, std::uint64_t sync = 0) { return {TokenKind::kWork, 0, slot, sync}; }
-const OrderToken kBegin{TokenKind::kPassBegin, 0, 0, 0}, kDrawEnd{TokenKind::kDrawEnd, 0, 0, 0}, kPassEnd{TokenKind::kPassEnd, 0, 0, 0};
+const OrderToken kBegin{TokenKind::kPassBegin, 0, 0, 0}, kDrawEnd{TokenKind::kDrawEnd, 0, 0, 0},
+    kPassEnd{TokenKind::kPassEnd, 0, 0, 0};
 std::string released(const RopBench& b) { return b.released->text(); }
 
 /// Four warps, all shaded by cycle 20, and the depth unit's answer to the flush at cycle 300.
 RopBench::Setup whole_pass() {
-  return {.order = {{0, kBegin}, {0, warp(0)}, {0, warp(1)}, {0, warp(2)}, {0, warp(3)}, {0, kDrawEnd}, {0, kPassEnd}},
-          .done = {{20, {2}}, {20, {0}}, {20, {3}}, {20, {1}}},
-          .late = {{300, {TokenKind::kPassEnd, 0}}}};
+  return {
+      .order =
+          {{0, kBegin}, {0, warp(0)}, {0, warp(1)}, {0, warp(2)}, {0, warp(3)}, {0, kDrawEnd}, {0, kPassEnd}},
+      .done = {{20, {2}}, {20, {0}}, {20, {3}}, {20, {1}}},
+      .late = {{300, {TokenKind::kPassEnd, 0}}}};
 }
 
 }  // namespace
@@ -90,11 +101,15 @@ TEST_CASE("rop: warps retire in order although the later one is shaded first") {
   CHECK(run<RopBench>(s, released) == "32:0 34:1");  // eight quads at four a cycle
 }
 
-TEST_CASE("rop: a warp takes its live quads divided by the rate, blending with the old colour takes twice that") {
-  RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}, {0, warp(0)}}, .done = {{30, {0}}, {30, {2}}}};
+TEST_CASE(
+    "rop: a warp takes its live quads divided by the rate, blending with the old colour takes twice that") {
+  RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}, {0, warp(0)}},
+                    .done = {{30, {0}}, {30, {2}}}};
   s.order.pop_back();
   s.order.push_back({0, kDrawEnd});
-  const auto text = [](const RopBench& b) { return fmt::format("{} draw {}", b.released->text(), b.retired->text()); };
+  const auto text = [](const RopBench& b) {
+    return fmt::format("{} draw {}", b.released->text(), b.retired->text());
+  };
   CHECK(run<RopBench>(s, text) == "32:0 34:2 draw 36:200");
   s.blend = true;
   CHECK(run<RopBench>(s, text) == "32:0 36:2 draw 40:200");
@@ -106,9 +121,11 @@ TEST_CASE("rop: fragments that were discarded are counted and not written") {
   RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}}, .done = {{10, {0}}}, .alive = 0x0000ff01};
   const auto text = run<RopBench>(s, [](const RopBench& b) {
     int changed = 0;
-    for (const std::uint32_t pixel : models::detile(b.device, b.frame.passes[0].color)) changed += static_cast<int>(pixel != 0x80402010);
-    return fmt::format("in {} discarded {}, late {}, written {} pixels {}", counter(*b.unit, "fragments_in"), counter(*b.unit, "discarded"),
-                       counter(*b.unit, "late_discarded"), counter(*b.unit, "written"), changed);
+    for (const std::uint32_t pixel : models::detile(b.device, b.frame.passes[0].color))
+      changed += static_cast<int>(pixel != 0x80402010);
+    return fmt::format("in {} discarded {}, late {}, written {} pixels {}", counter(*b.unit, "fragments_in"),
+                       counter(*b.unit, "discarded"), counter(*b.unit, "late_discarded"),
+                       counter(*b.unit, "written"), changed);
   });
   CHECK(text == "in 32 discarded 23, late 0, written 9 pixels 9");
 }
@@ -120,7 +137,8 @@ TEST_CASE("rop: what a program discards of a warp that is tested late is counted
                           .late_warps = true,
                           .alive = 0x0000ff01};
   CHECK(run<RopBench>(s, [](const RopBench& b) {
-          return fmt::format("discarded {}, late {}", counter(*b.unit, "discarded"), counter(*b.unit, "late_discarded"));
+          return fmt::format("discarded {}, late {}", counter(*b.unit, "discarded"),
+                             counter(*b.unit, "late_discarded"));
         }) == "discarded 23, late 23");
 }
 
@@ -129,29 +147,36 @@ TEST_CASE("rop: a late-tested warp is sent when it is shaded and retires when it
                           .done = {{10, {1}}, {20, {0}}},
                           .late = {{50, {TokenKind::kWork, 0}}, {80, {TokenKind::kWork, 1}}},
                           .late_warps = true};
-  const auto text = run<RopBench>(s, [](const RopBench& b) { return fmt::format("{} | {}", b.late->text(), b.released->text()); });
+  const auto text = run<RopBench>(
+      s, [](const RopBench& b) { return fmt::format("{} | {}", b.late->text(), b.released->text()); });
   CHECK(text == "22:0 23:1 | 52:0 82:1");
 }
 
 TEST_CASE("rop: a sync is reported when its warp retires, a lone one in its turn") {
-  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0, 5)}, {0, {TokenKind::kSync, 0, 0, 9}}}, .done = {{30, {0}}}};
+  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0, 5)}, {0, {TokenKind::kSync, 0, 0, 9}}},
+                          .done = {{30, {0}}}};
   CHECK(run<RopBench>(s, [](const RopBench& b) { return b.synced->text(); }) == "32:5 34:9");
 }
 
 TEST_CASE("rop: a pass ends when depth is flushed, every line is written and the fence is answered") {
   const auto text = run<RopBench>(whole_pass(), [](const RopBench& b) {
-    return fmt::format("{} writes {} reads {} fences {} dirty {}", b.retired->text(), b.memory->count(MemoryRequest::Kind::kWrite),
-                       b.memory->count(MemoryRequest::Kind::kRead), b.memory->count(MemoryRequest::Kind::kFence), b.device.dirty_lines());
+    return fmt::format("{} writes {} reads {} fences {} dirty {}", b.retired->text(),
+                       b.memory->count(MemoryRequest::Kind::kWrite),
+                       b.memory->count(MemoryRequest::Kind::kRead),
+                       b.memory->count(MemoryRequest::Kind::kFence), b.device.dirty_lines());
   });
-  // The answer is seen at 301, four writes and the fence arrive at 302..306, the fence's answer at 317; a sink sees the rest one later.
+  // The answer is seen at 301, four writes and the fence arrive at 302..306, the fence's answer at 317; a
+  // sink sees the rest one later.
   CHECK(text == "30:200 318:400 writes 4 reads 0 fences 1 dirty 0");
 }
 
 TEST_CASE("rop: a tile that was only cleared is written by the flush") {
-  const RopBench::Setup s{.order = {{0, kBegin}, {0, kPassEnd}}, .done = {}, .late = {{50, {TokenKind::kPassEnd, 0}}}};
+  const RopBench::Setup s{
+      .order = {{0, kBegin}, {0, kPassEnd}}, .done = {}, .late = {{50, {TokenKind::kPassEnd, 0}}}};
   const auto text = run<RopBench>(s, [](const RopBench& b) {
-    return fmt::format("{} cleared {} written {} requests {}", b.retired->text(), counter(*b.unit, "fast_cleared_tiles"),
-                       counter(*b.unit, "clear_writes"), b.memory->count(MemoryRequest::Kind::kWrite));
+    return fmt::format("{} cleared {} written {} requests {}", b.retired->text(),
+                       counter(*b.unit, "fast_cleared_tiles"), counter(*b.unit, "clear_writes"),
+                       b.memory->count(MemoryRequest::Kind::kWrite));
   });
   CHECK(text == "68:400 cleared 2 written 2 requests 4");
 }
@@ -160,7 +185,9 @@ TEST_CASE("rop: a warp that covers a sector in part reads nothing, unless it ble
   auto s = whole_pass();
   s.alive = 0x7fffffff;
   s.lines = s.ways = 2;  // of four: lines are evicted and come back, after the first time not as cleared ones
-  const auto reads = [](const RopBench& b) { return fmt::format("{}", b.memory->count(MemoryRequest::Kind::kRead)); };
+  const auto reads = [](const RopBench& b) {
+    return fmt::format("{}", b.memory->count(MemoryRequest::Kind::kRead));
+  };
   CHECK(run<RopBench>(s, reads) == "0");
   s.blend = true;
   CHECK(run<RopBench>(s, reads) == "3");
@@ -172,7 +199,8 @@ TEST_CASE("rop: a colour cache of one line gets through, and to the same image")
     s.blend = blend;
     s.alive = 0x7fffffff;  // the last sector is completed from memory
     const auto text = [](const RopBench& b) {
-      return fmt::format("{} warps {} dirty {:x}", counter(*b.unit, "warps"), b.device.dirty_lines(), b.image());
+      return fmt::format("{} warps {} dirty {:x}", counter(*b.unit, "warps"), b.device.dirty_lines(),
+                         b.image());
     };
     const auto expected = run<RopBench>(s, text);
     CHECK_THAT(expected, Catch::StartsWith("4 warps 0 dirty "));

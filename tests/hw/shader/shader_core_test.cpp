@@ -27,9 +27,11 @@ struct CoreBench final : Bench {
   };
   CoreBench(Driver& driver, const contract::Variation& v, const Setup& s)
       : Bench(driver, v), slots(static_cast<std::size_t>(s.warp_slots)), batches(8), warps(8), triangles(1) {
-    vertex_program =
-        models::assemble(".stage vertex\n" + (s.vertex.empty() ? std::string("output out0, r0\n") : s.code) + "end\n", "vertex");
-    fragment_program = models::assemble(".stage fragment\n.texture set=0 binding=0\n" + s.code + "end\n", "fragment");
+    vertex_program = models::assemble(
+        ".stage vertex\n" + (s.vertex.empty() ? std::string("output out0, r0\n") : s.code) + "end\n",
+        "vertex");
+    fragment_program =
+        models::assemble(".stage fragment\n.texture set=0 binding=0\n" + s.code + "end\n", "fragment");
     DrawState draw;
     draw.vertex_program = &vertex_program;
     draw.fragment_program = &fragment_program;
@@ -54,7 +56,8 @@ struct CoreBench final : Bench {
     params.scheduler.set(s.scheduler);
     params.warp_slots.set(s.warp_slots);
     params.register_rows.set(s.rows);
-    unit = std::make_unique<ShaderCore>("unit", context(), params, ShaderCore::Stores{slots, batches, {&warps}, triangles}, s.textured);
+    unit = std::make_unique<ShaderCore>("unit", context(), params,
+                                        ShaderCore::Stores{slots, batches, {&warps}, triangles}, s.textured);
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in, s.fragment);
@@ -88,13 +91,17 @@ std::string vertex_text(const CoreBench& b) { return b.vertex_done->text(); }
 
 }  // namespace
 
-TEST_CASE("shader_core: a clause takes its instructions times 32 / simd_lanes and a cycle for its end, and waits for its last result") {
+TEST_CASE(
+    "shader_core: a clause takes its instructions times 32 / simd_lanes and a cycle for its end, and waits "
+    "for its last result") {
   for (const int lanes : {1, 8, 12, 32}) {
     for (const int latency : {0, 4, 50}) {
       const CoreBench::Setup s{.vertex = work(0, 1), .simd_lanes = lanes, .alu_clk = latency};
-      // Accepted at 1, ready at 2; a sink sees the end one cycle after it. The last of four exports issues after three.
+      // Accepted at 1, ready at 2; a sink sees the end one cycle after it. The last of four exports issues
+      // after three.
       const int issue = (32 + lanes - 1) / lanes;
-      CHECK(run<CoreBench>(s, vertex_text) == fmt::format("{}:0", 2 + std::max(4 * issue + 1, 3 * issue + latency) + 1));
+      CHECK(run<CoreBench>(s, vertex_text) ==
+            fmt::format("{}:0", 2 + std::max(4 * issue + 1, 3 * issue + latency) + 1));
     }
   }
 }
@@ -132,13 +139,15 @@ TEST_CASE("shader_core: a chain of dependent instructions takes its length times
     int CoreBench::Setup::*latency;
     int issue;
   };
-  const std::vector<Case> cases{{kDependent, &CoreBench::Setup::alu_clk, 4}, {"frcp r0, r0\n", &CoreBench::Setup::sfu_clk, 16}};
+  const std::vector<Case> cases{{kDependent, &CoreBench::Setup::alu_clk, 4},
+                                {"frcp r0, r0\n", &CoreBench::Setup::sfu_clk, 16}};
   for (const Case& c : cases) {
     for (const int latency : {0, 3, 8, 32}) {
       CoreBench::Setup s{.simds = 1, .alu_clk = 0};
       s.*c.latency = latency;
       INFO(c.line << " latency " << latency);
-      CHECK(cycles_of(s, repeated(c.line, 96), 1) - cycles_of(s, repeated(c.line, 32), 1) == 64 * std::max(c.issue, latency));
+      CHECK(cycles_of(s, repeated(c.line, 96), 1) - cycles_of(s, repeated(c.line, 32), 1) ==
+            64 * std::max(c.issue, latency));
     }
   }
 }
@@ -150,17 +159,18 @@ TEST_CASE("shader_core: varyings and indexed constants are there after the laten
   };
   for (const int latency : {0, 12, 40}) {
     const int expected = 16 * (std::max(4, latency) + 4);
-    CHECK(period({.simds = 1, .alu_clk = 0, .interp_clk = latency}, ".varying perspective\n", "interp r0, vary0\nieq r1, r0, r2\n") ==
-          expected);
-    CHECK(period({.simds = 1, .alu_clk = 0, .const_clk = latency}, ".literal c0 1 2 3\n", "loadconst r0, c1, r8, 2\nieq r2, r0, r3\n") ==
-          expected);
+    CHECK(period({.simds = 1, .alu_clk = 0, .interp_clk = latency}, ".varying perspective\n",
+                 "interp r0, vary0\nieq r1, r0, r2\n") == expected);
+    CHECK(period({.simds = 1, .alu_clk = 0, .const_clk = latency}, ".literal c0 1 2 3\n",
+                 "loadconst r0, c1, r8, 2\nieq r2, r0, r3\n") == expected);
   }
 }
 
 TEST_CASE("shader_core: waiting for operands is counted apart from issuing") {
   CoreBench::Setup s{.code = repeated(kDependent, 10), .fragment = work(0, 1), .simds = 1, .alu_clk = 20};
-  const auto text = run<CoreBench>(
-      s, [](const CoreBench& b) { return fmt::format("{} {}", counter(*b.unit, "simd_busy"), counter(*b.unit, "operand_waits")); });
+  const auto text = run<CoreBench>(s, [](const CoreBench& b) {
+    return fmt::format("{} {}", counter(*b.unit, "simd_busy"), counter(*b.unit, "operand_waits"));
+  });
   CHECK(text == "41 144");  // ten of four cycles and the end; nine times sixteen
 }
 
@@ -171,7 +181,8 @@ TEST_CASE("shader_core: independent instructions are bound by their issue, whate
   }
 }
 
-TEST_CASE("shader_core: other warps of a SIMD hide the latency of a chain up to its issue bound and no further") {
+TEST_CASE(
+    "shader_core: other warps of a SIMD hide the latency of a chain up to its issue bound and no further") {
   constexpr int kLength = 64, kIssue = 4, kLatency = 17;
   for (const WarpScheduling scheduler : {WarpScheduling::kOldest, WarpScheduling::kRoundRobin}) {
     const CoreBench::Setup s{.simds = 1, .alu_clk = kLatency, .scheduler = scheduler};
@@ -179,8 +190,9 @@ TEST_CASE("shader_core: other warps of a SIMD hide the latency of a chain up to 
     for (const int warps : {1, 2, 3, 4, 8}) {
       // The oldest first: four fill the SIMD, and what comes after them begins when they end.
       const int rounds = scheduler == WarpScheduling::kOldest ? (warps + 3) / 4 : 1;
-      const int expected =
-          scheduler == WarpScheduling::kOldest ? rounds * kLength * kLatency : std::max(kLength * kLatency, warps * kLength * kIssue);
+      const int expected = scheduler == WarpScheduling::kOldest
+                               ? rounds * kLength * kLatency
+                               : std::max(kLength * kLatency, warps * kLength * kIssue);
       INFO(warps << " warps, policy " << static_cast<int>(scheduler));
       CHECK(cycles_of(s, repeated(kDependent, kLength), warps) ==
             Approx(static_cast<double>(alone + expected - kLength * kLatency))
@@ -193,13 +205,16 @@ TEST_CASE("shader_core: registers bound how many warps hide each other's latency
   constexpr int kLength = 64, kLatency = 17;
   // Sixteen registers a warp: rows for one, two and four of them; eight warps in all.
   const std::string code = repeated(kDependent, kLength) + "output out0, r15\n";
-  const auto cycles = [&](int rows) { return cycles_of({.simds = 1, .rows = rows, .alu_clk = kLatency}, code, 8); };
+  const auto cycles = [&](int rows) {
+    return cycles_of({.simds = 1, .rows = rows, .alu_clk = kLatency}, code, 8);
+  };
   const int one = kLength * kLatency;
   CHECK(cycles(16) == Approx(static_cast<double>(8 * one)).epsilon(0.03));
   CHECK(cycles(32) == Approx(static_cast<double>(4 * one)).epsilon(0.03));
   CHECK(cycles(47) == cycles(32));
   CHECK(cycles(64) == Approx(static_cast<double>(2 * one)).epsilon(0.03));
-  CHECK(cycles(128) == Approx(static_cast<double>(2 * one)).epsilon(0.03));  // four fill the SIMD: more registers gain nothing
+  // four fill the SIMD: more registers gain nothing
+  CHECK(cycles(128) == Approx(static_cast<double>(2 * one)).epsilon(0.03));
 }
 
 TEST_CASE("shader_core: a branch waits for its condition, and the next instruction for the branch") {
@@ -214,8 +229,9 @@ TEST_CASE("shader_core: a branch waits for its condition, and the next instructi
 TEST_CASE("shader_core: special functions go through their own lanes") {
   const CoreBench::Setup s{.code = "frcp r0, r1\nfadd r0, r0, r0\noutput out0, r0\n", .vertex = work(0, 1)};
   const auto text = run<CoreBench>(s, [](const CoreBench& b) {
-    return fmt::format("{} sfu {} alu {} simd {}", b.vertex_done->text(), counter(*b.unit, "sfu_instructions"),
-                       counter(*b.unit, "alu_instructions"), counter(*b.unit, "simd_busy"));
+    return fmt::format("{} sfu {} alu {} simd {}", b.vertex_done->text(),
+                       counter(*b.unit, "sfu_instructions"), counter(*b.unit, "alu_instructions"),
+                       counter(*b.unit, "simd_busy"));
   });
   CHECK(text == "28:0 sfu 1 alu 2 simd 25");  // 2 + 16 + 2 * 4 + 1, and one
 }
@@ -228,45 +244,58 @@ TEST_CASE("shader_core: as many clauses run at a time as there are SIMDs, one wa
 
 TEST_CASE("shader_core: a slot for one fragment warp is never given to vertex warps") {
   CoreBench::Setup s{.vertex = work(0, 3), .fragment = {{5, {0, 7, 0}}}, .warp_slots = 2};
-  const auto text = [](const CoreBench& b) { return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text()); };
+  const auto text = [](const CoreBench& b) {
+    return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text());
+  };
   // The next vertex warp is accepted the cycle the fragment warp ends: only then it leaves a slot free.
   CHECK(run<CoreBench>(s, text) == "20:0 43:1 61:2 | 25:7");
 }
 
 TEST_CASE("shader_core: registers for one fragment warp are never given to vertex warps") {
-  CoreBench::Setup s{.code = "output out0, r15\n", .vertex = work(0, 2), .fragment = {{5, {0, 7, 0}}}, .rows = 47};
-  const auto text = [](const CoreBench& b) { return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text()); };
+  CoreBench::Setup s{
+      .code = "output out0, r15\n", .vertex = work(0, 2), .fragment = {{5, {0, 7, 0}}}, .rows = 47};
+  const auto text = [](const CoreBench& b) {
+    return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text());
+  };
   CHECK(run<CoreBench>(s, text) == "8:0 19:1 | 13:7");  // 16 rows each: two vertex warps would leave 15
   s.rows = 48;
   CHECK(run<CoreBench>(s, text) == "8:0 9:1 | 13:7");
 }
 
 TEST_CASE("shader_core: helper lanes run but are not fragments, and killed ones are reported dead") {
-  const CoreBench::Setup s{.code = "input r0, primitive_id\nieq r0, r0, r1\nkillif r0\noutput out0, r0\n", .fragment = work(3, 1)};
+  const CoreBench::Setup s{.code = "input r0, primitive_id\nieq r0, r0, r1\nkillif r0\noutput out0, r0\n",
+                           .fragment = work(3, 1)};
   const auto text = run<CoreBench>(s, [](const CoreBench& b) {
-    return fmt::format("{} fragments {} helpers {} alive {:x}", b.fragment_done->text(), counter(*b.unit, "fragments"),
-                       counter(*b.unit, "helper_lanes"), b.warps[3].alive);
+    return fmt::format("{} fragments {} helpers {} alive {:x}", b.fragment_done->text(),
+                       counter(*b.unit, "fragments"), counter(*b.unit, "helper_lanes"), b.warps[3].alive);
   });
   CHECK(text == "17:3 fragments 7 helpers 1 alive 0");
 }
 
-TEST_CASE("shader_core: a warp that waits for texels does not hold its SIMD, and goes on when they are there") {
-  // Slots are given out from 0. A clause of one request (four cycles) and one of an export and the end (five).
+TEST_CASE(
+    "shader_core: a warp that waits for texels does not hold its SIMD, and goes on when they are there") {
+  // Slots are given out from 0. A clause of one request (four cycles) and one of an export and the end
+  // (five).
   const CoreBench::Setup s{.code = "tex r0, t0, r8, r9\noutput out0, r0\n",
                            .fragment = work(5, 2),
                            .texels = {{50, {1, 0, false}}, {100, {0, 0, false}}},
                            .simds = 1,
                            .textured = true};
-  CHECK(run<CoreBench>(s, [](const CoreBench& b) { return b.requests->text() + " | " + b.fragment_done->text(); }) ==
-        "7:0 11:1 | 57:6 107:5");
+  CHECK(run<CoreBench>(s, [](const CoreBench& b) {
+          return b.requests->text() + " | " + b.fragment_done->text();
+        }) == "7:0 11:1 | 57:6 107:5");
 }
 
 TEST_CASE("shader_core: waits while vertex_out is full") {
-  CHECK(run<CoreBench>({.vertex = work(0, 3), .pace = {.from = 100, .period = 10}, .out = {.depth = 1}}, vertex_text) ==
-        "100:0 110:1 120:2");
+  CHECK(run<CoreBench>({.vertex = work(0, 3), .pace = {.from = 100, .period = 10}, .out = {.depth = 1}},
+                       vertex_text) == "100:0 110:1 120:2");
 }
 
 TEST_CASE("shader_core: keeps the contract, one-deep links included") {
-  const CoreBench::Setup s{.vertex = work(0, 4), .fragment = work(0, 6), .simds = 2, .warp_slots = 3, .pace = {.from = 0, .period = 9}};
+  const CoreBench::Setup s{.vertex = work(0, 4),
+                           .fragment = work(0, 6),
+                           .simds = 2,
+                           .warp_slots = 3,
+                           .pace = {.from = 0, .period = 9}};
   CHECK(contract_text<CoreBench>(s, false) == "");
 }

@@ -23,7 +23,8 @@ struct DistributorBench final : Bench {
   DistributorBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     params.policy.set(s.policy);
     params.block_tiles.set(s.block_tiles);
-    unit = std::make_unique<WorkDistributor>("unit", context({.cores = static_cast<int>(s.cores.size()), .partitions = 2}), params);
+    unit = std::make_unique<WorkDistributor>(
+        "unit", context({.cores = static_cast<int>(s.cores.size()), .partitions = 2}), params);
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in[0], s.fragment_0);
@@ -65,12 +66,13 @@ std::string fragment_text(const DistributorBench& b) {
 
 TEST_CASE("work_distributor: cores that are equally loaded take turns, one warp a cycle") {
   for (const WarpPolicy policy : {WarpPolicy::kRoundRobin, WarpPolicy::kTile, WarpPolicy::kLeastLoaded})
-    CHECK(run<DistributorBench>({.vertex = warps(0, 6), .cores = {{}, {}, {}}, .policy = policy}, vertex_text) ==
-          "2:0 5:3 | 3:1 6:4 | 4:2 7:5");
+    CHECK(run<DistributorBench>({.vertex = warps(0, 6), .cores = {{}, {}, {}}, .policy = policy},
+                                vertex_text) == "2:0 5:3 | 3:1 6:4 | 4:2 7:5");
 }
 
 TEST_CASE(
-    "work_distributor: a core that is not done with its warps gets no more while others have fewer, though it has room, in turn it does") {
+    "work_distributor: a core that is not done with its warps gets no more while others have fewer, though "
+    "it has room, in turn it does") {
   // Cores 1 and 2 are done with each warp seven cycles after it was sent, core 0 never.
   DistributorBench::Setup s{.vertex = warps(0, 7, 10), .cores = {{}, {}, {}}};
   for (const auto& [cycle, core] : {std::pair{18, 1u}, {28, 2u}, {38, 1u}, {48, 2u}, {58, 1u}, {68, 2u}})
@@ -88,11 +90,15 @@ TEST_CASE("work_distributor: vertex and fragment warps of a core count together"
   CHECK(run<DistributorBench>(later, fragment_text) == " | 22:10");
 }
 
-TEST_CASE("work_distributor: by tile, the warps of a square of tiles go to one core, and those of its neighbours to others") {
-  DistributorBench::Setup s{.cores = {{}, {}, {}, {}}, .out = {.depth = 64}, .policy = WarpPolicy::kTile, .block_tiles = 2};
+TEST_CASE(
+    "work_distributor: by tile, the warps of a square of tiles go to one core, and those of its neighbours "
+    "to others") {
+  DistributorBench::Setup s{
+      .cores = {{}, {}, {}, {}}, .out = {.depth = 64}, .policy = WarpPolicy::kTile, .block_tiles = 2};
   std::uint32_t slot = 0;
   for (std::uint16_t y = 0; y < 4; ++y) {
-    for (std::uint16_t x = 0; x < 4; ++x, ++slot) (x % 2 == 0 ? s.fragment_0 : s.fragment_1).push_back({0, {0, slot, 0, x, y}});
+    for (std::uint16_t x = 0; x < 4; ++x, ++slot)
+      (x % 2 == 0 ? s.fragment_0 : s.fragment_1).push_back({0, {0, slot, 0, x, y}});
   }
   const auto cores = run<DistributorBench>(s, [](const DistributorBench& b) {
     std::vector<std::size_t> core_of(16);
@@ -100,15 +106,21 @@ TEST_CASE("work_distributor: by tile, the warps of a square of tiles go to one c
       for (const auto& got : b.fragment[c]->got) core_of[got.token.slot] = c;
     }
     bool together = true;
-    for (std::size_t i = 0; i < 16; ++i) together = together && core_of[i] == core_of[i / 8 * 8 + i % 4 / 2 * 2];
+    for (std::size_t i = 0; i < 16; ++i)
+      together = together && core_of[i] == core_of[i / 8 * 8 + i % 4 / 2 * 2];
     const std::set<std::size_t> row{core_of[0], core_of[2]}, column{core_of[0], core_of[8]};
     return fmt::format("{} {} {}", together, row.size(), column.size());
   });
   CHECK(cores == "true 2 2");
 }
 
-TEST_CASE("work_distributor: by tile, a warp waits for its core while another has room, another partition's goes past it") {
-  DistributorBench::Setup s{.cores = {{.from = 100}, {.from = 100}}, .out = {.depth = 2}, .policy = WarpPolicy::kTile, .block_tiles = 1};
+TEST_CASE(
+    "work_distributor: by tile, a warp waits for its core while another has room, another partition's goes "
+    "past it") {
+  DistributorBench::Setup s{.cores = {{.from = 100}, {.from = 100}},
+                            .out = {.depth = 2},
+                            .policy = WarpPolicy::kTile,
+                            .block_tiles = 1};
   for (std::uint32_t i = 0; i < 3; ++i) s.fragment_0.push_back({0, {0, i, 0, 0, 0}});
   s.fragment_1.push_back({50, {0, 9, 1, 1, 0}});
   CHECK(run<DistributorBench>(s, fragment_text) == "100:0 101:1 102:2 | 100:9");
@@ -117,17 +129,22 @@ TEST_CASE("work_distributor: by tile, a warp waits for its core while another ha
 }
 
 TEST_CASE("work_distributor: partitions take turns, and vertex work does not slow fragments") {
-  const DistributorBench::Setup s{
-      .vertex = warps(0, 3), .fragment_0 = warps(10, 3), .fragment_1 = warps(20, 3), .cores = {{}}, .out = {.depth = 16}};
+  const DistributorBench::Setup s{.vertex = warps(0, 3),
+                                  .fragment_0 = warps(10, 3),
+                                  .fragment_1 = warps(20, 3),
+                                  .cores = {{}},
+                                  .out = {.depth = 16}};
   const auto text = run<DistributorBench>(s, [](const DistributorBench& b) {
-    return fmt::format("{} | {} | {} {}", b.vertex[0]->text(), b.fragment[0]->text(), counter(*b.unit, "vertex_warps"),
-                       counter(*b.unit, "fragment_warps"));
+    return fmt::format("{} | {} | {} {}", b.vertex[0]->text(), b.fragment[0]->text(),
+                       counter(*b.unit, "vertex_warps"), counter(*b.unit, "fragment_warps"));
   });
   CHECK(text == "2:0 3:1 4:2 | 2:10 3:20 4:11 5:21 6:12 7:22 | 3 6");
 }
 
-TEST_CASE("work_distributor: waits while every core is full, and gives the next warp to the first with room") {
-  const DistributorBench::Setup s{.vertex = warps(0, 5), .cores = {{.from = 60}, {.from = 50, .period = 100}}, .out = {.depth = 1}};
+TEST_CASE(
+    "work_distributor: waits while every core is full, and gives the next warp to the first with room") {
+  const DistributorBench::Setup s{
+      .vertex = warps(0, 5), .cores = {{.from = 60}, {.from = 50, .period = 100}}, .out = {.depth = 1}};
   CHECK(run<DistributorBench>(s, vertex_text) == "60:0 62:3 64:4 | 50:1 150:2");
 }
 

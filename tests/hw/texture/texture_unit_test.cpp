@@ -19,7 +19,8 @@ struct TextureBench final : Bench {
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
-  /// A texture of 32 x 32 texels, nearest filter. Slot i samples one quad in the line of texels (8 i, 0); slot 3 samples eight quads there.
+  /// A texture of 32 x 32 texels, nearest filter. Slot i samples one quad in the line of texels (8 i, 0);
+  /// slot 3 samples eight quads there.
   TextureBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), slots(4) {
     const std::vector<std::byte> texels(32 * 32 * 4, std::byte{0x7f});
     TextureState texture;
@@ -64,11 +65,13 @@ TEST_CASE("texture_unit: the filter's latency is paid after the last line, by a 
   for (const int filter : {0, 8, 20}) {
     const TextureBench::Setup s{.requests = {{0, slot(0)}, {200, slot(0)}}, .filter_clk = filter};
     const auto text = run<TextureBench>(s, [](const TextureBench& b) {
-      return fmt::format("{} requests {} hits {} misses {}", b.sink->text(), b.memory->got.size(), counter(*b.unit, "cache_hits"),
-                         counter(*b.unit, "cache_misses"));
+      return fmt::format("{} requests {} hits {} misses {}", b.sink->text(), b.memory->got.size(),
+                         counter(*b.unit, "cache_hits"), counter(*b.unit, "cache_misses"));
     });
-    // Taken at 1; the line is there at 3 + memory. Then, and after a hit's address cycle, come a filter cycle and the latency. The sink sees it one cycle later.
-    CHECK(text == fmt::format("{}:0 {}:0 requests 1 hits 1 misses 1", 3 + kMemory + filter + 1 + 1, 201 + 1 + filter + 1 + 1));
+    // Taken at 1; the line is there at 3 + memory. Then, and after a hit's address cycle, come a filter cycle
+    // and the latency. The sink sees it one cycle later.
+    CHECK(text == fmt::format("{}:0 {}:0 requests 1 hits 1 misses 1", 3 + kMemory + filter + 1 + 1,
+                              201 + 1 + filter + 1 + 1));
   }
 }
 
@@ -79,8 +82,9 @@ TEST_CASE("texture_unit: eight quads take four cycles of addresses and four of f
 
 TEST_CASE("texture_unit: a hit behind a miss is looked up at once and answered in order") {
   const TextureBench::Setup s{.requests = {{0, slot(0)}, {200, slot(1)}, {200, slot(0)}, {200, slot(2)}}};
-  const auto text = run<TextureBench>(
-      s, [](const TextureBench& b) { return fmt::format("{} last request at {}", b.sink->text(), b.memory->got.back().cycle); });
+  const auto text = run<TextureBench>(s, [](const TextureBench& b) {
+    return fmt::format("{} last request at {}", b.sink->text(), b.memory->got.back().cycle);
+  });
   CHECK(text == "63:0 263:1 264:0 265:2 last request at 204");
 }
 
@@ -90,15 +94,20 @@ TEST_CASE("texture_unit: no more groups are under way than allowed") {
 }
 
 TEST_CASE("texture_unit: a cache of one line and one miss gets through") {
-  const TextureBench::Setup s{.requests = {{0, slot(0)}, {0, slot(1)}, {0, slot(2)}, {0, slot(0)}}, .lines = 1, .ways = 1, .misses = 1};
-  const auto text =
-      run<TextureBench>(s, [](const TextureBench& b) { return fmt::format("{} requests {}", b.sink->text(), b.memory->got.size()); });
+  const TextureBench::Setup s{.requests = {{0, slot(0)}, {0, slot(1)}, {0, slot(2)}, {0, slot(0)}},
+                              .lines = 1,
+                              .ways = 1,
+                              .misses = 1};
+  const auto text = run<TextureBench>(s, [](const TextureBench& b) {
+    return fmt::format("{} requests {}", b.sink->text(), b.memory->got.size());
+  });
   CHECK(text == "63:0 115:1 167:2 219:0 requests 4");  // a line every 52 cycles: there and back
 }
 
 TEST_CASE("texture_unit: keeps the contract, one-deep links included") {
-  TextureBench::Setup s{
-      .requests = {{0, slot(0)}, {0, slot(3)}, {0, slot(1)}, {9, slot(0)}, {100, slot(2)}}, .groups = 2, .pace = {.from = 0, .period = 7}};
+  TextureBench::Setup s{.requests = {{0, slot(0)}, {0, slot(3)}, {0, slot(1)}, {9, slot(0)}, {100, slot(2)}},
+                        .groups = 2,
+                        .pace = {.from = 0, .period = 7}};
   CHECK(contract_text<TextureBench>(s) == "");
   s.lines = s.ways = s.misses = 1;
   CHECK(contract_text<TextureBench>(s) == "");

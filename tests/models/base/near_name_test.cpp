@@ -7,7 +7,8 @@ using namespace quadrille;
 
 namespace {
 
-const std::vector<std::string> kNames{"gpu.cores", "gpu.channels", "texture.cache_lines", "rop.cache_lines", "render", "describe"};
+const std::vector<std::string> kNames{"gpu.cores",       "gpu.channels", "texture.cache_lines",
+                                      "rop.cache_lines", "render",       "describe"};
 
 }  // namespace
 
@@ -33,7 +34,8 @@ TEST_CASE("near_name: the nearest name is offered, and none that is far") {
 
 TEST_CASE("near_name: what was left out before a dot is found, all of it") {
   CHECK(near_names("cores", kNames) == std::vector<std::string>{"gpu.cores"});
-  CHECK(near_names("cache_line", kNames) == std::vector<std::string>{"texture.cache_lines", "rop.cache_lines"});
+  CHECK(near_names("cache_line", kNames) ==
+        std::vector<std::string>{"texture.cache_lines", "rop.cache_lines"});
   CHECK(did_you_mean("cache_line", kNames) == "; did you mean 'texture.cache_lines' or 'rop.cache_lines'?");
   CHECK(did_you_mean("bicycle", kNames).empty());
 }

@@ -24,11 +24,14 @@ struct NaiveLine {
 
 TEST_CASE("tag_array: behaves like lists in order of use") {
   RandomSource random(91);
-  for (const auto& [lines, ways] : {std::pair{16u, 1u}, {48u, 4u}, {24u, 8u}, {60u, 12u}, {64u, 16u}, {7u, 7u}}) {
+  for (const auto& [lines, ways] :
+       {std::pair{16u, 1u}, {48u, 4u}, {24u, 8u}, {60u, 12u}, {64u, 16u}, {7u, 7u}}) {
     TagArray tags(lines, ways);
     CHECK(tags.sets() == lines / ways);
     std::map<std::uint32_t, std::list<NaiveLine>> sets;
-    const auto set_of = [over = Interleave(lines / ways)](std::uint32_t line) { return over.member_of(line); };
+    const auto set_of = [over = Interleave(lines / ways)](std::uint32_t line) {
+      return over.member_of(line);
+    };
     int hits = 0, evictions = 0, refused = 0;
     for (int step = 0; step < 20000; ++step) {
       const auto line = static_cast<std::uint32_t>(random.integer(0, static_cast<int>(lines * 2)));
@@ -41,7 +44,8 @@ TEST_CASE("tag_array: behaves like lists in order of use") {
         ++hits;
         set.splice(set.begin(), set, held);
         const TagArray::Line& state = tags.at(slot);
-        REQUIRE((state.line == line && state.valid == held->valid && state.dirty == held->dirty && state.pending == held->pending));
+        REQUIRE((state.line == line && state.valid == held->valid && state.dirty == held->dirty &&
+                 state.pending == held->pending));
         const int action = random.integer(0, 3);
         if (action == 0) {
           tags.mark_dirty(slot, sectors);
@@ -85,7 +89,8 @@ TEST_CASE("tag_array: behaves like lists in order of use") {
     if (lines > 7) CHECK(refused > 0);
     std::uint32_t dirty = 0;
     for (const auto& [number, set] : sets)
-      dirty += static_cast<std::uint32_t>(std::ranges::count_if(set, [](const NaiveLine& l) { return l.dirty != 0; }));
+      dirty += static_cast<std::uint32_t>(
+          std::ranges::count_if(set, [](const NaiveLine& l) { return l.dirty != 0; }));
     CHECK(tags.dirty_count() == dirty);
   }
 }
@@ -120,7 +125,8 @@ double reached(std::uint32_t sets, std::uint32_t first, std::uint32_t stride, In
 template <class Index>
 double least_reached(std::uint32_t sets, Index&& index) {
   double least = 1;
-  for (std::uint32_t stride = 1; stride <= 4096; ++stride) least = std::min(least, reached(sets, 1000, stride, index));
+  for (std::uint32_t stride = 1; stride <= 4096; ++stride)
+    least = std::min(least, reached(sets, 1000, stride, index));
   return least;
 }
 
@@ -171,7 +177,8 @@ TEST_CASE("tag_array: a slice's cache uses all sets, however many slices there a
       TagArray tags(64 * 4, 4, slices);
       for (std::uint32_t index = 640; index < 640 + 256; ++index) {
         INFO(slices << " slices, line " << index << " of slice " << slice);
-        CHECK_FALSE(tags.allocate(over_slices.line_of(slice, index)).victim.valid);  // four aligned blocks fill every set
+        // four aligned blocks fill every set
+        CHECK_FALSE(tags.allocate(over_slices.line_of(slice, index)).victim.valid);
       }
     }
   }

@@ -21,7 +21,8 @@ TEST_CASE("assembly: vertices come in the order of the specification") {
 
 TEST_CASE("assembly: left-over vertices form no triangle") {
   for (std::uint32_t n = 0; n < 3; ++n) {
-    for (const Topology t : {Topology::kTriangleList, Topology::kTriangleStrip, Topology::kTriangleFan}) CHECK(triangle_count(t, n) == 0);
+    for (const Topology t : {Topology::kTriangleList, Topology::kTriangleStrip, Topology::kTriangleFan})
+      CHECK(triangle_count(t, n) == 0);
   }
   CHECK(triangle_count(Topology::kTriangleList, 8) == 2);
   CHECK(triangle_count(Topology::kTriangleStrip, 8) == 6);
@@ -30,7 +31,8 @@ TEST_CASE("assembly: left-over vertices form no triangle") {
 
 TEST_CASE("assembly: a strip keeps its winding and shares each inner edge in opposite directions") {
   for (std::uint32_t i = 0; i + 1 < 20; ++i) {
-    const Triangle a = triangle_vertices(Topology::kTriangleStrip, i), b = triangle_vertices(Topology::kTriangleStrip, i + 1);
+    const Triangle a = triangle_vertices(Topology::kTriangleStrip, i),
+                   b = triangle_vertices(Topology::kTriangleStrip, i + 1);
     int shared = 0;
     for (std::size_t e = 0; e < 3; ++e) {
       for (std::size_t f = 0; f < 3; ++f) {

@@ -1,4 +1,5 @@
-/// Vertex reuse: places of vertices under each policy, and the number shaded, held to meshoptimizer's analyser to the vertex.
+/// Vertex reuse: places of vertices under each policy, and the number shaded, held to meshoptimizer's
+/// analyser to the vertex.
 #include "models/geometry/post_transform.h"
 
 #include "tests/models/aborts.h"
@@ -52,9 +53,11 @@ Mesh degenerate(int vertices, int triangles, std::uint32_t seed) {
 Mesh repeated(std::size_t triangles) { return Mesh(triangles, Triangle{0, 1, 2}); }
 
 std::vector<Mesh> meshes() {
-  std::vector<Mesh> all{grid(1),      grid(7),      grid(40),      strip(500), shuffled(grid(40), 1), shuffled(strip(300), 2),
-                        repeated(32), repeated(33), repeated(1000)};
-  for (std::uint32_t seed = 0; seed < 40; ++seed) all.push_back(degenerate(3 + 9 * static_cast<int>(seed), 400, seed));
+  std::vector<Mesh> all{
+      grid(1),      grid(7),      grid(40),      strip(500), shuffled(grid(40), 1), shuffled(strip(300), 2),
+      repeated(32), repeated(33), repeated(1000)};
+  for (std::uint32_t seed = 0; seed < 40; ++seed)
+    all.push_back(degenerate(3 + 9 * static_cast<int>(seed), 400, seed));
   return all;
 }
 
@@ -74,13 +77,15 @@ std::uint64_t shaded(const Mesh& mesh, VertexReuse reuse, std::size_t batch_tria
 std::uint64_t analysed(const Mesh& mesh, unsigned cache, unsigned warp, unsigned group) {
   std::vector<unsigned> indices;
   for (const Triangle& t : mesh) indices.insert(indices.end(), t.begin(), t.end());
-  return meshopt_analyzeVertexCache(indices.data(), indices.size(), *std::ranges::max_element(indices) + std::size_t{1}, cache, warp, group)
+  return meshopt_analyzeVertexCache(indices.data(), indices.size(),
+                                    *std::ranges::max_element(indices) + std::size_t{1}, cache, warp, group)
       .vertices_transformed;
 }
 
 }  // namespace
 
-TEST_CASE("post_transform: batches shade as many vertices as meshoptimizer's analyser says, whatever their size") {
+TEST_CASE(
+    "post_transform: batches shade as many vertices as meshoptimizer's analyser says, whatever their size") {
   for (const Mesh& mesh : meshes()) {
     for (const unsigned vertices : {3u, 4u, 5u, 16u, 31u, 32u}) {
       for (const unsigned triangles : {1u, 2u, 32u, 64u, 128u}) {
@@ -91,7 +96,9 @@ TEST_CASE("post_transform: batches shade as many vertices as meshoptimizer's ana
   }
 }
 
-TEST_CASE("post_transform: a FIFO shades as many vertices as meshoptimizer's analyser says, however the batches are cut") {
+TEST_CASE(
+    "post_transform: a FIFO shades as many vertices as meshoptimizer's analyser says, however the batches "
+    "are cut") {
   for (const Mesh& mesh : meshes()) {
     for (const unsigned entries : {3u, 4u, 16u, 32u, 128u}) {
       for (const int vertices : {3, 5, 32}) {
@@ -103,11 +110,13 @@ TEST_CASE("post_transform: a FIFO shades as many vertices as meshoptimizer's ana
 }
 
 TEST_CASE("post_transform: without reuse every corner is shaded") {
-  for (const Mesh& mesh : meshes()) CHECK(shaded(mesh, VertexReuse(ReusePolicy::kNone), 32) == 3 * mesh.size());
+  for (const Mesh& mesh : meshes())
+    CHECK(shaded(mesh, VertexReuse(ReusePolicy::kNone), 32) == 3 * mesh.size());
 }
 
 TEST_CASE(
-    "post_transform: the published steps: 0,1,2 repeated is shaded again from the 33rd triangle of a GeForce, the 129th of a Radeon") {
+    "post_transform: the published steps: 0,1,2 repeated is shaded again from the 33rd triangle of a "
+    "GeForce, the 129th of a Radeon") {
   for (const std::size_t limit : {32u, 128u}) {
     CHECK(shaded(repeated(limit), VertexReuse(), limit) == 3);
     CHECK(shaded(repeated(limit + 1), VertexReuse(), limit) == 6);
@@ -124,7 +133,8 @@ TEST_CASE("post_transform: a batch gives each vertex one lane in order of arriva
     for (int i = 0; i < 500; ++i) {
       Triangle triangle;
       for (std::uint32_t& v : triangle) v = base + step * static_cast<std::uint32_t>(random.integer(0, 60));
-      const auto missing = std::ranges::count_if(triangle, [&](std::uint32_t v) { return !lanes.contains(v); });
+      const auto missing =
+          std::ranges::count_if(triangle, [&](std::uint32_t v) { return !lanes.contains(v); });
       REQUIRE(reuse.fits(triangle) == (lanes.size() + static_cast<std::size_t>(missing) <= 32));
       if (!reuse.fits(triangle)) {
         reuse.start_batch();
@@ -153,7 +163,9 @@ TEST_CASE("post_transform: a full batch refuses another vertex, and a new one na
   CHECK(aborts([&] { (void)reuse.place(2); }));
 }
 
-TEST_CASE("post_transform: a FIFO names the slot that shaded a vertex until it is pushed out, and forgets whole slots to keep a limit") {
+TEST_CASE(
+    "post_transform: a FIFO names the slot that shaded a vertex until it is pushed out, and forgets whole "
+    "slots to keep a limit") {
   VertexReuse reuse(ReusePolicy::kFifo, 32, 4);
   reuse.start_batch(5);
   for (const std::uint32_t v : {10u, 11u, 12u}) (void)reuse.place(v);

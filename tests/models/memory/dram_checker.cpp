@@ -40,8 +40,9 @@ const char* kind_name(DramCommandKind kind) {
 }
 
 std::string text_of(const DramCommand& c) {
-  return fmt::format("{} at {} (pseudo-channel {}, rank {}, group {}, bank {}, row {}, column {})", kind_name(c.kind), c.cycle,
-                     c.pseudo_channel, c.rank, c.bank_group, c.bank, c.row, c.column);
+  return fmt::format("{} at {} (pseudo-channel {}, rank {}, group {}, bank {}, row {}, column {})",
+                     kind_name(c.kind), c.cycle, c.pseudo_channel, c.rank, c.bank_group, c.bank, c.row,
+                     c.column);
 }
 
 constexpr int index_of(DramEvent event) { return static_cast<int>(event); }
@@ -55,8 +56,8 @@ bool precharges(const DramCommand& command) {
 }  // namespace
 
 std::string DramViolation::text() const {
-  return fmt::format("{}: {} after {}; {} seen, {} required", rule, text_of(command), before ? text_of(*before) : "nothing", distance,
-                     required);
+  return fmt::format("{}: {} after {}; {} seen, {} required", rule, text_of(command),
+                     before ? text_of(*before) : "nothing", distance, required);
 }
 
 const std::vector<std::string>& DramChecker::other_rules() {
@@ -76,7 +77,8 @@ const std::vector<std::string>& DramChecker::other_rules() {
 }
 
 DramChecker::DramChecker(const DramNumbers& numbers) : numbers_(numbers) {
-  for (const DramPairRule& rule : dram_pair_rules(numbers)) rules_to_[static_cast<std::size_t>(index_of(rule.to))].push_back(rule);
+  for (const DramPairRule& rule : dram_pair_rules(numbers))
+    rules_to_[static_cast<std::size_t>(index_of(rule.to))].push_back(rule);
   Rank rank;
   rank.groups.resize(static_cast<std::size_t>(numbers.bank_groups));
   rank.banks.resize(static_cast<std::size_t>(numbers.banks));
@@ -88,11 +90,12 @@ DramChecker::DramChecker(const DramNumbers& numbers) : numbers_(numbers) {
   last_.cycle = kNever;
 }
 
-void DramChecker::report(const char* rule, const DramCommand* before, const DramCommand& command, std::int64_t distance,
-                         std::int64_t required) {
+void DramChecker::report(const char* rule, const DramCommand* before, const DramCommand& command,
+                         std::int64_t distance, std::int64_t required) {
   ++violation_count_;
   if (violations_.size() >= kKept) return;
-  violations_.push_back({rule, before != nullptr ? std::optional(*before) : std::nullopt, command, distance, required});
+  violations_.push_back(
+      {rule, before != nullptr ? std::optional(*before) : std::nullopt, command, distance, required});
 }
 
 void DramChecker::check(const DramCommand& command) {
@@ -117,19 +120,24 @@ void DramChecker::check(const DramCommand& command) {
 
 void DramChecker::check_address(const DramCommand& command, bool& legal) {
   const DramNumbers& n = numbers_;
-  legal = command.pseudo_channel < n.pseudo_channels && command.rank < n.ranks && command.bank_group < n.bank_groups &&
-          command.bank < n.banks_per_group() && command.row >= 0 && command.row < n.rows;
+  legal = command.pseudo_channel < n.pseudo_channels && command.rank < n.ranks &&
+          command.bank_group < n.bank_groups && command.bank < n.banks_per_group() && command.row >= 0 &&
+          command.row < n.rows;
   if (!legal) report("address", nullptr, command, 0, 0);
 }
 
-/// Row commands have a bus of their own with separate_buses; each pseudo-channel has its own unless they are shared.
+/// Row commands have a bus of their own with separate_buses; each pseudo-channel has its own unless they are
+/// shared.
 void DramChecker::check_bus(const DramCommand& command) {
   const bool column = is_column(event_of(command.kind));
   const std::size_t owner = numbers_.shared_commands ? 0 : command.pseudo_channel;
   Bus& bus = buses_[2 * owner + (numbers_.separate_buses && column ? 1 : 0)];
   if (command.cycle < bus.free)
-    report("command bus", &bus.command, command, command.cycle - bus.command.cycle, bus.free - bus.command.cycle);
-  const int slots = column ? numbers_.column_slots : command.kind == DramCommandKind::kActivate ? numbers_.act_slots : 1;
+    report("command bus", &bus.command, command, command.cycle - bus.command.cycle,
+           bus.free - bus.command.cycle);
+  const int slots = column                                       ? numbers_.column_slots
+                    : command.kind == DramCommandKind::kActivate ? numbers_.act_slots
+                                                                 : 1;
   bus.free = command.cycle + slots;
   bus.command = command;
 }
@@ -166,7 +174,8 @@ void DramChecker::check_pairs(const DramCommand& command, DramEvent event) {
 void DramChecker::check_state(const DramCommand& command, Rank& rank, Bank& bank) {
   switch (command.kind) {
     case DramCommandKind::kActivate:
-      if (bank.open) report("ACT to an open bank", &bank.latest[index_of(DramEvent::kActivate)].command, command, 0, 0);
+      if (bank.open)
+        report("ACT to an open bank", &bank.latest[index_of(DramEvent::kActivate)].command, command, 0, 0);
       count_activation(command, rank);
       bank.open = true;
       bank.row = command.row;
@@ -194,8 +203,10 @@ void DramChecker::check_column(const DramCommand& command, const Bank& bank) {
 
 /// Data in the order of the commands, one burst after the other.
 void DramChecker::check_data(const DramCommand& command, Channel& channel) {
-  const std::int64_t start = command.cycle + (event_of(command.kind) == DramEvent::kRead ? numbers_.t_cas : numbers_.t_cwl);
-  if (start < channel.data_end) report("data bus", &channel.data_command, command, start - channel.data_end, 0);
+  const std::int64_t start =
+      command.cycle + (event_of(command.kind) == DramEvent::kRead ? numbers_.t_cas : numbers_.t_cwl);
+  if (start < channel.data_end)
+    report("data bus", &channel.data_command, command, start - channel.data_end, 0);
   channel.data_end = std::max(channel.data_end, start + numbers_.t_burst);
   channel.data_command = command;
 }
@@ -203,7 +214,8 @@ void DramChecker::check_data(const DramCommand& command, Channel& channel) {
 void DramChecker::count_activation(const DramCommand& command, Rank& rank) {
   DramCommand& fourth = rank.activations[static_cast<std::size_t>(rank.activation_count % 4)];
   const std::int64_t distance = command.cycle - fourth.cycle;
-  if (rank.activation_count >= 4 && distance < numbers_.t_faw) report("t_faw", &fourth, command, distance, numbers_.t_faw);
+  if (rank.activation_count >= 4 && distance < numbers_.t_faw)
+    report("t_faw", &fourth, command, distance, numbers_.t_faw);
   fourth = command;
   ++rank.activation_count;
 }
@@ -211,12 +223,14 @@ void DramChecker::count_activation(const DramCommand& command, Rank& rank) {
 /// A refresh counts for its banks, up to refresh_postpone of them ahead of time.
 void DramChecker::count_refresh(const DramCommand& command, Rank& rank, Bank& bank) {
   const bool all = command.kind == DramCommandKind::kRefresh;
-  const bool there_is = all ? numbers_.refresh != DramRefreshKind::kNone : numbers_.refresh == DramRefreshKind::kPerBank;
+  const bool there_is =
+      all ? numbers_.refresh != DramRefreshKind::kNone : numbers_.refresh == DramRefreshKind::kPerBank;
   if (!there_is) report("refresh of a kind that there is not", nullptr, command, 0, 0);
   const std::int64_t most = command.cycle / numbers_.t_refi + numbers_.refresh_postpone;
   for (Bank& each : rank.banks) {
     if (!all && &each != &bank) continue;
-    if (each.open) report("refresh of an open bank", &each.latest[index_of(DramEvent::kActivate)].command, command, 0, 0);
+    if (each.open)
+      report("refresh of an open bank", &each.latest[index_of(DramEvent::kActivate)].command, command, 0, 0);
     each.refreshes = std::max(each.refreshes, std::min(each.refreshes + 1, most));
   }
   settle_deadline(rank);
@@ -224,9 +238,10 @@ void DramChecker::count_refresh(const DramCommand& command, Rank& rank, Bank& ba
 
 /// The last cycle by which the bank that is furthest behind must be refreshed again.
 void DramChecker::settle_deadline(Rank& rank) {
-  const auto least =
-      std::min_element(rank.banks.begin(), rank.banks.end(), [](const Bank& a, const Bank& b) { return a.refreshes < b.refreshes; });
-  rank.next_deadline = (least->refreshes + numbers_.refresh_postpone + 1) * static_cast<std::int64_t>(numbers_.t_refi);
+  const auto least = std::min_element(rank.banks.begin(), rank.banks.end(),
+                                      [](const Bank& a, const Bank& b) { return a.refreshes < b.refreshes; });
+  rank.next_deadline =
+      (least->refreshes + numbers_.refresh_postpone + 1) * static_cast<std::int64_t>(numbers_.t_refi);
 }
 
 void DramChecker::check_deadline(const DramCommand& command, Rank& rank) {
@@ -251,10 +266,12 @@ void DramChecker::finish(std::int64_t cycle) {
 std::int64_t DramChecker::precharge_cycle(const DramCommand& command, const Bank& bank) const {
   const std::int64_t after_row = bank.latest[index_of(DramEvent::kActivate)].cycle + numbers_.t_ras;
   const bool read = command.kind == DramCommandKind::kReadPrecharge;
-  return std::max(after_row, command.cycle + (read ? numbers_.t_rtp : numbers_.t_cwl + numbers_.t_burst + numbers_.t_wr));
+  return std::max(
+      after_row, command.cycle + (read ? numbers_.t_rtp : numbers_.t_cwl + numbers_.t_burst + numbers_.t_wr));
 }
 
-/// Keeps the latest event of each kind at every level. A precharge that comes with a read or write is still to come, so the latest is the greatest cycle.
+/// Keeps the latest event of each kind at every level. A precharge that comes with a read or write is still
+/// to come, so the latest is the greatest cycle.
 void DramChecker::record(const DramCommand& command, DramEvent event, std::int64_t cycle) {
   Channel& channel = channels_[command.pseudo_channel];
   Rank& rank = channel.ranks[command.rank];

@@ -1,9 +1,11 @@
-/// Judges a trace of DRAM commands by the rules of a standard, and shares nothing with the model that sent them: it sees the commands of one channel, has a
-/// table of numbers of its own (dram_numbers.h), and states every rule as "after this, that, in this scope, not before so many cycles".
+/// Judges a trace of DRAM commands by the rules of a standard, and shares nothing with the model that sent
+/// them: it sees the commands of one channel, has a table of numbers of its own (dram_numbers.h), and states
+/// every rule as "after this, that, in this scope, not before so many cycles".
 ///
-/// Besides the pairs there are windows (four activations of a rank in t_faw), the state of the banks (which row is open), the buses (a command holds its
-/// command bus for its slots, its data the data bus for t_burst) and the debt of refresh. A precharge that a read or write brings with it counts from the
-/// cycle at which it begins: no sooner than t_ras after the activation, t_rtp after the read, t_wr after the last data written.
+/// Besides the pairs there are windows (four activations of a rank in t_faw), the state of the banks (which
+/// row is open), the buses (a command holds its command bus for its slots, its data the data bus for t_burst)
+/// and the debt of refresh. A precharge that a read or write brings with it counts from the cycle at which it
+/// begins: no sooner than t_ras after the activation, t_rtp after the read, t_wr after the last data written.
 #pragma once
 
 #include "models/memory/dram/command.h"
@@ -22,13 +24,22 @@ enum class DramEvent : std::uint8_t { kActivate, kPrecharge, kRead, kWrite, kRef
 constexpr int kDramEvents = 6;
 
 /// Where the earlier event was, seen from the later one.
-enum class DramScope : std::uint8_t { kSameBank, kSameGroup, kOtherGroup, kOtherBank, kSameRank, kOtherRank, kSameChannel };
+enum class DramScope : std::uint8_t {
+  kSameBank,
+  kSameGroup,
+  kOtherGroup,
+  kOtherBank,
+  kSameRank,
+  kOtherRank,
+  kSameChannel
+};
 
 struct DramPairRule {
   const char* name;
   DramEvent from, to;
-  DramScope
-      scope;  ///< kSameGroup takes the bank itself in; kOtherGroup and kOtherBank stay within the rank, kOtherRank within the pseudo-channel
+  /// kSameGroup takes the bank itself in; kOtherGroup and kOtherBank stay within the rank, kOtherRank within
+  /// the pseudo-channel
+  DramScope scope;
   std::int64_t distance;
 };
 
@@ -107,8 +118,11 @@ class DramChecker {
   void settle_deadline(Rank& rank);
   void record(const DramCommand& command, DramEvent event, std::int64_t cycle);
   std::int64_t precharge_cycle(const DramCommand& command, const Bank& bank) const;
-  int bank_index(const DramCommand& command) const { return command.bank_group * numbers_.banks_per_group() + command.bank; }
-  void report(const char* rule, const DramCommand* before, const DramCommand& command, std::int64_t distance, std::int64_t required);
+  int bank_index(const DramCommand& command) const {
+    return command.bank_group * numbers_.banks_per_group() + command.bank;
+  }
+  void report(const char* rule, const DramCommand* before, const DramCommand& command, std::int64_t distance,
+              std::int64_t required);
 
   DramNumbers numbers_;
   std::array<std::vector<DramPairRule>, kDramEvents> rules_to_;

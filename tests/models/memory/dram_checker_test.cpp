@@ -26,14 +26,22 @@ constexpr Place kGroupBeside{.group = 1, .bank = 1};
 constexpr Place kRank{.rank = 1};
 constexpr Place kChannel{.channel = 1};
 
-DramCommand at(std::int64_t cycle, Kind kind, Place place = kHere, std::int32_t row = 0, std::int32_t column = 0) {
+DramCommand at(std::int64_t cycle, Kind kind, Place place = kHere, std::int32_t row = 0,
+               std::int32_t column = 0) {
   return {cycle, kind, place.channel, place.rank, place.group, place.bank, row, column};
 }
 
-/// A channel in which nearly nothing has to wait, so that a rule shows alone when its number is raised: two pseudo-channels, ranks, groups and banks a group;
-/// rows of eight bursts; data 4 cycles after the command for 1 cycle.
+/// A channel in which nearly nothing has to wait, so that a rule shows alone when its number is raised: two
+/// pseudo-channels, ranks, groups and banks a group; rows of eight bursts; data 4 cycles after the command
+/// for 1 cycle.
 DramNumbers toy() {
-  DramNumbers n{.pseudo_channels = 2, .ranks = 2, .bank_groups = 2, .banks = 4, .rows = 16, .row_bytes = 256, .burst_bytes = 32};
+  DramNumbers n{.pseudo_channels = 2,
+                .ranks = 2,
+                .bank_groups = 2,
+                .banks = 4,
+                .rows = 16,
+                .row_bytes = 256,
+                .burst_bytes = 32};
   n.t_cas = n.t_cwl = 4;
   n.t_wtr_s = n.t_wtr_l = 0;
   n.t_wr = 0;
@@ -69,78 +77,123 @@ const std::vector<ExactCase>& bank_cases() {
       {"t_rcd_wr: ACT to WR", twenty(&N::t_rcd_wr), {at(0, Kind::kActivate), at(20, Kind::kWrite)}},
       {"t_rcd_wr: ACT to WR", twenty(&N::t_rcd_wr), {at(0, Kind::kActivate), at(20, Kind::kWritePrecharge)}},
       {"t_ras: ACT to PRE", twenty(&N::t_ras), {at(0, Kind::kActivate), at(20, Kind::kPrecharge)}},
-      {"t_rc: ACT to ACT", twenty(&N::t_rc), {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(20, Kind::kActivate)}},
-      {"t_rp: PRE to ACT", twenty(&N::t_rp), {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(25, Kind::kActivate)}},
-      {"t_rtp: RD to PRE", twenty(&N::t_rtp), {at(0, Kind::kActivate), at(3, Kind::kRead), at(23, Kind::kPrecharge)}},
+      {"t_rc: ACT to ACT",
+       twenty(&N::t_rc),
+       {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(20, Kind::kActivate)}},
+      {"t_rp: PRE to ACT",
+       twenty(&N::t_rp),
+       {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(25, Kind::kActivate)}},
+      {"t_rtp: RD to PRE",
+       twenty(&N::t_rtp),
+       {at(0, Kind::kActivate), at(3, Kind::kRead), at(23, Kind::kPrecharge)}},
       // The last data of the write end 5 cycles after it.
-      {"t_wr: WR to PRE", twenty(&N::t_wr), {at(0, Kind::kActivate), at(3, Kind::kWrite), at(28, Kind::kPrecharge)}},
-      // With a precharge of its own: the read's begins t_rtp after it, or t_ras after the activation, and takes t_rp.
-      {"t_rp: PRE to ACT", twenty(&N::t_rtp), {at(0, Kind::kActivate), at(3, Kind::kReadPrecharge), at(24, Kind::kActivate)}},
-      {"t_rp: PRE to ACT", twenty(&N::t_ras), {at(0, Kind::kActivate), at(3, Kind::kReadPrecharge), at(21, Kind::kActivate)}},
-      {"t_rp: PRE to ACT", twenty(&N::t_rp), {at(0, Kind::kActivate), at(3, Kind::kReadPrecharge), at(24, Kind::kActivate)}},
-      {"t_rp: PRE to ACT", twenty(&N::t_wr), {at(0, Kind::kActivate), at(3, Kind::kWritePrecharge), at(29, Kind::kActivate)}},
-      {"t_rp: PRE to ACT", twenty(&N::t_ras), {at(0, Kind::kActivate), at(3, Kind::kWritePrecharge), at(21, Kind::kActivate)}},
+      {"t_wr: WR to PRE",
+       twenty(&N::t_wr),
+       {at(0, Kind::kActivate), at(3, Kind::kWrite), at(28, Kind::kPrecharge)}},
+      // With a precharge of its own: the read's begins t_rtp after it, or t_ras after the activation, and
+      // takes t_rp.
+      {"t_rp: PRE to ACT",
+       twenty(&N::t_rtp),
+       {at(0, Kind::kActivate), at(3, Kind::kReadPrecharge), at(24, Kind::kActivate)}},
+      {"t_rp: PRE to ACT",
+       twenty(&N::t_ras),
+       {at(0, Kind::kActivate), at(3, Kind::kReadPrecharge), at(21, Kind::kActivate)}},
+      {"t_rp: PRE to ACT",
+       twenty(&N::t_rp),
+       {at(0, Kind::kActivate), at(3, Kind::kReadPrecharge), at(24, Kind::kActivate)}},
+      {"t_rp: PRE to ACT",
+       twenty(&N::t_wr),
+       {at(0, Kind::kActivate), at(3, Kind::kWritePrecharge), at(29, Kind::kActivate)}},
+      {"t_rp: PRE to ACT",
+       twenty(&N::t_ras),
+       {at(0, Kind::kActivate), at(3, Kind::kWritePrecharge), at(21, Kind::kActivate)}},
   };
   return cases;
 }
 
 const std::vector<ExactCase>& rank_cases() {
   static const std::vector<ExactCase> cases{
-      {"t_rrd_l: ACT to ACT in the group", twenty(&N::t_rrd_l), {at(0, Kind::kActivate), at(20, Kind::kActivate, kBeside)}},
-      {"t_rrd_s: ACT to ACT of another group", twenty(&N::t_rrd_s), {at(0, Kind::kActivate), at(20, Kind::kActivate, kGroup)}},
+      {"t_rrd_l: ACT to ACT in the group",
+       twenty(&N::t_rrd_l),
+       {at(0, Kind::kActivate), at(20, Kind::kActivate, kBeside)}},
+      {"t_rrd_s: ACT to ACT of another group",
+       twenty(&N::t_rrd_s),
+       {at(0, Kind::kActivate), at(20, Kind::kActivate, kGroup)}},
       {"t_faw",
        twenty(&N::t_faw),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kBeside), at(2, Kind::kActivate, kGroup), at(3, Kind::kActivate, kGroupBeside),
-        at(4, Kind::kPrecharge), at(20, Kind::kActivate)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kBeside), at(2, Kind::kActivate, kGroup),
+        at(3, Kind::kActivate, kGroupBeside), at(4, Kind::kPrecharge), at(20, Kind::kActivate)}},
       {"t_ccd_l: RD to RD in the group",
        twenty(&N::t_ccd_l),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kBeside), at(5, Kind::kRead), at(25, Kind::kRead, kBeside)}},
-      {"t_ccd_l: RD to RD in the group", twenty(&N::t_ccd_l), {at(0, Kind::kActivate), at(5, Kind::kRead), at(25, Kind::kRead)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kBeside), at(5, Kind::kRead),
+        at(25, Kind::kRead, kBeside)}},
+      {"t_ccd_l: RD to RD in the group",
+       twenty(&N::t_ccd_l),
+       {at(0, Kind::kActivate), at(5, Kind::kRead), at(25, Kind::kRead)}},
       {"t_ccd_s: RD to RD of another group",
        twenty(&N::t_ccd_s),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup), at(5, Kind::kRead), at(25, Kind::kRead, kGroup)}},
-      {"t_ccd_l: WR to WR in the group", twenty(&N::t_ccd_l), {at(0, Kind::kActivate), at(5, Kind::kWrite), at(25, Kind::kWrite)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup), at(5, Kind::kRead),
+        at(25, Kind::kRead, kGroup)}},
+      {"t_ccd_l: WR to WR in the group",
+       twenty(&N::t_ccd_l),
+       {at(0, Kind::kActivate), at(5, Kind::kWrite), at(25, Kind::kWrite)}},
       {"t_ccd_s: WR to WR of another group",
        twenty(&N::t_ccd_s),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup), at(5, Kind::kWrite), at(25, Kind::kWrite, kGroup)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup), at(5, Kind::kWrite),
+        at(25, Kind::kWrite, kGroup)}},
       // Write data end 5 cycles after the command.
       {"t_wtr_l: WR to RD in the group",
        twenty(&N::t_wtr_l),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kBeside), at(5, Kind::kWrite), at(30, Kind::kRead, kBeside)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kBeside), at(5, Kind::kWrite),
+        at(30, Kind::kRead, kBeside)}},
       {"t_wtr_s: WR to RD of another group",
        twenty(&N::t_wtr_s),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup), at(5, Kind::kWrite), at(30, Kind::kRead, kGroup)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup), at(5, Kind::kWrite),
+        at(30, Kind::kRead, kGroup)}},
   };
   return cases;
 }
 
 const std::vector<ExactCase>& bus_cases() {
-  const auto late_reads = [](DramNumbers& n) { n.t_cas = 23; };  // their data 20 cycles after the command's own place among writes
+  const auto late_reads = [](DramNumbers& n) {
+    n.t_cas = 23;
+  };  // their data 20 cycles after the command's own place among writes
   static const std::vector<ExactCase> cases{
       // Read data of cycle 9, 20 idle ones, write data of 30.
-      {"t_rtw: RD to WR", twenty(&N::t_rtw), {at(0, Kind::kActivate), at(5, Kind::kRead), at(26, Kind::kWrite)}},
       {"t_rtw: RD to WR",
        twenty(&N::t_rtw),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kRead), at(26, Kind::kWrite, kRank)}},
+       {at(0, Kind::kActivate), at(5, Kind::kRead), at(26, Kind::kWrite)}},
+      {"t_rtw: RD to WR",
+       twenty(&N::t_rtw),
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kRead),
+        at(26, Kind::kWrite, kRank)}},
       {"t_rtrs: RD to RD of another rank",
        twenty(&N::t_rtrs),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kRead), at(26, Kind::kRead, kRank)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kRead),
+        at(26, Kind::kRead, kRank)}},
       {"t_rtrs: WR to WR of another rank",
        twenty(&N::t_rtrs),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kWrite), at(26, Kind::kWrite, kRank)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kWrite),
+        at(26, Kind::kWrite, kRank)}},
       {"t_rtrs: RD to WR of another rank",
        twenty(&N::t_rtrs),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kRead), at(26, Kind::kWrite, kRank)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kRead),
+        at(26, Kind::kWrite, kRank)}},
       {"t_rtrs: WR to RD of another rank",
        twenty(&N::t_rtrs),
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kWrite), at(26, Kind::kRead, kRank)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(5, Kind::kWrite),
+        at(26, Kind::kRead, kRank)}},
       // The columns may follow each cycle, their data not.
       {"data bus", twenty(&N::t_burst), {at(0, Kind::kActivate), at(5, Kind::kRead), at(25, Kind::kRead)}},
       {"data bus", twenty(&N::t_burst), {at(0, Kind::kActivate), at(5, Kind::kWrite), at(25, Kind::kWrite)}},
       {"t_rtw: RD to WR", late_reads, {at(0, Kind::kActivate), at(5, Kind::kRead), at(25, Kind::kWrite)}},
       {"command bus", twenty(&N::act_slots), {at(0, Kind::kActivate), at(20, Kind::kActivate, kGroup)}},
-      {"command bus", twenty(&N::column_slots), {at(0, Kind::kActivate), at(5, Kind::kRead), at(25, Kind::kPrecharge)}},
-      {"command bus", [](DramNumbers& n) { n.t_rrd_s = 0; }, {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup)}},
+      {"command bus",
+       twenty(&N::column_slots),
+       {at(0, Kind::kActivate), at(5, Kind::kRead), at(25, Kind::kPrecharge)}},
+      {"command bus",
+       [](DramNumbers& n) { n.t_rrd_s = 0; },
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kGroup)}},
       {"command bus",
        [](DramNumbers& n) { n.shared_commands = true; },
        {at(0, Kind::kActivate), at(5, Kind::kActivate, kChannel), at(6, Kind::kPrecharge)}},
@@ -149,7 +202,8 @@ const std::vector<ExactCase>& bus_cases() {
          n.shared_commands = n.separate_buses = true;
          n.column_slots = 20;
        },
-       {at(0, Kind::kActivate), at(1, Kind::kActivate, kChannel), at(5, Kind::kRead), at(25, Kind::kRead, kChannel)}},
+       {at(0, Kind::kActivate), at(1, Kind::kActivate, kChannel), at(5, Kind::kRead),
+        at(25, Kind::kRead, kChannel)}},
       {"order",
        [](DramNumbers& n) { n.separate_buses = true; },
        {at(0, Kind::kActivate), at(5, Kind::kRead), at(5, Kind::kActivate, kRank)}},
@@ -159,21 +213,43 @@ const std::vector<ExactCase>& bus_cases() {
 
 const std::vector<ExactCase>& refresh_cases() {
   static const std::vector<ExactCase> cases{
-      {"t_rc: ACT to REF", twenty(&N::t_rc), {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(20, Kind::kRefresh)}},
-      {"t_rp: PRE to REF", twenty(&N::t_rp), {at(0, Kind::kActivate, kGroup), at(5, Kind::kPrecharge, kGroup), at(25, Kind::kRefresh)}},
-      {"t_rp: PRE to REF", twenty(&N::t_rp), {at(0, Kind::kActivate, kGroup), at(5, Kind::kReadPrecharge, kGroup), at(26, Kind::kRefresh)}},
+      {"t_rc: ACT to REF",
+       twenty(&N::t_rc),
+       {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(20, Kind::kRefresh)}},
+      {"t_rp: PRE to REF",
+       twenty(&N::t_rp),
+       {at(0, Kind::kActivate, kGroup), at(5, Kind::kPrecharge, kGroup), at(25, Kind::kRefresh)}},
+      {"t_rp: PRE to REF",
+       twenty(&N::t_rp),
+       {at(0, Kind::kActivate, kGroup), at(5, Kind::kReadPrecharge, kGroup), at(26, Kind::kRefresh)}},
       {"t_rfc: REF to ACT", twenty(&N::t_rfc), {at(0, Kind::kRefresh), at(20, Kind::kActivate, kGroup)}},
       {"t_rfc: REF to REF", twenty(&N::t_rfc), {at(0, Kind::kRefresh), at(20, Kind::kRefresh)}},
       {"t_rfc: REF to REFpb", twenty(&N::t_rfc), {at(0, Kind::kRefresh), at(20, Kind::kRefreshBank, kGroup)}},
-      {"t_rc: ACT to REFpb", twenty(&N::t_rc), {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(20, Kind::kRefreshBank)}},
-      {"t_rp: PRE to REFpb", twenty(&N::t_rp), {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(25, Kind::kRefreshBank)}},
+      {"t_rc: ACT to REFpb",
+       twenty(&N::t_rc),
+       {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(20, Kind::kRefreshBank)}},
+      {"t_rp: PRE to REFpb",
+       twenty(&N::t_rp),
+       {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(25, Kind::kRefreshBank)}},
       {"t_rfc_pb: REFpb to ACT", twenty(&N::t_rfc_pb), {at(0, Kind::kRefreshBank), at(20, Kind::kActivate)}},
-      {"t_rfc_pb: REFpb to REFpb", twenty(&N::t_rfc_pb), {at(0, Kind::kRefreshBank), at(20, Kind::kRefreshBank)}},
-      {"t_rfc_pb: REFpb to REF", twenty(&N::t_rfc_pb), {at(0, Kind::kRefreshBank, kGroup), at(20, Kind::kRefresh)}},
-      {"t_rrefd: REFpb to ACT of another bank", twenty(&N::t_rrefd), {at(0, Kind::kRefreshBank), at(20, Kind::kActivate, kBeside)}},
-      {"REFpb to REFpb of another bank", twenty(&N::t_refb_refb), {at(0, Kind::kRefreshBank), at(20, Kind::kRefreshBank, kGroup)}},
-      {"t_rrd_l: ACT to REFpb in the group", twenty(&N::t_rrd_l), {at(0, Kind::kActivate), at(20, Kind::kRefreshBank, kBeside)}},
-      {"t_rrd_s: ACT to REFpb of another group", twenty(&N::t_rrd_s), {at(0, Kind::kActivate), at(20, Kind::kRefreshBank, kGroup)}},
+      {"t_rfc_pb: REFpb to REFpb",
+       twenty(&N::t_rfc_pb),
+       {at(0, Kind::kRefreshBank), at(20, Kind::kRefreshBank)}},
+      {"t_rfc_pb: REFpb to REF",
+       twenty(&N::t_rfc_pb),
+       {at(0, Kind::kRefreshBank, kGroup), at(20, Kind::kRefresh)}},
+      {"t_rrefd: REFpb to ACT of another bank",
+       twenty(&N::t_rrefd),
+       {at(0, Kind::kRefreshBank), at(20, Kind::kActivate, kBeside)}},
+      {"REFpb to REFpb of another bank",
+       twenty(&N::t_refb_refb),
+       {at(0, Kind::kRefreshBank), at(20, Kind::kRefreshBank, kGroup)}},
+      {"t_rrd_l: ACT to REFpb in the group",
+       twenty(&N::t_rrd_l),
+       {at(0, Kind::kActivate), at(20, Kind::kRefreshBank, kBeside)}},
+      {"t_rrd_s: ACT to REFpb of another group",
+       twenty(&N::t_rrd_s),
+       {at(0, Kind::kActivate), at(20, Kind::kRefreshBank, kGroup)}},
   };
   return cases;
 }
@@ -190,7 +266,9 @@ const std::vector<StateCase>& state_cases() {
        {at(0, Kind::kActivate), at(9, Kind::kActivate, kHere, 1)},
        {at(0, Kind::kActivate), at(5, Kind::kPrecharge), at(9, Kind::kActivate, kHere, 1)}},
       {"column of a closed bank", {at(0, Kind::kRead)}, {at(0, Kind::kActivate), at(9, Kind::kRead)}},
-      {"column of a closed bank", {at(0, Kind::kActivate), at(9, Kind::kWrite, kBeside)}, {at(0, Kind::kActivate), at(9, Kind::kWrite)}},
+      {"column of a closed bank",
+       {at(0, Kind::kActivate), at(9, Kind::kWrite, kBeside)},
+       {at(0, Kind::kActivate), at(9, Kind::kWrite)}},
       {"column of a closed bank",
        {at(0, Kind::kActivate), at(5, Kind::kReadPrecharge), at(9, Kind::kRead)},
        {at(0, Kind::kActivate), at(5, Kind::kRead), at(9, Kind::kReadPrecharge)}},
@@ -239,7 +317,8 @@ TEST_CASE("dram_checker: every timing rule holds at its distance and breaks one 
     c.set(numbers);
     Trace trace = c.trace;
     INFO(c.rule << ", " << trace.size() << " commands to cycle " << trace.back().cycle);
-    const bool alone = c.rule != "t_rtw: RD to WR" && c.rule != "t_rtrs: RD to WR of another rank";  // one command may break both
+    const bool alone = c.rule != "t_rtw: RD to WR" &&
+                       c.rule != "t_rtrs: RD to WR of another rank";  // one command may break both
     CHECK(judge(numbers, trace).violation_count() == 0);
     --trace.back().cycle;
     const DramChecker illegal = judge(numbers, trace);
@@ -265,20 +344,23 @@ TEST_CASE("dram_checker: what a command may do depends on the state of its bank"
 
 TEST_CASE("dram_checker: a rule does not reach beyond its scope") {
   DramNumbers n = toy();
-  n.t_rcd = n.t_ras = n.t_rc = n.t_rp = n.t_rtp = n.t_wr = n.t_rrd_s = n.t_rrd_l = n.t_faw = n.t_ccd_s = n.t_ccd_l = n.t_wtr_s = n.t_wtr_l =
-      n.t_rfc = 50;
+  n.t_rcd = n.t_ras = n.t_rc = n.t_rp = n.t_rtp = n.t_wr = n.t_rrd_s = n.t_rrd_l = n.t_faw = n.t_ccd_s =
+      n.t_ccd_l = n.t_wtr_s = n.t_wtr_l = n.t_rfc = 50;
   SECTION("another rank activates, and refreshes, when it likes") {
-    CHECK(judge(n, {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(51, Kind::kWrite), at(57, Kind::kRead, kRank)})
+    CHECK(judge(n, {at(0, Kind::kActivate), at(1, Kind::kActivate, kRank), at(51, Kind::kWrite),
+                    at(57, Kind::kRead, kRank)})
               .violation_count() == 0);
     CHECK(judge(n, {at(0, Kind::kRefresh), at(1, Kind::kActivate, kRank)}).violation_count() == 0);
   }
   SECTION("another pseudo-channel shares nothing, not even the cycle") {
-    CHECK(judge(n, {at(0, Kind::kActivate), at(0, Kind::kActivate, kChannel), at(50, Kind::kRead), at(50, Kind::kWrite, kChannel)})
+    CHECK(judge(n, {at(0, Kind::kActivate), at(0, Kind::kActivate, kChannel), at(50, Kind::kRead),
+                    at(50, Kind::kWrite, kChannel)})
               .violation_count() == 0);
   }
   SECTION("with a shared command bus it shares the bus alone") {
     n.shared_commands = true;
-    CHECK(judge(n, {at(0, Kind::kActivate), at(1, Kind::kActivate, kChannel), at(51, Kind::kRead), at(52, Kind::kWrite, kChannel)})
+    CHECK(judge(n, {at(0, Kind::kActivate), at(1, Kind::kActivate, kChannel), at(51, Kind::kRead),
+                    at(52, Kind::kWrite, kChannel)})
               .violation_count() == 0);
   }
   SECTION("row and column commands meet on one bus but not on two") {
@@ -303,7 +385,8 @@ TEST_CASE("dram_checker: nine intervals of refresh are the most that may pass wi
   SECTION("one bank left out is found behind the others") {
     Trace trace;
     std::int64_t cycle = 0;
-    for (const Place& place : {kHere, kBeside, kGroup, kGroupBeside}) trace.push_back(at(cycle += 100, Kind::kRefreshBank, place));
+    for (const Place& place : {kHere, kBeside, kGroup, kGroupBeside})
+      trace.push_back(at(cycle += 100, Kind::kRefreshBank, place));
     trace.push_back(at(10000, Kind::kRefreshBank));
     CHECK(judge(n, trace).violation_count() == 0);
     trace.erase(trace.begin() + 2);
@@ -319,7 +402,8 @@ TEST_CASE("dram_checker: nine intervals of refresh are the most that may pass wi
   }
   SECTION("a standard without refresh of single banks has none") {
     n.refresh = DramRefreshKind::kAllBank;
-    CHECK(rules_broken(judge(n, {at(0, Kind::kRefreshBank)})) == std::set<std::string>{"refresh of a kind that there is not"});
+    CHECK(rules_broken(judge(n, {at(0, Kind::kRefreshBank)})) ==
+          std::set<std::string>{"refresh of a kind that there is not"});
     CHECK(judge(n, {at(0, Kind::kRefresh)}).violation_count() == 0);
   }
 }

@@ -1,4 +1,5 @@
-/// The data files of the DRAM standards (configs/memory) against the checker's own table of the same standards.
+/// The data files of the DRAM standards (configs/memory) against the checker's own table of the same
+/// standards.
 #include "tests/models/memory/dram_numbers.h"
 
 #include <toml++/toml.h>
@@ -9,7 +10,8 @@ using namespace quadrille::models;
 namespace {
 
 toml::table memory_of(const std::string& standard) {
-  const toml::table file = toml::parse_file(std::string(QUADRILLE_SOURCE_DIR) + "/configs/memory/" + standard + ".toml");
+  const toml::table file =
+      toml::parse_file(std::string(QUADRILLE_SOURCE_DIR) + "/configs/memory/" + standard + ".toml");
   REQUIRE(file["memory"].is_table());
   return *file["memory"].as_table();
 }
@@ -48,8 +50,8 @@ TEST_CASE("dram data: the peak of each standard is that of its pins") {
     int megabits;         // a second and pin
     int bytes_per_cycle;  // of the command clock
   };
-  for (const Peak& p :
-       {Peak{"ddr4", 64, 3200, 16}, Peak{"lpddr5", 32, 6400, 32}, Peak{"gddr6", 32, 8000, 32}, Peak{"hbm2", 128, 2000, 32}}) {
+  for (const Peak& p : {Peak{"ddr4", 64, 3200, 16}, Peak{"lpddr5", 32, 6400, 32}, Peak{"gddr6", 32, 8000, 32},
+                        Peak{"hbm2", 128, 2000, 32}}) {
     INFO(p.standard);
     const DramNumbers n = dram_numbers(p.standard);
     CHECK(n.pseudo_channels * n.burst_bytes == p.bytes_per_cycle * n.t_burst);

@@ -12,12 +12,15 @@ constexpr int at_least(std::int64_t picoseconds, int clock_mhz) {
 }
 
 /// The greatest number of cycles that lasts no longer.
-constexpr int at_most(std::int64_t picoseconds, int clock_mhz) { return static_cast<int>(picoseconds * clock_mhz / 1'000'000); }
+constexpr int at_most(std::int64_t picoseconds, int clock_mhz) {
+  return static_cast<int>(picoseconds * clock_mhz / 1'000'000);
+}
 
 DramNumbers ddr4() {
   constexpr int kClock = 1600;
   const auto ps = [](std::int64_t time) { return at_least(time, kClock); };
-  DramNumbers n{.clock_mhz = kClock, .pseudo_channels = 1, .ranks = 2, .bank_groups = 4, .banks = 16, .rows = 1 << 16};
+  DramNumbers n{
+      .clock_mhz = kClock, .pseudo_channels = 1, .ranks = 2, .bank_groups = 4, .banks = 16, .rows = 1 << 16};
   n.row_bytes = 1024 * 8;  // columns of a 64-bit channel
   n.burst_bytes = 8 * 8;
   n.t_burst = 8 / 2;
@@ -47,7 +50,8 @@ DramNumbers ddr4() {
 DramNumbers lpddr5() {
   constexpr int kClock = 800;
   const auto ps = [](std::int64_t time) { return at_least(time, kClock); };
-  DramNumbers n{.clock_mhz = kClock, .pseudo_channels = 2, .ranks = 1, .bank_groups = 4, .banks = 16, .rows = 1 << 15};
+  DramNumbers n{
+      .clock_mhz = kClock, .pseudo_channels = 2, .ranks = 1, .bank_groups = 4, .banks = 16, .rows = 1 << 15};
   n.row_bytes = 1024 * 2;
   n.burst_bytes = 16 * 2;
   n.t_burst = 16 / 8;
@@ -62,7 +66,8 @@ DramNumbers lpddr5() {
   n.t_faw = ps(20'000);
   n.t_wr = ps(34'000);
   n.t_wtr_s = ps(6'250);
-  n.t_wtr_l = n.t_ccd_l + ps(12'000) - n.t_burst;  // from the end of the four cycles that a burst of one group spans
+  // from the end of the four cycles that a burst of one group spans
+  n.t_wtr_l = n.t_ccd_l + ps(12'000) - n.t_burst;
   n.t_rtp = ps(7'500);
   n.t_rtw = 2;
   n.t_refi = at_most(3'906'000, kClock);

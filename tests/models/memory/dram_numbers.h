@@ -1,5 +1,6 @@
-/// The numbers that the checker of DRAM commands goes by: its own table, typed in from the sources and kept apart from the data files that the machine
-/// reads (configs/memory), so that a slip in one shows against the other. Times are written as the source has them, in picoseconds or in cycles.
+/// The numbers that the checker of DRAM commands goes by: its own table, typed in from the sources and kept
+/// apart from the data files that the machine reads (configs/memory), so that a slip in one shows against the
+/// other. Times are written as the source has them, in picoseconds or in cycles.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,9 @@ struct DramNumbers {
   int t_ccd_s = 1, t_ccd_l = 1, t_rrd_s = 1, t_rrd_l = 1, t_faw = 1;
   int t_wr = 1, t_wtr_s = 1, t_wtr_l = 1, t_rtp = 1, t_rtw = 0, t_rtrs = 0;
   int t_refi = 1, t_rfc = 1, t_rfc_pb = 1, t_rrefd = 1;
-  int t_refb_refb =
-      1;  ///< refresh of one bank to that of another bank; not in the data files, where the model's own rule is at least as strict
+  /// refresh of one bank to that of another bank; not in the data files, where the model's own rule is at
+  /// least as strict
+  int t_refb_refb = 1;
   DramRefreshKind refresh = DramRefreshKind::kNone;
   int refresh_postpone = 8;
   bool separate_buses = false, shared_commands = false;

@@ -1,4 +1,5 @@
-/// The rules of DRAM that are pairs of commands, made from a table of numbers (dram_checker.h says how they are read).
+/// The rules of DRAM that are pairs of commands, made from a table of numbers (dram_checker.h says how they
+/// are read).
 #pragma once
 
 #include "tests/models/memory/dram_checker.h"

@@ -31,8 +31,10 @@ DramRefresh model_refresh(DramRefreshKind kind) {
 /// The requests of a pattern, one after the other, with the pause before each.
 class Requests {
  public:
-  Requests(DramPattern pattern, const DramNumbers& numbers, std::uint32_t seed) : pattern_(pattern), random_(seed) {
-    row_lines_ = static_cast<std::uint64_t>(numbers.pseudo_channels) * static_cast<std::uint64_t>(numbers.row_bytes) / kLineBytes;
+  Requests(DramPattern pattern, const DramNumbers& numbers, std::uint32_t seed)
+      : pattern_(pattern), random_(seed) {
+    row_lines_ = static_cast<std::uint64_t>(numbers.pseudo_channels) *
+                 static_cast<std::uint64_t>(numbers.row_bytes) / kLineBytes;
     bank_lines_ = row_lines_ * static_cast<std::uint64_t>(numbers.banks * numbers.ranks);
     lines_ = bank_lines_ * static_cast<std::uint64_t>(numbers.rows);
   }
@@ -40,7 +42,9 @@ class Requests {
   DramRequest next(std::int64_t& pause);
 
  private:
-  std::uint64_t any(std::uint64_t below) { return ((static_cast<std::uint64_t>(random_.bits()) << 32) | random_.bits()) % below; }
+  std::uint64_t any(std::uint64_t below) {
+    return ((static_cast<std::uint64_t>(random_.bits()) << 32) | random_.bits()) % below;
+  }
   bool chance(int percent) { return random_.integer(1, 100) <= percent; }
   DramRequest mixed(std::int64_t& pause);
 
@@ -58,11 +62,15 @@ DramRequest Requests::next(std::int64_t& pause) {
   switch (pattern_) {
     case DramPattern::kReads: return {step % lines_, kWholeLine, false};
     case DramPattern::kWrites: return {step % lines_, kWholeLine, true};
-    case DramPattern::kCopy: return {((step & 1) * lines_ / 2 + step / 2) % lines_, kWholeLine, (step & 1) != 0};
-    case DramPattern::kRandom: return {any(lines_), static_cast<std::uint8_t>(random_.integer(1, kWholeLine)), chance(30)};
-    case DramPattern::kWriteHeavy: return {any(lines_), static_cast<std::uint8_t>(random_.integer(1, kWholeLine)), chance(85)};
+    case DramPattern::kCopy:
+      return {((step & 1) * lines_ / 2 + step / 2) % lines_, kWholeLine, (step & 1) != 0};
+    case DramPattern::kRandom:
+      return {any(lines_), static_cast<std::uint8_t>(random_.integer(1, kWholeLine)), chance(30)};
+    case DramPattern::kWriteHeavy:
+      return {any(lines_), static_cast<std::uint8_t>(random_.integer(1, kWholeLine)), chance(85)};
     case DramPattern::kOneBank: return {step % (lines_ / bank_lines_) * bank_lines_, 1, chance(40)};
-    case DramPattern::kTwoRows: return {(step & 1) * bank_lines_ + any(row_lines_ * 4), kWholeLine, chance(50)};
+    case DramPattern::kTwoRows:
+      return {(step & 1) * bank_lines_ + any(row_lines_ * 4), kWholeLine, chance(50)};
     case DramPattern::kPauses:
       if (chance(5)) pause = random_.integer(1, 60'000);
       return {any(lines_), kWholeLine, chance(40)};
@@ -92,8 +100,10 @@ class Sorter {
   /// Nothing before `cycle` is still to come.
   void settle(std::int64_t cycle) {
     if (waiting_.empty()) return;
-    std::stable_sort(waiting_.begin(), waiting_.end(), [](const DramCommand& a, const DramCommand& b) { return a.cycle < b.cycle; });
-    const auto end = std::find_if(waiting_.begin(), waiting_.end(), [cycle](const DramCommand& c) { return c.cycle >= cycle; });
+    std::stable_sort(waiting_.begin(), waiting_.end(),
+                     [](const DramCommand& a, const DramCommand& b) { return a.cycle < b.cycle; });
+    const auto end = std::find_if(waiting_.begin(), waiting_.end(),
+                                  [cycle](const DramCommand& c) { return c.cycle >= cycle; });
     std::for_each(waiting_.begin(), end, [this](const DramCommand& c) { checker_.check(c); });
     waiting_.erase(waiting_.begin(), end);
   }
@@ -117,10 +127,12 @@ DramControllerParams controller_params(const DramTraffic& traffic) {
 }  // namespace
 
 DramNumbers dram_data_file(const std::string& standard) {
-  const toml::table file = toml::parse_file(std::string(QUADRILLE_SOURCE_DIR) + "/configs/memory/" + standard + ".toml");
+  const toml::table file =
+      toml::parse_file(std::string(QUADRILLE_SOURCE_DIR) + "/configs/memory/" + standard + ".toml");
   const auto memory = file["memory"];
   DramNumbers numbers = dram_numbers(standard);
-  for (const DramNumberName& number : dram_number_names()) numbers.*number.member = memory[number.name].value<int>().value();
+  for (const DramNumberName& number : dram_number_names())
+    numbers.*number.member = memory[number.name].value<int>().value();
   numbers.refresh = refresh_named(memory["refresh"].value<std::string>().value());
   numbers.separate_buses = memory["separate_buses"].value<bool>().value();
   numbers.shared_commands = memory["shared_commands"].value<bool>().value();
@@ -169,9 +181,10 @@ DramTiming dram_timing(const DramNumbers& n) {
 }
 
 const std::vector<DramPattern>& dram_patterns() {
-  static const std::vector<DramPattern> patterns{DramPattern::kReads,   DramPattern::kWrites,     DramPattern::kCopy,
-                                                 DramPattern::kRandom,  DramPattern::kWriteHeavy, DramPattern::kOneBank,
-                                                 DramPattern::kTwoRows, DramPattern::kPauses,     DramPattern::kMixed};
+  static const std::vector<DramPattern> patterns{
+      DramPattern::kReads,   DramPattern::kWrites,     DramPattern::kCopy,
+      DramPattern::kRandom,  DramPattern::kWriteHeavy, DramPattern::kOneBank,
+      DramPattern::kTwoRows, DramPattern::kPauses,     DramPattern::kMixed};
   return patterns;
 }
 
@@ -192,14 +205,14 @@ const char* dram_pattern_name(DramPattern pattern) {
 
 const std::vector<DramPolicy>& dram_policies() {
   static const std::vector<DramPolicy> policies{
-      {"first ready, open pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kOpen, DramWriteDrainKind::kWatermark,
-       DramInterleave::kGroup, true},
-      {"first ready, closed pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kClosed, DramWriteDrainKind::kOff,
-       DramInterleave::kRow, false},
-      {"first ready, adaptive pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kAdaptive, DramWriteDrainKind::kWatermark,
-       DramInterleave::kRow, true},
-      {"in order, open pages", DramSchedulerKind::kInOrder, DramPagePolicyKind::kOpen, DramWriteDrainKind::kOff, DramInterleave::kGroup,
-       false},
+      {"first ready, open pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kOpen,
+       DramWriteDrainKind::kWatermark, DramInterleave::kGroup, true},
+      {"first ready, closed pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kClosed,
+       DramWriteDrainKind::kOff, DramInterleave::kRow, false},
+      {"first ready, adaptive pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kAdaptive,
+       DramWriteDrainKind::kWatermark, DramInterleave::kRow, true},
+      {"in order, open pages", DramSchedulerKind::kInOrder, DramPagePolicyKind::kOpen,
+       DramWriteDrainKind::kOff, DramInterleave::kGroup, false},
   };
   return policies;
 }

@@ -1,5 +1,5 @@
-/// Traffic for the model of a DRAM controller, whose commands the checker judges: patterns of requests, a driver that keeps the controller's time, and the
-/// setting of both from one table of numbers.
+/// Traffic for the model of a DRAM controller, whose commands the checker judges: patterns of requests, a
+/// driver that keeps the controller's time, and the setting of both from one table of numbers.
 #pragma once
 
 #include "models/memory/dram/controller.h"
@@ -42,7 +42,8 @@ struct DramRun {
   std::vector<DramViolation> violations;
 };
 
-/// Runs at least `commands` commands of a pattern on a controller that goes by `model`, judged by `rules`. With `stop` it ends at the first violation.
+/// Runs at least `commands` commands of a pattern on a controller that goes by `model`, judged by `rules`.
+/// With `stop` it ends at the first violation.
 struct DramTraffic {
   DramNumbers model, rules;
   DramPattern pattern = DramPattern::kRandom;

@@ -1,4 +1,5 @@
-/// The DRAM model's commands under the checker: none breaks a rule, and when the model goes by a wrong number the checker says so.
+/// The DRAM model's commands under the checker: none breaks a rule, and when the model goes by a wrong number
+/// the checker says so.
 #include "tests/models/memory/dram_traffic.h"
 
 #include <catch2/catch.hpp>
@@ -8,7 +9,8 @@ using namespace quadrille::models;
 
 namespace {
 
-/// A million commands of a standard: every pattern with every policy. tests/models/memory/dram_check.cpp runs as many more as one likes.
+/// A million commands of a standard: every pattern with every policy. tests/models/memory/dram_check.cpp runs
+/// as many more as one likes.
 void check_million(const std::string& standard) {
   const DramNumbers model = dram_data_file(standard);
   const DramNumbers rules = dram_numbers(standard);
@@ -27,7 +29,8 @@ void check_million(const std::string& standard) {
   CHECK(commands >= 1'000'000);
 }
 
-/// What the checker says first of a model that goes by `model` where `rules` hold; empty when it finds nothing in any traffic.
+/// What the checker says first of a model that goes by `model` where `rules` hold; empty when it finds
+/// nothing in any traffic.
 std::string found(const DramNumbers& model, const DramNumbers& rules) {
   for (const DramPolicy& policy : dram_policies())
     for (const DramPattern pattern : dram_patterns()) {
@@ -37,7 +40,8 @@ std::string found(const DramNumbers& model, const DramNumbers& rules) {
   return {};
 }
 
-/// A number that another one of the table implies cannot be missed: it is raised in model and rules alike, so that it counts, before the model's is lowered.
+/// A number that another one of the table implies cannot be missed: it is raised in model and rules alike, so
+/// that it counts, before the model's is lowered.
 bool is_implied(const std::string& name, const DramNumbers& n) {
   if (name == "t_rc") return n.t_rc <= n.t_ras + n.t_rp;
   if (name == "t_ccd_s") return n.t_ccd_s <= n.t_burst;
@@ -48,13 +52,15 @@ bool is_implied(const std::string& name, const DramNumbers& n) {
 
 bool is_used(const std::string& name, const DramNumbers& n) {
   if (name == "act_slots" || name == "column_slots") return true;
-  if (name.rfind("t_", 0) != 0 || name == "t_refi") return false;  // geometry and the refresh interval are broken otherwise, below
+  // geometry and the refresh interval are broken otherwise, below
+  if (name.rfind("t_", 0) != 0 || name == "t_refi") return false;
   if (name == "t_rtrs") return n.ranks > 1;
   if (name == "t_rfc_pb" || name == "t_rrefd") return n.refresh == DramRefreshKind::kPerBank;
   return true;
 }
 
-/// The rule that a lowered number breaks first, or the beginning of its name; empty where several may be first.
+/// The rule that a lowered number breaks first, or the beginning of its name; empty where several may be
+/// first.
 std::string rule_of(const std::string& name) {
   if (name == "t_burst" || name == "t_cas" || name == "t_cwl") return "";
   if (name == "act_slots" || name == "column_slots") return "command bus";
@@ -86,17 +92,22 @@ struct Breach {
 
 const std::vector<Breach>& breaches() {
   static const std::vector<Breach> all{
-      {"no refresh", [](DramNumbers& n) { return n.refresh = DramRefreshKind::kNone, true; }, "refresh too late"},
-      {"refresh every other interval", [](DramNumbers& n) { return n.t_refi *= 2, true; }, "refresh too late"},
-      {"thirteen refreshes put off", [](DramNumbers& n) { return n.refresh_postpone += 5, true; }, "refresh too late"},
+      {"no refresh", [](DramNumbers& n) { return n.refresh = DramRefreshKind::kNone, true; },
+       "refresh too late"},
+      {"refresh every other interval", [](DramNumbers& n) { return n.t_refi *= 2, true; },
+       "refresh too late"},
+      {"thirteen refreshes put off", [](DramNumbers& n) { return n.refresh_postpone += 5, true; },
+       "refresh too late"},
       {"a bank beyond the last", [](DramNumbers& n) { return n.banks *= 2, true; }, "address"},
       {"other bank groups", [](DramNumbers& n) { return n.bank_groups /= 2, true; }, "address"},
       {"a row beyond the last", [](DramNumbers& n) { return n.rows *= 2, true; }, "address"},
       {"a longer page", [](DramNumbers& n) { return n.row_bytes *= 2, true; }, "column beyond the page"},
       {"another rank", [](DramNumbers& n) { return n.ranks *= 2, true; }, "address"},
       {"another pseudo-channel", [](DramNumbers& n) { return n.pseudo_channels *= 2, true; }, "address"},
-      {"a bus for rows and one for columns", [](DramNumbers& n) { return !n.separate_buses && (n.separate_buses = true); }, "command bus"},
-      {"a command bus each", [](DramNumbers& n) { return n.shared_commands && !(n.shared_commands = false); }, "command bus"},
+      {"a bus for rows and one for columns",
+       [](DramNumbers& n) { return !n.separate_buses && (n.separate_buses = true); }, "command bus"},
+      {"a command bus each", [](DramNumbers& n) { return n.shared_commands && !(n.shared_commands = false); },
+       "command bus"},
   };
   return all;
 }

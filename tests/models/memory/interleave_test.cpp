@@ -1,4 +1,5 @@
-/// How evenly lines and tiles are spread: the exact properties, and the measured bounds of what is only nearly even.
+/// How evenly lines and tiles are spread: the exact properties, and the measured bounds of what is only
+/// nearly even.
 #include "models/memory/interleave.h"
 
 #include "tests/models/aborts.h"
@@ -14,18 +15,23 @@ namespace {
 
 using Load = std::vector<std::uint32_t>;
 std::uint32_t fullest(const Load& load) { return *std::ranges::max_element(load); }
-std::uint32_t mean_rounded_up(std::uint32_t accesses, std::uint32_t members) { return (accesses + members - 1) / members; }
+std::uint32_t mean_rounded_up(std::uint32_t accesses, std::uint32_t members) {
+  return (accesses + members - 1) / members;
+}
 
-std::uint32_t fullest_of_stride(const Interleave& over, std::uint32_t first, std::uint32_t stride, std::uint32_t accesses) {
+std::uint32_t fullest_of_stride(const Interleave& over, std::uint32_t first, std::uint32_t stride,
+                                std::uint32_t accesses) {
   Load load(over.members(), 0);
   for (std::uint32_t i = 0, line = first; i < accesses; ++i, line += stride) ++load[over.member_of(line)];
   return fullest(load);
 }
 
-/// Greatest excess over the mean, rounded up, of the fullest partition in any area of w x h tiles with sides of `least` to `most`.
+/// Greatest excess over the mean, rounded up, of the fullest partition in any area of w x h tiles with sides
+/// of `least` to `most`.
 std::uint32_t excess_of_areas(std::uint32_t partitions, std::uint32_t least, std::uint32_t most) {
   std::uint32_t worst = 0;
-  for (std::uint32_t top = 0; top < 128; ++top) {  // a row is the same wherever it begins, but for the partitions' names
+  // a row is the same wherever it begins, but for the partitions' names
+  for (std::uint32_t top = 0; top < 128; ++top) {
     for (std::uint32_t width = least; width <= most; ++width) {
       Load load(partitions, 0);
       for (std::uint32_t height = 1; height <= most; ++height) {
@@ -67,15 +73,17 @@ TEST_CASE("interleave: any aligned block of lines visits every member once, one 
 }
 
 TEST_CASE("interleave: strides of 1 to 4096 lines load no slice beyond the measured bounds", "[slow]") {
-  // The aim is a quarter over the mean from 64 accesses a slice on, 80 and 320. A spread as if by chance misses it on many strides by a little, and no
-  // stride by much (docs/deviations.md#D81): these are what it reaches.
+  // The aim is a quarter over the mean from 64 accesses a slice on, 80 and 320. A spread as if by chance
+  // misses it on many strides by a little, and no stride by much (docs/deviations.md#D81): these are what it
+  // reaches.
   std::uint32_t of_two = 0, of_more = 0, of_long_streams = 0;
   for (const std::uint32_t slices : {2u, 3u, 4u, 6u, 8u, 12u, 16u, 24u, 31u, 48u, 64u}) {
     const Interleave over(slices);
     for (std::uint32_t stride = 1; stride <= 4096; ++stride) {
       std::uint32_t& most = slices == 2 ? of_two : of_more;
       most = std::max(most, fullest_of_stride(over, 12345, stride, 64 * slices));
-      if (slices <= 8) of_long_streams = std::max(of_long_streams, fullest_of_stride(over, 0, stride, 256 * slices));
+      if (slices <= 8)
+        of_long_streams = std::max(of_long_streams, fullest_of_stride(over, 0, stride, 256 * slices));
     }
   }
   CHECK(of_two <= 88);
@@ -86,7 +94,8 @@ TEST_CASE("interleave: strides of 1 to 4096 lines load no slice beyond the measu
 TEST_CASE("interleave: strides that are powers of two load two to sixty-four slices nearly evenly") {
   for (const std::uint32_t slices : {2u, 4u, 8u, 16u, 32u, 64u}) {
     for (std::uint32_t stride = 1; stride <= 4096; stride *= 2) {
-      INFO(slices << " slices, stride " << stride << ": " << fullest_of_stride(Interleave(slices), 0, stride, 64 * slices));
+      INFO(slices << " slices, stride " << stride << ": "
+                  << fullest_of_stride(Interleave(slices), 0, stride, 64 * slices));
       CHECK(fullest_of_stride(Interleave(slices), 0, stride, 64 * slices) <= 80);  // a quarter over the mean
     }
   }
@@ -102,7 +111,8 @@ TEST_CASE("interleave: a stride of one slice less or more, or of as many, uses a
   }
 }
 
-TEST_CASE("interleave: any area of 4x4 to 16x16 tiles gives no partition more than the mean, rounded up, and one") {
+TEST_CASE(
+    "interleave: any area of 4x4 to 16x16 tiles gives no partition more than the mean, rounded up, and one") {
   for (std::uint32_t partitions = 1; partitions <= 64; ++partitions) {
     INFO(partitions << " partitions");
     CHECK(excess_of_areas(partitions, 4, 16) <= 1);
@@ -132,9 +142,11 @@ TEST_CASE("interleave: rows of tiles use partitions in turn and columns and diag
     for (const int right : {0, 1, 2, -1, -2}) {
       Load load(partitions, 0);
       for (int y = 0; y < 8 * static_cast<int>(partitions); ++y) {
-        ++load[partition_of(static_cast<std::uint32_t>(2000 + right * y), static_cast<std::uint32_t>(y), partitions)];
+        ++load[partition_of(static_cast<std::uint32_t>(2000 + right * y), static_cast<std::uint32_t>(y),
+                            partitions)];
       }
-      CHECK(fullest(load) <= (partitions == 24 ? 32 : 14));  // of 8; no steps were found for 24 that are even in areas and along every line
+      // of 8; no steps were found for 24 that are even in areas and along every line
+      CHECK(fullest(load) <= (partitions == 24 ? 32 : 14));
     }
   }
 }

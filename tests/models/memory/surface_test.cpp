@@ -23,7 +23,8 @@ TEST_CASE("surface: rows survive tiling for any size") {
     for (std::uint32_t y = 0; y < height; ++y) {
       for (std::uint32_t x = 0; x < width; ++x) {
         addresses.insert(s.pixel_address(x, y));
-        if (memory.load<std::uint32_t>(s.pixel_address(x, y)) != pixels[std::size_t{y} * width + x]) FAIL("pixel " << x << "," << y);
+        if (memory.load<std::uint32_t>(s.pixel_address(x, y)) != pixels[std::size_t{y} * width + x])
+          FAIL("pixel " << x << "," << y);
       }
     }
     CHECK(addresses.size() == pixels.size());

@@ -1,4 +1,5 @@
-/// Coverage by the definition, one sample at a time in 128-bit integers: the ruler for the rasteriser's tests.
+/// Coverage by the definition, one sample at a time in 128-bit integers: the ruler for the rasteriser's
+/// tests.
 #pragma once
 
 #include "models/raster/triangle_setup.h"
@@ -17,8 +18,8 @@ inline Wide doubled_area(const WindowVertex& a, const WindowVertex& b, std::int6
   return Wide(b.x - std::int64_t{a.x}) * Wide(py - a.y) - Wide(b.y - std::int64_t{a.y}) * Wide(px - a.x);
 }
 
-/// Is the centre of pixel (x, y) in the triangle? A sample on an edge belongs to it if the edge is a top one (horizontal, inside below)
-/// or a left one.
+/// Is the centre of pixel (x, y) in the triangle? A sample on an edge belongs to it if the edge is a top one
+/// (horizontal, inside below) or a left one.
 inline bool covers(std::array<WindowVertex, 3> v, std::int64_t x, std::int64_t y, int subpixel_bits) {
   const std::int64_t half = std::int64_t{1} << (subpixel_bits - 1);
   const std::int64_t px = (x << subpixel_bits) + half, py = (y << subpixel_bits) + half;
@@ -34,8 +35,10 @@ inline bool covers(std::array<WindowVertex, 3> v, std::int64_t x, std::int64_t y
   return true;
 }
 
-/// Set-up without culling of a whole triangle in a square of `size` pixels. Its depths and 1 / w are whatever the vertices hold.
-inline SetupOutcome setup_in_square(const std::array<WindowVertex, 3>& v, int size, int subpixel_bits, TriangleSetup& out) {
+/// Set-up without culling of a whole triangle in a square of `size` pixels. Its depths and 1 / w are whatever
+/// the vertices hold.
+inline SetupOutcome setup_in_square(const std::array<WindowVertex, 3>& v, int size, int subpixel_bits,
+                                    TriangleSetup& out) {
   SetupState state;
   state.scissor = {0, 0, size, size};
   state.subpixel_bits = subpixel_bits;

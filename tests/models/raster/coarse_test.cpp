@@ -13,10 +13,13 @@ namespace {
 
 /// By the definition: within the bounding box's tiles, and for each edge some pixel of the tile inside it.
 bool touched(const TriangleSetup& t, int tx, int ty) {
-  if (tx < t.bounds.x0 >> 3 || tx > (t.bounds.x1 - 1) >> 3 || ty < t.bounds.y0 >> 3 || ty > (t.bounds.y1 - 1) >> 3) return false;
+  if (tx < t.bounds.x0 >> 3 || tx > (t.bounds.x1 - 1) >> 3 || ty < t.bounds.y0 >> 3 ||
+      ty > (t.bounds.y1 - 1) >> 3)
+    return false;
   for (const EdgeFunction& edge : t.edges) {
     bool inside = false;
-    for (int entry = 0; entry < kTilePixels; ++entry) inside = inside || edge.at(8 * tx + entry_x(entry), 8 * ty + entry_y(entry)) >= 0;
+    for (int entry = 0; entry < kTilePixels; ++entry)
+      inside = inside || edge.at(8 * tx + entry_x(entry), 8 * ty + entry_y(entry)) >= 0;
     if (!inside) return false;
   }
   return true;
@@ -31,7 +34,8 @@ TEST_CASE("coarse: visits exactly the touched tiles in row order and knows the f
   for (int round = 0; round < 3000; ++round) {
     const int bits = random.integer(4, 12);
     TriangleSetup t;
-    if (setup_in_square(awkward_triangle(random, kSize, bits), kSize, bits, t) != SetupOutcome::kKept) continue;
+    if (setup_in_square(awkward_triangle(random, kSize, bits), kSize, bits, t) != SetupOutcome::kKept)
+      continue;
     TileWalk walk(t);
     std::uint64_t charged = 0;
     bool more = true;
@@ -41,12 +45,14 @@ TEST_CASE("coarse: visits exactly the touched tiles in row order and knows the f
       for (int tx = 0; tx < 10; ++tx) {
         const std::uint64_t coverage = tile_coverage(t, tx, ty);
         if (!touched(t, tx, ty)) {
-          if (coverage != 0) FAIL("round " << round << ": tile " << tx << "," << ty << " is covered but not touched");
+          if (coverage != 0)
+            FAIL("round " << round << ": tile " << tx << "," << ty << " is covered but not touched");
           continue;
         }
         if (!more || hit.tile_x != tx || hit.tile_y != ty)
           FAIL("round " << round << ": tile " << tx << "," << ty << " was not visited in its turn");
-        if (hit.fully_covered != (coverage == ~std::uint64_t{0})) FAIL("round " << round << ": tile " << tx << "," << ty << " full or not");
+        if (hit.fully_covered != (coverage == ~std::uint64_t{0}))
+          FAIL("round " << round << ": tile " << tx << "," << ty << " full or not");
         ++visited;
         full += hit.fully_covered ? 1 : 0;
         ++charged;
@@ -63,9 +69,10 @@ TEST_CASE("coarse: visits exactly the touched tiles in row order and knows the f
 }
 
 TEST_CASE("coarse: a rectangle half costs its tiles and one failing test a row end") {
-  // The lower left half of pixels 0..64 x 0..64: row r of tiles keeps tiles 0..r; its right end stops short of the bounding box but in
-  // the last row.
-  const std::array<WindowVertex, 3> v{WindowVertex{0, 0, 0, 1}, WindowVertex{64 * 256, 64 * 256, 0, 1}, WindowVertex{0, 64 * 256, 0, 1}};
+  // The lower left half of pixels 0..64 x 0..64: row r of tiles keeps tiles 0..r; its right end stops short
+  // of the bounding box but in the last row.
+  const std::array<WindowVertex, 3> v{WindowVertex{0, 0, 0, 1}, WindowVertex{64 * 256, 64 * 256, 0, 1},
+                                      WindowVertex{0, 64 * 256, 0, 1}};
   TriangleSetup t;
   REQUIRE(setup_in_square(v, 64, 8, t) == SetupOutcome::kKept);
   TileWalk walk(t);
@@ -81,7 +88,8 @@ TEST_CASE("coarse: a rectangle half costs its tiles and one failing test a row e
 
 TEST_CASE("coarse: a triangle a million pixels wide takes no longer than its tiles") {
   const std::int32_t far = 500000 * 256;
-  const std::array<WindowVertex, 3> v{WindowVertex{-far, -far, 0, 1}, WindowVertex{far, 0, 0, 1}, WindowVertex{-far, far, 0, 1}};
+  const std::array<WindowVertex, 3> v{WindowVertex{-far, -far, 0, 1}, WindowVertex{far, 0, 0, 1},
+                                      WindowVertex{-far, far, 0, 1}};
   SetupState state;
   state.scissor = {0, 0, 1920, 1080};
   TriangleSetup t;

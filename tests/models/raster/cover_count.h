@@ -13,7 +13,9 @@ namespace quadrille::models {
 class CoverCount {
  public:
   CoverCount(int size, int subpixel_bits)
-      : size_(size), bits_(subpixel_bits), count_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size)) {}
+      : size_(size),
+        bits_(subpixel_bits),
+        count_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size)) {}
 
   void add(const WindowVertex& a, const WindowVertex& b, const WindowVertex& c) {
     TriangleSetup t;

@@ -33,9 +33,12 @@ TEST_CASE("fine: coverage equals the definition for triangles of every kind") {
       const std::uint64_t mask = kept ? tile_coverage(t, tx, ty) : 0;
       std::uint64_t expected = 0;
       for (int entry = 0; entry < kTilePixels; ++entry) {
-        if (covers(v, 8 * tx + entry_x(entry), 8 * ty + entry_y(entry), bits)) expected |= std::uint64_t{1} << entry;
+        if (covers(v, 8 * tx + entry_x(entry), 8 * ty + entry_y(entry), bits))
+          expected |= std::uint64_t{1} << entry;
       }
-      if (mask != expected) FAIL("round " << round << " tile " << tile << " bits " << bits << ": " << mask << " is not " << expected);
+      if (mask != expected)
+        FAIL("round " << round << " tile " << tile << " bits " << bits << ": " << mask << " is not "
+                      << expected);
       covered += std::popcount(mask);
     }
   }
@@ -47,13 +50,14 @@ TEST_CASE("fine: coverage stays within a scissor that cuts tiles") {
   for (int round = 0; round < 500; ++round) {
     const auto v = awkward_triangle(random, kSize, 8);
     SetupState state;
-    state.scissor = {random.integer(0, 30), random.integer(0, 30), random.integer(31, 64), random.integer(31, 64)};
+    state.scissor = {random.integer(0, 30), random.integer(0, 30), random.integer(31, 64),
+                     random.integer(31, 64)};
     TriangleSetup t;
     if (setup_triangle(v, whole_triangle_weights(), state, t) != SetupOutcome::kKept) continue;
     for (int y = 0; y < kSize; ++y) {
       for (int x = 0; x < kSize; ++x) {
-        const bool inside =
-            x >= state.scissor.x0 && x < state.scissor.x1 && y >= state.scissor.y0 && y < state.scissor.y1 && covers(v, x, y, 8);
+        const bool inside = x >= state.scissor.x0 && x < state.scissor.x1 && y >= state.scissor.y0 &&
+                            y < state.scissor.y1 && covers(v, x, y, 8);
         const bool got = (tile_coverage(t, x / 8, y / 8) >> tile_entry(x % 8, y % 8) & 1) != 0;
         if (got != inside) FAIL("round " << round << " pixel " << x << "," << y);
       }
@@ -66,9 +70,10 @@ TEST_CASE("fine: a mesh covers each sample inside it exactly once") {
   RandomSource random(3);
   for (int round = 0; round < 60; ++round) {
     const int bits = random.integer(4, 12), cells = random.integer(2, 9), one = 1 << bits;
-    // A grid over pixels 4..60 whose inner vertices are moved at random or onto samples; its outer ones stay on pixel corners.
-    std::vector<std::vector<WindowVertex>> grid(static_cast<std::size_t>(cells) + 1,
-                                                std::vector<WindowVertex>(static_cast<std::size_t>(cells) + 1));
+    // A grid over pixels 4..60 whose inner vertices are moved at random or onto samples; its outer ones stay
+    // on pixel corners.
+    std::vector<std::vector<WindowVertex>> grid(
+        static_cast<std::size_t>(cells) + 1, std::vector<WindowVertex>(static_cast<std::size_t>(cells) + 1));
     for (int j = 0; j <= cells; ++j) {
       for (int i = 0; i <= cells; ++i) {
         std::int32_t x = 4 * one + 56 * one * i / cells, y = 4 * one + 56 * one * j / cells;
@@ -98,7 +103,8 @@ TEST_CASE("fine: a mesh covers each sample inside it exactly once") {
     for (int y = 0; y < kSize; ++y) {
       for (int x = 0; x < kSize; ++x) {
         const int expected = x >= 4 && x < 60 && y >= 4 && y < 60 ? 1 : 0;
-        if (count.at(x, y) != expected) FAIL("round " << round << " pixel " << x << "," << y << " covered " << count.at(x, y) << " times");
+        if (count.at(x, y) != expected)
+          FAIL("round " << round << " pixel " << x << "," << y << " covered " << count.at(x, y) << " times");
       }
     }
   }
@@ -109,7 +115,8 @@ TEST_CASE("fine: a fan around a sample point covers it once") {
   RandomSource random(4);
   for (int round = 0; round < 300; ++round) {
     const int spokes = random.integer(3, 24);
-    std::vector<std::pair<int, int>> ring;  // corners of a square walk, clockwise, so that the fan is exactly the square
+    // corners of a square walk, clockwise, so that the fan is exactly the square
+    std::vector<std::pair<int, int>> ring;
     ring.reserve(static_cast<std::size_t>(spokes) + 4);
     for (int i = 0; i < spokes; ++i) ring.emplace_back(random.integer(0, 4 * 40 * 256 - 1), 0);
     ring.insert(ring.end(), {{0, 0}, {40 * 256, 0}, {80 * 256, 0}, {120 * 256, 0}});
@@ -123,11 +130,13 @@ TEST_CASE("fine: a fan around a sample point covers it once") {
     };
     const WindowVertex centre = at(random.integer(20, 40) * 256 + 128, random.integer(20, 40) * 256 + 128);
     CoverCount count(kSize, 8);
-    for (std::size_t i = 0; i < ring.size(); ++i) count.add(centre, on_square(ring[i].first), on_square(ring[(i + 1) % ring.size()].first));
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      count.add(centre, on_square(ring[i].first), on_square(ring[(i + 1) % ring.size()].first));
     for (int y = 0; y < kSize; ++y) {
       for (int x = 0; x < kSize; ++x) {
         const int expected = x >= 12 && x < 52 && y >= 12 && y < 52 ? 1 : 0;
-        if (count.at(x, y) != expected) FAIL("round " << round << " pixel " << x << "," << y << " covered " << count.at(x, y) << " times");
+        if (count.at(x, y) != expected)
+          FAIL("round " << round << " pixel " << x << "," << y << " covered " << count.at(x, y) << " times");
       }
     }
   }

@@ -21,7 +21,9 @@ struct Weights {
 Weights weights_at(const std::array<WindowVertex, 3>& v, int x, int y) {
   const std::int64_t px = x * 256 + 128, py = y * 256 + 128;
   const auto area = static_cast<long double>(doubled_area(v[0], v[1], v[2].x, v[2].y));
-  const auto part = [&](std::size_t i) { return static_cast<long double>(doubled_area(v[(i + 1) % 3], v[(i + 2) % 3], px, py)) / area; };
+  const auto part = [&](std::size_t i) {
+    return static_cast<long double>(doubled_area(v[(i + 1) % 3], v[(i + 2) % 3], px, py)) / area;
+  };
   return {{part(0), part(1), part(2)}};
 }
 
@@ -54,10 +56,12 @@ TEST_CASE("interpolate: covered pixels agree with long double") {
           }
           const auto close = [&](float got, long double expected, long double tolerance) {
             if (!(std::abs(static_cast<long double>(got) - expected) <= tolerance)) {
-              FAIL("round " << round << " pixel " << x << "," << y << ": " << got << " is not " << static_cast<double>(expected));
+              FAIL("round " << round << " pixel " << x << "," << y << ": " << got << " is not "
+                            << static_cast<double>(expected));
             }
           };
-          // Half a unit in the last place of a float near 1, and what a double loses on a triangle two million pixels wide.
+          // Half a unit in the last place of a float near 1, and what a double loses on a triangle two
+          // million pixels wide.
           close(in->x[lane], x + 0.5L, 0);
           close(in->y[lane], y + 0.5L, 0);
           close(in->z[lane], z, 1e-7L);
@@ -112,7 +116,8 @@ TEST_CASE("interpolate: one depth function for tiles and quads and its bounds ho
 }
 
 TEST_CASE("interpolate: a flat triangle has one depth") {
-  const std::array<WindowVertex, 3> v{WindowVertex{10, 20, 0.3f, 1}, WindowVertex{9000, 777, 0.3f, 0.5f}, WindowVertex{400, 8000, 0.3f, 2}};
+  const std::array<WindowVertex, 3> v{WindowVertex{10, 20, 0.3f, 1}, WindowVertex{9000, 777, 0.3f, 0.5f},
+                                      WindowVertex{400, 8000, 0.3f, 2}};
   TriangleSetup t;
   REQUIRE(setup_in_square(v, 64, 8, t) == SetupOutcome::kKept);
   float depths[64];

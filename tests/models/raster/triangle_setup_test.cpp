@@ -36,10 +36,13 @@ TEST_CASE("triangle_setup: faces follow the winding on the screen") {
       const auto& v = clockwise ? kClockwise : kCounterClockwise;
       const bool is_front = clockwise == (front == FrontFace::kClockwise);
       TriangleSetup t;
-      REQUIRE(setup_triangle(v, whole_triangle_weights(), state_of(CullMode::kNone, front), t) == SetupOutcome::kKept);
+      REQUIRE(setup_triangle(v, whole_triangle_weights(), state_of(CullMode::kNone, front), t) ==
+              SetupOutcome::kKept);
       CHECK(t.front_facing == is_front);
-      CHECK(outcome(v, state_of(CullMode::kFront, front)) == (is_front ? SetupOutcome::kCulledFace : SetupOutcome::kKept));
-      CHECK(outcome(v, state_of(CullMode::kBack, front)) == (is_front ? SetupOutcome::kKept : SetupOutcome::kCulledFace));
+      CHECK(outcome(v, state_of(CullMode::kFront, front)) ==
+            (is_front ? SetupOutcome::kCulledFace : SetupOutcome::kKept));
+      CHECK(outcome(v, state_of(CullMode::kBack, front)) ==
+            (is_front ? SetupOutcome::kKept : SetupOutcome::kCulledFace));
     }
   }
 }
@@ -48,11 +51,14 @@ TEST_CASE("triangle_setup: says why a triangle makes no pixels") {
   const SetupState s = state_of(CullMode::kNone, FrontFace::kClockwise);
   CHECK(outcome({at(0, 0), at(256, 256), at(512, 512)}, s) == SetupOutcome::kZeroArea);
   CHECK(outcome({at(7, 7), at(7, 7), at(900, 512)}, s) == SetupOutcome::kZeroArea);
-  CHECK(outcome({at(130, 130), at(380, 130), at(130, 380)}, s) == SetupOutcome::kNoSample);  // between the centres at 128 and 384
-  CHECK(outcome({at(128, 128), at(380, 130), at(130, 380)}, s) == SetupOutcome::kKept);      // a vertex on a centre
+  // between the centres at 128 and 384
+  CHECK(outcome({at(130, 130), at(380, 130), at(130, 380)}, s) == SetupOutcome::kNoSample);
+  // a vertex on a centre
+  CHECK(outcome({at(128, 128), at(380, 130), at(130, 380)}, s) == SetupOutcome::kKept);
   CHECK(outcome({at(-2560, 0), at(-300, 0), at(-300, 900)}, s) == SetupOutcome::kOffscreen);
   CHECK(outcome({at(100 * 256, 0), at(110 * 256, 0), at(100 * 256, 900)}, s) == SetupOutcome::kOffscreen);
-  CHECK(outcome({at(0, 0), at(2560, 0), at(0, 2560)}, SetupState{}) == SetupOutcome::kOffscreen);  // an empty scissor
+  // an empty scissor
+  CHECK(outcome({at(0, 0), at(2560, 0), at(0, 2560)}, SetupState{}) == SetupOutcome::kOffscreen);
 }
 
 TEST_CASE("triangle_setup: bounds hold exactly the pixels with centres in the bounding box") {
@@ -74,7 +80,8 @@ TEST_CASE("triangle_setup: planes pass through the vertices") {
   RandomSource random(22);
   for (int round = 0; round < 2000; ++round) {
     std::array<WindowVertex, 3> v;
-    for (WindowVertex& p : v) p = {random.integer(0, 25600), random.integer(0, 25600), random.real(0, 1), random.real(0.1f, 3.0f)};
+    for (WindowVertex& p : v)
+      p = {random.integer(0, 25600), random.integer(0, 25600), random.real(0, 1), random.real(0.1f, 3.0f)};
     TriangleSetup t;
     if (setup_in_square(v, 100, 8, t) != SetupOutcome::kKept) continue;
     for (std::size_t i = 0; i < 3; ++i) {

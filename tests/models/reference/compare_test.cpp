@@ -15,7 +15,8 @@ namespace {
 struct Picture {
   std::uint32_t width = 0, height = 0;
   std::vector<std::uint32_t> rgba;
-  Picture(std::uint32_t w, std::uint32_t h, std::uint32_t value) : width(w), height(h), rgba(std::size_t{w} * h, value) {}
+  Picture(std::uint32_t w, std::uint32_t h, std::uint32_t value)
+      : width(w), height(h), rgba(std::size_t{w} * h, value) {}
   [[nodiscard]] ImageView view() const { return {width, height, rgba}; }
 };
 

@@ -14,7 +14,8 @@ namespace {
 WindowTriangle triangle(std::array<double, 3> x, std::array<double, 3> y, bool exact) {
   WindowTriangle t;
   t.x = x, t.y = y, t.exact = exact, t.subpixel_bits = 8;
-  for (std::size_t i = 0; i < 3; ++i) t.fixed_x[i] = std::llround(x[i] * 256), t.fixed_y[i] = std::llround(y[i] * 256);
+  for (std::size_t i = 0; i < 3; ++i)
+    t.fixed_x[i] = std::llround(x[i] * 256), t.fixed_y[i] = std::llround(y[i] * 256);
   t.clockwise = doubled_area(t) > 0;
   return t;
 }
@@ -29,12 +30,16 @@ int covered_pixels(const WindowTriangle& t, int side) {
 
 }  // namespace
 
-TEST_CASE("coverage: a right triangle along pixel corners covers n (n + 1) / 2 pixels or n (n - 1) / 2, by the side its diagonal is on") {
+TEST_CASE(
+    "coverage: a right triangle along pixel corners covers n (n + 1) / 2 pixels or n (n - 1) / 2, by the "
+    "side its diagonal is on") {
   for (const bool exact : {true, false}) {
-    // The diagonal runs through pixel centres. It is a right edge of the upper-left triangle, a left edge of the lower-right one.
+    // The diagonal runs through pixel centres. It is a right edge of the upper-left triangle, a left edge of
+    // the lower-right one.
     CHECK(covered_pixels(triangle({0, 8, 0}, {0, 0, 8}, exact), 16) == 28);
     CHECK(covered_pixels(triangle({8, 8, 0}, {0, 8, 8}, exact), 16) == 36);
-    CHECK(covered_pixels(triangle({0, 0, 8}, {0, 8, 0}, exact), 16) == 28);  // the other winding covers the same
+    // the other winding covers the same
+    CHECK(covered_pixels(triangle({0, 0, 8}, {0, 8, 0}, exact), 16) == 28);
     // The other diagonal: below it the edge is a left edge.
     CHECK(covered_pixels(triangle({0, 8, 8}, {0, 0, 8}, exact), 16) == 36);
     CHECK(covered_pixels(triangle({0, 8, 0}, {0, 8, 8}, exact), 16) == 28);
@@ -43,7 +48,8 @@ TEST_CASE("coverage: a right triangle along pixel corners covers n (n + 1) / 2 p
 
 TEST_CASE("coverage: samples on top and left edges belong to the triangle, on bottom and right edges not") {
   for (const bool exact : {true, false}) {
-    const WindowTriangle a = triangle({1.5, 5.5, 1.5}, {1.5, 1.5, 5.5}, exact), b = triangle({5.5, 5.5, 1.5}, {1.5, 5.5, 5.5}, exact);
+    const WindowTriangle a = triangle({1.5, 5.5, 1.5}, {1.5, 1.5, 5.5}, exact),
+                         b = triangle({5.5, 5.5, 1.5}, {1.5, 5.5, 5.5}, exact);
     CHECK(locate_sample(a, 3, 1).covered);        // top edge
     CHECK(locate_sample(a, 1, 3).covered);        // left edge
     CHECK_FALSE(locate_sample(b, 5, 3).covered);  // right edge
@@ -63,9 +69,11 @@ TEST_CASE("coverage: a fan around a point covers every sample of its outline onc
     for (const bool exact : {true, false}) {
       std::array<int, 256> hits{};
       for (std::size_t i = 0; i < 4; ++i) {
-        const WindowTriangle t = triangle({cx, outline_x[i], outline_x[(i + 1) % 4]}, {cy, outline_y[i], outline_y[(i + 1) % 4]}, exact);
+        const WindowTriangle t = triangle({cx, outline_x[i], outline_x[(i + 1) % 4]},
+                                          {cy, outline_y[i], outline_y[(i + 1) % 4]}, exact);
         if (doubled_area(t) == 0) continue;
-        for (int p = 0; p < 256; ++p) hits.at(static_cast<std::size_t>(p)) += locate_sample(t, p % 16, p / 16).covered ? 1 : 0;
+        for (int p = 0; p < 256; ++p)
+          hits.at(static_cast<std::size_t>(p)) += locate_sample(t, p % 16, p / 16).covered ? 1 : 0;
       }
       CHECK(std::all_of(hits.begin(), hits.end(), [](int n) { return n == 1; }));
     }
@@ -81,7 +89,8 @@ TEST_CASE("coverage: unsnapped neighbours share an edge without gap or overlap")
     const WindowTriangle a = triangle({x[0], x[1], x[2]}, {y[0], y[1], y[2]}, false),
                          b = triangle({x[1], x[0], x[3]}, {y[1], y[0], y[3]}, false);
     if (a.clockwise != b.clockwise) continue;  // they lie on the same side of the edge
-    for (int p = 0; p < 256; ++p) CHECK_FALSE((locate_sample(a, p % 16, p / 16).covered && locate_sample(b, p % 16, p / 16).covered));
+    for (int p = 0; p < 256; ++p)
+      CHECK_FALSE((locate_sample(a, p % 16, p / 16).covered && locate_sample(b, p % 16, p / 16).covered));
   }
 }
 

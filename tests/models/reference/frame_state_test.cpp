@@ -50,14 +50,15 @@ TEST_CASE("render: every vertex format is read as the specification says") {
     std::vector<std::uint8_t> bytes;
     std::array<double, 4> value;
   };
-  const std::vector<Case> cases{{Format::kR32Float, {0, 0, 0, 0x3f}, {0.5, 0, 0, 1}},
-                                {Format::kR32G32Float, {0, 0, 0, 0x3f, 0, 0, 0x80, 0x3e}, {0.5, 0.25, 0, 1}},
-                                {Format::kR8G8Unorm, {255, 51}, {1, 0.2, 0, 1}},
-                                {Format::kR8G8B8A8UnormVertex, {0, 51, 102, 153}, {0, 0.2, 0.4, 0.6}},
-                                {Format::kR16G16Unorm, {0xff, 0xff, 0, 0}, {1, 0, 0, 1}},
-                                {Format::kR16G16B16A16Unorm, {0x33, 0x33, 0xff, 0xff, 0, 0, 0x66, 0x66}, {0.2, 1, 0, 0.4}},
-                                {Format::kR8G8B8A8Snorm, {127, 0, 0x81, 0x80}, {1, 0, 0, 0}},
-                                {Format::kR16G16B16A16Snorm, {0xff, 0x7f, 0, 0, 0, 0, 0xff, 0x7f}, {1, 0, 0, 1}}};
+  const std::vector<Case> cases{
+      {Format::kR32Float, {0, 0, 0, 0x3f}, {0.5, 0, 0, 1}},
+      {Format::kR32G32Float, {0, 0, 0, 0x3f, 0, 0, 0x80, 0x3e}, {0.5, 0.25, 0, 1}},
+      {Format::kR8G8Unorm, {255, 51}, {1, 0.2, 0, 1}},
+      {Format::kR8G8B8A8UnormVertex, {0, 51, 102, 153}, {0, 0.2, 0.4, 0.6}},
+      {Format::kR16G16Unorm, {0xff, 0xff, 0, 0}, {1, 0, 0, 1}},
+      {Format::kR16G16B16A16Unorm, {0x33, 0x33, 0xff, 0xff, 0, 0, 0x66, 0x66}, {0.2, 1, 0, 0.4}},
+      {Format::kR8G8B8A8Snorm, {127, 0, 0x81, 0x80}, {1, 0, 0, 0}},
+      {Format::kR16G16B16A16Snorm, {0xff, 0x7f, 0, 0, 0, 0, 0xff, 0x7f}, {1, 0, 0, 1}}};
   for (const Case& c : cases) {
     TestFrame frame(2, 2);
     frame.pipeline().bindings.push_back({1, 0, true});
@@ -71,12 +72,15 @@ TEST_CASE("render: every vertex format is read as the specification says") {
 
 TEST_CASE("render: indices of every size, vertex offset, first index, instances and the built-in indices") {
   const char* vertex =
-      "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; layout(location = 0) out vec4 v;\n"
-      "void main() { gl_Position = position + vec4(float(gl_InstanceIndex - 5), 0, 0, 0); v = vec4(float(gl_VertexIndex), "
+      "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; "
+      "layout(location = 0) out vec4 v;\n"
+      "void main() { gl_Position = position + vec4(float(gl_InstanceIndex - 5), 0, 0, 0); v = "
+      "vec4(float(gl_VertexIndex), "
       "float(gl_InstanceIndex), value.x, 0) / 255.0; }\n";
   std::vector<Vertex> vertices(3);
   for (const Vertex& v : {at(0, 0), at(8, 0), at(8, 16), at(0, 16)}) vertices.push_back(v);
-  for (const auto type : {traces::IndexType::kUint8, traces::IndexType::kUint16, traces::IndexType::kUint32}) {
+  for (const auto type :
+       {traces::IndexType::kUint8, traces::IndexType::kUint16, traces::IndexType::kUint32}) {
     TestFrame frame(16, 16);
     frame.pipeline(kShowValue, vertex);
     const std::vector<std::uint32_t> indices{9, 1, 2, 3, 1, 3, 4};
@@ -100,7 +104,8 @@ TEST_CASE("render: indices of every size, vertex offset, first index, instances 
 
 TEST_CASE("render: uniform blocks by std140, row-major members, arrays and push constants") {
   const char* fragment =
-      "#version 450\nlayout(set = 1, binding = 2) uniform B { float x; vec3 y; mat2 m; layout(row_major) mat3x2 r; float list[2]; int k; } "
+      "#version 450\nlayout(set = 1, binding = 2) uniform B { float x; vec3 y; mat2 m; layout(row_major) "
+      "mat3x2 r; float list[2]; int k; } "
       "b;\n"
       "layout(push_constant) uniform P { layout(offset = 8) vec2 p; };\nlayout(location = 0) out vec4 o;\n"
       "void main() { o = vec4(b.x + b.y.z, b.m[1][0] * 10.0 + b.r[2][1], b.list[b.k], p.y) / 255.0; }\n";
@@ -139,16 +144,19 @@ TEST_CASE("render: viewport, scissor and depth range place the picture") {
 TEST_CASE("render: threads and regions do not change a pixel") {
   TestFrame frame(64, 64);
   frame.pipeline(
-      "#version 450\nlayout(location = 0) in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o = v + vec4(abs(dFdx(v.x)) * 40.0); "
+      "#version 450\nlayout(location = 0) in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o = v + "
+      "vec4(abs(dFdx(v.x)) * 40.0); "
       "if (v.y > 0.8) discard; }\n");
   frame.stream.pipelines.back().depth = {true, true, traces::CompareOp::kLess};
   std::vector<Vertex> soup;
   for (int i = 0; i < 90; ++i) {
     const auto wave = [i](double k) { return static_cast<float>(std::sin(k * i + k)); };
-    soup.push_back({{wave(1.7), wave(2.3), wave(0.7) * 0.5f + 0.5f, 1}, {wave(3.1) * 0.5f + 0.5f, wave(0.9), wave(1.3), 1}});
+    soup.push_back({{wave(1.7), wave(2.3), wave(0.7) * 0.5f + 0.5f, 1},
+                    {wave(3.1) * 0.5f + 0.5f, wave(0.9), wave(1.3), 1}});
   }
   frame.draw(soup);
-  const Result one = frame.render({Mode::kIdeal, {}, {}, {}, 1}), three = frame.render({Mode::kIdeal, {}, {}, {}, 3});
+  const Result one = frame.render({Mode::kIdeal, {}, {}, {}, 1}),
+               three = frame.render({Mode::kIdeal, {}, {}, {}, 3});
   CHECK(one.color == three.color);
   CHECK(one.depth == three.depth);
   CHECK(one.triangle_id == three.triangle_id);
@@ -173,7 +181,9 @@ TEST_CASE("render: only the last pass is seen, and draws are numbered through th
   CHECK(frame.render().triangle_id[0] >> 32 == 1);
 }
 
-TEST_CASE("render: vertices that are not finite, w of zero or less, and degenerate triangles draw nothing and crash nothing") {
+TEST_CASE(
+    "render: vertices that are not finite, w of zero or less, and degenerate triangles draw nothing and "
+    "crash nothing") {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   TestFrame frame(16, 16);
   frame.pipeline().depth_clamp = true;

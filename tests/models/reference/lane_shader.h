@@ -13,22 +13,25 @@
 
 namespace quadrille::models::reference::test {
 
-inline traces::Shader glsl(std::string_view source, traces::ShaderStage stage = traces::ShaderStage::kFragment) {
+inline traces::Shader glsl(std::string_view source,
+                           traces::ShaderStage stage = traces::ShaderStage::kFragment) {
   return {"test", stage, scenes::compile_glsl(source, stage, "test")};
 }
 
 using LaneValues = std::array<double, kLanes>;
 
-/// Inputs: `layout(location = 0) in vec4 a; (1) b; (2) c; (3) flat in ivec4 i; (4) flat in ivec4 j;`. Output `o` (vec4) and `oi` (ivec4). Lanes take
-/// consecutive values so that every lane sees other operands.
+/// Inputs: `layout(location = 0) in vec4 a; (1) b; (2) c; (3) flat in ivec4 i; (4) flat in ivec4 j;`. Output
+/// `o` (vec4) and `oi` (ivec4). Lanes take consecutive values so that every lane sees other operands.
 class LaneShader {
  public:
   explicit LaneShader(const std::string& body, const std::string& before_main = "")
-      : program_(decode_shader(glsl("#version 450\n"
-                                    "layout(location = 0) in vec4 a; layout(location = 1) in vec4 b; layout(location = 2) in vec4 c;\n"
-                                    "layout(location = 3) flat in ivec4 i; layout(location = 4) flat in ivec4 j;\n"
-                                    "layout(location = 0) out vec4 o; layout(location = 1) out ivec4 oi;\n" +
-                                    before_main + "\nvoid main() { o = vec4(0); oi = ivec4(0);\n" + body + "\n}\n"))) {
+      : program_(decode_shader(
+            glsl("#version 450\n"
+                 "layout(location = 0) in vec4 a; layout(location = 1) in vec4 b; layout(location = 2) in "
+                 "vec4 c;\n"
+                 "layout(location = 3) flat in ivec4 i; layout(location = 4) flat in ivec4 j;\n"
+                 "layout(location = 0) out vec4 o; layout(location = 1) out ivec4 oi;\n" +
+                 before_main + "\nvoid main() { o = vec4(0); oi = ivec4(0);\n" + body + "\n}\n"))) {
     lanes.cells = program_.initial;
     lanes.textures = &textures;
     lanes.discard_margin.fill(std::numeric_limits<double>::infinity());
@@ -40,7 +43,8 @@ class LaneShader {
   }
   void set_int(std::uint32_t location, std::uint32_t component, std::array<std::int32_t, kLanes> values) {
     for (int lane = 0; lane < kLanes; ++lane) {
-      cell(program_.inputs, location, component).set_u(lane, static_cast<std::uint32_t>(values[static_cast<std::size_t>(lane)]));
+      cell(program_.inputs, location, component)
+          .set_u(lane, static_cast<std::uint32_t>(values[static_cast<std::size_t>(lane)]));
     }
   }
   void run() { execute(program_, lanes, kAllLanes); }

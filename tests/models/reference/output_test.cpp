@@ -19,7 +19,8 @@ int channel(const StoredColor& c, int i) { return static_cast<int>((c.rgba >> (8
 TEST_CASE("output: the eight depth comparisons") {
   using traces::CompareOp;
   const auto outcome = [](CompareOp op) {
-    return std::array<bool, 3>{depth_passes(op, 0.25, 0.5), depth_passes(op, 0.5, 0.5), depth_passes(op, 0.75, 0.5)};
+    return std::array<bool, 3>{depth_passes(op, 0.25, 0.5), depth_passes(op, 0.5, 0.5),
+                               depth_passes(op, 0.75, 0.5)};
   };
   CHECK(outcome(CompareOp::kNever) == std::array<bool, 3>{false, false, false});
   CHECK(outcome(CompareOp::kLess) == std::array<bool, 3>{true, false, false});

@@ -16,7 +16,9 @@ TEST_CASE("render: a full-screen quad covers every pixel once, half by each tria
   frame.draw(full_screen({1, 0.5f, 0, 1}));
   const Result r = frame.render();
   CHECK(std::all_of(r.color.begin(), r.color.end(), [](std::uint32_t c) { return c == 0xff0080ffu; }));
-  CHECK(std::count(r.triangle_id.begin(), r.triangle_id.end(), 0u) + std::count(r.triangle_id.begin(), r.triangle_id.end(), 1u) == 256);
+  CHECK(std::count(r.triangle_id.begin(), r.triangle_id.end(), 0u) +
+            std::count(r.triangle_id.begin(), r.triangle_id.end(), 1u) ==
+        256);
   CHECK(r.depth[37] == 1);  // the depth test is off
 }
 
@@ -30,15 +32,18 @@ TEST_CASE("render: untouched pixels keep the clear values, encoded as the target
 
 TEST_CASE("render: strips and fans have Vulkan's triangles, order and provoking vertex") {
   const char* flat_vertex =
-      "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; layout(location = 0) flat out vec4 v;\n"
+      "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; "
+      "layout(location = 0) flat out vec4 v;\n"
       "void main() { gl_Position = position; v = value; }\n";
   const char* flat_fragment =
-      "#version 450\nlayout(location = 0) flat in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o = v / 255.0; }\n";
+      "#version 450\nlayout(location = 0) flat in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o "
+      "= v / 255.0; }\n";
   const auto value = [](int i) { return std::array<float, 4>{static_cast<float>(i), 0, 0, 0}; };
   TestFrame strip(16, 16);
   strip.pipeline(flat_fragment, flat_vertex).topology = traces::Topology::kTriangleStrip;
   strip.stream.pipelines.back().cull = traces::CullMode::kBack;  // all triangles of a strip face the same way
-  strip.draw({at(0, 16, value(10)), at(0, 0, value(11)), at(8, 16, value(12)), at(8, 0, value(13)), at(16, 16, value(14))});
+  strip.draw({at(0, 16, value(10)), at(0, 0, value(11)), at(8, 16, value(12)), at(8, 0, value(13)),
+              at(16, 16, value(14))});
   strip.stream.pipelines.back().front = traces::FrontFace::kClockwise;
   const Result s = strip.render();
   CHECK(channel(s.color[14 * 16 + 1], 0) == 10);  // triangle 0: vertices 0 1 2
@@ -57,7 +62,9 @@ TEST_CASE("render: strips and fans have Vulkan's triangles, order and provoking 
 TEST_CASE("render: facing follows the signed area with y down, culling removes the face it names") {
   // Clockwise on the screen.
   const std::vector<Vertex> clockwise{at(2, 2), at(14, 2), at(2, 14)};
-  const char* facing = "#version 450\nlayout(location = 0) out vec4 o;\nvoid main() { o = vec4(gl_FrontFacing ? 1.0 : 0.0); }\n";
+  const char* facing =
+      "#version 450\nlayout(location = 0) out vec4 o;\nvoid main() { o = vec4(gl_FrontFacing ? 1.0 : 0.0); "
+      "}\n";
   for (const auto front : {traces::FrontFace::kClockwise, traces::FrontFace::kCounterClockwise}) {
     for (const auto cull : {traces::CullMode::kNone, traces::CullMode::kFront, traces::CullMode::kBack}) {
       TestFrame frame(16, 16);
@@ -66,7 +73,8 @@ TEST_CASE("render: facing follows the signed area with y down, culling removes t
       frame.draw(clockwise);
       const Result r = frame.render();
       const bool is_front = front == traces::FrontFace::kClockwise;
-      const bool culled = (cull == traces::CullMode::kFront && is_front) || (cull == traces::CullMode::kBack && !is_front);
+      const bool culled =
+          (cull == traces::CullMode::kFront && is_front) || (cull == traces::CullMode::kBack && !is_front);
       CHECK((count_covered(r) == 0) == culled);
       if (!culled) CHECK(channel(r.color[4 * 16 + 4], 0) == (is_front ? 255 : 0));
     }
@@ -74,12 +82,15 @@ TEST_CASE("render: facing follows the signed area with y down, culling removes t
 }
 
 TEST_CASE("render: attributes are perspective-correct") {
-  // A plane that recedes: at ndc y, 1/w is linear from 1 (bottom) to 1/4 (top), and v is linear in clip space.
+  // A plane that recedes: at ndc y, 1/w is linear from 1 (bottom) to 1/4 (top), and v is linear in clip
+  // space.
   TestFrame frame(16, 64);
   frame.pipeline();
-  const auto vertex = [](float x, float y, float w, float v) { return Vertex{{x * w, y * w, 0.5f * w, w}, {v, 0, 0, 1}}; };
-  frame.draw(
-      {vertex(-1, 1, 1, 0), vertex(1, 1, 1, 0), vertex(1, -1, 4, 1), vertex(-1, 1, 1, 0), vertex(1, -1, 4, 1), vertex(-1, -1, 4, 1)});
+  const auto vertex = [](float x, float y, float w, float v) {
+    return Vertex{{x * w, y * w, 0.5f * w, w}, {v, 0, 0, 1}};
+  };
+  frame.draw({vertex(-1, 1, 1, 0), vertex(1, 1, 1, 0), vertex(1, -1, 4, 1), vertex(-1, 1, 1, 0),
+              vertex(1, -1, 4, 1), vertex(-1, -1, 4, 1)});
   const Result r = frame.render();
   for (std::size_t y = 0; y < 64; ++y) {
     const double t = 1 - (static_cast<double>(y) + 0.5) / 64;  // 0 at the bottom
@@ -90,18 +101,22 @@ TEST_CASE("render: attributes are perspective-correct") {
 
 TEST_CASE("render: noperspective and flat inputs, FragCoord and clipped triangles") {
   const char* vertex =
-      "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; layout(location = 0) noperspective out "
+      "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; "
+      "layout(location = 0) noperspective out "
       "float v;\n"
-      "layout(location = 1) flat out int f;\nvoid main() { gl_Position = position; v = value.x; f = int(value.y); }\n";
+      "layout(location = 1) flat out int f;\nvoid main() { gl_Position = position; v = value.x; f = "
+      "int(value.y); }\n";
   const char* fragment =
-      "#version 450\nlayout(location = 0) noperspective in float v; layout(location = 1) flat in int f; layout(location = 0) out vec4 o;\n"
+      "#version 450\nlayout(location = 0) noperspective in float v; layout(location = 1) flat in int f; "
+      "layout(location = 0) out vec4 o;\n"
       "void main() { o = vec4(v, float(f) / 10.0, gl_FragCoord.x / 32.0, gl_FragCoord.w); }\n";
   TestFrame frame(16, 64);
   frame.pipeline(fragment, vertex);
   const auto v = [](float x, float y, float w, float z, float value) {
     return Vertex{{x * w, y * w, z * w, w}, {value, value * 2 + 3, 0, 0}};
   };
-  // The far vertices lie beyond the far plane (z > w), so the triangles are cut; what is left is as if they were not.
+  // The far vertices lie beyond the far plane (z > w), so the triangles are cut; what is left is as if they
+  // were not.
   frame.draw({v(-1, 1, 1, 0.25f, 0), v(1, 1, 1, 0.25f, 0), v(1, -1, 4, 1.25f, 1)});
   const Result r = frame.render();
   for (std::size_t y = 50; y < 64; ++y) {
@@ -161,7 +176,8 @@ TEST_CASE("render: a shader's own depth is tested in place of the triangle's") {
   TestFrame frame(8, 8);
   frame
       .pipeline(
-          "#version 450\nlayout(location = 0) in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o = v; gl_FragDepth = "
+          "#version 450\nlayout(location = 0) in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o = "
+          "v; gl_FragDepth = "
           "gl_FragCoord.x / 8.0; }\n")
       .depth = {true, true, traces::CompareOp::kLess};
   frame.draw(full_screen({1, 0, 0, 1}, 0.0f));
@@ -175,7 +191,8 @@ TEST_CASE("render: discard writes neither colour nor depth, and reports its marg
   TestFrame frame(8, 8);
   frame
       .pipeline(
-          "#version 450\nlayout(location = 0) out vec4 o;\nvoid main() { float a = gl_FragCoord.x / 8.0; if (a < 0.5) discard; o = "
+          "#version 450\nlayout(location = 0) out vec4 o;\nvoid main() { float a = gl_FragCoord.x / 8.0; if "
+          "(a < 0.5) discard; o = "
           "vec4(1); }\n")
       .depth = {true, true, traces::CompareOp::kLess};
   frame.draw(full_screen({1, 1, 1, 1}));
@@ -190,7 +207,8 @@ TEST_CASE("render: discard writes neither colour nor depth, and reports its marg
 TEST_CASE("render: blending uses what is stored, so two draws round twice") {
   TestFrame frame(4, 4);
   traces::BlendState& state = frame.pipeline().blend;
-  state.enable = true, state.src_color = traces::BlendFactor::kOne, state.dst_color = traces::BlendFactor::kOne;
+  state.enable = true, state.src_color = traces::BlendFactor::kOne,
+  state.dst_color = traces::BlendFactor::kOne;
   frame.draw(full_screen({0.4f / 255, 0, 0, 0}));
   frame.draw(full_screen({0.4f / 255, 0, 0, 0}));
   CHECK(frame.render().color[0] == 0);  // 0.4 rounds to 0 each time
@@ -198,14 +216,16 @@ TEST_CASE("render: blending uses what is stored, so two draws round twice") {
 
 TEST_CASE("render: a textured plane picks the mip level of its scale") {
   const char* fragment =
-      "#version 450\nlayout(location = 0) in vec4 v; layout(set = 0, binding = 1) uniform sampler2D t; layout(location = 0) out vec4 o;\n"
+      "#version 450\nlayout(location = 0) in vec4 v; layout(set = 0, binding = 1) uniform sampler2D t; "
+      "layout(location = 0) out vec4 o;\n"
       "void main() { o = texture(t, v.xy); }\n";
   for (const double scale : {1.0, 2.0, 3.0, 4.0, 6.5}) {  // texels a pixel
     TestFrame frame(16, 16);
     frame.pipeline(fragment);
     traces::Image image{"levels", traces::Format::kR8G8B8A8Unorm, 128, 128, 8, {}, nullptr};
     for (std::uint32_t l = 0; l < 8; ++l)
-      image.texels.insert(image.texels.end(), std::size_t{4} * (128u >> l) * (128u >> l), static_cast<std::byte>(l * 30));
+      image.texels.insert(image.texels.end(), std::size_t{4} * (128u >> l) * (128u >> l),
+                          static_cast<std::byte>(l * 30));
     frame.stream.images.push_back(image);
     frame.stream.samplers.emplace_back();
     frame.stream.descriptor_sets.push_back({{}, {{1, 0, 0}}});
@@ -223,6 +243,7 @@ TEST_CASE("render: a textured plane picks the mip level of its scale") {
       t.z = {0.5, 0.5, 0.5}, t.inv_w = {1, 1, 1}, t.barycentric = {{{0, 0}, {1, 0}, {0, 1}}};
       given.given.push_back(t);
     }
-    CHECK(frame.render(given).color_linear[4 * 100] * 255 / 30 == Approx(std::floor(std::log2(scale) * 2 + 0.5) / 2).margin(1e-6));
+    CHECK(frame.render(given).color_linear[4 * 100] * 255 / 30 ==
+          Approx(std::floor(std::log2(scale) * 2 + 0.5) / 2).margin(1e-6));
   }
 }

@@ -20,7 +20,8 @@ traces::Image ramp(std::uint32_t width, std::uint32_t height, std::uint32_t leve
   for (std::uint32_t l = 0; l < levels; ++l) {
     for (std::uint32_t y = 0; y < std::max(1u, height >> l); ++y) {
       for (std::uint32_t x = 0; x < std::max(1u, width >> l); ++x) {
-        for (const std::uint32_t value : {x, y, l * 16, 255u}) image.texels.push_back(static_cast<std::byte>(value));
+        for (const std::uint32_t value : {x, y, l * 16, 255u})
+          image.texels.push_back(static_cast<std::byte>(value));
       }
     }
   }
@@ -58,8 +59,8 @@ TEST_CASE("sampling: wrapping repeats, mirrors and clamps") {
     sampler.mag = sampler.min = traces::Filter::kNearest, sampler.wrap_u = wrap;
     return std::lround(sample_texture({&image, &sampler, nullptr}, x / 4, 0.5, 0, 0)[0] * 255);
   };
-  const std::array<long, 12> repeat{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3}, mirror{3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0},
-      clamp{0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3};
+  const std::array<long, 12> repeat{0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3},
+      mirror{3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0}, clamp{0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3};
   for (int i = 0; i < 12; ++i) {
     const double x = i - 4 + 0.3;
     CHECK(texel(traces::Wrap::kRepeat, x) == repeat.at(static_cast<std::size_t>(i)));
@@ -71,7 +72,8 @@ TEST_CASE("sampling: wrapping repeats, mirrors and clamps") {
 TEST_CASE("sampling: linear filtering wraps its neighbours") {
   const traces::Image image = ramp(4, 1, 1);
   traces::Sampler sampler;
-  CHECK(sample_texture({&image, &sampler, nullptr}, 0, 0.5, 0, 0)[0] * 255 == Approx(1.5));  // between texels 3 and 0
+  // between texels 3 and 0
+  CHECK(sample_texture({&image, &sampler, nullptr}, 0, 0.5, 0, 0)[0] * 255 == Approx(1.5));
   sampler.wrap_u = traces::Wrap::kClampToEdge;
   CHECK(sample_texture({&image, &sampler, nullptr}, 0, 0.5, 0, 0)[0] == 0);
 }
@@ -108,7 +110,9 @@ TEST_CASE("sampling: nearest mip takes the nearer level, the finer one at a half
   const traces::Image image = ramp(64, 64, 7);
   traces::Sampler sampler;
   sampler.mip = traces::Filter::kNearest;
-  const auto level = [&](double lod) { return sample_texture({&image, &sampler, nullptr}, 0.3, 0.3, lod, 0)[2] * 255 / 16; };
+  const auto level = [&](double lod) {
+    return sample_texture({&image, &sampler, nullptr}, 0.3, 0.3, lod, 0)[2] * 255 / 16;
+  };
   CHECK(level(1.4) == Approx(1));
   CHECK(level(1.5) == Approx(1));
   CHECK(level(1.6) == Approx(2));
@@ -134,7 +138,8 @@ TEST_CASE("sampling: magnification and minification use their own filters") {
 
 TEST_CASE("sampling: sRGB texels are decoded before they are filtered, alpha is linear") {
   traces::Image image{"two", traces::Format::kR8G8B8A8Srgb, 2, 1, 1, {}, nullptr};
-  for (const int value : {0, 0, 0, 0, 255, 188, 128, 255}) image.texels.push_back(static_cast<std::byte>(value));
+  for (const int value : {0, 0, 0, 0, 255, 188, 128, 255})
+    image.texels.push_back(static_cast<std::byte>(value));
   const Texel middle = sample_texture({&image, &kSmooth, nullptr}, 0.5, 0.5, 0, 0);
   CHECK(middle[0] == Approx(0.5));
   CHECK(middle[1] == Approx(0.5 * std::pow((188.0 / 255 + 0.055) / 1.055, 2.4)));
@@ -145,13 +150,16 @@ TEST_CASE("sampling: the sRGB curves are each other's inverse and meet the ends"
   CHECK(linear_to_srgb(0) == 0);
   CHECK(linear_to_srgb(1) == Approx(1));
   CHECK(srgb_to_linear(0.5) == Approx(0.21404114));
-  for (double x = 0; x <= 1; x += 1.0 / 512) CHECK(linear_to_srgb(srgb_to_linear(x)) == Approx(x).margin(1e-6));
+  for (double x = 0; x <= 1; x += 1.0 / 512)
+    CHECK(linear_to_srgb(srgb_to_linear(x)) == Approx(x).margin(1e-6));
 }
 
 TEST_CASE("sampling: coordinates that are not finite or huge stay inside the image") {
   const traces::Image image = ramp(5, 3, 1);
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e300, 1e18, -1e9}) {
-    for (const auto wrap : {traces::Wrap::kRepeat, traces::Wrap::kMirroredRepeat, traces::Wrap::kClampToEdge}) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                           -1e300, 1e18, -1e9}) {
+    for (const auto wrap :
+         {traces::Wrap::kRepeat, traces::Wrap::kMirroredRepeat, traces::Wrap::kClampToEdge}) {
       traces::Sampler sampler;
       sampler.wrap_u = sampler.wrap_v = wrap;
       const Texel t = sample_texture({&image, &sampler, nullptr}, bad, -bad, bad, bad);

@@ -1,4 +1,5 @@
-/// A command stream of one pass, built in a few lines: clip-space positions with a vec4 each, and GLSL for both stages.
+/// A command stream of one pass, built in a few lines: clip-space positions with a vec4 each, and GLSL for
+/// both stages.
 #pragma once
 
 #include "models/reference/reference.h"
@@ -15,10 +16,12 @@ struct Vertex {
 };
 
 inline constexpr const char* kPassThrough =
-    "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; layout(location = 0) out vec4 v;\n"
+    "#version 450\nlayout(location = 0) in vec4 position; layout(location = 1) in vec4 value; "
+    "layout(location = 0) out vec4 v;\n"
     "void main() { gl_Position = position; v = value; }\n";
 inline constexpr const char* kShowValue =
-    "#version 450\nlayout(location = 0) in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o = v; }\n";
+    "#version 450\nlayout(location = 0) in vec4 v; layout(location = 0) out vec4 o;\nvoid main() { o = v; "
+    "}\n";
 
 template <class T>
 std::vector<std::byte> bytes_of(const std::vector<T>& values) {
@@ -33,7 +36,8 @@ class TestFrame {
             std::array<float, 4> clear = {0, 0, 0, 0}) {
     stream.targets.push_back({width, height, color, traces::Format::kD32Float});
     stream.commands.push_back(traces::BeginPass{0, clear, 1.0f});
-    stream.commands.push_back(traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1});
+    stream.commands.push_back(
+        traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1});
     stream.commands.push_back(traces::SetScissor{0, 0, width, height});
   }
 
@@ -45,7 +49,8 @@ class TestFrame {
     stream.shaders.push_back(glsl(vertex, traces::ShaderStage::kVertex));
     stream.shaders.push_back(glsl(fragment));
     p.bindings = {{0, sizeof(Vertex), false}};
-    p.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0}, {1, 0, traces::Format::kR32G32B32A32Float, 16}};
+    p.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0},
+                    {1, 0, traces::Format::kR32G32B32A32Float, 16}};
     stream.pipelines.push_back(p);
     stream.commands.push_back(traces::BindPipeline{static_cast<traces::Index>(stream.pipelines.size() - 1)});
     return stream.pipelines.back();
@@ -63,14 +68,17 @@ class TestFrame {
     stream.commands.push_back(draw);
   }
 
-  [[nodiscard]] Result render(const Options& options = {}) const { return reference::render(stream, options); }
+  [[nodiscard]] Result render(const Options& options = {}) const {
+    return reference::render(stream, options);
+  }
 
   traces::CommandStream stream;
 };
 
 /// Two triangles over the whole target at one depth.
 inline std::vector<Vertex> full_screen(std::array<float, 4> value, float z = 0.5f) {
-  const Vertex a{{-1, -1, z, 1}, value}, b{{1, -1, z, 1}, value}, c{{1, 1, z, 1}, value}, d{{-1, 1, z, 1}, value};
+  const Vertex a{{-1, -1, z, 1}, value}, b{{1, -1, z, 1}, value}, c{{1, 1, z, 1}, value},
+      d{{-1, 1, z, 1}, value};
   return {a, b, c, a, c, d};
 }
 
@@ -80,7 +88,8 @@ inline Vertex at(float x, float y, std::array<float, 4> value = {1, 1, 1, 1}, fl
 }
 
 inline std::size_t count_covered(const Result& r) {
-  return static_cast<std::size_t>(std::ranges::count_if(r.triangle_id, [](std::uint64_t id) { return id != kNoTriangle; }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(r.triangle_id, [](std::uint64_t id) { return id != kNoTriangle; }));
 }
 
 inline int channel(std::uint32_t rgba, int c) { return static_cast<int>((rgba >> (8 * c)) & 0xffu); }

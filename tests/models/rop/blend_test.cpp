@@ -15,7 +15,9 @@ namespace {
 
 double decode(ColorFormat format, std::uint32_t pixel, int c) {
   const std::uint32_t code = pixel >> (8 * c) & 0xff;
-  return format == ColorFormat::kR8G8B8A8Srgb && c < 3 ? static_cast<double>(decode_srgb8(static_cast<std::uint8_t>(code))) : code / 255.0;
+  return format == ColorFormat::kR8G8B8A8Srgb && c < 3
+             ? static_cast<double>(decode_srgb8(static_cast<std::uint8_t>(code)))
+             : code / 255.0;
 }
 
 /// Encoded value before rounding, in codes.
@@ -54,8 +56,11 @@ double combine(BlendOp op, double s, double fs, double d, double fd) {
 
 double blended(const BlendState& state, const double* src, const double* dst, int c) {
   if (!state.enable) return src[c];
-  if (c == 3) return combine(state.alpha, src[3], factor(state.src_alpha, src, dst, 3), dst[3], factor(state.dst_alpha, src, dst, 3));
-  return combine(state.color, src[c], factor(state.src_color, src, dst, c), dst[c], factor(state.dst_color, src, dst, c));
+  if (c == 3)
+    return combine(state.alpha, src[3], factor(state.src_alpha, src, dst, 3), dst[3],
+                   factor(state.dst_alpha, src, dst, 3));
+  return combine(state.color, src[c], factor(state.src_color, src, dst, c), dst[c],
+                 factor(state.dst_color, src, dst, c));
 }
 
 BlendState random_state(RandomSource& random) {
@@ -79,7 +84,8 @@ TEST_CASE("blend: every factor and operation rounds the exact result once") {
   int changed = 0;
   for (int round = 0; round < 60000; ++round) {
     const BlendState state = random_state(random);
-    const ColorFormat format = random.integer(0, 1) != 0 ? ColorFormat::kR8G8B8A8Srgb : ColorFormat::kR8G8B8A8Unorm;
+    const ColorFormat format =
+        random.integer(0, 1) != 0 ? ColorFormat::kR8G8B8A8Srgb : ColorFormat::kR8G8B8A8Unorm;
     float rgba[4][4];
     for (auto& component : rgba) {
       for (float& v : component) v = random.real(-0.2f, 1.2f);
@@ -95,7 +101,8 @@ TEST_CASE("blend: every factor and operation rounds the exact result once") {
         dst[c] = decode(format, before[i], c);
       }
       for (int c = 0; c < 4; ++c) {
-        const auto code = static_cast<int>(pixels[i] >> (8 * c) & 0xff), old = static_cast<int>(before[i] >> (8 * c) & 0xff);
+        const auto code = static_cast<int>(pixels[i] >> (8 * c) & 0xff),
+                   old = static_cast<int>(before[i] >> (8 * c) & 0xff);
         if ((mask >> i & 1) == 0 || (state.write_mask >> c & 1) == 0) {
           if (code != old) FAIL("round " << round << ": a masked byte changed");
           continue;
@@ -123,13 +130,15 @@ TEST_CASE("blend: NaN and infinities become codes") {
   }
 }
 
-TEST_CASE("blend: an opaque write of a decoded colour gives its code back and agrees with the scalar encoder") {
+TEST_CASE(
+    "blend: an opaque write of a decoded colour gives its code back and agrees with the scalar encoder") {
   RandomSource random(62);
   for (int round = 0; round < 50000; ++round) {
     float rgba[4][4];
     for (auto& component : rgba) {
       for (float& v : component)
-        v = random.integer(0, 1) != 0 ? decode_srgb8(static_cast<std::uint8_t>(random.bits())) : random.real(-0.01f, 1.01f);
+        v = random.integer(0, 1) != 0 ? decode_srgb8(static_cast<std::uint8_t>(random.bits()))
+                                      : random.real(-0.01f, 1.01f);
     }
     std::uint32_t pixels[4] = {};
     blend_quad(BlendState{}, ColorFormat::kR8G8B8A8Srgb, rgba, pixels, 0xf);
@@ -139,7 +148,8 @@ TEST_CASE("blend: an opaque write of a decoded colour gives its code back and ag
       }
     }
   }
-  CHECK(encode_color(ColorFormat::kR8G8B8A8Unorm, {1.0f, 0.5f, 0.0f, 1.0f}) == 0xff0080ff);  // 127.5 rounds to even: 128
+  // 127.5 rounds to even: 128
+  CHECK(encode_color(ColorFormat::kR8G8B8A8Unorm, {1.0f, 0.5f, 0.0f, 1.0f}) == 0xff0080ff);
   CHECK(encode_color(ColorFormat::kR8G8B8A8Srgb, {1.0f, 0.5f, 0.0f, 0.25f}) == 0x4000bcff);
 }
 

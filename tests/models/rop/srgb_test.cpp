@@ -13,13 +13,18 @@ using namespace quadrille::models;
 namespace {
 
 /// The transfer function by the C library in long double.
-long double encoded(long double linear) { return linear <= 0.0031308L ? 12.92L * linear : 1.055L * std::pow(linear, 1.0L / 2.4L) - 0.055L; }
-long double decoded(long double code) { return code <= 0.04045L ? code / 12.92L : std::pow((code + 0.055L) / 1.055L, 2.4L); }
+long double encoded(long double linear) {
+  return linear <= 0.0031308L ? 12.92L * linear : 1.055L * std::pow(linear, 1.0L / 2.4L) - 0.055L;
+}
+long double decoded(long double code) {
+  return code <= 0.04045L ? code / 12.92L : std::pow((code + 0.055L) / 1.055L, 2.4L);
+}
 
 }  // namespace
 
 TEST_CASE("srgb: decoding is the transfer function rounded to the nearest float") {
-  for (int i = 0; i < 256; ++i) CHECK(decode_srgb8(static_cast<std::uint8_t>(i)) == static_cast<float>(decoded(i / 255.0L)));
+  for (int i = 0; i < 256; ++i)
+    CHECK(decode_srgb8(static_cast<std::uint8_t>(i)) == static_cast<float>(decoded(i / 255.0L)));
 }
 
 TEST_CASE("srgb: each of the 255 thresholds separates two codes exactly") {

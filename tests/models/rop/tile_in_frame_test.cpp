@@ -8,7 +8,8 @@
 
 using namespace quadrille::models;
 
-TEST_CASE("tile_in_frame: the greatest depth of a tile at the frame's edge is that of its pixels in the frame") {
+TEST_CASE(
+    "tile_in_frame: the greatest depth of a tile at the frame's edge is that of its pixels in the frame") {
   float depths[64];
   for (int i = 0; i < 64; ++i) depths[i] = entry_x(i) < 3 && entry_y(i) < 5 ? 0.25f : 1.0f;
   depths[tile_entry(2, 4)] = 0.5f;

@@ -1,4 +1,5 @@
-/// Where clauses end, what texture requests hold, and that values do not depend on lanes a lane has nothing to do with.
+/// Where clauses end, what texture requests hold, and that values do not depend on lanes a lane has nothing
+/// to do with.
 #include "tests/models/shader/random_program.h"
 #include "tests/models/shader/warp_fixture.h"
 
@@ -8,7 +9,8 @@ namespace quadrille::models::test {
 namespace {
 
 Program textured(const std::string& code) {
-  return assemble(".stage fragment\n.texture set=0 binding=0\n.texture set=0 binding=1\n" + code + "end\n", "test");
+  return assemble(".stage fragment\n.texture set=0 binding=0\n.texture set=0 binding=1\n" + code + "end\n",
+                  "test");
 }
 
 /// Texture requests of each clause of a program.
@@ -35,33 +37,40 @@ using Counts = std::vector<int>;
 }  // namespace
 
 TEST_CASE("shader clauses: independent textures and what lies between them share a clause") {
-  CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nfadd r10, r11, r12\ntex r4, t1, r8, r9\nfadd r13, r0, r4\n")) == Counts{2, 0});
+  CHECK(requests_by_clause(
+            textured("tex r0, t0, r8, r9\nfadd r10, r11, r12\ntex r4, t1, r8, r9\nfadd r13, r0, r4\n")) ==
+        Counts{2, 0});
 }
 
 TEST_CASE("shader clauses: reading or overwriting a result ends the clause") {
   CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\ntex r4, t1, r3, r9\nmov r20, r4\n")) ==
         Counts{1, 1, 0});  // coordinates from a result
   CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nmov r2, 1.0\n")) == Counts{1, 0});
-  CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\ntex r3, t0, r8, r9\n")) == Counts{1, 1, 0});     // shares r3
-  CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nmov r8, 1.0\nmov r4, 1.0\n")) == Counts{1, 0});  // coordinates were copied
+  // shares r3
+  CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\ntex r3, t0, r8, r9\n")) == Counts{1, 1, 0});
+  // coordinates were copied
+  CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nmov r8, 1.0\nmov r4, 1.0\n")) == Counts{1, 0});
   CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nkillif r10\nkillif r3\n")) == Counts{1, 0});
 }
 
 TEST_CASE("shader clauses: control flow, the end and the limit end the clause") {
   CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\n")) == Counts{1, 0});
-  CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nif 1\ntex r4, t0, r8, r9\nendif\n")) == Counts{1, 1, 0});
+  CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nif 1\ntex r4, t0, r8, r9\nendif\n")) ==
+        Counts{1, 1, 0});
   std::string many;
-  for (int i = 0; i < 2 * kMaxClauseTextures + 1; ++i) many += "tex r" + std::to_string(4 * i) + ", t0, r200, r201\n";
+  for (int i = 0; i < 2 * kMaxClauseTextures + 1; ++i)
+    many += "tex r" + std::to_string(4 * i) + ", t0, r200, r201\n";
   CHECK(requests_by_clause(textured(many)) == Counts{8, 8, 1, 0});
   CHECK(requests_by_clause(textured("if 0\ntex r0, t0, r8, r9\nendif\n")) == Counts{0});
-  CHECK(requests_by_clause(textured("mov r4, 0\nloop\nule r5, 3, r4\nbreakif r5\ntexlod r0, t0, r8, r9, 0.0\niadd r4, r4, 1\nendloop\n")) ==
-        Counts{1, 1, 1, 0});
+  CHECK(requests_by_clause(textured("mov r4, 0\nloop\nule r5, 3, r4\nbreakif r5\ntexlod r0, t0, r8, r9, "
+                                    "0.0\niadd r4, r4, 1\nendloop\n")) == Counts{1, 1, 1, 0});
 }
 
 TEST_CASE("shader clauses: a request holds coordinates of all lanes and the lanes that executed") {
   WarpFixture f;
-  const Program p =
-      textured("input r0, frag_coord_x\ninput r1, frag_coord_y\nflt r2, r0, 6.0\nif r2\n  texbias r4, t1, -r0, r1, 0.75\nendif\n");
+  const Program p = textured(
+      "input r0, frag_coord_x\ninput r1, frag_coord_y\nflt r2, r0, 6.0\nif r2\n  texbias r4, t1, -r0, r1, "
+      "0.75\nendif\n");
   f.bind_constants(p);
   f.warp.launch(p, f.constants.data(), ~0u);
   const ClauseResult result = run_clause(f.warp);
@@ -83,8 +92,9 @@ TEST_CASE("shader clauses: a request holds coordinates of all lanes and the lane
 }
 
 TEST_CASE("shader clauses: the cost of the clauses adds up to the instructions of the program") {
-  const Program p = textured(repeated("interp r0, vary0\n", 0) +
-                             "fadd r9, r9, r9\ntex r0, t0, r8, r9\nfrcp r10, r9\nfadd r0, r0, r10\noutput out0, r0\n");
+  const Program p =
+      textured(repeated("interp r0, vary0\n", 0) +
+               "fadd r9, r9, r9\ntex r0, t0, r8, r9\nfrcp r10, r9\nfadd r0, r0, r10\noutput out0, r0\n");
   WarpFixture f;
   const ClauseCost cost = f.run(p, 0xffu);
   CHECK(cost.alu == 2);
@@ -110,27 +120,33 @@ TEST_CASE("shader lanes: a quad's values do not depend on the other quads of its
     const auto shuffle = [&](auto& row) {
       for (auto& x : row) x = row[random() % kWarpLanes];
     };
-    for (LaneFloats* row : {&g.fragment.x, &g.fragment.y, &g.fragment.z, &g.fragment.inv_w, &g.fragment.persp_1, &g.fragment.persp_2,
-                            &g.fragment.linear_1, &g.fragment.linear_2})
+    for (LaneFloats* row :
+         {&g.fragment.x, &g.fragment.y, &g.fragment.z, &g.fragment.inv_w, &g.fragment.persp_1,
+          &g.fragment.persp_2, &g.fragment.linear_1, &g.fragment.linear_2})
       shuffle(*row);
     shuffle(g.fragment.front_facing);
     const auto place = [&](auto& row, const auto& source) {
-      std::copy_n(source.begin() + static_cast<std::ptrdiff_t>(4 * from), 4, row.begin() + static_cast<std::ptrdiff_t>(4 * to));
+      std::copy_n(source.begin() + static_cast<std::ptrdiff_t>(4 * from), 4,
+                  row.begin() + static_cast<std::ptrdiff_t>(4 * to));
     };
     place(g.fragment.x, original.x), place(g.fragment.y, original.y), place(g.fragment.z, original.z),
         place(g.fragment.inv_w, original.inv_w);
     place(g.fragment.persp_1, original.persp_1), place(g.fragment.persp_2, original.persp_2);
     place(g.fragment.linear_1, original.linear_1), place(g.fragment.linear_2, original.linear_2);
-    place(g.fragment.front_facing, original.front_facing), place(g.fragment.primitive_id, original.primitive_id);
+    place(g.fragment.front_facing, original.front_facing),
+        place(g.fragment.primitive_id, original.primitive_id);
     LaneMask lanes = 0xfu << (4 * to);
     for (std::size_t q = 0; q < kWarpQuads; ++q)
       if (random() % 3 != 0) lanes |= 0xfu << (4 * q);
-    for (std::size_t q = 0; q < kWarpQuads; ++q) g.fragment.varyings[q] = g.planes[q == to ? from : random() % kWarpQuads].data();
+    for (std::size_t q = 0; q < kWarpQuads; ++q)
+      g.fragment.varyings[q] = g.planes[q == to ? from : random() % kWarpQuads].data();
     g.run(program, lanes);
     INFO(disassemble(program));
     for (std::size_t lane = 0; lane < 4; ++lane) {
-      for (std::size_t slot = 0; slot <= kDepthOutput; ++slot) REQUIRE(g.outputs[slot][4 * to + lane] == outputs[slot][4 * from + lane]);
-      for (std::size_t r = 0; r < regs.size(); ++r) REQUIRE(g.warp.regs[r][4 * to + lane] == regs[r][4 * from + lane]);
+      for (std::size_t slot = 0; slot <= kDepthOutput; ++slot)
+        REQUIRE(g.outputs[slot][4 * to + lane] == outputs[slot][4 * from + lane]);
+      for (std::size_t r = 0; r < regs.size(); ++r)
+        REQUIRE(g.warp.regs[r][4 * to + lane] == regs[r][4 * from + lane]);
     }
     REQUIRE(((g.warp.killed >> (4 * to)) & 0xfu) == ((killed >> (4 * from)) & 0xfu));
   }
@@ -147,7 +163,8 @@ TEST_CASE("shader lanes: without quad operations, a lane's values do not depend 
     INFO(disassemble(program));
     for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
       if (((lanes >> lane) & 1u) == 0) continue;
-      for (std::size_t r = 0; r < f.warp.regs.size(); ++r) REQUIRE(g.warp.regs[r][lane] == f.warp.regs[r][lane]);
+      for (std::size_t r = 0; r < f.warp.regs.size(); ++r)
+        REQUIRE(g.warp.regs[r][lane] == f.warp.regs[r][lane]);
     }
     REQUIRE(g.warp.killed == (f.warp.killed & lanes));
   }

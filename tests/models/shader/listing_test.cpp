@@ -34,15 +34,18 @@ TEST_CASE("listing: assembling a disassembled random program gives the same prog
 
 TEST_CASE("listing: a vertex program with every directive reads back") {
   const Program p = assemble(
-      ".stage vertex\n.regs 9\n.push c0 offset=64 words=16\n.uniform c16 set=2 binding=5 offset=32 words=4\n.literal c20 0.5 -1 0xffc00001 "
+      ".stage vertex\n.regs 9\n.push c0 offset=64 words=16\n.uniform c16 set=2 binding=5 offset=32 "
+      "words=4\n.literal c20 0.5 -1 0xffc00001 "
       "1e-30\n.constants 40\n"
       ".texture set=1 binding=3\n.input location=4 component=2\n.varying flat\n.varying linear\n"
-      "input r0, in0\ninput r1, vertex_index\noutput out0, r0\noutput out5, -|c20|\ntexlod r2, t0, r0, r1, 0.0\nend",
+      "input r0, in0\ninput r1, vertex_index\noutput out0, r0\noutput out5, -|c20|\ntexlod r2, t0, r0, r1, "
+      "0.0\nend",
       "vertex");
   CHECK(p.num_regs == 9);
   CHECK(p.constants.words == 41);  // the number 0.0 is a word of its own, behind the declared ones
   CHECK(p.constants.ranges[1].binding == 5);
-  CHECK(p.constants.ranges[2].literals == std::vector<std::uint32_t>{bits_of(0.5f), ~0u, 0xffc00001u, bits_of(1e-30f)});
+  CHECK(p.constants.ranges[2].literals ==
+        std::vector<std::uint32_t>{bits_of(0.5f), ~0u, 0xffc00001u, bits_of(1e-30f)});
   CHECK(p.textures[0] == TextureBinding{1, 3});
   CHECK(p.vertex_inputs[0] == VertexInputUse{4, 2});
   CHECK(p.varyings == std::vector<Interpolation>{Interpolation::kFlat, Interpolation::kLinear});
@@ -118,7 +121,8 @@ TEST_CASE("listing: docs/isa.md has a row for every operation, and its example a
     CHECK(rows.find("`" + std::string(op_name(static_cast<Op>(op))) + "`") != std::string::npos);
   }
   const std::size_t begin = page.find("```\n") + 4;
-  const Program example = assemble(std::string_view(page).substr(begin, page.find("```", begin) - begin), "example");
+  const Program example =
+      assemble(std::string_view(page).substr(begin, page.find("```", begin) - begin), "example");
   CHECK(example.code.size() == 13);
 }
 

@@ -1,4 +1,5 @@
-/// Every operation against the scalar model: all operand kinds, modifiers, saturation, masked and unmasked, destination equal to a source.
+/// Every operation against the scalar model: all operand kinds, modifiers, saturation, masked and unmasked,
+/// destination equal to a source.
 #include "models/base/error.h"
 #include "models/shader/op_table.h"
 #include "tests/models/shader/scalar_model.h"
@@ -42,7 +43,8 @@ Instruction instruction_of(Op op, const Form& form) {
   Operand* const operands[] = {&in.a, &in.b, &in.c};
   for (unsigned i = 0; i < op_info(op).sources; ++i) {
     const bool constant = ((form.constants >> i) & 1u) != 0;
-    *operands[i] = {constant ? Operand::kConstant : Operand::kRegister, form.modifiers[i], static_cast<std::uint16_t>(i)};
+    *operands[i] = {constant ? Operand::kConstant : Operand::kRegister, form.modifiers[i],
+                    static_cast<std::uint16_t>(i)};
   }
   return in;
 }
@@ -68,15 +70,16 @@ int wrong_lanes(Op op, const Form& form, std::mt19937& random, WarpFixture& f, s
   for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
     std::array<std::uint32_t, 3> x{};
     for (unsigned i = 0; i < 3; ++i)
-      x[i] = scalar_modified(((form.constants >> i) & 1u) != 0 ? f.constants[i] : before[i][lane], form.modifiers[i]);
+      x[i] = scalar_modified(((form.constants >> i) & 1u) != 0 ? f.constants[i] : before[i][lane],
+                             form.modifiers[i]);
     std::uint32_t wanted = scalar_result(op, x[0], x[1], x[2]);
     if (form.saturate) wanted = scalar_saturated(wanted);
     if (((exec >> lane) & 1u) == 0) wanted = before[form.dst][lane];
     const std::uint32_t got = f.warp.regs[form.dst][lane];
     if (acceptable(op, got, wanted)) continue;
     if (wrong++ == 0)
-      first =
-          fmt::format("{} lane {}: {:#x} {:#x} {:#x} gives {:#x}, wanted {:#x}", disassemble(program), lane, x[0], x[1], x[2], got, wanted);
+      first = fmt::format("{} lane {}: {:#x} {:#x} {:#x} gives {:#x}, wanted {:#x}", disassemble(program),
+                          lane, x[0], x[1], x[2], got, wanted);
   }
   return wrong;
 }
@@ -91,7 +94,8 @@ std::vector<Form> forms_of(Op op, std::mt19937& random) {
           if ((modified && info.modifiable == 0) || (saturate && !info.saturable)) continue;
           Form form{constants, {}, saturate, masked, random() % 2 == 0 ? kResult : std::uint16_t{0}};
           for (unsigned i = 0; i < info.sources; ++i)
-            if (modified && ((info.modifiable >> i) & 1u) != 0) form.modifiers[i] = static_cast<std::uint8_t>(random() % 4);
+            if (modified && ((info.modifiable >> i) & 1u) != 0)
+              form.modifiers[i] = static_cast<std::uint8_t>(random() % 4);
           forms.push_back(form);
         }
   return forms;
@@ -121,19 +125,21 @@ TEST_CASE("shader operations: every pair of special words agrees with the scalar
   for (int number = 0; number < static_cast<int>(Op::kCount); ++number) {
     const Op op = static_cast<Op>(number);
     if (!has_scalar_model(op) || source_count(op) == 3) continue;
-    const Program program = single(instruction_of(op, {.constants = 2u & ((1u << source_count(op)) - 1)}), false);
+    const Program program =
+        single(instruction_of(op, {.constants = 2u & ((1u << source_count(op)) - 1)}), false);
     f.constants.assign(3, 0);
     for (const std::uint32_t b : words)
       for (std::size_t base = 0; base < words.size(); base += kWarpLanes) {
         f.constants[1] = b;
         f.warp.launch(program, f.constants.data(), ~0u);
-        for (std::size_t lane = 0; lane < kWarpLanes; ++lane) f.warp.regs[0][lane] = words[(base + lane) % words.size()];
+        for (std::size_t lane = 0; lane < kWarpLanes; ++lane)
+          f.warp.regs[0][lane] = words[(base + lane) % words.size()];
         f.finish();
         for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
           const std::uint32_t a = words[(base + lane) % words.size()];
           if (acceptable(op, f.warp.regs[kResult][lane], scalar_result(op, a, b, 0))) continue;
-          FAIL_CHECK(fmt::format("{} {:#x} {:#x} gives {:#x}, wanted {:#x}", op_name(op), a, b, f.warp.regs[kResult][lane],
-                                 scalar_result(op, a, b, 0)));
+          FAIL_CHECK(fmt::format("{} {:#x} {:#x} gives {:#x}, wanted {:#x}", op_name(op), a, b,
+                                 f.warp.regs[kResult][lane], scalar_result(op, a, b, 0)));
         }
       }
   }
@@ -173,7 +179,8 @@ TEST_CASE("shader operations: fmad rounds twice and ffma once") {
   WarpFixture f;
   // (1 + 2^-12)^2 = 1 + 2^-11 + 2^-24: the last term is lost when the product is rounded.
   f.run(
-      assemble(".stage fragment\nfmad r0, 1.000244140625, 1.000244140625, -1.00048828125\nffma r1, 1.000244140625, 1.000244140625, "
+      assemble(".stage fragment\nfmad r0, 1.000244140625, 1.000244140625, -1.00048828125\nffma r1, "
+               "1.000244140625, 1.000244140625, "
                "-1.00048828125\nend\n",
                "mad"));
   CHECK(f.warp.regs[0][0] == 0u);
@@ -181,7 +188,8 @@ TEST_CASE("shader operations: fmad rounds twice and ffma once") {
 }
 
 TEST_CASE(
-    "shader operations: of two NaN operands the first one's bits go on in every form, so that a lane does not see who shares its warp") {
+    "shader operations: of two NaN operands the first one's bits go on in every form, so that a lane does "
+    "not see who shares its warp") {
   WarpFixture f;
   for (const Op op : {Op::kFAdd, Op::kFMul})
     for (unsigned constants = 0; constants < 4; ++constants)

@@ -7,7 +7,8 @@
 namespace quadrille::models::test {
 namespace {
 
-constexpr std::uint16_t kRegisters = 24;  ///< random destinations and sources; above them: loop counters, conditions, and room for textures
+/// random destinations and sources; above them: loop counters, conditions, and room for textures
+constexpr std::uint16_t kRegisters = 24;
 constexpr std::uint16_t kFirstCounter = 28;  ///< one a nesting level
 constexpr std::uint16_t kCondition = 27;
 constexpr int kMaxNesting = 5;
@@ -44,18 +45,27 @@ class Generator {
     for (std::uint32_t i = 0; i < 3; ++i) program_.textures.push_back({i, below(9)});
     ConstantLayout::Range literals{.words = 12, .literals = {7, 1, 1u + below(4)}};
     while (literals.literals.size() < literals.words) literals.literals.push_back(random_word(random_));
-    program_.constants.ranges = {
-        literals,
-        {.source = ConstantLayout::Source::kPushConstant, .byte_offset = 16, .first_word = 12, .words = 4, .literals = {}},
-        {.source = ConstantLayout::Source::kUniformBlock, .set = 1, .binding = 2, .first_word = 16, .words = 8, .literals = {}}};
+    program_.constants.ranges = {literals,
+                                 {.source = ConstantLayout::Source::kPushConstant,
+                                  .byte_offset = 16,
+                                  .first_word = 12,
+                                  .words = 4,
+                                  .literals = {}},
+                                 {.source = ConstantLayout::Source::kUniformBlock,
+                                  .set = 1,
+                                  .binding = 2,
+                                  .first_word = 16,
+                                  .words = 8,
+                                  .literals = {}}};
     program_.constants.words = 24;
   }
 
   Operand source(bool may_modify) {
     Operand operand;
     operand.kind = below(4) == 0 ? Operand::kConstant : Operand::kRegister;
-    operand.index =
-        operand.kind == Operand::kConstant ? static_cast<std::uint16_t>(kFirstRandom + below(24 - kFirstRandom)) : below(kRegisters);
+    operand.index = operand.kind == Operand::kConstant
+                        ? static_cast<std::uint16_t>(kFirstRandom + below(24 - kFirstRandom))
+                        : below(kRegisters);
     if (may_modify && below(3) == 0) operand.modifiers = static_cast<std::uint8_t>(below(4));
     return operand;
   }
@@ -80,8 +90,10 @@ class Generator {
   }
 
   [[nodiscard]] bool allowed(Op op) const {
-    const bool quad = (op >= Op::kDdxFine && op <= Op::kDdyCoarse) || op == Op::kTexImplicit || op == Op::kTexBias;
-    return op != Op::kOutput && (issue_class(op) != IssueClass::kControl || op == Op::kKillIf) && (options_.quad_operations || !quad);
+    const bool quad =
+        (op >= Op::kDdxFine && op <= Op::kDdyCoarse) || op == Op::kTexImplicit || op == Op::kTexBias;
+    return op != Op::kOutput && (issue_class(op) != IssueClass::kControl || op == Op::kKillIf) &&
+           (options_.quad_operations || !quad);
   }
 
   void straight() {
@@ -171,6 +183,8 @@ class Generator {
 
 }  // namespace
 
-Program random_program(std::mt19937& random, const RandomProgramOptions& options) { return Generator(random, options).generate(); }
+Program random_program(std::mt19937& random, const RandomProgramOptions& options) {
+  return Generator(random, options).generate();
+}
 
 }  // namespace quadrille::models::test

@@ -1,4 +1,5 @@
-/// Random programs that keep all rules of the ISA: nested control flow that ends, textures, derivatives, indexed constants.
+/// Random programs that keep all rules of the ISA: nested control flow that ends, textures, derivatives,
+/// indexed constants.
 #pragma once
 
 #include "models/shader/isa.h"

@@ -66,7 +66,9 @@ std::uint32_t division(Op op, std::uint32_t a, std::uint32_t b) {
   if (op == Op::kUMod) return b == 0 ? a : a % b;
   if (op == Op::kIDiv) return b == 0 ? ~0u : uint(x / y);
   if (op == Op::kIRem) return b == 0 ? a : uint(x % y);
-  return b == 0 ? a : uint(x - y * static_cast<std::int64_t>(std::floor(static_cast<double>(x) / static_cast<double>(y))));
+  return b == 0 ? a
+                : uint(x - y * static_cast<std::int64_t>(
+                                   std::floor(static_cast<double>(x) / static_cast<double>(y))));
 }
 
 std::uint32_t integers(Op op, std::uint32_t a, std::uint32_t b) {
@@ -98,7 +100,9 @@ std::uint32_t integers(Op op, std::uint32_t a, std::uint32_t b) {
 
 bool has_scalar_model(Op op) { return op >= Op::kMov && op <= Op::kSelect; }
 
-bool has_float_result(Op op) { return (op >= Op::kMov && op <= Op::kFCos) || op == Op::kI2F || op == Op::kU2F || op == Op::kSelect; }
+bool has_float_result(Op op) {
+  return (op >= Op::kMov && op <= Op::kFCos) || op == Op::kI2F || op == Op::kU2F || op == Op::kSelect;
+}
 
 int allowed_ulps(Op op) {
   if (op == Op::kFExp2 || op == Op::kFLog2) return 1;
@@ -133,7 +137,8 @@ std::uint32_t scalar_saturated(std::uint32_t bits) {
 std::int64_t ulps_between(std::uint32_t a, std::uint32_t b) {
   if (is_nan(a) || is_nan(b)) return is_nan(a) && is_nan(b) ? 0 : std::numeric_limits<std::int64_t>::max();
   const auto ordinal = [](std::uint32_t x) {
-    return (x & 0x80000000u) != 0 ? -static_cast<std::int64_t>(x & 0x7fffffffu) : static_cast<std::int64_t>(x);
+    return (x & 0x80000000u) != 0 ? -static_cast<std::int64_t>(x & 0x7fffffffu)
+                                  : static_cast<std::int64_t>(x);
   };
   return std::abs(ordinal(a) - ordinal(b));
 }

@@ -1,4 +1,5 @@
-/// What each operation means for one lane, in plain scalar C++: the ruler that the vector kernels are held against. Written from docs/isa.md.
+/// What each operation means for one lane, in plain scalar C++: the ruler that the vector kernels are held
+/// against. Written from docs/isa.md.
 #pragma once
 
 #include "models/shader/isa.h"
@@ -13,7 +14,8 @@ namespace quadrille::models::test {
 /// Whether the result is a float, so that any NaN equals any NaN.
 [[nodiscard]] bool has_float_result(Op op);
 
-/// The result on operands whose modifiers have been applied, before saturation. Transcendental functions are computed in double and rounded.
+/// The result on operands whose modifiers have been applied, before saturation. Transcendental functions are
+/// computed in double and rounded.
 [[nodiscard]] std::uint32_t scalar_result(Op op, std::uint32_t a, std::uint32_t b, std::uint32_t c);
 
 /// Allowed difference in units in the last place (0: exact).

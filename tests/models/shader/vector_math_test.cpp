@@ -1,4 +1,5 @@
-/// Accuracy of the transcendental functions against double precision, in units in the last place, over dense samples.
+/// Accuracy of the transcendental functions against double precision, in units in the last place, over dense
+/// samples.
 #include "models/shader/vector_math.h"
 #include "tests/models/shader/scalar_model.h"
 #include "tests/models/shader/warp_fixture.h"
@@ -21,7 +22,8 @@ std::array<float, kGroupLanes> evaluate(Function function, const std::array<floa
   return y;
 }
 
-/// Error in units of the last place of the exact result, which is not rounded first; denormal results count in units of the smallest denormal.
+/// Error in units of the last place of the exact result, which is not rounded first; denormal results count
+/// in units of the smallest denormal.
 double error_ulps(float got, double exact) {
   if (static_cast<float>(exact) == got) return std::fabs(got - exact) == 0 || std::isinf(got) ? 0 : 0.5;
   const int exponent = std::max(std::ilogb(exact), -126);
@@ -32,11 +34,13 @@ double error_ulps(float got, double exact) {
 double worst_error(Function function, Exact exact, float first, float last, std::uint32_t stride) {
   double worst = 0;
   const std::uint32_t end = bits_of(last);
-  for (std::uint32_t bits = bits_of(first); bits + kGroupLanes * stride <= end; bits += kGroupLanes * stride) {
+  for (std::uint32_t bits = bits_of(first); bits + kGroupLanes * stride <= end;
+       bits += kGroupLanes * stride) {
     std::array<float, kGroupLanes> x;
     for (std::uint32_t i = 0; i < kGroupLanes; ++i) x[i] = as_float(bits + i * stride);
     const auto y = evaluate(function, x);
-    for (std::size_t i = 0; i < x.size(); ++i) worst = std::max(worst, error_ulps(y[i], exact(static_cast<double>(x[i]))));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      worst = std::max(worst, error_ulps(y[i], exact(static_cast<double>(x[i]))));
   }
   return worst;
 }

@@ -1,4 +1,5 @@
-/// A warp with inputs, outputs and a texture unit of its own for tests: set registers, run, look at registers.
+/// A warp with inputs, outputs and a texture unit of its own for tests: set registers, run, look at
+/// registers.
 #pragma once
 
 #include "models/shader/warp.h"
@@ -19,11 +20,12 @@ inline bool is_nan(std::uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f80000
 
 /// Words that break things: zeros, ones, infinities, NaNs, denormals, borders of conversions.
 inline const std::vector<std::uint32_t>& special_words() {
-  static const std::vector<std::uint32_t> kWords{0u,          0x80000000u, 1u,          2u,          31u,         32u,         33u,
-                                                 ~0u,         0x7fffffffu, 0x80000001u, 0x007fffffu, 0x00800000u, 0x3f800000u, 0xbf800000u,
-                                                 0x7f800000u, 0xff800000u, 0x7fc00000u, 0xffc00001u, 0x7f7fffffu, 0xff7fffffu, 0x4f000000u,
-                                                 0x4effffffu, 0xcf000000u, 0xcf000001u, 0x4f800000u, 0x4f7fffffu, 0x3f000000u, 0x3effffffu,
-                                                 0x40200000u, 0xc0200000u, 0x3fc00000u, 0x4b000001u, 0xb3000000u, 0x477fff80u};
+  static const std::vector<std::uint32_t> kWords{
+      0u,          0x80000000u, 1u,          2u,          31u,         32u,         33u,
+      ~0u,         0x7fffffffu, 0x80000001u, 0x007fffffu, 0x00800000u, 0x3f800000u, 0xbf800000u,
+      0x7f800000u, 0xff800000u, 0x7fc00000u, 0xffc00001u, 0x7f7fffffu, 0xff7fffffu, 0x4f000000u,
+      0x4effffffu, 0xcf000000u, 0xcf000001u, 0x4f800000u, 0x4f7fffffu, 0x3f000000u, 0x3effffffu,
+      0x40200000u, 0xc0200000u, 0x3fc00000u, 0x4b000001u, 0xb3000000u, 0x477fff80u};
   return kWords;
 }
 
@@ -43,11 +45,14 @@ struct WarpFixture {
       vertex.vertex_index[i] = static_cast<std::uint32_t>(100 + i);
       vertex.instance_index[i] = static_cast<std::uint32_t>(7 * i);
       const auto t = static_cast<float>(i);
-      fragment.x[i] = t + 0.5f, fragment.y[i] = 2 * t + 0.5f, fragment.z[i] = t / 32, fragment.inv_w[i] = 1 / (t + 1);
-      fragment.persp_1[i] = t / 64, fragment.persp_2[i] = 0.5f - t / 64, fragment.linear_1[i] = t / 40, fragment.linear_2[i] = 0.25f;
+      fragment.x[i] = t + 0.5f, fragment.y[i] = 2 * t + 0.5f, fragment.z[i] = t / 32,
+      fragment.inv_w[i] = 1 / (t + 1);
+      fragment.persp_1[i] = t / 64, fragment.persp_2[i] = 0.5f - t / 64, fragment.linear_1[i] = t / 40,
+      fragment.linear_2[i] = 0.25f;
       fragment.front_facing[i] = (i & 4) != 0 ? ~0u : 0u;
       fragment.primitive_id[i] = static_cast<std::uint32_t>(i / 4);
-      for (std::size_t a = 0; a < attributes.size(); ++a) attributes[a][i] = static_cast<std::uint32_t>(1000 * a + i);
+      for (std::size_t a = 0; a < attributes.size(); ++a)
+        attributes[a][i] = static_cast<std::uint32_t>(1000 * a + i);
     }
     for (std::size_t q = 0; q < kWarpQuads; ++q) {
       for (std::size_t k = 0; k < 3 * kMaxVaryings; ++k)
@@ -65,7 +70,8 @@ struct WarpFixture {
   void bind_constants(const Program& program, std::uint32_t others = 0) {
     constants.assign(program.constants.words, others);
     for (const auto& range : program.constants.ranges)
-      for (std::size_t i = 0; i < range.literals.size(); ++i) constants[range.first_word + i] = range.literals[i];
+      for (std::size_t i = 0; i < range.literals.size(); ++i)
+        constants[range.first_word + i] = range.literals[i];
   }
 
   /// A stand-in for the texture unit: depends on the lane's own request only.
@@ -73,7 +79,8 @@ struct WarpFixture {
     std::array<LaneFloats, 4> rgba;
     for (std::size_t c = 0; c < rgba.size(); ++c)
       for (std::size_t i = 0; i < kWarpLanes; ++i)
-        rgba[c][i] = request.u[i] * 0.5f + request.v[i] * static_cast<float>(c + 1) + request.lod[i] + request.binding;
+        rgba[c][i] =
+            request.u[i] * 0.5f + request.v[i] * static_cast<float>(c + 1) + request.lod[i] + request.binding;
     return rgba;
   }
 

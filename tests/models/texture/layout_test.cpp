@@ -10,8 +10,12 @@
 using namespace quadrille::models;
 
 TEST_CASE("texture layout: texels of a chain have their own places within it") {
-  for (const auto& [width, height, levels] :
-       {std::tuple{1u, 1u, 1u}, {211u, 211u, 8u}, {1u, 70u, 7u}, {70u, 1u, 7u}, {64u, 32u, 7u}, {33u, 5u, 2u}}) {
+  for (const auto& [width, height, levels] : {std::tuple{1u, 1u, 1u},
+                                              {211u, 211u, 8u},
+                                              {1u, 70u, 7u},
+                                              {70u, 1u, 7u},
+                                              {64u, 32u, 7u},
+                                              {33u, 5u, 2u}}) {
     const TextureLayout layout = make_texture_layout(width, height, levels);
     CHECK(layout.bytes % kLineBytes == 0);
     std::set<std::uint32_t> seen;
@@ -34,8 +38,8 @@ TEST_CASE("texture layout: a sector is 4x2 texels and a line 8x4 and a tile 32x3
   for (std::uint32_t y = 0; y < 256; ++y) {
     for (std::uint32_t x = 0; x < 256; ++x) {
       const std::uint32_t i = layout.texel_index(0, x, y);
-      if (i / 8 != layout.texel_index(0, x / 4 * 4, y / 2 * 2) / 8 || i / 32 != layout.texel_index(0, x / 8 * 8, y / 4 * 4) / 32 ||
-          i / 1024 != (y / 32) * 8 + x / 32) {
+      if (i / 8 != layout.texel_index(0, x / 4 * 4, y / 2 * 2) / 8 ||
+          i / 32 != layout.texel_index(0, x / 8 * 8, y / 4 * 4) / 32 || i / 1024 != (y / 32) * 8 + x / 32) {
         FAIL("texel " << x << "," << y);
       }
     }
@@ -61,7 +65,9 @@ TEST_CASE("texture layout: upload puts each texel where its address says") {
   for (std::uint32_t level = 0; level < 6; ++level) {
     for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(view.layout.height[level]); ++y) {
       for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(view.layout.width[level]); ++x) {
-        if (memory.load<std::uint32_t>(view.texel_address(level, x, y)) != (x | y << 8 | level << 16 | 7u << 24)) FAIL("level " << level);
+        if (memory.load<std::uint32_t>(view.texel_address(level, x, y)) !=
+            (x | y << 8 | level << 16 | 7u << 24))
+          FAIL("level " << level);
       }
     }
   }

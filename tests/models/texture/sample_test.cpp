@@ -19,7 +19,8 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 
-PlainTexture random_texture(RandomSource& random, TexelFormat format, std::uint32_t width, std::uint32_t height, bool mipmapped) {
+PlainTexture random_texture(RandomSource& random, TexelFormat format, std::uint32_t width,
+                            std::uint32_t height, bool mipmapped) {
   PlainTexture t{format, width, height, 1, {}};
   if (mipmapped) t.levels = static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
   for (std::uint32_t level = 0; level < t.levels; ++level) {
@@ -31,8 +32,14 @@ PlainTexture random_texture(RandomSource& random, TexelFormat format, std::uint3
 
 SamplerState random_sampler(RandomSource& random) {
   const auto filter = [&] { return static_cast<Filter>(random.integer(0, 1)); };
-  SamplerState s{filter(), filter(), filter(), static_cast<Wrap>(random.integer(0, 2)), static_cast<Wrap>(random.integer(0, 2)),
-                 0,        0,        1000};
+  SamplerState s{filter(),
+                 filter(),
+                 filter(),
+                 static_cast<Wrap>(random.integer(0, 2)),
+                 static_cast<Wrap>(random.integer(0, 2)),
+                 0,
+                 0,
+                 1000};
   if (random.integer(0, 2) == 0) s.lod_bias = random.real(-3, 3);
   if (random.integer(0, 2) == 0) s.min_lod = random.real(0, 2);
   if (random.integer(0, 2) == 0) s.max_lod = s.min_lod + random.real(0, 3);
@@ -42,12 +49,13 @@ SamplerState random_sampler(RandomSource& random) {
 /// Quads at random places, each with its own scale and direction.
 TextureRequest random_request(RandomSource& random, std::uint32_t width, std::uint32_t height) {
   TextureRequest r;
-  r.op = std::array{Op::kTexImplicit, Op::kTexImplicit, Op::kTexBias, Op::kTexLod}[static_cast<std::size_t>(random.integer(0, 3))];
+  r.op = std::array{Op::kTexImplicit, Op::kTexImplicit, Op::kTexBias,
+                    Op::kTexLod}[static_cast<std::size_t>(random.integer(0, 3))];
   r.active = random.integer(0, 1) != 0 ? ~0u : random.bits();
   for (std::size_t quad = 0; quad < kWarpQuads; ++quad) {
     const float step = std::exp2(random.real(-3, 7)), u0 = random.real(-3, 3), v0 = random.real(-3, 3);
-    const float dx = random.real(-1, 1) * step, dy = random.real(-1, 1) * step, ex = random.real(-1, 1) * step,
-                ey = random.real(-1, 1) * step;
+    const float dx = random.real(-1, 1) * step, dy = random.real(-1, 1) * step,
+                ex = random.real(-1, 1) * step, ey = random.real(-1, 1) * step;
     for (std::size_t pixel = 0; pixel < 4; ++pixel) {
       const std::size_t column = pixel % 2, row = pixel / 2;
       const auto x = static_cast<float>(column), y = static_cast<float>(row);
@@ -59,8 +67,8 @@ TextureRequest random_request(RandomSource& random, std::uint32_t width, std::ui
   return r;
 }
 
-std::array<LaneFloats, 4> sampled(const TextureView& view, const SamplerState& s, const TextureRequest& r, const DeviceMemory& memory,
-                                  const Precision& precision = {}) {
+std::array<LaneFloats, 4> sampled(const TextureView& view, const SamplerState& s, const TextureRequest& r,
+                                  const DeviceMemory& memory, const Precision& precision = {}) {
   auto plan = std::make_unique<TexturePlan>();
   plan_texture(view, s, r, precision, *plan);
   std::array<LaneFloats, 4> rgba;
@@ -84,7 +92,8 @@ TEST_CASE("sample: agrees with a sampler written in double for every size and st
   std::size_t lanes = 0, close = 0;
   for (int round = 0; round < 4000; ++round) {
     const auto [width, height] = kSizes[static_cast<std::size_t>(round) % kSizes.size()];
-    const TexelFormat format = random.integer(0, 1) != 0 ? TexelFormat::kR8G8B8A8Srgb : TexelFormat::kR8G8B8A8Unorm;
+    const TexelFormat format =
+        random.integer(0, 1) != 0 ? TexelFormat::kR8G8B8A8Srgb : TexelFormat::kR8G8B8A8Unorm;
     const PlainTexture texture = random_texture(random, format, width, height, random.integer(0, 3) != 0);
     DeviceMemory memory;
     (void)memory.allocate(static_cast<std::uint64_t>(random.integer(0, 1000)));
@@ -94,18 +103,20 @@ TEST_CASE("sample: agrees with a sampler written in double for every size and st
     const ScalarSampler ruler(texture, state, precision);
     const TextureRequest request = random_request(random, width, height);
     const auto rgba = sampled(view, state, request, memory, precision);
-    // A coordinate or level at the boundary of its grid may round the other way: one step of the grid, or another texel when nothing is
-    // filtered.
+    // A coordinate or level at the boundary of its grid may round the other way: one step of the grid, or
+    // another texel when nothing is filtered.
     const double step = 2.0 / (1 << precision.subtexel_bits) + 1.0 / (1 << precision.lod_bits);
     for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
       if ((request.active >> lane & 1) == 0) continue;
-      const Color expected =
-          ruler.sample(static_cast<double>(request.u[lane]), static_cast<double>(request.v[lane]), ruler.lambda(request, lane));
+      const Color expected = ruler.sample(static_cast<double>(request.u[lane]),
+                                          static_cast<double>(request.v[lane]), ruler.lambda(request, lane));
       double error = 0;
-      for (std::size_t c = 0; c < 4; ++c) error = std::max(error, std::abs(static_cast<double>(rgba[c][lane]) - expected[c]));
+      for (std::size_t c = 0; c < 4; ++c)
+        error = std::max(error, std::abs(static_cast<double>(rgba[c][lane]) - expected[c]));
       ++lanes;
       close += error < 2e-6 ? 1 : 0;
-      const bool all_linear = state.mag == Filter::kLinear && state.min == Filter::kLinear && state.mip == Filter::kLinear;
+      const bool all_linear =
+          state.mag == Filter::kLinear && state.min == Filter::kLinear && state.mip == Filter::kLinear;
       if (all_linear && error > step) FAIL("round " << round << " lane " << lane << " error " << error);
     }
   }
@@ -117,8 +128,10 @@ TEST_CASE("sample: a constant texture filters to itself") {
   RandomSource random(112);
   for (int round = 0; round < 300; ++round) {
     const std::uint32_t value = random.bits();
-    PlainTexture texture = random_texture(random, round % 2 == 0 ? TexelFormat::kR8G8B8A8Srgb : TexelFormat::kR8G8B8A8Unorm, 37, 64, true);
-    for (std::size_t i = 0; i < texture.texels.size(); ++i) texture.texels[i] = static_cast<std::byte>(value >> (8 * (i % 4)));
+    PlainTexture texture = random_texture(
+        random, round % 2 == 0 ? TexelFormat::kR8G8B8A8Srgb : TexelFormat::kR8G8B8A8Unorm, 37, 64, true);
+    for (std::size_t i = 0; i < texture.texels.size(); ++i)
+      texture.texels[i] = static_cast<std::byte>(value >> (8 * (i % 4)));
     DeviceMemory memory;
     const TextureView view = upload(memory, texture);
     const TextureRequest request = random_request(random, 37, 64);
@@ -127,7 +140,8 @@ TEST_CASE("sample: a constant texture filters to itself") {
       if ((request.active >> lane & 1) == 0) continue;
       for (std::size_t c = 0; c < 4; ++c) {
         const auto code = static_cast<std::uint8_t>(value >> (8 * c));
-        const float expected = c < 3 && round % 2 == 0 ? decode_srgb8(code) : static_cast<float>(code) / 255.0f;
+        const float expected =
+            c < 3 && round % 2 == 0 ? decode_srgb8(code) : static_cast<float>(code) / 255.0f;
         if (rgba[c][lane] != expected) FAIL("round " << round << " lane " << lane << " component " << c);
       }
     }
@@ -143,7 +157,8 @@ TEST_CASE("sample: the plan lists each touched line once with exactly the sector
     const auto [width, height] = kSizes[static_cast<std::size_t>(round) % kSizes.size()];
     DeviceMemory memory;
     (void)memory.allocate(static_cast<std::uint64_t>(random.integer(0, 1000)));
-    const TextureView view = upload(memory, random_texture(random, TexelFormat::kR8G8B8A8Unorm, width, height, true));
+    const TextureView view =
+        upload(memory, random_texture(random, TexelFormat::kR8G8B8A8Unorm, width, height, true));
     const TextureRequest request = random_request(random, width, height);
     plan_texture(view, random_sampler(random), request, {}, *plan);
     std::map<std::uint32_t, std::uint32_t> expected;
@@ -171,11 +186,14 @@ TEST_CASE("sample: the plan lists each touched line once with exactly the sector
     }
     if (request.active != 0)
       REQUIRE(plan->lines[0].line ==
-              (view.base + 4 * static_cast<std::uint64_t>(plan->footprint[static_cast<std::size_t>(std::countr_zero(request.active)) / 8][0]
-                                                              .texel[0][static_cast<std::size_t>(std::countr_zero(request.active)) % 8])) /
+              (view.base +
+               4 * static_cast<std::uint64_t>(
+                       plan->footprint[static_cast<std::size_t>(std::countr_zero(request.active)) / 8][0]
+                           .texel[0][static_cast<std::size_t>(std::countr_zero(request.active)) % 8])) /
                   128);
     REQUIRE(plan->bilinear_quads == quads);
-    REQUIRE(plan->magnified_lanes + plan->minified_lanes == static_cast<std::uint32_t>(std::popcount(request.active)));
+    REQUIRE(plan->magnified_lanes + plan->minified_lanes ==
+            static_cast<std::uint32_t>(std::popcount(request.active)));
   }
   CHECK(most > 50);
 }
@@ -202,7 +220,8 @@ TEST_CASE("sample: hostile coordinates read inside the texture and count as zero
       for (std::size_t level = 0; level < plan->levels[group]; ++level) {
         for (const auto& corner : plan->footprint[group][level].texel) {
           for (const std::int32_t texel : corner) {
-            if (texel < 0 || 4 * static_cast<std::uint64_t>(texel) >= view.layout.bytes) FAIL("round " << round << " texel " << texel);
+            if (texel < 0 || 4 * static_cast<std::uint64_t>(texel) >= view.layout.bytes)
+              FAIL("round " << round << " texel " << texel);
           }
         }
       }
@@ -216,8 +235,10 @@ TEST_CASE("sample: hostile coordinates read inside the texture and count as zero
     const auto a = sampled(view, s, r, memory), b = sampled(view, s, zeroed, memory);
     for (std::size_t c = 0; c < 4; ++c) {
       for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
-        if (!std::isfinite(a[c][lane]) || a[c][lane] < 0.0f || a[c][lane] > 1.0f) FAIL("round " << round << ": " << a[c][lane]);
-        if (a[c][lane] != b[c][lane]) FAIL("round " << round << " lane " << lane << ": not finite is not zero");
+        if (!std::isfinite(a[c][lane]) || a[c][lane] < 0.0f || a[c][lane] > 1.0f)
+          FAIL("round " << round << ": " << a[c][lane]);
+        if (a[c][lane] != b[c][lane])
+          FAIL("round " << round << " lane " << lane << ": not finite is not zero");
       }
     }
   }
@@ -234,7 +255,8 @@ TEST_CASE("sample: a quad's result does not depend on the other quads or on inac
     const TextureRequest r = random_request(random, 211, 130);
     TextureRequest moved = random_request(random, 211, 130);
     moved.op = r.op;
-    const auto from = static_cast<std::size_t>(random.integer(0, 7)), to = static_cast<std::size_t>(random.integer(0, 7));
+    const auto from = static_cast<std::size_t>(random.integer(0, 7)),
+               to = static_cast<std::size_t>(random.integer(0, 7));
     const std::uint32_t active = r.active >> (4 * from) & 15;
     moved.active = (moved.active & ~(15u << (4 * to))) | active << (4 * to);
     for (std::size_t pixel = 0; pixel < 4; ++pixel) {
@@ -259,7 +281,8 @@ TEST_CASE("sample: one texel a pixel is level 0 and two is level 1 and neither m
   DeviceMemory memory;
   const TextureView view = upload(memory, texture);
   auto plan = std::make_unique<TexturePlan>();
-  for (const auto& [step, level, magnified] : {std::tuple{0.5f, 0, 32u}, {1.0f, 0, 32u}, {2.0f, 1, 0u}, {8.0f, 3, 0u}, {1e6f, 6, 0u}}) {
+  for (const auto& [step, level, magnified] :
+       {std::tuple{0.5f, 0, 32u}, {1.0f, 0, 32u}, {2.0f, 1, 0u}, {8.0f, 3, 0u}, {1e6f, 6, 0u}}) {
     TextureRequest r = random_request(random, 64, 64);
     r.op = Op::kTexImplicit;
     r.active = ~0u;

@@ -1,4 +1,5 @@
-/// A sampler written from the specification, one lane at a time in double: the ruler for the texture unit's tests.
+/// A sampler written from the specification, one lane at a time in double: the ruler for the texture unit's
+/// tests.
 #pragma once
 
 #include "models/precision.h"
@@ -24,15 +25,19 @@ struct PlainTexture {
   std::vector<std::byte> texels;
 
   [[nodiscard]] std::uint32_t level_width(std::uint32_t level) const { return std::max(width >> level, 1u); }
-  [[nodiscard]] std::uint32_t level_height(std::uint32_t level) const { return std::max(height >> level, 1u); }
+  [[nodiscard]] std::uint32_t level_height(std::uint32_t level) const {
+    return std::max(height >> level, 1u);
+  }
   [[nodiscard]] Color texel(std::uint32_t level, std::int64_t x, std::int64_t y) const {
     std::size_t first = 0;
     for (std::uint32_t i = 0; i < level; ++i) first += std::size_t{level_width(i)} * level_height(i);
-    const std::size_t index = 4 * (first + static_cast<std::size_t>(y) * level_width(level) + static_cast<std::size_t>(x));
+    const std::size_t index =
+        4 * (first + static_cast<std::size_t>(y) * level_width(level) + static_cast<std::size_t>(x));
     Color color;
     for (std::size_t c = 0; c < 4; ++c) {
       const auto code = static_cast<std::uint8_t>(texels.at(index + c));
-      color[c] = format == TexelFormat::kR8G8B8A8Srgb && c < 3 ? static_cast<double>(decode_srgb8(code)) : code / 255.0;
+      color[c] = format == TexelFormat::kR8G8B8A8Srgb && c < 3 ? static_cast<double>(decode_srgb8(code))
+                                                               : code / 255.0;
     }
     return color;
   }
@@ -43,7 +48,8 @@ class ScalarSampler {
   ScalarSampler(const PlainTexture& texture, const SamplerState& sampler, const Precision& precision)
       : texture_(texture), sampler_(sampler), precision_(precision) {}
 
-  /// Level of detail of a lane; all of its quad is in the request. [VK1.3 #textures-level-of-detail-operation]
+  /// Level of detail of a lane; all of its quad is in the request. [VK1.3
+  /// #textures-level-of-detail-operation]
   [[nodiscard]] double lambda(const TextureRequest& r, std::size_t lane) const {
     double base, bias = static_cast<double>(sampler_.lod_bias);
     if (r.op == Op::kTexLod) {
@@ -58,15 +64,18 @@ class ScalarSampler {
       base = std::log2(std::max({length(quad + 1), length(quad + 2), 1e-15}));
       if (r.op == Op::kTexBias) bias += finite(r.lod[lane]);
     }
-    const double limited = std::clamp(bias, -static_cast<double>(kMaxLodBias), static_cast<double>(kMaxLodBias));
-    const double l = std::clamp(base + limited, static_cast<double>(sampler_.min_lod), static_cast<double>(sampler_.max_lod));
+    const double limited =
+        std::clamp(bias, -static_cast<double>(kMaxLodBias), static_cast<double>(kMaxLodBias));
+    const double l = std::clamp(base + limited, static_cast<double>(sampler_.min_lod),
+                                static_cast<double>(sampler_.max_lod));
     return std::nearbyint(std::ldexp(l, precision_.lod_bits)) / std::ldexp(1.0, precision_.lod_bits);
   }
 
   [[nodiscard]] Color sample(double u, double v, double l) const {
     const Filter filter = l <= 0 ? sampler_.mag : sampler_.min;
     const double d = std::clamp(l, 0.0, static_cast<double>(texture_.levels - 1));
-    if (sampler_.mip == Filter::kNearest) return filtered(filter, u, v, static_cast<std::uint32_t>(std::ceil(d + 0.5) - 1));
+    if (sampler_.mip == Filter::kNearest)
+      return filtered(filter, u, v, static_cast<std::uint32_t>(std::ceil(d + 0.5) - 1));
     const auto high = static_cast<std::uint32_t>(std::floor(d));
     const std::uint32_t low = std::min(high + 1, texture_.levels - 1);
     return mix(filtered(filter, u, v, high), filtered(filter, u, v, low), d - std::floor(d));
@@ -98,9 +107,11 @@ class ScalarSampler {
     const std::int64_t w = texture_.level_width(level), h = texture_.level_height(level);
     const double x = u * static_cast<double>(w), y = v * static_cast<double>(h);
     if (filter == Filter::kNearest)
-      return texture_.texel(level, wrapped(std::floor(x), w, sampler_.wrap_u), wrapped(std::floor(y), h, sampler_.wrap_v));
+      return texture_.texel(level, wrapped(std::floor(x), w, sampler_.wrap_u),
+                            wrapped(std::floor(y), h, sampler_.wrap_v));
     const auto quantised = [&](double c) {
-      return std::ldexp(std::nearbyint(std::ldexp(c, precision_.subtexel_bits)), -precision_.subtexel_bits) - 0.5;
+      return std::ldexp(std::nearbyint(std::ldexp(c, precision_.subtexel_bits)), -precision_.subtexel_bits) -
+             0.5;
     };
     const double qx = quantised(x), qy = quantised(y), i = std::floor(qx), j = std::floor(qy);
     const auto at = [&](double tx, double ty) {

@@ -12,7 +12,8 @@ namespace quadrille::pipeline {
 
 TEST_CASE("control flow: nested selections") {
   check(
-      "int r = 0; if (i.x > 0) { if (i.y > 0) r = i.x * 3; else { r = i.y - 5; if (i.z > 3) r += 100; } } else if (i.z < 0) { r = -7; } "
+      "int r = 0; if (i.x > 0) { if (i.y > 0) r = i.x * 3; else { r = i.y - 5; if (i.z > 3) r += 100; } } "
+      "else if (i.z < 0) { r = -7; } "
       "color = vec4(r);",
       [](int x, int y, int z, int) {
         int r = 0;
@@ -30,11 +31,12 @@ TEST_CASE("control flow: nested selections") {
 }
 
 TEST_CASE("control flow: a loop whose count differs from lane to lane") {
-  check("int s = 0; for (int k = 0; k < i.x + 20; ++k) s += k * k; color = vec4(s);", [](int x, int, int, int) {
-    int s = 0;
-    for (int k = 0; k < x + 20; ++k) s += k * k;
-    return s;
-  });
+  check("int s = 0; for (int k = 0; k < i.x + 20; ++k) s += k * k; color = vec4(s);",
+        [](int x, int, int, int) {
+          int s = 0;
+          for (int k = 0; k < x + 20; ++k) s += k * k;
+          return s;
+        });
 }
 
 TEST_CASE("control flow: break and continue inside selections inside nested loops") {
@@ -73,28 +75,32 @@ color = vec4(s);)",
 }
 
 TEST_CASE("control flow: do-while with continue tests its condition") {
-  check("int s = 0, k = abs(i.x); do { --k; if ((k & 3) == 2) continue; s += k; } while (k > i.y && k > -50); color = vec4(s * 100 + k);",
-        [](int x, int y, int, int) {
-          int s = 0, k = std::abs(x);
-          do {
-            --k;
-            if ((k & 3) == 2) continue;
-            s += k;
-          } while (k > y && k > -50);
-          return s * 100 + k;
-        });
+  check(
+      "int s = 0, k = abs(i.x); do { --k; if ((k & 3) == 2) continue; s += k; } while (k > i.y && k > -50); "
+      "color = vec4(s * 100 + k);",
+      [](int x, int y, int, int) {
+        int s = 0, k = std::abs(x);
+        do {
+          --k;
+          if ((k & 3) == 2) continue;
+          s += k;
+        } while (k > y && k > -50);
+        return s * 100 + k;
+      });
 }
 
 TEST_CASE("control flow: values that swap in a loop") {
-  check("int x = i.x, y = i.y, n = abs(i.z); for (int k = 0; k < n; ++k) { int t = x; x = y; y = t - y; } color = vec4(x * 64 + y);",
-        [](int x, int y, int z, int) {
-          for (int k = 0; k < std::abs(z); ++k) {
-            const int t = x;
-            x = y;
-            y = t - y;
-          }
-          return x * 64 + y;
-        });
+  check(
+      "int x = i.x, y = i.y, n = abs(i.z); for (int k = 0; k < n; ++k) { int t = x; x = y; y = t - y; } "
+      "color = vec4(x * 64 + y);",
+      [](int x, int y, int z, int) {
+        for (int k = 0; k < std::abs(z); ++k) {
+          const int t = x;
+          x = y;
+          y = t - y;
+        }
+        return x * 64 + y;
+      });
 }
 
 TEST_CASE("control flow: switch with fall-through, default and breaks inside selections") {
@@ -188,14 +194,16 @@ TEST_CASE("control flow: early returns of functions, also from inside loops") {
         };
         return find(x, y) * 10 + find(z, w);
       },
-      "int find(int p, int q) { if (p > 10) return 1; for (int k = 0; k < 15; ++k) { if (k * k > p + 20) return k; "
+      "int find(int p, int q) { if (p > 10) return 1; for (int k = 0; k < 15; ++k) { if (k * k > p + 20) "
+      "return k; "
       "for (int j = 0; j < 3; ++j) if (j + k == q) return 100 + j; } return -1; }");
 }
 
 TEST_CASE("control flow: unrolled and rolled loops agree, and unrolling leaves no loop") {
   for (const char* hint : {"[[unroll]]", "[[dont_unroll]]"}) {
     const std::string body =
-        std::string("int s = i.x; ") + hint + " for (int k = 0; k < 9; ++k) { if (k == 4) s *= 2; s += k * i.y; } color = vec4(s);";
+        std::string("int s = i.x; ") + hint +
+        " for (int k = 0; k < 9; ++k) { if (k == 4) s *= 2; s += k * i.y; } color = vec4(s);";
     const std::string extension = "#extension GL_EXT_control_flow_attributes : require\n";
     check(
         body,
@@ -209,14 +217,16 @@ TEST_CASE("control flow: unrolled and rolled loops agree, and unrolling leaves n
         },
         extension);
     const models::Program p = compile_fragment(fragment_source(body, extension));
-    const bool has_loop = std::any_of(p.code.begin(), p.code.end(), [](const models::Instruction& i) { return i.op == models::Op::kLoop; });
+    const bool has_loop = std::any_of(p.code.begin(), p.code.end(),
+                                      [](const models::Instruction& i) { return i.op == models::Op::kLoop; });
     CHECK(has_loop == (std::string(hint) == "[[dont_unroll]]"));
   }
 }
 
 TEST_CASE("control flow: local arrays indexed at run time, written and read") {
   check(
-      "int t[6]; for (int k = 0; k < 6; ++k) t[k] = k * i.x; t[abs(i.y) % 6] = 77; int s = 0; for (int k = 0; k < 6; ++k) s = s * 3 + t[(k "
+      "int t[6]; for (int k = 0; k < 6; ++k) t[k] = k * i.x; t[abs(i.y) % 6] = 77; int s = 0; for (int k = "
+      "0; k < 6; ++k) s = s * 3 + t[(k "
       "+ abs(i.z)) % 6]; "
       "color = vec4(s & 4095);",
       [](int x, int y, int z, int) {
@@ -227,10 +237,11 @@ TEST_CASE("control flow: local arrays indexed at run time, written and read") {
         for (int k = 0; k < 6; ++k) s = s * 3 + t[(k + std::abs(z)) % 6];
         return s & 4095;
       });
-  check("const int t[5] = int[](3, 1, 4, 1, 5); color = vec4(t[abs(i.x) % 5] * 10 + t[abs(i.y) % 5]);", [](int x, int y, int, int) {
-    const int t[5] = {3, 1, 4, 1, 5};
-    return t[std::abs(x) % 5] * 10 + t[std::abs(y) % 5];
-  });
+  check("const int t[5] = int[](3, 1, 4, 1, 5); color = vec4(t[abs(i.x) % 5] * 10 + t[abs(i.y) % 5]);",
+        [](int x, int y, int, int) {
+          const int t[5] = {3, 1, 4, 1, 5};
+          return t[std::abs(x) % 5] * 10 + t[std::abs(y) % 5];
+        });
 }
 
 TEST_CASE("control flow: discard marks lanes and the others go on") {
@@ -244,7 +255,8 @@ TEST_CASE("control flow: discard marks lanes and the others go on") {
   }
   const models::Program p = compile_fragment(fragment_source("if (a.x > 0.5) discard; color = a;"));
   CHECK(p.uses_discard);
-  CHECK(std::none_of(p.code.begin(), p.code.end(), [](const models::Instruction& i) { return i.op == models::Op::kIf; }));
+  CHECK(std::none_of(p.code.begin(), p.code.end(),
+                     [](const models::Instruction& i) { return i.op == models::Op::kIf; }));
 }
 
 TEST_CASE("control flow: a lane discarded inside nested loops that only end by its own values leaves them") {
@@ -281,8 +293,10 @@ color = vec4(s);)";
 
 TEST_CASE("control flow: derivatives are differences within the quad") {
   RunInput input;
-  const RunOutput out =
-      run_snippet("float f = gl_FragCoord.x * gl_FragCoord.x + 3.0 * gl_FragCoord.y; color = vec4(dFdx(f), dFdy(f), fwidth(f), 0);", input);
+  const RunOutput out = run_snippet(
+      "float f = gl_FragCoord.x * gl_FragCoord.x + 3.0 * gl_FragCoord.y; color = vec4(dFdx(f), dFdy(f), "
+      "fwidth(f), 0);",
+      input);
   for (int lane = 0; lane < models::kWarpLanes; ++lane) {
     const int quad = lane / 4;
     const float x = 10.5f + 2.0f * static_cast<float>(quad);
@@ -304,7 +318,8 @@ TEST_CASE("control flow: a switch whose default falls into a case") {
     return r;
   };
   check(
-      "int r = 1; switch (i.x & 7) { case 2: r = 40; default: r += 5; case 0: r *= 3; case 1: r += 1; break; case 4: r = 9; } color = "
+      "int r = 1; switch (i.x & 7) { case 2: r = 40; default: r += 5; case 0: r *= 3; case 1: r += 1; break; "
+      "case 4: r = 9; } color = "
       "vec4(r);",
       expected);
 }
@@ -333,7 +348,8 @@ bool both(int at) { deeper(at); return stop(at); })";
   dies("for (int j = 0; j < 2; ++j) { s = 0; do { ++s; } while (s < 5 && !both(s)); }",
        [](int x, int y) { return x < 4 || (y >= 1 && y <= 6); });
   // Only the function ends this loop; what it returns after a discard does not.
-  dies("do { if (i.x >= 4) { s = 5; break; } ++s; } while (!stop(s) || s < 100); s = 5;", [](int x, int) { return x < 4; });
+  dies("do { if (i.x >= 4) { s = 5; break; } ++s; } while (!stop(s) || s < 100); s = 5;",
+       [](int x, int) { return x < 4; });
 }
 
 }  // namespace quadrille::pipeline

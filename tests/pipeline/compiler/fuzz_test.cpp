@@ -25,16 +25,26 @@ class Generator {
     if (depth == 0 || random_() % 8 == 0) return leaf();
     const Expression x = expression(depth - 1), y = expression(depth - 1);
     switch (random_() % 11) {
-      case 0: return {fmt::format("({} + {})", x.text, y.text), [=](const Point& p) { return x.value(p) + y.value(p); }};
-      case 1: return {fmt::format("({} - {})", x.text, y.text), [=](const Point& p) { return x.value(p) - y.value(p); }};
+      case 0:
+        return {fmt::format("({} + {})", x.text, y.text),
+                [=](const Point& p) { return x.value(p) + y.value(p); }};
+      case 1:
+        return {fmt::format("({} - {})", x.text, y.text),
+                [=](const Point& p) { return x.value(p) - y.value(p); }};
       case 2:
-      case 3: return {fmt::format("({} * {})", x.text, y.text), [=](const Point& p) { return x.value(p) * y.value(p); }};
+      case 3:
+        return {fmt::format("({} * {})", x.text, y.text),
+                [=](const Point& p) { return x.value(p) * y.value(p); }};
       case 4: return {fmt::format("(-{})", x.text), [=](const Point& p) { return -x.value(p); }};
       case 5: return {fmt::format("abs({})", x.text), [=](const Point& p) { return std::abs(x.value(p)); }};
-      case 6: return {fmt::format("min({}, {})", x.text, y.text), [=](const Point& p) { return std::fmin(x.value(p), y.value(p)); }};
+      case 6:
+        return {fmt::format("min({}, {})", x.text, y.text),
+                [=](const Point& p) { return std::fmin(x.value(p), y.value(p)); }};
       case 7:
-        return {fmt::format("clamp({}, 0.0, 1.0)", x.text), [=](const Point& p) { return std::fmin(std::fmax(x.value(p), 0.0f), 1.0f); }};
-      case 8: return {fmt::format("floor({})", x.text), [=](const Point& p) { return std::floor(x.value(p)); }};
+        return {fmt::format("clamp({}, 0.0, 1.0)", x.text),
+                [=](const Point& p) { return std::fmin(std::fmax(x.value(p), 0.0f), 1.0f); }};
+      case 8:
+        return {fmt::format("floor({})", x.text), [=](const Point& p) { return std::floor(x.value(p)); }};
       case 9: {
         const Expression c = expression(depth - 1), d = expression(depth - 1);
         return {fmt::format("({} < {} ? {} : {})", x.text, y.text, c.text, d.text),
@@ -68,7 +78,8 @@ class Generator {
 /// An integer program over variables x[0..3], as text and as something to run.
 struct Statement {
   std::string text;
-  std::function<int(std::array<int, 4>&, int depth)> run;  ///< 0 goes on, 1 breaks, 2 continues the innermost loop
+  /// 0 goes on, 1 breaks, 2 continues the innermost loop
+  std::function<int(std::array<int, 4>&, int depth)> run;
 };
 
 class ProgramGenerator {
@@ -94,13 +105,15 @@ class ProgramGenerator {
     const std::uint32_t kind = depth == 0 ? random_() % 2 : random_() % 7;
     if (kind == 2 || kind == 3) {
       const Statement yes = block(depth - 1, in_loop), no = block(depth - 1, in_loop);
-      return {fmt::format("if ((x{} & 3) > x{} - {}) {{ {} }} else {{ {} }} ", s, t, k, yes.text, no.text),
-              [=](std::array<int, 4>& x, int n) { return (x[s] & 3) > x[t] - k ? yes.run(x, n) : no.run(x, n); }};
+      return {
+          fmt::format("if ((x{} & 3) > x{} - {}) {{ {} }} else {{ {} }} ", s, t, k, yes.text, no.text),
+          [=](std::array<int, 4>& x, int n) { return (x[s] & 3) > x[t] - k ? yes.run(x, n) : no.run(x, n); }};
     }
     if (kind == 4) {
       const Statement body = block(depth - 1, true);
       const std::string counter = fmt::format("k{}", counters_++);
-      return {fmt::format("for (int {0} = 0; {0} < (x{1} & 7); ++{0}) {{ x{2} += {0}; {3} }} ", counter, s, d, body.text),
+      return {fmt::format("for (int {0} = 0; {0} < (x{1} & 7); ++{0}) {{ x{2} += {0}; {3} }} ", counter, s, d,
+                          body.text),
               [=](std::array<int, 4>& x, int n) {
                 for (int c = 0; c < (x[s] & 7); ++c) {
                   x[d] += c;
@@ -116,7 +129,8 @@ class ProgramGenerator {
     }
     if (kind == 6) {
       const Statement first = block(depth - 1, false), second = block(depth - 1, false);
-      return {fmt::format("switch (x{} & 3) {{ case 0: {} case 1: {} break; case 3: x{} -= 9; }} ", s, first.text, second.text, d),
+      return {fmt::format("switch (x{} & 3) {{ case 0: {} case 1: {} break; case 3: x{} -= 9; }} ", s,
+                          first.text, second.text, d),
               [=](std::array<int, 4>& x, int n) {
                 const int selector = x[s] & 3;
                 if (selector == 0) first.run(x, n);
@@ -142,8 +156,9 @@ TEST_CASE("fuzz: random float expressions have the bits of C++") {
     RunInput input;
     input.points = assorted_points(seed + 1000);
     INFO(parts[0].text << "\n" << parts[1].text << "\n" << parts[2].text << "\n" << parts[3].text);
-    const RunOutput out =
-        run_snippet(fmt::format("color = vec4({}, {}, {}, {});", parts[0].text, parts[1].text, parts[2].text, parts[3].text), input);
+    const RunOutput out = run_snippet(fmt::format("color = vec4({}, {}, {}, {});", parts[0].text,
+                                                  parts[1].text, parts[2].text, parts[3].text),
+                                      input);
     for (int k = 0; k < models::kWarpQuads; ++k)
       for (std::size_t c = 0; c < 4; ++c) {
         const float want = parts[c].value(input.points[static_cast<std::size_t>(k)]), got = out.point(k)[c];
@@ -159,8 +174,9 @@ TEST_CASE("fuzz: random control flow computes what C++ does, lane by lane") {
     RunInput input;
     input.points = assorted_points(seed + 500);
     INFO(program.text);
-    const RunOutput out =
-        run_snippet("int x0 = i.x, x1 = i.y, x2 = i.z, x3 = i.w; " + program.text + " color = vec4(x0, x1, x2, x3);", input);
+    const RunOutput out = run_snippet(
+        "int x0 = i.x, x1 = i.y, x2 = i.z, x3 = i.w; " + program.text + " color = vec4(x0, x1, x2, x3);",
+        input);
     for (int k = 0; k < models::kWarpQuads; ++k) {
       const auto& i = input.points[static_cast<std::size_t>(k)].i;
       std::array<int, 4> x{i[0], i[1], i[2], i[3]};
@@ -171,8 +187,8 @@ TEST_CASE("fuzz: random control flow computes what C++ does, lane by lane") {
 }
 
 TEST_CASE("fuzz: the same module gives the same program") {
-  const std::string source =
-      fragment_source("vec4 s = a; for (int k = 0; k < i.x; ++k) { s = s.yzwx * b; if (s.x > 2.0) break; } color = s;");
+  const std::string source = fragment_source(
+      "vec4 s = a; for (int k = 0; k < i.x; ++k) { s = s.yzwx * b; if (s.x > 2.0) break; } color = s;");
   const auto vertex = vertex_spirv(plain_vertex_source());
   const auto fragment = fragment_spirv(source);
   CHECK(models::disassemble(compile_pipeline(vertex, "v", fragment, "f").fragment) ==

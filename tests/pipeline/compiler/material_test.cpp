@@ -1,4 +1,5 @@
-/// A material of realistic size: metallic-roughness with five textures, normal mapping and a loop over up to four lights.
+/// A material of realistic size: metallic-roughness with five textures, normal mapping and a loop over up to
+/// four lights.
 #include "tests/pipeline/compiler/shader_runner.h"
 
 #include <catch2/catch.hpp>
@@ -73,7 +74,8 @@ TEST_CASE("material: one light straight above a flat grey surface gives the clos
   const CompiledPipeline p = compile_pipeline(vertex_spirv(kVertex), "v", fragment_spirv(kFragment), "f");
   RunInput input;
   std::vector<std::uint32_t> frame(64), material(16);
-  const auto set = [](std::vector<std::uint32_t>& words, std::size_t at, std::initializer_list<float> values) {
+  const auto set = [](std::vector<std::uint32_t>& words, std::size_t at,
+                      std::initializer_list<float> values) {
     for (const float v : values) words[at++] = std::bit_cast<std::uint32_t>(v);
   };
   set(frame, 16, {0, 0, 5, 1});              // eye
@@ -81,14 +83,17 @@ TEST_CASE("material: one light straight above a flat grey surface gives the clos
   frame[52] = 1;
   set(material, 0, {0.5f, 0.5f, 0.5f, 0.75f, 0, 0, 0, 0, 0, 1, 1, 1});
   input.blocks = {{{0, 0}, frame}, {{1, 0}, material}};
-  input.texture = [](int binding, float, float, float) { return binding == 2 ? Vec4{0.5f, 0.5f, 1, 1} : Vec4{1, 1, 1, 1}; };
+  input.texture = [](int binding, float, float, float) {
+    return binding == 2 ? Vec4{0.5f, 0.5f, 1, 1} : Vec4{1, 1, 1, 1};
+  };
   for (Point& q : input.points) {  // packed: position xyz, normal x | normal yz, tangent xy | tangent zw, uv
     q.a = {0, 0, 0, 0};
     q.b = {0, 1, 1, 0};
     q.i = {0, std::bit_cast<std::int32_t>(1.0f), 0, 0};
   }
   const Vec4 color = run_fragment(p.fragment, input).point(0);
-  const double specular = 0.04 * (1.0 / 3.14159265) * 0.25;  // D = 1/pi, visibility 1/4 at normal incidence and roughness 1
+  // D = 1/pi, visibility 1/4 at normal incidence and roughness 1
+  const double specular = 0.04 * (1.0 / 3.14159265) * 0.25;
   const double expected = 2.0 * (0.96 * 0.5 / 3.14159265 + specular) + 0.5 * 0.03;
   CHECK(color[0] == Approx(expected).epsilon(1e-4));
   CHECK(color[3] == 0.75f);

@@ -28,12 +28,15 @@ TEST_CASE("uniform blocks: members are read at their std140 offsets") {
   const std::string declarations = R"(
 struct S { float f; vec3 v; mat2 m; };
 layout(set=1, binding=3, std140) uniform U { float f; vec3 v; mat3 c; layout(row_major) mat2x3 r; S s[3]; float t[4]; } u;)";
-  // Offsets in words: f 0, v 4, c 8 (columns of 4), r 20 (2x3 row-major: 3 rows of 2, stride 4), s 32 (f +0, v +4, m +8; size 16), t 80 (stride 4).
+  // Offsets in words: f 0, v 4, c 8 (columns of 4), r 20 (2x3 row-major: 3 rows of 2, stride 4), s 32 (f +0,
+  // v +4, m +8; size 16), t 80 (stride 4).
   CHECK(run_snippet("color = vec4(u.f, u.v);", input, declarations).point(0) == Vec4{0, 4, 5, 6});
   CHECK(run_snippet("color = vec4(u.c[1], u.c[2].z);", input, declarations).point(0) == Vec4{12, 13, 14, 18});
   CHECK(run_snippet("color = vec4(u.r[0], u.r[1].y);", input, declarations).point(0) == Vec4{20, 24, 28, 25});
-  CHECK(run_snippet("color = vec4(u.s[2].f, u.s[1].v.y, u.s[2].m[1].x, u.t[3]);", input, declarations).point(0) == Vec4{64, 53, 76, 92});
-  CHECK(run_snippet("vec2 w = vec2(2, 3); color = vec4(u.r * w, 0);", input, declarations).point(0) == Vec4{103, 123, 143, 0});
+  CHECK(run_snippet("color = vec4(u.s[2].f, u.s[1].v.y, u.s[2].m[1].x, u.t[3]);", input, declarations)
+            .point(0) == Vec4{64, 53, 76, 92});
+  CHECK(run_snippet("vec2 w = vec2(2, 3); color = vec4(u.r * w, 0);", input, declarations).point(0) ==
+        Vec4{103, 123, 143, 0});
 }
 
 TEST_CASE("uniform blocks: run-time indices select per lane and stay inside the array") {
@@ -41,10 +44,12 @@ TEST_CASE("uniform blocks: run-time indices select per lane and stay inside the 
   input.points = assorted_points(4);
   input.blocks[{0, 0}] = counting_words(128);
   const std::string declarations =
-      "struct L { vec4 p; float w[2]; }; layout(set=0, binding=0, std140) uniform U { vec4 first; L l[5]; } u;";
+      "struct L { vec4 p; float w[2]; }; layout(set=0, binding=0, std140) uniform U { vec4 first; L l[5]; } "
+      "u;";
   // l at word 4, 12 words each: p +0, w +4 and +8.
   const RunOutput out =
-      run_snippet("color = vec4(u.l[abs(i.x) % 5].p.zw, u.l[abs(i.y) % 5].w[abs(i.z) % 2], u.l[i.w].p.x);", input, declarations);
+      run_snippet("color = vec4(u.l[abs(i.x) % 5].p.zw, u.l[abs(i.y) % 5].w[abs(i.z) % 2], u.l[i.w].p.x);",
+                  input, declarations);
   for (int k = 0; k < models::kWarpQuads; ++k) {
     const auto& i = input.points[static_cast<std::size_t>(k)].i;
     const Vec4 color = out.point(k);
@@ -57,7 +62,8 @@ TEST_CASE("uniform blocks: run-time indices select per lane and stay inside the 
 
 TEST_CASE("uniform blocks: only the words that are read are in the constant file") {
   const std::string declarations =
-      "layout(set=2, binding=1, std140) uniform U { vec4 a0[50]; vec4 late; } u; layout(push_constant) uniform P { vec4 x; mat4 m; vec4 "
+      "layout(set=2, binding=1, std140) uniform U { vec4 a0[50]; vec4 late; } u; layout(push_constant) "
+      "uniform P { vec4 x; mat4 m; vec4 "
       "tint; } p;";
   const models::Program program = compile_fragment(fragment_source("color = u.late * p.tint;", declarations));
   CHECK(program.constants.words == 8);
@@ -83,15 +89,17 @@ layout(location=2) in vec2 v_uv; layout(location=4) flat in float id; layout(loc
 void main() { c = vec4(v_uv.y, id, lin, 1); })");
   const CompiledPipeline p = compile_pipeline(vertex, "v", fragment, "f");
   using models::Interpolation;
-  const std::vector<Interpolation> expected{Interpolation::kPerspective, Interpolation::kFlat, Interpolation::kLinear};
+  const std::vector<Interpolation> expected{Interpolation::kPerspective, Interpolation::kFlat,
+                                            Interpolation::kLinear};
   CHECK(p.vertex.varyings == expected);
   CHECK(p.fragment.varyings == expected);
   CHECK_FALSE(has_op(p.vertex, models::Op::kFSin));
   REQUIRE(p.vertex.vertex_inputs.size() == 4);
   CHECK(p.vertex.vertex_inputs[3].location == 5);
   CHECK(p.vertex.vertex_inputs[3].component == 1);
-  const auto out = run_vertex(
-      p.vertex, [](int location, int component, int lane) { return static_cast<float>(location * 100 + component * 10 + lane); });
+  const auto out = run_vertex(p.vertex, [](int location, int component, int lane) {
+    return static_cast<float>(location * 100 + component * 10 + lane);
+  });
   REQUIRE(out.size() == 7);
   CHECK(std::bit_cast<float>(out[0][3]) == 3.0f);
   CHECK(std::bit_cast<float>(out[3][3]) == 1.0f);
@@ -102,15 +110,17 @@ void main() { c = vec4(v_uv.y, id, lin, 1); })");
 
 TEST_CASE("linking: a varying that is read but not written is an error with its location") {
   const auto vertex = vertex_spirv("#version 450\nvoid main() { gl_Position = vec4(0); }");
-  const auto fragment =
-      fragment_spirv("#version 450\nlayout(location=7) in vec2 t; layout(location=0) out vec4 c; void main() { c = t.xyxy; }");
+  const auto fragment = fragment_spirv(
+      "#version 450\nlayout(location=7) in vec2 t; layout(location=0) out vec4 c; void main() { c = t.xyxy; "
+      "}");
   CHECK_THROWS_WITH(compile_pipeline(vertex, "a.vert", fragment, "b.frag"),
                     Catch::Contains("b.frag") && Catch::Contains("location 7") && Catch::Contains("a.vert"));
 }
 
 TEST_CASE("built-ins: vertex and instance index, fragment coordinates, facing, depth") {
-  const auto vertex =
-      vertex_spirv("#version 450\nvoid main() { gl_PointSize = 1.0; gl_Position = vec4(gl_VertexIndex, gl_InstanceIndex, 0, 1); }");
+  const auto vertex = vertex_spirv(
+      "#version 450\nvoid main() { gl_PointSize = 1.0; gl_Position = vec4(gl_VertexIndex, gl_InstanceIndex, "
+      "0, 1); }");
   const auto fragment = fragment_spirv(R"(#version 450
 layout(location=0) out vec4 c;
 void main() { c = vec4(gl_FragCoord.xyz, gl_FrontFacing ? 1.0 : float(gl_PrimitiveID)); gl_FragDepth = gl_FragCoord.w * 0.5; })");
@@ -129,7 +139,8 @@ void main() { c = vec4(gl_FragCoord.xyz, gl_FrontFacing ? 1.0 : float(gl_Primiti
 TEST_CASE("outputs: may be read back, written in branches and by component") {
   RunInput input;
   input.points = assorted_points(6);
-  const RunOutput out = run_snippet("color = a; color.y += 1.0; if (i.x > 0) color.zw = color.xy * 2.0; color[abs(i.y) % 4] = 9.0;", input);
+  const RunOutput out = run_snippet(
+      "color = a; color.y += 1.0; if (i.x > 0) color.zw = color.xy * 2.0; color[abs(i.y) % 4] = 9.0;", input);
   for (int k = 0; k < models::kWarpQuads; ++k) {
     const Point& p = input.points[static_cast<std::size_t>(k)];
     Vec4 want = p.a;
@@ -144,24 +155,30 @@ TEST_CASE("outputs: may be read back, written in branches and by component") {
 }
 
 TEST_CASE("specialisation constants take their defaults") {
-  CHECK(run_snippet(
-            "color = vec4(float(n) * k, n * 2 + 1, on ? 1 : 0, 0);", {},
-            "layout(constant_id=0) const int n = 3; layout(constant_id=1) const float k = 2.5; layout(constant_id=2) const bool on = true;")
+  CHECK(run_snippet("color = vec4(float(n) * k, n * 2 + 1, on ? 1 : 0, 0);", {},
+                    "layout(constant_id=0) const int n = 3; layout(constant_id=1) const float k = 2.5; "
+                    "layout(constant_id=2) const bool on = true;")
             .point(0) == Vec4{7.5f, 7, 1, 0});
 }
 
-TEST_CASE("compiler: integer vertex inputs are read as they are, and the pipeline says which locations they are") {
+TEST_CASE(
+    "compiler: integer vertex inputs are read as they are, and the pipeline says which locations they are") {
   const auto vertex = vertex_spirv(
-      "#version 450\nlayout(location=0) in vec2 p; layout(location=3) in uvec4 i; void main() { gl_Position = vec4(p, float(i.y + 7u), 1); "
+      "#version 450\nlayout(location=0) in vec2 p; layout(location=3) in uvec4 i; void main() { gl_Position "
+      "= vec4(p, float(i.y + 7u), 1); "
       "}");
-  const auto fragment = fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
+  const auto fragment =
+      fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
   const CompiledPipeline p = compile_pipeline(vertex, "v", fragment, "f");
   CHECK(p.integer_inputs == 8);
-  CHECK(std::ranges::any_of(p.vertex.vertex_inputs, [](const auto& use) { return use.location == 3 && use.component == 1; }));
+  CHECK(std::ranges::any_of(p.vertex.vertex_inputs,
+                            [](const auto& use) { return use.location == 3 && use.component == 1; }));
 }
 
-TEST_CASE("specialisation constants may be floats and vectors chosen by others, and what is computed of them") {
-  const std::string declarations = R"(layout(constant_id = 0) const int N = 3; layout(constant_id = 1) const bool B = true;
+TEST_CASE(
+    "specialisation constants may be floats and vectors chosen by others, and what is computed of them") {
+  const std::string declarations =
+      R"(layout(constant_id = 0) const int N = 3; layout(constant_id = 1) const bool B = true;
 layout(constant_id = 2) const float F = 0.5; layout(constant_id = 3) const uint U = 0xfffffff0u;
 const float S = N == 3 ? 1.0 : F; const vec3 V = B ? vec3(F, 2.0, 3.0) : vec3(0.0); const vec2 W = N > 5 ? vec2(1.0) : V.yx;
 const ivec3 I = ivec3(N, N + 6, N * 7) % 4; const uint X = (U >> 2) ^ uint(N); const bvec2 P = bvec2(B, !B); const vec2 Q = P.y ? V.xy : W;

@@ -1,7 +1,9 @@
-/// Every float function of GLSL.std.450 over its domain, against double precision, within the bounds of Vulkan. [VK1.3 #spirvenv-op-prec]
+/// Every float function of GLSL.std.450 over its domain, against double precision, within the bounds of
+/// Vulkan. [VK1.3 #spirvenv-op-prec]
 ///
-/// Vulkan bounds some functions by units in the last place and lets the others inherit what a formula of bounded operations gives. `Bound` does the
-/// same: an interval of values that an implementation may return, carried through the formula, each operation widening it by what that operation is allowed.
+/// Vulkan bounds some functions by units in the last place and lets the others inherit what a formula of
+/// bounded operations gives. `Bound` does the same: an interval of values that an implementation may return,
+/// carried through the formula, each operation widening it by what that operation is allowed.
 #include "tests/pipeline/compiler/shader_runner.h"
 
 #include <fmt/format.h>
@@ -17,7 +19,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A unit in the last place of a float of this size; denormals may be flushed, so it is no less than the smallest normal's.
+/// A unit in the last place of a float of this size; denormals may be flushed, so it is no less than the
+/// smallest normal's.
 double ulp(double value) {
   const double size = std::max(std::abs(value), 0x1p-126);
   return std::exp2(std::floor(std::log2(size)) - 23);
@@ -67,10 +70,13 @@ Bound bounded_log(Bound x, double (*log)(double)) {
 }
 Bound log2(Bound x) { return bounded_log(x, std::log2); }
 Bound log(Bound x) { return bounded_log(x, std::log); }
-Bound inverse_sqrt(Bound x) { return Bound(1 / std::sqrt(std::max(x.high, 0.0)), 1 / std::sqrt(std::max(x.low, 0.0))).widened(2); }
+Bound inverse_sqrt(Bound x) {
+  return Bound(1 / std::sqrt(std::max(x.high, 0.0)), 1 / std::sqrt(std::max(x.low, 0.0))).widened(2);
+}
 Bound sqrt(Bound x) {
   if (x.high <= 0) return {0.0};
-  const Bound result = Bound(1.0) / Bound(inverse_sqrt({x.high, x.high}).low, inverse_sqrt({x.high, x.high}).high);
+  const Bound result =
+      Bound(1.0) / Bound(inverse_sqrt({x.high, x.high}).low, inverse_sqrt({x.high, x.high}).high);
   if (x.low <= 0) return {0.0, result.high};
   return {(Bound(1.0) / inverse_sqrt({x.low, x.low})).low, result.high};
 }
@@ -98,7 +104,9 @@ struct Range {
   [[nodiscard]] float at(double t) const {
     const double a = static_cast<double>(low), b = static_cast<double>(high);
     return static_cast<float>(
-        exponential ? std::copysign(std::exp2(std::log2(std::abs(a)) + t * (std::log2(std::abs(b)) - std::log2(std::abs(a)))), a)
+        exponential ? std::copysign(std::exp2(std::log2(std::abs(a)) +
+                                              t * (std::log2(std::abs(b)) - std::log2(std::abs(a)))),
+                                    a)
                     : a + t * (b - a));
   }
 };
@@ -110,11 +118,14 @@ const char* const kHelpers = R"(vec4 frexpSignificand(vec4 v) { ivec4 e; return 
 ivec4 frexpExponent(vec4 v) { ivec4 e; vec4 s = frexp(v, e); return e; }
 vec4 modfSum(vec4 v) { vec4 whole; vec4 part = modf(v, whole); return whole + part; })";
 
-/// Runs `expression`, of vec4 a, b and c, over the ranges of their components and holds every result within its bound.
-void hold(const std::string& expression, const Function& bound, Range xs, Range ys = {0, 1}, Range zs = {0, 1}) {
+/// Runs `expression`, of vec4 a, b and c, over the ranges of their components and holds every result within
+/// its bound.
+void hold(const std::string& expression, const Function& bound, Range xs, Range ys = {0, 1},
+          Range zs = {0, 1}) {
   INFO(expression);
   const std::string body = "vec4 c = intBitsToFloat(i); color = " + expression + ";";
-  const std::string keep = "if (a.x == 1e30) { color = a + b + vec4(i); return; }\n";  // so that a, b and i come in that order
+  // so that a, b and i come in that order
+  const std::string keep = "if (a.x == 1e30) { color = a + b + vec4(i); return; }\n";
   const models::Program program = compile_fragment(fragment_source(keep + body, kHelpers));
   int outside = 0;
   double worst = 0;
@@ -134,15 +145,17 @@ void hold(const std::string& expression, const Function& bound, Range xs, Range 
       const Point& p = input.points[static_cast<std::size_t>(k / 4)];
       const auto c = static_cast<std::size_t>(k % 4);
       const float got = out.point(k / 4)[c];
-      const Bound allowed =
-          bound(static_cast<double>(p.a[c]), static_cast<double>(p.b[c]), static_cast<double>(std::bit_cast<float>(p.i[c])));
-      const double value = static_cast<double>(got), over = std::max(allowed.low - value, value - allowed.high);
+      const Bound allowed = bound(static_cast<double>(p.a[c]), static_cast<double>(p.b[c]),
+                                  static_cast<double>(std::bit_cast<float>(p.i[c])));
+      const double value = static_cast<double>(got),
+                   over = std::max(allowed.low - value, value - allowed.high);
       if (over <= 0) continue;
       ++outside;
       if (!(over <= worst)) worst = over, worst_x = p.a[c], worst_got = got;
     }
   }
-  INFO(outside << " of " << kSamples << " outside; the worst at x = " << worst_x << ", which gives " << worst_got << ", by " << worst);
+  INFO(outside << " of " << kSamples << " outside; the worst at x = " << worst_x << ", which gives "
+               << worst_got << ", by " << worst);
   CHECK(outside == 0);
 }
 
@@ -157,7 +170,8 @@ void hold_vectors(const std::string& expression, const VectorFunction& bound) {
     for (int k = 0; k < models::kWarpQuads; ++k) {
       const Point& p = input.points[static_cast<std::size_t>(k)];
       std::array<double, 3> a{}, b{};
-      for (std::size_t c = 0; c < 3; ++c) a[c] = static_cast<double>(p.a[c]), b[c] = static_cast<double>(p.b[c]);
+      for (std::size_t c = 0; c < 3; ++c)
+        a[c] = static_cast<double>(p.a[c]), b[c] = static_cast<double>(p.b[c]);
       const std::array<Bound, 3> allowed = bound(a, b);
       for (std::size_t c = 0; c < 3; ++c) {
         const double got = static_cast<double>(out.point(k)[c]);
@@ -167,7 +181,8 @@ void hold_vectors(const std::string& expression, const VectorFunction& bound) {
   }
 }
 
-constexpr Range kUnit{-1, 1}, kSmall{1e-30f, 1, true}, kSmallNegative{-1e-30f, -1, true}, kTurn{-3.14159274f, 3.14159274f};
+constexpr Range kUnit{-1, 1}, kSmall{1e-30f, 1, true}, kSmallNegative{-1e-30f, -1, true},
+    kTurn{-3.14159274f, 3.14159274f};
 constexpr Range kWide{-1e6f, 1e6f}, kPositive{1e-30f, 1e30f, true}, kNegative{-1e-30f, -1e30f, true};
 
 Bound asin_bound(double x) { return atan2(x, sqrt(Bound(1.0) - Bound(x) * x)); }
@@ -189,7 +204,8 @@ TEST_CASE("precision: arc sine and arc cosine inherit from atan2") {
 TEST_CASE("precision: an arc sine fed back ten times keeps its place") {
   RunInput input;
   for (Point& p : input.points) p.a = {0.25f, -0.25f, 0.01f, 0.45f};
-  const RunOutput out = run_snippet("vec4 x = a; for (int k = 0; k < 10; ++k) x = asin(x); color = x;", input);
+  const RunOutput out =
+      run_snippet("vec4 x = a; for (int k = 0; k < 10; ++k) x = asin(x); color = x;", input);
   for (std::size_t c = 0; c < 4; ++c) {
     double want = static_cast<double>(input.points[0].a[c]);
     for (int k = 0; k < 10; ++k) want = std::asin(want);
@@ -248,12 +264,16 @@ TEST_CASE("precision: hyperbolic functions inherit from exp and log") {
     hold("asinh(a)", [](double x, double, double) { return log(x + sqrt(Bound(x) * x + 1.0)); },
          {range.low, range.high, range.exponential});
   }
-  hold("acosh(a)", [](double x, double, double) { return log(x + sqrt(Bound(x) * x - 1.0)); }, {1.01f, 1e6f, true});
-  hold("atanh(a)", [](double x, double, double) { return log((Bound(1.0) + x) / (Bound(1.0) - x)) * 0.5; }, {-0.999f, 0.999f});
+  hold("acosh(a)", [](double x, double, double) { return log(x + sqrt(Bound(x) * x - 1.0)); },
+       {1.01f, 1e6f, true});
+  hold("atanh(a)", [](double x, double, double) { return log((Bound(1.0) + x) / (Bound(1.0) - x)) * 0.5; },
+       {-0.999f, 0.999f});
 }
 
 TEST_CASE("precision: what is rounded correctly or exact") {
-  const auto exactly = [](double (*f)(double)) { return [f](double x, double, double) { return Bound(f(x)); }; };
+  const auto exactly = [](double (*f)(double)) {
+    return [f](double x, double, double) { return Bound(f(x)); };
+  };
   for (const Range range : {Range{-10, 10}, kWide, kSmall, kSmallNegative}) {
     hold("abs(a)", exactly(std::fabs), range);
     hold("floor(a)", exactly(std::floor), range);
@@ -267,21 +287,28 @@ TEST_CASE("precision: what is rounded correctly or exact") {
     hold("min(a, b)", [](double x, double y, double) { return Bound(std::min(x, y)); }, range, {-10, 10});
     hold("max(a, b)", [](double x, double y, double) { return Bound(std::max(x, y)); }, range, {-10, 10});
     hold("step(a, b)", [](double x, double y, double) { return Bound(y < x ? 0.0 : 1.0); }, range, {-10, 10});
-    hold("clamp(a, b, c)", [](double x, double y, double z) { return Bound(std::min(std::max(x, y), z)); }, range, {-10, 0}, {0, 10});
-    hold("fma(a, b, c)", [](double x, double y, double z) { return fma(x, y, z); }, range, {-10, 10}, {-10, 10});
+    hold("clamp(a, b, c)", [](double x, double y, double z) { return Bound(std::min(std::max(x, y), z)); },
+         range, {-10, 0}, {0, 10});
+    hold("fma(a, b, c)", [](double x, double y, double z) { return fma(x, y, z); }, range, {-10, 10},
+         {-10, 10});
     hold("a / b", [](double x, double y, double) { return Bound(x) / y; }, range, {0.001f, 1000, true});
     hold("mod(a, b)",
          [](double x, double y, double) {  // x - y floor(x / y), whichever way the quotient is rounded
            const Bound quotient = Bound(x) / y;
-           const Bound low = Bound(x) - Bound(y) * std::floor(quotient.low), high = Bound(x) - Bound(y) * std::floor(quotient.high);
+           const Bound low = Bound(x) - Bound(y) * std::floor(quotient.low),
+                       high = Bound(x) - Bound(y) * std::floor(quotient.high);
            return Bound(std::min(low.low, high.low), std::max(low.high, high.high));
          },
          {-1000, 1000}, {0.5f, 8});
     hold(
-        "radians(a)", [](double x, double, double) { return Bound(x) * Bound(kPi / 180).widened(0.5); }, range);
+        "radians(a)", [](double x, double, double) { return Bound(x) * Bound(kPi / 180).widened(0.5); },
+        range);
     hold(
-        "degrees(a)", [](double x, double, double) { return Bound(x) * Bound(180 / kPi).widened(0.5); }, range);
-    hold("mix(a, b, c)", [](double x, double y, double z) { return Bound(x) * (Bound(1.0) - z) + Bound(y) * z; }, range, {-10, 10}, {0, 1});
+        "degrees(a)", [](double x, double, double) { return Bound(x) * Bound(180 / kPi).widened(0.5); },
+        range);
+    hold("mix(a, b, c)",
+         [](double x, double y, double z) { return Bound(x) * (Bound(1.0) - z) + Bound(y) * z; }, range,
+         {-10, 10}, {0, 1});
     hold("smoothstep(b, c, a)",
          [](double x, double y, double z) {
            const Bound t = (Bound(x) - y) / (Bound(z) - y);
@@ -292,20 +319,24 @@ TEST_CASE("precision: what is rounded correctly or exact") {
   }
   hold("ldexp(a, ivec4(i.x & 15) - 8)",
        [](double x, double, double z) {
-         return Bound(std::ldexp(x, static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(z)) & 15u) - 8));
+         return Bound(
+             std::ldexp(x, static_cast<int>(std::bit_cast<std::uint32_t>(static_cast<float>(z)) & 15u) - 8));
        },
        {-8, 8}, {0, 1}, {0.75f, 0.75f});
-  hold("ldexp(frexpSignificand(a), frexpExponent(a))", exactly([](double x) { return x; }), {1e-30f, 1e30f, true});
+  hold("ldexp(frexpSignificand(a), frexpExponent(a))", exactly([](double x) { return x; }),
+       {1e-30f, 1e30f, true});
   hold("modfSum(a)", exactly([](double x) { return x; }), {-100, 100});
 }
 
 TEST_CASE("precision: geometric functions inherit from their formulas") {
   using V = std::array<double, 3>;
   const auto length_of = [](V v) { return sqrt(dot({{v[0], v[0]}, {v[1], v[1]}, {v[2], v[2]}})); };
-  hold_vectors("vec3(length(a.xyz), distance(a.xyz, b.xyz), dot(a.xyz, b.xyz))", [&](V a, V b) -> std::array<Bound, 3> {
-    const std::array<Bound, 3> d{Bound(a[0]) - b[0], Bound(a[1]) - b[1], Bound(a[2]) - b[2]};
-    return {length_of(a), sqrt(dot({{d[0], d[0]}, {d[1], d[1]}, {d[2], d[2]}})), dot({{a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}})};
-  });
+  hold_vectors("vec3(length(a.xyz), distance(a.xyz, b.xyz), dot(a.xyz, b.xyz))",
+               [&](V a, V b) -> std::array<Bound, 3> {
+                 const std::array<Bound, 3> d{Bound(a[0]) - b[0], Bound(a[1]) - b[1], Bound(a[2]) - b[2]};
+                 return {length_of(a), sqrt(dot({{d[0], d[0]}, {d[1], d[1]}, {d[2], d[2]}})),
+                         dot({{a[0], b[0]}, {a[1], b[1]}, {a[2], b[2]}})};
+               });
   hold_vectors("normalize(a.xyz)", [](V a, V) -> std::array<Bound, 3> {
     const Bound scale = inverse_sqrt(dot({{a[0], a[0]}, {a[1], a[1]}, {a[2], a[2]}}));
     return {Bound(a[0]) * scale, Bound(a[1]) * scale, Bound(a[2]) * scale};
@@ -336,10 +367,12 @@ TEST_CASE("precision: geometric functions inherit from their formulas") {
 TEST_CASE("precision: bits of integers are found") {
   RunInput input;
   for (std::uint32_t k = 0; k < models::kWarpQuads; ++k) {
-    const auto bits = std::array<std::uint32_t, 8>{0u, 1u, 0x80000000u, 0xffffffffu, 0x01ffffffu, 0x7fffffffu, 0x00800000u, 0xfffffffeu}[k];
+    const auto bits = std::array<std::uint32_t, 8>{0u,          1u,          0x80000000u, 0xffffffffu,
+                                                   0x01ffffffu, 0x7fffffffu, 0x00800000u, 0xfffffffeu}[k];
     for (std::int32_t& v : input.points[k].i) v = static_cast<std::int32_t>(bits);
   }
-  const RunOutput out = run_snippet("color = vec4(findLSB(i.x), findMSB(i.x), findMSB(uint(i.x)), findLSB(uint(i.x)));", input);
+  const RunOutput out =
+      run_snippet("color = vec4(findLSB(i.x), findMSB(i.x), findMSB(uint(i.x)), findLSB(uint(i.x)));", input);
   for (int k = 0; k < models::kWarpQuads; ++k) {
     const std::int32_t x = input.points[static_cast<std::size_t>(k)].i[0];
     const auto u = static_cast<std::uint32_t>(x);

@@ -47,10 +47,12 @@ class ShaderGenerator {
 
   static std::string write_color() { return "color = pack(x0, x1, x2, x3);"; }
   [[nodiscard]] std::string main_head() const {
-    const std::string start = stage_ == ShaderStage::kFragment ? "int x0 = int(gl_FragCoord.x) & 15, x1 = int(gl_FragCoord.y) & 1"
-                                                               : "int x0 = gl_VertexIndex & 15, x1 = (gl_VertexIndex >> 4) & 1";
+    const std::string start = stage_ == ShaderStage::kFragment
+                                  ? "int x0 = int(gl_FragCoord.x) & 15, x1 = int(gl_FragCoord.y) & 1"
+                                  : "int x0 = gl_VertexIndex & 15, x1 = (gl_VertexIndex >> 4) & 1";
     return fmt::format(
-        "void main() {{\n  {}, x2 = (x0 * 5 + x1 * 3) & 7, x3 = x0 ^ (x1 * 9), m[2] = int[2](3, x0);\n  color = pack(x3, x2, x1, x0);\n{}",
+        "void main() {{\n  {}, x2 = (x0 * 5 + x1 * 3) & 7, x3 = x0 ^ (x1 * 9), m[2] = int[2](3, x0);\n  "
+        "color = pack(x3, x2, x1, x0);\n{}",
         start, stage_ == ShaderStage::kVertex ? "  gl_Position = vec4(0, 0, 0, 1);\n" : "");
   }
 
@@ -59,9 +61,11 @@ class ShaderGenerator {
     place.depth = 1 + static_cast<int>(below(3));
     place.returns_value = returns_value;
     const std::string type = returns_value ? "int" : "void", mode = returns_value ? "" : "inout ";
-    std::string head =
-        fmt::format("{0} f{1}({2}int x0, {2}int x1) {{\n  int x2 = x0 & 5, x3 = x1 + 2, m[2] = int[2](x1, x0);\n", type, index, mode);
-    return {std::move(head), returns_value ? "  return (x0 + x1 * 3 + x2 + x3) & 63;\n" : "", block(place, 0)};
+    std::string head = fmt::format(
+        "{0} f{1}({2}int x0, {2}int x1) {{\n  int x2 = x0 & 5, x3 = x1 + 2, m[2] = int[2](x1, x0);\n", type,
+        index, mode);
+    return {std::move(head), returns_value ? "  return (x0 + x1 * 3 + x2 + x3) & 63;\n" : "",
+            block(place, 0)};
   }
 
   RandomBlock block(Place place, std::uint32_t least) {
@@ -69,7 +73,8 @@ class ShaderGenerator {
     --place.depth;
     const std::uint32_t count = least + below(place.depth > 0 ? 4 : 3);
     while (result.size() < count) result.push_back(statement(place));
-    if (one_in(8)) result.insert(result.begin() + (one_in(4) ? below(count + 1) : count), leave(place));  // what follows it is dead
+    // what follows it is dead
+    if (one_in(8)) result.insert(result.begin() + (one_in(4) ? below(count + 1) : count), leave(place));
     return result;
   }
   RandomBlock block(const Place& place) { return block(place, one_in(6) ? 0 : 1); }
@@ -79,7 +84,8 @@ class ShaderGenerator {
     switch (below(12)) {
       case 0:
       case 1: return {{fmt::format("if ({}) {{", condition(place)), "}"}, {block(place)}};
-      case 2: return {{fmt::format("if ({}) {{", condition(place)), "} else {", "}"}, {block(place), block(place)}};
+      case 2:
+        return {{fmt::format("if ({}) {{", condition(place)), "} else {", "}"}, {block(place), block(place)}};
       case 3:
       case 4: return for_loop(place);
       case 5: return while_loop(place);
@@ -97,7 +103,8 @@ class ShaderGenerator {
     switch (below(8)) {
       case 5: return {{fmt::format("m[{} & 1] = {};", operand(place), t)}, {}};
       case 6: return {{fmt::format("{} = (m[{} & 1] + {}) & 127;", d, operand(place), t)}, {}};
-      case 7: return {{place.in_main && one_in(2) ? write_color() : fmt::format("m[{}] = {};", below(2), s)}, {}};
+      case 7:
+        return {{place.in_main && one_in(2) ? write_color() : fmt::format("m[{}] = {};", below(2), s)}, {}};
       case 0: return {{fmt::format("{} = ({} ^ {}) & 63;", d, s, operand(place))}, {}};
       case 1: return {{fmt::format("{} = {} ? {} : {};", d, condition(place), s, operand(place))}, {}};
       case 2: return {{fmt::format("{0} = min({0}, 200) + {1};", d, 1 + below(3))}, {}};
@@ -106,7 +113,8 @@ class ShaderGenerator {
   }
 
   std::string operand(const Place& place) {
-    if (!place.counters.empty() && one_in(3)) return place.counters[below(static_cast<std::uint32_t>(place.counters.size()))];
+    if (!place.counters.empty() && one_in(3))
+      return place.counters[below(static_cast<std::uint32_t>(place.counters.size()))];
     return one_in(4) ? fmt::format("{}", below(20)) : variable();
   }
 
@@ -123,7 +131,9 @@ class ShaderGenerator {
   std::string comparison(const Place& place) {
     if (one_in(12)) {
       const auto pure = std::ranges::find(callees_, true);
-      if (pure != callees_.end()) return fmt::format("f{}({}, {}) > {}", pure - callees_.begin(), variable(), operand(place), below(40));
+      if (pure != callees_.end())
+        return fmt::format("f{}({}, {}) > {}", pure - callees_.begin(), variable(), operand(place),
+                           below(40));
     }
     switch (below(4)) {
       case 0: return fmt::format("({} & {}) == {}", operand(place), 1 + 2 * below(2), below(3));
@@ -141,7 +151,9 @@ class ShaderGenerator {
   }
 
   /// A bound: a literal, or a few bits of a variable.
-  std::string bound() { return one_in(2) ? fmt::format("{}", below(one_in(4) ? 12 : 5)) : fmt::format("({} & 3)", variable()); }
+  std::string bound() {
+    return one_in(2) ? fmt::format("{}", below(one_in(4) ? 12 : 5)) : fmt::format("({} & 3)", variable());
+  }
 
   /// A new counter, which the statements inside may read.
   std::string counter(Place& inner) {
@@ -158,7 +170,10 @@ class ShaderGenerator {
     switch (below(6)) {
       case 0: head = fmt::format("for (int {0} = {1}; {0} > 0; --{0})", c, most); break;
       case 1: head = fmt::format("for (int {0} = 1, e{0} = {1}; {0} <= e{0}; {0} += 2)", c, most); break;
-      case 2: head = fmt::format("for (int {0} = 0, e{0} = {1}; {0} < e{0} && {2}; ++{0})", c, most, comparison(place)); break;
+      case 2:
+        head = fmt::format("for (int {0} = 0, e{0} = {1}; {0} < e{0} && {2}; ++{0})", c, most,
+                           comparison(place));
+        break;
       default: head = fmt::format("for (int {0} = 0, e{0} = {1}; {0} < e{0}; ++{0})", c, most); break;
     }
     return {{fmt::format("{}{} {{", attribute(), head), "}"}, {block(inner)}};
@@ -168,10 +183,14 @@ class ShaderGenerator {
     Place inner = place;
     const std::string most = bound(), c = counter(inner);
     if (one_in(3)) {  // the way out is inside
-      return {{fmt::format("int {0} = 0; {2}for (;;) {{ if (++{0} > {1} + 1) break;", c, one_in(2) ? most : "3", attribute()), "}"},
+      return {{fmt::format("int {0} = 0; {2}for (;;) {{ if (++{0} > {1} + 1) break;", c,
+                           one_in(2) ? most : "3", attribute()),
+               "}"},
               {block(inner)}};
     }
-    return {{fmt::format("int {0} = 0, e{0} = {1}; {2}while ({0} < e{0}) {{ ++{0};", c, most, attribute()), "}"}, {block(inner)}};
+    return {
+        {fmt::format("int {0} = 0, e{0} = {1}; {2}while ({0} < e{0}) {{ ++{0};", c, most, attribute()), "}"},
+        {block(inner)}};
   }
 
   RandomStatement do_loop(const Place& place) {
@@ -207,14 +226,17 @@ class ShaderGenerator {
     const auto callee = below(static_cast<std::uint32_t>(callees_.size())), d = below(4);
     if (!callees_[callee]) return {{fmt::format("f{}(x{}, x{});", callee, d, (d + 1 + below(3)) % 4)}, {}};
     if (one_in(4))
-      return {{fmt::format("x{} = {} ? f{}({}, {}) : {};", d, comparison(place), callee, variable(), operand(place), variable())}, {}};
+      return {{fmt::format("x{} = {} ? f{}({}, {}) : {};", d, comparison(place), callee, variable(),
+                           operand(place), variable())},
+              {}};
     return {{fmt::format("x{} = f{}({}, {});", d, callee, variable(), operand(place))}, {}};
   }
 
   /// break, continue, return or discard, whatever is allowed here.
   RandomStatement leave(const Place& place) {
     std::vector<std::string> ways{place.in_main ? "{ " + write_color() + " return; }"
-                                                : (place.returns_value ? fmt::format("return {};", variable()) : std::string("return;"))};
+                                                : (place.returns_value ? fmt::format("return {};", variable())
+                                                                       : std::string("return;"))};
     if (place.in_loop) ways.insert(ways.end(), {"continue;", "break;", "continue;", "break;"});
     if (place.in_switch) ways.insert(ways.end(), {"break;", "break;"});
     if (stage_ == ShaderStage::kFragment && one_in(3)) ways.emplace_back("discard;");
@@ -252,10 +274,12 @@ std::size_t count(const RandomBlock& block) {
   return sum;
 }
 
-/// Tries smaller programs in place, each by changing one block of the program and changing it back where that no longer fails.
+/// Tries smaller programs in place, each by changing one block of the program and changing it back where that
+/// no longer fails.
 class Shrinker {
  public:
-  Shrinker(RandomShader& shader, const std::function<bool(const RandomShader&)>& fails) : shader_(shader), fails_(fails) {}
+  Shrinker(RandomShader& shader, const std::function<bool(const RandomShader&)>& fails)
+      : shader_(shader), fails_(fails) {}
 
   bool pass() {
     bool smaller = false;
@@ -308,9 +332,11 @@ class Shrinker {
 
 std::string RandomShader::source() const {
   std::string out = "#version 450\n#extension GL_EXT_control_flow_attributes : require\n";
-  out += stage == ShaderStage::kFragment ? "layout(location = 0) out vec4 color;\n" : "layout(location = 0) flat out vec4 color;\n";
+  out += stage == ShaderStage::kFragment ? "layout(location = 0) out vec4 color;\n"
+                                         : "layout(location = 0) flat out vec4 color;\n";
   out +=
-      "vec4 pack(int a, int b, int c, int d) {\n  return vec4(ivec4(a * 31 + b * 7 + c * 3 + d, b * 5 + c + d, c * 11 + d, d) & 255) / "
+      "vec4 pack(int a, int b, int c, int d) {\n  return vec4(ivec4(a * 31 + b * 7 + c * 3 + d, b * 5 + c + "
+      "d, c * 11 + d, d) & 255) / "
       "255.0;\n}\n";
   for (const RandomFunction& function : functions) {
     out += function.head;
@@ -332,7 +358,9 @@ Seeds seeds_or(Seeds usual) {
   return text != nullptr && std::sscanf(text, "%u %u", &given.first, &given.count) == 2 ? given : usual;
 }
 
-RandomShader random_shader(std::uint32_t seed, ShaderStage stage) { return ShaderGenerator(seed, stage).shader(); }
+RandomShader random_shader(std::uint32_t seed, ShaderStage stage) {
+  return ShaderGenerator(seed, stage).shader();
+}
 
 RandomShader shrink(RandomShader shader, const std::function<bool(const RandomShader&)>& fails) {
   Shrinker shrinker(shader, fails);

@@ -23,25 +23,32 @@ const std::vector<std::uint32_t>& plain_vertex() {
   return words;
 }
 const std::vector<std::uint32_t>& plain_fragment() {
-  static const auto words =
-      fragment_spirv("#version 450\nlayout(location = 0) flat in vec4 v; layout(location = 0) out vec4 color;\nvoid main() { color = v; }");
+  static const auto words = fragment_spirv(
+      "#version 450\nlayout(location = 0) flat in vec4 v; layout(location = 0) out vec4 color;\nvoid main() "
+      "{ color = v; }");
   return words;
 }
 
-std::vector<std::uint32_t> words_of(const RandomShader& shader) { return scenes::compile_glsl(shader.source(), shader.stage, "random"); }
+std::vector<std::uint32_t> words_of(const RandomShader& shader) {
+  return scenes::compile_glsl(shader.source(), shader.stage, "random");
+}
 
-std::uint64_t byte_of(double value, int channel) { return static_cast<std::uint64_t>(std::lround(value * 255)) << (8 * channel); }
+std::uint64_t byte_of(double value, int channel) {
+  return static_cast<std::uint64_t>(std::lround(value * 255)) << (8 * channel);
+}
 
 /// Runs to the end and packs the four output rows from `first_row`.
-RandomShaderResult run_warp(models::Warp& warp, const models::Program& program, std::span<models::LaneWords> outputs,
-                            std::size_t first_row) {
+RandomShaderResult run_warp(models::Warp& warp, const models::Program& program,
+                            std::span<models::LaneWords> outputs, std::size_t first_row) {
   warp.outputs = outputs.data();
   const std::vector<std::uint32_t> constants = constant_file(program.constants, {});
   warp.launch(program, constants.data(), 0xffffffffu);
   while (models::run_clause(warp).end != models::ClauseEnd::kProgramEnd) {}
   RandomShaderResult result{};
   for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
-    for (int c = 0; c < 4; ++c) result[lane] |= byte_of(std::bit_cast<float>(outputs[first_row + static_cast<std::size_t>(c)][lane]), c);
+    for (int c = 0; c < 4; ++c)
+      result[lane] |=
+          byte_of(std::bit_cast<float>(outputs[first_row + static_cast<std::size_t>(c)][lane]), c);
     if ((warp.killed >> lane & 1u) != 0) result[lane] = kDiscarded;
   }
   return result;
@@ -78,13 +85,15 @@ LanePlace place_of_lane(std::size_t lane) {
 
 RandomShaderResult run_compiled(const RandomShader& shader) {
   const std::vector<std::uint32_t> words = words_of(shader);
-  if (shader.stage == ShaderStage::kVertex) return run_vertex_program(compile_pipeline(words, "random", plain_fragment(), "plain").vertex);
+  if (shader.stage == ShaderStage::kVertex)
+    return run_vertex_program(compile_pipeline(words, "random", plain_fragment(), "plain").vertex);
   return run_fragment_program(compile_pipeline(plain_vertex(), "plain", words, "random").fragment);
 }
 
 RandomShaderResult run_in_reference(const RandomShader& shader) {
   namespace reference = models::reference;
-  const reference::ShaderProgram program = reference::decode_shader({"random", shader.stage, words_of(shader)});
+  const reference::ShaderProgram program =
+      reference::decode_shader({"random", shader.stage, words_of(shader)});
   RandomShaderResult result{};
   for (std::size_t first = 0; first < kWarpLanes; first += reference::kLanes) {
     reference::Lanes lanes;
@@ -102,7 +111,8 @@ RandomShaderResult run_in_reference(const RandomShader& shader) {
     reference::execute(program, lanes, reference::kAllLanes);
     for (int k = 0; k < reference::kLanes; ++k) {
       std::uint64_t& bytes = result[first + static_cast<std::size_t>(k)];
-      for (const reference::Port& port : program.outputs) bytes |= byte_of(lanes.at(port.slot)->f(k), static_cast<int>(port.component));
+      for (const reference::Port& port : program.outputs)
+        bytes |= byte_of(lanes.at(port.slot)->f(k), static_cast<int>(port.component));
       if ((lanes.killed >> k & 1u) != 0) bytes = kDiscarded;
     }
   }

@@ -1,4 +1,5 @@
-/// What a random shader computes: compiled and run by the shader core's model, and in double precision by the reference's interpreter.
+/// What a random shader computes: compiled and run by the shader core's model, and in double precision by the
+/// reference's interpreter.
 #pragma once
 
 #include "models/shader/isa.h"
@@ -9,8 +10,8 @@
 
 namespace quadrille::pipeline {
 
-/// The four bytes that each pixel or vertex of a random shader writes (red lowest), or `kDiscarded`. Lanes are in the order of a warp: eight quads side by
-/// side, or 32 vertices.
+/// The four bytes that each pixel or vertex of a random shader writes (red lowest), or `kDiscarded`. Lanes
+/// are in the order of a warp: eight quads side by side, or 32 vertices.
 inline constexpr std::uint64_t kDiscarded = std::uint64_t{1} << 32;
 using RandomShaderResult = std::array<std::uint64_t, models::kWarpLanes>;
 

@@ -1,6 +1,7 @@
 /// Random structured programs, compiled, against the reference's interpreter, lane by lane.
 ///
-/// The seeds are the same in every run. QUADRILLE_SHADER_SEEDS="FIRST COUNT" runs others, in one process a case.
+/// The seeds are the same in every run. QUADRILLE_SHADER_SEEDS="FIRST COUNT" runs others, in one process a
+/// case.
 #include "models/base/error.h"
 #include "tests/pipeline/compiler/random_shader_run.h"
 
@@ -17,7 +18,8 @@ using traces::ShaderStage;
 
 /// A program may be beyond a limit of the machine; nothing else is a reason to refuse one.
 bool is_limit(std::string_view message) {
-  return message.find("registers") != std::string_view::npos || message.find("nested deeper") != std::string_view::npos ||
+  return message.find("registers") != std::string_view::npos ||
+         message.find("nested deeper") != std::string_view::npos ||
          message.find("more than") != std::string_view::npos;
 }
 
@@ -39,7 +41,8 @@ bool has_verdict(const RandomShader& shader, Verdict wanted) {
   } catch (const UserError&) { return false; }
 }
 
-/// Runs the programs of all seeds; says how many a limit refused, and shows the first that goes wrong as small as it gets.
+/// Runs the programs of all seeds; says how many a limit refused, and shows the first that goes wrong as
+/// small as it gets.
 void check_seeds(ShaderStage stage, Seeds usual) {
   const Seeds seeds = seeds_or(usual);
   fmt::print("random shaders: QUADRILLE_SHADER_SEEDS=\"{} {}\"\n", seeds.first, seeds.count);
@@ -52,8 +55,10 @@ void check_seeds(ShaderStage stage, Seeds usual) {
     const Verdict verdict = judge(shader, message);
     if (verdict == Verdict::kBeyondLimits) ++beyond_limits;
     if (verdict == Verdict::kAgrees || verdict == Verdict::kBeyondLimits) continue;
-    const RandomShader small = shrink(shader, [&](const RandomShader& candidate) { return has_verdict(candidate, verdict); });
-    FAIL_CHECK((verdict == Verdict::kRefused ? message : "differs from the reference") << "\n" << small.source());
+    const RandomShader small =
+        shrink(shader, [&](const RandomShader& candidate) { return has_verdict(candidate, verdict); });
+    FAIL_CHECK((verdict == Verdict::kRefused ? message : "differs from the reference") << "\n"
+                                                                                       << small.source());
   }
   INFO(beyond_limits << " programs of " << seeds.count << " are beyond a limit of the machine");
   CHECK(beyond_limits * 50 <= seeds.count);
@@ -66,7 +71,9 @@ TEST_CASE("random shaders: fragments, the second part") { check_seeds(ShaderStag
 TEST_CASE("random shaders: vertices") { check_seeds(ShaderStage::kVertex, {1600, 800}); }
 
 TEST_CASE("random shaders: a program that fails is made small") {
-  const auto fails = [](const RandomShader& shader) { return shader.source().find("continue;") != std::string::npos; };
+  const auto fails = [](const RandomShader& shader) {
+    return shader.source().find("continue;") != std::string::npos;
+  };
   int tried = 0;
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
     const RandomShader shader = random_shader(seed, ShaderStage::kFragment);

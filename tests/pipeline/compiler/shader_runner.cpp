@@ -10,7 +10,8 @@ namespace quadrille::pipeline {
 using models::kWarpLanes;
 
 std::string fragment_source(const std::string& body, const std::string& declarations) {
-  return "#version 450\nlayout(location=0) in vec4 a; layout(location=1) in vec4 b; layout(location=2) flat in ivec4 i; layout(location=0) "
+  return "#version 450\nlayout(location=0) in vec4 a; layout(location=1) in vec4 b; layout(location=2) flat "
+         "in ivec4 i; layout(location=0) "
          "out vec4 color;\n" +
          declarations + "\nvoid main() {\n" + body + "\n}\n";
 }
@@ -44,7 +45,8 @@ std::vector<std::uint32_t> constant_file(const models::ConstantLayout& layout, c
         continue;
       }
       const auto block = input.blocks.find({range.set, range.binding});
-      const std::vector<std::uint32_t>& words = range.source == Source::kPushConstant ? input.push_constants : block->second;
+      const std::vector<std::uint32_t>& words =
+          range.source == Source::kPushConstant ? input.push_constants : block->second;
       const std::uint32_t at = range.byte_offset / 4 + k;
       if (at < words.size()) file.at(range.first_word + k) = words[at];
     }
@@ -72,8 +74,8 @@ RunOutput run_fragment(const models::Program& program, const RunInput& input) {
   const std::vector<std::uint32_t> constants = constant_file(program.constants, input);
   models::FragmentInputs in{};
   std::array<std::vector<float>, models::kWarpQuads> planes;
-  // The vertex shader's locations 0..2 are packed in order; the layout of a program tells which components are there by count only, so all are compiled
-  // with every component read (see `run_snippet`).
+  // The vertex shader's locations 0..2 are packed in order; the layout of a program tells which components
+  // are there by count only, so all are compiled with every component read (see `run_snippet`).
   for (std::size_t q = 0; q < models::kWarpQuads; ++q) {
     const Point& p = input.points[q];
     for (std::size_t k = 0; k < program.varyings.size(); ++k) {
@@ -113,7 +115,8 @@ RunOutput run_fragment(const models::Program& program, const RunInput& input) {
   return out;
 }
 
-/// Reads every component in a branch that no point takes (i.w is never this number), so that the packed varyings are a, b, i in order.
+/// Reads every component in a branch that no point takes (i.w is never this number), so that the packed
+/// varyings are a, b, i in order.
 RunOutput run_snippet(const std::string& body, const RunInput& input, const std::string& declarations) {
   const std::string keep = "if (i.w == -123456789) { color = a + b + vec4(i); return; }\n";
   return run_fragment(compile_fragment(fragment_source(keep + body, declarations)), input);
@@ -131,15 +134,16 @@ Points assorted_points(std::uint32_t seed) {
   return points;
 }
 
-std::vector<models::LaneWords> run_vertex(const models::Program& program, const std::function<float(int, int, int)>& attribute,
+std::vector<models::LaneWords> run_vertex(const models::Program& program,
+                                          const std::function<float(int, int, int)>& attribute,
                                           const RunInput& input) {
   const std::vector<std::uint32_t> constants = constant_file(program.constants, input);
   std::vector<models::LaneWords> rows(program.vertex_inputs.size());
   models::VertexInputs in{};
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (int lane = 0; lane < kWarpLanes; ++lane)
-      rows[k][static_cast<std::size_t>(lane)] =
-          std::bit_cast<std::uint32_t>(attribute(program.vertex_inputs[k].location, program.vertex_inputs[k].component, lane));
+      rows[k][static_cast<std::size_t>(lane)] = std::bit_cast<std::uint32_t>(
+          attribute(program.vertex_inputs[k].location, program.vertex_inputs[k].component, lane));
   for (std::uint32_t lane = 0; lane < kWarpLanes; ++lane) {
     in.vertex_index[lane] = 100 + lane;
     in.instance_index[lane] = 7;

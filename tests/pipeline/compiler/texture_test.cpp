@@ -20,7 +20,8 @@ int longest_texture_run(const models::Program& p) {
 std::string samplers(int count) {
   std::string text;
   for (int k = 0; k < count; ++k)
-    text += "layout(set=1, binding=" + std::to_string(k) + ") uniform sampler2D t" + std::to_string(k) + ";\n";
+    text +=
+        "layout(set=1, binding=" + std::to_string(k) + ") uniform sampler2D t" + std::to_string(k) + ";\n";
   return text;
 }
 
@@ -29,26 +30,34 @@ std::string samplers(int count) {
 TEST_CASE("textures: coordinates, bias and level reach the request, colours come back") {
   RunInput input;
   input.points = assorted_points(2);
-  input.texture = [](int binding, float u, float v, float level) { return Vec4{u, v, level, static_cast<float>(binding)}; };
+  input.texture = [](int binding, float u, float v, float level) {
+    return Vec4{u, v, level, static_cast<float>(binding)};
+  };
   const std::string s = samplers(3);
   const auto check = [&](const char* body, auto expected) {
     const RunOutput out = run_snippet(body, input, s);
-    for (int k = 0; k < models::kWarpQuads; ++k) CHECK(out.point(k) == expected(input.points[static_cast<std::size_t>(k)]));
+    for (int k = 0; k < models::kWarpQuads; ++k)
+      CHECK(out.point(k) == expected(input.points[static_cast<std::size_t>(k)]));
   };
   check("color = texture(t0, a.xy);", [](const Point& p) { return Vec4{p.a[0], p.a[1], 0, 0}; });
   check("color = texture(t1, -a.yx, b.z);", [](const Point& p) { return Vec4{-p.a[1], -p.a[0], p.b[2], 0}; });
   check("color = textureLod(t2, a.xy + b.xy, abs(a.z));", [](const Point& p) {
     return Vec4{p.a[0] + p.b[0], p.a[1] + p.b[1], std::abs(p.a[2]), 0};
   });
-  check("color = textureProj(t0, vec3(a.xy, b.x)).gbra;", [](const Point& p) { return Vec4{p.a[1] / p.b[0], 0, p.a[0] / p.b[0], 0}; });
-  check("color = vec4(textureSize(t0, 0), textureSize(t0, 1));", [](const Point&) { return Vec4{64, 32, 32, 16}; });
+  check("color = textureProj(t0, vec3(a.xy, b.x)).gbra;", [](const Point& p) {
+    return Vec4{p.a[1] / p.b[0], 0, p.a[0] / p.b[0], 0};
+  });
+  check("color = vec4(textureSize(t0, 0), textureSize(t0, 1));", [](const Point&) {
+    return Vec4{64, 32, 32, 16};
+  });
 }
 
 TEST_CASE("textures: independent ones of a block are one clause, dependent ones follow") {
   RunInput input;
   input.points = assorted_points(2);
   const std::string body =
-      "vec4 x = texture(t0, a.xy); x += texture(t1, a.zw) * x.w; x *= texture(t2, b.xy); x += texture(t3, x.xy); color = x + texture(t4, "
+      "vec4 x = texture(t0, a.xy); x += texture(t1, a.zw) * x.w; x *= texture(t2, b.xy); x += texture(t3, "
+      "x.xy); color = x + texture(t4, "
       "b.zw);";
   const models::Program p = compile_fragment(fragment_source(body, samplers(5)));
   CHECK(longest_texture_run(p) == 4);
@@ -64,7 +73,8 @@ TEST_CASE("textures: a group never exceeds the clause limit and every result is 
   input.points = assorted_points(8);
   input.texture = [](int, float u, float v, float level) { return Vec4{u + level, v, u * v, 1}; };
   std::string body = "color = vec4(0);";
-  for (int k = 0; k < 20; ++k) body += " color += textureLod(t0, a.xy * " + std::to_string(k + 1) + ".0, " + std::to_string(k) + ".0);";
+  for (int k = 0; k < 20; ++k)
+    body += " color += textureLod(t0, a.xy * " + std::to_string(k + 1) + ".0, " + std::to_string(k) + ".0);";
   const models::Program p = compile_fragment(fragment_source(body, samplers(1)));
   CHECK(longest_texture_run(p) <= models::kMaxClauseTextures);
   const RunOutput out = run_snippet(body, input, samplers(1));
@@ -83,9 +93,10 @@ TEST_CASE("textures: results that nobody reads do not overwrite other values") {
   RunInput input;
   input.points = assorted_points(8);
   input.texture = [](int, float, float, float) { return Vec4{100, 200, 300, 400}; };
-  const RunOutput out =
-      run_snippet("vec4 t = textureLod(t0, a.xy, 0.0); float x = a.x * b.x, y = a.y * b.y, z = a.z * b.z; color = vec4(x, y, z, t.x);",
-                  input, samplers(1));
+  const RunOutput out = run_snippet(
+      "vec4 t = textureLod(t0, a.xy, 0.0); float x = a.x * b.x, y = a.y * b.y, z = a.z * b.z; color = "
+      "vec4(x, y, z, t.x);",
+      input, samplers(1));
   for (int k = 0; k < models::kWarpQuads; ++k) {
     const Point& p = input.points[static_cast<std::size_t>(k)];
     CHECK(out.point(k) == Vec4{p.a[0] * p.b[0], p.a[1] * p.b[1], p.a[2] * p.b[2], 100});
@@ -96,7 +107,9 @@ TEST_CASE("textures: inside divergent control flow only the lanes that ask are a
   RunInput input;
   input.points = assorted_points(7);
   const RunOutput out = run_snippet(
-      "vec4 t = vec4(5); for (int k = 0; k < abs(i.x) % 4; ++k) t = textureLod(t0, t.yx + float(k), 0.0); color = t;", input, samplers(1));
+      "vec4 t = vec4(5); for (int k = 0; k < abs(i.x) % 4; ++k) t = textureLod(t0, t.yx + float(k), 0.0); "
+      "color = t;",
+      input, samplers(1));
   for (int k = 0; k < models::kWarpQuads; ++k) {
     Vec4 t{5, 5, 5, 5};
     for (int n = 0; n < std::abs(input.points[static_cast<std::size_t>(k)].i[0]) % 4; ++n)
@@ -107,15 +120,19 @@ TEST_CASE("textures: inside divergent control flow only the lanes that ask are a
 
 TEST_CASE("textures: a vertex shader samples at an explicit level") {
   const auto vertex = vertex_spirv(
-      "#version 450\nlayout(set=0,binding=2) uniform sampler2D t; layout(location=0) in vec2 p;\nvoid main() { gl_Position = texture(t, "
+      "#version 450\nlayout(set=0,binding=2) uniform sampler2D t; layout(location=0) in vec2 p;\nvoid main() "
+      "{ gl_Position = texture(t, "
       "p); }");
-  const auto fragment = fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
+  const auto fragment =
+      fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
   const CompiledPipeline p = compile_pipeline(vertex, "v", fragment, "f");
-  CHECK(std::any_of(p.vertex.code.begin(), p.vertex.code.end(), [](const models::Instruction& i) { return i.op == models::Op::kTexLod; }));
+  CHECK(std::any_of(p.vertex.code.begin(), p.vertex.code.end(),
+                    [](const models::Instruction& i) { return i.op == models::Op::kTexLod; }));
   RunInput input;
   input.texture = [](int, float u, float v, float) { return Vec4{v, u, 3, 4}; };
   const auto out = run_vertex(
-      p.vertex, [](int, int component, int lane) { return static_cast<float>(lane + component * 50); }, input);
+      p.vertex, [](int, int component, int lane) { return static_cast<float>(lane + component * 50); },
+      input);
   CHECK(std::bit_cast<float>(out[0][9]) == 59.0f);
   CHECK(std::bit_cast<float>(out[1][9]) == 9.0f);
 }

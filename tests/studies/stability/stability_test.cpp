@@ -24,7 +24,8 @@ traces::CommandStream small_stream() {
   return stream.draw(quad({-0.5F, -0.5F}, {0.9F, 0.9F}, 0.5F, {1, 0.5F, 0.25F, 1})).finish();
 }
 
-/// Runs in a child, since the machine elaborates once a process; says which findings of `check_always` do not hold after `spoil` changed what was observed.
+/// Runs in a child, since the machine elaborates once a process; says which findings of `check_always` do not
+/// hold after `spoil` changed what was observed.
 std::set<std::string> broken_after(const std::function<void(Observed&)>& spoil) {
   const ChildRun run = run_in_child([&] {
     Observed o = observe(small_stream(), std::make_unique<pipeline::MachineConfig>());
@@ -43,7 +44,12 @@ std::set<std::string> broken_after(const std::function<void(Observed&)>& spoil) 
 }
 
 Case case_of(std::function<void(const Observed&, Findings&)> check) {
-  return {.name = "test", .group = "numbers", .purpose = "p", .must = "m", .build = small_stream, .check = std::move(check)};
+  return {.name = "test",
+          .group = "numbers",
+          .purpose = "p",
+          .must = "m",
+          .build = small_stream,
+          .check = std::move(check)};
 }
 
 CaseResult run_one(const Case& one) {
@@ -56,10 +62,14 @@ TEST_CASE("stability: a sound frame holds to what every case must hold to") {
 }
 
 TEST_CASE("stability: each check that every case gets can fail") {
-  CHECK(broken_after([](Observed& o) { o.exact.image.color[500] ^= 1; }) == std::set<std::string>{"pixels unlike the functional image"});
-  CHECK(broken_after([](Observed& o) { o.exact.image.depth[500] = -0.0F; }) == std::set<std::string>{"depths unlike the functional ones"});
-  CHECK(broken_after([](Observed& o) { ++o.exact.figures.checks[3].left; }) == std::set<std::string>{"laws that hold"});
-  CHECK(broken_after([](Observed& o) { ++o.exact.figures.units[2].idle; }) == std::set<std::string>{"units whose cycles do not add up"});
+  CHECK(broken_after([](Observed& o) { o.exact.image.color[500] ^= 1; }) ==
+        std::set<std::string>{"pixels unlike the functional image"});
+  CHECK(broken_after([](Observed& o) { o.exact.image.depth[500] = -0.0F; }) ==
+        std::set<std::string>{"depths unlike the functional ones"});
+  CHECK(broken_after([](Observed& o) { ++o.exact.figures.checks[3].left; }) ==
+        std::set<std::string>{"laws that hold"});
+  CHECK(broken_after([](Observed& o) { ++o.exact.figures.units[2].idle; }) ==
+        std::set<std::string>{"units whose cycles do not add up"});
   CHECK(broken_after([](Observed& o) {
           auto& unit = o.exact.figures.units[2];
           unit.starved += unit.idle + 1;
@@ -69,7 +79,8 @@ TEST_CASE("stability: each check that every case gets can fail") {
           o.exact.image.color[kSide + 1] = 7;
           o.functional.image.color[kSide + 1] = 7;
         }) == std::set<std::string>{"pixels touched outside the scissor"});
-  CHECK(broken_after([](Observed& o) { o.exact.figures.links[0].use = 1.5; }) == std::set<std::string>{"greatest use of a unit or link"});
+  CHECK(broken_after([](Observed& o) { o.exact.figures.links[0].use = 1.5; }) ==
+        std::set<std::string>{"greatest use of a unit or link"});
 }
 
 TEST_CASE("stability: a case's own check, a refusal and a crash each fail the case") {
@@ -79,7 +90,8 @@ TEST_CASE("stability: a case's own check, a refusal and a crash each fail the ca
   CHECK(run_one(right).holds());
   const CaseResult failed = run_one(wrong);
   CHECK_FALSE(failed.holds());
-  CHECK_THAT(case_text(failed, false), Contains("error") && Contains("3 px") && Contains("<= 2 px") && Contains("does not hold"));
+  CHECK_THAT(case_text(failed, false),
+             Contains("error") && Contains("3 px") && Contains("<= 2 px") && Contains("does not hold"));
   const CaseResult refused = run_one(refusing);
   CHECK_FALSE(refused.holds());
   CHECK_THAT(case_text(refused, false), Contains("refused") && Contains("no such thing"));
@@ -106,7 +118,10 @@ TEST_CASE("stability: a bound that is not a number holds nothing") {
 TEST_CASE("stability: coverage is counted within the scissor") {
   Observed o;
   StreamBuilder stream("count", 8, 8);
-  o.stream = stream.area({0, 0, 8, 8}, {2, 2, 4, 4}).state({.paint = Paint::kCount}).draw(quad({-1, -1}, {1, 1}, 0, glm::vec4(1))).finish();
+  o.stream = stream.area({0, 0, 8, 8}, {2, 2, 4, 4})
+                 .state({.paint = Paint::kCount})
+                 .draw(quad({-1, -1}, {1, 1}, 0, glm::vec4(1)))
+                 .finish();
   o.exact.image = {8, 8, std::vector<std::uint32_t>(64, 1), {}};
   CHECK(not_once(o) == 0);
   o.exact.image.color[3 * 8 + 3] = 2;
