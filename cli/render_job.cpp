@@ -19,15 +19,6 @@ namespace {
 constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
 constexpr std::int64_t kMaxWindow = 1'000'000;  // cycles: far beyond what any frame gains by
 
-/// How the last pass, which is the one shown, stores its colours, and whether it has depths.
-traces::RenderTarget shown_target(const traces::CommandStream& stream) {
-  traces::RenderTarget shown;
-  for (const traces::Command& command : stream.commands) {
-    if (const auto* begin = std::get_if<traces::BeginPass>(&command)) shown = stream.targets[begin->target];
-  }
-  return shown;
-}
-
 void note_host(pipeline::Figures& figures, double load_s) {
   figures.host.load_s = load_s;
   figures.host.wall_s = wall_seconds();
@@ -164,7 +155,7 @@ int RenderJob::run() {
 pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, const Setting& setting,
                                         const Outputs& outputs) const {
   const traces::CommandStream& stream = loaded.stream;
-  const traces::RenderTarget target = shown_target(stream);
+  const traces::PassTarget target = traces::shown_target(stream);
   if (depth && target.depth == traces::Format::kUndefined)
     throw user_error("--depth: {} has no depth attachment", scene.scene);
   Progress progress;
@@ -182,8 +173,7 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
   std::vector<pipeline::LeftOut>& left_out_of_frame = frame.figures.left_out;
   left_out_of_frame.insert(left_out_of_frame.begin(), loaded.left_out.begin(), loaded.left_out.end());
   progress.show("writing");
-  if (outputs.out)
-    write_color(*outputs.out, frame.image, target.color == traces::Format::kR8G8B8A8Srgb, alpha);
+  if (outputs.out) write_color(*outputs.out, frame.image, models::is_srgb_format(target.color), alpha);
   if (outputs.depth) write_depth(*outputs.depth, frame.image);
   return frame;
 }

@@ -20,12 +20,14 @@ FrameImage read_image(const DeviceFrame& frame) {
   FrameImage image;
   if (frame.frame.passes.empty()) return image;
   const hw::PassState& pass = frame.frame.passes.back();
-  frame.memory.check_readable(pass.color.base, pass.color.bytes(), models::DeviceMemory::kClean);
-  image.width = pass.color.width;
-  image.height = pass.color.height;
-  image.color = models::detile(frame.memory, pass.color);
+  const hw::AttachmentState& shown = pass.color[0];
+  frame.memory.check_readable(shown.surface.base, shown.surface.bytes(), models::DeviceMemory::kClean);
+  image.width = pass.width;
+  image.height = pass.height;
+  image.color = models::detile(frame.memory, shown.surface);
+  for (std::uint32_t& pixel : image.color) pixel = models::to_rgba8(shown.format, pixel);
   if (pass.has_depth) {
-    const std::vector<std::uint32_t> bits = models::detile(frame.memory, pass.depth);
+    const std::vector<std::uint32_t> bits = models::detile(frame.memory, pass.depth.surface);
     image.depth.reserve(bits.size());
     for (const std::uint32_t b : bits) image.depth.push_back(std::bit_cast<float>(b));
   } else if (frame.shown_has_depth) {

@@ -2,8 +2,8 @@
 ///
 /// A scene is read into a `SceneData` (scenes/data/scene_data.h), a camera is chosen and `record_scene` turns
 /// both into Vulkan-level commands: one pass, opaque and masked draws in scene order, then blended ones back
-/// to front. docs/scenes.md says what of glTF is covered and which defaults apply, docs/shaders.md what a
-/// shader of the user's own gets to see.
+/// to front; and a second pass over its picture where the scene asks for one. docs/scenes.md says what of
+/// glTF is covered and which defaults apply, docs/shaders.md what a shader of the user's own gets to see.
 #pragma once
 
 #include <cstdint>

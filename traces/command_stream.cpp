@@ -1,66 +1,59 @@
-/// Properties of formats and images. Sizes and component counts follow the names. [VK1.3 #formats-definition]
+/// Properties of images and passes.
 #include "traces/command_stream.h"
 
 #include <algorithm>
 
 namespace quadrille::traces {
 
-std::uint32_t format_bytes(Format format) {
-  switch (format) {
-    case Format::kUndefined: return 0;
-    case Format::kR8G8Unorm: return 2;
-    case Format::kR8G8B8A8Unorm:
-    case Format::kR8G8B8A8Srgb:
-    case Format::kD32Float:
-    case Format::kR32Float:
-    case Format::kR8G8B8A8UnormVertex:
-    case Format::kR16G16Unorm:
-    case Format::kR8G8B8A8Snorm:
-    case Format::kR8G8B8A8Uint: return 4;
-    case Format::kR32G32Float:
-    case Format::kR16G16B16A16Unorm:
-    case Format::kR16G16B16A16Snorm:
-    case Format::kR16G16B16A16Uint: return 8;
-    case Format::kR32G32B32Float: return 12;
-    case Format::kR32G32B32A32Float: return 16;
-  }
-  return 0;
-}
-
-int format_components(Format format) {
-  switch (format) {
-    case Format::kUndefined: return 0;
-    case Format::kD32Float:
-    case Format::kR32Float: return 1;
-    case Format::kR32G32Float:
-    case Format::kR8G8Unorm:
-    case Format::kR16G16Unorm: return 2;
-    case Format::kR32G32B32Float: return 3;
-    case Format::kR8G8B8A8Unorm:
-    case Format::kR8G8B8A8Srgb:
-    case Format::kR32G32B32A32Float:
-    case Format::kR8G8B8A8UnormVertex:
-    case Format::kR16G16B16A16Unorm:
-    case Format::kR8G8B8A8Snorm:
-    case Format::kR16G16B16A16Snorm:
-    case Format::kR8G8B8A8Uint:
-    case Format::kR16G16B16A16Uint: return 4;
-  }
-  return 0;
-}
-
-bool is_integer_format(Format format) {
-  return format == Format::kR8G8B8A8Uint || format == Format::kR16G16B16A16Uint;
-}
-
 std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
-  return std::uint64_t{4} * std::max(1u, image.width >> level) * std::max(1u, image.height >> level);
+  return std::uint64_t{format_bytes(image.format)} * std::max(1u, image.width >> level) *
+         std::max(1u, image.height >> level);
 }
 
 std::uint64_t texel_bytes(const Image& image) {
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < image.levels; ++level) bytes += level_bytes(image, level);
   return bytes;
+}
+
+std::size_t texture_count(const CommandStream& stream) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(stream.images, [](const Image& image) { return !image.is_attachment(); }));
+}
+
+BeginPass make_pass(CommandStream& stream, const PassTarget& target, const std::array<float, 4>& clear_color,
+                    float clear_depth) {
+  const auto add = [&](const char* name, Format format, ImageUsage usage) {
+    Image image;
+    image.name = name;
+    image.format = format;
+    image.width = target.width;
+    image.height = target.height;
+    image.usage = usage;
+    stream.images.push_back(std::move(image));
+    return static_cast<Index>(stream.images.size() - 1);
+  };
+  BeginPass pass;
+  pass.colors.emplace_back();
+  pass.colors[0].image = add("colour", target.color, kColorAttachment);
+  pass.colors[0].clear = clear_color;
+  if (target.depth != Format::kUndefined) pass.depth.image = add("depth", target.depth, kDepthAttachment);
+  pass.depth.clear = clear_depth;
+  return pass;
+}
+
+PassTarget target_of(const CommandStream& stream, const BeginPass& pass) {
+  const Image& image = stream.images[pass.first_image()];
+  return {image.width, image.height, pass.colors.empty() ? Format::kUndefined : image.format,
+          pass.depth.image == kNone ? Format::kUndefined : stream.images[pass.depth.image].format};
+}
+
+PassTarget shown_target(const CommandStream& stream) {
+  const BeginPass* last = nullptr;
+  for (const Command& command : stream.commands) {
+    if (const auto* begin = std::get_if<BeginPass>(&command)) last = begin;
+  }
+  return target_of(stream, *last);
 }
 
 void unpack(Image& image) {

@@ -1,7 +1,7 @@
 /// The command stream: everything a frame needs, at the level of Vulkan's objects, and nothing of where it
 /// came from.
 ///
-/// Objects (buffers, images, samplers, shaders, pipelines, descriptor sets, render targets) live in tables
+/// Objects (buffers, images, samplers, shaders, pipelines, descriptor sets) live in tables
 /// and are named by their index; commands refer to them. A scene is turned into a `CommandStream`, a trace
 /// file holds one, the machine, the reference renderer and the Vulkan comparison execute one. Conventions are
 /// Vulkan's: clip space 0 <= z <= w, y down, column-major matrices, std140 uniform blocks, counter-clockwise
@@ -18,40 +18,21 @@
 #include <variant>
 #include <vector>
 
+#include "models/base/format.h"
+#include "models/memory/attachment.h"
+
 namespace quadrille::traces {
 
 using Index = std::uint32_t;  ///< into one of the tables of `CommandStream`
 
-// clang-format off: formats stay grouped by use
-enum class Format : std::uint8_t {
-  kUndefined,
-  // Images. Each texel is 4 bytes; depth is one 32-bit float.
-  kR8G8B8A8Unorm,
-  kR8G8B8A8Srgb,
-  kD32Float,
-  // Vertex attributes.
-  kR32Float,
-  kR32G32Float,
-  kR32G32B32Float,
-  kR32G32B32A32Float,
-  kR8G8Unorm,
-  kR8G8B8A8UnormVertex,
-  kR16G16Unorm,
-  kR16G16B16A16Unorm,
-  kR8G8B8A8Snorm,
-  kR16G16B16A16Snorm,
-  // Vertex attributes that a shader reads as unsigned integers.
-  kR8G8B8A8Uint,
-  kR16G16B16A16Uint
-};
-inline constexpr Format kLastFormat = Format::kR16G16B16A16Uint;
-// clang-format on
-/// Bytes of a texel or of a vertex attribute.
-[[nodiscard]] std::uint32_t format_bytes(Format format);
-/// Components that an attribute of this format supplies (1..4); missing ones read as (0, 0, 0, 1).
-[[nodiscard]] int format_components(Format format);
-/// Does a shader read attributes of this format as unsigned integers? All others arrive as floats.
-[[nodiscard]] bool is_integer_format(Format format);
+using models::Format;
+using models::format_bytes;
+using models::format_components;
+using models::is_integer_format;
+using models::kLastFormat;
+using models::kMaxColorAttachments;
+using models::LoadOp;
+using models::StoreOp;
 
 struct Buffer {
   std::string name;
@@ -65,8 +46,13 @@ using LevelSink = std::function<void(std::uint32_t level, std::span<const std::b
 /// times.
 using UnpackTexels = std::function<void(const LevelSink&)>;
 
-/// A 2D texture: all mip levels, finest first, rows top to bottom, tightly packed. Level i is max(1, width >>
-/// i) by max(1, height >> i).
+/// What an image is for, as bits.
+enum ImageUsage : std::uint8_t { kSampled = 1, kColorAttachment = 2, kDepthAttachment = 4 };
+inline constexpr std::uint8_t kAllUsages = kSampled | kColorAttachment | kDepthAttachment;
+
+/// A 2D image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
+/// first, rows top to bottom, tightly packed. Level i is max(1, width >> i) by max(1, height >> i). An
+/// attachment has one level and no texels: it holds what passes store.
 struct Image {
   std::string name;
   Format format = Format::kR8G8B8A8Unorm;
@@ -74,6 +60,8 @@ struct Image {
   std::vector<std::byte> texels;
   /// instead of `texels`, for a machine that asks for what it samples; null: they are there
   std::shared_ptr<const UnpackTexels> packed{};
+  std::uint8_t usage = kSampled;  ///< of `ImageUsage`
+  [[nodiscard]] bool is_attachment() const { return (usage & (kColorAttachment | kDepthAttachment)) != 0; }
   friend bool operator==(const Image&, const Image&) = default;
 };
 /// Bytes of a level's texels, and of all levels'.
@@ -164,7 +152,7 @@ struct Pipeline {
   FrontFace front = FrontFace::kCounterClockwise;
   bool depth_clamp = false;
   DepthState depth;
-  BlendState blend;
+  std::array<BlendState, kMaxColorAttachments> blend;  ///< by colour attachment of the pass
   friend bool operator==(const Pipeline&, const Pipeline&) = default;
 };
 
@@ -185,19 +173,28 @@ struct DescriptorSet {
   friend bool operator==(const DescriptorSet&, const DescriptorSet&) = default;
 };
 
-struct RenderTarget {
-  std::uint32_t width = 0, height = 0;
-  Format color = Format::kR8G8B8A8Srgb;
-  Format depth = Format::kD32Float;  ///< kUndefined: no depth attachment
-  friend bool operator==(const RenderTarget&, const RenderTarget&) = default;
-};
-
 // Commands.
-/// Both attachments are cleared when the pass begins and stored when it ends.
+/// The fragment shader's output at location i goes to colour attachment i.
+struct AttachmentUse {
+  Index image = kNone;
+  LoadOp load = LoadOp::kClear;
+  StoreOp store = StoreOp::kStore;
+  friend bool operator==(const AttachmentUse&, const AttachmentUse&) = default;
+};
+struct ColorAttachmentUse : AttachmentUse {
+  std::array<float, 4> clear{0, 0, 0, 1};  ///< linear values
+  friend bool operator==(const ColorAttachmentUse&, const ColorAttachmentUse&) = default;
+};
+struct DepthAttachmentUse : AttachmentUse {
+  float clear = 1;
+  friend bool operator==(const DepthAttachmentUse&, const DepthAttachmentUse&) = default;
+};
+/// All attachments have one extent, and there is at least one. The last pass of a stream is shown: it has a
+/// colour attachment, and number 0 is the picture.
 struct BeginPass {
-  Index target = 0;
-  std::array<float, 4> clear_color{0, 0, 0, 1};  ///< linear values
-  float clear_depth = 1;
+  std::vector<ColorAttachmentUse> colors;
+  DepthAttachmentUse depth;  ///< without image: the pass has no depth attachment
+  [[nodiscard]] Index first_image() const { return colors.empty() ? depth.image : colors[0].image; }
   friend bool operator==(const BeginPass&, const BeginPass&) = default;
 };
 struct EndPass {
@@ -260,10 +257,28 @@ struct CommandStream {
   std::vector<Shader> shaders;
   std::vector<Pipeline> pipelines;
   std::vector<DescriptorSet> descriptor_sets;
-  std::vector<RenderTarget> targets;
   std::vector<Command> commands;
   friend bool operator==(const CommandStream&, const CommandStream&) = default;
 };
+
+/// Images that bring texels.
+[[nodiscard]] std::size_t texture_count(const CommandStream& stream);
+
+/// Width and height of a pass's attachments, of formats `color` and `depth` (kUndefined: none).
+struct PassTarget {
+  std::uint32_t width = 0, height = 0;
+  Format color = Format::kR8G8B8A8Srgb;
+  Format depth = Format::kD32Float;
+};
+/// Adds the images of a pass with one colour attachment to the stream, and returns the command that clears
+/// them at its begin and stores them at its end.
+[[nodiscard]] BeginPass make_pass(CommandStream& stream, const PassTarget& target,
+                                  const std::array<float, 4>& clear_color = {0, 0, 0, 1},
+                                  float clear_depth = 1);
+/// What the stream's last pass draws to, which is what is shown. The stream has a pass.
+[[nodiscard]] PassTarget shown_target(const CommandStream& stream);
+/// What a pass draws to.
+[[nodiscard]] PassTarget target_of(const CommandStream& stream, const BeginPass& pass);
 
 inline constexpr std::uint32_t kMaxPushConstantBytes = 256;
 

@@ -39,7 +39,8 @@ std::uint32_t triangle_count(Topology topology, std::uint32_t count) {
 StreamTotals stream_totals(const CommandStream& stream) {
   StreamTotals totals;
   for (const Buffer& buffer : stream.buffers) totals.buffer_bytes += buffer.data.size();
-  for (const Image& image : stream.images) totals.image_bytes += texel_bytes(image);
+  for (const Image& image : stream.images)
+    totals.image_bytes += image.is_attachment() ? 0 : texel_bytes(image);
   Counter counter{stream, totals};
   for (const Command& command : stream.commands) std::visit(counter, command);
   return totals;
@@ -48,10 +49,10 @@ StreamTotals stream_totals(const CommandStream& stream) {
 std::string trace_info(const CommandStream& stream) {
   const StreamTotals totals = stream_totals(stream);
   std::string text = fmt::format("trace '{}'\n", stream.name);
-  for (const RenderTarget& target : stream.targets) {
-    text += fmt::format("  target     {}x{}, {}, {}\n", target.width, target.height,
-                        target.color == Format::kR8G8B8A8Srgb ? "sRGB" : "UNORM",
-                        target.depth == Format::kUndefined ? "no depth" : "32-bit depth");
+  for (const Image& image : stream.images) {
+    if (image.is_attachment())
+      text += fmt::format("  attachment {}x{}, {} '{}'\n", image.width, image.height,
+                          models::format_info(image.format).name, image.name);
   }
   text += fmt::format("  buffers    {:6} {}\n", stream.buffers.size(), megabytes(totals.buffer_bytes));
   text += fmt::format("  images     {:6} {}\n", stream.images.size(), megabytes(totals.image_bytes));

@@ -3,7 +3,9 @@
 
 #include <bit>
 #include <cstring>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "models/base/error.h"
 
@@ -19,6 +21,8 @@ constexpr std::uint64_t kMaxElements = std::uint64_t{1} << 23;
 class Writer {
  public:
   static constexpr bool kReads = false;
+  explicit Writer(std::uint32_t version) : version_(version) {}
+  [[nodiscard]] std::uint32_t version() const { return version_; }
   template <class T>
   void number(const T& value) {
     append(&value, sizeof(T));
@@ -49,13 +53,29 @@ class Writer {
     bytes_.resize(end + size);
     if (size > 0) std::memcpy(bytes_.data() + end, data, size);
   }
+  std::uint32_t version_;
   std::vector<std::byte> bytes_;
+};
+
+/// A target of files of version 1: one colour and one depth attachment, of passes that clear and store them.
+struct OldTarget {
+  std::uint32_t width = 0, height = 0;
+  Format color = Format::kUndefined, depth = Format::kUndefined;
 };
 
 class Reader {
  public:
   static constexpr bool kReads = true;
-  Reader(std::span<const std::byte> bytes, const std::string& place) : bytes_(bytes), place_(place) {}
+  using OldTargets = std::vector<std::pair<Index, Index>>;
+  Reader(std::span<const std::byte> bytes, std::uint32_t version, const std::string& place,
+         const OldTargets& targets)
+      : bytes_(bytes), place_(place), targets_(targets), version_(version) {}
+  [[nodiscard]] std::uint32_t version() const { return version_; }
+  /// Images of a target, in a file of version 1.
+  [[nodiscard]] std::pair<Index, Index> target(Index index) const {
+    if (index >= targets_.size()) throw user_error("{}: render target {} does not exist", place_, index);
+    return targets_[index];
+  }
 
   template <class T>
   void number(T& value) {
@@ -118,6 +138,8 @@ class Reader {
   }
   std::span<const std::byte> bytes_;
   const std::string& place_;
+  const OldTargets& targets_;
+  std::uint32_t version_;
   std::size_t at_ = 0;
 };
 
@@ -138,6 +160,7 @@ void transfer(A& a, Image& v) {
   a.choice(v.format, kLastFormat);
   numbers(a, v.width, v.height, v.levels);
   a.array(v.texels);
+  if (a.version() >= 2) numbers(a, v.usage);
 }
 
 template <class A>
@@ -178,7 +201,8 @@ void transfer(A& a, Pipeline& v) {
   a.choice(v.front, FrontFace::kClockwise);
   numbers(a, v.depth_clamp, v.depth.test, v.depth.write);
   a.choice(v.depth.compare, CompareOp::kAlways);
-  transfer(a, v.blend);
+  const std::size_t blends = a.version() >= 2 ? v.blend.size() : 1;
+  for (std::size_t i = 0; i < blends; ++i) transfer(a, v.blend[i]);
 }
 
 template <class A>
@@ -188,15 +212,38 @@ void transfer(A& a, DescriptorSet& v) {
 }
 
 template <class A>
-void transfer(A& a, RenderTarget& v) {
+void transfer(A& a, OldTarget& v) {
   numbers(a, v.width, v.height);
   a.choice(v.color, kLastFormat);
   a.choice(v.depth, kLastFormat);
 }
 
 template <class A>
+void transfer(A& a, AttachmentUse& v) {
+  numbers(a, v.image);
+  a.choice(v.load, LoadOp::kDontCare);
+  a.choice(v.store, StoreOp::kDiscard);
+}
+
+template <class A>
+void fields_of_version_1(A& a, BeginPass& v) {
+  if constexpr (A::kReads) {
+    Index target = 0;
+    v.colors.resize(1);
+    numbers(a, target, v.colors[0].clear, v.depth.clear);
+    std::tie(v.colors[0].image, v.depth.image) = a.target(target);
+  }
+}
+
+template <class A>
 void fields(A& a, BeginPass& v) {
-  numbers(a, v.target, v.clear_color, v.clear_depth);
+  if (a.version() == 1) return fields_of_version_1(a, v);
+  a.table(v.colors, [&](ColorAttachmentUse& color) {
+    transfer(a, static_cast<AttachmentUse&>(color));
+    numbers(a, color.clear);
+  });
+  transfer(a, static_cast<AttachmentUse&>(v.depth));
+  numbers(a, v.depth.clear);
 }
 template <class A>
 void fields(A&, EndPass&) {}
@@ -271,7 +318,7 @@ void transfer(A& a, CommandStream& s, Chunk chunk) {
     case Chunk::kShaders: return table(s.shaders);
     case Chunk::kPipelines: return table(s.pipelines);
     case Chunk::kDescriptorSets: return table(s.descriptor_sets);
-    case Chunk::kTargets: return table(s.targets);
+    case Chunk::kTargets: return;  // not part of a stream any more
     case Chunk::kCommands: return table(s.commands);
   }
 }
@@ -279,16 +326,25 @@ void transfer(A& a, CommandStream& s, Chunk chunk) {
 }  // namespace
 
 std::vector<std::byte> encode_chunk(const CommandStream& stream, Chunk chunk) {
-  Writer writer;
+  Writer writer(kChunks[static_cast<std::size_t>(chunk)].version);
   // The field lists are shared with the reader and so take a mutable stream; the writer only looks at it.
   transfer(writer, const_cast<CommandStream&>(stream), chunk);
   return writer.take();
 }
 
-void decode_chunk(CommandStream& stream, Chunk chunk, std::span<const std::byte> payload,
-                  const std::string& place) {
-  Reader reader(payload, place);
-  transfer(reader, stream, chunk);
+void ChunkReader::decode(CommandStream& stream, Chunk chunk, std::uint32_t version,
+                         std::span<const std::byte> payload, const std::string& place) {
+  Reader reader(payload, version, place, targets_);
+  if (chunk == Chunk::kTargets) {
+    std::vector<OldTarget> targets;
+    reader.table(targets, [&](OldTarget& target) { transfer(reader, target); });
+    for (const OldTarget& t : targets) {
+      const BeginPass pass = make_pass(stream, {t.width, t.height, t.color, t.depth});
+      targets_.emplace_back(pass.colors[0].image, pass.depth.image);
+    }
+  } else {
+    transfer(reader, stream, chunk);
+  }
   reader.finish();
 }
 

@@ -29,11 +29,18 @@ static_assert(sizeof(FileHeader) == 16);
 
 struct ChunkHeader {
   std::array<char, 4> tag;
-  std::uint32_t reserved;
+  std::uint32_t version;  ///< of the chunk; files of version 1 have 0 here and version 1 of each
   std::uint64_t stored_bytes, decoded_bytes;
   std::uint64_t checksum;  ///< of the fields above and the payload
 };
 static_assert(sizeof(ChunkHeader) == 32);
+
+bool in_file(std::size_t chunk, std::uint32_t version) { return version == 1 || kChunks[chunk].version > 0; }
+std::uint32_t chunks_in_file(std::uint32_t version) {
+  std::uint32_t chunks = 0;
+  for (std::size_t i = 0; i < kChunks.size(); ++i) chunks += in_file(i, version) ? 1u : 0u;
+  return chunks;
+}
 
 [[noreturn]] void refuse_other_file(const std::string& name) {
   throw user_error("{}: not a trace file (its first bytes are not those of a .qtrace)", name);
@@ -56,8 +63,9 @@ void append_chunk(std::vector<std::byte>& bytes, const CommandStream& stream, Ch
   const std::size_t size =
       ZSTD_compress(packed.data(), packed.size(), payload.data(), payload.size(), kCompression);
   QUADRILLE_CHECK(!ZSTD_isError(size), "zstd: {}", ZSTD_getErrorName(size));
-  ChunkHeader header{{}, 0, size, payload.size(), 0};
-  std::memcpy(header.tag.data(), kChunkTags[static_cast<std::size_t>(chunk)], header.tag.size());
+  const ChunkInfo& info = kChunks[static_cast<std::size_t>(chunk)];
+  ChunkHeader header{{}, info.version, size, payload.size(), 0};
+  std::memcpy(header.tag.data(), info.tag, header.tag.size());
   header.checksum = checksum(header, packed.data());
   append(bytes, &header, sizeof(header));
   append(bytes, packed.data(), size);
@@ -71,7 +79,9 @@ class Parser {
   CommandStream parse() {
     read_header();
     CommandStream stream;
-    for (std::size_t i = 0; i < kChunkTags.size(); ++i) read_chunk(stream, static_cast<Chunk>(i));
+    for (std::size_t i = 0; i < kChunks.size(); ++i) {
+      if (in_file(i, version_)) read_chunk(stream, static_cast<Chunk>(i));
+    }
     if (!bytes_.empty()) throw user_error("{}: {} bytes follow the last chunk", name_, bytes_.size());
     return stream;
   }
@@ -89,25 +99,31 @@ class Parser {
   void read_header() {
     const auto header = take<FileHeader>(name_);
     if (header.magic != kMagic) refuse_other_file(name_);
-    if (header.version != kTraceVersion)
-      throw user_error("{}: trace version {}; this program reads version {}", name_, header.version,
+    if (header.version < 1 || header.version > kTraceVersion)
+      throw user_error("{}: trace version {}; this program reads versions 1 to {}", name_, header.version,
                        kTraceVersion);
-    if (header.chunks != kChunkTags.size())
-      throw user_error("{}: {} chunks; version {} has {}", name_, header.chunks, kTraceVersion,
-                       kChunkTags.size());
+    version_ = header.version;
+    if (header.chunks != chunks_in_file(version_))
+      throw user_error("{}: {} chunks; version {} has {}", name_, header.chunks, version_,
+                       chunks_in_file(version_));
   }
 
   void read_chunk(CommandStream& stream, Chunk chunk) {
-    const std::string place = fmt::format("{}: chunk {}", name_, kChunkTags[static_cast<std::size_t>(chunk)]);
+    const ChunkInfo& info = kChunks[static_cast<std::size_t>(chunk)];
+    const std::string place = fmt::format("{}: chunk {}", name_, info.tag);
     const auto header = take<ChunkHeader>(place);
     check(header, chunk, place);
+    const std::uint32_t version = version_ == 1 ? 1 : header.version;
+    if (version_ > 1 && (version < 1 || version > info.version))
+      throw user_error("{}: its version is {}; this program reads versions 1 to {}", place, version,
+                       info.version);
     const std::vector<std::byte> payload = unpack(header, place);
     bytes_ = bytes_.subspan(header.stored_bytes);
-    decode_chunk(stream, chunk, payload, place);
+    chunks_.decode(stream, chunk, version, payload, place);
   }
 
   void check(const ChunkHeader& header, Chunk chunk, const std::string& place) {
-    const std::string_view tag = kChunkTags[static_cast<std::size_t>(chunk)];
+    const std::string_view tag = kChunks[static_cast<std::size_t>(chunk)].tag;
     if (std::string_view(header.tag.data(), header.tag.size()) != tag)
       throw user_error("{}: another chunk is in its place", place);
     if (header.stored_bytes > bytes_.size())
@@ -137,6 +153,8 @@ class Parser {
   std::span<const std::byte> bytes_;
   const std::string& name_;
   std::uint64_t decoded_ = 0;
+  std::uint32_t version_ = 0;
+  ChunkReader chunks_;
 };
 
 }  // namespace
@@ -144,9 +162,11 @@ class Parser {
 std::vector<std::byte> encode_trace(const CommandStream& stream) {
   for (const Image& image : stream.images) QUADRILLE_CHECK(!image.packed, "image '{}' is packed", image.name);
   std::vector<std::byte> bytes;
-  const FileHeader header{kMagic, kTraceVersion, static_cast<std::uint32_t>(kChunkTags.size())};
+  const FileHeader header{kMagic, kTraceVersion, chunks_in_file(kTraceVersion)};
   append(bytes, &header, sizeof(header));
-  for (std::size_t i = 0; i < kChunkTags.size(); ++i) append_chunk(bytes, stream, static_cast<Chunk>(i));
+  for (std::size_t i = 0; i < kChunks.size(); ++i) {
+    if (in_file(i, kTraceVersion)) append_chunk(bytes, stream, static_cast<Chunk>(i));
+  }
   return bytes;
 }
 

@@ -1,9 +1,10 @@
 /// The trace file (`.qtrace`): one `CommandStream` on disk, with version and checksums.
 ///
 /// A header (magic, version, number of chunks) is followed by chunks, one for each object table and one for
-/// the commands. A chunk names itself, says its stored and its decoded size, carries an XXH3 checksum of what
-/// is stored and holds a zstd-compressed payload. docs/trace_format.md has every field. A file is written
-/// whole or not at all; a file that is damaged anywhere is refused with the chunk and the reason.
+/// the commands. A chunk names itself and its version, says its stored and its decoded size, carries an XXH3
+/// checksum of what is stored and holds a zstd-compressed payload. docs/trace_format.md has every field. A
+/// file is written whole or not at all; a file that is damaged anywhere is refused with the chunk and the
+/// reason.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +17,8 @@
 
 namespace quadrille::traces {
 
-inline constexpr std::uint32_t kTraceVersion = 1;
+/// Of the container and its list of chunks. Version 1 is read too: it had a table of render targets.
+inline constexpr std::uint32_t kTraceVersion = 2;
 /// The most that one decoded trace may take; declared sizes above it are refused before anything is
 /// allocated.
 inline constexpr std::uint64_t kMaxTraceBytes = std::uint64_t{2} << 30;

@@ -26,11 +26,6 @@ constexpr std::uint32_t kMaxUniformRange = 65536;  // bytes
 constexpr std::uint32_t kUniformAlignment = 16;    // bytes
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 
-bool is_color_image(Format f) { return f == Format::kR8G8B8A8Unorm || f == Format::kR8G8B8A8Srgb; }
-bool is_vertex_format(Format f) {
-  return f != Format::kUndefined && f != Format::kD32Float && !is_color_image(f);
-}
-
 void check_side(const char* what, std::size_t index, std::uint32_t width, std::uint32_t height) {
   if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide) {
     throw user_error("{} {}: size {}x{} is outside 1x1 .. {}x{}", what, index, width, height, kMaxSide,
@@ -38,21 +33,38 @@ void check_side(const char* what, std::size_t index, std::uint32_t width, std::u
   }
 }
 
+void check_usage(const Image& image, std::size_t index) {
+  const models::FormatInfo& format = models::format_info(image.format);
+  if (image.usage == 0 || (image.usage & ~kAllUsages) != 0)
+    throw user_error("image {} '{}': usage {:#x} is not a set of sampled, colour and depth attachment", index,
+                     image.name, image.usage);
+  const auto refuse = [&](const char* use) {
+    throw user_error("image {} '{}': its format {} is not one of a {}", index, image.name, format.name, use);
+  };
+  if ((image.usage & kColorAttachment) != 0 && !format.may(models::kColorUse)) refuse("colour attachment");
+  if ((image.usage & kDepthAttachment) != 0 && !format.may(models::kDepthUse)) refuse("depth attachment");
+  if (!image.is_attachment() && !format.may(models::kFileUse)) refuse("texture (R8G8B8A8 UNORM or SRGB)");
+}
+
+void check_texels(const Image& image, std::size_t index) {
+  const std::uint64_t bytes = image.packed || image.is_attachment() ? 0 : texel_bytes(image);
+  if (image.is_attachment() && (image.levels != 1 || image.packed || !image.texels.empty()))
+    throw user_error("image {} '{}': an attachment has one level and brings no texels", index, image.name);
+  if (image.texels.size() != bytes) {
+    throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index,
+                     image.name, image.texels.size(), image.width, image.height, image.levels, bytes);
+  }
+}
+
 void check_image(const Image& image, std::size_t index) {
   check_side("image", index, image.width, image.height);
-  if (!is_color_image(image.format))
-    throw user_error("image {} '{}': its format is not one of a texture (R8G8B8A8 UNORM or SRGB)", index,
-                     image.name);
+  check_usage(image, index);
   const auto full_chain = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
   if (image.levels == 0 || image.levels > full_chain) {
     throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels,
                      image.width, image.height, full_chain);
   }
-  const std::uint64_t bytes = image.packed ? 0 : texel_bytes(image);
-  if (image.texels.size() != bytes) {
-    throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index,
-                     image.name, image.texels.size(), image.width, image.height, image.levels, bytes);
-  }
+  check_texels(image, index);
 }
 
 void check_sampler(const Sampler& sampler, std::size_t index) {
@@ -101,7 +113,7 @@ void check_vertex_input(const Pipeline& pipeline, std::size_t index) {
     if (!bindings.contains(a.binding))
       throw user_error("pipeline {} '{}': location {} reads binding {}, which is not declared", index,
                        pipeline.name, a.location, a.binding);
-    if (!is_vertex_format(a.format))
+    if (!models::format_info(a.format).may(models::kAttributeUse))
       throw user_error("pipeline {} '{}': location {} has a format that is not one of an attribute", index,
                        pipeline.name, a.location);
     if (a.offset > kMaxAttributeOffset)
@@ -114,9 +126,11 @@ void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::
   check_stage(stream, pipeline, index, pipeline.vertex_shader, ShaderStage::kVertex, "vertex");
   check_stage(stream, pipeline, index, pipeline.fragment_shader, ShaderStage::kFragment, "fragment");
   check_vertex_input(pipeline, index);
-  if (pipeline.blend.write_mask > 0xf)
-    throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,
-                     pipeline.blend.write_mask);
+  for (const BlendState& blend : pipeline.blend) {
+    if (blend.write_mask > 0xf)
+      throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,
+                       blend.write_mask);
+  }
 }
 
 void check_uniform(const CommandStream& stream, std::size_t set, const UniformBinding& u) {
@@ -147,17 +161,12 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
     claim(t.binding);
     if (t.image >= stream.images.size())
       throw user_error("descriptor set {} binding {}: image {} does not exist", set, t.binding, t.image);
+    if ((stream.images[t.image].usage & kSampled) == 0)
+      throw user_error("descriptor set {} binding {}: image {} '{}' is not for sampling", set, t.binding,
+                       t.image, stream.images[t.image].name);
     if (t.sampler >= stream.samplers.size())
       throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
   }
-}
-
-void check_target(const RenderTarget& target, std::size_t index) {
-  check_side("render target", index, target.width, target.height);
-  if (!is_color_image(target.color))
-    throw user_error("render target {}: its colour format is not R8G8B8A8 UNORM or SRGB", index);
-  if (target.depth != Format::kUndefined && target.depth != Format::kD32Float)
-    throw user_error("render target {}: its depth format is not D32 or none", index);
 }
 
 }  // namespace
@@ -169,7 +178,6 @@ void validate(const CommandStream& stream) {
   for (std::size_t i = 0; i < stream.pipelines.size(); ++i) check_pipeline(stream, stream.pipelines[i], i);
   for (std::size_t i = 0; i < stream.descriptor_sets.size(); ++i)
     check_descriptors(stream, stream.descriptor_sets[i], i);
-  for (std::size_t i = 0; i < stream.targets.size(); ++i) check_target(stream.targets[i], i);
   CommandWalk(stream).run();
 }
 

@@ -42,25 +42,56 @@ void CommandWalk::run() {
   for (at_ = 0; at_ < stream_.commands.size(); ++at_) {
     std::visit([this](const auto& command) { visit(command); }, stream_.commands[at_]);
   }
-  if (target_ != kNone) throw user_error("commands: the last render pass is not ended");
+  if (pass_ != nullptr) throw user_error("commands: the last render pass is not ended");
   if (passes_ == 0) throw user_error("commands: there is no render pass");
+  if (last_->colors.empty()) throw user_error("commands: the last render pass has no colours to show");
+}
+
+void CommandWalk::check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what) {
+  if (use.image >= stream_.images.size())
+    throw user_error("command {}: {}: image {} does not exist", at_, what, use.image);
+  const Image& image = stream_.images[use.image];
+  if ((image.usage & usage) == 0)
+    throw user_error("command {}: {}: image {} '{}' is not for that use", at_, what, use.image, image.name);
+  if (image.width != target_.width || image.height != target_.height)
+    throw user_error("command {}: {}: image {} of {}x{} beside one of {}x{}", at_, what, use.image,
+                     image.width, image.height, target_.width, target_.height);
+  if (attached_[use.image])
+    throw user_error("command {}: {}: image {} is attached twice", at_, what, use.image);
+  if (use.load == LoadOp::kLoad && !stored_[use.image])
+    throw user_error("command {}: {}: image {} is loaded before a pass has stored it", at_, what, use.image);
+  attached_[use.image] = true;
 }
 
 void CommandWalk::visit(const BeginPass& c) {
-  if (target_ != kNone) throw user_error("command {}: a render pass begins inside another", at_);
-  if (c.target >= stream_.targets.size())
-    throw user_error("command {}: render target {} does not exist", at_, c.target);
-  if (!std::ranges::all_of(c.clear_color, [](float v) { return std::isfinite(v); }))
-    throw user_error("command {}: the clear colour is not finite", at_);
-  if (!within(c.clear_depth, 0, 1))
-    throw user_error("command {}: clear depth {} is outside 0..1", at_, c.clear_depth);
-  target_ = c.target;
+  if (pass_ != nullptr) throw user_error("command {}: a render pass begins inside another", at_);
+  if (c.colors.size() > kMaxColorAttachments)
+    throw user_error("command {}: {} colour attachments; at most {} are possible", at_, c.colors.size(),
+                     kMaxColorAttachments);
+  if (c.first_image() == kNone) throw user_error("command {}: a render pass without attachments", at_);
+  if (c.first_image() >= stream_.images.size())
+    throw user_error("command {}: image {} does not exist", at_, c.first_image());
+  const Image& first = stream_.images[c.first_image()];
+  target_.width = first.width;
+  target_.height = first.height;
+  attached_.assign(stream_.images.size(), false);
+  for (const ColorAttachmentUse& color : c.colors) {
+    check_attachment(color, kColorAttachment, "colour attachment");
+    if (!std::ranges::all_of(color.clear, [](float v) { return std::isfinite(v); }))
+      throw user_error("command {}: the clear colour is not finite", at_);
+  }
+  if (c.depth.image != kNone) check_attachment(c.depth, kDepthAttachment, "depth attachment");
+  if (!within(c.depth.clear, 0, 1))
+    throw user_error("command {}: clear depth {} is outside 0..1", at_, c.depth.clear);
+  pass_ = last_ = &c;
   ++passes_;
 }
 
 void CommandWalk::visit(const EndPass&) {
-  if (target_ == kNone) throw user_error("command {}: a render pass ends that has not begun", at_);
-  target_ = kNone;
+  if (pass_ == nullptr) throw user_error("command {}: a render pass ends that has not begun", at_);
+  for (const ColorAttachmentUse& color : pass_->colors) stored_[color.image] = color.store == StoreOp::kStore;
+  if (pass_->depth.image != kNone) stored_[pass_->depth.image] = pass_->depth.store == StoreOp::kStore;
+  pass_ = nullptr;
 }
 
 void CommandWalk::visit(const BindPipeline& c) {
@@ -129,24 +160,23 @@ void CommandWalk::visit(const SetScissor& c) {
 }
 
 void CommandWalk::check_scissor() const {
-  const RenderTarget& target = stream_.targets[target_];
   const std::uint64_t right = static_cast<std::uint64_t>(scissor_->x) + scissor_->width;
   const std::uint64_t bottom = static_cast<std::uint64_t>(scissor_->y) + scissor_->height;
-  if (right > target.width || bottom > target.height) {
+  if (right > target_.width || bottom > target_.height) {
     throw user_error("command {}: draw with scissor {},{} {}x{} outside the target of {}x{}", at_,
-                     scissor_->x, scissor_->y, scissor_->width, scissor_->height, target.width,
-                     target.height);
+                     scissor_->x, scissor_->y, scissor_->width, scissor_->height, target_.width,
+                     target_.height);
   }
 }
 
 void CommandWalk::check_draw_state() const {
-  if (target_ == kNone) throw user_error("command {}: draw outside a render pass", at_);
+  if (pass_ == nullptr) throw user_error("command {}: draw outside a render pass", at_);
   if (pipeline_ == kNone) throw user_error("command {}: draw without a pipeline", at_);
   if (!viewport_) throw user_error("command {}: draw without a viewport", at_);
   if (!scissor_) throw user_error("command {}: draw without a scissor", at_);
   check_scissor();
   const DepthState& depth = stream_.pipelines[pipeline_].depth;
-  if ((depth.test || depth.write) && stream_.targets[target_].depth == Format::kUndefined) {
+  if ((depth.test || depth.write) && pass_->depth.image == kNone) {
     throw user_error("command {}: draw with depth test or write into a target without depth", at_);
   }
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "traces/command_stream.h"
 
@@ -18,7 +19,8 @@ inline constexpr std::uint32_t kMaxDescriptorSets = 4;
 
 class CommandWalk {
  public:
-  explicit CommandWalk(const CommandStream& stream) : stream_(stream) {}
+  explicit CommandWalk(const CommandStream& stream)
+      : stream_(stream), attached_(stream.images.size()), stored_(stream.images.size()) {}
   /// Throws `UserError` naming the command.
   void run();
 
@@ -42,6 +44,7 @@ class CommandWalk {
   void visit(const SetScissor& c);
   void visit(const Draw& c);
 
+  void check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what);
   void check_draw_state() const;
   void check_scissor() const;
   void count_vertices(const Draw& draw);
@@ -54,7 +57,11 @@ class CommandWalk {
   std::size_t at_ = 0;  ///< command index, for messages
   std::uint64_t vertices_ = 0;
   std::size_t passes_ = 0;
-  Index target_ = kNone, pipeline_ = kNone;
+  const BeginPass* pass_ = nullptr;  ///< that has begun and not ended
+  const BeginPass* last_ = nullptr;
+  PassTarget target_;
+  std::vector<bool> attached_, stored_;  ///< by image: in this pass; by an earlier one
+  Index pipeline_ = kNone;
   std::array<VertexStream, kMaxVertexBindings> vertex_streams_;
   BindIndexBuffer indices_;
   std::optional<SetViewport> viewport_;

@@ -8,6 +8,7 @@
 
 #include "models/geometry/assembly.h"
 #include "models/geometry/attribute_format.h"
+#include "models/memory/attachment.h"
 #include "models/memory/surface.h"
 #include "models/precision.h"
 #include "models/raster/clip.h"
@@ -29,7 +30,7 @@ namespace quadrille::hw {
 struct AttributeFetch {
   std::uint64_t address = 0;  ///< of vertex (or instance) 0
   std::uint32_t stride = 0;   ///< bytes
-  models::AttributeFormat format = models::AttributeFormat::kR32G32B32Float;
+  models::Format format = models::Format::kR32G32B32Float;
   bool per_instance = false;
   /// row of the warp's inputs for each component; -1: not read
   std::array<int, 4> input_row{-1, -1, -1, -1};
@@ -69,21 +70,48 @@ struct DrawState {
   models::SetupState setup;
   bool depth_test = false, depth_write = false;
   models::CompareOp depth_compare = models::CompareOp::kLess;
-  models::BlendState blend;
+  std::array<models::BlendState, models::kMaxColorAttachments> blend;  ///< by colour attachment
+  /// Components of the pass's colour attachments that the fragment program writes, as
+  /// `models::color_outputs`. Attachments without any keep what they hold; the other components of the rest
+  /// are written as 0.
+  std::uint32_t color_outputs = 0;
   /// Depth is tested after shading: the program discards or writes depth, and does not force early tests.
   bool late_depth = false;
 
   [[nodiscard]] int varyings() const { return static_cast<int>(vertex_program->varyings.size()); }
   [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
+  [[nodiscard]] bool writes_color(std::size_t attachment) const {
+    return (color_outputs >> 4 * attachment & 0xfu) != 0;
+  }
+  /// Does a write to this attachment need the old pixel?
+  [[nodiscard]] bool reads_color(std::size_t attachment) const {
+    return writes_color(attachment) && models::reads_destination(blend[attachment]);
+  }
+};
+
+/// An attachment of a pass: where it lies and what happens to it at the pass's begin and end.
+struct AttachmentState {
+  models::SurfaceLayout surface;
+  models::Format format = models::Format::kR8G8B8A8Srgb;
+  models::LoadOp load = models::LoadOp::kClear;
+  models::StoreOp store = models::StoreOp::kStore;
+  std::uint32_t clear = 0;  ///< encoded: what every pixel begins with, unless it is loaded
+  /// Someone reads it after the pass, so tiles that nothing drew to must be written out too.
+  bool read_later = true;
+  [[nodiscard]] bool loads() const { return load == models::LoadOp::kLoad; }
 };
 
 struct PassState {
-  models::SurfaceLayout color, depth;
-  bool has_depth = false;
-  models::ColorFormat color_format = models::ColorFormat::kR8G8B8A8Srgb;
-  std::uint32_t clear_color = 0;  ///< encoded
-  float clear_depth = 1;
+  std::uint32_t width = 0, height = 0;  ///< pixels of each attachment
+  std::size_t colors = 0;
+  std::array<AttachmentState, models::kMaxColorAttachments> color;
+  AttachmentState depth;
+  bool has_depth = false;            ///< a draw tests depth, or someone reads it later
+  float clear_depth = 1;             ///< of a depth attachment that is not loaded
+  bool samples_attachments = false;  ///< that earlier passes drew
+  /// No depth of the pass is known when it begins.
+  [[nodiscard]] bool loads_depth() const { return has_depth && depth.loads(); }
   std::uint32_t first_draw = 0, draws = 0;
 };
 

@@ -43,7 +43,8 @@ struct WarpSlot {
   models::LaneMask covered = 0;  ///< live lanes at launch
   std::array<Quad, models::kWarpQuads> quad;
   models::LaneMask alive = 0;  ///< lanes to write: covered, not discarded, not failed late
-  std::array<models::LaneFloats, 4> color;
+  /// by colour attachment; those that the draw's program writes
+  std::array<std::array<models::LaneFloats, 4>, models::kMaxColorAttachments> color;
   models::LaneFloats depth;
 };
 

@@ -143,7 +143,7 @@ std::size_t VertexFetch::touched_line(std::uint32_t line) {
 void VertexFetch::fetch_attributes(BatchSlot& batch) {
   const DrawState& draw = frame_.draw(draw_);
   for (const AttributeFetch& fetch : draw.attributes) {
-    const std::uint32_t bytes = models::attribute_bytes(fetch.format);
+    const std::uint32_t bytes = models::format_bytes(fetch.format);
     for (int lane = 0; lane < batch.lanes; ++lane) {
       const std::uint32_t element = fetch.per_instance ? draw.first_instance + instance_ : reuse_.index(lane);
       const std::uint64_t address = fetch.address + std::uint64_t{element} * fetch.stride;

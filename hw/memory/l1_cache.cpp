@@ -133,6 +133,23 @@ void L1Cache::write(std::uint32_t line, std::uint32_t words) {
   complete(slot, whole);
 }
 
+void L1Cache::forget() {
+  QUADRILLE_CHECK(idle() && parts_.empty(), "a cache is emptied with {} misses under way",
+                  misses_.size() - free_.size());
+  tags_.invalidate_all();
+}
+
+void L1Cache::discard(std::uint32_t first, std::uint32_t end) {
+  QUADRILLE_CHECK(idle(), "lines are discarded with {} misses under way", misses_.size() - free_.size());
+  for (int slot = 0; slot < tags_.slots(); ++slot) {
+    const models::TagArray::Line& held = tags_.at(slot);
+    if (held.line < first || held.line >= end) continue;
+    if (held.dirty != 0 || parts_[static_cast<std::size_t>(slot)] != 0) memory_->mark_clean(held.line);
+    parts_[static_cast<std::size_t>(slot)] = 0;
+    tags_.clean(slot);
+  }
+}
+
 void L1Cache::flush(MemoryPort& port) {
   QUADRILLE_CHECK(idle(), "flush with {} misses under way", misses_.size() - free_.size());
   for (int slot = 0; slot < tags_.slots(); ++slot) {

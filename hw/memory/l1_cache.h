@@ -73,6 +73,10 @@ class L1Cache {
   }
   /// Words (bit 0 the first of 32) of a line that has a place were written.
   void write(std::uint32_t line, std::uint32_t words);
+  /// Forgets all lines of a cache that does not write; nothing may be under way.
+  void forget();
+  /// Forgets what was written to lines `first` to before `end`: nobody will read it.
+  void discard(std::uint32_t first, std::uint32_t end);
   /// Queues all dirty sectors for writing and forgets all lines; nothing may be under way.
   void flush(MemoryPort& port);
   /// No more lines may be asked for.

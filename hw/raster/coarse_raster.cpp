@@ -5,6 +5,7 @@
 #include "models/raster/interpolate.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace quadrille::hw {
 
@@ -51,7 +52,8 @@ void CoarseRaster::take_updates(Tick now) {
   hiz_in.take_ready(now, [&](std::size_t, const HiZToken& update) {
     ++stats_.hiz_updates;
     if (update.pass != pass_ || hiz_.empty()) return;
-    float& held = hiz_[std::size_t{update.tile_y} * frame_.passes[pass_].depth.tiles_x + update.tile_x];
+    float& held =
+        hiz_[std::size_t{update.tile_y} * frame_.passes[pass_].depth.surface.tiles_x + update.tile_x];
     held = std::min(held, update.max_depth);
   });
 }
@@ -101,7 +103,8 @@ void CoarseRaster::begin_pass(std::uint32_t pass) {
   const bool tests = state.has_depth && std::any_of(first, first + state.draws,
                                                     [](const DrawState& d) { return d.uses_depth(); });
   if (tests && params_.hiz)
-    hiz_.assign(std::size_t{state.depth.tiles_x} * state.depth.tiles_y, state.clear_depth);
+    hiz_.assign(std::size_t{state.depth.surface.tiles_x} * state.depth.surface.tiles_y,
+                state.loads_depth() ? std::numeric_limits<float>::infinity() : state.clear_depth);
 }
 
 void CoarseRaster::note_direction(const DrawState& draw) {
@@ -117,7 +120,7 @@ void CoarseRaster::note_direction(const DrawState& draw) {
 
 bool CoarseRaster::hidden(const models::TileHit& tile) const {
   if (!hiz_usable_) return false;
-  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.tiles_x +
+  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.surface.tiles_x +
                           static_cast<std::size_t>(tile.tile_x)];
   const float nearest = models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y).min;
   return frame_.draw(draw_).depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace quadrille::hw {
 
@@ -78,12 +79,13 @@ std::string DepthUnit::state_text() const {
 }
 
 std::size_t DepthUnit::tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const {
-  return std::size_t{tile_y} * frame_.passes[pass_].depth.tiles_x + tile_x;
+  return std::size_t{tile_y} * frame_.passes[pass_].depth.surface.tiles_x + tile_x;
 }
 
 float* DepthUnit::depths(std::uint32_t tile_x, std::uint32_t tile_y) {
   return reinterpret_cast<float*>(
-      device_.write(frame_.passes[pass_].depth.tile_address(tile_x, tile_y), models::kTileBytes).data());
+      device_.write(frame_.passes[pass_].depth.surface.tile_address(tile_x, tile_y), models::kTileBytes)
+          .data());
 }
 
 // --- When ---
@@ -214,7 +216,7 @@ bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   stats_.working_for(draw_of(entry.token.kind, entry.token.index));
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.index).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
-    if (!cache_.acquire(entry.token.tile_x, entry.token.tile_y, {.read = sectors}, number & ~kLateBit,
+    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y}, {.read = sectors}, number & ~kLateBit,
                         entry.missing, entry.done, port_))
       return false;
   }
@@ -231,7 +233,7 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
       const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
       const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
       const std::uint8_t sector = sectors_of_quads(1u << place.quad);
-      if (!cache_.acquire(place.tile_x, place.tile_y, {.read = sector}, (number & ~kLateBit) | kLateBit,
+      if (!cache_.acquire({0, place.tile_x, place.tile_y}, {.read = sector}, (number & ~kLateBit) | kLateBit,
                           entry.missing, entry.done[static_cast<std::size_t>(q)], port_)) {
         return false;
       }
@@ -246,10 +248,10 @@ void DepthUnit::begin_pass(std::uint32_t pass) {
   lowering_ = true;
   const PassState& state = frame_.passes[pass];
   if (!state.has_depth) return;
-  cache_.clear(state.depth, std::bit_cast<std::uint32_t>(state.clear_depth), partition_, partitions_);
-  const std::size_t tiles = std::size_t{state.depth.tiles_x} * state.depth.tiles_y;
+  cache_.begin_pass({&state.depth, 1}, partition_, partitions_);
+  const std::size_t tiles = std::size_t{state.depth.surface.tiles_x} * state.depth.surface.tiles_y;
   late_in_flight_.assign(tiles, 0);
-  known_max_.assign(tiles, state.clear_depth);
+  known_max_.assign(tiles, state.loads_depth() ? std::numeric_limits<float>::infinity() : state.clear_depth);
 }
 
 void DepthUnit::test_early(Tick now) {
@@ -292,7 +294,7 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
     token.coverage = models::depth_test(draw.depth_compare, stored, incoming, covered);
   }
   if (!token.late && draw.depth_write && token.coverage != 0) {
-    if (!cache_.write(token.tile_x, token.tile_y, std::bit_cast<SectorPixels>(token.coverage), port_))
+    if (!cache_.write({0, token.tile_x, token.tile_y}, std::bit_cast<SectorPixels>(token.coverage), port_))
       return false;
     models::depth_write(stored, incoming, token.coverage);
     send_hiz(now, token.tile_x, token.tile_y);
@@ -312,7 +314,8 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
 void DepthUnit::send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y) {
   if (!lowering_) return;
   float& known = known_max_[tile_number(tile_x, tile_y)];
-  const float greatest = greatest_depth(depths(tile_x, tile_y), frame_.passes[pass_].depth, tile_x, tile_y);
+  const float greatest =
+      greatest_depth(depths(tile_x, tile_y), frame_.passes[pass_].depth.surface, tile_x, tile_y);
   if (!(greatest < known)) return;
   if (!hiz_out.room_at(now)) {
     ++stats_.hiz_dropped;
@@ -328,7 +331,7 @@ bool DepthUnit::test_late(Tick now) {
   const LateToken token = late_.front().token;
   if (token.kind == TokenKind::kPassEnd) {
     stats_.working_for(kNoDraw);
-    cache_.flush(port_, false);
+    cache_.flush(port_);
     flush_ = Flush::kDraining;
     late_.pop_front();
     ++first_late_;
@@ -342,8 +345,8 @@ bool DepthUnit::test_late(Tick now) {
     if (lanes == 0) continue;
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-    if (!cache_.write(place.tile_x, place.tile_y, std::bit_cast<SectorPixels>(lanes << place.first_pixel()),
-                      port_)) {
+    if (!cache_.write({0, place.tile_x, place.tile_y},
+                      std::bit_cast<SectorPixels>(lanes << place.first_pixel()), port_)) {
       late_.front().acquired = false;
       stalled_ = !cache_.idle();
       return false;

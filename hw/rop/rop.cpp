@@ -40,6 +40,18 @@ int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads
   return count;
 }
 
+/// What a write of these pixels asks of their sectors.
+SectorWishes wishes_of(const SectorPixels& pixels, bool reads_old) {
+  SectorWishes wishes;
+  for (std::size_t s = 0; s < pixels.size(); ++s) {
+    if (pixels[s] == 0) continue;
+    const bool whole = pixels[s] == 0xff;
+    std::uint8_t& wish = reads_old ? wishes.read : whole ? wishes.write : wishes.part;
+    wish = static_cast<std::uint8_t>(wish | 1u << s);
+  }
+  return wishes;
+}
+
 }  // namespace
 
 Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
@@ -157,7 +169,7 @@ void Rop::take_inputs(Tick now) {
 void Rop::take_late(Tick now) {
   if (late_in.pop(now).kind == TokenKind::kPassEnd) {
     stats_.working_for(kNoDraw);
-    cache_.flush(port_, true);
+    cache_.flush(port_);
     flush_ = Flush::kDraining;
     return;
   }
@@ -196,21 +208,17 @@ void Rop::acquire(Tick now) {
 bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
   const WarpSlot& warp = warps_[entry.token.slot];
   stats_.working_for(warp.draw);
-  const bool blends = models::reads_destination(frame_.draw(warp.draw).blend);
+  const DrawState& draw = frame_.draw(warp.draw);
   std::array<TileTouch, models::kWarpQuads> tiles;
   const int count = touched_tiles(warp, tiles);
-  for (int i = 0; i < count; ++i) {
-    const TileTouch& tile = tiles[static_cast<std::size_t>(i)];
-    SectorWishes wishes;
-    for (std::size_t s = 0; s < 8; ++s) {
-      if (tile.pixels[s] == 0) continue;
-      const bool whole = tile.pixels[s] == 0xff;
-      std::uint8_t& wish = blends ? wishes.read : whole ? wishes.write : wishes.part;
-      wish = static_cast<std::uint8_t>(wish | 1u << s);
+  for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
+    if (!draw.writes_color(color)) continue;
+    const bool reads = draw.reads_color(color);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (!cache_.acquire({color, tiles[i].tile_x, tiles[i].tile_y}, wishes_of(tiles[i].pixels, reads),
+                          number, entry.missing, entry.done[color][i], port_))
+        return false;
     }
-    if (!cache_.acquire(tile.tile_x, tile.tile_y, wishes, number, entry.missing,
-                        entry.done[static_cast<std::size_t>(i)], port_))
-      return false;
   }
   return true;
 }
@@ -259,7 +267,7 @@ void Rop::retire_boundary(Tick now, const Entry& entry) {
     case TokenKind::kPassBegin: {
       pass_ = entry.token.index;
       const PassState& pass = frame_.passes[pass_];
-      cache_.clear(pass.color, pass.clear_color, partition_, partitions_);
+      cache_.begin_pass({pass.color.data(), pass.colors}, partition_, partitions_);
       return;
     }
     case TokenKind::kDrawEnd:
@@ -277,18 +285,20 @@ void Rop::retire_boundary(Tick now, const Entry& entry) {
 }
 
 bool Rop::claim_colors(const WarpSlot& warp) {
+  const DrawState& draw = frame_.draw(warp.draw);
   std::array<TileTouch, models::kWarpQuads> tiles;
   const int count = touched_tiles(warp, tiles);
-  for (int i = 0; i < count; ++i) {
-    const TileTouch& tile = tiles[static_cast<std::size_t>(i)];
-    if (!cache_.write(tile.tile_x, tile.tile_y, tile.pixels, port_)) return false;
+  for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
+    if (!draw.writes_color(color)) continue;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (!cache_.write({color, tiles[i].tile_x, tiles[i].tile_y}, tiles[i].pixels, port_)) return false;
+    }
   }
   return true;
 }
 
 int Rop::write_colors(const WarpSlot& warp) {
   const DrawState& draw = frame_.draw(warp.draw);
-  const PassState& pass = frame_.passes[pass_];
   int quads = 0;
   for (int q = 0; q < warp.quads; ++q) {
     const models::LaneMask lanes = lanes_of(warp, q);
@@ -298,15 +308,29 @@ int Rop::write_colors(const WarpSlot& warp) {
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
     stats_.working_at(place.tile_x, place.tile_y);
     stats_.written += static_cast<std::uint64_t>(std::popcount(lanes));
-    float rgba[4][4];
-    for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[c].begin() + 4 * q, 4, rgba[c]);
-    auto* const tile = reinterpret_cast<std::uint32_t*>(
-        device_.write(pass.color.tile_address(place.tile_x, place.tile_y), models::kTileBytes).data());
-    models::blend_quad(draw.blend, pass.color_format, rgba, tile + place.first_pixel(), lanes);
+    for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
+      if (draw.writes_color(color)) write_quad(warp, q, place, color);
+    }
   }
-  const bool blends = models::reads_destination(draw.blend);
-  if (blends) stats_.blended += static_cast<std::uint64_t>(std::popcount(warp.alive));
-  return std::max(1, (quads * (blends ? 2 : 1) + params_.quads_per_clk - 1) / params_.quads_per_clk);
+  int quad_cycles = 0;
+  for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
+    if (draw.writes_color(color)) quad_cycles += draw.reads_color(color) ? 2 * quads : quads;
+  }
+  return std::max(1, (quad_cycles + params_.quads_per_clk - 1) / params_.quads_per_clk);
+}
+
+void Rop::write_quad(const WarpSlot& warp, int q, const models::QuadPlace& place, std::size_t color) {
+  const DrawState& draw = frame_.draw(warp.draw);
+  const AttachmentState& attachment = frame_.passes[pass_].color[color];
+  const models::LaneMask lanes = lanes_of(warp, q);
+  const auto pixels = static_cast<std::uint64_t>(std::popcount(lanes));
+  stats_.pixels_written += pixels;
+  if (draw.reads_color(color)) stats_.blended += pixels;
+  float rgba[4][4];
+  for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[color][c].begin() + 4 * q, 4, rgba[c]);
+  const std::uint64_t address = attachment.surface.tile_address(place.tile_x, place.tile_y);
+  auto* const tile = reinterpret_cast<std::uint32_t*>(device_.write(address, models::kTileBytes).data());
+  models::blend_quad(draw.blend[color], attachment.format, rgba, tile + place.first_pixel(), lanes);
 }
 
 void Rop::advance_flush(Tick now) {
@@ -333,7 +357,7 @@ std::vector<Facet> Rop::row() const {
   return {rate("written", stats_.written, params_.quads_per_clk * models::kQuadPixels),
           share("written", stats_.written, stats_.fragments_in),
           share("discarded", stats_.discarded, stats_.fragments_in),
-          share("blended", stats_.blended, stats_.written),
+          share("blended", stats_.blended, stats_.pixels_written),
           share("cache hit", cache_.stats().hits, cache_.stats().requests)};
 }
 

@@ -6,8 +6,8 @@
 /// slot is free      sync_out  triangles before a sequence number are retired
 ///       retire_out draw retired; pass flushed      load_out  a core has done a warp
 /// Mem   colour tiles
-/// Time  `quads_per_clk` quads a cycle (half of that when blending reads the old colour); up to
-/// `warps_in_flight` warps wait for their lines
+/// Time  `quads_per_clk` quads a cycle and colour attachment (half of that where blending reads the old
+/// colour); up to `warps_in_flight` warps wait for their lines
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -16,6 +16,7 @@
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
 #include "hw/rop/surface_cache.h"
+#include "models/raster/quad_place.h"
 
 namespace quadrille::hw {
 
@@ -42,9 +43,12 @@ class Rop final : public Unit {
     Counter late_discarded{*this, "late_discarded", "fragment",
                            "Fragments of those that would have been tested late"};
     Counter late_killed{*this, "late_killed", "fragment", "Fragments that failed the late depth test"};
-    Counter written{*this, "written", "fragment", "Fragments written to the target"};
-    Counter blended{*this, "blended", "fragment",
-                    "Fragments of those that were combined with the old colour"};
+    Counter written{*this, "written", "fragment", "Fragments written to the attachments"};
+    Counter pixels_written{
+        *this, "pixels_written", "pixel",
+        "Pixels of colour attachments written: one for each attachment that the fragment's "
+        "program has an output for"};
+    Counter blended{*this, "blended", "pixel", "Pixels of those that were combined with the old colour"};
     Counter draws{*this, "draws", "draw", "Draws retired"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
@@ -76,8 +80,9 @@ class Rop final : public Unit {
     Stage stage = Stage::kShading;
     int missing = 0;
     Tick ready = 0;
-    int shaded = 0;                                       ///< live lanes after discard
-    std::array<std::uint8_t, models::kWarpQuads> done{};  ///< of `SurfaceCache::acquire`, by touched tile
+    int shaded = 0;  ///< live lanes after discard
+    /// of `SurfaceCache::acquire`, by colour attachment and touched tile
+    std::array<std::array<std::uint8_t, models::kWarpQuads>, models::kMaxColorAttachments> done{};
   };
   enum class Flush : std::uint8_t { kNone, kDepth, kDraining, kFenced };
 
@@ -94,6 +99,7 @@ class Rop final : public Unit {
   void retire_boundary(Tick now, const Entry& entry);
   bool claim_colors(const WarpSlot& warp);
   int write_colors(const WarpSlot& warp);
+  void write_quad(const WarpSlot& warp, int q, const models::QuadPlace& place, std::size_t color);
   void advance_flush(Tick now);
 
   const Params& params_;

@@ -17,44 +17,51 @@ SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, mo
   cache_.own_dirty_lines(memory, owner);
 }
 
-void SurfaceCache::clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition,
-                         std::uint32_t partitions) {
-  surface_ = surface;
-  cleared_.assign(std::size_t{surface.tiles_x} * surface.tiles_y, false);
-  for (std::uint32_t y = 0; y < surface.tiles_y; ++y) {
-    for (std::uint32_t x = 0; x < surface.tiles_x; ++x) {
+void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, std::uint32_t partition,
+                              std::uint32_t partitions) {
+  count_ = surfaces.size();
+  for (std::size_t i = 0; i < count_; ++i) {
+    surfaces_[i].state = &surfaces[i];
+    const models::SurfaceLayout& layout = surfaces[i].surface;
+    surfaces_[i].cleared.assign(std::size_t{layout.tiles_x} * layout.tiles_y, false);
+    if (!surfaces[i].loads()) mark_cleared(surfaces_[i], partition, partitions);
+  }
+}
+
+void SurfaceCache::mark_cleared(Surface& surface, std::uint32_t partition, std::uint32_t partitions) {
+  const models::SurfaceLayout& layout = surface.state->surface;
+  for (std::uint32_t y = 0; y < layout.tiles_y; ++y) {
+    for (std::uint32_t x = 0; x < layout.tiles_x; ++x) {
       if (models::partition_of(x, y, partitions) != partition) continue;
       auto* const pixels = reinterpret_cast<std::uint32_t*>(
-          memory_.write(surface.tile_address(x, y), models::kTileBytes).data());
-      std::fill_n(pixels, models::kTilePixels, value);
-      cleared_[std::size_t{y} * surface.tiles_x + x] = true;
+          memory_.write(layout.tile_address(x, y), models::kTileBytes).data());
+      std::fill_n(pixels, models::kTilePixels, surface.state->clear);
+      surface.cleared[std::size_t{y} * layout.tiles_x + x] = true;
       ++stats_.cleared_tiles;
     }
   }
 }
 
-bool SurfaceCache::materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t& done,
-                               MemoryPort& port) {
+bool SurfaceCache::materialize(const SurfaceTile& tile, std::uint8_t& done, MemoryPort& port) {
   for (int half = 0; half < 2; ++half) {
-    const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
+    const std::uint32_t line = line_of(tile) + static_cast<std::uint32_t>(half);
     if ((done & (kMaterialized << half)) != 0) continue;
     if (!cache_.claim(line, 0xf, port)) return false;
     cache_.write(line, 0xffffffffu);
     done = static_cast<std::uint8_t>(done | kMaterialized << half);
   }
-  cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] = false;
+  mark_of(tile) = false;
   ++stats_.clear_hits;
   return true;
 }
 
-bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes,
-                           std::uint32_t waiter, int& missing, std::uint8_t& done, MemoryPort& port) {
-  group_.working_at(tile_x, tile_y);
-  if (cleared_[std::size_t{tile_y} * surface_.tiles_x + tile_x] && !materialize(tile_x, tile_y, done, port))
-    return false;
+bool SurfaceCache::acquire(const SurfaceTile& tile, const SectorWishes& wishes, std::uint32_t waiter,
+                           int& missing, std::uint8_t& done, MemoryPort& port) {
+  group_.working_at(tile.x, tile.y);
+  if (mark_of(tile) && !materialize(tile, done, port)) return false;
   for (int half = 0; half < 2; ++half) {
     if ((done & (kAcquired << half)) != 0) continue;
-    const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
+    const std::uint32_t line = line_of(tile) + static_cast<std::uint32_t>(half);
     const auto wanted = static_cast<std::uint8_t>((wishes.read >> (4 * half)) & 0xf);
     const auto written = static_cast<std::uint8_t>((wishes.write >> (4 * half)) & 0xf & ~wanted);
     const bool in_part = ((wishes.part >> (4 * half)) & 0xf) != 0;
@@ -69,11 +76,10 @@ bool SurfaceCache::acquire(std::uint32_t tile_x, std::uint32_t tile_y, const Sec
   return true;
 }
 
-bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels,
-                         MemoryPort& port) {
-  group_.working_at(tile_x, tile_y);
+bool SurfaceCache::write(const SurfaceTile& tile, const SectorPixels& pixels, MemoryPort& port) {
+  group_.working_at(tile.x, tile.y);
   for (std::size_t half = 0; half < 2; ++half) {
-    const std::uint32_t line = line_of(tile_x, tile_y) + static_cast<std::uint32_t>(half);
+    const std::uint32_t line = line_of(tile) + static_cast<std::uint32_t>(half);
     std::uint32_t words = 0;  // a pixel is one
     for (std::size_t s = 0; s < 4; ++s) words |= std::uint32_t{pixels[4 * half + s]} << 8 * s;
     if (words == 0) continue;
@@ -83,19 +89,30 @@ bool SurfaceCache::write(std::uint32_t tile_x, std::uint32_t tile_y, const Secto
   return true;
 }
 
-void SurfaceCache::flush(MemoryPort& port, bool write_cleared) {
-  cache_.flush(port);
-  for (std::size_t i = 0; i < cleared_.size(); ++i) {
-    if (!cleared_[i]) continue;
-    if (write_cleared) {
-      const auto line =
-          static_cast<std::uint32_t>((surface_.base + i * models::kTileBytes) / models::kLineBytes);
-      port.write(line, 0xf);
-      port.write(line + 1, 0xf);
-      ++stats_.clear_writes;
-    }
-    cleared_[i] = false;
+void SurfaceCache::write_marked(Surface& surface, MemoryPort& port) {
+  const models::SurfaceLayout& layout = surface.state->surface;
+  for (std::size_t i = 0; i < surface.cleared.size(); ++i) {
+    if (!surface.cleared[i]) continue;
+    const auto line = static_cast<std::uint32_t>((layout.base + i * models::kTileBytes) / models::kLineBytes);
+    port.write(line, 0xf);
+    port.write(line + 1, 0xf);
+    ++stats_.clear_writes;
   }
+}
+
+void SurfaceCache::flush(MemoryPort& port) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const models::SurfaceLayout& layout = surfaces_[i].state->surface;
+    if (surfaces_[i].state->store == models::StoreOp::kDiscard)
+      cache_.discard(static_cast<std::uint32_t>(layout.base / models::kLineBytes),
+                     static_cast<std::uint32_t>((layout.base + layout.bytes()) / models::kLineBytes));
+  }
+  cache_.flush(port);
+  for (std::size_t i = 0; i < count_; ++i) {
+    const AttachmentState& state = *surfaces_[i].state;
+    if (state.store == models::StoreOp::kStore && state.read_later) write_marked(surfaces_[i], port);
+  }
+  count_ = 0;
 }
 
 }  // namespace quadrille::hw

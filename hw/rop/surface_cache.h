@@ -1,16 +1,19 @@
-/// What the depth and the colour unit share: a first-level cache over a surface of 8x8 tiles, with fast
-/// clear.
+/// What the depth and the colour unit share: a first-level cache over the surfaces of a pass (one for each
+/// attachment) in 8x8 tiles, with fast clear.
 ///
 /// A clear writes no memory: it marks tiles, and the first access to a marked tile finds all of it present.
-/// What is still marked at a flush is written then (colour) or stays a mark (depth, which nobody reads after
-/// the pass). A tile is two lines of 128 bytes, eight sectors of two quads each.
+/// What is still marked at a flush is written then, if anyone reads the surface after the pass. A surface
+/// that is loaded begins without marks; one that is discarded leaves nothing to write. A tile is two lines of
+/// 128 bytes, eight sectors of two quads each.
 #pragma once
 
+#include "hw/frame/frame.h"
 #include "hw/memory/l1_cache.h"
 #include "models/memory/surface.h"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace quadrille::hw {
@@ -22,6 +25,13 @@ namespace quadrille::hw {
   pairs = (pairs | pairs >> 2) & 0x0f0fu;
   return static_cast<std::uint8_t>((pairs | pairs >> 4) & 0xffu);
 }
+
+/// A tile of one of the pass's surfaces.
+struct SurfaceTile {
+  std::size_t surface = 0;
+  std::uint32_t x = 0, y = 0;
+  friend bool operator==(const SurfaceTile&, const SurfaceTile&) = default;
+};
 
 /// Pixels of a tile by sector: bit 0 to 3 those of its first quad, 4 to 7 of its second.
 using SectorPixels = std::array<std::uint8_t, 8>;
@@ -53,40 +63,53 @@ class SurfaceCache {
   SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory,
                models::DeviceMemory::Owner owner);
 
-  /// Begins a pass on `surface`: fills this partition's tiles with `value` and marks them.
-  void clear(const models::SurfaceLayout& surface, std::uint32_t value, std::uint32_t partition,
-             std::uint32_t partitions);
+  /// Begins a pass on these surfaces, of which this partition draws its tiles: what is not loaded is filled
+  /// and marked. The attachments must outlive the pass.
+  void begin_pass(std::span<const AttachmentState> surfaces, std::uint32_t partition,
+                  std::uint32_t partitions);
   /// Asks for sectors of a tile: those in `read` with their contents, and a place for those in `write`, which
   /// will be overwritten whole, and in `part`. Adds what is not there yet to `missing` and tells `waiter` of
   /// each. False when there is no place now: try again after a fill, with the same `done`, which starts at 0
   /// and remembers what was asked for already, so that even a cache of one line gets through.
-  bool acquire(std::uint32_t tile_x, std::uint32_t tile_y, const SectorWishes& wishes, std::uint32_t waiter,
-               int& missing, std::uint8_t& done, MemoryPort& port);
+  bool acquire(const SurfaceTile& tile, const SectorWishes& wishes, std::uint32_t waiter, int& missing,
+               std::uint8_t& done, MemoryPort& port);
   /// Pixels of a tile were written. Takes back a line that was evicted since it was acquired; false when
   /// there is no place for it now.
-  bool write(std::uint32_t tile_x, std::uint32_t tile_y, const SectorPixels& pixels, MemoryPort& port);
+  bool write(const SurfaceTile& tile, const SectorPixels& pixels, MemoryPort& port);
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {
     cache_.fill(response, std::forward<F>(ready));
   }
-  /// Queues everything dirty for writing; with `write_cleared` the tiles still marked too.
-  void flush(MemoryPort& port, bool write_cleared);
+  /// Ends the pass: queues for writing what is dirty in the surfaces that are stored, and what is still
+  /// marked in those that someone reads later.
+  void flush(MemoryPort& port);
   [[nodiscard]] bool full() const { return cache_.full(); }
   [[nodiscard]] bool idle() const { return cache_.idle(); }
   [[nodiscard]] const L1CacheStats& stats() const { return cache_.stats(); }
 
  private:
-  [[nodiscard]] std::uint32_t line_of(std::uint32_t tile_x, std::uint32_t tile_y) const {
-    return static_cast<std::uint32_t>(surface_.tile_address(tile_x, tile_y) / models::kLineBytes);
+  struct Surface {
+    const AttachmentState* state = nullptr;
+    std::vector<bool> cleared;  ///< by tile
+  };
+  [[nodiscard]] std::uint32_t line_of(const SurfaceTile& tile) const {
+    return static_cast<std::uint32_t>(surfaces_[tile.surface].state->surface.tile_address(tile.x, tile.y) /
+                                      models::kLineBytes);
   }
-  bool materialize(std::uint32_t tile_x, std::uint32_t tile_y, std::uint8_t& done, MemoryPort& port);
+  [[nodiscard]] std::vector<bool>::reference mark_of(const SurfaceTile& tile) {
+    Surface& surface = surfaces_[tile.surface];
+    return surface.cleared[std::size_t{tile.y} * surface.state->surface.tiles_x + tile.x];
+  }
+  void mark_cleared(Surface& surface, std::uint32_t partition, std::uint32_t partitions);
+  void write_marked(Surface& surface, MemoryPort& port);
+  bool materialize(const SurfaceTile& tile, std::uint8_t& done, MemoryPort& port);
 
   L1Cache cache_;
   models::DeviceMemory& memory_;
   StatGroup& group_;
   SurfaceCacheStats stats_;
-  models::SurfaceLayout surface_;
-  std::vector<bool> cleared_;  ///< by tile
+  std::array<Surface, models::kMaxColorAttachments> surfaces_;
+  std::size_t count_ = 0;
 };
 
 }  // namespace quadrille::hw

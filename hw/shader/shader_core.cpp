@@ -286,7 +286,7 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
   } else {
     WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
     work.alive = work.covered & ~slot.warp.killed;
-    for (std::size_t c = 0; c < 4; ++c) work.color[c] = std::bit_cast<models::LaneFloats>(slot.outputs[c]);
+    take_colors(frame_.draw(work.draw), slot.outputs, work);
     work.depth = slot.warp.program->writes_depth
                      ? std::bit_cast<models::LaneFloats>(slot.outputs[models::kDepthOutput])
                      : slot.fragment.z;

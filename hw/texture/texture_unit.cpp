@@ -105,10 +105,19 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
   group.filter_cycles = std::max<std::int64_t>(1, per(quads, params_.filter_quads_per_clk));
 }
 
+void TextureUnit::begin_pass(std::uint32_t pass) {
+  if (pass == pass_) return;
+  pass_ = pass;
+  if (!frame_.passes[pass].samples_attachments) return;
+  cache_.forget();
+  ++stats_.cache_emptied;
+}
+
 void TextureUnit::take(Tick now) {
   const TextureToken token = request_in.pop(now);
   if (token.vertex_stage) stats_.working_for(token.draw);
   else stats_.working_for(token.draw, slots_[token.slot].tile_x, slots_[token.slot].tile_y);
+  begin_pass(frame_.draw(token.draw).pass);
   lines_.clear();
   next_line_ = 0;
   Group group{token};

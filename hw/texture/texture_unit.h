@@ -60,6 +60,9 @@ class TextureUnit final : public Unit {
     Counter bilinear_quads{*this, "bilinear_quads", "quad",
                            "Bilinear quad operations, two a quad for a trilinear one"};
     Counter texels{*this, "texels", "texel", "Texels read from the cache"};
+    Counter cache_emptied{
+        *this, "cache_emptied", "time",
+        "Times that the cache forgot all lines, since a pass samples what earlier ones drew"};
     Counter groups_answered{*this, "groups_answered", "group", "Groups whose texels went back"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
@@ -86,6 +89,7 @@ class TextureUnit final : public Unit {
   };
   [[nodiscard]] Wake address_wake() const;
   [[nodiscard]] Wake answer_wake() const;
+  void begin_pass(std::uint32_t pass);
   void take(Tick now);
   void plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles);
   void look_up(Tick now);
@@ -97,6 +101,7 @@ class TextureUnit final : public Unit {
   Stats stats_;
   MemoryPort port_;
   L1Cache cache_;
+  std::uint32_t pass_ = 0;  ///< of the latest request
   models::TexturePlan plan_;
   Queue<Group> groups_;
   std::uint32_t first_group_ = 0;           ///< number of groups_.front(); waiters are named by number

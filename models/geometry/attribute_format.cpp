@@ -35,40 +35,23 @@ void decode_integers(const std::byte* source, std::uint32_t out[4]) {
 
 }  // namespace
 
-std::uint32_t attribute_bytes(AttributeFormat format) {
-  switch (format) {
-    case AttributeFormat::kR8G8Unorm: return 2;
-    case AttributeFormat::kR32Float:
-    case AttributeFormat::kR8G8B8A8UnormVertex:
-    case AttributeFormat::kR8G8B8A8Snorm:
-    case AttributeFormat::kR8G8B8A8Uint:
-    case AttributeFormat::kR16G16Unorm: return 4;
-    case AttributeFormat::kR32G32Float:
-    case AttributeFormat::kR16G16B16A16Unorm:
-    case AttributeFormat::kR16G16B16A16Snorm:
-    case AttributeFormat::kR16G16B16A16Uint: return 8;
-    case AttributeFormat::kR32G32B32Float: return 12;
-    case AttributeFormat::kR32G32B32A32Float: return 16;
-  }
-  return 0;
-}
-
-void decode_attribute(AttributeFormat format, const std::byte* source, std::uint32_t out[4]) {
+void decode_attribute(Format format, const std::byte* source, std::uint32_t out[4]) {
   out[0] = out[1] = out[2] = 0;
   out[3] = std::bit_cast<std::uint32_t>(1.0f);
   switch (format) {
-    case AttributeFormat::kR32Float: return decode_components<float>(source, 1, out);
-    case AttributeFormat::kR32G32Float: return decode_components<float>(source, 2, out);
-    case AttributeFormat::kR32G32B32Float: return decode_components<float>(source, 3, out);
-    case AttributeFormat::kR32G32B32A32Float: return decode_components<float>(source, 4, out);
-    case AttributeFormat::kR8G8Unorm: return decode_components<std::uint8_t>(source, 2, out);
-    case AttributeFormat::kR8G8B8A8UnormVertex: return decode_components<std::uint8_t>(source, 4, out);
-    case AttributeFormat::kR16G16Unorm: return decode_components<std::uint16_t>(source, 2, out);
-    case AttributeFormat::kR16G16B16A16Unorm: return decode_components<std::uint16_t>(source, 4, out);
-    case AttributeFormat::kR8G8B8A8Snorm: return decode_components<std::int8_t>(source, 4, out);
-    case AttributeFormat::kR16G16B16A16Snorm: return decode_components<std::int16_t>(source, 4, out);
-    case AttributeFormat::kR8G8B8A8Uint: return decode_integers<std::uint8_t>(source, out);
-    case AttributeFormat::kR16G16B16A16Uint: return decode_integers<std::uint16_t>(source, out);
+    case Format::kR32Float: return decode_components<float>(source, 1, out);
+    case Format::kR32G32Float: return decode_components<float>(source, 2, out);
+    case Format::kR32G32B32Float: return decode_components<float>(source, 3, out);
+    case Format::kR32G32B32A32Float: return decode_components<float>(source, 4, out);
+    case Format::kR8G8Unorm: return decode_components<std::uint8_t>(source, 2, out);
+    case Format::kR8G8B8A8UnormVertex: return decode_components<std::uint8_t>(source, 4, out);
+    case Format::kR16G16Unorm: return decode_components<std::uint16_t>(source, 2, out);
+    case Format::kR16G16B16A16Unorm: return decode_components<std::uint16_t>(source, 4, out);
+    case Format::kR8G8B8A8Snorm: return decode_components<std::int8_t>(source, 4, out);
+    case Format::kR16G16B16A16Snorm: return decode_components<std::int16_t>(source, 4, out);
+    case Format::kR8G8B8A8Uint: return decode_integers<std::uint8_t>(source, out);
+    case Format::kR16G16B16A16Uint: return decode_integers<std::uint16_t>(source, out);
+    default: break;
   }
 }
 

@@ -47,8 +47,14 @@ void set_uniform(Cell& cell, std::span<const std::byte> bytes, const UniformScal
 TextureView texture_view(const ShaderProgram& program, const DrawState& state, const TextureUse& use,
                          const Precision* precision) {
   for (const traces::TextureDescriptor& texture : descriptor_set(program, state, use.set).textures) {
-    if (texture.binding == use.binding)
-      return {&state.stream->images[texture.image], &state.stream->samplers[texture.sampler], precision};
+    if (texture.binding != use.binding) continue;
+    const auto drawn = state.drawn->find(texture.image);
+    const traces::Image* const image =
+        drawn != state.drawn->end() ? &drawn->second : &state.stream->images[texture.image];
+    if (image->texels.empty())
+      throw user_error("draw {}: shader '{}' samples image '{}' before a pass has drawn it", state.number,
+                       program.name, image->name);
+    return {image, &state.stream->samplers[texture.sampler], precision};
   }
   throw user_error("draw {}: shader '{}' uses texture (set {}, binding {}), which is not bound", state.number,
                    program.name, use.set, use.binding);

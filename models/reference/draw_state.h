@@ -16,9 +16,19 @@ struct VertexBuffer {
   std::uint64_t offset = 0;
 };
 
+/// A colour attachment, row by row: pixels as stored, and 4 linear values for each, before they were rounded.
+struct ColorTarget {
+  traces::Format format = traces::Format::kR8G8B8A8Unorm;
+  std::vector<std::uint32_t> code;
+  std::vector<double> linear;
+};
+
 struct DrawState {
   const traces::CommandStream* stream = nullptr;
-  const traces::RenderTarget* target = nullptr;
+  std::vector<ColorTarget*> colors;      ///< of the pass, by attachment
+  std::vector<double>* depth = nullptr;  ///< of the pass; null: it has no depth attachment
+  /// what earlier passes have drawn, with texels, for samplers
+  const std::map<traces::Index, traces::Image>* drawn = nullptr;
   const traces::Pipeline* pipeline = nullptr;
   std::map<std::uint32_t, traces::Index> descriptor_sets;
   std::map<std::uint32_t, VertexBuffer> vertex_buffers;

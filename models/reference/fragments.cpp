@@ -45,12 +45,14 @@ struct Quad {
 class BandWorker {
  public:
   BandWorker(const FragmentWork& work, Result& result) : work_(work), state_(*work.state), result_(result) {
+    for (std::array<Slot, 4>& slots : color_slots_) slots.fill(kNoSlot);
     if (work.fragment_shader == nullptr) return;
     program_ = work.fragment_shader->program;
     lanes_ = work.fragment_shader->lanes();
     links_ = link_varyings(*work.vertex_shader->program, *program_);
     for (const Port& port : program_->outputs) {
-      if (port.location == 0 && port.component < 4) color_slots_.at(port.component) = port.slot;
+      if (port.location < kMaxColorAttachments && port.component < 4)
+        color_slots_[port.location][port.component] = port.slot;
     }
   }
 
@@ -127,9 +129,7 @@ class BandWorker {
     return work_.float_depth ? static_cast<double>(static_cast<float>(z)) : z;
   }
 
-  [[nodiscard]] bool has_depth() const {
-    return state_.pipeline->depth.test && state_.target->depth != traces::Format::kUndefined;
-  }
+  [[nodiscard]] bool has_depth() const { return state_.pipeline->depth.test && state_.depth != nullptr; }
 
   [[nodiscard]] std::size_t pixel(const Quad& quad, std::size_t lane) const {
     return (static_cast<std::size_t>(quad.y) + lane / 2) * result_.width + static_cast<std::size_t>(quad.x) +
@@ -142,9 +142,9 @@ class BandWorker {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if ((alive >> lane & 1u) == 0) continue;
       const std::size_t at = pixel(quad, lane);
-      result_.depth_margin[at] =
-          std::min(result_.depth_margin[at], static_cast<float>(float_ulps(depth[lane], result_.depth[at])));
-      if (!depth_passes(state_.pipeline->depth.compare, depth[lane], result_.depth[at]))
+      result_.depth_margin[at] = std::min(result_.depth_margin[at],
+                                          static_cast<float>(float_ulps(depth[lane], (*state_.depth)[at])));
+      if (!depth_passes(state_.pipeline->depth.compare, depth[lane], (*state_.depth)[at]))
         alive &= ~(1u << lane);
     }
     return alive;
@@ -206,22 +206,28 @@ class BandWorker {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if ((alive >> lane & 1u) == 0) continue;
       const std::size_t at = pixel(quad, lane);
-      if (has_depth() && state_.pipeline->depth.write) result_.depth[at] = depth[lane];
-      if (program_ != nullptr && state_.pipeline->blend.write_mask != 0)
-        write_color(t, at, static_cast<int>(lane));
+      if (has_depth() && state_.pipeline->depth.write) (*state_.depth)[at] = depth[lane];
+      if (program_ == nullptr) continue;
+      for (std::size_t color = 0; color < state_.colors.size(); ++color)
+        write_color(t, color, at, static_cast<int>(lane));
     }
   }
 
-  void write_color(const WindowTriangle& t, std::size_t at, int lane) {
+  /// An attachment that the program has no output for keeps what it holds.
+  void write_color(const WindowTriangle& t, std::size_t color, std::size_t at, int lane) {
+    const std::array<Slot, 4>& slots = color_slots_[color];
+    const traces::BlendState& state = state_.pipeline->blend[color];
+    if (state.write_mask == 0 || std::ranges::all_of(slots, [](Slot s) { return s == kNoSlot; })) return;
     std::array<double, 4> source{};
-    for (std::size_t c = 0; c < 4; ++c)
-      source[c] = color_slots_[c] == kNoSlot ? 0.0 : lanes_.at(color_slots_[c])->f(lane);
-    StoredColor before{result_.color[at], {}};
-    std::copy_n(result_.color_linear.begin() + static_cast<std::ptrdiff_t>(4 * at), 4, before.linear.begin());
-    const StoredColor after = blend(state_.pipeline->blend, state_.target->color, source, before);
-    result_.color[at] = after.rgba;
-    std::copy_n(after.linear.begin(), 4, result_.color_linear.begin() + static_cast<std::ptrdiff_t>(4 * at));
-    result_.triangle_id[at] = std::uint64_t{state_.number} << 32 | t.primitive;
+    for (std::size_t c = 0; c < 4; ++c) source[c] = slots[c] == kNoSlot ? 0.0 : lanes_.at(slots[c])->f(lane);
+    ColorTarget& target = *state_.colors[color];
+    const auto linear = target.linear.begin() + static_cast<std::ptrdiff_t>(4 * at);
+    StoredColor before{target.code[at], {}};
+    std::copy_n(linear, 4, before.linear.begin());
+    const StoredColor after = blend(state, target.format, source, before);
+    target.code[at] = after.code;
+    std::copy_n(after.linear.begin(), 4, linear);
+    if (color == 0) result_.triangle_id[at] = std::uint64_t{state_.number} << 32 | t.primitive;
   }
 
   const FragmentWork& work_;
@@ -230,7 +236,7 @@ class BandWorker {
   const ShaderProgram* program_ = nullptr;
   Lanes lanes_;
   std::vector<Link> links_;
-  std::array<Slot, 4> color_slots_{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
+  std::array<std::array<Slot, 4>, kMaxColorAttachments> color_slots_;  ///< by attachment and component
 };
 
 }  // namespace

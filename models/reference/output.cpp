@@ -2,6 +2,7 @@
 #include "models/reference/output.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -15,19 +16,33 @@ using traces::BlendOp;
 
 double clamp_unit(double a) { return a > 0 ? std::min(a, 1.0) : 0.0; }  // NaN: 0
 
-bool is_encoded(traces::Format format, std::size_t channel) {
-  return format == traces::Format::kR8G8B8A8Srgb && channel < 3;
+double most_of(const ComponentBits& component) { return std::ldexp(1.0, component.bits) - 1.0; }
+
+std::uint32_t bits_of(const ComponentBits& component, std::uint32_t code) {
+  return static_cast<std::uint32_t>(std::uint64_t{code} >> component.shift &
+                                    ((std::uint64_t{1} << component.bits) - 1));
 }
 
-std::uint32_t encode(traces::Format format, std::size_t channel, double linear) {
+std::uint32_t encode(const ComponentBits& component, double linear) {
   const double clamped = clamp_unit(linear);
-  return static_cast<std::uint32_t>(
-      std::nearbyint((is_encoded(format, channel) ? linear_to_srgb(clamped) : clamped) * 255.0));
+  const double encoded = component.numeric == Numeric::kSrgb ? linear_to_srgb(clamped) : clamped;
+  return static_cast<std::uint32_t>(std::nearbyint(encoded * most_of(component))) << component.shift;
 }
 
-double decode(traces::Format format, std::size_t channel, std::uint32_t rgba) {
-  const double value = ((rgba >> (8 * channel)) & 0xffu) / 255.0;
-  return is_encoded(format, channel) ? srgb_to_linear(value) : value;
+/// Of a code of 8 bits.
+double srgb_code_to_linear(std::uint32_t code) {
+  static const std::array<double, 256> kTable = [] {
+    std::array<double, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) table[i] = srgb_to_linear(static_cast<double>(i) / 255.0);
+    return table;
+  }();
+  return kTable[code];
+}
+
+double decode(const ComponentBits& component, std::uint32_t code) {
+  const std::uint32_t bits = bits_of(component, code);
+  if (component.numeric == Numeric::kFloat) return static_cast<double>(std::bit_cast<float>(bits));
+  return component.numeric == Numeric::kSrgb ? srgb_code_to_linear(bits) : bits / most_of(component);
 }
 
 double factor(BlendFactor which, std::size_t channel, const std::array<double, 4>& source,
@@ -86,7 +101,9 @@ double float_ulps(double a, double b) {
 StoredColor blend(const traces::BlendState& state, traces::Format format, const std::array<double, 4>& source,
                   const StoredColor& before) {
   std::array<double, 4> src{}, dst{};
-  for (std::size_t c = 0; c < 4; ++c) src[c] = clamp_unit(source[c]), dst[c] = decode(format, c, before.rgba);
+  const FormatInfo& info = format_info(format);
+  for (std::size_t c = 0; c < 4; ++c)
+    src[c] = clamp_unit(source[c]), dst[c] = decode(info.component[c], before.code);
   StoredColor after = before;
   for (std::size_t c = 0; c < 4; ++c) {
     if ((state.write_mask >> c & 1u) == 0) continue;
@@ -99,16 +116,35 @@ StoredColor blend(const traces::BlendState& state, traces::Format format, const 
           combine(alpha ? state.alpha : state.color, src[c], source_factor, dst[c], destination_factor));
     }
     after.linear[c] = value;
-    after.rgba = (after.rgba & ~(0xffu << (8 * c))) | encode(format, c, value) << (8 * c);
+    const ComponentBits& component = info.component[c];
+    const std::uint32_t mask = ((1u << component.bits) - 1) << component.shift;
+    after.code = (after.code & ~mask) | encode(component, value);
   }
   return after;
+}
+
+std::array<double, 4> load_color(traces::Format format, std::uint32_t code) {
+  const FormatInfo& info = format_info(format);
+  std::array<double, 4> color{0, 0, 0, 1};
+  for (std::size_t c = 0; c < info.channels; ++c) color[c] = decode(info.component[c], code);
+  return color;
+}
+
+std::uint32_t to_bytes(traces::Format format, std::uint32_t code) {
+  std::uint32_t bytes = 0;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const ComponentBits& component = format_info(format).component[c];
+    const double value = bits_of(component, code) / most_of(component);
+    bytes |= static_cast<std::uint32_t>(std::nearbyint(value * 255.0)) << (8 * c);
+  }
+  return bytes;
 }
 
 StoredColor store_color(traces::Format format, const std::array<double, 4>& linear) {
   StoredColor stored;
   for (std::size_t c = 0; c < 4; ++c) {
     stored.linear[c] = clamp_unit(linear[c]);
-    stored.rgba |= encode(format, c, linear[c]) << (8 * c);
+    stored.code |= encode(format_info(format).component[c], linear[c]);
   }
   return stored;
 }

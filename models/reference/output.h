@@ -14,9 +14,9 @@ namespace quadrille::models::reference {
 /// |a - b| in units of the last place of the float32 nearest to the larger of the two.
 [[nodiscard]] double float_ulps(double a, double b);
 
-/// A pixel as stored (red in bits 0..7) and the linear values it was rounded from.
+/// A pixel as its format stores it and the linear values it was rounded from.
 struct StoredColor {
-  std::uint32_t rgba = 0;
+  std::uint32_t code = 0;
   std::array<double, 4> linear{};
 };
 
@@ -25,6 +25,11 @@ struct StoredColor {
 /// mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
 [[nodiscard]] StoredColor blend(const traces::BlendState& state, traces::Format format,
                                 const std::array<double, 4>& source, const StoredColor& before);
+
+/// The linear values of a pixel or texel of 32 bits. Components that the format lacks are (0, 0, 0, 1).
+[[nodiscard]] std::array<double, 4> load_color(traces::Format format, std::uint32_t code);
+/// A pixel as 8 bits a component, red in bits 0..7, an sRGB encoding kept.
+[[nodiscard]] std::uint32_t to_bytes(traces::Format format, std::uint32_t code);
 
 /// The stored form of linear values.
 [[nodiscard]] StoredColor store_color(traces::Format format, const std::array<double, 4>& linear);

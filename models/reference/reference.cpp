@@ -1,7 +1,9 @@
-/// Walking the commands of a stream's last render pass.
+/// Walking the commands of a stream: its last render pass, and earlier ones if their attachments are read.
 #include "models/reference/reference.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -13,12 +15,28 @@
 namespace quadrille::models::reference {
 namespace {
 
-/// Keeps the state that commands set, and executes draws of the last pass. Earlier passes cannot be seen:
-/// attachments are cleared on load and never read.
+/// May an attachment be read after the pass that drew it?
+bool reads_attachments(const traces::CommandStream& stream) {
+  const auto loads = [](const traces::AttachmentUse& use) {
+    return use.image != traces::kNone && use.load == traces::LoadOp::kLoad;
+  };
+  const auto loads_any = [&](const traces::Command& command) {
+    const auto* begin = std::get_if<traces::BeginPass>(&command);
+    return begin != nullptr && (loads(begin->depth) || std::ranges::any_of(begin->colors, loads));
+  };
+  const auto sampled = [](const traces::Image& image) {
+    return image.is_attachment() && (image.usage & traces::kSampled) != 0;
+  };
+  return std::ranges::any_of(stream.images, sampled) || std::ranges::any_of(stream.commands, loads_any);
+}
+
+/// Keeps the state that commands set, and executes draws of the passes that can be seen.
 class Renderer {
  public:
-  Renderer(const traces::CommandStream& stream, const Options& options) : stream_(stream), options_(options) {
+  Renderer(const traces::CommandStream& stream, const Options& options)
+      : stream_(stream), options_(options), all_passes_(reads_attachments(stream)) {
     state_.stream = &stream;
+    state_.drawn = &drawn_;
     for (const traces::Command& command : stream.commands)
       passes_ += std::holds_alternative<traces::BeginPass>(command) ? 1u : 0u;
     if (passes_ == 0) throw user_error("command stream '{}': no render pass to draw", stream.name);
@@ -35,6 +53,7 @@ class Renderer {
   Result render() {
     for (const traces::Command& command : stream_.commands)
       std::visit([this](const auto& c) { execute(c); }, command);
+    show();
     if (!options_.given.empty() && options_.given.back().draw >= state_.number) {
       throw user_error("given triangles: draw {} of a stream with {} draws", options_.given.back().draw,
                        state_.number);
@@ -43,23 +62,72 @@ class Renderer {
   }
 
  private:
+  [[nodiscard]] bool seen() const { return all_passes_ || pass_ == passes_; }
+
   void execute(const traces::BeginPass& pass) {
     ++pass_;
-    if (pass_ != passes_) return;
-    state_.target = &stream_.targets[pass.target];
-    const std::size_t pixels = std::size_t{state_.target->width} * state_.target->height;
-    result_.width = state_.target->width, result_.height = state_.target->height;
-    const StoredColor clear = store_color(state_.target->color, {pass.clear_color[0], pass.clear_color[1],
-                                                                 pass.clear_color[2], pass.clear_color[3]});
-    result_.color.assign(pixels, clear.rgba);
-    for (std::size_t i = 0; i < pixels; ++i)
-      result_.color_linear.insert(result_.color_linear.end(), clear.linear.begin(), clear.linear.end());
-    result_.depth.assign(pixels, static_cast<double>(pass.clear_depth));
+    if (!seen()) return;
+    begun_ = &pass;
+    const traces::PassTarget target = traces::target_of(stream_, pass);
+    const std::size_t pixels = std::size_t{target.width} * target.height;
+    result_.width = target.width, result_.height = target.height;
+    state_.colors.clear();
+    for (const traces::ColorAttachmentUse& use : pass.colors) {
+      state_.colors.push_back(&colors_[use.image]);
+      if (use.load != traces::LoadOp::kLoad) clear(colors_[use.image], use, pixels);
+    }
+    state_.depth = pass.depth.image == traces::kNone ? nullptr : &depths_[pass.depth.image];
+    if (state_.depth != nullptr && pass.depth.load != traces::LoadOp::kLoad)
+      state_.depth->assign(pixels, clear_depth(pass));
     result_.triangle_id.assign(pixels, kNoTriangle);
     result_.depth_margin.assign(pixels, std::numeric_limits<float>::infinity());
     result_.alpha_margin.assign(pixels, std::numeric_limits<float>::infinity());
   }
-  void execute(const traces::EndPass&) {}
+
+  /// What is not cared about is zero.
+  void clear(ColorTarget& color, const traces::ColorAttachmentUse& use, std::size_t pixels) const {
+    color.format = stream_.images[use.image].format;
+    std::array<double, 4> value{};
+    if (use.load == traces::LoadOp::kClear) std::copy(use.clear.begin(), use.clear.end(), value.begin());
+    const StoredColor stored = store_color(color.format, value);
+    color.code.assign(pixels, stored.code);
+    color.linear.clear();
+    for (std::size_t i = 0; i < pixels; ++i)
+      color.linear.insert(color.linear.end(), stored.linear.begin(), stored.linear.end());
+  }
+  static double clear_depth(const traces::BeginPass& pass) {
+    return pass.depth.load == traces::LoadOp::kClear ? static_cast<double>(pass.depth.clear) : 0.0;
+  }
+
+  void execute(const traces::EndPass&) {
+    if (!seen()) return;
+    for (const traces::ColorAttachmentUse& use : begun_->colors) keep(use.image, colors_[use.image].code);
+    if (state_.depth != nullptr) {
+      std::vector<std::uint32_t> codes;
+      for (const double z : *state_.depth)
+        codes.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(z)));
+      keep(begun_->depth.image, codes);
+    }
+  }
+
+  /// Makes what a pass drew a texture.
+  void keep(traces::Index index, const std::vector<std::uint32_t>& codes) {
+    if ((stream_.images[index].usage & traces::kSampled) == 0) return;
+    traces::Image& image = drawn_[index] = stream_.images[index];
+    image.texels.resize(4 * codes.size());
+    std::memcpy(image.texels.data(), codes.data(), image.texels.size());
+  }
+
+  /// The last pass's picture.
+  void show() {
+    const ColorTarget& shown = *state_.colors.at(0);
+    result_.color.clear();
+    for (const std::uint32_t code : shown.code) result_.color.push_back(to_bytes(shown.format, code));
+    result_.color_linear = shown.linear;
+    if (state_.depth != nullptr) result_.depth = *state_.depth;
+    else result_.depth.assign(shown.code.size(), clear_depth(*begun_));
+  }
+
   void execute(const traces::BindPipeline& c) { state_.pipeline = &stream_.pipelines[c.pipeline]; }
   void execute(const traces::BindDescriptorSet& c) { state_.descriptor_sets[c.set] = c.descriptors; }
   void execute(const traces::BindVertexBuffer& c) { state_.vertex_buffers[c.binding] = {c.buffer, c.offset}; }
@@ -77,7 +145,7 @@ class Renderer {
 
   void execute(const traces::Draw& draw) {
     state_.draw = &draw;
-    if (pass_ == passes_) {
+    if (seen()) {
       if (state_.pipeline == nullptr) throw user_error("draw {}: no pipeline is bound", state_.number);
       if (!has_viewport_ || !has_scissor_)
         throw user_error("draw {}: no viewport or scissor is set", state_.number);
@@ -141,7 +209,7 @@ class Renderer {
     const std::int64_t width = result_.width, height = result_.height;
     PixelBounds b{clamp(s.x, width), clamp(s.y, height), clamp(std::int64_t{s.x} + s.width, width) - 1,
                   clamp(std::int64_t{s.y} + s.height, height) - 1};
-    if (options_.region) {
+    if (options_.region && pass_ == passes_) {
       const PixelRect& r = *options_.region;
       b.first_x = std::max(b.first_x, clamp(r.x, width)), b.first_y = std::max(b.first_y, clamp(r.y, height));
       b.last_x = std::min(b.last_x, clamp(std::int64_t{r.x} + r.width, width) - 1);
@@ -154,7 +222,12 @@ class Renderer {
   const Options& options_;
   DrawState state_;
   bool has_viewport_ = false, has_scissor_ = false;
+  bool all_passes_ = false;
   std::uint32_t passes_ = 0, pass_ = 0;
+  const traces::BeginPass* begun_ = nullptr;
+  std::map<traces::Index, ColorTarget> colors_;
+  std::map<traces::Index, std::vector<double>> depths_;
+  std::map<traces::Index, traces::Image> drawn_;
   std::map<traces::Index, ShaderProgram> programs_;
   Result result_;
 };

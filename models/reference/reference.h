@@ -68,7 +68,8 @@ inline constexpr std::uint64_t kNoTriangle = ~std::uint64_t{0};
 /// The target of the stream's last render pass. All arrays are row-major, row 0 at the top.
 struct Result {
   std::uint32_t width = 0, height = 0;
-  /// as stored: red in bits 0..7, alpha in bits 24..31 (sRGB-encoded where the target's format is)
+  /// 8 bits a component: red in bits 0..7, alpha in bits 24..31 (sRGB-encoded where the format is); as stored
+  /// in formats of 8 bits, rounded from others
   std::vector<std::uint32_t> color;
   /// 4 a pixel: linear, after blending and before quantisation, of the last write; the clear colour where
   /// none

@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/reference/output.h"
+
 namespace quadrille::models::reference {
 namespace {
 
 constexpr double kMaxBias = 16.0;
-
-std::array<double, 256> srgb_table() {
-  std::array<double, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) table[i] = srgb_to_linear(static_cast<double>(i) / 255.0);
-  return table;
-}
 
 /// Rounds to `bits` fractional bits where a precision is given.
 double quantised(double a, const Precision* precision, int Precision::*bits) {
@@ -83,18 +79,14 @@ std::array<std::uint32_t, 2> level_extent(const traces::Image& image, std::uint3
 }
 
 Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y) {
-  static const std::array<double, 256> kSrgb = srgb_table();
   std::size_t first = 0;
   for (std::uint32_t l = 0; l < level; ++l)
     first += std::size_t{level_extent(image, l)[0]} * level_extent(image, l)[1];
   const std::size_t at = 4 * (first + std::size_t{y} * level_extent(image, level)[0] + x);
-  Texel texel{};
-  for (std::size_t c = 0; c < 4; ++c) {
-    const auto byte = std::to_integer<std::size_t>(image.texels[at + c]);
-    texel[c] = image.format == traces::Format::kR8G8B8A8Srgb && c < 3 ? kSrgb[byte]
-                                                                      : static_cast<double>(byte) / 255.0;
-  }
-  return texel;
+  std::uint32_t code = 0;
+  for (std::size_t byte = 0; byte < 4; ++byte)
+    code |= std::to_integer<std::uint32_t>(image.texels[at + byte]) << (8 * byte);
+  return load_color(image.format, code);
 }
 
 double base_lod(const TextureView& texture, std::array<double, 2> d_dx, std::array<double, 2> d_dy) {

@@ -46,8 +46,7 @@ FormatLayout layout_of(traces::Format format) {
     case Format::kR16G16B16A16Snorm: return {4, 2, false, true};
     case Format::kR8G8B8A8Uint: return {4, 1, false, false, true};
     case Format::kR16G16B16A16Uint: return {4, 2, false, false, true};
-    case Format::kUndefined:
-    case Format::kR8G8B8A8Srgb: break;
+    default: break;
   }
   throw user_error("vertex attribute: a format that is not one of a vertex attribute");
 }

@@ -19,18 +19,19 @@ struct QuadColor {
 /// 0..1; NaN becomes 0 because max returns its second operand when one is NaN.
 inline __m128 saturate(__m128 v) { return _mm_min_ps(_mm_max_ps(v, _mm_setzero_ps()), _mm_set1_ps(1.0f)); }
 
-inline __m128 decode_unorm(__m128i codes) { return _mm_div_ps(_mm_cvtepi32_ps(codes), _mm_set1_ps(255.0f)); }
+constexpr std::uint32_t most_of(const ComponentBits& component) { return (1u << component.bits) - 1; }
 
-QuadColor decode_quad(ColorFormat format, __m128i pixels) {
-  const __m128i byte = _mm_set1_epi32(0xff);
-  const __m128i codes[4] = {_mm_and_si128(pixels, byte), _mm_and_si128(_mm_srli_epi32(pixels, 8), byte),
-                            _mm_and_si128(_mm_srli_epi32(pixels, 16), byte), _mm_srli_epi32(pixels, 24)};
+inline __m128 decode_component(__m128i pixels, const ComponentBits& component) {
+  const auto most = static_cast<int>(most_of(component));
+  const __m128i code =
+      _mm_and_si128(_mm_srl_epi32(pixels, _mm_cvtsi32_si128(component.shift)), _mm_set1_epi32(most));
+  if (component.numeric == Numeric::kSrgb) return _mm_i32gather_ps(kSrgbToLinear.data(), code, 4);
+  return _mm_div_ps(_mm_cvtepi32_ps(code), _mm_set1_ps(static_cast<float>(most)));
+}
+
+QuadColor decode_quad(const FormatInfo& format, __m128i pixels) {
   QuadColor color;
-  for (std::size_t c = 0; c < 3; ++c) {
-    color[c] = format == ColorFormat::kR8G8B8A8Srgb ? _mm_i32gather_ps(kSrgbToLinear.data(), codes[c], 4)
-                                                    : decode_unorm(codes[c]);
-  }
-  color[3] = decode_unorm(codes[3]);
+  for (std::size_t c = 0; c < 4; ++c) color[c] = decode_component(pixels, format.component[c]);
   return color;
 }
 
@@ -45,14 +46,17 @@ inline __m128i encode_srgb(__m128 v) {
   return _mm_sub_epi32(code, _mm_castps_si128(_mm_cmpge_ps(v, threshold)));
 }
 
-inline __m128i encode_unorm(__m128 v) { return _mm_cvtps_epi32(_mm_mul_ps(v, _mm_set1_ps(255.0f))); }
+inline __m128i encode_component(__m128 v, const ComponentBits& component) {
+  if (component.numeric == Numeric::kSrgb) return encode_srgb(v);
+  return _mm_cvtps_epi32(_mm_mul_ps(v, _mm_set1_ps(static_cast<float>(most_of(component)))));
+}
 
-__m128i encode_quad(ColorFormat format, const QuadColor& color) {
-  __m128i pixels = _mm_slli_epi32(encode_unorm(color[3]), 24);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const __m128i code =
-        format == ColorFormat::kR8G8B8A8Srgb ? encode_srgb(color[c]) : encode_unorm(color[c]);
-    pixels = _mm_or_si128(pixels, _mm_slli_epi32(code, static_cast<int>(8 * c)));
+__m128i encode_quad(const FormatInfo& format, const QuadColor& color) {
+  __m128i pixels = _mm_setzero_si128();
+  for (std::size_t c = 0; c < 4; ++c) {
+    const ComponentBits& component = format.component[c];
+    pixels = _mm_or_si128(
+        pixels, _mm_sll_epi32(encode_component(color[c], component), _mm_cvtsi32_si128(component.shift)));
   }
   return pixels;
 }
@@ -97,10 +101,13 @@ QuadColor blend(const BlendState& state, const QuadColor& src, const QuadColor& 
   return out;
 }
 
-/// All ones in the bytes of the components that are written.
-constexpr std::uint32_t component_mask(std::uint8_t write_mask) {
+/// All ones in the bits of the components that are written.
+std::uint32_t component_mask(const FormatInfo& format, std::uint8_t write_mask) {
   std::uint32_t bits = 0;
-  for (unsigned c = 0; c < 4; ++c) bits |= (write_mask >> c & 1u) != 0 ? 0xffu << (8 * c) : 0u;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const ComponentBits& component = format.component[c];
+    bits |= (write_mask >> c & 1u) != 0 ? most_of(component) << component.shift : 0u;
+  }
   return bits;
 }
 
@@ -108,25 +115,38 @@ constexpr std::uint32_t component_mask(std::uint8_t write_mask) {
 
 bool reads_destination(const BlendState& state) { return state.enable || (state.write_mask & 0xf) != 0xf; }
 
-void blend_quad(const BlendState& state, ColorFormat format, const float rgba[4][4],
-                std::uint32_t dst_pixels[4], std::uint32_t lane_mask) {
+void blend_quad(const BlendState& state, Format format, const float rgba[4][4], std::uint32_t dst_pixels[4],
+                std::uint32_t lane_mask) {
+  const FormatInfo& info = format_info(format);
   const __m128i old = _mm_loadu_si128(reinterpret_cast<const __m128i*>(dst_pixels));
   QuadColor color;
   for (std::size_t c = 0; c < 4; ++c) color[c] = saturate(_mm_loadu_ps(rgba[c]));
-  if (state.enable) color = blend(state, color, decode_quad(format, old));
+  if (state.enable) color = blend(state, color, decode_quad(info, old));
   const __m128i lane_bits = _mm_setr_epi32(1, 2, 4, 8);
   const __m128i lanes =
       _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(lane_mask)), lane_bits), lane_bits);
   const __m128i written =
-      _mm_and_si128(lanes, _mm_set1_epi32(static_cast<int>(component_mask(state.write_mask))));
-  const __m128i pixels = _mm_blendv_epi8(old, encode_quad(format, color), written);
+      _mm_and_si128(lanes, _mm_set1_epi32(static_cast<int>(component_mask(info, state.write_mask))));
+  const __m128i pixels =
+      _mm_or_si128(_mm_andnot_si128(written, old), _mm_and_si128(written, encode_quad(info, color)));
   _mm_storeu_si128(reinterpret_cast<__m128i*>(dst_pixels), pixels);
 }
 
-std::uint32_t encode_color(ColorFormat format, const std::array<float, 4>& rgba) {
+std::uint32_t encode_color(Format format, const std::array<float, 4>& rgba) {
   QuadColor color;
   for (std::size_t c = 0; c < 4; ++c) color[c] = saturate(_mm_set1_ps(rgba[c]));
-  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(encode_quad(format, color)));
+  return static_cast<std::uint32_t>(_mm_cvtsi128_si32(encode_quad(format_info(format), color)));
+}
+
+std::uint32_t to_rgba8(Format format, std::uint32_t pixel) {
+  const FormatInfo& info = format_info(format);
+  std::uint32_t rgba = 0;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const ComponentBits& component = info.component[c];
+    const std::uint32_t most = most_of(component), code = pixel >> component.shift & most;
+    rgba |= (255 * code + most / 2) / most << (8 * c);
+  }
+  return rgba;
 }
 
 }  // namespace quadrille::models

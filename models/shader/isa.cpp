@@ -135,6 +135,15 @@ const OpInfo* find_op(std::string_view name) {
   return found == kOps.end() ? nullptr : found;
 }
 
+std::uint32_t color_outputs(const Program& program) {
+  std::uint32_t outputs = 0;
+  if (program.stage != Stage::kFragment) return outputs;
+  for (const Instruction& i : program.code) {
+    if (i.op == Op::kOutput && i.imm < kMaxColorOutputs) outputs |= 1u << i.imm;
+  }
+  return outputs;
+}
+
 std::string_view op_name(Op op) { return op_info(op).name; }
 IssueClass issue_class(Op op) { return op_info(op).issue; }
 int source_count(Op op) { return op_info(op).sources; }

@@ -22,7 +22,7 @@ inline constexpr int kQuadPixels = 4;
 inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxVaryings = 64;      ///< scalar components between vertex and fragment shader
 inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attributes of 4)
-inline constexpr int kMaxColorOutputs = 4;   ///< scalar components of one colour attachment
+inline constexpr int kMaxColorOutputs = 32;  ///< scalar components of eight colour attachments
 
 /// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones
 /// (true) or zero.
@@ -165,10 +165,10 @@ enum class SystemValue : std::uint16_t {
   kPrimitiveId
 };
 
-/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 0..3 colour, 4
-/// depth.
+/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 4 to each of
+/// eight colour attachments, then depth.
 inline constexpr std::uint16_t kFirstVaryingOutput = 4;
-inline constexpr std::uint16_t kDepthOutput = 4;
+inline constexpr std::uint16_t kDepthOutput = kMaxColorOutputs;
 
 enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
 
@@ -247,6 +247,9 @@ struct Program {
 /// execution; `Warp::launch` does so by itself the first time. Call it again after changing `code` of a
 /// program that has run. Throws `UserError` naming the program and the instruction.
 void prepare(const Program& program);
+
+/// Components of colours that a fragment program writes: bit 4 * attachment + component.
+[[nodiscard]] std::uint32_t color_outputs(const Program& program);
 
 [[nodiscard]] std::string_view op_name(Op op);
 [[nodiscard]] IssueClass issue_class(Op op);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "models/texture/lanes.h"
+#include "models/texture/layout.h"
 #include "models/texture/sampler.h"
 
 namespace quadrille::models {
@@ -70,14 +71,22 @@ inline AxisTexels select(const AxisTexels& a, const AxisTexels& b, __m256i mask)
 }
 
 /// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
-inline __m256i x_index(__m256i x) {
+inline __m256i x_index(__m256i x, Tiling tiling) {
   const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
+  if (tiling == Tiling::kSurface) {
+    const __m256i low = _mm256_or_si256(field(1), _mm256_slli_epi32(field(6), 1));
+    return _mm256_or_si256(low, _mm256_slli_epi32(_mm256_srli_epi32(x, 3), 6));
+  }
   const __m256i low = _mm256_or_si256(field(3), _mm256_slli_epi32(field(4), 1));
   return _mm256_or_si256(_mm256_or_si256(low, _mm256_slli_epi32(field(24), 2)),
                          _mm256_slli_epi32(_mm256_srli_epi32(x, 5), 10));
 }
-inline __m256i y_index(__m256i y, __m256i pitch) {
+inline __m256i y_index(__m256i y, __m256i pitch, Tiling tiling) {
   const auto field = [y](int mask) { return _mm256_and_si256(y, _mm256_set1_epi32(mask)); };
+  if (tiling == Tiling::kSurface) {
+    const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 1), _mm256_slli_epi32(field(6), 3));
+    return _mm256_add_epi32(low, _mm256_mullo_epi32(_mm256_srli_epi32(y, 3), pitch));
+  }
   const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 2), _mm256_slli_epi32(field(2), 3));
   return _mm256_add_epi32(_mm256_or_si256(low, _mm256_slli_epi32(field(28), 5)),
                           _mm256_mullo_epi32(_mm256_srli_epi32(y, 5), pitch));

@@ -42,8 +42,18 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
   return layout;
 }
 
-TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width,
-                             std::uint32_t height, std::uint32_t levels) {
+TextureView view_of_surface(const SurfaceLayout& surface, Format format) {
+  TextureView view{surface.base, format, {}};
+  view.layout.tiling = Tiling::kSurface;
+  view.layout.width[0] = static_cast<std::int32_t>(surface.width);
+  view.layout.height[0] = static_cast<std::int32_t>(surface.height);
+  view.layout.pitch[0] = static_cast<std::int32_t>(surface.tiles_x * kTilePixels);
+  view.layout.bytes = surface.bytes();
+  return view;
+}
+
+TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width, std::uint32_t height,
+                             std::uint32_t levels) {
   TextureView view{0, format, make_texture_layout(width, height, levels)};
   view.base = memory.allocate(view.layout.bytes);
   return view;

@@ -1,12 +1,16 @@
-/// Textures in device memory: RGBA8 mip chains, tiled so that neighbours in both directions share cache lines
-/// and DRAM rows.
+/// Textures in device memory: mip chains of 4 bytes a texel, tiled so that neighbours in both directions
+/// share cache lines and DRAM rows.
 ///
-/// A sector of 32 bytes is 4x2 texels, a line of 128 bytes 8x4 texels (2x2 sectors), a tile of 4 KiB 32x32
-/// texels (4x8 lines, row by row); tiles are row by row. The bits of a texel's index within a tile are, from
-/// the least: x0 x1 y0 x2 y1 x3 x4 y2 y3 y4, so an address is a sum of a part of x and one of y.
+/// A sector of 32 bytes is 4x2 texels and a line of 128 bytes 8x4 texels (2x2 sectors), in both tilings.
+/// A texture's tile of 4 KiB is 32x32 texels (4x8 lines, row by row). The bits of a texel's index within it
+/// are, from the least: x0 x1 y0 x2 y1 x3 x4 y2 y3 y4. An attachment that is sampled lies as it was drawn, in
+/// tiles of 8x8 pixels that are quad-major (memory/surface.h): x0 y0 x1 x2 y1 y2. Tiles are row by row. So an
+/// address is a sum of a part of x and one of y.
 #pragma once
 
+#include "models/base/format.h"
 #include "models/memory/device_memory.h"
+#include "models/memory/surface.h"
 
 #include <array>
 #include <cstddef>
@@ -18,15 +22,15 @@ namespace quadrille::models {
 inline constexpr std::uint32_t kMaxTextureLevels = 15;  ///< up to 16384 x 16384
 inline constexpr std::uint32_t kMaxTextureSize = 16384;
 
-/// Values equal those of the command stream's `Format`.
-enum class TexelFormat : std::uint8_t { kR8G8B8A8Unorm = 1, kR8G8B8A8Srgb = 2 };
+enum class Tiling : std::uint8_t { kTexture, kSurface };
 
 /// Where the texels of a mip chain lie, in texels (4 bytes) from its base. Arrays by level, padded for vector
 /// loads.
 struct TextureLayout {
+  Tiling tiling = Tiling::kTexture;
   std::uint32_t levels = 1;
   std::array<std::int32_t, 16> width{}, height{};  ///< texels
-  std::array<std::int32_t, 16> pitch{};            ///< texels of one row of 32x32 tiles
+  std::array<std::int32_t, 16> pitch{};            ///< texels of one row of tiles
   std::array<std::int32_t, 16> first{};            ///< index of the level's first texel
   std::uint64_t bytes = 0;                         ///< whole chain; a multiple of a line
 
@@ -36,8 +40,16 @@ struct TextureLayout {
   [[nodiscard]] static constexpr std::uint32_t y_part_in_tile(std::uint32_t y) {
     return (y & 1) << 2 | (y & 2) << 3 | (y & 28) << 5;
   }
+  [[nodiscard]] static constexpr std::uint32_t surface_x_part(std::uint32_t x) {
+    return (x & 1) | (x & 6) << 1 | (x >> 3) << 6;
+  }
+  [[nodiscard]] static constexpr std::uint32_t surface_y_part_in_tile(std::uint32_t y) {
+    return (y & 1) << 1 | (y & 6) << 3;
+  }
   /// Index of a texel within the chain.
   [[nodiscard]] std::uint32_t texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
+    if (tiling == Tiling::kSurface)
+      return surface_x_part(x) + surface_y_part_in_tile(y) + (y >> 3) * static_cast<std::uint32_t>(pitch[0]);
     return static_cast<std::uint32_t>(first[level]) + x_part(x) + y_part_in_tile(y) +
            (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
   }
@@ -50,15 +62,18 @@ struct TextureLayout {
 /// A texture as a sampler sees it.
 struct TextureView {
   std::uint64_t base = 0;  ///< address, aligned to a line
-  TexelFormat format = TexelFormat::kR8G8B8A8Unorm;
+  Format format = Format::kR8G8B8A8Unorm;
   TextureLayout layout;
   [[nodiscard]] std::uint64_t texel_address(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
     return base + 4 * std::uint64_t{layout.texel_index(level, x, y)};
   }
 };
 
+/// An attachment as a sampler sees it: one level, where it was drawn.
+[[nodiscard]] TextureView view_of_surface(const SurfaceLayout& surface, Format format);
+
 /// Allocates a texture of zeros; `tile_level` and `tile_texture` bring its texels.
-[[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, TexelFormat format, std::uint32_t width,
+[[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width,
                                            std::uint32_t height, std::uint32_t levels);
 /// Tiles one level: rows top to bottom, tightly packed. Another number of texels than the level has is an
 /// internal error.

@@ -48,7 +48,7 @@ struct TexturePlan {
   std::array<std::int32_t, kWarpLanes> finer_level;  ///< level a lane reads (the finer of two)
   LaneMask active = 0;
   std::uint64_t base = 0;
-  TexelFormat format = TexelFormat::kR8G8B8A8Unorm;
+  Format format = Format::kR8G8B8A8Unorm;
 
   int line_count = 0;
   std::array<TextureLine, kMaxLines> lines;  ///< distinct, in order of first touch

@@ -89,15 +89,46 @@ LaneColor filter_srgb(const Texels& t) {
            filter_srgb_channel<16>(t, wx, wy), filter_unorm_alpha(t)}};
 }
 
-template <bool srgb>
+/// A component of eight texels as numbers.
+__m256 decode_component(__m256i texels, const ComponentBits& component) {
+  if (component.numeric == Numeric::kFloat) return _mm256_castsi256_ps(texels);
+  const int most = (1 << component.bits) - 1;
+  const __m256i code =
+      _mm256_and_si256(_mm256_srl_epi32(texels, _mm_cvtsi32_si128(component.shift)), _mm256_set1_epi32(most));
+  if (component.numeric == Numeric::kSrgb) return _mm256_i32gather_ps(kSrgbToLinear.data(), code, 4);
+  return _mm256_div_ps(_mm256_cvtepi32_ps(code), _mm256_set1_ps(static_cast<float>(most)));
+}
+
+/// Any format, by its row of the table: all channels are numbers. Channels that it lacks are 0, alpha is 1.
+LaneColor filter_any(const Texels& t, const FormatInfo& format) {
+  const __m256 scale = _mm256_set1_ps(1.0f / 256.0f);
+  const __m256 wx = _mm256_mul_ps(_mm256_cvtepi32_ps(t.frac_x), scale), wy = _mm256_mul_ps(t.weight_y, scale);
+  const auto lerp = [](__m256 a, __m256 b, __m256 w) {
+    return _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w));
+  };
+  LaneColor color{{_mm256_setzero_ps(), _mm256_setzero_ps(), _mm256_setzero_ps(), _mm256_set1_ps(1.0f)}};
+  for (std::size_t c = 0; c < format.channels; ++c) {
+    __m256 value[4];
+    for (int i = 0; i < 4; ++i) value[i] = decode_component(t.corner[i], format.component[c]);
+    color.channel[c] = lerp(lerp(value[0], value[1], wx), lerp(value[2], value[3], wx), wy);
+  }
+  return color;
+}
+
+/// Which of the ways above: the two for RGBA8 are the fast ones.
+enum class Way : std::uint8_t { kUnorm, kSrgb, kAny };
+
+template <Way way>
 void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* base,
                   std::array<LaneFloats, 4>& rgba) {
   const auto filter = [&](std::size_t level) {
     const Texels texels = fetch(plan.footprint[group][level], base);
-    if constexpr (srgb) {
+    if constexpr (way == Way::kSrgb) {
       return filter_srgb(texels);
-    } else {
+    } else if constexpr (way == Way::kUnorm) {
       return filter_unorm(texels);
+    } else {
+      return filter_any(texels, format_info(plan.format));
     }
   };
   LaneColor color = filter(0);
@@ -111,8 +142,9 @@ void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* b
   }
   const __m256 one = _mm256_set1_ps(255.0f * 65536.0f);
   for (std::size_t c = 0; c < 4; ++c) {
-    const __m256 value = srgb && c < 3 ? color.channel[c] : _mm256_div_ps(color.channel[c], one);
-    _mm256_storeu_ps(rgba[c].data() + 8 * group, value);
+    const bool number = way == Way::kAny || (way == Way::kSrgb && c < 3);
+    _mm256_storeu_ps(rgba[c].data() + 8 * group,
+                     number ? color.channel[c] : _mm256_div_ps(color.channel[c], one));
   }
 }
 
@@ -123,10 +155,12 @@ void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::ar
   for (std::size_t group = 0; group < TexturePlan::kGroups; ++group) {
     if (plan.levels[group] == 0) {
       for (LaneFloats& channel : rgba) _mm256_storeu_ps(channel.data() + 8 * group, _mm256_setzero_ps());
-    } else if (plan.format == TexelFormat::kR8G8B8A8Srgb) {
-      filter_group<true>(plan, group, base, rgba);
+    } else if (plan.format == Format::kR8G8B8A8Srgb) {
+      filter_group<Way::kSrgb>(plan, group, base, rgba);
+    } else if (plan.format == Format::kR8G8B8A8Unorm) {
+      filter_group<Way::kUnorm>(plan, group, base, rgba);
     } else {
-      filter_group<false>(plan, group, base, rgba);
+      filter_group<Way::kAny>(plan, group, base, rgba);
     }
   }
 }

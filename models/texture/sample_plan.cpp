@@ -123,9 +123,10 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
       axis_texels(folded_u, at.width, context.sampler.wrap_u, context.subtexel_bits, nearest);
   const AxisTexels y =
       axis_texels(folded_v, at.height, context.sampler.wrap_v, context.subtexel_bits, nearest);
-  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first)),
-                right = _mm256_add_epi32(at.first, x_index(x.second));
-  const __m256i top = y_index(y.first, at.pitch), bottom = y_index(y.second, at.pitch);
+  const Tiling tiling = context.view.layout.tiling;
+  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, tiling)),
+                right = _mm256_add_epi32(at.first, x_index(x.second, tiling));
+  const __m256i top = y_index(y.first, at.pitch, tiling), bottom = y_index(y.second, at.pitch, tiling);
   const __m256i texel[4] = {_mm256_add_epi32(left, top), _mm256_add_epi32(right, top),
                             _mm256_add_epi32(left, bottom), _mm256_add_epi32(right, bottom)};
   for (std::size_t corner = 0; corner < 4; ++corner) store_lanes(out.texel[corner].data(), texel[corner]);

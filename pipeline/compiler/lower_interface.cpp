@@ -99,7 +99,9 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
   if (component > 3) return slot;
   const bool vertex = shader_.stage == Stage::kVertex;
   const bool color = !vertex && output;
-  const std::uint32_t limit = color ? 1 : vertex && !output ? kMaxAttributeLocations : kMaxLocations;
+  const std::uint32_t limit = color               ? models::kMaxColorOutputs / 4
+                              : vertex && !output ? kMaxAttributeLocations
+                                                  : kMaxLocations;
   if (location >= limit || (color && d.index > 0)) return slot;
   slot.kind = Slot::Kind::kUsed;
   slot.imm = static_cast<std::uint16_t>(4 * location + component +
@@ -125,9 +127,9 @@ void Lowering::store_output(const Pointer& p, std::uint32_t place, Value v, cons
   if (slot.kind == Slot::Kind::kIgnored) return;
   if (slot.kind == Slot::Kind::kRefused)
     throw unsupported(
-        i,
-        fmt::format("output {} (only colour location 0, gl_FragDepth, gl_Position and varyings are written)",
-                    module_.name(p.variable)));
+        i, fmt::format(
+               "output {} (only colour locations 0 to 7, gl_FragDepth, gl_Position and varyings are written)",
+               module_.name(p.variable)));
   build_.effect(Op::kOutput, v, slot.imm);
 }
 

@@ -13,16 +13,16 @@ DeviceResources::DeviceResources(const traces::CommandStream& stream, models::De
       memory_(memory),
       fills_(fills),
       buffers_(stream.buffers.size()),
-      textures_(stream.images.size()) {
+      textures_(stream.images.size()),
+      surfaces_(stream.images.size()) {
   std::uint64_t bytes = 0;
   const auto add = [&bytes](std::uint64_t size) {
     bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes;
   };
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
   for (const traces::Image& i : stream.images)
-    add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
-  for (const traces::RenderTarget& t : stream.targets)
-    add(std::uint64_t{2} * models::kTileBytes * ((t.width + 7) / 8) * ((t.height + 7) / 8));
+    add(i.is_attachment() ? std::uint64_t{models::kTileBytes} * ((i.width + 7) / 8) * ((i.height + 7) / 8)
+                          : models::make_texture_layout(i.width, i.height, i.levels).bytes);
   memory.reserve(bytes);
 }
 
@@ -41,23 +41,35 @@ const DeviceResources::Texture& DeviceResources::texture(traces::Index image) {
   std::optional<Texture>& texture = textures_[image];
   if (!texture) {
     const traces::Image& i = stream_.images[image];
-    const auto format = static_cast<models::TexelFormat>(i.format);
-    const models::TextureView view = models::allocate_texture(memory_, format, i.width, i.height, i.levels);
+    if (i.is_attachment()) return texture.emplace(models::view_of_surface(attachment(image), i.format));
+    const models::TextureView view = models::allocate_texture(memory_, i.format, i.width, i.height, i.levels);
     texture = {view, &fills_.add(i, view)};
     texture_bytes_ += view.layout.bytes;
   }
   return *texture;
 }
 
+const models::SurfaceLayout& DeviceResources::attachment(traces::Index image) {
+  std::optional<models::SurfaceLayout>& surface = surfaces_[image];
+  if (!surface) {
+    const traces::Image& i = stream_.images[image];
+    surface = models::allocate_surface(memory_, i.width, i.height);
+    surface_bytes_ += surface->bytes();
+  }
+  return *surface;
+}
+
 void DeviceResources::place_rest() {
   for (traces::Index i = 0; i < buffers_.size(); ++i) (void)buffer(i);
-  for (traces::Index i = 0; i < textures_.size(); ++i) texture(i).fill->need();
+  for (traces::Index i = 0; i < textures_.size(); ++i) {
+    if (!stream_.images[i].is_attachment()) texture(i).fill->need();
+  }
 }
 
 DeviceResources::Unplaced DeviceResources::unplaced_images() const {
   Unplaced unplaced;
   for (std::size_t i = 0; i < textures_.size(); ++i) {
-    if (textures_[i]) continue;
+    if (textures_[i] || stream_.images[i].is_attachment()) continue;
     ++unplaced.images;
     unplaced.bytes += traces::texel_bytes(stream_.images[i]);
   }

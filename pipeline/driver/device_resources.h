@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "models/memory/device_memory.h"
+#include "models/memory/surface.h"
 #include "models/texture/layout.h"
 #include "pipeline/driver/texture_fills.h"
 #include "traces/command_stream.h"
@@ -17,7 +18,7 @@ namespace quadrille::pipeline {
 
 class DeviceResources {
  public:
-  /// Takes room for everything in the stream, its render targets too, so that growing never copies what is
+  /// Takes room for everything in the stream, its attachments too, so that growing never copies what is
   /// there.
   DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory, TextureFills& fills);
   /// Address of a buffer's first byte; it is aligned to a line.
@@ -26,13 +27,17 @@ class DeviceResources {
     models::TextureView view;
     models::TextureFill* fill = nullptr;
   };
+  /// For a sampler. An attachment lies where passes draw it.
   [[nodiscard]] const Texture& texture(traces::Index image);
-  /// Places what nobody asked for, behind all else, so that no address depends on it, and brings all texels.
-  /// Throws `UserError`.
+  /// For a pass.
+  [[nodiscard]] const models::SurfaceLayout& attachment(traces::Index image);
+  /// Places buffers and textures that nobody asked for, behind all else, so that no address depends on it,
+  /// and brings all texels. Throws `UserError`.
   void place_rest();
 
   [[nodiscard]] std::uint64_t buffer_bytes() const { return buffer_bytes_; }
   [[nodiscard]] std::uint64_t texture_bytes() const { return texture_bytes_; }
+  [[nodiscard]] std::uint64_t surface_bytes() const { return surface_bytes_; }
   struct Unplaced {
     std::size_t images = 0, bytes = 0;
   };
@@ -44,7 +49,8 @@ class DeviceResources {
   TextureFills& fills_;
   std::vector<std::optional<std::uint64_t>> buffers_;
   std::vector<std::optional<Texture>> textures_;
-  std::uint64_t buffer_bytes_ = 0, texture_bytes_ = 0;
+  std::vector<std::optional<models::SurfaceLayout>> surfaces_;  ///< by image
+  std::uint64_t buffer_bytes_ = 0, texture_bytes_ = 0, surface_bytes_ = 0;
 };
 
 }  // namespace quadrille::pipeline

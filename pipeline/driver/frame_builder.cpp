@@ -1,6 +1,7 @@
 #include "pipeline/driver/frame_builder.h"
 
 #include "models/base/error.h"
+#include "pipeline/driver/attachment_lives.h"
 #include "pipeline/driver/device_resources.h"
 
 #include <algorithm>
@@ -27,19 +28,22 @@ static_assert(static_cast<int>(models::Topology::kTriangleFan) ==
               static_cast<int>(traces::Topology::kTriangleFan));
 static_assert(static_cast<int>(models::Wrap::kClampToEdge) == static_cast<int>(traces::Wrap::kClampToEdge));
 static_assert(static_cast<int>(models::Filter::kLinear) == static_cast<int>(traces::Filter::kLinear));
-static_assert(static_cast<int>(models::AttributeFormat::kR32Float) ==
-              static_cast<int>(traces::Format::kR32Float));
-static_assert(static_cast<int>(models::AttributeFormat::kR16G16B16A16Uint) ==
-              static_cast<int>(traces::kLastFormat));
-static_assert(static_cast<int>(models::TexelFormat::kR8G8B8A8Srgb) ==
-              static_cast<int>(traces::Format::kR8G8B8A8Srgb));
-static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) ==
-              static_cast<int>(traces::Format::kR8G8B8A8Srgb));
+
+models::BlendState blend_state(const traces::BlendState& b) {
+  return {b.enable,
+          static_cast<models::BlendFactor>(b.src_color),
+          static_cast<models::BlendFactor>(b.dst_color),
+          static_cast<models::BlendFactor>(b.src_alpha),
+          static_cast<models::BlendFactor>(b.dst_alpha),
+          static_cast<models::BlendOp>(b.color),
+          static_cast<models::BlendOp>(b.alpha),
+          b.write_mask};
+}
 
 class FrameBuilder {
  public:
   FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out)
-      : stream_(stream), out_(out), resources_(stream, out.memory, out.fills) {
+      : stream_(stream), out_(out), resources_(stream, out.memory, out.fills), lives_(stream) {
     out.frame.precision = precision;
   }
 
@@ -50,39 +54,51 @@ class FrameBuilder {
     if (!leave_out) resources_.place_rest();
     out_.buffer_bytes = resources_.buffer_bytes();
     out_.texture_bytes = resources_.texture_bytes();
+    out_.surface_bytes = resources_.surface_bytes();
     note_left_out();
   }
 
  private:
   void apply(const traces::BeginPass& c) {
-    const traces::RenderTarget& target = stream_.targets[c.target];
+    begun_ = &c;
+    const traces::PassTarget target = traces::target_of(stream_, c);
     hw::PassState pass;
-    pass.color = models::allocate_surface(out_.memory, target.width, target.height);
-    out_.surface_bytes += pass.color.bytes();
-    pass.color_format = static_cast<models::ColorFormat>(target.color);
-    pass.clear_color = models::encode_color(pass.color_format, c.clear_color);
-    pass.clear_depth = c.clear_depth;
+    pass.width = target.width;
+    pass.height = target.height;
+    for (const traces::ColorAttachmentUse& use : c.colors) {
+      hw::AttachmentState& color = pass.color[pass.colors++];
+      color = attachment(use);
+      color.clear = use.load == traces::LoadOp::kClear ? models::encode_color(color.format, use.clear) : 0;
+    }
+    pass.clear_depth = c.depth.load == traces::LoadOp::kClear ? c.depth.clear : 0;
     pass.first_draw = static_cast<std::uint32_t>(out_.frame.draws.size());
-    target_has_depth_ = target.depth != traces::Format::kUndefined;
     out_.frame.passes.push_back(pass);
     scissor_ = {0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)};
     viewport_ = {0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
   }
   void apply(const traces::EndPass&) {
     hw::PassState& pass = out_.frame.passes.back();
-    out_.shown_has_depth = target_has_depth_;
+    const bool attached = begun_->depth.image != kNone;
+    out_.shown_has_depth = attached;
     pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw;
+    if (!attached) return;
     const auto first = out_.frame.draws.begin() + pass.first_draw;
     const bool tests =
         std::any_of(first, out_.frame.draws.end(), [](const hw::DrawState& d) { return d.depth_test; });
-    if (target_has_depth_ && tests) {
+    const bool kept = lives_.read_after(begun_->depth.image, out_.frame.passes.size() - 1);
+    if (tests || kept) {
       pass.has_depth = true;
-      pass.depth = models::allocate_surface(out_.memory, pass.color.width, pass.color.height);
-      out_.surface_bytes += pass.depth.bytes();
-    } else if (target_has_depth_) {
+      pass.depth = attachment(begun_->depth);
+      pass.depth.read_later = kept;
+      pass.depth.clear = std::bit_cast<std::uint32_t>(pass.clear_depth);
+    } else {
       out_.left_out.push_back({"depth surface", "no draw of the pass tests depth",
-                               fmt::format("{} bytes of device memory", pass.color.bytes())});
+                               fmt::format("{} bytes of device memory",
+                                           traces::texel_bytes(stream_.images[begun_->depth.image]))});
     }
+  }
+  hw::AttachmentState attachment(const traces::AttachmentUse& use) {
+    return {resources_.attachment(use.image), stream_.images[use.image].format, use.load, use.store, 0, true};
   }
   void apply(const traces::BindPipeline& c) { pipeline_ = c.pipeline; }
   void apply(const traces::BindDescriptorSet& c) { sets_[c.set] = c.descriptors; }
@@ -107,6 +123,8 @@ class FrameBuilder {
     draw.pass = static_cast<std::uint32_t>(out_.frame.passes.size()) - 1;
     draw.vertex_program = &programs.vertex;
     draw.fragment_program = &programs.fragment;
+    const auto bits = static_cast<unsigned>(4 * out_.frame.passes.back().colors);
+    draw.color_outputs = models::color_outputs(programs.fragment) & (bits < 32 ? (1u << bits) - 1 : ~0u);
     geometry(c, pipeline, draw);
     attributes(pipeline, programs.integer_inputs, draw);
     fixed_function(pipeline, draw);
@@ -170,7 +188,7 @@ class FrameBuilder {
       fetch.address = resources_.buffer(bound.buffer) + bound.offset + attribute.offset;
       fetch.stride = binding->stride;
       fetch.per_instance = binding->per_instance;
-      fetch.format = static_cast<models::AttributeFormat>(attribute.format);
+      fetch.format = attribute.format;
       draw.attributes.push_back(fetch);
     }
     for (const models::VertexInputUse& use : uses) {
@@ -184,8 +202,8 @@ class FrameBuilder {
   }
 
   void fixed_function(const traces::Pipeline& pipeline, hw::DrawState& draw) {
-    const models::PixelRect rect = models::drawable_rect(
-        viewport_, scissor_, out_.frame.passes.back().color.width, out_.frame.passes.back().color.height);
+    const models::PixelRect rect = models::drawable_rect(viewport_, scissor_, out_.frame.passes.back().width,
+                                                         out_.frame.passes.back().height);
     const int bits = out_.frame.precision.subpixel_bits;
     draw.viewport = viewport_;
     draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
@@ -195,18 +213,10 @@ class FrameBuilder {
                   bits,
                   viewport_.min_depth,
                   viewport_.max_depth};
-    draw.depth_test = pipeline.depth.test && target_has_depth_;
+    draw.depth_test = pipeline.depth.test && begun_->depth.image != kNone;
     draw.depth_write = draw.depth_test && pipeline.depth.write;
     draw.depth_compare = static_cast<models::CompareOp>(pipeline.depth.compare);
-    const traces::BlendState& b = pipeline.blend;
-    draw.blend = {b.enable,
-                  static_cast<models::BlendFactor>(b.src_color),
-                  static_cast<models::BlendFactor>(b.dst_color),
-                  static_cast<models::BlendFactor>(b.src_alpha),
-                  static_cast<models::BlendFactor>(b.dst_alpha),
-                  static_cast<models::BlendOp>(b.color),
-                  static_cast<models::BlendOp>(b.alpha),
-                  b.write_mask};
+    std::ranges::transform(pipeline.blend, draw.blend.begin(), blend_state);
     const models::Program& program = *draw.fragment_program;
     draw.late_depth =
         draw.depth_test && (program.uses_discard || program.writes_depth) && !program.early_fragment_tests;
@@ -263,6 +273,8 @@ class FrameBuilder {
       const traces::TextureDescriptor& bound = texture(program, use.set, use.binding);
       const traces::Sampler& s = stream_.samplers[bound.sampler];
       const traces::Image& image = stream_.images[bound.image];
+      lives_.check_sampled(bound.image, out_.frame.passes.size() - 1, program.name);
+      out_.frame.passes.back().samples_attachments |= image.is_attachment();
       const DeviceResources::Texture& texture = resources_.texture(bound.image);
       states.push_back({texture.view,
                         {static_cast<models::Filter>(s.mag), static_cast<models::Filter>(s.min),
@@ -305,7 +317,8 @@ class FrameBuilder {
   models::Viewport viewport_;
   models::PixelRect scissor_;
   Index pipeline_ = kNone;
-  bool target_has_depth_ = false;
+  const traces::BeginPass* begun_ = nullptr;
+  AttachmentLives lives_;
   std::uint64_t unread_attributes_ = 0;
 };
 
@@ -316,12 +329,15 @@ bool DeviceFrame::reads_textures() const {
     return !d.vertex_textures.empty() || !d.fragment_textures.empty();
   });
 }
-bool DeviceFrame::tests_depth() const {
-  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) { return d.depth_test; });
+bool DeviceFrame::keeps_depth() const {
+  return std::ranges::any_of(frame.passes, [](const hw::PassState& p) { return p.has_depth; });
 }
 bool DeviceFrame::blends() const {
-  return std::ranges::any_of(frame.draws,
-                             [](const hw::DrawState& d) { return models::reads_destination(d.blend); });
+  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) {
+    std::size_t color = 0;
+    while (color < models::kMaxColorAttachments && !d.reads_color(color)) ++color;
+    return color < models::kMaxColorAttachments;
+  });
 }
 
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,

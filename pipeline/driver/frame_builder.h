@@ -35,7 +35,8 @@ struct DeviceFrame {
   bool shown_has_depth = false;
   std::uint64_t buffer_bytes = 0, texture_bytes = 0, surface_bytes = 0;
   [[nodiscard]] bool reads_textures() const;
-  [[nodiscard]] bool tests_depth() const;
+  /// A pass of it has depths: some draw tests them, or a later pass reads them.
+  [[nodiscard]] bool keeps_depth() const;
   [[nodiscard]] bool blends() const;
 };
 

@@ -42,9 +42,8 @@ class FunctionalRenderer {
 
   FunctionalCounts run() {
     for (const hw::PassState& pass : frame_.passes) {
-      models::fill_surface(memory_, pass.color, pass.clear_color);
-      if (pass.has_depth)
-        models::fill_surface(memory_, pass.depth, std::bit_cast<std::uint32_t>(pass.clear_depth));
+      for (std::size_t c = 0; c < pass.colors; ++c) begin(pass.color[c]);
+      if (pass.has_depth) begin(pass.depth);
       for (std::uint32_t d = pass.first_draw; d < pass.first_draw + pass.draws; ++d) draw(d);
     }
     return counts_;
@@ -53,6 +52,10 @@ class FunctionalRenderer {
  private:
   /// Triangles that waiting quads may refer to, and the one being rasterised.
   static constexpr std::size_t kTriangles = 16;
+
+  void begin(const hw::AttachmentState& attachment) {
+    if (!attachment.loads()) models::fill_surface(memory_, attachment.surface, attachment.clear);
+  }
 
   void draw(std::uint32_t index) {
     draw_ = &frame_.draw(index);
@@ -109,7 +112,7 @@ class FunctionalRenderer {
         std::uint32_t value[4];
         models::decode_attribute(
             f.format,
-            memory_.read(f.address + std::uint64_t{element} * f.stride, models::attribute_bytes(f.format))
+            memory_.read(f.address + std::uint64_t{element} * f.stride, models::format_bytes(f.format))
                 .data(),
             value);
         for (std::size_t c = 0; c < 4; ++c) {
@@ -195,8 +198,8 @@ class FunctionalRenderer {
   }
 
   float* depths(std::int32_t tile_x, std::int32_t tile_y) {
-    const std::uint64_t address =
-        pass_->depth.tile_address(static_cast<std::uint32_t>(tile_x), static_cast<std::uint32_t>(tile_y));
+    const std::uint64_t address = pass_->depth.surface.tile_address(static_cast<std::uint32_t>(tile_x),
+                                                                    static_cast<std::uint32_t>(tile_y));
     return reinterpret_cast<float*>(memory_.write(address, models::kTileBytes).data());
   }
 
@@ -237,6 +240,7 @@ class FunctionalRenderer {
     run_warp(engine_, draw_->fragment_textures, frame_.precision, memory_, plan_);
     warp_.alive = warp_.covered & ~engine_.killed;
     counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & engine_.killed));
+    hw::take_colors(*draw_, outputs_, warp_);
     for (int q = 0; q < warp_.quads; ++q) write_quad(q);
     warp_.quads = 0;
     warp_.covered = 0;
@@ -249,14 +253,18 @@ class FunctionalRenderer {
     if (lanes != 0 && draw_->late_depth) lanes = test_quad(quad, q, place, lanes);
     if (lanes == 0) return;
     counts_.fragments_written += static_cast<std::uint64_t>(std::popcount(lanes));
-    float rgba[4][4];
-    for (std::size_t c = 0; c < 4; ++c) {
-      for (std::size_t i = 0; i < 4; ++i)
-        rgba[c][i] = std::bit_cast<float>(outputs_[c][static_cast<std::size_t>(4 * q) + i]);
+    for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
+      if (draw_->writes_color(color)) blend(color, quad, q, place, lanes);
     }
-    auto* const tile = reinterpret_cast<std::uint32_t*>(
-        memory_.write(pass_->color.tile_address(quad.x / 8u, quad.y / 8u), models::kTileBytes).data());
-    models::blend_quad(draw_->blend, pass_->color_format, rgba, tile + 4 * place, lanes);
+  }
+
+  void blend(std::size_t color, const WarpSlot::Quad& quad, int q, int place, std::uint32_t lanes) {
+    float rgba[4][4];
+    for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp_.color[color][c].begin() + 4 * q, 4, rgba[c]);
+    const hw::AttachmentState& attachment = pass_->color[color];
+    const std::uint64_t address = attachment.surface.tile_address(quad.x / 8u, quad.y / 8u);
+    auto* const tile = reinterpret_cast<std::uint32_t*>(memory_.write(address, models::kTileBytes).data());
+    models::blend_quad(draw_->blend[color], attachment.format, rgba, tile + 4 * place, lanes);
   }
 
   std::uint32_t test_quad(const WarpSlot::Quad& quad, int q, int place, std::uint32_t lanes) {

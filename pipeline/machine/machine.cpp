@@ -91,7 +91,7 @@ void Machine::leave_out(bool wanted) {
   if (!textured_)
     left_out_.push_back({"texture units", "no program of a draw reads a texture",
                          fmt::format("{} units and their caches", cores)});
-  depth_memory_ = frame_.tests_depth() || !wanted;
+  depth_memory_ = frame_.keeps_depth() || !wanted;
   if (!depth_memory_) {
     left_out_.push_back({"depth units' links to memory", "no draw tests depth",
                          fmt::format("{} links, and their places in the arbiters of {} L2 slices",

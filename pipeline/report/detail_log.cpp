@@ -19,8 +19,8 @@ hw::ScreenCells screen_of(const hw::Frame& frame) {
   const auto cells = [&](std::uint32_t tiles) { return (tiles + screen.tiles - 1) / screen.tiles; };
   screen.first_draw = shown.first_draw;
   screen.draws = shown.draws;
-  screen.columns = cells(shown.color.tiles_x);
-  screen.rows = cells(shown.color.tiles_y);
+  screen.columns = cells(shown.color[0].surface.tiles_x);
+  screen.rows = cells(shown.color[0].surface.tiles_y);
   return screen;
 }
 

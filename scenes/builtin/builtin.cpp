@@ -24,13 +24,17 @@ struct Entry {
   double length = 0;  ///< seconds
 };
 
-constexpr std::array<Entry, 8> kEntries{{
+constexpr std::array<Entry, 9> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
      [](double) { return build_quad(); }},
     {{"cubes", "a field of 125 lit and textured cubes: many small draws, depth complexity of a few"},
      [](double) { return build_cubes(); }},
+    {{"outlines",
+      "the cubes as a drawing: a second pass reads colours and depths of the first, so targets are textures "
+      "too"},
+     [](double) { return build_outlines(); }},
     {{"courtyard",
       "a sunlit courtyard with fountain, arcades, trees and glass: 15 materials, normal maps, MASK and "
       "BLEND, 380 thousand triangles"},
@@ -163,6 +167,30 @@ SceneData build_cubes() {
                                                     glm::normalize(glm::vec3(1, 2, lattice_random(i, 1, 3))));
     place(scene, cubes[static_cast<std::size_t>(i) % kColors.size()], turned);
   }
+  return scene;
+}
+
+SceneData build_outlines() {
+  SceneData scene = build_cubes();
+  // Ink where the distance jumps between neighbours; the picture with a darker rim elsewhere.
+  // 1 / (1 - depth) grows as the distance does.
+  scene.post_shader = R"(#version 450
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 result;
+layout(set = 0, binding = 0) uniform sampler2D color;
+layout(set = 0, binding = 1) uniform sampler2D depth;
+float distance_at(vec2 at) { return 1.0 / (1.0005 - textureLod(depth, at, 0.0).r); }
+void main() {
+  vec2 pixel = 1.0 / vec2(textureSize(depth, 0));
+  float here = distance_at(uv);
+  float jump = abs(distance_at(uv + vec2(pixel.x, 0.0)) + distance_at(uv - vec2(pixel.x, 0.0)) - 2.0 * here) +
+               abs(distance_at(uv + vec2(0.0, pixel.y)) + distance_at(uv - vec2(0.0, pixel.y)) - 2.0 * here);
+  float ink = smoothstep(0.02, 0.08, jump / here);
+  vec3 tone = textureLod(color, uv, 0.0).rgb;
+  float rim = 1.0 - 0.6 * dot(uv - 0.5, uv - 0.5);
+  result = vec4(mix(tone * rim, vec3(0.01, 0.01, 0.02), ink), 1.0);
+}
+)";
   return scene;
 }
 

@@ -28,6 +28,7 @@ struct BuiltinScene {
 [[nodiscard]] SceneData build_triangle();
 [[nodiscard]] SceneData build_quad();
 [[nodiscard]] SceneData build_cubes();
+[[nodiscard]] SceneData build_outlines();
 [[nodiscard]] SceneData build_overdraw();
 [[nodiscard]] SceneData build_fill();
 [[nodiscard]] SceneData build_materials();

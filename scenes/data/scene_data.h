@@ -259,6 +259,8 @@ struct SceneData : Placements {
   Environment environment;
   glm::vec3 background{0.30F, 0.42F, 0.58F};
   bool depth = true;  ///< false: draw without depth test and depth attachment
+  /// GLSL of the fragment shader of a second pass over the picture (scenes/record/post_pass.h); empty: none
+  std::string post_shader;
   using VisitModelBox = std::function<void(const Bounds&, const glm::mat4&)>;
   /// Boxes that, each moved by a matrix into model space, hold an instance as it is posed together.
   void visit_model_boxes(const Instance& instance, const VisitModelBox& visit) const;

@@ -15,12 +15,12 @@
 namespace quadrille::scenes {
 namespace {
 
-using models::AttributeFormat;
+using models::Format;
 using Vector = std::array<double, 4>;
 
 std::array<std::uint32_t, 4> words_at(const Array& array, std::size_t vertex) {
   std::array<std::uint32_t, 4> words{};
-  models::decode_attribute(static_cast<AttributeFormat>(array.format),
+  models::decode_attribute(static_cast<Format>(array.format),
                            &array.data[vertex * traces::format_bytes(array.format)], words.data());
   return words;
 }

@@ -11,6 +11,7 @@
 #include "models/base/error.h"
 #include "scenes/material/frame_block.h"
 #include "scenes/record/host_pose.h"
+#include "scenes/record/post_pass.h"
 #include "scenes/view/exposure.h"
 #include "traces/trace_file.h"
 
@@ -71,22 +72,27 @@ Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
 
 traces::CommandStream Recorder::record() {
   stream_.name = scene_.name;
-  stream_.targets.push_back(
-      {options_.width, options_.height,
-       options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
-       scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
   record_arrays();
   record_textures();
   const glm::vec3& back = scene_.background;
   const std::array<float, 4> clear = options_.visibility ? std::array<float, 4>{0, 0, 0, 0}
                                                          : std::array<float, 4>{back.r, back.g, back.b, 1};
-  stream_.commands.emplace_back(traces::BeginPass{0, clear, 1});
+  stream_.commands.emplace_back(
+      traces::make_pass(stream_,
+                        {options_.width, options_.height,
+                         options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
+                         scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined},
+                        clear));
   stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width),
                                                     static_cast<float>(options_.height), 0, 1});
   stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
   record_frame_set();
   for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
   stream_.commands.emplace_back(traces::EndPass{});
+  if (!scene_.post_shader.empty() && !options_.visibility) {
+    add_post_pass(stream_, scene_.post_shader);
+    post_shaders_ = 2;
+  }
   return std::move(stream_);
 }
 
@@ -244,7 +250,7 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
   p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
   p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend),
              traces::CompareOp::kLess};
-  if (blended) p.blend = material.layers.transmits() ? kPremultiplied : kOver;
+  if (blended) p.blend[0] = material.layers.transmits() ? kPremultiplied : kOver;
   const auto found = std::ranges::find_if(
       stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
   if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());

@@ -49,7 +49,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   [[nodiscard]] traces::CommandStream record();
-  [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled(); }
+  [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled() + post_shaders_; }
   [[nodiscard]] float exposure() const { return exposure_; }
   /// Images of the scene that a shader of the recorded frame can sample.
   [[nodiscard]] const std::set<int>& images() const { return images_; }
@@ -148,7 +148,8 @@ class Recorder {
   std::map<std::tuple<std::uint32_t, int, bool>, PosedStreams> posed_streams_;
   /// what each slot holds, to leave out repeated binds
   std::vector<traces::Command> bound_;
-  std::size_t posed_bytes_ = 0;  ///< by the host
+  std::size_t post_shaders_ = 0;  ///< of a second pass
+  std::size_t posed_bytes_ = 0;   ///< by the host
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

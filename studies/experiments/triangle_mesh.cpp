@@ -61,9 +61,9 @@ traces::Pipeline pipeline_of(const DrawOptions& options) {
   pipeline.cull = options.cull;
   if (options.depth) pipeline.depth = {true, true, traces::CompareOp::kLess};
   if (options.blends) {
-    pipeline.blend.enable = true;
-    pipeline.blend.src_color = traces::BlendFactor::kSrcAlpha;
-    pipeline.blend.dst_color = traces::BlendFactor::kOneMinusSrcAlpha;
+    pipeline.blend[0].enable = true;
+    pipeline.blend[0].src_color = traces::BlendFactor::kSrcAlpha;
+    pipeline.blend[0].dst_color = traces::BlendFactor::kOneMinusSrcAlpha;
   }
   return pipeline;
 }
@@ -120,14 +120,15 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
   const std::span<const std::uint32_t> indices(
       mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), 3 * mesh.triangles.size());
   stream.buffers = {buffer_of<float>("positions", positions), buffer_of("indices", indices)};
-  stream.targets = {{mesh.width, mesh.height, traces::Format::kR8G8B8A8Unorm,
-                     options.depth ? traces::Format::kD32Float : traces::Format::kUndefined}};
+  const traces::BeginPass pass =
+      traces::make_pass(stream, {mesh.width, mesh.height, traces::Format::kR8G8B8A8Unorm,
+                                 options.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
   stream.pipelines = {pipeline_of(options)};
   traces::Draw draw;
   draw.indexed = true;
   draw.count = static_cast<std::uint32_t>(indices.size());
   stream.commands = {
-      traces::BeginPass{},
+      pass,
       traces::BindPipeline{0},
       traces::BindVertexBuffer{0, 0, 0},
       traces::BindIndexBuffer{1, 0, traces::IndexType::kUint32},

@@ -15,8 +15,9 @@ DrawnArea drawn_area(const traces::CommandStream& stream) {
   traces::SetScissor scissor;
   for (const traces::Command& command : stream.commands) {
     if (const auto* begin = std::get_if<traces::BeginPass>(&command)) {
-      width = stream.targets[begin->target].width;
-      height = stream.targets[begin->target].height;
+      const traces::PassTarget target = traces::target_of(stream, *begin);
+      width = target.width;
+      height = target.height;
     }
     if (const auto* set = std::get_if<traces::SetScissor>(&command)) scissor = *set;
     if (!std::holds_alternative<traces::Draw>(command)) continue;

@@ -64,9 +64,10 @@ traces::Image checks() {
 StreamBuilder::StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, bool depth,
                              float clear_depth) {
   stream_.name = std::move(name);
-  stream_.targets.push_back({width, height, traces::Format::kR8G8B8A8Unorm,
-                             depth ? traces::Format::kD32Float : traces::Format::kUndefined});
-  pass_ = {0, {0, 0, 0, 0}, clear_depth};
+  pass_ = traces::make_pass(stream_,
+                            {width, height, traces::Format::kR8G8B8A8Unorm,
+                             depth ? traces::Format::kD32Float : traces::Format::kUndefined},
+                            {0, 0, 0, 0}, clear_depth);
   const traces::Index image = append(stream_.images, checks());
   traces::Sampler sampler;
   sampler.max_lod = 0;
@@ -75,7 +76,7 @@ StreamBuilder::StreamBuilder(std::string name, std::uint32_t width, std::uint32_
 }
 
 StreamBuilder& StreamBuilder::clear(const std::array<float, 4>& color) {
-  pass_.clear_color = color;
+  pass_.colors[0].clear = color;
   return *this;
 }
 
@@ -115,8 +116,8 @@ StreamBuilder& StreamBuilder::state(const DrawState& state) {
   p.cull = state.cull;
   p.depth = state.depth;
   if (state.paint == Paint::kCount) {
-    p.blend.enable = true;
-    p.blend.dst_color = p.blend.dst_alpha = traces::BlendFactor::kOne;
+    p.blend[0].enable = true;
+    p.blend[0].dst_color = p.blend[0].dst_alpha = traces::BlendFactor::kOne;
   }
   commands_.emplace_back(traces::BindPipeline{append(stream_.pipelines, p)});
   commands_.emplace_back(traces::BindDescriptorSet{0, 0});

@@ -109,7 +109,7 @@ struct TextureScene {
   std::vector<TextureRequest> requests;
   SamplerState sampler;
 
-  TextureScene(TexelFormat format, float texels_per_pixel) {
+  TextureScene(Format format, float texels_per_pixel) {
     std::vector<std::byte> texels;
     std::mt19937 random(1);
     for (std::uint32_t size = 1024; size >= 1; size /= 2) {
@@ -134,7 +134,7 @@ struct TextureScene {
   }
 };
 
-void trilinear(benchmark::State& state, TexelFormat format, bool plan_only) {
+void trilinear(benchmark::State& state, Format format, bool plan_only) {
   const TextureScene scene(format, static_cast<float>(state.range(0)) / 100.0f);
   auto plan = std::make_unique<TexturePlan>();
   alignas(64) std::array<LaneFloats, 4> rgba;
@@ -152,11 +152,11 @@ void trilinear(benchmark::State& state, TexelFormat format, bool plan_only) {
   state.counters["ns/lane"] = benchmark::Counter(warps * kWarpLanes * 1e-9,
                                                  benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
-BENCHMARK_CAPTURE(trilinear, srgb, TexelFormat::kR8G8B8A8Srgb, false)->Arg(30)->Arg(140)->Arg(800);
-BENCHMARK_CAPTURE(trilinear, unorm, TexelFormat::kR8G8B8A8Unorm, false)->Arg(30)->Arg(140)->Arg(800);
-BENCHMARK_CAPTURE(trilinear, plan_only, TexelFormat::kR8G8B8A8Unorm, true)->Arg(30)->Arg(140)->Arg(800);
+BENCHMARK_CAPTURE(trilinear, srgb, Format::kR8G8B8A8Srgb, false)->Arg(30)->Arg(140)->Arg(800);
+BENCHMARK_CAPTURE(trilinear, unorm, Format::kR8G8B8A8Unorm, false)->Arg(30)->Arg(140)->Arg(800);
+BENCHMARK_CAPTURE(trilinear, plan_only, Format::kR8G8B8A8Unorm, true)->Arg(30)->Arg(140)->Arg(800);
 
-void blend(benchmark::State& state, bool enable, ColorFormat format) {
+void blend(benchmark::State& state, bool enable, Format format) {
   BlendState s;
   s.enable = enable;
   s.src_color = BlendFactor::kSrcAlpha;
@@ -171,9 +171,9 @@ void blend(benchmark::State& state, bool enable, ColorFormat format) {
     benchmark::DoNotOptimize(pixels);
   }
 }
-BENCHMARK_CAPTURE(blend, opaque_srgb, false, ColorFormat::kR8G8B8A8Srgb);
-BENCHMARK_CAPTURE(blend, alpha_srgb, true, ColorFormat::kR8G8B8A8Srgb);
-BENCHMARK_CAPTURE(blend, alpha_unorm, true, ColorFormat::kR8G8B8A8Unorm);
+BENCHMARK_CAPTURE(blend, opaque_srgb, false, Format::kR8G8B8A8Srgb);
+BENCHMARK_CAPTURE(blend, alpha_srgb, true, Format::kR8G8B8A8Srgb);
+BENCHMARK_CAPTURE(blend, alpha_unorm, true, Format::kR8G8B8A8Unorm);
 
 void tag_hit(benchmark::State& state) {
   TagArray tags(4096, 16);

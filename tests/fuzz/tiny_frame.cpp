@@ -15,8 +15,9 @@ constexpr std::uint64_t kMaxOverdraw = 1 << 20;  ///< pixels times triangles
 
 bool is_small(const traces::CommandStream& stream) {
   std::uint64_t pixels = 0;
-  for (const traces::RenderTarget& target : stream.targets)
-    pixels = std::max(pixels, std::uint64_t{target.width} * target.height);
+  for (const traces::Image& image : stream.images) {
+    if (image.is_attachment()) pixels = std::max(pixels, std::uint64_t{image.width} * image.height);
+  }
   const traces::StreamTotals totals = traces::stream_totals(stream);
   return pixels <= kMaxPixels && totals.vertices <= kMaxVertices &&
          totals.buffer_bytes + totals.image_bytes <= kMaxBytes && totals.passes <= kMaxPasses &&

@@ -12,6 +12,7 @@ namespace quadrille::fuzz {
 
 struct TraceChunk {
   std::array<char, 4> tag{};
+  std::uint32_t version = 0;
   Buffer payload;  ///< decoded
 };
 

@@ -37,14 +37,13 @@ void main() {
 HandMadeStream::HandMadeStream(std::uint32_t width, std::uint32_t height, traces::Format color,
                                traces::Format depth) {
   stream_.name = "hand-made";
-  stream_.targets.push_back({width, height, color, depth});
+  pass_ = traces::make_pass(stream_, {width, height, color, depth}, {0, 0, 0, 0});
   stream_.descriptor_sets.emplace_back();
   traces::Pipeline pipeline;
   pipeline.bindings = {{0, sizeof(Corner), false}};
   pipeline.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0},
                          {1, 0, traces::Format::kR32G32Float, sizeof(Corner::position)}};
   stream_.pipelines.push_back(pipeline);
-  pass_.clear_color = {0, 0, 0, 0};
   state_ = {traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1},
             traces::SetScissor{0, 0, width, height}};
 }

@@ -65,14 +65,14 @@ TEST_CASE("lavapipe: two triangles that share an edge cover each pixel once") {
   made.shaders(pass_through_vertex_shader(), R"(#version 450
 layout(location = 0) out vec4 color;
 void main() { color = vec4(100.0 / 255.0); })");
-  made.pipeline().blend = {true,
-                           traces::BlendFactor::kOne,
-                           traces::BlendFactor::kOne,
-                           traces::BlendFactor::kOne,
-                           traces::BlendFactor::kOne,
-                           traces::BlendOp::kAdd,
-                           traces::BlendOp::kAdd,
-                           0xf};
+  made.pipeline().blend[0] = {true,
+                              traces::BlendFactor::kOne,
+                              traces::BlendFactor::kOne,
+                              traces::BlendFactor::kOne,
+                              traces::BlendFactor::kOne,
+                              traces::BlendOp::kAdd,
+                              traces::BlendOp::kAdd,
+                              0xf};
   const auto image = render(made.corners(full_target(0)).draw(6).finish());
   if (!image) return;
   for (const std::uint32_t pixel : image->color) CHECK(pixel == 0x64646464u);
@@ -145,7 +145,7 @@ void main() { color = texture(image, v_value); })")
 
 TEST_CASE("lavapipe: an sRGB target stores encoded values and clears to them") {
   HandMadeStream made(4, 4, Format::kR8G8B8A8Srgb, Format::kUndefined);
-  made.pass().clear_color = {0.5f, 0, 1, 0.5f};
+  made.pass().colors[0].clear = {0.5f, 0, 1, 0.5f};
   const auto image = render(
       made.shaders(pass_through_vertex_shader(), kWriteValue).corners(full_target(0)).draw(0).finish());
   if (!image) return;

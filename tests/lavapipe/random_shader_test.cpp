@@ -39,15 +39,16 @@ traces::CommandStream stream_of(const std::vector<std::string>& programs) {
   traces::CommandStream stream;
   stream.name = "random shaders";
   const std::uint32_t width = kColumns * kTileWidth, height = (kBatch / kColumns) * kTileHeight;
-  stream.targets.push_back({width, height, traces::Format::kR8G8B8A8Unorm, traces::Format::kUndefined});
   constexpr float kCorners[] = {-1, -1, 0, 1, 3, -1, 0, 1, -1, 3, 0, 1};
   stream.buffers.push_back({"corners", std::vector<std::byte>(sizeof(kCorners))});
   std::memcpy(stream.buffers[0].data.data(), kCorners, sizeof(kCorners));
   const traces::Index vertex =
       add_shader(stream, "#version 450\nlayout(location = 0) in vec4 p;\nvoid main() { gl_Position = p; }",
                  ShaderStage::kVertex);
-  traces::BeginPass pass;
-  for (std::size_t c = 0; c < 4; ++c) pass.clear_color[c] = static_cast<float>(kClear[c]) / 255.0f;
+  std::array<float, 4> clear{};
+  for (std::size_t c = 0; c < 4; ++c) clear[c] = static_cast<float>(kClear[c]) / 255.0f;
+  const traces::BeginPass pass = traces::make_pass(
+      stream, {width, height, traces::Format::kR8G8B8A8Unorm, traces::Format::kUndefined}, clear);
   stream.commands = {pass,
                      traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1}};
   for (std::uint32_t k = 0; k < programs.size(); ++k) {

@@ -223,7 +223,8 @@ void VulkanDevice::create_device() {
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
   features.pNext = &features13;
   features.features.depthClamp = present.depthClamp;
-  features.features.geometryShader = present.geometryShader;  // gl_PrimitiveID in a fragment shader
+  features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
+  features.features.geometryShader = present.geometryShader;      // gl_PrimitiveID in a fragment shader
   features.features.robustBufferAccess = present.robustBufferAccess;
   features.features.pipelineStatisticsQuery = present.pipelineStatisticsQuery;
   features.features.occlusionQueryPrecise = present.occlusionQueryPrecise;

@@ -24,6 +24,9 @@ VkFormat vk_format(traces::Format format) {
     case F::kR16G16B16A16Snorm: return VK_FORMAT_R16G16B16A16_SNORM;
     case F::kR8G8B8A8Uint: return VK_FORMAT_R8G8B8A8_UINT;
     case F::kR16G16B16A16Uint: return VK_FORMAT_R16G16B16A16_UINT;
+    case F::kB8G8R8A8Unorm: return VK_FORMAT_B8G8R8A8_UNORM;
+    case F::kB8G8R8A8Srgb: return VK_FORMAT_B8G8R8A8_SRGB;
+    case F::kA2B10G10R10Unorm: return VK_FORMAT_A2B10G10R10_UNORM_PACK32;
   }
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "models/base/error.h"
+#include "models/rop/blend.h"
 #include "tests/lavapipe/vulkan_enums.h"
 
 namespace quadrille::lavapipe {
@@ -34,15 +35,22 @@ void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspe
                        nullptr, 0, nullptr, 1, &barrier);
 }
 
-VkRenderingAttachmentInfo attachment(VkImageView view, VkImageLayout layout, const VkClearValue& clear) {
-  VkRenderingAttachmentInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  info.imageView = view;
-  info.imageLayout = layout;
-  info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-  info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  info.clearValue = clear;
-  return info;
+VkAttachmentLoadOp vk_load(traces::LoadOp op) {
+  switch (op) {
+    case traces::LoadOp::kClear: return VK_ATTACHMENT_LOAD_OP_CLEAR;
+    case traces::LoadOp::kLoad: return VK_ATTACHMENT_LOAD_OP_LOAD;
+    case traces::LoadOp::kDontCare: return VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+  }
+  return VK_ATTACHMENT_LOAD_OP_CLEAR;
+}
+
+VkImageUsageFlags usage_of(const traces::Image& image) {
+  VkImageUsageFlags usage =
+      image.is_attachment() ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if ((image.usage & traces::kSampled) != 0) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+  if ((image.usage & traces::kColorAttachment) != 0) usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  if ((image.usage & traces::kDepthAttachment) != 0) usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  return usage;
 }
 
 }  // namespace
@@ -53,7 +61,6 @@ VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream
   upload_buffers();
   upload_images();
   create_samplers();
-  create_targets();
   create_descriptor_sets();
   record();
 }
@@ -68,33 +75,38 @@ void VulkanFrame::upload_buffers() {
 
 void VulkanFrame::upload_images() {
   for (const traces::Image& source : stream_.images) {
-    const DeviceImage image = device_.image(
-        cleanup_, vk_format(source.format), {source.width, source.height}, source.levels,
-        VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    Image image;
+    if ((source.usage & traces::kDepthAttachment) != 0) image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    image.device = device_.image(cleanup_, vk_format(source.format), {source.width, source.height},
+                                 source.levels, usage_of(source), image.aspect);
+    if (!source.is_attachment()) upload_texels(source, image.device);
     images_.push_back(image);
-    Cleanup upload;
-    const HostBuffer staging = device_.buffer(upload, source.texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-    std::memcpy(staging.mapped, source.texels.data(), source.texels.size());
-    std::vector<VkBufferImageCopy> levels;
-    VkDeviceSize offset = 0;
-    for (std::uint32_t level = 0; level < source.levels; ++level) {
-      VkBufferImageCopy copy{};
-      copy.bufferOffset = offset;
-      copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1};
-      copy.imageExtent = {std::max(1u, source.width >> level), std::max(1u, source.height >> level), 1};
-      offset += VkDeviceSize{4} * copy.imageExtent.width * copy.imageExtent.height;
-      levels.push_back(copy);
-    }
-    const VkCommandBuffer commands = device_.begin_commands(upload);
-    transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                           static_cast<std::uint32_t>(levels.size()), levels.data());
-    transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-    device_.submit(commands);
   }
+}
+
+void VulkanFrame::upload_texels(const traces::Image& source, const DeviceImage& image) {
+  Cleanup upload;
+  const HostBuffer staging = device_.buffer(upload, source.texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+  std::memcpy(staging.mapped, source.texels.data(), source.texels.size());
+  std::vector<VkBufferImageCopy> levels;
+  VkDeviceSize offset = 0;
+  for (std::uint32_t level = 0; level < source.levels; ++level) {
+    VkBufferImageCopy copy{};
+    copy.bufferOffset = offset;
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1};
+    copy.imageExtent = {std::max(1u, source.width >> level), std::max(1u, source.height >> level), 1};
+    offset += VkDeviceSize{4} * copy.imageExtent.width * copy.imageExtent.height;
+    levels.push_back(copy);
+  }
+  const VkCommandBuffer commands = device_.begin_commands(upload);
+  transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                         static_cast<std::uint32_t>(levels.size()), levels.data());
+  transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+             VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+  device_.submit(commands);
 }
 
 void VulkanFrame::create_samplers() {
@@ -114,22 +126,6 @@ void VulkanFrame::create_samplers() {
     require(vkCreateSampler(device_.handle(), &info, nullptr, &sampler), "vkCreateSampler");
     cleanup_.add([this, sampler] { vkDestroySampler(device_.handle(), sampler, nullptr); });
     samplers_.push_back(sampler);
-  }
-}
-
-void VulkanFrame::create_targets() {
-  for (const traces::RenderTarget& source : stream_.targets) {
-    const VkExtent2D size{source.width, source.height};
-    Target target;
-    target.color = device_.image(cleanup_, vk_format(source.color), size, 1,
-                                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                                 VK_IMAGE_ASPECT_COLOR_BIT);
-    if (source.depth != traces::Format::kUndefined)
-      target.depth =
-          device_.image(cleanup_, vk_format(source.depth), size, 1,
-                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                        VK_IMAGE_ASPECT_DEPTH_BIT);
-    targets_.push_back(target);
   }
 }
 
@@ -166,31 +162,54 @@ void VulkanFrame::record() {
       },
       [this](const traces::Draw& c) { draw(c); }};
   for (const traces::Command& command : stream_.commands) std::visit(record_one, command);
+  move(bound_.pass->colors.at(0).image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  if (bound_.pass->depth.image != traces::kNone)
+    move(bound_.pass->depth.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   require(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 
+void VulkanFrame::move(traces::Index index, VkImageLayout layout) {
+  Image& image = images_[index];
+  transition(commands_, image.device.image, image.aspect, image.layout, layout);
+  image.layout = layout;
+}
+
+VkRenderingAttachmentInfo VulkanFrame::attach(const traces::AttachmentUse& use, VkImageLayout layout,
+                                              const VkClearValue& clear) {
+  // What it held is forgotten, also what an earlier submission left.
+  if (use.load != traces::LoadOp::kLoad) images_[use.image].layout = VK_IMAGE_LAYOUT_UNDEFINED;
+  move(use.image, layout);
+  VkRenderingAttachmentInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+  info.imageView = images_[use.image].device.view;
+  info.imageLayout = layout;
+  info.loadOp = vk_load(use.load);
+  info.storeOp =
+      use.store == traces::StoreOp::kStore ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
+  info.clearValue = clear;
+  return info;
+}
+
 void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
-  bound_.target = pass.target;
-  const traces::RenderTarget& source = stream_.targets[pass.target];
-  const Target& target = targets_[pass.target];
-  VkClearValue clear_color{}, clear_depth{};
-  std::copy(pass.clear_color.begin(), pass.clear_color.end(), clear_color.color.float32);
-  clear_depth.depthStencil.depth = pass.clear_depth;
-  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-  const VkRenderingAttachmentInfo color =
-      attachment(target.color.view, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, clear_color);
-  const VkRenderingAttachmentInfo depth =
-      attachment(target.depth.view, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, clear_depth);
+  bound_.pass = &pass;
+  const traces::PassTarget target = traces::target_of(stream_, pass);
+  std::vector<VkRenderingAttachmentInfo> colors;
+  for (const traces::ColorAttachmentUse& use : pass.colors) {
+    VkClearValue clear{};
+    std::copy(use.clear.begin(), use.clear.end(), clear.color.float32);
+    colors.push_back(attach(use, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, clear));
+  }
+  VkRenderingAttachmentInfo depth{};
   VkRenderingInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
-  info.renderArea.extent = {source.width, source.height};
+  info.renderArea.extent = {target.width, target.height};
   info.layerCount = 1;
-  info.colorAttachmentCount = 1;
-  info.pColorAttachments = &color;
-  if (target.depth.image != VK_NULL_HANDLE) {
-    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+  info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
+  info.pColorAttachments = colors.data();
+  if (pass.depth.image != traces::kNone) {
+    VkClearValue clear{};
+    clear.depthStencil.depth = pass.depth.clear;
+    depth = attach(pass.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, clear);
     info.pDepthAttachment = &depth;
   }
   if (queries_ != nullptr) queries_->begin(commands_, passes_);
@@ -201,12 +220,12 @@ void VulkanFrame::end_pass() {
   vkCmdEndRendering(commands_);
   if (queries_ != nullptr) queries_->end(commands_, passes_);
   ++passes_;
-  const Target& target = targets_[bound_.target];
-  transition(commands_, target.color.image, VK_IMAGE_ASPECT_COLOR_BIT,
-             VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-  if (target.depth.image != VK_NULL_HANDLE)
-    transition(commands_, target.depth.image, VK_IMAGE_ASPECT_DEPTH_BIT,
-               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  const auto make_readable = [this](traces::Index image) {
+    if ((stream_.images[image].usage & traces::kSampled) != 0)
+      move(image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  };
+  for (const traces::ColorAttachmentUse& use : bound_.pass->colors) make_readable(use.image);
+  if (bound_.pass->depth.image != traces::kNone) make_readable(bound_.pass->depth.image);
 }
 
 void VulkanFrame::draw(const traces::Draw& draw) {
@@ -228,23 +247,23 @@ void VulkanFrame::draw(const traces::Draw& draw) {
 }
 
 Rendered VulkanFrame::read_back() const {
-  const traces::RenderTarget& source = stream_.targets[bound_.target];
-  const Target& target = targets_[bound_.target];
+  const traces::PassTarget source = traces::target_of(stream_, *bound_.pass);
   const std::size_t pixels = std::size_t{source.width} * source.height;
   Cleanup scratch;
   const HostBuffer color = device_.buffer(scratch, 4 * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   const HostBuffer depth = device_.buffer(scratch, 4 * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  const bool has_depth = target.depth.image != VK_NULL_HANDLE;
+  const bool has_depth = bound_.pass->depth.image != traces::kNone;
   const VkCommandBuffer commands = device_.begin_commands(scratch);
-  VkBufferImageCopy copy{};
-  copy.imageExtent = {source.width, source.height, 1};
-  copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-  vkCmdCopyImageToBuffer(commands, target.color.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, color.buffer, 1,
-                         &copy);
-  copy.imageSubresource.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
-  if (has_depth)
-    vkCmdCopyImageToBuffer(commands, target.depth.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, depth.buffer,
-                           1, &copy);
+  const auto copy_to = [&](traces::Index index, VkBuffer buffer) {
+    const Image& image = images_[index];
+    VkBufferImageCopy copy{};
+    copy.imageExtent = {source.width, source.height, 1};
+    copy.imageSubresource = {image.aspect, 0, 0, 1};
+    vkCmdCopyImageToBuffer(commands, image.device.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
+                           &copy);
+  };
+  copy_to(bound_.pass->colors[0].image, color.buffer);
+  if (has_depth) copy_to(bound_.pass->depth.image, depth.buffer);
   require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   device_.submit(commands);
 
@@ -253,6 +272,7 @@ Rendered VulkanFrame::read_back() const {
   result.height = source.height;
   result.color.resize(pixels);
   std::memcpy(result.color.data(), color.mapped, 4 * pixels);
+  for (std::uint32_t& pixel : result.color) pixel = models::to_rgba8(source.color, pixel);
   result.depth.resize(has_depth ? pixels : 0);
   if (has_depth) std::memcpy(result.depth.data(), depth.mapped, 4 * pixels);
   return result;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <map>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "tests/lavapipe/vulkan_device.h"
@@ -31,13 +31,18 @@ class VulkanFrame {
     VkPipeline pipeline = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
   };
-  struct Target {
-    DeviceImage color, depth;
+  struct Image {
+    DeviceImage device;
+    VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< at this point of the recording
   };
+  /// Of the attachments of a pass: the colours, then depth.
+  using PassFormats = std::vector<traces::Format>;
   /// State that a stream sets piecemeal and Vulkan wants whole: a pipeline layout needs the shapes of all
   /// sets bound with it.
   struct Bound {
-    traces::Index target = 0, pipeline = traces::kNone;
+    const traces::BeginPass* pass = nullptr;
+    traces::Index pipeline = traces::kNone;
     std::vector<traces::Index> sets;
     std::vector<std::byte> push_constants;
   };
@@ -45,7 +50,7 @@ class VulkanFrame {
   void upload_buffers();
   void upload_images();
   void create_samplers();
-  void create_targets();
+  void upload_texels(const traces::Image& source, const DeviceImage& image);
   void create_descriptor_sets();
 
   [[nodiscard]] SetShape shape_of(traces::Index set) const;
@@ -53,11 +58,15 @@ class VulkanFrame {
   [[nodiscard]] VkPipelineLayout pipeline_layout(const SetShapes& shapes);
   [[nodiscard]] VkShaderModule shader_module(traces::Index shader);
   [[nodiscard]] const PipelineObjects& pipeline_for(const Bound& bound);
-  [[nodiscard]] VkPipeline create_pipeline(const traces::Pipeline& pipeline,
-                                           const traces::RenderTarget& target, VkPipelineLayout layout);
+  [[nodiscard]] VkPipeline create_pipeline(const traces::Pipeline& pipeline, const PassFormats& formats,
+                                           VkPipelineLayout layout);
+  [[nodiscard]] PassFormats formats_of(const traces::BeginPass& pass) const;
 
   void record();
   void begin_pass(const traces::BeginPass& pass);
+  void move(traces::Index image, VkImageLayout layout);
+  [[nodiscard]] VkRenderingAttachmentInfo attach(const traces::AttachmentUse& use, VkImageLayout layout,
+                                                 const VkClearValue& clear);
   void end_pass();
   void draw(const traces::Draw& draw);
 
@@ -67,15 +76,14 @@ class VulkanFrame {
   const PassQueries* queries_;
   std::uint32_t passes_ = 0;  ///< recorded
   std::vector<VkBuffer> buffers_;
-  std::vector<DeviceImage> images_;
+  std::vector<Image> images_;
   std::vector<VkSampler> samplers_;
-  std::vector<Target> targets_;
   std::vector<VkDescriptorSet> descriptor_sets_;
   std::map<SetShape, VkDescriptorSetLayout> set_layouts_;
   std::map<SetShapes, VkPipelineLayout> pipeline_layouts_;
   std::map<traces::Index, VkShaderModule> modules_;
-  /// by (pipeline, target), set shapes
-  std::map<std::pair<std::pair<traces::Index, traces::Index>, SetShapes>, PipelineObjects> pipelines_;
+  /// by pipeline, formats of the pass, set shapes
+  std::map<std::tuple<traces::Index, PassFormats, SetShapes>, PipelineObjects> pipelines_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;
   Bound bound_;
 };

@@ -143,7 +143,7 @@ void VulkanFrame::create_descriptor_sets() {
       vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
     }
     for (const auto& texture : source.textures) {
-      const VkDescriptorImageInfo image{samplers_[texture.sampler], images_[texture.image].view,
+      const VkDescriptorImageInfo image{samplers_[texture.sampler], images_[texture.image].device.view,
                                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.dstBinding = texture.binding;
       write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
@@ -193,18 +193,27 @@ const VulkanFrame::PipelineObjects& VulkanFrame::pipeline_for(const Bound& bound
                      bound.push_constants.size(), device_.info().name, limit);
   SetShapes shapes;
   for (const traces::Index set : bound.sets) shapes.push_back(shape_of(set));
-  const auto key = std::pair{std::pair{bound.pipeline, bound.target}, shapes};
+  const PassFormats formats = formats_of(*bound.pass);
+  const auto key = std::tuple{bound.pipeline, formats, shapes};
   const auto known = pipelines_.find(key);
   if (known != pipelines_.end()) return known->second;
   PipelineObjects objects;
   objects.layout = pipeline_layout(shapes);
-  objects.pipeline =
-      create_pipeline(stream_.pipelines[bound.pipeline], stream_.targets[bound.target], objects.layout);
+  objects.pipeline = create_pipeline(stream_.pipelines[bound.pipeline], formats, objects.layout);
   cleanup_.add([this, handle = objects.pipeline] { vkDestroyPipeline(device_.handle(), handle, nullptr); });
   return pipelines_[key] = objects;
 }
 
-VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const traces::RenderTarget& target,
+VulkanFrame::PassFormats VulkanFrame::formats_of(const traces::BeginPass& pass) const {
+  PassFormats formats;
+  for (const traces::ColorAttachmentUse& use : pass.colors)
+    formats.push_back(stream_.images[use.image].format);
+  formats.push_back(pass.depth.image == traces::kNone ? traces::Format::kUndefined
+                                                      : stream_.images[pass.depth.image].format);
+  return formats;
+}
+
+VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const PassFormats& formats,
                                         VkPipelineLayout layout) {
   const VkPipelineShaderStageCreateInfo stages[] = {
       stage_info(VK_SHADER_STAGE_VERTEX_BIT, shader_module(pipeline.vertex_shader)),
@@ -221,22 +230,26 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
   const VkPipelineDepthStencilStateCreateInfo depth = depth_state(pipeline.depth);
-  const VkPipelineColorBlendAttachmentState attachment = blend_attachment(pipeline.blend);
+  std::vector<VkPipelineColorBlendAttachmentState> attachments;
+  std::vector<VkFormat> color_formats;
+  for (std::size_t i = 0; i + 1 < formats.size(); ++i) {
+    attachments.push_back(blend_attachment(pipeline.blend[i]));
+    color_formats.push_back(vk_format(formats[i]));
+  }
   VkPipelineColorBlendStateCreateInfo blend{};
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-  blend.attachmentCount = 1;
-  blend.pAttachments = &attachment;
+  blend.attachmentCount = static_cast<std::uint32_t>(attachments.size());
+  blend.pAttachments = attachments.data();
   const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   VkPipelineDynamicStateCreateInfo dynamic{};
   dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
   dynamic.dynamicStateCount = 2;
   dynamic.pDynamicStates = dynamic_states;
-  const VkFormat color_format = vk_format(target.color);
   VkPipelineRenderingCreateInfo rendering{};
   rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-  rendering.colorAttachmentCount = 1;
-  rendering.pColorAttachmentFormats = &color_format;
-  rendering.depthAttachmentFormat = vk_format(target.depth);
+  rendering.colorAttachmentCount = static_cast<std::uint32_t>(color_formats.size());
+  rendering.pColorAttachmentFormats = color_formats.data();
+  rendering.depthAttachmentFormat = vk_format(formats.back());
 
   VkGraphicsPipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;

@@ -47,9 +47,13 @@ class MachineSpecimen final : public hw::contract::Specimen {
 std::uint64_t image_digest(const DeviceFrame& frame) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const hw::PassState& pass : frame.frame.passes) {
-    for (const std::uint32_t pixel : models::detile(frame.memory, pass.color)) hash = mix(hash, pixel);
+    for (std::size_t c = 0; c < pass.colors; ++c) {
+      for (const std::uint32_t pixel : models::detile(frame.memory, pass.color[c].surface))
+        hash = mix(hash, pixel);
+    }
     if (!pass.has_depth) continue;
-    for (const std::uint32_t depth : models::detile(frame.memory, pass.depth)) hash = mix(hash, depth);
+    for (const std::uint32_t depth : models::detile(frame.memory, pass.depth.surface))
+      hash = mix(hash, depth);
   }
   return hash;
 }

@@ -82,13 +82,13 @@ traces::Pipeline random_pipeline(RandomSource& random, traces::Index fragment) {
   p.depth.compare = random.integer(0, 3) != 0 ? traces::CompareOp::kLess
                                               : static_cast<traces::CompareOp>(random.integer(0, 7));
   p.depth_clamp = random.integer(0, 6) == 0;
-  p.blend.enable = random.integer(0, 2) == 0;
-  p.blend.src_color = static_cast<traces::BlendFactor>(random.integer(0, 9));
-  p.blend.dst_color = static_cast<traces::BlendFactor>(random.integer(0, 9));
-  p.blend.src_alpha = traces::BlendFactor::kOne;
-  p.blend.dst_alpha = traces::BlendFactor::kOneMinusSrcAlpha;
-  p.blend.color = static_cast<traces::BlendOp>(random.integer(0, 4));
-  p.blend.write_mask =
+  p.blend[0].enable = random.integer(0, 2) == 0;
+  p.blend[0].src_color = static_cast<traces::BlendFactor>(random.integer(0, 9));
+  p.blend[0].dst_color = static_cast<traces::BlendFactor>(random.integer(0, 9));
+  p.blend[0].src_alpha = traces::BlendFactor::kOne;
+  p.blend[0].dst_alpha = traces::BlendFactor::kOneMinusSrcAlpha;
+  p.blend[0].color = static_cast<traces::BlendOp>(random.integer(0, 4));
+  p.blend[0].write_mask =
       random.integer(0, 5) == 0 ? static_cast<std::uint8_t>(random.integer(1, 15)) : std::uint8_t{0xf};
   return p;
 }
@@ -127,9 +127,7 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
   stream.name = "random";
   stream.shaders = shaders();
   add_texture(random, stream);
-  stream.targets.push_back(
-      {shape.width, shape.height, traces::Format::kR8G8B8A8Srgb, traces::Format::kD32Float});
-  stream.commands.push_back(traces::BeginPass{0, {0.2f, 0.3f, 0.4f, 1.0f}, 1.0f});
+  stream.commands.push_back(traces::make_pass(stream, {shape.width, shape.height}, {0.2f, 0.3f, 0.4f, 1.0f}));
   stream.commands.push_back(
       traces::SetViewport{0, 0, static_cast<float>(shape.width), static_cast<float>(shape.height), 0, 1});
   stream.commands.push_back(traces::SetScissor{0, 0, shape.width, shape.height});

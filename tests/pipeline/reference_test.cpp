@@ -42,8 +42,9 @@ void check_scene(const std::string& scene) {
 }  // namespace
 
 TEST_CASE("machine: built-in scenes equal the reference in given mode") {
-  for (const char* scene : {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:overdraw",
-                            "builtin:fill", "builtin:flag", "builtin:courtyard", "builtin:materials"})
+  for (const char* scene :
+       {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines", "builtin:overdraw",
+        "builtin:fill", "builtin:flag", "builtin:courtyard", "builtin:materials"})
     check_scene(scene);
 }
 

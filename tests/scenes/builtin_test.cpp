@@ -19,8 +19,10 @@ TEST_CASE("built-in scenes: every listed one records, in colour and in visibilit
     REQUIRE(traces::stream_totals(stream).triangles > 0);
     REQUIRE(load_scene(name, options) == stream);
     options.visibility = true;
+    // A second pass over the picture draws one triangle, and there is none over triangle numbers.
+    const traces::StreamTotals totals = traces::stream_totals(stream);
     REQUIRE(traces::stream_totals(load_scene(name, options)).triangles ==
-            traces::stream_totals(stream).triangles);
+            totals.triangles - (totals.passes - 1));
   }
 }
 
@@ -32,16 +34,16 @@ TEST_CASE("built-in scenes: an unknown name lists the legal ones") {
 TEST_CASE("built-in scenes: the courtyard has what a front page needs") {
   const traces::CommandStream stream = load_scene("builtin:courtyard", {});
   REQUIRE(traces::stream_totals(stream).triangles >= 100000);
-  REQUIRE(stream.images.size() >= 10);
+  REQUIRE(traces::texture_count(stream) >= 10);
   REQUIRE(std::ranges::any_of(stream.pipelines,
-                              [](const traces::Pipeline& p) { return p.blend.enable && !p.depth.write; }));
+                              [](const traces::Pipeline& p) { return p.blend[0].enable && !p.depth.write; }));
   REQUIRE(std::ranges::any_of(stream.pipelines,
                               [](const traces::Pipeline& p) { return p.cull == traces::CullMode::kNone; }));
 }
 
 TEST_CASE("built-in scenes: fill needs no depth, blending or textures") {
   const traces::CommandStream stream = load_scene("builtin:fill", {});
-  REQUIRE(stream.images.empty());
-  REQUIRE(stream.targets[0].depth == traces::Format::kUndefined);
-  for (const traces::Pipeline& p : stream.pipelines) REQUIRE_FALSE((p.blend.enable || p.depth.test));
+  REQUIRE(std::ranges::all_of(stream.images, &traces::Image::is_attachment));
+  REQUIRE(traces::shown_target(stream).depth == traces::Format::kUndefined);
+  for (const traces::Pipeline& p : stream.pipelines) REQUIRE_FALSE((p.blend[0].enable || p.depth.test));
 }

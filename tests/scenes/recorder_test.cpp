@@ -67,7 +67,7 @@ TEST_CASE(
   std::vector<float> z;
   for (std::size_t i = 0; i < 6; ++i) {
     REQUIRE(drawn[i].label == (i < 3 ? "solid" : "clear"));
-    REQUIRE(drawn[i].pipeline.blend.enable == (i >= 3));
+    REQUIRE(drawn[i].pipeline.blend[0].enable == (i >= 3));
     REQUIRE(drawn[i].pipeline.depth.write == (i < 3));
     z.push_back(drawn[i].constants.model[3].z);
   }
@@ -90,11 +90,12 @@ TEST_CASE(
   SceneOptions options;
   options.visibility = true;
   const traces::CommandStream stream = Recorder(scene, options).record();
-  REQUIRE(stream.targets[0].color == traces::Format::kR8G8B8A8Unorm);
-  REQUIRE(std::get<traces::BeginPass>(stream.commands[0]).clear_color == std::array<float, 4>{0, 0, 0, 0});
+  REQUIRE(traces::shown_target(stream).color == traces::Format::kR8G8B8A8Unorm);
+  REQUIRE(std::get<traces::BeginPass>(stream.commands[0]).colors[0].clear ==
+          std::array<float, 4>{0, 0, 0, 0});
   const std::vector<Drawn> drawn = draws(stream);
   REQUIRE(drawn[3].label == "clear");
-  for (const Drawn& d : drawn) REQUIRE((!d.pipeline.blend.enable && d.pipeline.depth.write));
+  for (const Drawn& d : drawn) REQUIRE((!d.pipeline.blend[0].enable && d.pipeline.depth.write));
 }
 
 TEST_CASE("recorder: instances share buffers, and a mirrored one turns the front face and the handedness") {

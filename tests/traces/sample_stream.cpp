@@ -64,22 +64,27 @@ Pipeline random_pipeline(Dice& dice) {
   p.front = dice.choice(FrontFace::kClockwise);
   p.depth_clamp = dice.coin();
   p.depth = {dice.coin(), dice.coin(), dice.choice(CompareOp::kAlways)};
-  p.blend = {dice.coin(),
-             dice.choice(BlendFactor::kOneMinusDstAlpha),
-             dice.choice(BlendFactor::kOneMinusDstAlpha),
-             dice.choice(BlendFactor::kOneMinusDstAlpha),
-             dice.choice(BlendFactor::kOneMinusDstAlpha),
-             dice.choice(BlendOp::kMax),
-             dice.choice(BlendOp::kMax),
-             static_cast<std::uint8_t>(dice.below(16))};
+  p.blend[0] = {dice.coin(),
+                dice.choice(BlendFactor::kOneMinusDstAlpha),
+                dice.choice(BlendFactor::kOneMinusDstAlpha),
+                dice.choice(BlendFactor::kOneMinusDstAlpha),
+                dice.choice(BlendFactor::kOneMinusDstAlpha),
+                dice.choice(BlendOp::kMax),
+                dice.choice(BlendOp::kMax),
+                static_cast<std::uint8_t>(dice.below(16))};
   return p;
 }
 
 void random_commands(Dice& dice, CommandStream& s) {
   auto& c = s.commands;
-  c.emplace_back(BeginPass{dice.below(static_cast<std::uint32_t>(s.targets.size())),
-                           {dice.unit(), dice.unit(), dice.unit(), dice.unit()},
-                           dice.unit()});
+  BeginPass pass = make_pass(s,
+                             {1 + dice.below(16384), 1 + dice.below(16384),
+                              dice.coin() ? Format::kR8G8B8A8Srgb : Format::kA2B10G10R10Unorm},
+                             {dice.unit(), dice.unit(), dice.unit(), dice.unit()}, dice.unit());
+  pass.colors[0].load = dice.coin() ? LoadOp::kClear : LoadOp::kDontCare;
+  pass.depth.store = dice.choice(StoreOp::kDiscard);
+  s.images[pass.colors[0].image].usage |= kSampled;
+  c.emplace_back(pass);
   c.emplace_back(
       SetViewport{-dice.unit(), dice.unit(), 1 + dice.unit(), -1 - dice.unit(), dice.unit(), dice.unit()});
   c.emplace_back(SetScissor{0, 0, 1, 1});
@@ -123,8 +128,8 @@ CommandStream small_stream() {
                   {true, true, CompareOp::kLess},
                   {}}};
   s.descriptor_sets = {{{{0, 2, 16, 48}}, {{1, 0, 0}}}};
-  s.targets = {{64, 32, Format::kR8G8B8A8Srgb, Format::kD32Float}};
-  s.commands = {BeginPass{},
+  const BeginPass pass = make_pass(s, {64, 32});
+  s.commands = {pass,
                 SetViewport{0, 0, 64, 32, 0, 1},
                 SetScissor{0, 0, 64, 32},
                 BindPipeline{0},
@@ -156,8 +161,6 @@ CommandStream random_stream(std::uint32_t seed) {
   for (std::uint32_t i = 0; i < 1 + dice.below(4); ++i) s.pipelines.push_back(random_pipeline(dice));
   s.descriptor_sets = {
       {{{dice.below(4), 2, 16 * dice.below(4), 1 + dice.below(192)}}, {{4 + dice.below(9), 0, 0}}}};
-  s.targets = {{1 + dice.below(16384), 1 + dice.below(16384),
-                dice.coin() ? Format::kR8G8B8A8Srgb : Format::kR8G8B8A8Unorm, Format::kD32Float}};
   random_commands(dice, s);
   return s;
 }

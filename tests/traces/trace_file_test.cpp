@@ -74,7 +74,7 @@ TEST_CASE(
 TEST_CASE("trace file: another version is named") {
   std::vector<std::byte> bytes = encode_trace(small_stream());
   bytes[8] = std::byte{9};
-  REQUIRE(refusal(bytes) == "t.qtrace: trace version 9; this program reads version 1");
+  REQUIRE(refusal(bytes) == "t.qtrace: trace version 9; this program reads versions 1 to 2");
 }
 
 TEST_CASE("trace file: write and read through the file system, nothing else stays in the folder") {

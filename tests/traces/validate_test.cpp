@@ -79,7 +79,7 @@ TEST_CASE("validate: objects") {
       {"not one of an attribute",
        [](auto& s) { s.pipelines[0].attributes[0].format = Format::kR8G8B8A8Srgb; }},
       {"has offset 2048", [](auto& s) { s.pipelines[0].attributes[0].offset = 2048; }},
-      {"write mask 0x1f", [](auto& s) { s.pipelines[0].blend.write_mask = 0x1f; }},
+      {"write mask 0x1f", [](auto& s) { s.pipelines[0].blend[0].write_mask = 0x1f; }},
       {"buffer 3 does not exist", [](auto& s) { s.descriptor_sets[0].uniforms[0].buffer = 3; }},
       {"bytes 32+48", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 32; }},
       {"bytes 4294967280+48", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 0xfffffff0u; }},
@@ -87,11 +87,21 @@ TEST_CASE("validate: objects") {
       {"offset 8 is not a multiple", [](auto& s) { s.descriptor_sets[0].uniforms[0].offset = 8; }},
       {"descriptor set 0: binding 0 is given twice",
        [](auto& s) { s.descriptor_sets[0].textures[0].binding = 0; }},
-      {"image 1 does not exist", [](auto& s) { s.descriptor_sets[0].textures[0].image = 1; }},
+      {"image 3 does not exist", [](auto& s) { s.descriptor_sets[0].textures[0].image = 3; }},
+      {"image 1 'colour' is not for sampling", [](auto& s) { s.descriptor_sets[0].textures[0].image = 1; }},
       {"sampler 1 does not exist", [](auto& s) { s.descriptor_sets[0].textures[0].sampler = 1; }},
-      {"render target 0: size 64x0", [](auto& s) { s.targets[0].height = 0; }},
-      {"its colour format", [](auto& s) { s.targets[0].color = Format::kD32Float; }},
-      {"its depth format", [](auto& s) { s.targets[0].depth = Format::kR32Float; }},
+      {"image 1: size 64x0", [](auto& s) { s.images[1].height = 0; }},
+      {"image 1 'colour': its format D32_SFLOAT is not one of a colour attachment",
+       [](auto& s) { s.images[1].format = Format::kD32Float; }},
+      {"image 2 'depth': its format R32_SFLOAT is not one of a depth attachment",
+       [](auto& s) { s.images[2].format = Format::kR32Float; }},
+      {"image 0 'white': its format B8G8R8A8_UNORM is not one of a texture",
+       [](auto& s) { s.images[0].format = Format::kB8G8R8A8Unorm; }},
+      {"image 1 'colour': usage 0x0 is not a set", [](auto& s) { s.images[1].usage = 0; }},
+      {"image 1 'colour': usage 0x8 is not a set", [](auto& s) { s.images[1].usage = 8; }},
+      {"image 1 'colour': an attachment has one level", [](auto& s) { s.images[1].levels = 2; }},
+      {"image 1 'colour': an attachment has one level",
+       [](auto& s) { s.images[1].texels.resize(std::size_t{4} * 64 * 32); }},
   });
 }
 
@@ -103,9 +113,34 @@ TEST_CASE("validate: passes and bound state") {
        [](auto& s) { s.commands.emplace_back(EndPass{}); }},
       {"there is no render pass", [](auto& s) { s.commands.clear(); }},
       {"command 0: draw outside a render pass", [](auto& s) { s.commands[0] = Draw{}; }},
-      {"render target 1 does not exist", [](auto& s) { command<BeginPass>(s, 0).target = 1; }},
-      {"clear colour is not finite", [](auto& s) { command<BeginPass>(s, 0).clear_color[2] = kNan; }},
-      {"clear depth", [](auto& s) { command<BeginPass>(s, 0).clear_depth = kNan; }},
+      {"image 7 does not exist", [](auto& s) { command<BeginPass>(s, 0).colors[0].image = 7; }},
+      {"depth attachment: image 7 does not exist", [](auto& s) { command<BeginPass>(s, 0).depth.image = 7; }},
+      {"colour attachment: image 0 'white' is not for that use",
+       [](auto& s) { command<BeginPass>(s, 0).colors[0].image = 0; }},
+      {"depth attachment: image 1 'colour' is not for that use",
+       [](auto& s) { command<BeginPass>(s, 0).depth.image = 1; }},
+      {"depth attachment: image 2 of 64x31 beside one of 64x32", [](auto& s) { s.images[2].height = 31; }},
+      {"image 1 is attached twice",
+       [](auto& s) {
+         auto& colors = command<BeginPass>(s, 0).colors;
+         colors.push_back(colors[0]);
+       }},
+      {"9 colour attachments", [](auto& s) { command<BeginPass>(s, 0).colors.resize(9); }},
+      {"a render pass without attachments", [](auto& s) { command<BeginPass>(s, 0) = {}; }},
+      {"the last render pass has no colours to show",
+       [](auto& s) { command<BeginPass>(s, 0).colors.clear(); }},
+      {"image 1 is loaded before a pass has stored it",
+       [](auto& s) { command<BeginPass>(s, 0).colors[0].load = LoadOp::kLoad; }},
+      {"image 2 is loaded before a pass has stored it",
+       [](auto& s) {
+         command<BeginPass>(s, 0).depth.store = StoreOp::kDiscard;
+         BeginPass again = command<BeginPass>(s, 0);
+         again.depth.load = LoadOp::kLoad;
+         s.commands.emplace_back(again);
+         s.commands.emplace_back(EndPass{});
+       }},
+      {"clear colour is not finite", [](auto& s) { command<BeginPass>(s, 0).colors[0].clear[2] = kNan; }},
+      {"clear depth", [](auto& s) { command<BeginPass>(s, 0).depth.clear = kNan; }},
       {"command 8: draw without a viewport", [](auto& s) { s.commands[1] = s.commands[4]; }},
       {"command 8: draw without a scissor", [](auto& s) { s.commands[2] = s.commands[4]; }},
       {"command 8: draw without a pipeline", [](auto& s) { s.commands[3] = s.commands[4]; }},
@@ -138,7 +173,7 @@ TEST_CASE("validate: passes and bound state") {
       {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 0xfffffff0u; }},
       {"push constants", [](auto& s) { command<PushConstants>(s, 7).offset = 2; }},
       {"push constants", [](auto& s) { command<PushConstants>(s, 7).data.clear(); }},
-      {"without depth", [](auto& s) { s.targets[0].depth = Format::kUndefined; }},
+      {"without depth", [](auto& s) { command<BeginPass>(s, 0).depth.image = kNone; }},
   });
 }
 

@@ -19,9 +19,9 @@ struct ScanBench final : Bench {
   ScanBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     PassState pass;
     (void)device.allocate(256);
-    pass.color = models::allocate_surface(device, 16, 8);  // two tiles: four lines, from line 2 on
+    pass.color[0].surface = models::allocate_surface(device, 16, 8);  // two tiles: four lines, from line 2 on
     frame.passes = {pass};
-    if (s.dirty) device.mark_dirty(pass.color.base / models::kLineBytes + 3, 1);
+    if (s.dirty) device.mark_dirty(pass.color[0].surface.base / models::kLineBytes + 3, 1);
     params.lines_in_flight.set(s.lines_in_flight);
     unit = std::make_unique<ScanOut>("unit", context(), params);
     add(*unit);

@@ -18,6 +18,9 @@ struct DepthBench final : Bench {
     std::vector<Timed<LateToken>> late{};
     int lines = 256, ways = 8, misses = 32;
     std::uint32_t width = 16, height = 8;
+    models::LoadOp load = models::LoadOp::kClear;
+    models::StoreOp store = models::StoreOp::kStore;
+    bool read_later = false;
   };
   /// Draws: 0 tests and writes with "less" early, 1 the same late, 2 without depth, 3 writes with "greater".
   /// Triangle i lies at depth i / 8.
@@ -25,7 +28,11 @@ struct DepthBench final : Bench {
       : Bench(driver, v), triangles(8), warps(4) {
     PassState pass;
     pass.has_depth = true;
-    pass.depth = models::allocate_surface(device, s.width, s.height);
+    pass.depth.surface = models::allocate_surface(device, s.width, s.height);
+    pass.depth.clear = std::bit_cast<std::uint32_t>(pass.clear_depth);
+    pass.depth.load = s.load;
+    pass.depth.store = s.store;
+    pass.depth.read_later = s.read_later;
     pass.draws = 4;
     frame.passes = {pass};
     frame.draws.resize(4);
@@ -68,7 +75,7 @@ struct DepthBench final : Bench {
   }
   [[nodiscard]] std::string depths() const {
     std::string all;
-    for (const std::uint32_t word : models::detile(device, frame.passes[0].depth))
+    for (const std::uint32_t word : models::detile(device, frame.passes[0].depth.surface))
       all += fmt::format("{:x} ", word);
     return all;
   }
@@ -194,6 +201,30 @@ TEST_CASE("depth_unit: the flush writes dirty lines, no cleared tiles, and answe
                        b.device.dirty_lines());
   });
   CHECK(text == "116:400 writes 2 dirty 0");
+}
+
+TEST_CASE(
+    "depth_unit: the flush writes what a later pass reads, and nothing of a surface that is discarded") {
+  DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4)}}, .late = {{100, {TokenKind::kPassEnd, 0}}}};
+  const auto text = [](const DepthBench& b) {
+    return fmt::format("writes {} cleared {} dirty {}", b.memory->count(MemoryRequest::Kind::kWrite),
+                       counter(*b.unit, "clear_writes"), b.device.dirty_lines());
+  };
+  s.read_later = true;  // two tiles of two lines: one was drawn to, the other is still marked
+  CHECK(run<DepthBench>(s, text) == "writes 4 cleared 1 dirty 0");
+  s.store = models::StoreOp::kDiscard;
+  CHECK(run<DepthBench>(s, text) == "writes 0 cleared 0 dirty 0");
+}
+
+TEST_CASE("depth_unit: a surface that is loaded has no cleared tiles and is read") {
+  const DepthBench::Setup s{
+      .coverage = {{0, kBegin}, {10, tile(4)}}, .late = {}, .load = models::LoadOp::kLoad};
+  const auto text = run<DepthBench>(s, [](const DepthBench& b) {
+    return fmt::format("cleared {} reads {} killed {}", counter(*b.unit, "fast_cleared_tiles"),
+                       b.memory->count(MemoryRequest::Kind::kRead), counter(*b.unit, "early_killed"));
+  });
+  // Memory holds zeros, and nothing is nearer than that.
+  CHECK(text == "cleared 0 reads 2 killed 64");
 }
 
 TEST_CASE("depth_unit: a cache of one line gets through, and to the same depths") {

@@ -18,17 +18,26 @@ struct RopBench final : Bench {
     bool blend = false, late_warps = false;
     models::LaneMask alive = ~0u;
     int lines = 256, ways = 8, misses = 32, memory_latency = 10;
+    std::size_t colors = 1;
+    models::LoadOp load = models::LoadOp::kClear;
+    models::StoreOp store = models::StoreOp::kStore;
   };
   /// The target has two tiles; even warps write the upper half of the left one, odd warps two quads of each
   /// row of the right one.
   RopBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), warps(4) {
     PassState pass;
-    pass.color = models::allocate_surface(device, 16, 8);
-    pass.clear_color = 0x80402010;
-    frame.passes = {pass};
     DrawState draw;
-    draw.blend.enable = s.blend;
-    draw.blend.dst_color = models::BlendFactor::kOneMinusSrcAlpha;
+    for (std::size_t i = 0; i < s.colors; ++i) {
+      pass.color[i].surface = models::allocate_surface(device, 16, 8);
+      pass.color[i].clear = 0x80402010;
+      pass.color[i].load = s.load;
+      pass.color[i].store = s.store;
+      draw.color_outputs |= 0xfu << 4 * i;
+      draw.blend[i].enable = s.blend;
+      draw.blend[i].dst_color = models::BlendFactor::kOneMinusSrcAlpha;
+    }
+    pass.colors = s.colors;
+    frame.passes = {pass};
     frame.draws = {draw};
     for (std::uint32_t i = 0; i < 4; ++i) fill(warps[i], i, s);
     set_cache(params, s.lines, s.ways, s.misses);
@@ -61,12 +70,14 @@ struct RopBench final : Bench {
     }
     for (std::size_t c = 0; c < 4; ++c) {
       for (std::size_t lane = 0; lane < 32; ++lane)
-        warp.color[c][lane] = static_cast<float>((7 * number + 3 * c + lane) % 16) / 16.0f;
+        for (std::size_t color = 0; color < s.colors; ++color)
+          warp.color[color][c][lane] = static_cast<float>((7 * number + 3 * c + lane + color) % 16) / 16.0f;
     }
   }
   [[nodiscard]] std::uint64_t image() const {
     std::string bytes;
-    for (const std::uint8_t byte : models::detile_rgba8(device, frame.passes[0].color))
+    if (frame.passes[0].colors == 0) return 0;
+    for (const std::uint8_t byte : models::detile_rgba8(device, frame.passes[0].color[0].surface))
       bytes += static_cast<char>(byte);
     return std::hash<std::string>{}(bytes);
   }
@@ -121,7 +132,7 @@ TEST_CASE("rop: fragments that were discarded are counted and not written") {
   RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}}, .done = {{10, {0}}}, .alive = 0x0000ff01};
   const auto text = run<RopBench>(s, [](const RopBench& b) {
     int changed = 0;
-    for (const std::uint32_t pixel : models::detile(b.device, b.frame.passes[0].color))
+    for (const std::uint32_t pixel : models::detile(b.device, b.frame.passes[0].color[0].surface))
       changed += static_cast<int>(pixel != 0x80402010);
     return fmt::format("in {} discarded {}, late {}, written {} pixels {}", counter(*b.unit, "fragments_in"),
                        counter(*b.unit, "discarded"), counter(*b.unit, "late_discarded"),
@@ -209,10 +220,60 @@ TEST_CASE("rop: a colour cache of one line gets through, and to the same image")
   }
 }
 
+TEST_CASE("rop: each colour attachment that the program writes takes its own cycles, lines and flush") {
+  auto s = whole_pass();
+  s.colors = 3;
+  const auto text = [](const RopBench& b) {
+    return fmt::format("{} pixels {} fragments {} cleared {} writes {}", b.released->text(),
+                       counter(*b.unit, "pixels_written"), counter(*b.unit, "written"),
+                       counter(*b.unit, "fast_cleared_tiles"), b.memory->count(MemoryRequest::Kind::kWrite));
+  };
+  // Eight quads of three attachments at four a cycle: six cycles a warp. Three times the four lines.
+  CHECK(run<RopBench>(s, text) == "22:0 28:1 34:2 40:3 pixels 384 fragments 128 cleared 6 writes 12");
+}
+
+TEST_CASE("rop: a surface that is loaded is read where it is blended, and has no cleared tiles") {
+  auto s = whole_pass();
+  s.load = models::LoadOp::kLoad;
+  const auto text = [](const RopBench& b) {
+    return fmt::format("cleared {} reads {} writes {} parts {}", counter(*b.unit, "fast_cleared_tiles"),
+                       b.memory->count(MemoryRequest::Kind::kRead),
+                       b.memory->count(MemoryRequest::Kind::kWrite),
+                       b.memory->count(MemoryRequest::Kind::kWritePart));
+  };
+  // Warps 0 and 2 cover one line whole, 1 and 3 half of each sector of two lines.
+  CHECK(run<RopBench>(s, text) == "cleared 0 reads 0 writes 1 parts 2");
+  s.blend = true;
+  CHECK(run<RopBench>(s, text) == "cleared 0 reads 3 writes 3 parts 0");
+}
+
+TEST_CASE("rop: a surface that is discarded writes nothing back, and leaves no dirty line") {
+  auto s = whole_pass();
+  s.store = models::StoreOp::kDiscard;
+  const auto text = run<RopBench>(s, [](const RopBench& b) {
+    return fmt::format("writes {} fences {} dirty {}", b.memory->count(MemoryRequest::Kind::kWrite),
+                       b.memory->count(MemoryRequest::Kind::kFence), b.device.dirty_lines());
+  });
+  CHECK(text == "writes 0 fences 1 dirty 0");
+}
+
+TEST_CASE("rop: a pass without colours retires its warps and writes nothing") {
+  auto s = whole_pass();
+  s.colors = 0;
+  const auto text = run<RopBench>(s, [](const RopBench& b) {
+    return fmt::format("{} written {} pixels {} writes {}", b.released->text(), counter(*b.unit, "written"),
+                       counter(*b.unit, "pixels_written"), b.memory->count(MemoryRequest::Kind::kWrite));
+  });
+  CHECK(text == "22:0 23:1 24:2 25:3 written 128 pixels 0 writes 0");
+}
+
 TEST_CASE("rop: keeps the contract, one-deep links and a cache of one line included") {
   auto s = whole_pass();
   s.blend = true;
   CHECK(contract_text<RopBench>(s) == "");
   s.lines = s.ways = s.misses = 1;
+  CHECK(contract_text<RopBench>(s) == "");
+  s.colors = 2;
+  s.load = models::LoadOp::kLoad;
   CHECK(contract_text<RopBench>(s) == "");
 }

@@ -24,7 +24,7 @@ struct TextureBench final : Bench {
   TextureBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), slots(4) {
     const std::vector<std::byte> texels(32 * 32 * 4, std::byte{0x7f});
     TextureState texture;
-    texture.view = models::allocate_texture(device, models::TexelFormat::kR8G8B8A8Unorm, 32, 32, 1);
+    texture.view = models::allocate_texture(device, models::Format::kR8G8B8A8Unorm, 32, 32, 1);
     models::tile_texture(device, texture.view, texels);
     texture.sampler.mag = texture.sampler.min = texture.sampler.mip = models::Filter::kNearest;
     DrawState draw;

@@ -175,7 +175,7 @@ TEST_CASE("render: only the last pass is seen, and draws are numbered through th
   frame.pipeline();
   frame.draw(full_screen({1, 1, 1, 1}));
   frame.stream.commands.push_back(traces::EndPass{});
-  frame.stream.commands.push_back(traces::BeginPass{0, {0, 0, 0, 0}, 1});
+  frame.stream.commands.push_back(traces::make_pass(frame.stream, {4, 4}, {0, 0, 0, 0}));
   CHECK(count_covered(frame.render()) == 0);
   frame.draw(full_screen({0, 1, 0, 1}));
   CHECK(frame.render().triangle_id[0] >> 32 == 1);

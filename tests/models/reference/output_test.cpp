@@ -12,7 +12,7 @@ using namespace quadrille::models::reference;
 namespace {
 
 constexpr traces::Format kUnorm = traces::Format::kR8G8B8A8Unorm, kSrgb = traces::Format::kR8G8B8A8Srgb;
-int channel(const StoredColor& c, int i) { return static_cast<int>((c.rgba >> (8 * i)) & 0xffu); }
+int channel(const StoredColor& c, int i) { return static_cast<int>((c.code >> (8 * i)) & 0xffu); }
 
 }  // namespace
 
@@ -42,7 +42,7 @@ TEST_CASE("output: depth distance is in float units of the last place") {
 TEST_CASE("output: a stored colour rounds to nearest, ties to even, and clamps") {
   CHECK(channel(store_color(kUnorm, {0.5 / 255, 1.5 / 255, 2.5 / 255, 0.49999 / 255}), 0) == 0);
   CHECK(channel(store_color(kUnorm, {0.5 / 255, 1.5 / 255, 2.5 / 255, 0.49999 / 255}), 1) == 2);
-  CHECK(store_color(kUnorm, {-1, 2, std::numeric_limits<double>::quiet_NaN(), 1}).rgba == 0xff00ff00u);
+  CHECK(store_color(kUnorm, {-1, 2, std::numeric_limits<double>::quiet_NaN(), 1}).code == 0xff00ff00u);
 }
 
 TEST_CASE("output: an sRGB target encodes colour and leaves alpha linear") {
@@ -58,7 +58,7 @@ TEST_CASE("output: every sRGB value survives being read and written back") {
     traces::BlendState keep;
     keep.enable = true, keep.src_color = keep.src_alpha = traces::BlendFactor::kZero,
     keep.dst_color = keep.dst_alpha = traces::BlendFactor::kOne;
-    CHECK(blend(keep, kSrgb, {1, 1, 1, 1}, {v * 0x01010101u, {}}).rgba == v * 0x01010101u);
+    CHECK(blend(keep, kSrgb, {1, 1, 1, 1}, {v * 0x01010101u, {}}).code == v * 0x01010101u);
   }
 }
 
@@ -103,5 +103,5 @@ TEST_CASE("output: every blend factor and operation") {
 TEST_CASE("output: channels outside the write mask keep their bits") {
   traces::BlendState state;
   state.write_mask = 0b0101;
-  CHECK(blend(state, kUnorm, {1, 1, 0, 1}, {0x12345678u, {}}).rgba == 0x120056ffu);
+  CHECK(blend(state, kUnorm, {1, 1, 0, 1}, {0x12345678u, {}}).code == 0x120056ffu);
 }

@@ -206,7 +206,7 @@ TEST_CASE("render: discard writes neither colour nor depth, and reports its marg
 
 TEST_CASE("render: blending uses what is stored, so two draws round twice") {
   TestFrame frame(4, 4);
-  traces::BlendState& state = frame.pipeline().blend;
+  traces::BlendState& state = frame.pipeline().blend[0];
   state.enable = true, state.src_color = traces::BlendFactor::kOne,
   state.dst_color = traces::BlendFactor::kOne;
   frame.draw(full_screen({0.4f / 255, 0, 0, 0}));
@@ -228,7 +228,8 @@ TEST_CASE("render: a textured plane picks the mip level of its scale") {
                           static_cast<std::byte>(l * 30));
     frame.stream.images.push_back(image);
     frame.stream.samplers.emplace_back();
-    frame.stream.descriptor_sets.push_back({{}, {{1, 0, 0}}});
+    const auto at = static_cast<traces::Index>(frame.stream.images.size() - 1);
+    frame.stream.descriptor_sets.push_back({{}, {{1, at, 0}}});
     frame.stream.commands.push_back(traces::BindDescriptorSet{0, 0});
     const auto uv = [&](float x, float y) {
       const auto s = static_cast<float>(scale * 16 / 128);

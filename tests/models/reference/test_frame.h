@@ -34,8 +34,8 @@ class TestFrame {
  public:
   TestFrame(std::uint32_t width, std::uint32_t height, traces::Format color = traces::Format::kR8G8B8A8Unorm,
             std::array<float, 4> clear = {0, 0, 0, 0}) {
-    stream.targets.push_back({width, height, color, traces::Format::kD32Float});
-    stream.commands.push_back(traces::BeginPass{0, clear, 1.0f});
+    stream.commands.push_back(
+        traces::make_pass(stream, {width, height, color, traces::Format::kD32Float}, clear));
     stream.commands.push_back(
         traces::SetViewport{0, 0, static_cast<float>(width), static_cast<float>(height), 0, 1});
     stream.commands.push_back(traces::SetScissor{0, 0, width, height});

@@ -13,17 +13,17 @@ using namespace quadrille::models;
 
 namespace {
 
-double decode(ColorFormat format, std::uint32_t pixel, int c) {
+double decode(Format format, std::uint32_t pixel, int c) {
   const std::uint32_t code = pixel >> (8 * c) & 0xff;
-  return format == ColorFormat::kR8G8B8A8Srgb && c < 3
+  return format == Format::kR8G8B8A8Srgb && c < 3
              ? static_cast<double>(decode_srgb8(static_cast<std::uint8_t>(code)))
              : code / 255.0;
 }
 
 /// Encoded value before rounding, in codes.
-double encode(ColorFormat format, double v, int c) {
+double encode(Format format, double v, int c) {
   v = std::clamp(v, 0.0, 1.0);
-  if (format != ColorFormat::kR8G8B8A8Srgb || c == 3) return v * 255.0;
+  if (format != Format::kR8G8B8A8Srgb || c == 3) return v * 255.0;
   return 255.0 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055);
 }
 
@@ -84,8 +84,7 @@ TEST_CASE("blend: every factor and operation rounds the exact result once") {
   int changed = 0;
   for (int round = 0; round < 60000; ++round) {
     const BlendState state = random_state(random);
-    const ColorFormat format =
-        random.integer(0, 1) != 0 ? ColorFormat::kR8G8B8A8Srgb : ColorFormat::kR8G8B8A8Unorm;
+    const Format format = random.integer(0, 1) != 0 ? Format::kR8G8B8A8Srgb : Format::kR8G8B8A8Unorm;
     float rgba[4][4];
     for (auto& component : rgba) {
       for (float& v : component) v = random.real(-0.2f, 1.2f);
@@ -120,7 +119,7 @@ TEST_CASE("blend: every factor and operation rounds the exact result once") {
 TEST_CASE("blend: NaN and infinities become codes") {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const float rgba[4][4] = {{nan, inf, -inf, 0}, {inf, nan, 1, 0}, {0, 0, nan, 0}, {nan, 1, inf, nan}};
-  for (const ColorFormat format : {ColorFormat::kR8G8B8A8Unorm, ColorFormat::kR8G8B8A8Srgb}) {
+  for (const Format format : {Format::kR8G8B8A8Unorm, Format::kR8G8B8A8Srgb}) {
     std::uint32_t pixels[4] = {0x11111111, 0x22222222, 0x33333333, 0x44444444};
     blend_quad(BlendState{}, format, rgba, pixels, 0xf);
     CHECK(pixels[0] == 0x0000ff00);
@@ -141,7 +140,7 @@ TEST_CASE(
                                       : random.real(-0.01f, 1.01f);
     }
     std::uint32_t pixels[4] = {};
-    blend_quad(BlendState{}, ColorFormat::kR8G8B8A8Srgb, rgba, pixels, 0xf);
+    blend_quad(BlendState{}, Format::kR8G8B8A8Srgb, rgba, pixels, 0xf);
     for (int i = 0; i < 4; ++i) {
       for (int c = 0; c < 3; ++c) {
         if ((pixels[i] >> (8 * c) & 0xff) != encode_srgb8(rgba[c][i])) FAIL("value " << rgba[c][i]);
@@ -149,8 +148,8 @@ TEST_CASE(
     }
   }
   // 127.5 rounds to even: 128
-  CHECK(encode_color(ColorFormat::kR8G8B8A8Unorm, {1.0f, 0.5f, 0.0f, 1.0f}) == 0xff0080ff);
-  CHECK(encode_color(ColorFormat::kR8G8B8A8Srgb, {1.0f, 0.5f, 0.0f, 0.25f}) == 0x4000bcff);
+  CHECK(encode_color(Format::kR8G8B8A8Unorm, {1.0f, 0.5f, 0.0f, 1.0f}) == 0xff0080ff);
+  CHECK(encode_color(Format::kR8G8B8A8Srgb, {1.0f, 0.5f, 0.0f, 0.25f}) == 0x4000bcff);
 }
 
 TEST_CASE("blend: only blending and partial masks read the destination") {

@@ -59,7 +59,7 @@ TEST_CASE("texture layout: upload puts each texel where its address says") {
       }
     }
   }
-  const TextureView view = allocate_texture(memory, TexelFormat::kR8G8B8A8Srgb, 50, 37, 6);
+  const TextureView view = allocate_texture(memory, Format::kR8G8B8A8Srgb, 50, 37, 6);
   tile_texture(memory, view, texels);
   CHECK(view.base % kLineBytes == 0);
   for (std::uint32_t level = 0; level < 6; ++level) {

@@ -19,8 +19,8 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 
-PlainTexture random_texture(RandomSource& random, TexelFormat format, std::uint32_t width,
-                            std::uint32_t height, bool mipmapped) {
+PlainTexture random_texture(RandomSource& random, Format format, std::uint32_t width, std::uint32_t height,
+                            bool mipmapped) {
   PlainTexture t{format, width, height, 1, {}};
   if (mipmapped) t.levels = static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
   for (std::uint32_t level = 0; level < t.levels; ++level) {
@@ -92,8 +92,7 @@ TEST_CASE("sample: agrees with a sampler written in double for every size and st
   std::size_t lanes = 0, close = 0;
   for (int round = 0; round < 4000; ++round) {
     const auto [width, height] = kSizes[static_cast<std::size_t>(round) % kSizes.size()];
-    const TexelFormat format =
-        random.integer(0, 1) != 0 ? TexelFormat::kR8G8B8A8Srgb : TexelFormat::kR8G8B8A8Unorm;
+    const Format format = random.integer(0, 1) != 0 ? Format::kR8G8B8A8Srgb : Format::kR8G8B8A8Unorm;
     const PlainTexture texture = random_texture(random, format, width, height, random.integer(0, 3) != 0);
     DeviceMemory memory;
     (void)memory.allocate(static_cast<std::uint64_t>(random.integer(0, 1000)));
@@ -128,8 +127,8 @@ TEST_CASE("sample: a constant texture filters to itself") {
   RandomSource random(112);
   for (int round = 0; round < 300; ++round) {
     const std::uint32_t value = random.bits();
-    PlainTexture texture = random_texture(
-        random, round % 2 == 0 ? TexelFormat::kR8G8B8A8Srgb : TexelFormat::kR8G8B8A8Unorm, 37, 64, true);
+    PlainTexture texture =
+        random_texture(random, round % 2 == 0 ? Format::kR8G8B8A8Srgb : Format::kR8G8B8A8Unorm, 37, 64, true);
     for (std::size_t i = 0; i < texture.texels.size(); ++i)
       texture.texels[i] = static_cast<std::byte>(value >> (8 * (i % 4)));
     DeviceMemory memory;
@@ -158,7 +157,7 @@ TEST_CASE("sample: the plan lists each touched line once with exactly the sector
     DeviceMemory memory;
     (void)memory.allocate(static_cast<std::uint64_t>(random.integer(0, 1000)));
     const TextureView view =
-        upload(memory, random_texture(random, TexelFormat::kR8G8B8A8Unorm, width, height, true));
+        upload(memory, random_texture(random, Format::kR8G8B8A8Unorm, width, height, true));
     const TextureRequest request = random_request(random, width, height);
     plan_texture(view, random_sampler(random), request, {}, *plan);
     std::map<std::uint32_t, std::uint32_t> expected;
@@ -204,7 +203,7 @@ TEST_CASE("sample: hostile coordinates read inside the texture and count as zero
                            -0.0f, 1.0f, -1.0f, 1e-40f, -1e-10f, 0.99999994f, 2.0f,  -2.0f};
   for (int round = 0; round < 3000; ++round) {
     const auto [width, height] = kSizes[static_cast<std::size_t>(round) % kSizes.size()];
-    const PlainTexture texture = random_texture(random, TexelFormat::kR8G8B8A8Unorm, width, height, true);
+    const PlainTexture texture = random_texture(random, Format::kR8G8B8A8Unorm, width, height, true);
     DeviceMemory memory;
     const TextureView view = upload(memory, texture);
     TextureRequest r = random_request(random, width, height);
@@ -247,7 +246,7 @@ TEST_CASE("sample: hostile coordinates read inside the texture and count as zero
 
 TEST_CASE("sample: a quad's result does not depend on the other quads or on inactive lanes") {
   RandomSource random(115);
-  const PlainTexture texture = random_texture(random, TexelFormat::kR8G8B8A8Srgb, 211, 130, true);
+  const PlainTexture texture = random_texture(random, Format::kR8G8B8A8Srgb, 211, 130, true);
   DeviceMemory memory;
   const TextureView view = upload(memory, texture);
   for (int round = 0; round < 2000; ++round) {
@@ -277,7 +276,7 @@ TEST_CASE("sample: a quad's result does not depend on the other quads or on inac
 
 TEST_CASE("sample: one texel a pixel is level 0 and two is level 1 and neither mixes") {
   RandomSource random(116);
-  const PlainTexture texture = random_texture(random, TexelFormat::kR8G8B8A8Unorm, 64, 64, true);
+  const PlainTexture texture = random_texture(random, Format::kR8G8B8A8Unorm, 64, 64, true);
   DeviceMemory memory;
   const TextureView view = upload(memory, texture);
   auto plan = std::make_unique<TexturePlan>();
@@ -304,7 +303,7 @@ TEST_CASE("sample: one texel a pixel is level 0 and two is level 1 and neither m
 
 TEST_CASE("sample: work is counted by quad and level and texel") {
   RandomSource random(117);
-  const PlainTexture texture = random_texture(random, TexelFormat::kR8G8B8A8Unorm, 64, 64, true);
+  const PlainTexture texture = random_texture(random, Format::kR8G8B8A8Unorm, 64, 64, true);
   DeviceMemory memory;
   const TextureView view = upload(memory, texture);
   auto plan = std::make_unique<TexturePlan>();

@@ -20,7 +20,7 @@ using Color = std::array<double, 4>;
 
 /// A mip chain as plain rows.
 struct PlainTexture {
-  TexelFormat format = TexelFormat::kR8G8B8A8Unorm;
+  Format format = Format::kR8G8B8A8Unorm;
   std::uint32_t width = 1, height = 1, levels = 1;
   std::vector<std::byte> texels;
 
@@ -36,8 +36,8 @@ struct PlainTexture {
     Color color;
     for (std::size_t c = 0; c < 4; ++c) {
       const auto code = static_cast<std::uint8_t>(texels.at(index + c));
-      color[c] = format == TexelFormat::kR8G8B8A8Srgb && c < 3 ? static_cast<double>(decode_srgb8(code))
-                                                               : code / 255.0;
+      color[c] =
+          format == Format::kR8G8B8A8Srgb && c < 3 ? static_cast<double>(decode_srgb8(code)) : code / 255.0;
     }
     return color;
   }

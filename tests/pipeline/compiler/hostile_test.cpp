@@ -60,7 +60,7 @@ TEST_CASE("unsupported features are refused by name and line") {
   CHECK_THAT(error_of("s.x[0] = 1; color = a;", "layout(set=0,binding=0) buffer S { int x[]; } s;"),
              Catch::Contains("test.frag"));
   CHECK_THAT(error_of("double d = double(a.x); color = vec4(d);"), Catch::Contains("test.frag"));
-  CHECK_THAT(error_of("other = a; color = a;", "layout(location=1) out vec4 other;"),
+  CHECK_THAT(error_of("other = a; color = a;", "layout(location=8) out vec4 other;"),
              Catch::Contains("other"));
   CHECK_THAT(error_of("color = vec4(gl_PointCoord, 0, 0);"), Catch::Contains("gl_PointCoord"));
   const auto vertex = vertex_spirv(

@@ -94,7 +94,7 @@ RunOutput run_fragment(const models::Program& program, const RunInput& input) {
       in.primitive_id[lane] = static_cast<std::uint32_t>(q);
     }
   }
-  std::array<models::LaneWords, 5> outputs{};
+  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs{};
   const std::vector<models::TextureSize> sizes(program.textures.size(), {64, 32, 7});
   models::Warp warp;
   warp.fragment = &in;
@@ -109,7 +109,7 @@ RunOutput run_fragment(const models::Program& program, const RunInput& input) {
   }
   for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
     for (std::size_t c = 0; c < 4; ++c) out.color[lane][c] = std::bit_cast<float>(outputs[c][lane]);
-    out.depth[lane] = std::bit_cast<float>(outputs[4][lane]);
+    out.depth[lane] = std::bit_cast<float>(outputs[models::kDepthOutput][lane]);
   }
   out.killed = warp.killed;
   return out;

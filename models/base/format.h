@@ -1,0 +1,93 @@
+/// Formats of vertex attributes, textures and attachments: one table of what each is and may be used for.
+/// [VK1.3 #formats-definition]
+///
+/// A new format is a value of `Format` and a row of the table in format.cpp. Values are those of trace files
+/// and never change.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace quadrille::models {
+
+// clang-format off: formats stay grouped by use
+enum class Format : std::uint8_t {
+  kUndefined,
+  // Images.
+  kR8G8B8A8Unorm,
+  kR8G8B8A8Srgb,
+  kD32Float,
+  // Vertex attributes.
+  kR32Float,
+  kR32G32Float,
+  kR32G32B32Float,
+  kR32G32B32A32Float,
+  kR8G8Unorm,
+  kR8G8B8A8UnormVertex,
+  kR16G16Unorm,
+  kR16G16B16A16Unorm,
+  kR8G8B8A8Snorm,
+  kR16G16B16A16Snorm,
+  // Vertex attributes that a shader reads as unsigned integers.
+  kR8G8B8A8Uint,
+  kR16G16B16A16Uint,
+  // More images.
+  kB8G8R8A8Unorm,
+  kB8G8R8A8Srgb,
+  kA2B10G10R10Unorm
+};
+inline constexpr Format kLastFormat = Format::kA2B10G10R10Unorm;
+// clang-format on
+
+/// How the bits of a component stand for a number.
+enum class Numeric : std::uint8_t {
+  kNone,
+  kUnorm,  ///< c / (2^bits - 1)
+  kSnorm,  ///< max(c / (2^(bits - 1) - 1), -1)
+  kSrgb,   ///< as kUnorm, and encoded by the sRGB transfer function
+  kFloat,
+  kUint
+};
+
+/// Uses of a format, as bits.
+enum FormatUse : std::uint8_t {
+  kAttributeUse = 1,  ///< of a vertex
+  kFileUse = 2,       ///< of an image that a stream brings texels for
+  kColorUse = 4,      ///< of a colour attachment, which may be blended
+  kDepthUse = 8,      ///< of a depth attachment
+  kSampleUse = 16     ///< of an image that shaders sample, with linear filtering too
+};
+
+/// A component of a pixel or texel of 32 bits.
+struct ComponentBits {
+  std::uint8_t shift = 0, bits = 0;
+  Numeric numeric = Numeric::kNone;
+};
+
+struct FormatInfo {
+  std::string_view name;      ///< Vulkan's, without VK_FORMAT_
+  std::uint8_t bytes = 0;     ///< of a texel, pixel or attribute
+  std::uint8_t channels = 0;  ///< 1..4; those that lack read as (0, 0, 0, 1)
+  std::uint8_t uses = 0;      ///< of `FormatUse`
+  Numeric numeric = Numeric::kNone;
+  /// Images: red, green, blue and alpha. Depth is red.
+  std::array<ComponentBits, 4> component{};
+  [[nodiscard]] constexpr bool may(FormatUse use) const { return (uses & use) != 0; }
+};
+
+[[nodiscard]] const FormatInfo& format_info(Format format);
+
+/// Bytes of a texel or of a vertex attribute.
+[[nodiscard]] inline std::uint32_t format_bytes(Format format) { return format_info(format).bytes; }
+/// Components that an attribute of this format supplies (1..4).
+[[nodiscard]] inline int format_components(Format format) { return format_info(format).channels; }
+/// Does a shader read attributes of this format as unsigned integers? All others arrive as floats.
+[[nodiscard]] inline bool is_integer_format(Format format) {
+  return format_info(format).numeric == Numeric::kUint;
+}
+[[nodiscard]] inline bool is_srgb_format(Format format) {
+  return format_info(format).numeric == Numeric::kSrgb;
+}
+
+}  // namespace quadrille::models
