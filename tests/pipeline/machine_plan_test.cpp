@@ -2,13 +2,16 @@
 /// and ports of an elaborated machine against it.
 #include "pipeline/machine/machine.h"
 #include "pipeline/machine/planned_links.h"
+#include "pipeline/report/figures.h"
 #include "pipeline/report/report.h"
+#include "pipeline/report/sensitivity.h"
 #include "tests/hw/contract.h"
 #include "tests/pipeline/plan_run.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 using namespace quadrille;
@@ -56,6 +59,39 @@ std::string differences(const Machine& machine) {
   return text;
 }
 
+/// All kinds of places of a machine, from up- to downstream.
+constexpr std::array<std::string_view, 17> kPlaces{"command_processor.draws_in_flight",
+                                                   "vertex_fetch.batch_slots",
+                                                   "triangle_setup.triangle_slots",
+                                                   "depth.tiles_in_flight",
+                                                   "warp_packer.warp_slots",
+                                                   "core.register_rows",
+                                                   "core.warp_slots",
+                                                   "rop.warps_in_flight",
+                                                   "texture.groups_in_flight",
+                                                   "vertex_fetch.cache_misses",
+                                                   "depth.cache_misses",
+                                                   "rop.cache_misses",
+                                                   "texture.cache_misses",
+                                                   "scan_out.lines_in_flight",
+                                                   "l2.cache_misses",
+                                                   "memory.write_queue",
+                                                   "memory.queue_depth"};
+
+/// The figures as if nothing of a machine had been used but these places, which were full all the time.
+Figures full(Figures figures, const std::set<std::string_view>& places) {
+  figures.slice_cycles = 0;
+  for (LinkFigures& link : figures.links) link.use = 0;
+  for (UnitFigures& unit : figures.units) {
+    for (ResourceFigure& r : unit.resources) {
+      const bool is_full = places.contains(fmt::format("{}.{}", without_number(unit.path), r.name));
+      r.cycles = is_full ? static_cast<double>(unit.cycles) : 0;
+      r.at_end_of.clear();
+    }
+  }
+  return figures;
+}
+
 }  // namespace
 
 TEST_CASE("machine_plan: kinds of units from up- to downstream, as work comes to them") {
@@ -86,6 +122,29 @@ TEST_CASE("machine_plan: the links of a machine join the units that the plan say
     Machine machine(config, frame, {});
     machine.run({});  // producers and consumers are known once SystemC has elaborated
     return differences(machine) + "end";
+  });
+  CHECK(found == "end");
+}
+
+TEST_CASE("machine_plan: of two kinds of full places the one that lies further downstream holds a frame up") {
+  const std::string found = hw::contract::in_child([] {
+    MachineConfig config;
+    DeviceFrame frame(std::uint64_t{1} << 30);
+    build_frame(test::plan_frame(), config.precision(), frame);
+    Machine machine(config, frame, {});
+    machine.run({});
+    const Figures figures = collect_figures(machine, frame);
+    std::string text;
+    for (std::size_t i = 0; i + 1 < kPlaces.size(); ++i) {
+      for (std::size_t j = i + 1; j < kPlaces.size(); ++j) {
+        const std::string blamed =
+            sensitivity(full(figures, {kPlaces[i], kPlaces[j]})).gains.front().resource;
+        if (blamed != kPlaces[j]) text += fmt::format("{} before {}: {}\n", kPlaces[i], kPlaces[j], blamed);
+      }
+    }
+    for (const ResourceUse& use : sensitivity(full(figures, {})).uses)
+      if (use.places && std::ranges::find(kPlaces, use.name) == kPlaces.end()) text += use.name + " is new\n";
+    return text + "end";
   });
   CHECK(found == "end");
 }

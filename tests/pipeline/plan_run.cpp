@@ -15,11 +15,12 @@ namespace quadrille::pipeline::test {
 
 namespace {
 
-std::string run_here(const Settings& settings, bool strict) {
+std::string run_here(const Settings& settings, bool strict, const traces::CommandStream& stream) {
   MachineConfig config;
+  config.triangle_setup.triangle_slots.set(8);
   for (const auto& [key, value] : settings) config.set(key, value, "test");
   DeviceFrame frame(std::uint64_t{1} << 30);
-  build_frame(plan_frame(), config.precision(), frame);
+  build_frame(stream, config.precision(), frame);
   std::optional<hw::StrictDriver> driver;
   MachineOptions options;
   if (strict) options.external_driver = &driver.emplace("strict_driver");
@@ -63,9 +64,8 @@ const traces::CommandStream& plan_frame() {
   return stream;
 }
 
-PlanRun run_plan(const Settings& settings, bool strict) {
-  (void)plan_frame();  // once, not in each process
-  const std::string text = hw::contract::in_child([&] { return run_here(settings, strict); });
+PlanRun run_plan(const Settings& settings, bool strict, const traces::CommandStream& stream) {
+  const std::string text = hw::contract::in_child([&] { return run_here(settings, strict, stream); });
   PlanRun run;
   if (!text.starts_with("digest")) {
     run.failure = text.empty() ? "ended without a word" : text;

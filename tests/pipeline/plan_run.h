@@ -26,7 +26,9 @@ struct PlanRun {
 
 /// A frame that needs every unit and every link.
 [[nodiscard]] const traces::CommandStream& plan_frame();
-/// Runs it; with `strict` by the driver of tests/hw/base/strict_driver.h.
-[[nodiscard]] PlanRun run_plan(const Settings& settings, bool strict = false);
+/// Runs a frame; with `strict` by the driver of tests/hw/base/strict_driver.h. The triangle store is small
+/// unless `settings` say more, so that set-up has to be told what is retired.
+[[nodiscard]] PlanRun run_plan(const Settings& settings, bool strict = false,
+                               const traces::CommandStream& stream = plan_frame());
 
 }  // namespace quadrille::pipeline::test

@@ -79,13 +79,13 @@ TEST_CASE("param: a value that is read is the value, and the default stays") {
 TEST_CASE("param: what a parameter writes it reads back") {
   Group group, copy;
   group.lines.set(17);
-  group.clock.set(1.0 / 3);
+  group.clock.set(10.0 / 3);
   group.colour.set(Colour::kRed);
   group.thing.set(kFirst);
   for (std::size_t i = 0; i < group.params().size(); ++i)
     copy.params()[i]->parse(group.params()[i]->value_text());
   CHECK(copy.lines == 17);
-  CHECK(copy.clock == 1.0 / 3);
+  CHECK(copy.clock == 10.0 / 3);
   CHECK(copy.colour == Colour::kRed);
   CHECK(&copy.thing.value() == &kFirst);
 }

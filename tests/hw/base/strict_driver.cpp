@@ -45,6 +45,8 @@ void StrictDriver::ask_all(std::size_t actor, Tick now) {
 }
 
 void StrictDriver::prepare() {
+  // All is done here: SystemC has nothing to do when it starts.
+  sc_core::sc_report_handler::set_actions(sc_core::SC_ID_NO_SC_START_ACTIVITY_, sc_core::SC_DO_NOTHING);
   answers_.assign(units_.size(), kNever);
   repeats_.assign(units_.size(), 0);
   accused_.assign(units_.size(), false);
