@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/counter_catalogue.h"
 #include "cli/machine_arguments.h"
+#include "cli/machine_diagram.h"
 #include "models/base/error.h"
 #include "models/base/near_name.h"
 
@@ -19,7 +20,7 @@ namespace {
 
 struct DescribeArguments {
   std::optional<std::string> what, name;
-  bool markdown = false, json = false, toml = false;
+  bool markdown = false, json = false, toml = false, diagram = false;
   std::string only = "all";
   MachineArguments machine;
 };
@@ -46,6 +47,8 @@ class Description {
                        machine.machine);
     if (arguments.toml && arguments.only == "counters")
       throw user_error("describe: --toml writes parameters, and --only counters leaves none");
+    if (arguments.diagram && !whole_machine)
+      throw user_error("describe: --diagram draws a whole machine: 'describe machine --diagram'");
     if (arguments.name) machine.machine = *arguments.name;
     machine.apply(config_);
     const bool parameters = arguments.only != "counters",
@@ -123,6 +126,15 @@ class Description {
   std::vector<DescribedUnit> described_units_;
 };
 
+/// The policies that a parameter chooses from, each with what it does and what for; none for other
+/// parameters.
+std::vector<std::pair<std::string_view, std::string_view>> policies_of(const hw::ParamBase& p) {
+  std::vector<std::pair<std::string_view, std::string_view>> all;
+  for (const std::string_view word : p.words())
+    if (const std::string_view reason = p.reason_of(word); !reason.empty()) all.emplace_back(word, reason);
+  return all;
+}
+
 std::string plain(const Description& d) {
   std::string text;
   for (const auto& [path, params] : d.groups()) {
@@ -132,6 +144,7 @@ std::string plain(const Description& d) {
           p->value_text() == p->default_text() ? "" : fmt::format(" (default {})", p->default_text());
       text += fmt::format("  {:<24} = {}{} {}   [{}; more: {}]  {}\n", p->name(), p->value_text(), changed,
                           p->unit(), p->legal_text(), hw::effect_name(p->effect()), p->reason());
+      for (const auto& [word, reason] : policies_of(*p)) text += fmt::format("    {:<24} {}\n", word, reason);
     }
   }
   for (const auto& [kind, counters] : d.units()) {
@@ -157,9 +170,12 @@ std::string markdown(const Description& d) {
         "|\n|---|---|---|---|---|---|\n",
         path);
     for (const hw::ParamBase* p : params) {
+      std::string policies;
+      for (const auto& [word, reason] : policies_of(*p))
+        policies += fmt::format("<br>`{}`: {}", word, cell(reason));
       parameters +=
-          fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", p->name(), p->default_text(), cell(p->unit()),
-                      cell(p->legal_text()), hw::effect_name(p->effect()), cell(p->reason()));
+          fmt::format("| `{}` | {} | {} | {} | {} | {}{} |\n", p->name(), p->default_text(), cell(p->unit()),
+                      cell(p->legal_text()), hw::effect_name(p->effect()), cell(p->reason()), policies);
     }
   }
   for (const auto& [kind, counted] : d.units()) {
@@ -209,6 +225,8 @@ std::string json(const Description& d) {
           {"legal", p->legal_text()},
           {"more", hw::effect_name(p->effect())},
           {"reason", p->reason()}};
+      for (const auto& [word, reason] : policies_of(*p))
+        parameters[path + "." + std::string(p->name())]["policies"][std::string(word)] = reason;
     }
   }
   for (const auto& [kind, counted] : d.units()) {
@@ -228,6 +246,10 @@ std::string toml(const Description& d) {
 
 int run_describe(const DescribeArguments& arguments) {
   const Description description(arguments);
+  if (arguments.diagram) {
+    fmt::print("{}", machine_diagram(description.machine()));
+    return kDone;
+  }
   const auto format = arguments.markdown ? markdown : arguments.json ? json : arguments.toml ? toml : plain;
   fmt::print("{}", format(description));
   return kDone;
@@ -251,9 +273,16 @@ void add_describe(CLI::App& app, Command& chosen) {
   CLI::Option* markdown_flag =
       command->add_flag("--markdown", arguments->markdown, "as a page of documentation");
   CLI::Option* json_flag = command->add_flag("--json", arguments->json, "as JSON")->excludes(markdown_flag);
-  command->add_flag("--toml", arguments->toml, "the parameters as a machine file that --machine reads")
+  CLI::Option* toml_flag =
+      command->add_flag("--toml", arguments->toml, "the parameters as a machine file that --machine reads")
+          ->excludes(markdown_flag)
+          ->excludes(json_flag);
+  command
+      ->add_flag("--diagram", arguments->diagram,
+                 "with machine: its block diagram, as a page of documentation")
       ->excludes(markdown_flag)
-      ->excludes(json_flag);
+      ->excludes(json_flag)
+      ->excludes(toml_flag);
   arguments->machine.add_to(*command);
   command->footer(R"(Examples:
   quadrille describe texture
@@ -261,6 +290,7 @@ void add_describe(CLI::App& app, Command& chosen) {
   quadrille describe link.core           the links whose names begin so
   quadrille describe machine large --set gpu.cores=8 --toml
       a whole machine, to write into a file of your own
+  quadrille describe machine small --diagram
   quadrille describe gpu --machine large
   quadrille describe --only parameters --markdown)");
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_describe(*arguments); }; });

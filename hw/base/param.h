@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "models/base/error.h"
+#include "models/base/policy.h"
 
 namespace quadrille::hw {
 
@@ -52,6 +53,8 @@ class ParamBase {
   [[nodiscard]] virtual std::vector<std::string_view> words() const { return {}; }
   /// Is the value one of a list of words?
   [[nodiscard]] virtual bool is_word() const { return false; }
+  /// What is to say of one of its words; empty for what the parameter's own reason covers.
+  [[nodiscard]] virtual std::string_view reason_of(std::string_view /*word*/) const { return {}; }
   /// Value and default as TOML and JSON write them: words in quotes.
   [[nodiscard]] virtual std::string literal() const { return value_text(); }
   [[nodiscard]] virtual std::string default_literal() const { return default_text(); }
@@ -95,9 +98,9 @@ class Param final : public ParamBase {
       : ParamBase(name, unit, reason, effect), value_(value), default_(value) {
     group.add(*this);
   }
-  operator T() const {
+  operator T() const {  // NOLINT(google-explicit-constructor): a parameter reads as its value
     return value_;
-  }  // NOLINT(google-explicit-constructor): a parameter reads as its value
+  }
   [[nodiscard]] T value() const { return value_; }
   [[nodiscard]] const ParamRange<T>& range() const { return range_; }
   void set(T value);
@@ -112,7 +115,7 @@ class Param final : public ParamBase {
   ParamRange<T> range_;
 };
 
-/// A parameter that is one word of a list: which policy, which kind. `E` is an enumeration whose values count
+/// A parameter that is one word of a fixed list: which kind. `E` is an enumeration whose values count
 /// from 0 in the order of the words.
 template <class E>
 class Choice final : public ParamBase {
@@ -124,9 +127,9 @@ class Choice final : public ParamBase {
       : ParamBase(name, "", reason, Effect::kTradeOff), value_(value), default_(value), words_(words) {
     group.add(*this);
   }
-  operator E() const {
+  operator E() const {  // NOLINT(google-explicit-constructor): a parameter reads as its value
     return value_;
-  }  // NOLINT(google-explicit-constructor): a parameter reads as its value
+  }
   [[nodiscard]] E value() const { return value_; }
   void set(E value) { value_ = value; }
   [[nodiscard]] std::string value_text() const override { return std::string(word(value_)); }
@@ -149,6 +152,47 @@ class Choice final : public ParamBase {
   [[nodiscard]] std::string_view word(E value) const { return words_[static_cast<std::size_t>(value)]; }
   E value_, default_;
   std::vector<std::string_view> words_;
+};
+
+/// A parameter that is the name of a policy (models/base/policy.h). Policies that are added to the list later
+/// are legal values too.
+template <class P>
+class PolicyParam final : public ParamBase {
+ public:
+  PolicyParam(ParamGroup& group, std::string_view name, const PolicyList<P>& list, const P& value,
+              std::string_view reason)
+      : ParamBase(name, "", reason, Effect::kTradeOff), list_(list), value_(&value), default_(&value) {
+    group.add(*this);
+  }
+  [[nodiscard]] const P& value() const { return *value_; }
+  void set(const P& value) { value_ = &value; }
+  [[nodiscard]] std::string value_text() const override { return std::string(value_->name); }
+  [[nodiscard]] std::string default_text() const override { return std::string(default_->name); }
+  [[nodiscard]] std::string legal_text() const override {
+    return fmt::format("{}", fmt::join(words(), ", "));
+  }
+  [[nodiscard]] std::vector<std::string_view> words() const override {
+    std::vector<std::string_view> names;
+    for (const P* policy : list_.all()) names.push_back(policy->name);
+    return names;
+  }
+  [[nodiscard]] std::string_view reason_of(std::string_view word) const override {
+    const P* const policy = list_.find(word);
+    return policy == nullptr ? std::string_view{} : policy->reason;
+  }
+  [[nodiscard]] bool is_word() const override { return true; }
+  [[nodiscard]] std::string literal() const override { return fmt::format("\"{}\"", value_text()); }
+  [[nodiscard]] std::string default_literal() const override { return fmt::format("\"{}\"", default_text()); }
+  void parse(std::string_view text) override {
+    const P* const policy = list_.find(text);
+    if (policy == nullptr) throw user_error("'{}' is not one of its words; legal: {}", text, legal_text());
+    value_ = policy;
+  }
+
+ private:
+  const PolicyList<P>& list_;
+  const P* value_;
+  const P* default_;
 };
 
 extern template class Param<int>;

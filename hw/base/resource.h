@@ -28,6 +28,7 @@ struct Resource {
   /// kRate, kLoss: up to a tick that is not before the latest action, of the unit's clock
   std::function<double(Tick)> cycles = {};
   double taken = 0;                    ///< kPlaces: cycles in which it was full, so far
+  bool memory = false;                 ///< kPlaces: of what is under way to memory
   std::vector<double> at_end_of = {};  ///< by slice: what it had come to
   [[nodiscard]] double total(Tick at) const { return kind == Kind::kPlaces ? taken : cycles(at); }
 };
@@ -48,10 +49,10 @@ class Resources {
     all_.push_back(
         {.name = name, .kind = Resource::Kind::kLoss, .serial = serial, .cycles = std::move(cycles)});
   }
-  /// Are all places taken now?
-  void add_places(std::string_view name, std::function<bool()> full) {
+  /// Are all places taken now? Of several kinds of places, the one named first is the furthest downstream.
+  void add_places(std::string_view name, std::function<bool()> full, bool memory = false) {
     places_.push_back({all_.size(), std::move(full)});
-    all_.push_back({.name = name, .kind = Resource::Kind::kPlaces});
+    all_.push_back({.name = name, .kind = Resource::Kind::kPlaces, .memory = memory});
   }
   [[nodiscard]] bool empty() const { return all_.empty(); }
   [[nodiscard]] const std::vector<Resource>& all() const { return all_; }

@@ -11,6 +11,7 @@
 
 #include "hw/base/audit.h"
 #include "hw/base/counter.h"
+#include "hw/base/details.h"
 #include "hw/base/facet.h"
 #include "hw/base/fifo.h"
 #include "hw/base/resource.h"
@@ -119,6 +120,8 @@ class Unit : public sc_core::sc_module {
   [[nodiscard]] virtual const StatGroup* stats() const { return nullptr; }
   /// Adds what it counted to the laws that concern it. After `finish_stats`.
   virtual void audit(Audit& audit) const { (void)audit; }
+  /// Names the counters that are kept by draw and by part of the screen.
+  virtual void details(Details& details) const { (void)details; }
   /// What its row of the table shows. After `finish_stats`.
   [[nodiscard]] virtual std::vector<Facet> row() const { return {}; }
   /// The frame ended at `end`: counts of time that go on up to there are brought up to date.
@@ -204,6 +207,10 @@ class Unit : public sc_core::sc_module {
   }
   void add_places(std::string_view name, std::function<bool()> full) {
     resources_.add_places(name, std::move(full));
+  }
+  /// Places of what is under way to memory: they lie further downstream than all but the memory's own.
+  void add_memory_places(std::string_view name, std::function<bool()> full) {
+    resources_.add_places(name, std::move(full), true);
   }
 
  private:

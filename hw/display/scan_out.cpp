@@ -11,7 +11,7 @@ ScanOut::ScanOut(sc_core::sc_module_name name, const UnitContext& context, const
       device_(context.memory),
       port_(*this, stats_, context.machine.channels) {
   add_initiation_rate("rate");
-  add_places("lines_in_flight", [this] { return in_flight_ >= params_.lines_in_flight; });
+  add_memory_places("lines_in_flight", [this] { return in_flight_ >= params_.lines_in_flight; });
 }
 
 std::string ScanOut::state_text() const {
@@ -59,6 +59,8 @@ void ScanOut::audit(Audit& audit) const {
   audit.left(laws::kScanOut, port_.stats().read_bytes.value());
   port_.audit(audit);
 }
+
+void ScanOut::details(Details& details) const { port_.details(details); }
 
 std::vector<Facet> ScanOut::row() const { return {count("lines", stats_.lines)}; }
 

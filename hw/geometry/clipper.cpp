@@ -1,5 +1,6 @@
 #include "hw/geometry/clipper.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include <bit>
@@ -91,6 +92,10 @@ void Clipper::audit(Audit& audit) const {
       laws::kTrianglesClipped, stats_.triangles.value(),
       stats_.passed.value() + stats_.clipped.value() + stats_.rejected.value() + stats_.not_finite.value());
   audit.left(laws::kPieces, stats_.passed.value() + stats_.pieces.value());
+}
+
+void Clipper::details(Details& details) const {
+  details.by_draw(DrawCount::kTrianglesClipped, stats_.triangles);
 }
 
 std::vector<Facet> Clipper::row() const {

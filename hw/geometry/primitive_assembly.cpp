@@ -1,5 +1,6 @@
 #include "hw/geometry/primitive_assembly.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 namespace quadrille::hw {
@@ -72,6 +73,11 @@ void PrimitiveAssembly::audit(Audit& audit) const {
   audit.right(laws::kVerticesShaded, stats_.vertices.value());
   audit.right(laws::kTrianglesFetched, stats_.triangles.value());
   audit.left(laws::kTrianglesAssembled, stats_.triangles.value());
+}
+
+void PrimitiveAssembly::details(Details& details) const {
+  details.by_draw(DrawCount::kTrianglesIn, stats_.triangles);
+  details.by_draw(DrawCount::kVerticesAssembled, stats_.vertices);
 }
 
 std::vector<Facet> PrimitiveAssembly::row() const {

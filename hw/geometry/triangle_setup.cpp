@@ -1,5 +1,6 @@
 #include "hw/geometry/triangle_setup.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 #include "hw/frame/varyings.h"
 
@@ -101,6 +102,10 @@ void TriangleSetupUnit::audit(Audit& audit) const {
              stats_.kept.value() + stats_.culled.value() + stats_.zero_area.value() +
                  stats_.offscreen.value() + stats_.no_sample.value());
   audit.left(laws::kTrianglesWalked, stats_.kept.value());
+}
+
+void TriangleSetupUnit::details(Details& details) const {
+  details.by_draw(DrawCount::kTrianglesDrawn, stats_.kept);
 }
 
 std::vector<Facet> TriangleSetupUnit::row() const {

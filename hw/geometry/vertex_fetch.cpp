@@ -1,5 +1,6 @@
 #include "hw/geometry/vertex_fetch.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include <algorithm>
@@ -23,11 +24,11 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& contex
       batches_(batches),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses),
-      reuse_(params.reuse, params.batch_vertices, params.reuse_entries),
+      reuse_(params.reuse.value().make({params.batch_vertices, params.reuse_entries})),
       slots_(batches.size()) {
   add_initiation_rate("rates");
   add_places("batch_slots", [this] { return slots_.free() == 0; });
-  add_places("cache_misses", [this] { return cache_.full(); });
+  add_memory_places("cache_misses", [this] { return cache_.full(); });
 }
 
 std::string VertexFetch::state_text() const {
@@ -80,7 +81,7 @@ void VertexFetch::act(Tick now) {
 void VertexFetch::take_releases(Tick now) {
   if (!release_in.ready_at(now)) return;
   for (; release_in.ready_at(now); (void)release_in.pop(now)) slots_.release();
-  slots_.sweep(reuse_);
+  slots_.sweep(*reuse_);
 }
 
 void VertexFetch::build(Tick now) {
@@ -101,7 +102,7 @@ void VertexFetch::start_draw(std::uint32_t draw) {
   draw_ = draw;
   instance_ = 0;
   triangle_ = 0;
-  reuse_.start_draw();
+  reuse_->start_draw();
   drawing_ = frame_.draw(draw).triangles() > 0 && frame_.draw(draw).instances > 0;
 }
 
@@ -145,7 +146,8 @@ void VertexFetch::fetch_attributes(BatchSlot& batch) {
   for (const AttributeFetch& fetch : draw.attributes) {
     const std::uint32_t bytes = models::format_bytes(fetch.format);
     for (int lane = 0; lane < batch.lanes; ++lane) {
-      const std::uint32_t element = fetch.per_instance ? draw.first_instance + instance_ : reuse_.index(lane);
+      const std::uint32_t element =
+          fetch.per_instance ? draw.first_instance + instance_ : reuse_->index(lane);
       const std::uint64_t address = fetch.address + std::uint64_t{element} * fetch.stride;
       touch_bytes(address, bytes);
       ++fetches_;
@@ -172,25 +174,25 @@ void VertexFetch::form_batch(Tick now) {
   next_line_ = last_touched_ = 0;
   fetches_ = 0;
   indices_ = 0;
-  reuse_.start_batch(slot);
+  reuse_->start_batch(slot);
   while (triangle_ < draw.triangles() &&
          batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value())) {
     const auto corner = models::triangle_vertices(draw.topology, triangle_);
     const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]),
                                               vertex_number(corner[2])};
-    if (!reuse_.fits(vertex)) break;  // it is the first of the next batch, which pays for its indices
+    if (!reuse_->fits(vertex)) break;  // it is the first of the next batch, which pays for its indices
     for (const std::uint32_t position : corner) fetch_index(position);
     BatchSlot::Triangle triangle{{}, triangle_};
     for (std::size_t i = 0; i < 3; ++i) {
-      triangle.corner[i] = reuse_.place(vertex[i]);
+      triangle.corner[i] = reuse_->place(vertex[i]);
       slots_.note_use(triangle.corner[i].slot);
     }
     batch.triangles.push_back(triangle);
     ++triangle_;
   }
-  batch.lanes = reuse_.size();
+  batch.lanes = reuse_->size();
   for (int lane = 0; lane < batch.lanes; ++lane) {
-    batch.inputs.vertex_index[static_cast<std::size_t>(lane)] = reuse_.index(lane);
+    batch.inputs.vertex_index[static_cast<std::size_t>(lane)] = reuse_->index(lane);
     batch.inputs.instance_index[static_cast<std::size_t>(lane)] = draw.first_instance + instance_;
   }
   fetch_attributes(batch);
@@ -198,11 +200,11 @@ void VertexFetch::form_batch(Tick now) {
   if (triangle_ == draw.triangles()) {
     triangle_ = 0;
     drawing_ = ++instance_ < draw.instances;
-    reuse_.start_draw();
+    reuse_->start_draw();
   }
   // One slot is for the next batch, whatever is remembered.
-  reuse_.limit_slots(static_cast<int>(batches_.size()) - 1);
-  slots_.sweep(reuse_);
+  reuse_->limit_slots(static_cast<int>(batches_.size()) - 1);
+  slots_.sweep(*reuse_);
   stats_.indices += indices_;
   stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
   stats_.attribute_fetches += fetches_;
@@ -246,6 +248,12 @@ void VertexFetch::audit(Audit& audit) const {
   audit.left(laws::kTrianglesFetched, stats_.triangles.value());
   cache_.stats().audit(audit, laws::kVertexCache);
   port_.audit(audit);
+}
+
+void VertexFetch::details(Details& details) const {
+  details.by_draw(DrawCount::kVerticesFetched, stats_.vertices);
+  details.by_draw(DrawCount::kTrianglesFetched, stats_.triangles);
+  port_.details(details, DrawCount::kVertexBytes);
 }
 
 std::vector<Facet> VertexFetch::row() const {

@@ -36,12 +36,11 @@ class VertexFetch final : public Unit {
     Param<int> batch_slots{*this,     "batch_slots",
                            32,        "batch",
                            {2, 4096}, "Vertex batches between fetch and set-up. [G: covers shading latency]"};
-    Choice<models::ReusePolicy> reuse{*this,
-                                      "reuse",
-                                      models::ReusePolicy::kBatch,
-                                      {"batch", "fifo", "none"},
-                                      "A vertex is shaded once a batch, once while a FIFO across batches "
-                                      "holds it, or for every corner. [P: Kerbl 2018]"};
+    PolicyParam<models::VertexReusePolicy> reuse{*this, "reuse", models::vertex_reuse_policies(),
+                                                 models::kBatchReuse,
+                                                 "A vertex is shaded once a batch, once while a FIFO across "
+                                                 "batches holds it, or for every corner. [P: "
+                                                 "Kerbl 2018]"};
     Param<int> batch_vertices{*this,
                               "batch_vertices",
                               32,
@@ -95,6 +94,7 @@ class VertexFetch final : public Unit {
   void act(Tick now) override;
   [[nodiscard]] const Stats* stats() const override { return &stats_; }
   void audit(Audit& audit) const override;
+  void details(Details& details) const override;
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
@@ -137,7 +137,7 @@ class VertexFetch final : public Unit {
   Stats stats_;
   MemoryPort port_;
   L1Cache cache_;
-  models::VertexReuse reuse_;
+  std::unique_ptr<models::VertexReuse> reuse_;
 
   bool drawing_ = false;
   std::uint32_t draw_ = 0, instance_ = 0, triangle_ = 0;  ///< next triangle to take

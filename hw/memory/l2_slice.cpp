@@ -1,5 +1,6 @@
 #include "hw/memory/l2_slice.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include "hw/memory/memory_port.h"
@@ -35,7 +36,9 @@ L2Slice::L2Slice(sc_core::sc_module_name name, const UnitContext& context, const
       miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
       answers_(clients.size()),
       answering_((clients.size() + 63) / 64, 0),
-      interleave_(static_cast<std::uint32_t>(context.machine.channels)) {
+      interleave_(static_cast<std::uint32_t>(context.machine.channels)),
+      write_back_(
+          params.write_back.value().make({static_cast<std::uint32_t>(params.write_back_lines.value())})) {
   add_initiation_rate("rate");
   add_places("cache_misses", [this] { return free_misses_.empty(); });
   for (const auto& [client, kind] : clients) {
@@ -129,7 +132,7 @@ int L2Slice::place(Tick now, std::uint32_t line) {
   const models::TagArray::Allocation got = tags_.allocate(line);
   if (got.victim.valid && got.victim.dirty != 0) {
     write_back(now, got.victim.line, got.victim.dirty);
-    if (params_.write_back == WriteBack::kRow) write_back_block(now, got.victim.line);
+    write_back_others(now, got.victim.line);
   }
   return got.slot;
 }
@@ -140,11 +143,10 @@ void L2Slice::write_back(Tick now, std::uint32_t line, std::uint8_t sectors) {
                         {line, 0, sectors, MemoryRequest::Kind::kWrite, MemoryClient::kWriteBack}});
 }
 
-void L2Slice::write_back_block(Tick now, std::uint32_t victim) {
-  // The lines of this slice around the victim, in order of address.
-  const auto block = static_cast<std::uint32_t>(params_.write_back_lines.value());
-  const std::uint32_t first = interleave_.index_of(victim) / block * block;
-  for (std::uint32_t within = first; within < first + block; ++within) {
+void L2Slice::write_back_others(Tick now, std::uint32_t victim) {
+  // In order of address.
+  const WriteBack::Lines lines = write_back_->with(victim, interleave_);
+  for (std::uint32_t within = lines.first; within < lines.last; ++within) {
     const std::uint32_t line = interleave_.line_of(interleave_.member_of(victim), within);
     const int slot = tags_.find(line);
     if (slot == models::TagArray::kNone || tags_.at(slot).dirty == 0) continue;
@@ -255,6 +257,11 @@ void L2Slice::audit(Audit& audit) const {
   audit.right(laws::kClientWrites, stats_.write_bytes.value());
   audit.left(laws::kFills, stats_.fill_bytes.value());
   audit.left(laws::kWriteBacks, stats_.writeback_bytes.value());
+}
+
+void L2Slice::details(Details& details) const {
+  details.by_draw(DrawCount::kL2Requests, stats_.requests);
+  details.by_draw(DrawCount::kFillBytes, stats_.fill_bytes);
 }
 
 std::vector<Facet> L2Slice::row() const {

@@ -14,6 +14,7 @@
 #include "hw/base/queue.h"
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
+#include "hw/memory/write_back.h"
 #include "models/cache/tag_array.h"
 #include "models/memory/interleave.h"
 
@@ -24,8 +25,6 @@ namespace quadrille::hw {
 
 class L2Slice final : public Unit {
  public:
-  /// How dirty lines leave.
-  enum class WriteBack : std::uint8_t { kVictim, kRow };
   struct Params : ParamGroup {
     Param<int> cache_lines{*this,  "cache_lines", 4096,
                            "line", {1, 1 << 24},  "Lines of 128 bytes in a slice. [G: 512 KiB]"};
@@ -37,11 +36,8 @@ class L2Slice final : public Unit {
         *this,          "hit_clk",    20,
         "clk",          {1, 1 << 20}, "Latency from look-up to answer, or to the channel for a miss. [G]",
         Effect::kSlower};
-    Choice<WriteBack> write_back{
-        *this,
-        "write_back",
-        WriteBack::kVictim,
-        {"victim", "row"},
+    PolicyParam<WriteBackPolicy> write_back{
+        *this, "write_back", write_back_policies(), kVictimWriteBack,
         "A dirty victim leaves alone, or with the other dirty lines of its block. [P: Lee 2010]"};
     Param<int> write_back_lines{*this,
                                 "write_back_lines",
@@ -82,6 +78,7 @@ class L2Slice final : public Unit {
   [[nodiscard]] bool may_run_ahead() const override { return false; }
   [[nodiscard]] const Stats* stats() const override { return &stats_; }
   void audit(Audit& audit) const override;
+  void details(Details& details) const override;
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
 
@@ -117,7 +114,7 @@ class L2Slice final : public Unit {
   Miss* fetch(Tick now, std::uint32_t client, const MemoryRequest& request);
   [[nodiscard]] int place(Tick now, std::uint32_t line);
   void write_back(Tick now, std::uint32_t line, std::uint8_t sectors);
-  void write_back_block(Tick now, std::uint32_t victim);
+  void write_back_others(Tick now, std::uint32_t victim);
   void send_to_memory(Tick now);
   void take_fill(Tick now);
   void answer(Tick at, std::uint32_t client, const MemoryResponse& token);
@@ -140,6 +137,7 @@ class L2Slice final : public Unit {
   std::vector<std::uint64_t> answering_;  ///< a bit a client: it has answers
   Tick answer_due_ = kNever;              ///< no client has an answer due before
   models::Interleave interleave_;
+  std::unique_ptr<WriteBack> write_back_;
   std::vector<MemoryClient> client_kinds_;
   Queue<ToMemory> to_memory_;
   std::size_t turn_ = 0;

@@ -1,5 +1,6 @@
 #include "hw/memory/memory_channel.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include "models/memory/device_memory.h"
@@ -46,15 +47,15 @@ models::DramControllerParams MemoryChannel::Params::controller() const {
               .shared_commands = shared_commands,
               .act_slots = act_slots,
               .column_slots = column_slots};
-  p.interleave = mapping;
+  p.mapping = &mapping.value();
   p.hash = bank_hash;
-  p.scheduler = scheduler;
+  p.scheduler = &scheduler.value();
   p.in_order_ahead = in_order_ahead;
   p.age_cap = age_cap;
-  p.write_drain = write_drain;
+  p.write_drain = &write_drain.value();
   p.write_high = std::max(1, write_queue * write_high / 100);
   p.write_low = write_queue * write_low / 100;
-  p.page = page;
+  p.page = &page.value();
   p.page_idle = page_idle;
   p.reads = queue_depth;
   p.writes = write_queue;
@@ -218,6 +219,12 @@ void MemoryChannel::audit(Audit& audit) const {
              s.bus_read.value() + s.bus_write.value() + s.bus_refresh.value() + s.bus_turnaround.value() +
                  s.bus_activation.value() + s.bus_spacing.value() + s.bus_idle.value(),
              static_cast<std::uint64_t>(total_cycles()));
+}
+
+void MemoryChannel::details(Details& details) const {
+  details.by_draw(DrawCount::kMemoryBytes, stats_->read_bytes);
+  details.by_draw(DrawCount::kMemoryBytes, stats_->write_bytes);
+  details.by_draw(DrawCount::kMemoryReadBytes, stats_->read_bytes);
 }
 
 std::vector<Facet> MemoryChannel::row() const {

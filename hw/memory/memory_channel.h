@@ -37,6 +37,7 @@ class MemoryChannel final : public Unit {
   [[nodiscard]] bool may_run_ahead() const override { return false; }
   [[nodiscard]] const StatGroup* stats() const override;
   void audit(Audit& audit) const override;
+  void details(Details& details) const override;
   [[nodiscard]] std::vector<Facet> row() const override;
   void finish_stats(Tick end) override;
   [[nodiscard]] std::string state_text() const override;
@@ -229,11 +230,8 @@ struct MemoryChannel::Params : ParamGroup {
                    "Cycles a column command holds its command bus. [configs/memory/gddr6.toml]",
                    Effect::kSlower};
 
-  Choice<models::DramInterleave> mapping{
-      *this,
-      "mapping",
-      models::DramInterleave::kRow,
-      {"group", "row"},
+  PolicyParam<models::DramMappingPolicy> mapping{
+      *this, "mapping", models::dram_mappings(), models::kRowMapping,
       "What neighbouring lines of a channel lie in: other bank groups, or one row. [G: more row hits]"};
   Param<bool> bank_hash{*this,
                         "bank_hash",
@@ -241,11 +239,8 @@ struct MemoryChannel::Params : ParamGroup {
                         "",
                         "Banks are exchanged by the row's number. [P: Zhang 2000]",
                         Effect::kTradeOff};
-  Choice<models::DramSchedulerKind> scheduler{
-      *this,
-      "scheduler",
-      models::DramSchedulerKind::kFirstReady,
-      {"in_order", "first_ready"},
+  PolicyParam<models::DramSchedulerPolicy> scheduler{
+      *this, "scheduler", models::dram_schedulers(), models::kFirstReadyScheduler,
       "Which request is served: the oldest, or hits to open rows first. [P: Rixner 2000]"};
   Int in_order_ahead{*this,   "in_order_ahead",
                      0,       "request",
@@ -257,11 +252,8 @@ struct MemoryChannel::Params : ParamGroup {
               kTime,
               "After that long the oldest request goes before younger hits to its bank. [G]",
               Effect::kTradeOff};
-  Choice<models::DramWriteDrainKind> write_drain{
-      *this,
-      "write_drain",
-      models::DramWriteDrainKind::kWatermark,
-      {"off", "watermark"},
+  PolicyParam<models::DramWriteDrainPolicy> write_drain{
+      *this, "write_drain", models::dram_write_drains(), models::kWatermarkWriteDrain,
       "Writes are served like reads, or kept back and drained in runs. [P: Stuecheli 2010]"};
   Int write_high{*this,
                  "write_high",
@@ -272,11 +264,8 @@ struct MemoryChannel::Params : ParamGroup {
                  Effect::kTradeOff};
   Int write_low{
       *this, "write_low", 12, "%", {0, 99}, "Part of write_queue that ends it. [G]", Effect::kTradeOff};
-  Choice<models::DramPagePolicyKind> page{
-      *this,
-      "page",
-      models::DramPagePolicyKind::kOpen,
-      {"open", "closed", "adaptive"},
+  PolicyParam<models::DramPagePolicyEntry> page{
+      *this, "page", models::dram_page_policies(), models::kOpenPages,
       "Rows stay open, close with their last waiting burst, or close after page_idle"};
   Int page_idle{*this,
                 "page_idle",

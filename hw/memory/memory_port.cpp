@@ -1,5 +1,6 @@
 #include "hw/memory/memory_port.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include "models/memory/device_memory.h"
@@ -57,6 +58,16 @@ void MemoryPort::audit(Audit& audit) const {
   audit.left(laws::kClientRequests, stats_.reads.value() + stats_.writes.value());
   audit.left(laws::kClientReads, stats_.read_bytes.value());
   audit.left(laws::kClientWrites, stats_.write_bytes.value());
+}
+
+void MemoryPort::details(Details& details, std::optional<DrawCount> bytes,
+                         std::optional<TileCount> bytes_of_tiles) const {
+  for (const Counter* requests : {&stats_.reads, &stats_.writes})
+    details.by_draw(DrawCount::kClientRequests, *requests);
+  for (const Counter* moved : {&stats_.read_bytes, &stats_.write_bytes}) {
+    if (bytes) details.by_draw(*bytes, *moved);
+    if (bytes_of_tiles) details.by_tile(*bytes_of_tiles, *moved);
+  }
 }
 
 }  // namespace quadrille::hw

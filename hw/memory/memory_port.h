@@ -10,6 +10,7 @@
 #include "models/memory/interleave.h"
 
 #include <memory>
+#include <optional>
 
 namespace quadrille::hw {
 
@@ -52,6 +53,9 @@ class MemoryPort {
 
   [[nodiscard]] const MemoryPortStats& stats() const { return stats_; }
   void audit(Audit& audit) const;
+  /// Its requests are counted by draw; the bytes too where a client has a count for them.
+  void details(Details& details, std::optional<DrawCount> bytes = {},
+               std::optional<TileCount> bytes_of_tiles = {}) const;
   [[nodiscard]] int slices() const { return static_cast<int>(request_out.size()); }
   std::vector<std::unique_ptr<FifoOut<MemoryRequest>>> request_out;  ///< by slice
   FifoInGroup<MemoryResponse> response_in;

@@ -1,5 +1,6 @@
 #include "hw/raster/coarse_raster.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include "models/raster/interpolate.h"
@@ -162,6 +163,11 @@ void CoarseRaster::walk(Tick now) {
 void CoarseRaster::audit(Audit& audit) const {
   audit.right(laws::kTrianglesWalked, stats_.triangles.value());
   audit.left(laws::kTiles, stats_.tiles_kept.value());
+}
+
+void CoarseRaster::details(Details& details) const {
+  details.by_draw(DrawCount::kTrianglesWalked, stats_.triangles);
+  details.by_tile(TileCount::kTilesHidden, stats_.tiles_hidden);
 }
 
 std::vector<Facet> CoarseRaster::row() const {

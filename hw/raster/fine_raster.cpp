@@ -1,5 +1,6 @@
 #include "hw/raster/fine_raster.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include "models/memory/interleave.h"
@@ -68,6 +69,8 @@ void FineRaster::audit(Audit& audit) const {
   audit.left(laws::kFragmentsCovered, stats_.fragments.value());
   audit.left(laws::kFragmentsDeferredOrNot, stats_.fragments.value());
 }
+
+void FineRaster::details(Details& details) const { details.by_draw(DrawCount::kCovered, stats_.fragments); }
 
 std::vector<Facet> FineRaster::row() const {
   return {rate("quads", stats_.quads, params_.quads_per_clk),

@@ -46,6 +46,7 @@ class FineRaster final : public Unit {
   void act(Tick now) override;
   [[nodiscard]] const Stats* stats() const override { return &stats_; }
   void audit(Audit& audit) const override;
+  void details(Details& details) const override;
   [[nodiscard]] std::vector<Facet> row() const override;
 
  private:

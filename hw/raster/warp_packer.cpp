@@ -1,5 +1,6 @@
 #include "hw/raster/warp_packer.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include "models/raster/tile.h"
@@ -146,6 +147,11 @@ void WarpPacker::audit(Audit& audit) const {
   audit.right(laws::kFragmentsPassed, stats_.fragments.value());
   audit.left(laws::kFragmentsPacked, stats_.fragments.value());
   audit.left(laws::kWarpsPacked, stats_.warps.value());
+}
+
+void WarpPacker::details(Details& details) const {
+  details.by_draw(DrawCount::kPacked, stats_.fragments);
+  details.by_tile(TileCount::kShaded, stats_.fragments);
 }
 
 std::vector<Facet> WarpPacker::row() const {

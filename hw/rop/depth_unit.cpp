@@ -1,5 +1,6 @@
 #include "hw/rop/depth_unit.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include "models/raster/interpolate.h"
@@ -71,7 +72,7 @@ DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, c
   add_initiation_rate("quads_per_clk");
   add_places("tiles_in_flight",
              [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
-  add_places("cache_misses", [this] { return cache_.full(); });
+  add_memory_places("cache_misses", [this] { return cache_.full(); });
 }
 
 std::string DepthUnit::state_text() const {
@@ -408,6 +409,13 @@ void DepthUnit::audit(Audit& audit) const {
   audit.right(laws::kKilledLate, stats_.late_killed.value());
   cache_.stats().audit(audit, laws::kDepthCache);
   port_.audit(audit);
+}
+
+void DepthUnit::details(Details& details) const {
+  details.by_draw(DrawCount::kKilledEarly, stats_.early_killed);
+  details.by_tile(TileCount::kKilledEarly, stats_.early_killed);
+  details.by_draw(DrawCount::kKilledLate, stats_.late_killed);
+  port_.details(details, DrawCount::kDepthBytes, TileCount::kBytes);
 }
 
 std::vector<Facet> DepthUnit::row() const {

@@ -1,5 +1,6 @@
 #include "hw/rop/rop.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 #include "models/raster/quad_place.h"
 
@@ -70,7 +71,7 @@ Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params&
   add_initiation_rate("quads_per_clk");
   add_places("warps_in_flight",
              [this] { return acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value()); });
-  add_places("cache_misses", [this] { return cache_.full(); });
+  add_memory_places("cache_misses", [this] { return cache_.full(); });
   for (int i = 0; i < context.machine.cores; ++i) done_in.add(*this, fmt::format("done_in_{}", i).c_str());
 }
 
@@ -351,6 +352,14 @@ void Rop::audit(Audit& audit) const {
   audit.left(laws::kKilledLate, stats_.late_killed.value());
   cache_.stats().audit(audit, laws::kColorCache);
   port_.audit(audit);
+}
+
+void Rop::details(Details& details) const {
+  details.by_draw(DrawCount::kAtRop, stats_.fragments_in);
+  details.by_draw(DrawCount::kDiscarded, stats_.discarded);
+  details.by_draw(DrawCount::kWritten, stats_.written);
+  details.by_tile(TileCount::kWritten, stats_.written);
+  port_.details(details, DrawCount::kColorBytes, TileCount::kBytes);
 }
 
 std::vector<Facet> Rop::row() const {

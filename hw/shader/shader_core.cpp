@@ -1,5 +1,6 @@
 #include "hw/shader/shader_core.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 #include "hw/frame/varyings.h"
 
@@ -56,8 +57,8 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
       fragment_rows_(hungriest_fragment_program(context.frame)),
       free_rows_(params.register_rows),
       issue_timing_(issue_timing(params)),
-      simds_(static_cast<std::size_t>(params.simds.value()), Simd(params.scheduler)),
-      simd_warps_(simds_.size(), 0) {
+      simd_warps_(static_cast<std::size_t>(params.simds.value()), 0) {
+  for (int s = 0; s < params.simds; ++s) simds_.emplace_back(params.scheduler.value());
   add_rate_until("issue", [this](Tick at) {
     double issued = 0;
     for (const Simd& simd : simds_) issued += simd.issued(this->clock().edges_before(at));
@@ -303,6 +304,14 @@ void ShaderCore::audit(Audit& audit) const {
   audit.right(laws::kFragmentsPacked, stats_.fragments.value());
   audit.left(laws::kFragmentsShaded, stats_.fragments.value());
   if (texture_out) audit.left(laws::kTextureRequests, stats_.texture.value());
+}
+
+void ShaderCore::details(Details& details) const {
+  details.by_draw(DrawCount::kVerticesShaded, stats_.vertices);
+  details.by_draw(DrawCount::kShaded, stats_.fragments);
+  details.total_of_tiles(TileCount::kShaded, stats_.fragments);
+  details.by_draw(DrawCount::kTextureSent, stats_.texture);
+  details.by_draw(DrawCount::kSimdBusy, stats_.simd_busy);
 }
 
 std::vector<Facet> ShaderCore::row() const {

@@ -70,12 +70,10 @@ class ShaderCore final : public Unit {
                           {0, 1 << 16},
                           "From control flow to the warp's next instruction. [G: the front end is refilled]",
                           Effect::kSlower};
-    Choice<WarpScheduling> scheduler{*this,
-                                     "scheduler",
-                                     WarpScheduling::kRoundRobin,
-                                     {"oldest", "round_robin"},
-                                     "Which warp of a SIMD issues when several could: the longest ready, or "
-                                     "all in turn. [G: in turn is 0 to 2 % faster on our scenes]"};
+    PolicyParam<SimdSharingPolicy> scheduler{*this, "scheduler", simd_sharing_policies(), kRoundRobinSharing,
+                                             "Which warp of a SIMD issues when several could: the longest "
+                                             "ready, or all in turn. [G: in turn is 0 to 2 "
+                                             "% faster on our scenes]"};
     Param<int> warp_slots{*this, "warp_slots", 32, "warp", {2, 1024}, "Warps resident on the core. [G]"};
     Param<int> register_rows{*this, "register_rows", 1024,
                              "row", {16, 1 << 20},   "Register rows of 32 words: 1024 are 128 KiB. [G]"};
@@ -122,6 +120,7 @@ class ShaderCore final : public Unit {
   void act(Tick now) override;
   [[nodiscard]] const Stats* stats() const override { return &stats_; }
   void audit(Audit& audit) const override;
+  void details(Details& details) const override;
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
 

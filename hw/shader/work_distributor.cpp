@@ -2,8 +2,6 @@
 
 #include "hw/frame/laws.h"
 
-#include "models/memory/interleave.h"
-
 #include <fmt/ranges.h>
 
 namespace quadrille::hw {
@@ -11,7 +9,9 @@ namespace quadrille::hw {
 WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const UnitContext& context,
                                  const Params& params)
     : Unit(name, Kind::kChooser, context.clock),
-      params_(params),
+      distribution_(params.policy.value().make({static_cast<std::uint32_t>(context.machine.cores),
+                                                static_cast<std::uint32_t>(params.block_tiles.value())})),
+      by_place_(distribution_->by_place()),
       loads_(static_cast<std::size_t>(context.machine.cores), 0) {
   add_initiation_rate("rate");
   for (int p = 0; p < context.machine.partitions; ++p) {
@@ -39,12 +39,6 @@ const FifoOut<WarpToken>& WorkDistributor::first_with_room(const Outputs& output
   return *first;
 }
 
-std::size_t WorkDistributor::core_at(const WarpToken& warp) const {
-  const auto side = static_cast<std::uint32_t>(params_.block_tiles.value());
-  return models::partition_of(warp.tile_x / side, warp.tile_y / side,
-                              static_cast<std::uint32_t>(fragment_out.size()));
-}
-
 Wake WorkDistributor::vertex_wake() const {
   const Wake wake = Wake(vertex_free_).input(vertex_in);
   return vertex_in.ready() == kNever ? wake : Wake(wake).output(first_with_room(vertex_out));
@@ -53,10 +47,11 @@ Wake WorkDistributor::vertex_wake() const {
 Wake WorkDistributor::fragment_wake() const {
   Wake first = fragment_in.earliest(Wake(fragment_free_));
   if (first.at() == kNever) return first;
-  if (params_.policy != WarpPolicy::kTile) return Wake(first).output(first_with_room(fragment_out));
+  if (!by_place_) return Wake(first).output(first_with_room(fragment_out));
   bool any = false;
   fragment_in.visit_holding(0, [&](std::size_t, FifoIn<WarpToken>& in) {
-    const Wake wake = Wake(fragment_free_).input(in).output(*fragment_out[core_at(in.front())]);
+    const Wake wake =
+        Wake(fragment_free_).input(in).output(*fragment_out[distribution_->core_at(in.front())]);
     first = any ? Wake::sooner(first, wake) : wake;
     any = true;
     return false;
@@ -79,11 +74,11 @@ void WorkDistributor::act(Tick now) {
 }
 
 void WorkDistributor::hand_out_fragments(Tick now) {
-  const bool by_place = params_.policy == WarpPolicy::kTile;
   fragment_in.visit_holding(partition_turn_, [&](std::size_t p, FifoIn<WarpToken>& in) {
     if (!in.ready_at(now)) return false;
-    const std::size_t core = by_place ? core_at(in.front()) : choose(now, fragment_out, fragment_turn_);
-    if (!fragment_out[core]->room_at(now)) return false;
+    const std::size_t core =
+        by_place_ ? distribution_->core_at(in.front()) : choose(now, fragment_out, fragment_turn_);
+    if (core == Distribution::kNone || !fragment_out[core]->room_at(now)) return false;
     hand_out(now, in, fragment_out, core, fragment_turn_);
     fragment_free_ = after(now, 1);
     ++stats_.fragment_warps;
@@ -93,14 +88,10 @@ void WorkDistributor::hand_out_fragments(Tick now) {
 }
 
 std::size_t WorkDistributor::choose(Tick now, const Outputs& outputs, std::size_t turn) const {
-  std::size_t best = outputs.size();
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const std::size_t c = (turn + i) % outputs.size();
-    if (!outputs[c]->room_at(now)) continue;
-    if (params_.policy == WarpPolicy::kRoundRobin) return c;
-    if (best == outputs.size() || loads_[c] < loads_[best]) best = c;
-  }
-  return best;
+  Distribution::Cores cores{.loads = loads_, .next = turn};
+  for (std::size_t c = 0; c < outputs.size(); ++c)
+    cores.with_room |= std::uint64_t{outputs[c]->room_at(now)} << c;
+  return distribution_->choose(cores);
 }
 
 void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core,

@@ -15,21 +15,17 @@
 #include "hw/base/param.h"
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
+#include "hw/shader/distribution.h"
 
 namespace quadrille::hw {
-
-enum class WarpPolicy : std::uint8_t { kRoundRobin, kTile, kLeastLoaded };
 
 class WorkDistributor final : public Unit {
  public:
   struct Params : ParamGroup {
-    Choice<WarpPolicy> policy{*this,
-                              "policy",
-                              WarpPolicy::kLeastLoaded,
-                              {"round_robin", "tile", "least_loaded"},
-                              "Which core gets a warp: the next in turn, the one of its part of the screen, "
-                              "or the one with the fewest. "
-                              "[M: warp policies: fewest cycles]"};
+    PolicyParam<DistributionPolicy> policy{*this, "policy", distribution_policies(), kLeastLoadedDistribution,
+                                           "Which core gets a warp: the next in turn, the one of its part of "
+                                           "the screen, or the one with the fewest. "
+                                           "[M: warp policies: fewest cycles]"};
     Param<int> block_tiles{
         *this,
         "block_tiles",
@@ -64,14 +60,13 @@ class WorkDistributor final : public Unit {
   [[nodiscard]] static const FifoOut<WarpToken>& first_with_room(const Outputs& outputs);
   [[nodiscard]] Wake vertex_wake() const;
   [[nodiscard]] Wake fragment_wake() const;
-  /// The core whose part of the screen the warp is in.
-  [[nodiscard]] std::size_t core_at(const WarpToken& warp) const;
-  /// Of the cores with room the next in turn, or the least loaded one.
+  /// The core that gets the next warp of a kind; `kNone` of the policy where none has room.
   [[nodiscard]] std::size_t choose(Tick now, const Outputs& outputs, std::size_t turn) const;
   void hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core, std::size_t& turn);
   void hand_out_fragments(Tick now);
 
-  const Params& params_;
+  std::unique_ptr<Distribution> distribution_;
+  bool by_place_;
   Stats stats_;
   std::vector<int> loads_;  ///< by core: warps sent and not reported done
   std::size_t partition_turn_ = 0, vertex_turn_ = 0, fragment_turn_ = 0;

@@ -1,5 +1,6 @@
 #include "hw/texture/texture_unit.h"
 
+#include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& contex
   });
   add_places("groups_in_flight",
              [this] { return groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()); });
-  add_places("cache_misses", [this] { return cache_.full(); });
+  add_memory_places("cache_misses", [this] { return cache_.full(); });
 }
 
 std::string TextureUnit::state_text() const {
@@ -149,6 +150,16 @@ void TextureUnit::audit(Audit& audit) const {
   audit.both(laws::kTextureGroups, stats_.groups.value(), stats_.groups_answered.value());
   cache_.stats().audit(audit, laws::kTextureCache);
   port_.audit(audit);
+}
+
+void TextureUnit::details(Details& details) const {
+  details.by_draw(DrawCount::kTextureTaken, stats_.requests);
+  details.by_draw(DrawCount::kSamples, stats_.lanes);
+  details.by_draw(DrawCount::kTexels, stats_.texels);
+  details.by_draw(DrawCount::kBilinearQuads, stats_.bilinear_quads);
+  details.by_draw(DrawCount::kTextureMisses, cache_.stats().misses);
+  details.by_tile(TileCount::kTextureMisses, cache_.stats().misses);
+  port_.details(details, DrawCount::kTextureBytes);
 }
 
 std::vector<Facet> TextureUnit::row() const {

@@ -81,7 +81,8 @@ class FunctionalRenderer {
   /// Forms, shades and rasterises the batch that begins with triangle `first`; returns the first triangle
   /// after it.
   std::uint32_t batch(std::uint32_t first) {
-    models::VertexReuse reuse;
+    const std::unique_ptr<models::VertexReuse> made = models::kBatchReuse.make({});
+    models::VertexReuse& reuse = *made;
     batch_.triangles.clear();
     std::uint32_t t = first;
     for (; t < draw_->triangles(); ++t) {

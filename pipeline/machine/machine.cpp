@@ -122,13 +122,21 @@ int Machine::count(Stands stands) const {
   return 0;
 }
 
+bool Machine::builds(Needed needed) const {
+  switch (needed) {
+    case Needed::kByAllFrames: return true;
+    case Needed::kByFramesThatReadTextures: return textured_;
+  }
+  return true;
+}
+
 void Machine::create_units(std::uint64_t order) {
   const Maker maker(*this);
   std::vector<std::function<std::unique_ptr<hw::Unit>()>> makers;
   for (const Stands stands : {Stands::kOnce, Stands::kPartition, Stands::kCore, Stands::kChannel}) {
     for (int i = 0; i < count(stands); ++i) {
       visit_unit_kinds([&]<class Unit>() {
-        if (UnitKind<Unit>::stands != stands || (std::is_same_v<Unit, hw::TextureUnit> && !textured_)) return;
+        if (UnitKind<Unit>::stands != stands || !builds(UnitKind<Unit>::needed)) return;
         std::vector<Unit*>& of_kind = std::get<std::vector<Unit*>>(by_kind_);
         of_kind.push_back(nullptr);
         makers.emplace_back([&maker, &of_kind, i, stands] {

@@ -80,6 +80,8 @@ class Machine {
   void list_clients();
   void create_units(std::uint64_t order);
   [[nodiscard]] int count(Stands stands) const;
+  /// Units of such a kind are built for this frame.
+  [[nodiscard]] bool builds(Needed needed) const;
 
   const MachineConfig& config_;
   DeviceFrame& frame_;
@@ -92,7 +94,7 @@ class Machine {
   std::unique_ptr<hw::Driver> own_driver_;
   hw::Driver* driver_ = nullptr;
   Stores stores_;
-#define QUADRILLE_UNITS_OF(name, type, how_often) std::vector<type*>,
+#define QUADRILLE_UNITS_OF(name, type, how_often, frames) std::vector<type*>,
   std::tuple<QUADRILLE_UNITS(QUADRILLE_UNITS_OF) std::monostate> by_kind_;
 #undef QUADRILLE_UNITS_OF
   std::vector<std::unique_ptr<hw::Unit>> owned_;  ///< in the order in which they were made

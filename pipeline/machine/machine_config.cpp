@@ -8,10 +8,11 @@ namespace quadrille::pipeline {
 
 MachineConfig::MachineConfig() {
   groups_.emplace_back("gpu", &gpu);
-#define QUADRILLE_GROUP(name, type, how_often) groups_.emplace_back(#name, &name);
+#define QUADRILLE_GROUP(name, type, how_often, frames) groups_.emplace_back(#name, &name);
   QUADRILLE_UNITS(QUADRILLE_GROUP)
 #undef QUADRILLE_GROUP
-#define QUADRILLE_GROUP(name, depth, width, latency, flow) groups_.emplace_back("link." #name, &link.name);
+#define QUADRILLE_GROUP(name, depth, width, latency, flow, way, ...) \
+  groups_.emplace_back("link." #name, &link.name);
   QUADRILLE_LINKS(QUADRILLE_GROUP)
 #undef QUADRILLE_GROUP
   base_values_ = values();

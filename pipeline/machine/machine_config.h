@@ -124,7 +124,7 @@ struct LinkParams : hw::ParamGroup {
 };
 
 struct Links {
-#define QUADRILLE_LINK(name, depth, width, latency, flow) \
+#define QUADRILLE_LINK(name, depth, width, latency, flow, way, ...) \
   LinkParams name{#name, depth, width, latency, LinkFlow::flow};
   QUADRILLE_LINKS(QUADRILLE_LINK)
 #undef QUADRILLE_LINK
@@ -137,7 +137,7 @@ class MachineConfig {
   MachineConfig& operator=(const MachineConfig&) = delete;
 
   GpuParams gpu;
-#define QUADRILLE_PARAMS(name, type, how_often) type::Params name;
+#define QUADRILLE_PARAMS(name, type, how_often, frames) type::Params name;
   QUADRILLE_UNITS(QUADRILLE_PARAMS)
 #undef QUADRILLE_PARAMS
   Links link;

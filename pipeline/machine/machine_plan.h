@@ -1,8 +1,8 @@
 /// What a machine is made of: every kind of unit and every class of links, declared once.
 ///
-/// The configuration, the elaboration, the catalogue of counters and the figures walk these lists. A new kind
-/// of unit is its files, its test, its line here, how it is made (machine_units.cpp) and its links' lines
-/// here and in machine_wiring.cpp.
+/// The configuration, the elaboration, the wiring, the catalogue of counters, the figures, the block diagram
+/// and the contract tests walk these lists. A new kind of unit is its files, its test, its line here and how
+/// it is made (machine_units.cpp); a new link is its line here.
 #pragma once
 
 #include "hw/command/command_processor.h"
@@ -23,60 +23,121 @@
 #include "hw/texture/texture_unit.h"
 
 #include <string_view>
+#include <type_traits>
 
-// Units in the order of the pipeline: name (of the parameter group too), class, how often it stands.
-#define QUADRILLE_UNITS(unit)                                                                              \
-  unit(command_processor, hw::CommandProcessor, kOnce) unit(vertex_fetch, hw::VertexFetch, kOnce)          \
-      unit(primitive_assembly, hw::PrimitiveAssembly, kOnce) unit(clipper, hw::Clipper, kOnce)             \
-          unit(triangle_setup, hw::TriangleSetupUnit, kOnce) unit(coarse_raster, hw::CoarseRaster, kOnce)  \
-              unit(fine_raster, hw::FineRaster, kOnce) unit(depth, hw::DepthUnit, kPartition)              \
-                  unit(warp_packer, hw::WarpPacker, kPartition)                                            \
-                      unit(work_distributor, hw::WorkDistributor, kOnce) unit(core, hw::ShaderCore, kCore) \
-                          unit(texture, hw::TextureUnit, kCore) unit(rop, hw::Rop, kPartition)             \
-                              unit(l2, hw::L2Slice, kChannel) unit(memory, hw::MemoryChannel, kChannel)    \
-                                  unit(scan_out, hw::ScanOut, kOnce)
+// One entry a line.
+// clang-format off
 
-// Links: name, default depth, width and latency, and how many tokens their producer can have for them. The
-// types of their ports say what they carry.
-#define QUADRILLE_LINKS(link)                                                                                \
-  link(command_to_fetch, 4, 1, 1, kOneACycle) link(fetch_to_distributor, 8, 1, 1, kOneACycle) link(          \
-      fetch_to_assembly, 64, 1, 1,                                                                           \
-      kSeveralACycle) link(setup_to_fetch, 4, 1, 1, kOneACycle) link(core_to_assembly, 8, 1, 1, kOneACycle)  \
-      link(assembly_to_distributor, 8, 4, 1, kSeveralACycle) link(                                           \
-          assembly_to_clipper, 8, 1, 1, kSeveralACycle) link(clipper_to_setup, 8, 1, 4, kSeveralACycle)      \
-          link(setup_to_coarse, 16, 1, 4, kSeveralACycle) link(                                              \
-              coarse_to_fine, 32, 1, 2, kSeveralACycle) link(fine_to_depth, 32, 1, 2, kSeveralACycle)        \
-              link(depth_to_coarse, 16, 1, 4, kOneACycle) link(depth_to_packer, 16, 1, 2, kOneACycle) link(  \
-                  packer_to_distributor, 8,                                                                  \
-                  1, 1, kOneACycle) link(packer_to_rop, 64, 1, 1, kOneACycle)                                \
-                  link(rop_to_distributor, 8, 4, 1, kSeveralACycle) link(rop_to_packer, 8, 1, 1, kOneACycle) \
-                      link(distributor_to_core, 4, 1, 2, kOneACycle)                                         \
-                          link(core_to_rop, 8, 1, 2, kSeveralACycle) link(rop_to_depth, 8, 1, 2, kOneACycle) \
-                              link(depth_to_rop, 8, 1, 2, kOneACycle)                                        \
-                                  link(rop_to_setup, 8, 1, 2, kOneACycle)                                    \
-                                      link(rop_to_command, 8, 1, 2, kOneACycle)                              \
-                                          link(core_to_texture, 8, 1, 2, kOneACycle)                         \
-                                              link(texture_to_core, 8, 1, 2, kOneACycle)                     \
-                                                  link(client_to_l2, 16, 1, 8, kSeveralACycle)               \
-                                                      link(l2_to_client, 16, 1, 8, kSeveralACycle)           \
-                                                          link(l2_to_memory, 16, 1, 2, kSeveralACycle) link( \
-                                                              memory_to_l2, 16, 1, 2, kSeveralACycle)        \
-                                                              link(command_to_scan, 2, 1, 1, kOneAPass)      \
-                                                                  link(scan_to_command, 2, 1, 1, kOneAPass)
+// Units in the order of the pipeline: name (of the parameter group too), class, how often it stands, which
+// frames need it.
+#define QUADRILLE_UNITS(unit)                                                            \
+  unit(command_processor,  hw::CommandProcessor,  kOnce,      kByAllFrames)              \
+  unit(vertex_fetch,       hw::VertexFetch,       kOnce,      kByAllFrames)              \
+  unit(primitive_assembly, hw::PrimitiveAssembly, kOnce,      kByAllFrames)              \
+  unit(clipper,            hw::Clipper,           kOnce,      kByAllFrames)              \
+  unit(triangle_setup,     hw::TriangleSetupUnit, kOnce,      kByAllFrames)              \
+  unit(coarse_raster,      hw::CoarseRaster,      kOnce,      kByAllFrames)              \
+  unit(fine_raster,        hw::FineRaster,        kOnce,      kByAllFrames)              \
+  unit(depth,              hw::DepthUnit,         kPartition, kByAllFrames)              \
+  unit(warp_packer,        hw::WarpPacker,        kPartition, kByAllFrames)              \
+  unit(work_distributor,   hw::WorkDistributor,   kOnce,      kByAllFrames)              \
+  unit(core,               hw::ShaderCore,        kCore,      kByAllFrames)              \
+  unit(texture,            hw::TextureUnit,       kCore,      kByFramesThatReadTextures) \
+  unit(rop,                hw::Rop,               kPartition, kByAllFrames)              \
+  unit(l2,                 hw::L2Slice,           kChannel,   kByAllFrames)              \
+  unit(memory,             hw::MemoryChannel,     kChannel,   kByAllFrames)              \
+  unit(scan_out,           hw::ScanOut,           kOnce,      kByAllFrames)
+
+// Links: name, default depth, width and latency, how many tokens their producer can have for them, what they
+// do for the flow of work, and which ports they join. The types of the ports say what they carry; how often
+// their units stand says how many links there are.
+#define QUADRILLE_LINKS(link)                                                                      \
+  link(command_to_fetch,         4, 1, 1, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(CommandProcessor, draw_out, VertexFetch, draw_in))                           \
+  link(fetch_to_distributor,     8, 1, 1, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(VertexFetch, warp_out, WorkDistributor, vertex_in))                          \
+  link(fetch_to_assembly,       64, 1, 1, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(VertexFetch, batch_out, PrimitiveAssembly, batch_in))                        \
+  link(assembly_to_clipper,      8, 1, 1, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(PrimitiveAssembly, primitive_out, Clipper, primitive_in))                    \
+  link(clipper_to_setup,         8, 1, 4, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(Clipper, clipped_out, TriangleSetupUnit, clipped_in))                        \
+  link(assembly_to_distributor,  8, 4, 1, kSeveralACycle, kBack,                                   \
+       QUADRILLE_WIRE(PrimitiveAssembly, load_out, WorkDistributor, load_in))                      \
+  link(setup_to_fetch,           4, 1, 1, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(TriangleSetupUnit, release_out, VertexFetch, release_in))                    \
+  link(setup_to_coarse,         16, 1, 4, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(TriangleSetupUnit, triangle_out, CoarseRaster, triangle_in))                 \
+  link(coarse_to_fine,          32, 1, 2, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(CoarseRaster, tile_out, FineRaster, tile_in))                                \
+  link(command_to_scan,          2, 1, 1, kOneAPass,      kOnward,                                 \
+       QUADRILLE_WIRE(CommandProcessor, scan_out, ScanOut, scan_in))                               \
+  link(scan_to_command,          2, 1, 1, kOneAPass,      kBack,                                   \
+       QUADRILLE_WIRE(ScanOut, done_out, CommandProcessor, scan_done_in))                          \
+  link(fine_to_depth,           32, 1, 2, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(FineRaster, coverage_out, DepthUnit, coverage_in))                           \
+  link(depth_to_coarse,         16, 1, 4, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(DepthUnit, hiz_out, CoarseRaster, hiz_in))                                   \
+  link(depth_to_packer,         16, 1, 2, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(DepthUnit, coverage_out, WarpPacker, coverage_in))                           \
+  link(packer_to_distributor,    8, 1, 1, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(WarpPacker, warp_out, WorkDistributor, fragment_in))                         \
+  link(packer_to_rop,           64, 1, 1, kOneACycle,     kAhead,                                  \
+       QUADRILLE_WIRE(WarpPacker, order_out, Rop, order_in))                                       \
+  link(rop_to_packer,            8, 1, 1, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(Rop, release_out, WarpPacker, release_in))                                   \
+  link(rop_to_distributor,       8, 4, 1, kSeveralACycle, kBack,                                   \
+       QUADRILLE_WIRE(Rop, load_out, WorkDistributor, load_in))                                    \
+  link(rop_to_depth,             8, 1, 2, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(Rop, late_out, DepthUnit, late_in))                                          \
+  link(depth_to_rop,             8, 1, 2, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(DepthUnit, late_out, Rop, late_in))                                          \
+  link(rop_to_setup,             8, 1, 2, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(Rop, sync_out, TriangleSetupUnit, sync_in))                                  \
+  link(rop_to_command,           8, 1, 2, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(Rop, retire_out, CommandProcessor, retire_in))                               \
+  link(distributor_to_core,      4, 1, 2, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(WorkDistributor, vertex_out, ShaderCore, vertex_in),                         \
+       QUADRILLE_WIRE(WorkDistributor, fragment_out, ShaderCore, fragment_in))                     \
+  link(core_to_assembly,         8, 1, 1, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(ShaderCore, vertex_out, PrimitiveAssembly, done_in))                         \
+  link(core_to_rop,              8, 1, 2, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(ShaderCore, fragment_out, Rop, done_in))                                     \
+  link(core_to_texture,          8, 1, 2, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(ShaderCore, texture_out, TextureUnit, request_in))                           \
+  link(texture_to_core,          8, 1, 2, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(TextureUnit, response_out, ShaderCore, texture_in))                          \
+  link(client_to_l2,            16, 1, 8, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(MemoryPort, request_out, L2Slice, request_in))                               \
+  link(l2_to_client,            16, 1, 8, kSeveralACycle, kBack,                                   \
+       QUADRILLE_WIRE(L2Slice, response_out, MemoryPort, response_in))                             \
+  link(l2_to_memory,            16, 1, 2, kSeveralACycle, kOnward,                                 \
+       QUADRILLE_WIRE(L2Slice, memory_out, MemoryChannel, request_in))                             \
+  link(memory_to_l2,            16, 1, 2, kSeveralACycle, kBack,                                   \
+       QUADRILLE_WIRE(MemoryChannel, response_out, L2Slice, fill_in))
+#define QUADRILLE_WIRE(from, output, to, input) \
+  ::quadrille::pipeline::Wire<&hw::from::output, &hw::to::input>
+// clang-format on
 
 namespace quadrille::pipeline {
 
 /// How often a kind of unit stands in a machine: once, or once a core, partition or channel. Of several, each
 /// carries its number in its name.
 enum class Stands : std::uint8_t { kOnce, kPartition, kCore, kChannel };
+/// Which frames need a kind of unit; a machine leaves out what its frame does not need.
+enum class Needed : std::uint8_t { kByAllFrames, kByFramesThatReadTextures };
+/// What the tokens of a link do: carry work onward, tell of work that comes another way, or bring answers,
+/// releases and reports back.
+enum class LinkWay : std::uint8_t { kOnward, kAhead, kBack };
 
 template <class Unit>
 struct UnitKind;
-#define QUADRILLE_KIND(path, type, how_often)           \
+#define QUADRILLE_KIND(path, type, how_often, frames)   \
   template <>                                           \
   struct UnitKind<type> {                               \
     static constexpr std::string_view name = #path;     \
     static constexpr Stands stands = Stands::how_often; \
+    static constexpr Needed needed = Needed::frames;    \
   };
 QUADRILLE_UNITS(QUADRILLE_KIND)
 #undef QUADRILLE_KIND
@@ -84,9 +145,57 @@ QUADRILLE_UNITS(QUADRILLE_KIND)
 /// Calls `visit.operator()<Unit>()` for each kind of unit, in the order of the pipeline.
 template <class Visit>
 void visit_unit_kinds(const Visit& visit) {
-#define QUADRILLE_VISIT(path, type, how_often) visit.template operator()<type>();
+#define QUADRILLE_VISIT(path, type, how_often, frames) visit.template operator()<type>();
   QUADRILLE_UNITS(QUADRILLE_VISIT)
 #undef QUADRILLE_VISIT
 }
+
+/// Does this kind of unit ask the L2 cache? It then has a `hw::MemoryPort`, whose links are those of the
+/// class `client_to_l2` and back.
+template <class Unit>
+concept MemoryClientUnit = requires(Unit& unit) {
+  { unit.memory_port() } -> std::same_as<hw::MemoryPort&>;
+};
+
+/// A port as a member of its unit: alone, absent in some machines, or one of a group with a port for each
+/// unit of another kind.
+template <class Port>
+struct PortOf;
+template <class T>
+struct PortOf<hw::FifoOut<T>> {
+  using Token = T;
+};
+template <class T>
+struct PortOf<hw::FifoIn<T>> {
+  using Token = T;
+};
+template <class T>
+struct PortOf<hw::FifoInGroup<T>> {
+  using Token = T;
+};
+template <class Port>
+struct PortOf<std::unique_ptr<Port>> : PortOf<Port> {};
+template <class Port>
+struct PortOf<std::vector<Port>> : PortOf<Port> {};
+
+template <class Member>
+struct MemberPort;
+template <class Owner, class Port>
+struct MemberPort<Port Owner::*> {
+  using Unit = Owner;
+  using Token = typename PortOf<Port>::Token;
+};
+
+/// An output of a kind of unit and the input of another one that a link joins it to.
+template <auto kOutput, auto kInput>
+struct Wire {
+  static constexpr auto output = kOutput;
+  static constexpr auto input = kInput;
+  using From = typename MemberPort<decltype(kOutput)>::Unit;
+  using To = typename MemberPort<decltype(kInput)>::Unit;
+  using Token = typename MemberPort<decltype(kOutput)>::Token;
+  static_assert(std::is_same_v<Token, typename MemberPort<decltype(kInput)>::Token>,
+                "both ends of a link carry the same tokens");
+};
 
 }  // namespace quadrille::pipeline

@@ -16,7 +16,7 @@ class Machine::Maker {
   template <class Unit>
   using Kind = std::type_identity<Unit>;
   /// The unit called `name`, number `i` of its kind.
-#define QUADRILLE_MAKE(path, type, how_often) \
+#define QUADRILLE_MAKE(path, type, how_often, frames) \
   [[nodiscard]] Made<type> make(Kind<type> kind, const char* name, int i) const;
   QUADRILLE_UNITS(QUADRILLE_MAKE)
 #undef QUADRILLE_MAKE

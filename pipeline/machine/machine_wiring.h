@@ -1,4 +1,9 @@
-/// Who is linked to whom.
+/// Who is linked to whom: the links of the plan (machine_plan.h) between the units that were made.
+///
+/// How often the kinds of both ends stand says how many links a wire is. Units of kinds that stand equally
+/// often are linked in pairs, by their numbers; a unit that stands once has a port for each of the others; a
+/// core has a port for each partition and a partition one for each core. Clients of the L2 cache have a port
+/// for each slice.
 #pragma once
 
 #include "pipeline/machine/machine.h"
@@ -12,23 +17,17 @@ class Machine::Wiring {
   void wire();
 
  private:
-  void geometry();
-  void partition(std::size_t p);
-  void core(std::size_t c);
-  void memory();
-  void client(const hw::Unit& unit, hw::MemoryPort& port);
-  /// A link of a class from port to port; its path is the class's name unless another is given.
+  /// The links of unit number `i` of the kinds that stand so often, to each other and to kinds that stand
+  /// less often.
+  void wire_units(Stands stands, std::size_t i);
+  template <class... Wires>
+  void wire_class(const LinkParams& of, Stands stands, std::size_t i);
+  template <class Wire>
+  void wire_one(const LinkParams& of, Stands stands, std::size_t i, bool alone);
+  void wire_clients();
+  /// A link of a class from port to port, called `path`.
   template <class Token>
-  void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of, const std::string& path,
-            int path_clk = 0);
-  template <class Token>
-  void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of) {
-    link(from, to, of, std::string(of.name));
-  }
-  template <class Token>
-  void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of, std::size_t number) {
-    link(from, to, of, fmt::format("{}_{}", of.name, number));
-  }
+  void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of, const std::string& path);
 
   Machine& m_;
   const Links& l_;

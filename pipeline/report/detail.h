@@ -1,11 +1,12 @@
 /// A frame's figures by draw and by part of the screen, and the laws that they obey: what the draws and the
 /// rest did is what the frame did.
 ///
-/// Units name the draw and the tile that they work for (hw/base/work_log.h); here is which of their counters
-/// are kept so, and under what name.
+/// Units name the draw and the tile that they work for (hw/base/work_log.h) and which of their counters are
+/// kept so; here is under what name the figures show them.
 #pragma once
 
 #include "hw/base/audit.h"
+#include "hw/frame/detail_counts.h"
 
 #include <array>
 #include <cstdint>
@@ -21,60 +22,17 @@ struct DetailOptions {
   [[nodiscard]] bool any() const { return draws || tiles; }
 };
 
-/// What is counted by draw. Those from `kVerticesFetched` on only serve the laws.
-enum class DrawCount : std::uint8_t {
-  kTrianglesIn,
-  kTrianglesDrawn,
-  kVerticesShaded,
-  kCovered,
-  kShaded,
-  kKilledEarly,
-  kKilledLate,
-  kDiscarded,
-  kWritten,
-  kSamples,
-  kTexels,
-  kTextureMisses,
-  kVertexBytes,
-  kTextureBytes,
-  kDepthBytes,
-  kColorBytes,
-  kMemoryBytes,
-  kVerticesFetched,
-  kVerticesAssembled,
-  kTrianglesFetched,
-  kTrianglesClipped,
-  kTrianglesWalked,
-  kPacked,
-  kAtRop,
-  kTextureSent,
-  kTextureTaken,
-  kBilinearQuads,
-  kSimdBusy,
-  kClientRequests,
-  kL2Requests,
-  kFillBytes,
-  kMemoryReadBytes
-};
-inline constexpr auto kReportedDrawCounts = static_cast<std::size_t>(DrawCount::kVerticesFetched);
-inline constexpr auto kDrawCounts = static_cast<std::size_t>(DrawCount::kMemoryReadBytes) + 1;
+using hw::DrawCount;
+using hw::kDrawCounts;
+using hw::kReportedDrawCounts;
+using hw::kTileCounts;
+using hw::TileCount;
 
-/// What is counted by part of the screen.
-enum class TileCount : std::uint8_t { kShaded, kKilledEarly, kTilesHidden, kWritten, kTextureMisses, kBytes };
-inline constexpr auto kTileCounts = static_cast<std::size_t>(TileCount::kBytes) + 1;
-
-/// A counter of a kind of unit.
-struct CounterName {
-  std::string_view kind, counter;
-};
-
-/// A count of a draw or of a part of the screen: its place in the JSON, the counters that it is the sum of,
-/// and the law of its sum over the frame.
+/// A count of a draw or of a part of the screen: its place in the JSON, and the law of its sum over the
+/// frame. Which counters it is the sum of is the units' to say (`hw::Unit::details`).
 struct DetailCount {
   std::string_view group, key;
-  std::vector<CounterName> counters;
   hw::Law law;
-  std::vector<CounterName> total = {};  ///< of the law's right side; empty: the same counters
 };
 /// By `DrawCount`, and by `TileCount`.
 [[nodiscard]] const std::array<DetailCount, kDrawCounts>& draw_counts();

@@ -8,7 +8,9 @@ namespace quadrille::pipeline {
 
 namespace {
 
-constexpr std::string_view kCores = "core", kTextures = "texture", kMemory = "memory";
+constexpr std::string_view kCores = UnitKind<hw::ShaderCore>::name,
+                           kTextures = UnitKind<hw::TextureUnit>::name,
+                           kMemory = UnitKind<hw::MemoryChannel>::name;
 
 std::string kind_of(const hw::Unit& unit) { return std::string(without_number(unit.name())); }
 
@@ -24,19 +26,24 @@ hw::ScreenCells screen_of(const hw::Frame& frame) {
   return screen;
 }
 
-const hw::Counter& counter_of(const hw::Unit& unit, std::string_view name) {
-  const auto& all = unit.stats()->counters();
-  const auto found = std::ranges::find(all, name, &hw::Counter::name);
-  QUADRILLE_CHECK(found != all.end(), "{} has no counter {}", unit.name(), name);
-  return **found;
-}
+/// Gives what a unit names of its counters to the log that keeps them.
+class Columns final : public hw::Details {
+ public:
+  Columns(hw::WorkLog& log, DetailLog::LoggedUnit& unit) : log_(log), unit_(unit) {}
+  void by_draw(DrawCount count, const hw::Counter& counter) override {
+    unit_.draws.push_back({static_cast<std::size_t>(count), log_.by_draw(counter.storage()), &counter});
+  }
+  void by_tile(TileCount count, const hw::Counter& counter) override {
+    unit_.tiles.push_back({static_cast<std::size_t>(count), log_.by_cell(counter.storage()), &counter});
+  }
+  void total_of_tiles(TileCount count, const hw::Counter& counter) override {
+    unit_.tile_totals.push_back({static_cast<std::size_t>(count), 0, &counter});
+  }
 
-/// Those of `names` that this kind of unit has.
-template <class Visit>
-void visit_counters(std::string_view kind, const std::vector<CounterName>& names, const Visit& visit) {
-  for (const CounterName& name : names)
-    if (name.kind == kind) visit(name.counter);
-}
+ private:
+  hw::WorkLog& log_;
+  DetailLog::LoggedUnit& unit_;
+};
 
 }  // namespace
 
@@ -55,16 +62,8 @@ void DetailLog::add(const hw::Unit& unit) {
   u.kind = static_cast<std::size_t>(known - detail_.kinds.begin());
   if (known == detail_.kinds.end()) detail_.kinds.push_back(kind);
   u.log = std::make_unique<hw::WorkLog>(static_cast<std::uint32_t>(frame_.frame.draws.size()), screen_);
-  for (std::size_t i = 0; i < kDrawCounts; ++i) {
-    visit_counters(kind, draw_counts()[i].counters, [&](std::string_view name) {
-      u.draws.push_back({i, u.log->by_draw(counter_of(unit, name).storage())});
-    });
-  }
-  for (std::size_t i = 0; i < kTileCounts; ++i) {
-    visit_counters(kind, tile_counts()[i].counters, [&](std::string_view name) {
-      u.tiles.push_back({i, u.log->by_cell(counter_of(unit, name).storage())});
-    });
-  }
+  Columns columns(*u.log, u);
+  unit.details(columns);
   u.busy = u.log->by_draw(unit.busy_storage());
   unit.stats()->keep_log(*u.log);
   units_.push_back(std::move(u));
@@ -124,23 +123,23 @@ Detail DetailLog::collect() {
   d.tiles.height = screen_.rows;
   d.tiles.pixels = screen_.tiles * models::kTileSize;
   for (auto& counts : d.tiles.counts) counts.assign(std::size_t{screen_.count()} + 1, 0);
+  std::array<std::uint64_t, kTileCounts> own{}, others{};  // totals as the tiles' own units count them
+  std::array<bool, kTileCounts> counted_elsewhere{};
   for (const LoggedUnit& u : units_) {
     u.log->settle();
     for (std::uint32_t i = 0; i < draws; ++i) collect_draw(u, i, d.draws[i]);
     collect_draw(u, draws, d.outside_draws);
     collect_tiles(u, d.tiles);
-    const std::string& kind = d.kinds[u.kind];
-    const auto value = [&](std::uint64_t& total) {
-      return [&](std::string_view name) { total += counter_of(*u.unit, name).value(); };
-    };
-    for (std::size_t i = 0; i < kDrawCounts; ++i)
-      visit_counters(kind, draw_counts()[i].counters, value(d.draw_totals[i]));
-    for (std::size_t i = 0; i < kTileCounts; ++i) {
-      const DetailCount& count = tile_counts()[i];
-      visit_counters(kind, count.total.empty() ? count.counters : count.total, value(d.tile_totals[i]));
+    for (const Column& c : u.draws) d.draw_totals[c.count] += c.counter->value();
+    for (const Column& c : u.tiles) own[c.count] += c.counter->value();
+    for (const Column& c : u.tile_totals) {
+      others[c.count] += c.counter->value();
+      counted_elsewhere[c.count] = true;
     }
+    const std::string& kind = d.kinds[u.kind];
     if (kind != kMemory && kind != kCores) d.busy_total += u.unit->busy_cycles();
   }
+  for (std::size_t i = 0; i < kTileCounts; ++i) d.tile_totals[i] = counted_elsewhere[i] ? others[i] : own[i];
   d.busy_total += static_cast<std::int64_t>(d.draw_totals[static_cast<std::size_t>(DrawCount::kSimdBusy)]);
   return d;
 }

@@ -19,17 +19,20 @@ class DetailLog {
   /// After the run.
   [[nodiscard]] Detail collect();
 
- private:
   struct Column {
     std::size_t count = 0, column = 0;  ///< which count, and where the log keeps a counter of it
+    const hw::Counter* counter = nullptr;
   };
   struct LoggedUnit {
     const hw::Unit* unit = nullptr;
     std::size_t kind = 0;
     std::unique_ptr<hw::WorkLog> log;
     std::vector<Column> draws, tiles;
-    std::size_t busy = 0;  ///< column
+    std::vector<Column> tile_totals;  ///< by counters that are not kept by tile
+    std::size_t busy = 0;             ///< column
   };
+
+ private:
   void add(const hw::Unit& unit);
   void collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const;
   void collect_tiles(const LoggedUnit& u, TileFigures& tiles) const;

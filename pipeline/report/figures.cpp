@@ -37,7 +37,8 @@ UnitFigures figures_of(const hw::Unit& unit, hw::Tick end) {
   }
   std::ranges::stable_sort(f.waits, std::ranges::greater{}, &WaitFigure::cycles);
   for (const hw::Resource& r : unit.resources().all())
-    f.resources.push_back({std::string(r.name), std::string(r.serial), r.kind, r.total(end), r.at_end_of});
+    f.resources.push_back(
+        {std::string(r.name), std::string(r.serial), r.kind, r.total(end), r.at_end_of, r.memory});
   if (unit.stats() != nullptr) {
     for (const hw::Counter* c : unit.stats()->counters()) {
       f.counters.push_back(

@@ -54,6 +54,7 @@ struct ResourceFigure {
   hw::Resource::Kind kind = hw::Resource::Kind::kRate;
   double cycles = 0;
   std::vector<double> at_end_of = {};
+  bool memory = false;  ///< kPlaces: of what is under way to memory
 };
 
 struct UnitFigures {

@@ -1,9 +1,9 @@
 #include "pipeline/report/sensitivity.h"
 
+#include "pipeline/machine/planned_links.h"
 #include "pipeline/report/report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -28,24 +28,24 @@ constexpr std::size_t kMostSlices = 24;
 /// From this part of a slice on, places that are all taken hold it up.
 constexpr double kTaken = 0.5;
 
-/// From up- to downstream: who is full because of a full place further on waits for that.
-constexpr std::array<std::string_view, 17> kPlacesDownstream{"command_processor.draws_in_flight",
-                                                             "vertex_fetch.batch_slots",
-                                                             "triangle_setup.triangle_slots",
-                                                             "depth.tiles_in_flight",
-                                                             "warp_packer.warp_slots",
-                                                             "core.register_rows",
-                                                             "core.warp_slots",
-                                                             "rop.warps_in_flight",
-                                                             "texture.groups_in_flight",
-                                                             "vertex_fetch.cache_misses",
-                                                             "depth.cache_misses",
-                                                             "rop.cache_misses",
-                                                             "texture.cache_misses",
-                                                             "scan_out.lines_in_flight",
-                                                             "l2.cache_misses",
-                                                             "memory.write_queue",
-                                                             "memory.queue_depth"};
+/// Where a kind of places lies: the greater, the further downstream. Who is full because of a full place
+/// further on waits for that. Places of what is under way to memory lie at the door of the L2 cache, behind
+/// all other units that lead to it; of several of a unit, the one that it names first is the furthest
+/// downstream. Units that are not of the plan come before those that are.
+struct Downstream {
+  std::ptrdiff_t at = 0, kind = 0, named = 0;
+  auto operator<=>(const Downstream&) const = default;
+};
+
+Downstream downstream(std::string_view kind, const ResourceFigure& places, std::size_t named) {
+  const std::vector<std::string_view>& kinds = kinds_downstream();
+  const auto place_of = [&](std::string_view name) -> std::ptrdiff_t {
+    const auto found = std::ranges::find(kinds, name);
+    return found == kinds.end() ? -1 : found - kinds.begin();
+  };
+  const std::ptrdiff_t own = place_of(kind), door = place_of(UnitKind<hw::L2Slice>::name);
+  return {places.memory ? 2 * door - 1 : 2 * own, own, -static_cast<std::ptrdiff_t>(named)};
+}
 
 /// What a slice of the frame took of a bound, and of each resource of it.
 struct Bound {
@@ -71,7 +71,11 @@ class Slices {
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] double length(std::size_t s) const { return lengths_[s]; }
   [[nodiscard]] const std::map<std::string, Bound>& rates() const { return rates_; }
-  [[nodiscard]] const std::map<std::string, std::vector<double>>& places() const { return places_; }
+  struct Places {
+    std::vector<double> full;  ///< by slice: part of the time, of the fullest unit
+    Downstream where;
+  };
+  [[nodiscard]] const std::map<std::string, Places>& places() const { return places_; }
 
  private:
   [[nodiscard]] std::vector<double> parts(const ResourceFigure& r, double per_cycle) const {
@@ -91,13 +95,15 @@ class Slices {
     const std::string kind(without_number(unit.path));
     const double per_cycle = frame_cycles > 0 ? static_cast<double>(unit.cycles) / frame_cycles : 1;
     std::map<std::string, Bound> mine;
-    for (const ResourceFigure& r : unit.resources) {
+    for (std::size_t named = 0; named < unit.resources.size(); ++named) {
+      const ResourceFigure& r = unit.resources[named];
       const std::string name = kind + "." + r.name;
       const std::vector<double> part = parts(r, per_cycle);
       if (r.kind == hw::Resource::Kind::kPlaces) {
-        std::vector<double>& most = places_[name];
-        most.resize(count_, 0);
-        for (std::size_t s = 0; s < count_; ++s) most[s] = std::max(most[s], part[s]);
+        Places& places = places_[name];
+        places.where = downstream(kind, r, named);
+        places.full.resize(count_, 0);
+        for (std::size_t s = 0; s < count_; ++s) places.full[s] = std::max(places.full[s], part[s]);
         continue;
       }
       Bound& bound = mine[r.serial.empty() ? name : kind + "." + r.serial];
@@ -127,16 +133,19 @@ class Slices {
   double slice_ = 0;
   std::vector<double> lengths_;
   std::map<std::string, Bound> rates_;
-  std::map<std::string, std::vector<double>> places_;
+  std::map<std::string, Places> places_;
 };
 
 /// The full places of a slice that are furthest downstream; empty if none.
 std::string_view full_places(const Slices& slices, std::size_t s) {
-  for (auto name = kPlacesDownstream.rbegin(); name != kPlacesDownstream.rend(); ++name) {
-    const auto found = slices.places().find(std::string(*name));
-    if (found != slices.places().end() && found->second[s] >= kTaken) return *name;
+  std::string_view furthest;
+  const Downstream* where = nullptr;
+  for (const auto& [name, places] : slices.places()) {
+    if (places.full[s] < kTaken || (where != nullptr && places.where < *where)) continue;
+    furthest = name;
+    where = &places.where;
   }
-  return {};
+  return furthest;
 }
 
 void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double>& gains,
@@ -199,7 +208,7 @@ Sensitivity sensitivity(const Figures& f) {
   };
   for (const auto& [name, bound] : slices.rates())
     for (const auto& [resource, part] : bound.of) result.uses.push_back({resource, mean(part), false});
-  for (const auto& [name, part] : slices.places()) result.uses.push_back({name, mean(part), true});
+  for (const auto& [name, places] : slices.places()) result.uses.push_back({name, mean(places.full), true});
   std::ranges::stable_sort(result.uses, [](const ResourceUse& a, const ResourceUse& b) {
     return a.places != b.places ? b.places : a.use > b.use;
   });

@@ -275,8 +275,8 @@ struct SceneData : Placements {
 /// A scene where its own placements, or others of the same things, put it. Refers to both.
 struct PlacedScene {
   using VisitBox = std::function<void(const Bounds&)>;
-  PlacedScene(const SceneData& scene)
-      : data(scene), at(scene) {}  // NOLINT(google-explicit-constructor): a scene is placed as it is
+  PlacedScene(const SceneData& scene)  // NOLINT(google-explicit-constructor): a scene is placed as it is
+      : data(scene), at(scene) {}
   PlacedScene(const SceneData& scene, const Placements& placements) : data(scene), at(placements) {}
   const SceneData& data;
   const Placements& at;

@@ -33,13 +33,15 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
     group->find("cache_lines")->parse(std::to_string(w * random.pick({1, 1, 2, 8, 64})));
     group->find("cache_misses")->parse(std::to_string(random.pick({1, 2, 8})));
   }
-  config.work_distributor.policy.set(static_cast<hw::WarpPolicy>(random.integer(0, 2)));
+  config.work_distributor.policy.set(
+      *hw::distribution_policies().all()[static_cast<std::size_t>(random.integer(0, 2))]);
   config.work_distributor.block_tiles.set(random.pick({1, 2, 4, 2048}));
   config.core.warp_slots.set(random.pick({2, 3, 8, 32}));
   config.core.register_rows.set(random.pick({256, 1024}));
   config.core.simds.set(random.pick({1, 2, 4}));
   config.vertex_fetch.batch_slots.set(random.pick({2, 3, 16}));
-  config.vertex_fetch.reuse.set(static_cast<models::ReusePolicy>(random.integer(0, 2)));
+  config.vertex_fetch.reuse.set(
+      *models::vertex_reuse_policies().all()[static_cast<std::size_t>(random.integer(0, 2))]);
   config.primitive_assembly.triangles_per_clk.set(random.pick({1, 2, 64}));
   config.clipper.triangles_per_clk.set(random.pick({1, 3, 64}));
   config.triangle_setup.drawn_per_clk.set(random.pick({1, 2, 4}) / 2.0);

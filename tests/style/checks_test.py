@@ -87,6 +87,20 @@ class CheckNames(unittest.TestCase):
             with self.subTest(name=name, found=found):
                 self.assertIn(found, self.findings(name, text))
 
+    def test_finds_what_ctest_or_catch_would_misread_in_the_name_of_a_case(self):
+        for text, found in [
+            ('TEST_CASE("unit: this; that") {}\n', "hw/x_test.cpp:1: ';' in the name"),
+            ('int x;\nTEST_CASE(\n    "unit: this, "\n    "and; that", "[slow]") {}\n', "hw/x_test.cpp:2: ';' in the name"),
+            ('TEST_CASE("-unit: this") {}\n', "hw/x_test.cpp:1: '-' in the name"),
+            ('TEST_CASE("~unit: this") {}\n', "hw/x_test.cpp:1: '~' in the name"),
+            ('TEST_CASE("unit: a*b") {}\n', "hw/x_test.cpp:1: '*' in the name"),
+            ('TEST_CASE("unit: a \\"b\\"") {}\n', "hw/x_test.cpp:1: '\\' in the name"),
+        ]:
+            with self.subTest(text=text):
+                self.assertIn(found, self.findings("hw/x_test.cpp", text))
+        status, output = run("check_names", {"hw/x_test.cpp": 'TEST_CASE("unit: a-b") { f("a; b"); }\n'})
+        self.assertEqual(status, 0, output)
+
     def test_accepts_a_clean_file_and_a_source_whose_header_speaks_for_it(self):
         status, output = run("check_names", {"models/edge.h": CLEAN, "models/edge.cpp": '#include "models/edge.h"\n'})
         self.assertEqual(status, 0, output)

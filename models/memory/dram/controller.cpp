@@ -28,7 +28,7 @@ std::uint32_t bursts_of(std::uint8_t sectors, int burst_bytes) {
 
 DramController::DramController(const DramControllerParams& params)
     : params_(params),
-      mapping_(params.timing, params.interleave, params.hash),
+      mapping_(params.mapping->make(params.timing, params.hash)),
       parts_(std::make_unique<PseudoChannels>()) {
   const DramTiming& t = params_.timing;
   QUADRILLE_CHECK(
@@ -47,7 +47,7 @@ void DramController::take(const DramRequest& request, Cycle now) {
   if (held() == 0) catch_up(now);
   ++held_[request.write];
   DramEntry entry;
-  entry.at = mapping_.place(request.line);
+  entry.at = mapping_->place(request.line);
   entry.seq = seq_++;
   entry.arrived = now;
   entry.id = request.id;

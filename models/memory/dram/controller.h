@@ -26,14 +26,14 @@ namespace quadrille::models {
 
 struct DramControllerParams {
   DramTiming timing;
-  DramInterleave interleave = DramInterleave::kRow;
+  const DramMappingPolicy* mapping = &kRowMapping;
   bool hash = true;
-  DramSchedulerKind scheduler = DramSchedulerKind::kFirstReady;
+  const DramSchedulerPolicy* scheduler = &kFirstReadyScheduler;
   int in_order_ahead = 0;  ///< in order: requests behind the oldest whose rows are prepared
   std::int64_t age_cap = 1000;
-  DramWriteDrainKind write_drain = DramWriteDrainKind::kWatermark;
+  const DramWriteDrainPolicy* write_drain = &kWatermarkWriteDrain;
   int write_high = 112, write_low = 16;  ///< of the whole controller
-  DramPagePolicyKind page = DramPagePolicyKind::kOpen;
+  const DramPagePolicyEntry* page = &kOpenPages;
   std::int64_t page_idle = 200;
   int reads = 64, writes = 128;  ///< requests that it holds
 };
@@ -103,7 +103,7 @@ class DramController {
   void catch_up(Cycle now);
 
   DramControllerParams params_;
-  DramMapping mapping_;
+  std::unique_ptr<DramMapping> mapping_;
   std::unique_ptr<PseudoChannels> parts_;
   int held_[2] = {0, 0};
   std::uint64_t seq_ = 0;

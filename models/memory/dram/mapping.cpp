@@ -8,8 +8,13 @@
 namespace quadrille::models {
 
 namespace {
-/// Takes the lowest digit of base `count` off `number`.
-std::uint32_t digit(std::uint64_t& number, std::uint32_t count) {
+/// Another permutation of 0..count-1 for each key: exclusive or where the count allows it, else a rotation.
+std::uint32_t permuted(std::uint32_t value, std::uint32_t key, std::uint32_t count) {
+  return std::has_single_bit(count) ? value ^ (key & (count - 1)) : (value + key) % count;
+}
+}  // namespace
+
+std::uint32_t DramMapping::digit(std::uint64_t& number, std::uint32_t count) {
   if (std::has_single_bit(count)) {
     const auto low = static_cast<std::uint32_t>(number & (count - 1));
     number >>= std::countr_zero(count);
@@ -19,36 +24,26 @@ std::uint32_t digit(std::uint64_t& number, std::uint32_t count) {
   number /= count;
   return low;
 }
-/// Another permutation of 0..count-1 for each key: exclusive or where the count allows it, else a rotation.
-std::uint32_t permuted(std::uint32_t value, std::uint32_t key, std::uint32_t count) {
-  return std::has_single_bit(count) ? value ^ (key & (count - 1)) : (value + key) % count;
-}
-}  // namespace
 
-DramMapping::DramMapping(const DramTiming& t, DramInterleave interleave, bool hash)
+DramMapping::DramMapping(const DramTiming& t, bool hash)
     : pseudo_channels_(static_cast<std::uint32_t>(t.pseudo_channels)),
       groups_(static_cast<std::uint32_t>(t.bank_groups)),
       group_banks_(static_cast<std::uint32_t>(t.group_banks())),
       ranks_(static_cast<std::uint32_t>(t.ranks)),
       rows_(static_cast<std::uint32_t>(t.rows)),
       row_lines_(static_cast<std::uint32_t>(t.row_bytes) / kLineBytes),
-      interleave_(interleave),
       hash_(hash) {
   QUADRILLE_CHECK(row_lines_ > 0 && group_banks_ > 0, "row of {} bytes, {} banks in {} groups", t.row_bytes,
                   t.banks, t.bank_groups);
 }
 
 DramPlace DramMapping::place(std::uint64_t line) const {
-  std::uint64_t rest = line;
+  const Digits digits = split(line);
   DramPlace at;
-  at.pseudo_channel = digit(rest, pseudo_channels_);
-  std::uint32_t group = 0;
-  if (interleave_ == DramInterleave::kGroup) group = digit(rest, groups_);
-  at.column = digit(rest, row_lines_);
-  if (interleave_ == DramInterleave::kRow) group = digit(rest, groups_);
-  std::uint32_t bank = digit(rest, group_banks_);
-  const std::uint32_t rank = digit(rest, ranks_);
-  const auto row = static_cast<std::uint32_t>(rest % rows_);
+  at.pseudo_channel = digits.pseudo_channel;
+  at.column = digits.column;
+  std::uint32_t group = digits.group, bank = digits.bank;
+  const auto row = static_cast<std::uint32_t>(digits.row % rows_);
   if (hash_) {
     // Both digits of the bank take their own part of the row's number, folded so that far rows count too.
     const std::uint32_t key = row ^ row >> 5 ^ row >> 10;
@@ -56,7 +51,7 @@ DramPlace DramMapping::place(std::uint64_t line) const {
     group = permuted(group, key >> (std::bit_width(group_banks_) - 1), groups_);
     at.pseudo_channel = permuted(at.pseudo_channel, row ^ row >> 3 ^ row >> 7, pseudo_channels_);
   }
-  at.bank = (rank * groups_ + group) * group_banks_ + bank;
+  at.bank = (digits.rank * groups_ + group) * group_banks_ + bank;
   at.row = static_cast<std::int32_t>(row);
   return at;
 }

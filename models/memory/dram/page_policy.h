@@ -1,30 +1,33 @@
-/// Whether a row stays open once nobody waits for it, one case a policy.
-///   open      until another row of its bank is wanted
-///   closed    it closes with its last waiting burst (the precharge comes with the command)
-///   adaptive  it closes when nobody asked for it for `idle` cycles
+/// Whether a row stays open once nobody waits for it, one file a policy (page_*.cpp).
 #pragma once
 
+#include "models/base/policy.h"
 #include "models/memory/dram/request_queue.h"
 
 #include <cstdint>
 
 namespace quadrille::models {
 
-enum class DramPagePolicyKind { kOpen, kClosed, kAdaptive };
-
 class DramPagePolicy {
  public:
-  DramPagePolicy(DramPagePolicyKind kind, std::int64_t idle) : kind_(kind), idle_(idle) {}
+  virtual ~DramPagePolicy() = default;
   /// Shall the burst that was just chosen, the last one of its request if `last`, close its row?
-  [[nodiscard]] bool closes_with(const DramQueue& queue, std::uint32_t entry, bool last) const;
+  [[nodiscard]] virtual bool closes_with(const DramQueue& /*queue*/, std::uint32_t /*entry*/,
+                                         bool /*last*/) const {
+    return false;
+  }
   /// Closes rows that nobody uses any more.
-  [[nodiscard]] bool times() const { return kind_ == DramPagePolicyKind::kAdaptive; }
-  /// When a row that was used last at `used` shall close.
-  [[nodiscard]] std::int64_t closes_at(std::int64_t used) const { return used + idle_; }
-
- private:
-  DramPagePolicyKind kind_;
-  std::int64_t idle_;
+  [[nodiscard]] virtual bool times() const { return false; }
+  /// When a row that was used last at `used` shall close; asked only of a policy that `times()`.
+  [[nodiscard]] virtual std::int64_t closes_at(std::int64_t /*used*/) const { return INT64_MAX; }
 };
+
+struct DramPageSetup {
+  std::int64_t idle = 0;  ///< `adaptive`: cycles without a burst after which a row closes
+};
+using DramPagePolicyEntry = Policy<DramPagePolicy, const DramPageSetup&>;
+/// What `memory.page` chooses from.
+[[nodiscard]] PolicyList<DramPagePolicyEntry>& dram_page_policies();
+extern const DramPagePolicyEntry kOpenPages, kClosedPages, kAdaptivePages;
 
 }  // namespace quadrille::models

@@ -14,10 +14,10 @@ DramController::PseudoChannel::PseudoChannel(const DramControllerParams& params,
       number_(number),
       queue_(static_cast<std::size_t>(params.timing.all_banks())),
       device_(params.timing),
-      scheduler_(make_dram_scheduler(params.scheduler, params.in_order_ahead)),
-      drain_(params.write_drain, std::max(1, params.write_high / params.timing.pseudo_channels),
-             params.write_low / params.timing.pseudo_channels),
-      page_(params.page, params.page_idle),
+      scheduler_(params.scheduler->make({params.in_order_ahead})),
+      drain_(params.write_drain->make({std::max(1, params.write_high / params.timing.pseudo_channels),
+                                       params.write_low / params.timing.pseudo_channels})),
+      page_(params.page->make({params.page_idle})),
       refresh_(static_cast<std::size_t>(params.timing.ranks), DramRefreshClock(params.timing)),
       used_(static_cast<std::size_t>(params.timing.all_banks()), 0),
       view_{queue_, device_},
@@ -77,9 +77,9 @@ void DramController::PseudoChannel::update_pick(std::uint32_t bank) {
 }
 
 bool DramController::PseudoChannel::update_view(Cycle now) {
-  drain_.update(queue_);
+  drain_->update(queue_);
   // Before a refresh that must be, a row that was just opened gets its burst whatever the drain does.
-  DramView view{queue_, device_, drain_.reads() || any_must_, drain_.writes() || any_must_};
+  DramView view{queue_, device_, drain_->reads() || any_must_, drain_->writes() || any_must_};
   Cycle holds_until = kNever;
   for (const bool write : {false, true}) {
     const std::uint32_t oldest = queue_.oldest(write);
@@ -103,7 +103,7 @@ void DramController::PseudoChannel::consider_idle_rows(Action& best, Cycle now) 
   for (std::uint32_t bank = 0; bank < used_.size(); ++bank) {
     if (device_.open_row(bank) == DramDevice::kClosed || queue_.bank_count(bank) > 0) continue;
     const Cycle at =
-        std::max({device_.earliest_precharge(bank), page_.closes_at(used_[bank]), commands_.free(false)});
+        std::max({device_.earliest_precharge(bank), page_->closes_at(used_[bank]), commands_.free(false)});
     consider(best, now, {at, ~std::uint64_t{0} - 1, Step::kPrecharge, bank});
   }
 }
@@ -111,7 +111,7 @@ void DramController::PseudoChannel::consider_idle_rows(Action& best, Cycle now) 
 DramController::PseudoChannel::Action DramController::PseudoChannel::choose(Cycle now) {
   Action best;
   consider_refresh(best, now);
-  if (page_.times()) consider_idle_rows(best, now);
+  if (page_->times()) consider_idle_rows(best, now);
   if (queue_.empty()) return best;
   if (any_must_ || now >= view_holds_until_) (void)update_view(now);
   choose_pick(best, now);
@@ -185,7 +185,7 @@ bool DramController::PseudoChannel::move_burst(std::uint32_t index, Cycle now, s
   const int burst = std::countr_zero(entry.bursts);
   entry.bursts &= entry.bursts - 1;
   const bool last = entry.bursts == 0;
-  const bool closes = page_.closes_with(queue_, index, last);
+  const bool closes = page_->closes_with(queue_, index, last);
   if (command != nullptr) {
     command->row = entry.at.row;
     command->column = static_cast<std::int32_t>(entry.at.column) * static_cast<int>(kLineBytes) /

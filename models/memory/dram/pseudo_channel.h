@@ -98,8 +98,8 @@ class DramController::PseudoChannel {
   DramQueue queue_;
   DramDevice device_;
   std::unique_ptr<DramScheduler> scheduler_;
-  DramWriteDrain drain_;
-  DramPagePolicy page_;
+  std::unique_ptr<DramWriteDrain> drain_;
+  std::unique_ptr<DramPagePolicy> page_;
   std::vector<DramRefreshClock> refresh_;  ///< by rank
   BusAccount bus_;
   Cycle waiting_since_ = 0;  ///< the queue was empty until then

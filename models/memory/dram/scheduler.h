@@ -1,17 +1,15 @@
-/// Which requests a controller considers, one class a policy. It names requests; what each needs next (its
-/// row closed, opened, a burst moved) and when the rules allow it is the controller's: among what can be done
-/// now the oldest request comes first.
+/// Which requests a controller considers, one file a policy (scheduler_*.cpp). It names requests; what each
+/// needs next (its row closed, opened, a burst moved) and when the rules allow it is the controller's: among
+/// what can be done now the oldest request comes first.
 #pragma once
 
+#include "models/base/policy.h"
 #include "models/memory/dram/device.h"
 #include "models/memory/dram/request_queue.h"
 
 #include <array>
-#include <memory>
 
 namespace quadrille::models {
-
-enum class DramSchedulerKind { kInOrder, kFirstReady };
 
 struct DramView {
   const DramQueue& queue;
@@ -32,35 +30,13 @@ class DramScheduler {
   [[nodiscard]] virtual bool looks_beyond_bank() const = 0;
 };
 
-/// Bursts move in the order of arrival. With `ahead` of 0 what waits behind the oldest request waits for all
-/// of it [P: Rixner et al., Memory Access Scheduling, ISCA 2000: in order]; else the rows of that many
-/// requests behind it are closed and opened meanwhile, in banks that no older one needs.
-class InOrderScheduler final : public DramScheduler {
- public:
-  explicit InOrderScheduler(int ahead) : ahead_(ahead) {}
-  [[nodiscard]] std::uint32_t pick(const DramView& view, std::uint32_t bank) const override;
-  [[nodiscard]] bool moves(const DramView& view, std::uint32_t request) const override {
-    return request == oldest(view);
-  }
-  [[nodiscard]] bool looks_beyond_bank() const override { return true; }
-
- private:
-  [[nodiscard]] static std::uint32_t oldest(const DramView& view);
-  int ahead_;
+/// Numbers of the machine that schedulers may use.
+struct DramSchedulerSetup {
+  int in_order_ahead = 0;  ///< `in_order`: requests behind the oldest whose rows are prepared
 };
-
-/// One request a bank: the oldest that hits the open row, else the oldest of all. Rows of other banks are
-/// prepared meanwhile. When the oldest request waits longer than the age cap, younger hits to its bank no
-/// longer go before it. [P: Rixner et al. 2000: first-ready]
-class FirstReadyScheduler final : public DramScheduler {
- public:
-  [[nodiscard]] std::uint32_t pick(const DramView& view, std::uint32_t bank) const override;
-  [[nodiscard]] bool looks_beyond_bank() const override { return false; }
-
- private:
-  [[nodiscard]] static std::uint32_t of_kind(const DramView& view, std::uint32_t bank, bool write);
-};
-
-[[nodiscard]] std::unique_ptr<DramScheduler> make_dram_scheduler(DramSchedulerKind kind, int in_order_ahead);
+using DramSchedulerPolicy = Policy<DramScheduler, const DramSchedulerSetup&>;
+/// What `memory.scheduler` chooses from.
+[[nodiscard]] PolicyList<DramSchedulerPolicy>& dram_schedulers();
+extern const DramSchedulerPolicy kInOrderScheduler, kFirstReadyScheduler;
 
 }  // namespace quadrille::models

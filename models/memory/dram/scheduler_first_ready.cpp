@@ -1,7 +1,20 @@
-/// First-ready scheduling (scheduler.h).
+/// First ready: one request a bank, the oldest that hits the open row, else the oldest of all. Rows of other
+/// banks are prepared meanwhile. When the oldest request waits longer than the age cap, younger hits to its
+/// bank no longer go before it. [P: Rixner et al. 2000: first-ready]
 #include "models/memory/dram/scheduler.h"
 
 namespace quadrille::models {
+
+namespace {
+
+class FirstReadyScheduler final : public DramScheduler {
+ public:
+  [[nodiscard]] std::uint32_t pick(const DramView& view, std::uint32_t bank) const override;
+  [[nodiscard]] bool looks_beyond_bank() const override { return false; }
+
+ private:
+  [[nodiscard]] static std::uint32_t of_kind(const DramView& view, std::uint32_t bank, bool write);
+};
 
 std::uint32_t FirstReadyScheduler::of_kind(const DramView& view, std::uint32_t bank, bool write) {
   const std::uint32_t oldest = view.queue.oldest(bank, write);
@@ -21,12 +34,12 @@ std::uint32_t FirstReadyScheduler::pick(const DramView& view, std::uint32_t bank
   return view.queue[read].seq < view.queue[write].seq ? read : write;
 }
 
-std::unique_ptr<DramScheduler> make_dram_scheduler(DramSchedulerKind kind, int in_order_ahead) {
-  switch (kind) {
-    case DramSchedulerKind::kInOrder: return std::make_unique<InOrderScheduler>(in_order_ahead);
-    case DramSchedulerKind::kFirstReady: return std::make_unique<FirstReadyScheduler>();
-  }
-  return nullptr;
-}
+}  // namespace
+
+constinit const DramSchedulerPolicy kFirstReadyScheduler{
+    "first_ready", "hits to open rows go first: fewer rows are opened, and the data bus waits less",
+    [](const DramSchedulerSetup& /*setup*/) -> std::unique_ptr<DramScheduler> {
+      return std::make_unique<FirstReadyScheduler>();
+    }};
 
 }  // namespace quadrille::models

@@ -10,7 +10,8 @@ TEST_CASE(
     "batch_slots: a slot is free again when its batch is released, and when the last batch that names it "
     "is") {
   BatchSlots slots(3);
-  const models::VertexReuse reuse;
+  const std::unique_ptr<models::VertexReuse> made = models::kBatchReuse.make({});
+  const models::VertexReuse& reuse = *made;
   const std::uint32_t first = slots.take(), second = slots.take();
   slots.note_use(first);  // the second batch names a vertex of the first
   (void)slots.take();
@@ -29,7 +30,8 @@ TEST_CASE(
 
 TEST_CASE("batch_slots: a slot is kept while its vertices may be named again") {
   BatchSlots slots(2);
-  models::VertexReuse reuse(models::ReusePolicy::kFifo, 32, 4);
+  const std::unique_ptr<models::VertexReuse> made = models::kFifoReuse.make({32, 4});
+  models::VertexReuse& reuse = *made;
   reuse.start_batch(slots.take());
   for (const std::uint32_t v : {0u, 1u, 2u}) (void)reuse.place(v);
   slots.release();

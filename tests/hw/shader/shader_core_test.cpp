@@ -20,7 +20,7 @@ struct CoreBench final : Bench {
     std::vector<Timed<TextureToken>> texels{};
     int simds = 4, simd_lanes = 8, sfu_lanes = 2, warp_slots = 32, rows = 1024;
     int alu_clk = 4, sfu_clk = 0, interp_clk = 0, const_clk = 0, branch_clk = 0;
-    WarpScheduling scheduler = WarpScheduling::kOldest;
+    const SimdSharingPolicy* scheduler = &kOldestSharing;
     bool textured = false;
     Pace pace{};
     LinkSpec out{.depth = 64};
@@ -53,7 +53,7 @@ struct CoreBench final : Bench {
     params.interp_clk.set(s.interp_clk);
     params.const_clk.set(s.const_clk);
     params.branch_clk.set(s.branch_clk);
-    params.scheduler.set(s.scheduler);
+    params.scheduler.set(*s.scheduler);
     params.warp_slots.set(s.warp_slots);
     params.register_rows.set(s.rows);
     unit = std::make_unique<ShaderCore>("unit", context(), params,
@@ -184,16 +184,16 @@ TEST_CASE("shader_core: independent instructions are bound by their issue, whate
 TEST_CASE(
     "shader_core: other warps of a SIMD hide the latency of a chain up to its issue bound and no further") {
   constexpr int kLength = 64, kIssue = 4, kLatency = 17;
-  for (const WarpScheduling scheduler : {WarpScheduling::kOldest, WarpScheduling::kRoundRobin}) {
+  for (const SimdSharingPolicy* scheduler : {&kOldestSharing, &kRoundRobinSharing}) {
     const CoreBench::Setup s{.simds = 1, .alu_clk = kLatency, .scheduler = scheduler};
     const int alone = cycles_of(s, repeated(kDependent, kLength), 1);
     for (const int warps : {1, 2, 3, 4, 8}) {
       // The oldest first: four fill the SIMD, and what comes after them begins when they end.
-      const int rounds = scheduler == WarpScheduling::kOldest ? (warps + 3) / 4 : 1;
-      const int expected = scheduler == WarpScheduling::kOldest
+      const int rounds = scheduler == &kOldestSharing ? (warps + 3) / 4 : 1;
+      const int expected = scheduler == &kOldestSharing
                                ? rounds * kLength * kLatency
                                : std::max(kLength * kLatency, warps * kLength * kIssue);
-      INFO(warps << " warps, policy " << static_cast<int>(scheduler));
+      INFO(warps << " warps, policy " << scheduler->name);
       CHECK(cycles_of(s, repeated(kDependent, kLength), warps) ==
             Approx(static_cast<double>(alone + expected - kLength * kLatency))
                 .epsilon(warps <= 4 ? 0.02 : 0.05));  // what four leave of the SIMD goes to the fifth

@@ -6,7 +6,7 @@
 using namespace quadrille::hw;
 
 TEST_CASE("simd: issue cycles are used as time goes by, not when a clause comes") {
-  Simd simd(WarpScheduling::kRoundRobin);
+  Simd simd(kRoundRobinSharing);
   simd.add(0, 1, 1000, 1000);
   CHECK(simd.issued(0) == 0);
   CHECK(simd.issued(250) == Approx(250));
@@ -22,7 +22,7 @@ TEST_CASE("simd: issue cycles are used as time goes by, not when a clause comes"
 }
 
 TEST_CASE("simd: a clause alone that waits for its results uses its work's part of each cycle") {
-  Simd simd(WarpScheduling::kOldest);
+  Simd simd(kOldestSharing);
   simd.add(10, 1, 100, 400);
   CHECK(simd.issued(210) == Approx(50));
   CHECK(simd.issued(410) == Approx(100));

@@ -16,12 +16,12 @@ struct DistributorBench final : Bench {
     std::vector<Timed<WarpToken>> vertex{}, fragment_0{}, fragment_1{};
     std::vector<Pace> cores;
     LinkSpec out{.depth = 4};
-    WarpPolicy policy = WarpPolicy::kLeastLoaded;
+    const DistributionPolicy* policy = &kLeastLoadedDistribution;
     int block_tiles = 4;
     std::vector<Timed<ReleaseToken>> done{};  ///< `slot` is the core
   };
   DistributorBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
-    params.policy.set(s.policy);
+    params.policy.set(*s.policy);
     params.block_tiles.set(s.block_tiles);
     unit = std::make_unique<WorkDistributor>(
         "unit", context({.cores = static_cast<int>(s.cores.size()), .partitions = 2}), params);
@@ -65,7 +65,7 @@ std::string fragment_text(const DistributorBench& b) {
 }  // namespace
 
 TEST_CASE("work_distributor: cores that are equally loaded take turns, one warp a cycle") {
-  for (const WarpPolicy policy : {WarpPolicy::kRoundRobin, WarpPolicy::kTile, WarpPolicy::kLeastLoaded})
+  for (const DistributionPolicy* policy : distribution_policies().all())
     CHECK(run<DistributorBench>({.vertex = warps(0, 6), .cores = {{}, {}, {}}, .policy = policy},
                                 vertex_text) == "2:0 5:3 | 3:1 6:4 | 4:2 7:5");
 }
@@ -78,7 +78,7 @@ TEST_CASE(
   for (const auto& [cycle, core] : {std::pair{18, 1u}, {28, 2u}, {38, 1u}, {48, 2u}, {58, 1u}, {68, 2u}})
     s.done.push_back({cycle, {core, 0}});
   CHECK(run<DistributorBench>(s, vertex_text) == "2:0 | 12:1 32:3 52:5 | 22:2 42:4 62:6");
-  s.policy = WarpPolicy::kRoundRobin;
+  s.policy = &kRoundRobinDistribution;
   s.done.clear();
   CHECK(run<DistributorBench>(s, vertex_text) == "2:0 32:3 62:6 | 12:1 42:4 | 22:2 52:5");
 }
@@ -94,7 +94,7 @@ TEST_CASE(
     "work_distributor: by tile, the warps of a square of tiles go to one core, and those of its neighbours "
     "to others") {
   DistributorBench::Setup s{
-      .cores = {{}, {}, {}, {}}, .out = {.depth = 64}, .policy = WarpPolicy::kTile, .block_tiles = 2};
+      .cores = {{}, {}, {}, {}}, .out = {.depth = 64}, .policy = &kTileDistribution, .block_tiles = 2};
   std::uint32_t slot = 0;
   for (std::uint16_t y = 0; y < 4; ++y) {
     for (std::uint16_t x = 0; x < 4; ++x, ++slot)
@@ -119,12 +119,12 @@ TEST_CASE(
     "past it") {
   DistributorBench::Setup s{.cores = {{.from = 100}, {.from = 100}},
                             .out = {.depth = 2},
-                            .policy = WarpPolicy::kTile,
+                            .policy = &kTileDistribution,
                             .block_tiles = 1};
   for (std::uint32_t i = 0; i < 3; ++i) s.fragment_0.push_back({0, {0, i, 0, 0, 0}});
   s.fragment_1.push_back({50, {0, 9, 1, 1, 0}});
   CHECK(run<DistributorBench>(s, fragment_text) == "100:0 101:1 102:2 | 100:9");
-  s.policy = WarpPolicy::kLeastLoaded;
+  s.policy = &kLeastLoadedDistribution;
   CHECK(run<DistributorBench>(s, fragment_text) == "100:0 101:2 | 100:1 101:9");
 }
 
@@ -149,7 +149,7 @@ TEST_CASE(
 }
 
 TEST_CASE("work_distributor: keeps the contract, one-deep links included") {
-  for (const WarpPolicy policy : {WarpPolicy::kRoundRobin, WarpPolicy::kTile, WarpPolicy::kLeastLoaded}) {
+  for (const DistributionPolicy* policy : distribution_policies().all()) {
     DistributorBench::Setup s{.vertex = warps(0, 9),
                               .fragment_0 = warps(10, 7),
                               .fragment_1 = warps(20, 5, 3),

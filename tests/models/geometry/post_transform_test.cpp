@@ -62,7 +62,10 @@ std::vector<Mesh> meshes() {
 }
 
 /// Vertices shaded, batches formed as vertex fetch forms them, each in a slot of its own.
-std::uint64_t shaded(const Mesh& mesh, VertexReuse reuse, std::size_t batch_triangles) {
+std::uint64_t shaded(const Mesh& mesh, const VertexReusePolicy& policy, const VertexReuseSetup& setup,
+                     std::size_t batch_triangles) {
+  const std::unique_ptr<VertexReuse> made = policy.make(setup);
+  VertexReuse& reuse = *made;
   std::uint64_t vertices = 0;
   std::uint32_t slot = 0;
   for (std::size_t t = 0; t < mesh.size();) {
@@ -89,8 +92,8 @@ TEST_CASE(
   for (const Mesh& mesh : meshes()) {
     for (const unsigned vertices : {3u, 4u, 5u, 16u, 31u, 32u}) {
       for (const unsigned triangles : {1u, 2u, 32u, 64u, 128u}) {
-        const VertexReuse reuse(ReusePolicy::kBatch, static_cast<int>(vertices));
-        CHECK(shaded(mesh, reuse, triangles) == analysed(mesh, vertices, vertices, triangles));
+        CHECK(shaded(mesh, kBatchReuse, {static_cast<int>(vertices)}, triangles) ==
+              analysed(mesh, vertices, vertices, triangles));
       }
     }
   }
@@ -102,31 +105,31 @@ TEST_CASE(
   for (const Mesh& mesh : meshes()) {
     for (const unsigned entries : {3u, 4u, 16u, 32u, 128u}) {
       for (const int vertices : {3, 5, 32}) {
-        const VertexReuse reuse(ReusePolicy::kFifo, vertices, static_cast<int>(entries));
-        CHECK(shaded(mesh, reuse, 1 + entries) == analysed(mesh, entries, 0, 0));
+        CHECK(shaded(mesh, kFifoReuse, {vertices, static_cast<int>(entries)}, 1 + entries) ==
+              analysed(mesh, entries, 0, 0));
       }
     }
   }
 }
 
 TEST_CASE("post_transform: without reuse every corner is shaded") {
-  for (const Mesh& mesh : meshes())
-    CHECK(shaded(mesh, VertexReuse(ReusePolicy::kNone), 32) == 3 * mesh.size());
+  for (const Mesh& mesh : meshes()) CHECK(shaded(mesh, kNoReuse, {}, 32) == 3 * mesh.size());
 }
 
 TEST_CASE(
     "post_transform: the published steps: 0,1,2 repeated is shaded again from the 33rd triangle of a "
     "GeForce, the 129th of a Radeon") {
   for (const std::size_t limit : {32u, 128u}) {
-    CHECK(shaded(repeated(limit), VertexReuse(), limit) == 3);
-    CHECK(shaded(repeated(limit + 1), VertexReuse(), limit) == 6);
+    CHECK(shaded(repeated(limit), kBatchReuse, {}, limit) == 3);
+    CHECK(shaded(repeated(limit + 1), kBatchReuse, {}, limit) == 6);
   }
 }
 
 TEST_CASE("post_transform: a batch gives each vertex one lane in order of arrival") {
   RandomSource random(101);
   for (int round = 0; round < 300; ++round) {
-    VertexReuse reuse;
+    const std::unique_ptr<VertexReuse> made = kBatchReuse.make({});
+    VertexReuse& reuse = *made;
     std::map<std::uint32_t, int> lanes;
     // Indices that meet in the hash table: the same bits, and far ones.
     const std::uint32_t base = random.bits(), step = round % 3 == 0 ? 1u << 25 : 1u;
@@ -137,7 +140,7 @@ TEST_CASE("post_transform: a batch gives each vertex one lane in order of arriva
           std::ranges::count_if(triangle, [&](std::uint32_t v) { return !lanes.contains(v); });
       REQUIRE(reuse.fits(triangle) == (lanes.size() + static_cast<std::size_t>(missing) <= 32));
       if (!reuse.fits(triangle)) {
-        reuse.start_batch();
+        reuse.start_batch(0);
         lanes.clear();
         CHECK(reuse.size() == 0);
         continue;
@@ -153,7 +156,8 @@ TEST_CASE("post_transform: a batch gives each vertex one lane in order of arriva
 }
 
 TEST_CASE("post_transform: a full batch refuses another vertex, and a new one named twice asks two lanes") {
-  VertexReuse reuse;
+  const std::unique_ptr<VertexReuse> made = kBatchReuse.make({});
+  VertexReuse& reuse = *made;
   for (std::uint32_t i = 0; i < 31; ++i) CHECK(reuse.place(i * 7).lane == i);
   CHECK(reuse.fits({0, 7, 1}));
   CHECK_FALSE(reuse.fits({0, 1, 1}));
@@ -166,7 +170,8 @@ TEST_CASE("post_transform: a full batch refuses another vertex, and a new one na
 TEST_CASE(
     "post_transform: a FIFO names the slot that shaded a vertex until it is pushed out, and forgets whole "
     "slots to keep a limit") {
-  VertexReuse reuse(ReusePolicy::kFifo, 32, 4);
+  const std::unique_ptr<VertexReuse> made = kFifoReuse.make({32, 4});
+  VertexReuse& reuse = *made;
   reuse.start_batch(5);
   for (const std::uint32_t v : {10u, 11u, 12u}) (void)reuse.place(v);
   reuse.start_batch(6);

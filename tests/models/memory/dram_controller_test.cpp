@@ -76,7 +76,7 @@ DramControllerParams plain(const std::string& standard) {
   DramControllerParams p = of(standard);
   p.timing.refresh = DramRefresh::kNone;
   p.hash = false;
-  p.interleave = DramInterleave::kRow;
+  p.mapping = &kRowMapping;
   return p;
 }
 
@@ -212,7 +212,7 @@ TEST_CASE("dram_controller: first-ready serves the open row first, and the age c
   CHECK(rows_opened() == 2);
   p.age_cap = 0;
   CHECK(rows_opened() > 2);
-  p.scheduler = DramSchedulerKind::kInOrder;
+  p.scheduler = &kInOrderScheduler;
   CHECK(rows_opened() == 40);
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("dram_controller: with watermarks reads go before waiting writes, unti
   for (std::uint64_t i = 0; i < 600; ++i)
     requests.push_back({static_cast<Cycle>(4 * i), {i, kSector, i % 3 != 0}});
   const double with = mean_read();
-  p.write_drain = DramWriteDrainKind::kOff;
+  p.write_drain = &kNoWriteDrain;
   CHECK(mean_read() > 1.2 * with);
 }
 
@@ -245,16 +245,16 @@ TEST_CASE(
   // The same row again after 100 cycles, and after 500 more.
   const std::vector<Timed> requests{
       {0, {0, kSector, false}}, {100, {0, kSector, false}}, {600, {0, kSector, false}}};
-  const auto rows = [&](DramPagePolicyKind page) {
-    p.page = page;
+  const auto rows = [&](const DramPagePolicyEntry& page) {
+    p.page = &page;
     std::string text;
     for (const DramDone& d : serve(p, requests).done)
       text += d.row == DramRowOutcome::kHit ? "hit " : d.row == DramRowOutcome::kMiss ? "miss " : "conflict ";
     return text;
   };
-  CHECK(rows(DramPagePolicyKind::kOpen) == "miss hit hit ");
-  CHECK(rows(DramPagePolicyKind::kClosed) == "miss miss miss ");
-  CHECK(rows(DramPagePolicyKind::kAdaptive) == "miss hit miss ");
+  CHECK(rows(kOpenPages) == "miss hit hit ");
+  CHECK(rows(kClosedPages) == "miss miss miss ");
+  CHECK(rows(kAdaptivePages) == "miss hit miss ");
 }
 
 TEST_CASE("dram_controller: refreshes keep their mean interval, postponed while requests wait") {

@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 
 namespace quadrille::models {
@@ -119,7 +120,7 @@ DramControllerParams controller_params(const DramTraffic& traffic) {
   params.scheduler = traffic.policy.scheduler;
   params.page = traffic.policy.page;
   params.write_drain = traffic.policy.write_drain;
-  params.interleave = traffic.policy.interleave;
+  params.mapping = traffic.policy.mapping;
   params.hash = traffic.policy.hash;
   return params;
 }
@@ -203,17 +204,25 @@ const char* dram_pattern_name(DramPattern pattern) {
   return "?";
 }
 
+// Every scheduler with every page policy; the other policies take turns, so that each is there with several
+// of them. The first row is that of the default machine, but for its mapping.
 const std::vector<DramPolicy>& dram_policies() {
-  static const std::vector<DramPolicy> policies{
-      {"first ready, open pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kOpen,
-       DramWriteDrainKind::kWatermark, DramInterleave::kGroup, true},
-      {"first ready, closed pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kClosed,
-       DramWriteDrainKind::kOff, DramInterleave::kRow, false},
-      {"first ready, adaptive pages", DramSchedulerKind::kFirstReady, DramPagePolicyKind::kAdaptive,
-       DramWriteDrainKind::kWatermark, DramInterleave::kRow, true},
-      {"in order, open pages", DramSchedulerKind::kInOrder, DramPagePolicyKind::kOpen,
-       DramWriteDrainKind::kOff, DramInterleave::kGroup, false},
-  };
+  static const std::vector<DramPolicy> policies = [] {
+    const auto& drains = dram_write_drains().all();
+    const auto& mappings = dram_mappings().all();
+    std::vector<DramPolicy> all;
+    for (const DramSchedulerPolicy* scheduler : dram_schedulers().all() | std::views::reverse) {
+      for (const DramPagePolicyEntry* page : dram_page_policies().all()) {
+        const std::size_t turn = all.size();
+        const auto* drain = drains[(turn + 1) % drains.size()];
+        const auto* mapping = mappings[turn % mappings.size()];
+        all.push_back({fmt::format("scheduler {}, page {}, write_drain {}, mapping {}", scheduler->name,
+                                   page->name, drain->name, mapping->name),
+                       scheduler, page, drain, mapping, turn % 2 == 0});
+      }
+    }
+    return all;
+  }();
   return policies;
 }
 

@@ -24,11 +24,11 @@ const char* dram_pattern_name(DramPattern pattern);
 
 /// A controller's policies as a test names them.
 struct DramPolicy {
-  const char* name;
-  DramSchedulerKind scheduler;
-  DramPagePolicyKind page;
-  DramWriteDrainKind write_drain;
-  DramInterleave interleave;
+  std::string name;
+  const DramSchedulerPolicy* scheduler;
+  const DramPagePolicyEntry* page;
+  const DramWriteDrainPolicy* write_drain;
+  const DramMappingPolicy* mapping;
   bool hash;
 };
 const std::vector<DramPolicy>& dram_policies();

@@ -1,0 +1,203 @@
+/// The surface cache by itself: tiles that are marked instead of cleared, sectors that are fetched, written
+/// whole or in part, and what a flush writes.
+#include "hw/rop/surface_cache.h"
+#include "tests/hw/bench_stub.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace quadrille;
+using namespace quadrille::hw;
+using namespace quadrille::hw::bench;
+
+namespace {
+
+constexpr int kLatency = 20;  ///< of the memory behind the cache, cycles
+
+class SurfaceUser;
+using Use = std::function<void(SurfaceUser&)>;
+
+/// Uses a surface cache as its script says and notes what it is told.
+class SurfaceUser final : public StubUnit {
+ public:
+  struct Shape {
+    int lines = 16, ways = 16, misses = 4;
+  };
+  SurfaceUser(sc_core::sc_module_name name, const Clock& clock, Shape shape, models::DeviceMemory& memory,
+              std::vector<Timed<Use>> script)
+      : StubUnit(name, Kind::kChooser, clock),
+        cache(stats_, shape.lines, shape.ways, shape.misses, memory, surface_writer(SurfaceKind::kColor, 0)),
+        port(*this, stats_, 1),
+        script_(std::move(script)) {}
+  Wake next() const override {
+    Wake wake = played_ < script_.size() ? Wake(script_[played_].cycle * kCycle) : Wake(kNever);
+    if (!port.queue_empty()) wake = Wake::sooner(wake, port.send_wake());
+    return Wake::sooner(wake, port.receive_wake());
+  }
+  void act(Tick now) override {
+    port.receive(now, [&](const MemoryResponse& answer) {
+      cache.fill(answer, [&](std::uint32_t waiter) { log += fmt::format("ready {}; ", waiter); });
+    });
+    while (played_ < script_.size() && script_[played_].cycle * kCycle <= now)
+      script_[played_++].token(*this);
+    port.send(now);
+  }
+  bool finished() const override { return played_ == script_.size() && port.queue_empty(); }
+  const StatGroup* stats() const override { return &stats_; }
+
+ private:
+  StatGroup stats_;
+
+ public:
+  SurfaceCache cache;
+  MemoryPort port;
+  std::string log;
+  std::uint8_t done = 0;  ///< of the tile that is being acquired
+
+ private:
+  std::vector<Timed<Use>> script_;
+  std::size_t played_ = 0;
+};
+
+struct SurfaceBench final : Bench {
+  struct Setup {
+    std::vector<Timed<Use>> script;
+    SurfaceUser::Shape shape{};
+    std::uint32_t partitions = 1;  ///< that share the surface; the cache is of the first
+  };
+  SurfaceBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
+    surface = models::allocate_surface(device, 8, 32);
+    unit = std::make_unique<SurfaceUser>("unit", clock, s.shape, device, s.script);
+    unit->cache.clear(surface, 7, 0, s.partitions);
+    add(*unit);
+    memory = &serve(unit->port, kLatency);
+  }
+  /// A column of four tiles: lines 0 and 1 of the surface are the first tile's, and so on.
+  models::SurfaceLayout surface;
+  std::unique_ptr<SurfaceUser> unit;
+  StubMemory* memory = nullptr;
+};
+
+/// Asks for sectors of tile (0, y): what is missing is noted, or "no place".
+Use acquire(std::uint32_t y, const SectorWishes& wishes, std::uint32_t waiter) {
+  return [=](SurfaceUser& u) {
+    int missing = 0;
+    const bool placed = u.cache.acquire(0, y, wishes, waiter, missing, u.done, u.port);
+    u.log += placed ? fmt::format("missing {}; ", missing) : fmt::format("no place, missing {}; ", missing);
+    if (placed) u.done = 0;
+  };
+}
+/// Pixels of tile (0, y) are written: the same of each of these sectors.
+Use write(std::uint32_t y, std::uint8_t sectors, std::uint8_t pixels) {
+  return [=](SurfaceUser& u) {
+    SectorPixels written{};
+    for (unsigned s = 0; s < 8; ++s) written[s] = (sectors >> s & 1) != 0 ? pixels : std::uint8_t{0};
+    u.log += u.cache.write(0, y, written, u.port) ? "" : "not written; ";
+  };
+}
+Use flush(bool write_cleared) {
+  return [=](SurfaceUser& u) { u.cache.flush(u.port, write_cleared); };
+}
+
+/// What the user was told, then what reached memory as "kind line/sectors", lines counted from the surface's
+/// first, then the counts of clears.
+std::string seen(std::vector<Timed<Use>> script, SurfaceUser::Shape shape = {},
+                 std::uint32_t partitions = 1) {
+  return run<SurfaceBench>({std::move(script), shape, partitions}, [](const SurfaceBench& b) {
+    const auto first = static_cast<std::uint32_t>(b.surface.base / models::kLineBytes);
+    std::string text = b.unit->log + "|";
+    for (const auto& [cycle, r] : b.memory->got)
+      text += fmt::format(" {}{}/{:x}", "rwpf"[static_cast<int>(r.kind)], r.line - first, r.sectors);
+    return text + fmt::format(" | marked {} found {} written {} dirty {}",
+                              counter(*b.unit, "fast_cleared_tiles"), counter(*b.unit, "clear_hits"),
+                              counter(*b.unit, "clear_writes"), b.device.dirty_lines());
+  });
+}
+
+/// The clear's marks are gone: tiles are fetched.
+const Use kForget = flush(false);
+constexpr std::uint8_t kWhole = 0xff, kFirstQuad = 0x0f;
+
+}  // namespace
+
+TEST_CASE("surface_cache: a clear marks tiles and asks nothing of memory") {
+  CHECK(seen({}) == "| | marked 4 found 0 written 0 dirty 0");
+  CHECK(seen({}, {}, 2) == "| | marked 2 found 0 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: the first access to a marked tile finds all of it, and it is written once") {
+  CHECK(seen({{0, acquire(0, {.read = 0x01}, 1)}, {1, acquire(0, {.read = 0xff}, 2)}, {2, flush(false)}}) ==
+        "missing 0; missing 0; | w0/f w1/f | marked 4 found 1 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: a flush writes the tiles that are still marked, or drops their marks") {
+  CHECK(seen({{0, acquire(1, {.read = 0x01}, 1)}, {1, flush(true)}}) ==
+        "missing 0; | w2/f w3/f w0/f w1/f w4/f w5/f w6/f w7/f | marked 4 found 1 written 3 dirty 0");
+  CHECK(seen({{0, flush(false)}, {1, flush(true)}}) == "| | marked 4 found 0 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: sectors of both lines of a tile are fetched, and the waiter is told of each") {
+  CHECK(seen({{0, kForget}, {1, acquire(1, {.read = 0x21}, 9)}, {60, acquire(1, {.read = 0x21}, 9)}}) ==
+        "missing 2; ready 9; ready 9; missing 0; | r2/1 r3/2 | marked 4 found 0 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: a sector that is overwritten whole is not fetched") {
+  CHECK(seen({{0, kForget},
+              {1, acquire(1, {.write = 0x12}, 1)},
+              {2, write(1, 0x12, kWhole)},
+              {3, flush(false)}}) == "missing 0; | w2/2 w3/1 | marked 4 found 0 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: a sector that is written in part leaves in part") {
+  CHECK(seen({{0, kForget},
+              {1, acquire(1, {.part = 0x10}, 1)},
+              {2, write(1, 0x10, kFirstQuad)},
+              {3, flush(false)}}) == "missing 0; | p3/1 | marked 4 found 0 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: a sector that is read and written is fetched before it is written back") {
+  CHECK(seen({{0, kForget},
+              {1, acquire(0, {.read = 0x01, .write = 0x01}, 1)},
+              {60, write(0, 0x01, kFirstQuad)},
+              {61, flush(false)}}) == "missing 1; ready 1; | r0/1 w0/1 | marked 4 found 0 written 0 dirty 0");
+}
+
+TEST_CASE(
+    "surface_cache: without a free entry a tile is asked for in two steps, and nothing is asked twice") {
+  CHECK(
+      seen({{0, kForget},
+            {1, acquire(1, {.read = 0x11}, 1)},
+            {2, acquire(1, {.read = 0x11}, 1)},
+            {60, acquire(1, {.read = 0x11}, 1)}},
+           {.lines = 16, .ways = 16, .misses = 1}) ==
+      "no place, missing 1; no place, missing 0; ready 1; missing 1; ready 1; | r2/1 r3/1 | marked 4 found 0 "
+      "written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: a cache of one line gets a marked tile through, and its lines are written") {
+  CHECK(seen({{0, acquire(0, {.part = 0x11}, 1)},
+              {1, write(0, 0x01, kWhole)},
+              {2, write(0, 0x10, kWhole)},
+              {3, flush(false)}},
+             {.lines = 1, .ways = 1, .misses = 1}) ==
+        "missing 0; | w0/f w1/f w0/1 w1/1 | marked 4 found 1 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: quads of a tile lie two a sector") {
+  CHECK(sectors_of_quads(0x0001) == 0x01);
+  CHECK(sectors_of_quads(0x0003) == 0x01);
+  CHECK(sectors_of_quads(0x000c) == 0x02);
+  CHECK(sectors_of_quads(0x8000) == 0x80);
+  CHECK(sectors_of_quads(0xffff) == 0xff);
+}
+
+TEST_CASE("surface_cache: the caches of depth and colour of all partitions are writers of their own") {
+  std::vector<models::DeviceMemory::Owner> writers;
+  for (int partition = 0; partition < 64; ++partition)
+    for (const SurfaceKind kind : {SurfaceKind::kDepth, SurfaceKind::kColor})
+      writers.push_back(surface_writer(kind, partition));
+  std::sort(writers.begin(), writers.end());
+  CHECK(std::adjacent_find(writers.begin(), writers.end()) == writers.end());
+  CHECK(writers.front() != models::DeviceMemory::kClean);
+}
