@@ -18,6 +18,7 @@ using pipeline::Stands;
 const char* stands_text(Stands stands) {
   switch (stands) {
     case Stands::kOnce: return "once";
+    case Stands::kEngine: return "once a raster engine";
     case Stands::kPartition: return "once a partition";
     case Stands::kCore: return "once a core";
     case Stands::kChannel: return "once a memory channel";
@@ -55,6 +56,7 @@ const char* arrow(LinkWay way) {
 int count_of(Stands stands, const pipeline::GpuParams& gpu) {
   switch (stands) {
     case Stands::kOnce: return 1;
+    case Stands::kEngine: return gpu.engines;
     case Stands::kPartition: return gpu.partitions;
     case Stands::kCore: return gpu.cores;
     case Stands::kChannel: return gpu.channels;

@@ -5,6 +5,7 @@
 #include "hw/base/clock.h"
 #include "hw/frame/frame.h"
 #include "models/memory/device_memory.h"
+#include "models/raster/engine.h"
 
 namespace quadrille::hw {
 
@@ -13,6 +14,11 @@ struct MachineCounts {
   int cores = 1;
   int partitions = 1;
   int channels = 1;  ///< of memory, each with a slice of the L2 cache
+  int engines = 1;   ///< of set-up and rasterisation; partitions are a multiple of them
+  [[nodiscard]] int partitions_of_engine() const { return partitions / engines; }
+  [[nodiscard]] models::ScreenShare screen() const {
+    return {static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(engines)};
+  }
 };
 
 /// Given to a unit's constructor. What it refers to outlives the unit.
@@ -21,7 +27,8 @@ struct UnitContext {
   const Frame& frame;
   models::DeviceMemory& memory;
   MachineCounts machine;
-  /// of the unit among those of its kind: 0 where it stands once, else that of its core, partition or channel
+  /// of the unit among those of its kind: 0 where it stands once, else that of its core, partition, engine or
+  /// channel
   int number = 0;
 
   /// Of a unit that has no link to memory in this machine.

@@ -4,21 +4,33 @@
 #include "hw/frame/laws.h"
 
 #include <bit>
+#include <utility>
 
 namespace quadrille::hw {
 
 Clipper::Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                 const Store<BatchSlot>& batches, Store<ClippedPiece>& pieces)
+                 const Store<BatchSlot>& batches, std::vector<Store<ClippedPiece>*> pieces)
     : Unit(name, Kind::kFixedOrder, context.clock),
       params_(params),
       frame_(context.frame),
       batches_(batches),
-      pieces_(pieces),
+      pieces_(std::move(pieces)),
+      ring_(pieces_.size(), 0),
+      screen_(context.machine.screen()),
       rate_(context.clock) {
   add_initiation_rate("rate");
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const std::string port = pieces_.size() == 1 ? "clipped_out" : fmt::format("clipped_out_{}", i);
+    clipped_out.push_back(std::make_unique<FifoOut<ClippedToken>>(*this, port.c_str()));
+  }
 }
 
-Wake Clipper::next() const { return Wake(free_).input(primitive_in).output(clipped_out); }
+/// Triangles leave in order, so all wait while any engine's link is full.
+Wake Clipper::next() const {
+  Wake wake = Wake(free_).input(primitive_in);
+  for (const auto& out : clipped_out) wake.output(*out);
+  return wake;
+}
 
 void Clipper::spend(Tick now, std::int64_t cost) {
   free_ = rate_.charge(now, cost);
@@ -31,7 +43,7 @@ void Clipper::act(Tick now) {
   if (next_piece_ == 0) stats_.working_for(draw_of(token.kind, token.index));
   spend(now, WorkRate::cost(params_.triangles_per_clk));
   if (next_piece_ > 0) return emit_piece(now, next_piece_);
-  clipped_out.push(now, {token.kind, token.index, token.slot, 0, {}, 0});
+  for (const auto& out : clipped_out) out->push(now, {token.kind, token.index, token.slot, 0, {}, 0});
   (void)primitive_in.pop(now);
 }
 
@@ -65,7 +77,7 @@ void Clipper::take_triangle(Tick now) {
 void Clipper::emit_piece(Tick now, int i) {
   const PrimitiveToken token = primitive_in.front();
   const DrawState& draw = frame_.draw(token.index);
-  ClippedPiece& piece = pieces_[ring_];
+  ClippedPiece piece;
   const std::array<int, 3> corner{0, i, i + 1};
   bool valid = true;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -75,15 +87,32 @@ void Clipper::emit_piece(Tick now, int i) {
     piece.weights[k] = {v.b1, v.b2};
   }
   QUADRILLE_CHECK(valid, "{}: a clipped vertex of draw {} has no window position", name(), token.index);
-  clipped_out.push(now, {TokenKind::kWork,
-                         token.index,
-                         token.slot,
-                         token.primitive,
-                         {token.corner[0], token.corner[1], token.corner[2]},
-                         ring_});
-  ring_ = ring_ + 1 == pieces_.size() ? 0 : ring_ + 1;
+  send(now, token, piece);
   next_piece_ = i + 2 < polygon_.count ? i + 1 : 0;
   if (next_piece_ == 0) (void)primitive_in.pop(now);
+}
+
+std::uint32_t Clipper::engines_of(const PrimitiveToken& token, const ClippedPiece& piece) {
+  if (screen_.engines == 1) return 1;
+  const PassState& pass = frame_.pass_of(token.index);
+  return models::engines_touched(piece.vertices, frame_.precision.subpixel_bits, pass.width, pass.height,
+                                 screen_, turn_++);
+}
+
+void Clipper::send(Tick now, const PrimitiveToken& token, const ClippedPiece& piece) {
+  const std::uint32_t engines = engines_of(token, piece);
+  for (std::size_t e = 0; e < pieces_.size(); ++e) {
+    if ((engines >> e & 1u) == 0) continue;
+    (*pieces_[e])[ring_[e]] = piece;
+    clipped_out[e]->push(now, {TokenKind::kWork,
+                               token.index,
+                               token.slot,
+                               token.primitive,
+                               {token.corner[0], token.corner[1], token.corner[2]},
+                               ring_[e]});
+    ring_[e] = ring_[e] + 1 == pieces_[e]->size() ? 0 : ring_[e] + 1;
+    ++stats_.sent;
+  }
 }
 
 void Clipper::audit(Audit& audit) const {
@@ -91,7 +120,7 @@ void Clipper::audit(Audit& audit) const {
   audit.both(
       laws::kTrianglesClipped, stats_.triangles.value(),
       stats_.passed.value() + stats_.clipped.value() + stats_.rejected.value() + stats_.not_finite.value());
-  audit.left(laws::kPieces, stats_.passed.value() + stats_.pieces.value());
+  audit.left(laws::kPieces, stats_.sent.value());
 }
 
 void Clipper::details(Details& details) const {

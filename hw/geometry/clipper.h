@@ -2,7 +2,8 @@
 /// planes, and applies the viewport transform.
 ///
 /// In    primitive_in  triangles as lanes of a shaded batch; boundaries
-/// Out   clipped_out   triangles and pieces with window positions; boundaries
+/// Out   clipped_out[e] triangles and pieces with window positions, to each raster engine whose part of the
+/// screen they touch; boundaries, to all
 /// Time  `triangles_per_clk` triangles a cycle; a cut one `clip_clk` cycles, and then its pieces as many a
 /// cycle; a boundary takes the place of a triangle
 #pragma once
@@ -13,6 +14,9 @@
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
+
+#include <memory>
+#include <vector>
 
 namespace quadrille::hw {
 
@@ -43,12 +47,14 @@ class Clipper final : public Unit {
     Counter not_finite{*this, "not_finite", "triangle",
                        "Triangles dropped because a position is NaN or infinite"};
     Counter pieces{*this, "pieces", "triangle", "Triangles that cutting produced and passed on"};
+    Counter sent{*this, "sent", "triangle",
+                 "Triangles and pieces sent to raster engines: to each whose part of the screen they touch"};
   };
   Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-          const Store<BatchSlot>& batches, Store<ClippedPiece>& pieces);
+          const Store<BatchSlot>& batches, std::vector<Store<ClippedPiece>*> pieces);
 
   FifoIn<PrimitiveToken> primitive_in{*this, "primitive_in"};
-  FifoOut<ClippedToken> clipped_out{*this, "clipped_out"};
+  std::vector<std::unique_ptr<FifoOut<ClippedToken>>> clipped_out;  ///< by raster engine
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
@@ -59,17 +65,22 @@ class Clipper final : public Unit {
 
  private:
   void emit_piece(Tick now, int i);
+  /// Those that a piece goes to, a bit each.
+  [[nodiscard]] std::uint32_t engines_of(const PrimitiveToken& token, const ClippedPiece& piece);
+  void send(Tick now, const PrimitiveToken& token, const ClippedPiece& piece);
   void take_triangle(Tick now);
   void spend(Tick now, std::int64_t cost);
 
   const Params& params_;
   const Frame& frame_;
   const Store<BatchSlot>& batches_;
-  Store<ClippedPiece>& pieces_;  ///< a ring: more slots than the output link can hold
+  std::vector<Store<ClippedPiece>*> pieces_;  ///< by engine, rings: more slots than the output link can hold
+  std::vector<std::uint32_t> ring_;           ///< by engine: the next slot
+  const models::ScreenShare screen_;
   Stats stats_;
   models::ClippedPolygon polygon_;
-  int next_piece_ = 0;  ///< of the polygon being emitted; 0: none
-  std::uint32_t ring_ = 0;
+  int next_piece_ = 0;      ///< of the polygon being emitted; 0: none
+  std::uint32_t turn_ = 0;  ///< of the engines, for what touches no tile
   WorkRate rate_;
   Tick free_ = 0;
 };

@@ -17,11 +17,11 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitCon
       batches_(stores.batches),
       pieces_(stores.pieces),
       triangles_(stores.triangles),
-      retired_by_(static_cast<std::size_t>(context.machine.partitions)),
+      retired_by_(static_cast<std::size_t>(context.machine.partitions_of_engine())),
       rate_(context.clock) {
   add_initiation_rate("rate");
   add_places("triangle_slots", [this] { return sequence_ - retired_ >= triangles_.size(); });
-  for (int i = 0; i < context.machine.partitions; ++i) {
+  for (int i = 0; i < context.machine.partitions_of_engine(); ++i) {
     sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply);
   }
 }

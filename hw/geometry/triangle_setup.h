@@ -86,7 +86,7 @@ class TriangleSetupUnit final : public Unit {
   Stats stats_;
   std::uint64_t sequence_ = 0;             ///< of the next kept triangle
   std::uint64_t retired_ = 0;              ///< triangles before this are retired everywhere
-  std::vector<std::uint64_t> retired_by_;  ///< by partition
+  std::vector<std::uint64_t> retired_by_;  ///< by partition of the engine
   WorkRate rate_;
   Tick free_ = 0;
 };

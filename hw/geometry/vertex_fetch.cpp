@@ -22,10 +22,15 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& contex
       frame_(context.frame),
       device_(context.memory),
       batches_(batches),
+      released_by_(static_cast<std::size_t>(context.machine.engines), 0),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses),
       reuse_(params.reuse.value().make({params.batch_vertices, params.reuse_entries})),
       slots_(batches.size()) {
+  for (int e = 0; e < context.machine.engines; ++e) {
+    const std::string port = context.machine.engines == 1 ? "release_in" : fmt::format("release_in_{}", e);
+    release_in.add(*this, port.c_str(), LinkRole::kReply);
+  }
   add_initiation_rate("rates");
   add_places("batch_slots", [this] { return slots_.free() == 0; });
   add_memory_places("cache_misses", [this] { return cache_.full(); });
@@ -42,7 +47,7 @@ Wake VertexFetch::build_wake() const {
     return Wake(free_);
   }
   if (!drawing_) return Wake(free_).input(draw_in);
-  if (!slots_.any_free()) return Wake::never(release_in);
+  if (!slots_.any_free()) return Wake::never(release_in[0]);
   return Wake(free_);
 }
 
@@ -60,7 +65,7 @@ Wake VertexFetch::next() const {
   Wake wake = Wake::sooner(build_wake(), leave_wake());
   wake = Wake::sooner(wake, port_.receive_wake());
   if (!port_.queue_empty()) wake = Wake::sooner(wake, port_.send_wake());
-  return Wake::sooner(wake, Wake().input(release_in));
+  return Wake::sooner(wake, release_in.earliest());
 }
 
 void VertexFetch::act(Tick now) {
@@ -79,8 +84,10 @@ void VertexFetch::act(Tick now) {
 }
 
 void VertexFetch::take_releases(Tick now) {
-  if (!release_in.ready_at(now)) return;
-  for (; release_in.ready_at(now); (void)release_in.pop(now)) slots_.release();
+  release_in.take_ready(now, [&](std::size_t engine, const ReleaseToken&) { ++released_by_[engine]; });
+  const std::uint64_t released = *std::min_element(released_by_.begin(), released_by_.end());
+  if (released == released_) return;
+  for (; released_ < released; ++released_) slots_.release();
   slots_.sweep(*reuse_);
 }
 

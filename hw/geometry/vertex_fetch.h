@@ -1,7 +1,7 @@
 /// Vertex fetch: reads indices and attributes through its cache, finds reused vertices, and forms batches of
 /// up to 32 vertices to shade.
 ///
-/// In    draw_in      draws and pass boundaries     release_in  a batch slot is free again
+/// In    draw_in      draws and pass boundaries     release_in[e] engine e is done with the oldest batch
 /// Out   warp_out     a batch to shade              batch_out   its triangles, in draw order; pass and draw
 /// boundaries Mem   indices and attributes, 128-byte lines in 32-byte sectors
 /// Time  `indices_per_clk` indices and `attributes_per_clk` attribute fetches a cycle, whichever takes
@@ -12,6 +12,7 @@
 /// Not modelled: a post-transform store apart from the batches' slots (docs/deviations.md#D2)
 #pragma once
 
+#include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
@@ -86,7 +87,7 @@ class VertexFetch final : public Unit {
               Store<BatchSlot>& batches);
 
   FifoIn<DrawToken> draw_in{*this, "draw_in"};
-  FifoIn<ReleaseToken> release_in{*this, "release_in", LinkRole::kReply};
+  FifoInGroup<ReleaseToken> release_in;  ///< by raster engine
   FifoOut<WarpToken> warp_out{*this, "warp_out"};
   FifoOut<BatchToken> batch_out{*this, "batch_out"};
 
@@ -135,6 +136,8 @@ class VertexFetch final : public Unit {
   const models::DeviceMemory& device_;
   Store<BatchSlot>& batches_;
   Stats stats_;
+  std::vector<std::uint64_t> released_by_;  ///< batches, by raster engine
+  std::uint64_t released_ = 0;              ///< by all of them
   MemoryPort port_;
   L1Cache cache_;
   std::unique_ptr<models::VertexReuse> reuse_;

@@ -22,11 +22,13 @@ CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& cont
       params_(params),
       frame_(context.frame),
       triangles_(triangles),
+      screen_(context.machine.screen()),
+      engine_(static_cast<std::uint32_t>(context.number)),
       sync_interval_(
           std::max<std::uint64_t>(1, triangles.size() / static_cast<std::uint64_t>(params.reports.value()))),
       rate_(context.clock) {
   add_initiation_rate("tests_per_clk");
-  for (int i = 0; i < context.machine.partitions; ++i) {
+  for (int i = 0; i < context.machine.partitions_of_engine(); ++i) {
     hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply);
   }
 }
@@ -83,7 +85,7 @@ void CoarseRaster::take_token(Tick now) {
     draw_ = token.index;
     triangle_ = token.triangle;
     walk_ = models::TileWalk(triangles_[triangle_].setup);
-    charged_tests_ = 0;
+    charged_tests_ = touched_ = owned_ = 0;
     look_ahead();
     walking_ = true;
     ++stats_.triangles;
@@ -130,8 +132,20 @@ bool CoarseRaster::hidden(const models::TileHit& tile) const {
 void CoarseRaster::look_ahead() {
   models::TileHit tile;
   ahead_.reset();
-  if (walk_.next(tile)) ahead_ = tile;
+  while (!ahead_ && walk_.next(tile)) {
+    ++touched_;
+    if (!owns(tile)) continue;
+    ++owned_;
+    ahead_ = tile;
+  }
 }
+
+bool CoarseRaster::owns(const models::TileHit& tile) const {
+  return screen_.engines == 1 || screen_.engine_of_tile(static_cast<std::uint32_t>(tile.tile_x),
+                                                        static_cast<std::uint32_t>(tile.tile_y)) == engine_;
+}
+
+std::uint64_t CoarseRaster::tests() const { return owned_ + (walk_.tests() - touched_) / screen_.engines; }
 
 void CoarseRaster::drop(const models::TileHit& tile) {
   stats_.working_for(draw_, static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y));
@@ -145,8 +159,8 @@ void CoarseRaster::walk(Tick now) {
     else found = ahead_;
     look_ahead();
   }
-  const std::uint64_t tests = walk_.tests() - charged_tests_;
-  charged_tests_ = walk_.tests();
+  const std::uint64_t tests = this->tests() - charged_tests_;
+  charged_tests_ += tests;
   stats_.tiles_tested += tests;
   spend(now, std::max(WorkRate::cost(params_.tiles_per_clk),
                       WorkRate::cost_of(static_cast<std::int64_t>(tests), params_.tests_per_clk)));

@@ -2,7 +2,7 @@
 /// behind what is there.
 ///
 /// In    triangle_in   set-up triangles; boundaries         hiz_in[p]  a tile's greatest depth became
-/// smaller, from the depth unit of partition p Out   tile_out      tiles of one triangle, row by row;
+/// smaller, from the depth unit of its partition p Out   tile_out      tiles of one triangle, row by row;
 /// boundaries; now and then a sync for the triangle store Time  `tests_per_clk` tile tests a cycle and at
 /// most one tile out a cycle; waits while tile_out is full Hi-Z holds, for each tile of the pass, a depth
 /// that no stored depth exceeds. It may be late (updates travel by FIFO), which only keeps more. It is
@@ -76,6 +76,9 @@ class CoarseRaster final : public Unit {
   void take_updates(Tick now);
   /// Finds the next tile of the walk, so that the last one is known as such when it leaves.
   void look_ahead();
+  [[nodiscard]] bool owns(const models::TileHit& tile) const;
+  /// Of this walk so far: those of its own tiles, and its share of those that failed.
+  [[nodiscard]] std::uint64_t tests() const;
   void walk(Tick now);
   void begin_pass(std::uint32_t pass);
   [[nodiscard]] bool hidden(const models::TileHit& tile) const;
@@ -85,13 +88,16 @@ class CoarseRaster final : public Unit {
   const Params& params_;
   const Frame& frame_;
   const TriangleStore& triangles_;
+  const models::ScreenShare screen_;
+  const std::uint32_t engine_;
   const std::uint64_t sync_interval_;  ///< triangles between syncs
   Stats stats_;
   bool walking_ = false;
   models::TileWalk walk_;
-  std::optional<models::TileHit> ahead_;  ///< the next tile of the walk; none at its end
-  std::uint64_t charged_tests_ = 0;       ///< of this walk
-  std::uint64_t triangle_ = 0;            ///< being walked
+  std::optional<models::TileHit> ahead_;   ///< the next tile of the walk; none at its end
+  std::uint64_t charged_tests_ = 0;        ///< of this walk
+  std::uint64_t touched_ = 0, owned_ = 0;  ///< tiles of this walk, and those of them that are the engine's
+  std::uint64_t triangle_ = 0;             ///< being walked
   std::uint32_t draw_ = 0, pass_ = 0;
   bool hiz_usable_ = false;  ///< this draw may be tested
   bool hiz_trusted_ = true;  ///< no draw of the pass has raised depths

@@ -15,9 +15,10 @@ FineRaster::FineRaster(sc_core::sc_module_name name, const UnitContext& context,
     : Unit(name, Kind::kFixedOrder, context.clock),
       params_(params),
       triangles_(triangles),
+      screen_(context.machine.screen()),
       rate_(context.clock) {
   add_initiation_rate("quads_per_clk");
-  for (int i = 0; i < context.machine.partitions; ++i) {
+  for (int i = 0; i < context.machine.partitions_of_engine(); ++i) {
     coverage_out.push_back(
         std::make_unique<FifoOut<CoverageToken>>(*this, fmt::format("coverage_out_{}", i).c_str()));
   }
@@ -27,12 +28,13 @@ Wake FineRaster::next() const {
   Wake wake = Wake(free_).input(tile_in);
   if (tile_in.ready() == kNever) return wake;
   const TileToken& tile = tile_in.front();
-  if (tile.kind == TokenKind::kWork) {
-    return wake.output(*coverage_out[models::partition_of(tile.tile_x, tile.tile_y,
-                                                          static_cast<std::uint32_t>(coverage_out.size()))]);
-  }
+  if (tile.kind == TokenKind::kWork) { return wake.output(output_of(tile)); }
   for (const auto& out : coverage_out) wake.output(*out);
   return wake;
+}
+
+FifoOut<CoverageToken>& FineRaster::output_of(const TileToken& tile) const {
+  return *coverage_out[models::partition_of(tile.tile_x, tile.tile_y, screen_.partitions) / screen_.engines];
 }
 
 void FineRaster::act(Tick now) {
@@ -58,9 +60,7 @@ void FineRaster::rasterize(Tick now, const TileToken& tile) {
       now, std::max(WorkRate::cost(params_.tiles_per_clk), WorkRate::cost_of(quads, params_.quads_per_clk)));
   occupy(now, rate_.cycles());
   if (coverage == 0) return;
-  const std::uint32_t p =
-      models::partition_of(tile.tile_x, tile.tile_y, static_cast<std::uint32_t>(coverage_out.size()));
-  coverage_out[p]->push(
+  output_of(tile).push(
       now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});
 }
 

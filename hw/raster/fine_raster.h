@@ -51,9 +51,12 @@ class FineRaster final : public Unit {
 
  private:
   void rasterize(Tick now, const TileToken& tile);
+  /// To the depth unit of the tile's partition.
+  [[nodiscard]] FifoOut<CoverageToken>& output_of(const TileToken& tile) const;
 
   const Params& params_;
   const TriangleStore& triangles_;
+  const models::ScreenShare screen_;
   Stats stats_;
   WorkRate rate_;
   Tick free_ = 0;

@@ -214,7 +214,9 @@ void ShaderCore::launch_vertex(CoreSlot& slot) {
 void ShaderCore::launch_fragment(CoreSlot& slot) {
   const DrawState& draw = frame_.draw(slot.draw);
   const WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
-  fill_fragment_inputs(work, triangles_, slot.fragment);
+  const std::uint32_t engine =
+      models::engine_of_partition(slot.partition, static_cast<std::uint32_t>(triangles_.size()));
+  fill_fragment_inputs(work, *triangles_[engine], slot.fragment);
   const models::LaneMask lanes =
       work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
   slot.warp.vertex = nullptr;

@@ -100,8 +100,8 @@ class ShaderCore final : public Unit {
   struct Stores {
     Store<CoreSlot>& slots;  ///< the core's own
     Store<BatchSlot>& batches;
-    std::vector<Store<WarpSlot>*> warps;  ///< by partition
-    const TriangleStore& triangles;
+    std::vector<Store<WarpSlot>*> warps;          ///< by partition
+    std::vector<const TriangleStore*> triangles;  ///< by raster engine
   };
   /// `textured`: it has ports to a texture unit.
   ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
@@ -159,8 +159,8 @@ class ShaderCore final : public Unit {
   Store<CoreSlot>& slots_;
   Store<BatchSlot>& batches_;
   std::vector<Store<WarpSlot>*> warps_;
-  const TriangleStore& triangles_;
-  const int fragment_rows_;  ///< registers of the hungriest fragment program
+  std::vector<const TriangleStore*> triangles_;  ///< by raster engine
+  const int fragment_rows_;                      ///< registers of the hungriest fragment program
   Stats stats_;
   std::vector<std::uint32_t> free_slots_;
   int free_rows_;

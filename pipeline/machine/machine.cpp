@@ -60,9 +60,13 @@ Machine::~Machine() {
 
 // One piece being written and one being read beyond what the link holds.
 Machine::Stores::Stores(const MachineConfig& config)
-    : batches(static_cast<std::size_t>(config.vertex_fetch.batch_slots.value())),
-      pieces(static_cast<std::size_t>(config.link.clipper_to_setup.depth.value()) + 2),
-      triangles(static_cast<std::size_t>(config.triangle_setup.triangle_slots.value()) + 1) {
+    : batches(static_cast<std::size_t>(config.vertex_fetch.batch_slots.value())) {
+  for (int e = 0; e < config.gpu.engines; ++e) {
+    pieces.push_back(std::make_unique<hw::Store<hw::ClippedPiece>>(
+        static_cast<std::size_t>(config.link.clipper_to_setup.depth.value()) + 2));
+    triangles.push_back(std::make_unique<hw::TriangleStore>(
+        static_cast<std::size_t>(config.triangle_setup.triangle_slots.value()) + 1));
+  }
   for (int p = 0; p < config.gpu.partitions; ++p)
     warps.push_back(std::make_unique<hw::Store<hw::WarpSlot>>(
         static_cast<std::size_t>(config.warp_packer.warp_slots.value())));
@@ -115,11 +119,17 @@ void Machine::list_clients() {
 int Machine::count(Stands stands) const {
   switch (stands) {
     case Stands::kOnce: return 1;
+    case Stands::kEngine: return config_.gpu.engines;
     case Stands::kPartition: return config_.gpu.partitions;
     case Stands::kCore: return config_.gpu.cores;
     case Stands::kChannel: return config_.gpu.channels;
   }
   return 0;
+}
+
+std::string Machine::name_of(std::string_view kind, Stands stands, int i) const {
+  const bool alone = stands == Stands::kOnce || (stands == Stands::kEngine && config_.gpu.engines == 1);
+  return alone ? std::string(kind) : fmt::format("{}_{}", kind, i);
 }
 
 bool Machine::builds(Needed needed) const {
@@ -133,17 +143,16 @@ bool Machine::builds(Needed needed) const {
 void Machine::create_units(std::uint64_t order) {
   const Maker maker(*this);
   std::vector<std::function<std::unique_ptr<hw::Unit>()>> makers;
-  for (const Stands stands : {Stands::kOnce, Stands::kPartition, Stands::kCore, Stands::kChannel}) {
+  for (const Stands stands :
+       {Stands::kOnce, Stands::kEngine, Stands::kPartition, Stands::kCore, Stands::kChannel}) {
     for (int i = 0; i < count(stands); ++i) {
       visit_unit_kinds([&]<class Unit>() {
         if (UnitKind<Unit>::stands != stands || !builds(UnitKind<Unit>::needed)) return;
         std::vector<Unit*>& of_kind = std::get<std::vector<Unit*>>(by_kind_);
         of_kind.push_back(nullptr);
-        makers.emplace_back([&maker, &of_kind, i, stands] {
-          const std::string name(UnitKind<Unit>::name);
+        makers.emplace_back([this, &maker, &of_kind, i, stands] {
           std::unique_ptr<Unit> made =
-              maker.make(std::type_identity<Unit>(),
-                         (stands == Stands::kOnce ? name : fmt::format("{}_{}", name, i)).c_str(), i);
+              maker.make(std::type_identity<Unit>(), name_of(UnitKind<Unit>::name, stands, i).c_str(), i);
           of_kind[static_cast<std::size_t>(i)] = made.get();
           return made;
         });

@@ -65,10 +65,10 @@ class Machine {
   struct Stores {
     explicit Stores(const MachineConfig& config);
     hw::Store<hw::BatchSlot> batches;
-    hw::Store<hw::ClippedPiece> pieces;
-    hw::TriangleStore triangles;
-    std::vector<std::unique_ptr<hw::Store<hw::WarpSlot>>> warps;  ///< by partition
-    std::vector<std::unique_ptr<hw::Store<hw::CoreSlot>>> cores;  ///< by core
+    std::vector<std::unique_ptr<hw::Store<hw::ClippedPiece>>> pieces;  ///< by raster engine
+    std::vector<std::unique_ptr<hw::TriangleStore>> triangles;         ///< by raster engine
+    std::vector<std::unique_ptr<hw::Store<hw::WarpSlot>>> warps;       ///< by partition
+    std::vector<std::unique_ptr<hw::Store<hw::CoreSlot>>> cores;       ///< by core
   };
   class Maker;
   class Wiring;
@@ -80,6 +80,8 @@ class Machine {
   void list_clients();
   void create_units(std::uint64_t order);
   [[nodiscard]] int count(Stands stands) const;
+  /// Name of unit number `i` of a kind.
+  [[nodiscard]] std::string name_of(std::string_view kind, Stands stands, int i) const;
   /// Units of such a kind are built for this frame.
   [[nodiscard]] bool builds(Needed needed) const;
 

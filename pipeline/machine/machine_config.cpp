@@ -141,6 +141,9 @@ void MachineConfig::check() const {
   if (ratio > kFarthestClocks || ratio < 1 / kFarthestClocks)
     throw user_error("machine: gpu.clock_mhz ({}) and gpu.memory_mhz ({}) are more than {:.0f} times apart",
                      gpu.clock_mhz.value(), gpu.memory_mhz.value(), kFarthestClocks);
+  if (gpu.partitions % gpu.engines != 0)
+    throw user_error("machine: gpu.partitions ({}) is not a multiple of gpu.engines ({})",
+                     gpu.partitions.value(), gpu.engines.value());
   check_memory();
   const auto cache = [](std::string_view path, int lines, int ways) {
     if (lines % ways == 0) return;  // whole sets

@@ -32,6 +32,13 @@ struct GpuParams : hw::ParamGroup {
                             {1, 64},
                             "Screen partitions, each with a depth unit, a warp packer and a ROP. [G]",
                             hw::Effect::kTradeOff};
+  hw::Param<int> engines{*this,
+                         "engines",
+                         1,
+                         "engine",
+                         {1, 16},
+                         "Raster engines, each with set-up, coarse and fine rasteriser, for an equal part of "
+                         "the screen partitions, which are a multiple of them. [G: as small GPUs]"};
   hw::Param<int> channels{*this,     "channels", 2,
                           "channel", {1, 64},    "Memory channels, each with an L2 slice. [G]"};
   hw::Param<double> clock_mhz{*this,

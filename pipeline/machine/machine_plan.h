@@ -35,9 +35,9 @@
   unit(vertex_fetch,       hw::VertexFetch,       kOnce,      kByAllFrames)              \
   unit(primitive_assembly, hw::PrimitiveAssembly, kOnce,      kByAllFrames)              \
   unit(clipper,            hw::Clipper,           kOnce,      kByAllFrames)              \
-  unit(triangle_setup,     hw::TriangleSetupUnit, kOnce,      kByAllFrames)              \
-  unit(coarse_raster,      hw::CoarseRaster,      kOnce,      kByAllFrames)              \
-  unit(fine_raster,        hw::FineRaster,        kOnce,      kByAllFrames)              \
+  unit(triangle_setup,     hw::TriangleSetupUnit, kEngine,    kByAllFrames)              \
+  unit(coarse_raster,      hw::CoarseRaster,      kEngine,    kByAllFrames)              \
+  unit(fine_raster,        hw::FineRaster,        kEngine,    kByAllFrames)              \
   unit(depth,              hw::DepthUnit,         kPartition, kByAllFrames)              \
   unit(warp_packer,        hw::WarpPacker,        kPartition, kByAllFrames)              \
   unit(work_distributor,   hw::WorkDistributor,   kOnce,      kByAllFrames)              \
@@ -121,9 +121,9 @@
 
 namespace quadrille::pipeline {
 
-/// How often a kind of unit stands in a machine: once, or once a core, partition or channel. Of several, each
-/// carries its number in its name.
-enum class Stands : std::uint8_t { kOnce, kPartition, kCore, kChannel };
+/// How often a kind of unit stands in a machine: once, or once a raster engine, partition, core or channel.
+/// Of several, each carries its number in its name.
+enum class Stands : std::uint8_t { kOnce, kEngine, kPartition, kCore, kChannel };
 /// Which frames need a kind of unit; a machine leaves out what its frame does not need.
 enum class Needed : std::uint8_t { kByAllFrames, kByFramesThatReadTextures };
 /// What the tokens of a link do: carry work onward, tell of work that comes another way, or bring answers,

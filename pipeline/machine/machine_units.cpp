@@ -24,30 +24,32 @@ Machine::Maker::Made<hw::PrimitiveAssembly> Machine::Maker::make(Kind<hw::Primit
 
 Machine::Maker::Made<hw::Clipper> Machine::Maker::make(Kind<hw::Clipper> /*kind*/, const char* name,
                                                        int i) const {
-  return std::make_unique<hw::Clipper>(name, context(i), c_.clipper, s_.batches, s_.pieces);
+  std::vector<hw::Store<hw::ClippedPiece>*> pieces;
+  for (const auto& of_engine : s_.pieces) pieces.push_back(of_engine.get());
+  return std::make_unique<hw::Clipper>(name, context(i), c_.clipper, s_.batches, std::move(pieces));
 }
 
 Machine::Maker::Made<hw::TriangleSetupUnit> Machine::Maker::make(Kind<hw::TriangleSetupUnit> /*kind*/,
                                                                  const char* name, int i) const {
   return std::make_unique<hw::TriangleSetupUnit>(
       name, context(i), c_.triangle_setup,
-      hw::TriangleSetupUnit::Stores{s_.batches, s_.pieces, s_.triangles});
+      hw::TriangleSetupUnit::Stores{s_.batches, *s_.pieces[at(i)], *s_.triangles[at(i)]});
 }
 
 Machine::Maker::Made<hw::CoarseRaster> Machine::Maker::make(Kind<hw::CoarseRaster> /*kind*/, const char* name,
                                                             int i) const {
-  return std::make_unique<hw::CoarseRaster>(name, context(i), c_.coarse_raster, s_.triangles);
+  return std::make_unique<hw::CoarseRaster>(name, context(i), c_.coarse_raster, *s_.triangles[at(i)]);
 }
 
 Machine::Maker::Made<hw::FineRaster> Machine::Maker::make(Kind<hw::FineRaster> /*kind*/, const char* name,
                                                           int i) const {
-  return std::make_unique<hw::FineRaster>(name, context(i), c_.fine_raster, s_.triangles);
+  return std::make_unique<hw::FineRaster>(name, context(i), c_.fine_raster, *s_.triangles[at(i)]);
 }
 
 Machine::Maker::Made<hw::DepthUnit> Machine::Maker::make(Kind<hw::DepthUnit> /*kind*/, const char* name,
                                                          int i) const {
   return std::make_unique<hw::DepthUnit>(name, m_.depth_memory_ ? context(i) : context(i).without_memory(),
-                                         c_.depth, s_.triangles, *s_.warps[at(i)]);
+                                         c_.depth, triangles_of_partition(i), *s_.warps[at(i)]);
 }
 
 Machine::Maker::Made<hw::WarpPacker> Machine::Maker::make(Kind<hw::WarpPacker> /*kind*/, const char* name,
@@ -64,7 +66,9 @@ Machine::Maker::Made<hw::ShaderCore> Machine::Maker::make(Kind<hw::ShaderCore> /
                                                           int i) const {
   std::vector<hw::Store<hw::WarpSlot>*> warps;
   for (const auto& of_partition : s_.warps) warps.push_back(of_partition.get());
-  const hw::ShaderCore::Stores stores{*s_.cores[at(i)], s_.batches, std::move(warps), s_.triangles};
+  std::vector<const hw::TriangleStore*> triangles;
+  for (const auto& of_engine : s_.triangles) triangles.push_back(of_engine.get());
+  const hw::ShaderCore::Stores stores{*s_.cores[at(i)], s_.batches, std::move(warps), std::move(triangles)};
   return std::make_unique<hw::ShaderCore>(name, context(i), c_.core, stores, m_.textured_);
 }
 

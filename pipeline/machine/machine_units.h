@@ -24,8 +24,17 @@ class Machine::Maker {
  private:
   [[nodiscard]] hw::UnitContext context(int number) const { return context(number, m_.clock_); }
   [[nodiscard]] hw::UnitContext context(int number, const hw::Clock& clock) const {
-    return {
-        clock, m_.frame_.frame, m_.frame_.memory, {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels}, number};
+    return {clock,
+            m_.frame_.frame,
+            m_.frame_.memory,
+            {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels, c_.gpu.engines},
+            number};
+  }
+
+  /// Those of a partition come from its engine.
+  [[nodiscard]] hw::TriangleStore& triangles_of_partition(int partition) const {
+    return *s_.triangles[models::engine_of_partition(static_cast<std::uint32_t>(partition),
+                                                     static_cast<std::uint32_t>(c_.gpu.engines.value()))];
   }
 
   Machine& m_;

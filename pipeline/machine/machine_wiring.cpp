@@ -67,6 +67,7 @@ void Machine::Wiring::wire() {
     for (int i = 0; i < m_.count(stands); ++i) wire_units(stands, static_cast<std::size_t>(i));
   };
   wire_all(Stands::kOnce);
+  wire_all(Stands::kEngine);
   wire_all(Stands::kPartition);
   wire_all(Stands::kCore);
   wire_clients();
@@ -105,11 +106,21 @@ void Machine::Wiring::wire_one(const LinkParams& of, Stands stands, std::size_t 
         link(port_for(m_.all<From>()[i]->*Wire::output, p), input, of,
              fmt::format("{}_{}_{}", path(input), i, p));
       }
+    } else if constexpr (kFrom == Stands::kEngine && kTo == Stands::kPartition) {
+      const std::size_t engines = m_.all<From>().size();
+      auto& input = port_for(m_.all<To>()[i]->*Wire::input, 0);
+      link(port_for(m_.all<From>()[i % engines]->*Wire::output, i / engines), input, of,
+           fmt::format("{}_{}", path(input), i));
+    } else if constexpr (kFrom == Stands::kPartition && kTo == Stands::kEngine) {
+      const std::size_t engines = m_.all<To>().size();
+      auto& input = port_for(m_.all<To>()[i % engines]->*Wire::input, i / engines);
+      link(port_for(m_.all<From>()[i]->*Wire::output, 0), input, of, fmt::format("{}_{}", path(input), i));
     } else {
       static_assert(kFrom == kTo || kFrom == Stands::kOnce || kTo == Stands::kOnce);
       const std::size_t from = kFrom == Stands::kOnce ? 0 : i, to = kTo == Stands::kOnce ? 0 : i;
       auto& input = port_for(m_.all<To>()[to]->*Wire::input, i);
-      link(port_for(m_.all<From>()[from]->*Wire::output, i), input, of, fmt::format("{}_{}", path(input), i));
+      link(port_for(m_.all<From>()[from]->*Wire::output, i), input, of,
+           m_.name_of(path(input), stands, static_cast<int>(i)));
     }
   }
 }

@@ -39,11 +39,11 @@ struct ClipBench final : Bench {
     triangle(kNan, {0.5f, nan, 0.5f}, 0);
     params.clip_clk.set(s.clip_clk);
     params.triangles_per_clk.set(s.triangles_per_clk);
-    unit = std::make_unique<Clipper>("unit", context(), params, batches, pieces);
+    unit = std::make_unique<Clipper>("unit", context(), params, batches, std::vector{&pieces});
     add(*unit);
     feed(unit->primitive_in, s.primitives);
     sink = &drain<ClippedToken>(
-        unit->clipped_out,
+        *unit->clipped_out[0],
         [](const ClippedToken& t) {
           return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind);
         },

@@ -54,7 +54,7 @@ struct FetchBench final : Bench {
     add(*unit);
     feed(unit->draw_in,
          {{0, {TokenKind::kPassBegin, 0}}, {0, {TokenKind::kWork, 0}}, {0, {TokenKind::kDrawEnd, 0}}});
-    feed(unit->release_in, s.releases);
+    feed(unit->release_in[0], s.releases);
     memory = &serve(unit->memory_port(), kLatency);
     warps = &drain<WarpToken>(unit->warp_out, [](const WarpToken& t) { return t.slot; });
     sink = &drain<BatchToken>(
