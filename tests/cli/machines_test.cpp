@@ -50,7 +50,7 @@ TEST_CASE("a report says what was changed from what") {
       many.insert(many.end(), {"--set", std::string("link.") + link + "." + parameter + "=5"});
   }
   CHECK_THAT(render(folder, many).out,
-             Catch::Contains("machine default with link.core_to_rop.depth=5 (8), ") &&
+             Catch::Contains("machine default with link.rop_to_depth.depth=5 (8), ") &&
                  Catch::Contains(" and 2 more, exact"));
 }
 

@@ -146,9 +146,11 @@ void DramController::PseudoChannel::choose_pick(Action& best, Cycle now) {
 }
 
 void DramController::PseudoChannel::plan(Cycle now) {
+  kept_until_ = kNever;
   planned_ = choose(now);
   stale_ = false;
-  Cycle at = planned_.at;
+  // Where all wait for a refresh, and that for a row that is kept, nothing else says when to look again.
+  Cycle at = planned_.step == Step::kNothing ? kept_until_ : planned_.at;
   for (const DramRefreshClock& clock : refresh_) {
     if (!clock.on()) continue;
     // Without requests a refresh goes out when it is due, with them when it must.

@@ -83,7 +83,9 @@ class DramController::PseudoChannel {
   [[nodiscard]] bool barred(std::uint32_t bank, Cycle now) const;
   /// The row was opened and its first burst may still come: a refresh leaves it the time for that, so that
   /// every activation is of use.
-  [[nodiscard]] bool keeps_row(std::uint32_t bank, Cycle now) const;
+  [[nodiscard]] bool keeps_row(std::uint32_t bank, Cycle now) const { return now < row_kept_until(bank); }
+  /// 0 for a row that is not kept.
+  [[nodiscard]] Cycle row_kept_until(std::uint32_t bank) const;
   void perform(const Action& action, Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts,
                const std::function<void(const DramCommand&)>& trace);
   void chain_bursts(Action action, std::vector<DramDone>& done, DramCommandCounts& counts,
@@ -109,6 +111,7 @@ class DramController::PseudoChannel {
   /// by rank: its requests wait for a refresh (of the bank in turn)
   std::vector<std::uint8_t> must_refresh_;
   bool any_must_ = false;
+  Cycle kept_until_ = kNever;      ///< a row that a refresh waits for is kept until then
   Cycle refresh_quiet_until_ = 0;  ///< until then no refresh concerns what is chosen
   /// until then no request starves that did not; 0 when the queue changed
   Cycle view_holds_until_ = 0;

@@ -21,7 +21,8 @@ bool DramController::PseudoChannel::consider_rank_refresh(Action& best, Cycle no
   for (std::uint32_t bank = rank * banks; bank < (rank + 1) * banks; ++bank) {
     if (device_.open_row(bank) == DramDevice::kClosed) continue;
     closed = false;
-    if (!keeps_row(bank, now))
+    if (keeps_row(bank, now)) kept_until_ = std::min(kept_until_, row_kept_until(bank));
+    else
       consider(
           best, now,
           {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
@@ -38,7 +39,10 @@ bool DramController::PseudoChannel::consider_bank_refresh(Action& best, Cycle no
   must_refresh_[rank] = must;
   any_must_ |= must;
   if (!must && queue_.bank_count(bank) > 0) return true;
-  if (keeps_row(bank, now)) return false;
+  if (keeps_row(bank, now)) {
+    kept_until_ = std::min(kept_until_, row_kept_until(bank));
+    return false;
+  }
   if (device_.open_row(bank) != DramDevice::kClosed)
     consider(best, now,
              {std::max(device_.earliest_precharge(bank), commands_.free(false)), 0, Step::kPrecharge, bank});
@@ -68,9 +72,9 @@ void DramController::PseudoChannel::consider_refresh(Action& best, Cycle now) {
   }
 }
 
-bool DramController::PseudoChannel::keeps_row(std::uint32_t bank, Cycle now) const {
-  if (fresh_rows_[bank] == 0) return false;
-  return now < std::max(device_.row_ready(bank, false), device_.row_ready(bank, true)) + params_.timing.t_rc;
+DramController::Cycle DramController::PseudoChannel::row_kept_until(std::uint32_t bank) const {
+  if (fresh_rows_[bank] == 0) return 0;
+  return std::max(device_.row_ready(bank, false), device_.row_ready(bank, true)) + params_.timing.t_rc;
 }
 
 bool DramController::PseudoChannel::barred(std::uint32_t bank, Cycle now) const {

@@ -136,3 +136,18 @@ TEST_CASE("dram traffic: a model with any of its times one cycle short is caught
 TEST_CASE("dram traffic: a model of another shape, or that does not refresh, is caught", "[slow]") {
   for (const std::string& standard : dram_standards()) check_breaches(standard);
 }
+
+TEST_CASE(
+    "dram traffic: a refresh is not late where all requests wait for it and it for a row that is kept open") {
+  const DramNumbers numbers = dram_numbers("ddr4");
+  const DramPolicy policy{"in order, closed pages", &kInOrderScheduler, &kClosedPages,
+                          &kWatermarkWriteDrain,    &kGroupMapping,     true};
+  for (const DramPattern pattern : {DramPattern::kRandom, DramPattern::kWriteHeavy, DramPattern::kOneBank}) {
+    INFO(dram_pattern_name(pattern));
+    for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+      const DramRun run = run_dram_traffic({numbers, numbers, pattern, policy, 20'000, seed});
+      CHECK(run.violation_count == 0);
+      CHECK(run.answers == run.requests);
+    }
+  }
+}
