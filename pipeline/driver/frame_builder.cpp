@@ -38,8 +38,9 @@ static_assert(static_cast<int>(models::ColorFormat::kR8G8B8A8Srgb) ==
 
 class FrameBuilder {
  public:
-  FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out)
-      : stream_(stream), out_(out), resources_(stream, out.memory, out.fills) {
+  FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision,
+               const ShaderTarget& target, DeviceFrame& out)
+      : stream_(stream), target_(target), out_(out), resources_(stream, out.memory, out.fills) {
     out.frame.precision = precision;
   }
 
@@ -124,7 +125,8 @@ class FrameBuilder {
     if (found != programs_.end()) return *found->second;
     const traces::Shader& vertex = stream_.shaders[key.first];
     const traces::Shader& fragment = stream_.shaders[key.second];
-    out_.programs.push_back(compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name));
+    out_.programs.push_back(
+        compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name, target_));
     programs_[key] = &out_.programs.back();
     return out_.programs.back();
   }
@@ -295,6 +297,7 @@ class FrameBuilder {
   }
 
   const traces::CommandStream& stream_;
+  const ShaderTarget& target_;
   DeviceFrame& out_;
   DeviceResources resources_;
   std::map<std::pair<Index, Index>, const CompiledPipeline*> programs_;
@@ -325,8 +328,8 @@ bool DeviceFrame::blends() const {
 }
 
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,
-                 bool leave_out) {
-  FrameBuilder(stream, precision, out).build(leave_out);
+                 bool leave_out, const ShaderTarget& target) {
+  FrameBuilder(stream, precision, target, out).build(leave_out);
 }
 
 }  // namespace quadrille::pipeline

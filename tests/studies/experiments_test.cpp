@@ -1,6 +1,8 @@
 /// Experiments: readings are summed over the units of a kind, and a verdict is the band's.
 #include "studies/experiments/experiment.h"
+#include "studies/experiments/unit_benchmarks.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
@@ -64,6 +66,43 @@ void check_holds(const std::vector<Verdict>& verdicts) {
 
 TEST_CASE("experiments: the set-up rate is the closed form") {
   check_holds(setup_rate(sized(128, 128)).verdicts);
+}
+
+TEST_CASE("units: each kind of the machine plan has a frame that it limits and one that it does not") {
+  const std::vector<LimitedFrame> limited = limited_frames(32, 32);
+  const std::vector<SlackFrame> slack = slack_frames(32, 32);
+  quadrille::pipeline::visit_unit_kinds([&]<class Unit>() {
+    const std::string_view name = quadrille::pipeline::UnitKind<Unit>::name;
+    INFO(name);
+    CHECK(std::ranges::find(limited, name, &LimitedFrame::unit) != limited.end());
+    CHECK(std::ranges::find(slack, name, &SlackFrame::unit) != slack.end());
+  });
+}
+
+TEST_CASE("units: a frame that a unit limits takes the cycles of arithmetic, others do not feel its rate") {
+  const Result result = units(sized(64, 64));
+  CHECK(result.table.rows.size() >= 16);
+  check_holds(result.verdicts);
+}
+
+TEST_CASE("units: a unit that is faster than its parameters say fails") {
+  std::vector<LimitedFrame> limited = limited_frames(64, 64);
+  std::erase_if(limited, [](const LimitedFrame& f) { return f.unit != "rop"; });
+  for (LimitedFrame& f : limited) f.settings = {"rop.quads_per_clk=2"};  // the prediction is of 1
+  const Result result = judged(limited, {}, sized(64, 64));
+  REQUIRE(result.verdicts.size() == limited.size());
+  CHECK_FALSE(result.holds());
+  CHECK(result.table.rows[0].back() == "FAILS");
+}
+
+TEST_CASE("units: a parameter that moves a frame fails as one that should not") {
+  std::vector<LimitedFrame> limited = limited_frames(64, 64);
+  const auto rop = std::ranges::find(limited, "rop", &LimitedFrame::unit);
+  const SlackFrame slack{"rop", "limited by it", rop->stream, {}, "rop.quads_per_clk", 2};
+  const Result result = judged({}, {slack}, sized(64, 64));
+  REQUIRE(result.verdicts.size() == 1);
+  CHECK_FALSE(result.holds());
+  CHECK(result.further_tables[0].rows[0].back() == "FAILS");
 }
 
 TEST_CASE("experiments: of layers from front to back one is shaded, from back to front all") {

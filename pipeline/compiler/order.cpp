@@ -1,0 +1,110 @@
+#include "pipeline/compiler/order.h"
+
+#include "pipeline/compiler/interleave.h"
+#include "pipeline/compiler/passes.h"
+
+#include <algorithm>
+
+namespace quadrille::pipeline {
+namespace {
+
+using models::Op;
+
+constexpr int kFewRegisters = 64;  ///< up to here texture instructions stay in groups whatever it costs
+/// Longer programs are tried in fewer orders, so that compiling them takes no longer.
+constexpr std::size_t kLongProgram = 4096;
+
+class Search {
+ public:
+  Search(const ScalarShader& shader, const ShaderTarget& target) : shader_(shader), target_(target) {}
+
+  OrderedCode run() {
+    std::vector<OrderedCode> grouped = orders_of_few_registers();
+    best_ = *std::ranges::min_element(grouped, {}, registers);
+    if (registers(best_) > models::kMaxRegisters) return std::move(best_);
+    most_ = std::max(registers(best_), target_.most_registers(target_.warps(registers(best_))));
+    best_cycles_ = cycles(best_.code);
+    for (const OrderedCode& given : grouped) {
+      if (registers(given) <= most_) offer(given);
+      if (shader_.code.size() <= kLongProgram) try_interleaved(given.code, Preference::kLongestChain);
+      try_interleaved(given.code, Preference::kGivenOrder);
+    }
+    return std::move(best_);
+  }
+
+ private:
+  static int registers(const OrderedCode& ordered) { return ordered.allocation.num_regs; }
+  [[nodiscard]] double cycles(const std::vector<ScalarInstruction>& code) const {
+    return issue_cycles(code, shader_.variable.size(), target_.timing);
+  }
+  [[nodiscard]] OrderedCode allocated(std::vector<ScalarInstruction> code) const {
+    Allocation allocation = allocate_registers(code, shader_.variable.size());
+    return {std::move(code), std::move(allocation)};
+  }
+
+  /// The two texture orders; only the source's order where that saves many registers.
+  [[nodiscard]] std::vector<OrderedCode> orders_of_few_registers() const {
+    std::vector<OrderedCode> orders{allocated(schedule(shader_, Order::kTextures)),
+                                    allocated(schedule(shader_, Order::kTexturesDemand))};
+    const int fewest = std::min(registers(orders[0]), registers(orders[1]));
+    if (fewest <= kFewRegisters) return orders;
+    OrderedCode source = allocated(schedule(shader_, Order::kSource));
+    const bool saves_many = 2 * registers(source) < fewest || fewest > models::kMaxRegisters;
+    if (saves_many && registers(source) < fewest) return {std::move(source)};
+    return orders;
+  }
+
+  /// Takes the order if it costs no warp and is better.
+  void offer(const OrderedCode& ordered) {
+    if (registers(ordered) > most_) return;
+    const double needed = cycles(ordered.code);
+    if (needed > best_cycles_ || (needed == best_cycles_ && registers(ordered) >= registers(best_))) return;
+    best_ = ordered;
+    best_cycles_ = needed;
+  }
+
+  /// Interleaves with ever fewer values alive, while it costs warps or no cycle is lost by it.
+  void try_interleaved(const std::vector<ScalarInstruction>& given, Preference preference) {
+    const int tries = shader_.code.size() <= kLongProgram ? 6 : 2;
+    int live = most_;
+    double last = 0;
+    for (int i = 0; i < tries && live > 0; ++i) {
+      std::vector<ScalarInstruction> code =
+          interleave(given, shader_.variable, target_.timing, preference, static_cast<std::size_t>(live));
+      const double needed = cycles(code);
+      if (needed > best_cycles_) return;
+      const OrderedCode ordered = allocated(std::move(code));
+      offer(ordered);
+      // Fragments of the register file count too: as many less as were too many.
+      live -= std::max(1 + live / 8, registers(ordered) - most_);
+      if (registers(ordered) <= most_ && last > 0 && needed > last) return;
+      last = needed;
+    }
+  }
+
+  const ScalarShader& shader_;
+  const ShaderTarget& target_;
+  OrderedCode best_;
+  double best_cycles_ = 0;
+  int most_ = 0;  ///< registers that cost no warp
+};
+
+bool differs_in_divergent_flow(const ScalarShader& shader) {
+  int depth = 0;
+  return std::ranges::any_of(shader.code, [&](const ScalarInstruction& i) {
+    if (i.op == Op::kIf || i.op == Op::kLoop) ++depth;
+    if (i.op == Op::kEndIf || i.op == Op::kEndLoop) --depth;
+    const bool differs =
+        (i.op >= Op::kDdxFine && i.op <= Op::kDdyCoarse) || i.op == Op::kTexImplicit || i.op == Op::kTexBias;
+    return differs && depth > 0;
+  });
+}
+
+}  // namespace
+
+OrderedCode best_order(const ScalarShader& shader, const ShaderTarget& target) {
+  static const ShaderTarget default_machine;
+  return Search(shader, differs_in_divergent_flow(shader) ? default_machine : target).run();
+}
+
+}  // namespace quadrille::pipeline
