@@ -63,22 +63,33 @@ class Search {
     best_cycles_ = needed;
   }
 
-  /// Interleaves with ever fewer values alive, while it costs warps or no cycle is lost by it.
+  /// Interleaves with at most `live` values alive, and offers what comes of it.
+  struct Tried {
+    double cycles = 0;
+    int registers = 0;
+  };
+  Tried interleaved(const std::vector<ScalarInstruction>& given, Preference preference, int live) {
+    const OrderedCode ordered = allocated(
+        interleave(given, shader_.variable, target_.timing, preference, static_cast<std::size_t>(live)));
+    offer(ordered);
+    return {cycles(ordered.code), registers(ordered)};
+  }
+
+  /// Finds how many values may be alive so that no warp is lost, and then the fewest for as few cycles.
   void try_interleaved(const std::vector<ScalarInstruction>& given, Preference preference) {
-    const int tries = shader_.code.size() <= kLongProgram ? 6 : 2;
+    const bool is_long = shader_.code.size() > kLongProgram;
     int live = most_;
-    double last = 0;
-    for (int i = 0; i < tries && live > 0; ++i) {
-      std::vector<ScalarInstruction> code =
-          interleave(given, shader_.variable, target_.timing, preference, static_cast<std::size_t>(live));
-      const double needed = cycles(code);
-      if (needed > best_cycles_) return;
-      const OrderedCode ordered = allocated(std::move(code));
-      offer(ordered);
-      // Fragments of the register file count too: as many less as were too many.
-      live -= std::max(1 + live / 8, registers(ordered) - most_);
-      if (registers(ordered) <= most_ && last > 0 && needed > last) return;
-      last = needed;
+    Tried widest = interleaved(given, preference, live);
+    for (int tries = is_long ? 1 : 4; tries > 0 && widest.registers > most_; --tries) {
+      live -= widest.registers - most_;
+      if (live <= 0) return;
+      widest = interleaved(given, preference, live);
+    }
+    if (widest.registers > most_ || widest.cycles > best_cycles_ || is_long) return;
+    for (int fewest = 0; live - fewest > 1;) {
+      const int middle = (fewest + live) / 2;
+      if (interleaved(given, preference, middle).cycles > widest.cycles) fewest = middle;
+      else live = middle;
     }
   }
 

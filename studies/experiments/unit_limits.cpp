@@ -85,7 +85,7 @@ void add_geometry(Frames& frames, std::uint32_t width, std::uint32_t height) {
              });
   frames.add("clipper", "triangles with a corner before the near plane",
              "triangles x (clip_clk + 2 pieces / triangles_per_clk) + ends of batches / triangles_per_clk",
-             repeated(through_near_plane(width, height, 1), 16), {}, {},
+             repeated(through_near_plane(width, height, 1), 16), {.depth = true}, {},
              [](const Work& w, const MachineConfig& m) {
                const double piece = 1.0 / m.clipper.triangles_per_clk;
                return w.triangles * (m.clipper.clip_clk + 2 * piece) + w.batches * piece;
@@ -99,7 +99,7 @@ void add_geometry(Frames& frames, std::uint32_t width, std::uint32_t height) {
 
 void add_raster(Frames& frames, std::uint32_t width, std::uint32_t height) {
   constexpr std::uint32_t kHidden = 256;
-  const TriangleMesh shown = covered_frame(width, height, 1);
+  const TriangleMesh shown = layers(width, height, 1, true);
   frames.add("coarse_raster", fmt::format("{} layers behind the first, a tile test a cycle", kHidden),
              "cycles of the fine rasteriser for the first layer + tile tests of the others / tests_per_clk",
              hidden_frame(width, height, kHidden), {.depth = true}, {"coarse_raster.tests_per_clk=1"},
@@ -155,14 +155,17 @@ void add_cores(Frames& frames, std::uint32_t width, std::uint32_t height) {
   frames.add("core", "the same, one warp a SIMD", "the same: four chains hide each other's latency", once,
              {.fragment_shader = chain_shader(4, kSteps)}, {"core.warp_slots=4"}, issue(4));
   frames.add("core", fmt::format("one chain of {} steps, one warp a SIMD", kSteps),
-             "warps x steps x alu_clk / (cores x simds)", once, {.fragment_shader = chain_shader(1, kSteps)},
-             {"core.warp_slots=4"}, [](const Work& w, const MachineConfig& m) {
-               return w.warps * kSteps * m.core.alu_clk / (m.gpu.cores * m.core.simds);
+             "warps x ((steps + 1) x alu_clk + 4 outputs x 32 / simd_lanes) / (cores x simds)", once,
+             {.fragment_shader = chain_shader(1, kSteps)}, {"core.warp_slots=4"},
+             [](const Work& w, const MachineConfig& m) {
+               constexpr double kOutputs = 4;
+               const double clk = (kSteps + 1) * m.core.alu_clk + kOutputs * kWarpLanes / m.core.simd_lanes;
+               return w.warps * clk / (m.gpu.cores * m.core.simds);
              });
   const DrawTexture texture{64, 64, 2, traces::Filter::kLinear};
   frames.add("texture", "a trilinear sample a pixel, a quad a cycle",
              "quads x 2 levels / filter_quads_per_clk / cores", covered_frame(width, height, 32),
-             {.fragment_shader = sampling_shader(texture, 1, 1, 0.5), .texture = texture},
+             {.fragment_shader = sampling_shader(texture, {.level = 0.5}), .texture = texture},
              {"texture.filter_quads_per_clk=1"}, [](const Work& w, const MachineConfig& m) {
                return 2 * w.quads / m.texture.filter_quads_per_clk / m.gpu.cores;
              });
@@ -171,8 +174,8 @@ void add_cores(Frames& frames, std::uint32_t width, std::uint32_t height) {
 void add_memory(Frames& frames, std::uint32_t width, std::uint32_t height) {
   const DrawTexture lines{8 * width, 4 * height, 1, traces::Filter::kNearest};
   frames.add("l2", "every pixel a texel in a line of its own, which only the L2 cache holds",
-             "lines / channels, one a cycle and slice", covered_frame(width, height, 16),
-             {.fragment_shader = sampling_shader(lines, 8, 4, 0), .texture = lines},
+             "lines / channels, one a cycle and slice", covered_frame(width, height, 32),
+             {.fragment_shader = sampling_shader(lines, {.right = 8, .down = 4}), .texture = lines},
              {"texture.cache_lines=64", "l2.cache_lines=16384"},
              [](const Work& w, const MachineConfig& m) { return 4 * w.quads / m.gpu.channels; });
   const DrawTexture sectors{4 * width, 2 * height, 1, traces::Filter::kNearest};
@@ -180,7 +183,7 @@ void add_memory(Frames& frames, std::uint32_t width, std::uint32_t height) {
              "every pixel a texel in a sector of its own, which no cache holds, a bus a fourth as fast",
              "bytes / burst_bytes x t_burst / (channels x pseudo_channels), in cycles of the memory's clock",
              covered_frame(width, height, 4),
-             {.fragment_shader = sampling_shader(sectors, 4, 2, 0), .texture = sectors},
+             {.fragment_shader = sampling_shader(sectors, {.right = 4, .down = 2}), .texture = sectors},
              {"texture.cache_lines=64", "l2.cache_lines=256", "memory.t_burst=8", "memory.t_ccd_s=8",
               "memory.t_ccd_l=8"},
              [](const Work& w, const MachineConfig& m) {

@@ -13,7 +13,8 @@ TriangleMesh pixel_triangles(std::uint32_t width, std::uint32_t height, std::uin
 }
 
 TriangleMesh covered_frame(std::uint32_t width, std::uint32_t height, std::uint32_t times) {
-  return repeated(layers(width, height, 1, true), times);
+  const auto side = [](std::uint32_t pixels) { return static_cast<std::int32_t>(2 * pixels) * kGrid; };
+  return repeated({width, height, {{0, 0}, {side(width), 0}, {0, side(height)}}, {{0, 1, 2}}}, times);
 }
 
 TriangleMesh hidden_frame(std::uint32_t width, std::uint32_t height, std::uint32_t times) {
@@ -40,14 +41,14 @@ int chain_instructions(int chains, int steps) {
   return chains * (steps + 1) + kOutputs;
 }
 
-std::string sampling_shader(const DrawTexture& texture, int dx, int dy, double lod, int steps) {
-  std::string text = fmt::format(
+std::string sampling_shader(const DrawTexture& texture, const TextureWalk& walk) {
+  const double u = 1.0 / texture.width, v = 1.0 / texture.height;
+  return fmt::format(
       "#version 450\nlayout(set = 0, binding = 0) uniform sampler2D image;\n"
       "layout(location = 0) out vec4 color;\nvoid main() {{\n"
-      "vec4 c = textureLod(image, gl_FragCoord.xy * vec2({:.9f}, {:.9f}), {:.3f});\n",
-      static_cast<double>(dx) / texture.width, static_cast<double>(dy) / texture.height, lod);
-  for (int i = 0; i < steps; ++i) text += "c = c * 0.99 + 0.25;\n";
-  return text + "color = c;\n}\n";
+      "vec2 at = gl_FragCoord.xy * vec2({:.9f}, {:.9f});\n"
+      "at.x += float(gl_PrimitiveID) * {:.9f};\ncolor = textureLod(image, at, {:.3f});\n}}\n",
+      walk.right * u, walk.down * v, walk.triangle * u, walk.level);
 }
 
 }  // namespace quadrille::studies::experiments

@@ -10,7 +10,8 @@ namespace quadrille::studies::experiments {
 
 /// Triangles of one pixel each over the whole frame, so many times.
 [[nodiscard]] TriangleMesh pixel_triangles(std::uint32_t width, std::uint32_t height, std::uint32_t times);
-/// The whole frame as two triangles, so many times at the same depth.
+/// The whole frame as one triangle that reaches beyond it, so many times at the same depth: no quad is shared
+/// by two triangles.
 [[nodiscard]] TriangleMesh covered_frame(std::uint32_t width, std::uint32_t height, std::uint32_t times);
 /// The whole frame once, and so many times behind that.
 [[nodiscard]] TriangleMesh hidden_frame(std::uint32_t width, std::uint32_t height, std::uint32_t times);
@@ -20,9 +21,12 @@ namespace quadrille::studies::experiments {
 /// Its warp instructions: a step of each chain, one to read the pixel's place and one to write a colour for
 /// each component that is needed.
 [[nodiscard]] int chain_instructions(int chains, int steps);
-/// Samples its texture at level `lod`, `dx` and `dy` texels farther for each pixel to the right and down;
-/// then `steps` multiply-adds on each component.
-[[nodiscard]] std::string sampling_shader(const DrawTexture& texture, int dx, int dy, double lod,
-                                          int steps = 0);
+/// How a fragment shader walks over its texture, in texels.
+struct TextureWalk {
+  int right = 1, down = 1;  ///< farther for each pixel to the right, and down
+  int triangle = 0;         ///< farther to the right for each triangle of the draw
+  double level = 0;
+};
+[[nodiscard]] std::string sampling_shader(const DrawTexture& texture, const TextureWalk& walk);
 
 }  // namespace quadrille::studies::experiments

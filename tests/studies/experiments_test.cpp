@@ -80,7 +80,7 @@ TEST_CASE("units: each kind of the machine plan has a frame that it limits and o
 }
 
 TEST_CASE("units: a frame that a unit limits takes the cycles of arithmetic, others do not feel its rate") {
-  const Result result = units(sized(64, 64));
+  const Result result = units(sized(128, 128));
   CHECK(result.table.rows.size() >= 16);
   check_holds(result.verdicts);
 }
