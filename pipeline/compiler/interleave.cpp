@@ -1,7 +1,6 @@
 #include "pipeline/compiler/interleave.h"
 
 #include "pipeline/compiler/dependences.h"
-#include "pipeline/compiler/liveness.h"
 #include "pipeline/compiler/passes.h"
 
 #include <algorithm>
@@ -214,22 +213,19 @@ std::vector<Range> pieces_of(const std::vector<ScalarInstruction>& code, const B
 
 }  // namespace
 
-std::vector<ScalarInstruction> interleave(const std::vector<ScalarInstruction>& code,
-                                          const std::vector<bool>& variable, const IssueTiming& timing,
-                                          Preference preference, std::size_t live) {
-  const Liveness liveness(code, variable.size());
-  std::vector<ScalarInstruction> out = code;
+std::vector<ScalarInstruction> Interleaver::run(Preference preference, std::size_t live) const {
+  std::vector<ScalarInstruction> out = code_;
   std::vector<ScalarInstruction> ordered;
-  RegisterSet held(variable.size());
-  for (const BasicBlock& block : liveness.blocks()) {
-    liveness.live_behind(block, held);
-    const std::vector<Range> ranges = pieces_of(code, block);
+  RegisterSet held(variable_.size());
+  for (const BasicBlock& block : liveness_.blocks()) {
+    liveness_.live_behind(block, held);
+    const std::vector<Range> ranges = pieces_of(code_, block);
     for (auto range = ranges.rbegin(); range != ranges.rend(); ++range) {
       const std::size_t size = range->last - range->first;
       std::optional<Piece> piece;
       if (!range->fixed && size > 1)
-        piece.emplace(std::span(code).subspan(range->first, size), variable, timing, held);
-      for (std::size_t at = range->last; at-- > range->first;) liveness.step_back(at, held);
+        piece.emplace(std::span(code_).subspan(range->first, size), variable_, timing_, held);
+      for (std::size_t at = range->last; at-- > range->first;) liveness_.step_back(at, held);
       if (!piece) continue;
       ordered.clear();
       piece->append(held, preference, live, ordered);

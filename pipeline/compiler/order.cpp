@@ -25,9 +25,10 @@ class Search {
     most_ = std::max(registers(best_), target_.most_registers(target_.warps(registers(best_))));
     best_cycles_ = cycles(best_.code);
     for (const OrderedCode& given : grouped) {
-      if (registers(given) <= most_) offer(given);
-      if (shader_.code.size() <= kLongProgram) try_interleaved(given.code, Preference::kLongestChain);
-      try_interleaved(given.code, Preference::kGivenOrder);
+      const Interleaver interleaver(given.code, shader_.variable, target_.timing);
+      if (shader_.code.size() <= kLongProgram) try_interleaved(interleaver, Preference::kLongestChain);
+      try_interleaved(interleaver, Preference::kGivenOrder);
+      offer(given);
     }
     return std::move(best_);
   }
@@ -55,41 +56,37 @@ class Search {
   }
 
   /// Takes the order if it costs no warp and is better.
-  void offer(const OrderedCode& ordered) {
+  void offer(OrderedCode ordered) {
     if (registers(ordered) > most_) return;
     const double needed = cycles(ordered.code);
     if (needed > best_cycles_ || (needed == best_cycles_ && registers(ordered) >= registers(best_))) return;
-    best_ = ordered;
+    best_ = std::move(ordered);
     best_cycles_ = needed;
   }
 
-  /// Interleaves with at most `live` values alive, and offers what comes of it.
-  struct Tried {
-    double cycles = 0;
-    int registers = 0;
-  };
-  Tried interleaved(const std::vector<ScalarInstruction>& given, Preference preference, int live) {
-    const OrderedCode ordered = allocated(
-        interleave(given, shader_.variable, target_.timing, preference, static_cast<std::size_t>(live)));
-    offer(ordered);
-    return {cycles(ordered.code), registers(ordered)};
-  }
-
   /// Finds how many values may be alive so that no warp is lost, and then the fewest for as few cycles.
-  void try_interleaved(const std::vector<ScalarInstruction>& given, Preference preference) {
+  void try_interleaved(const Interleaver& interleaver, Preference preference) {
     const bool is_long = shader_.code.size() > kLongProgram;
+    const auto with = [&](int live) { return interleaver.run(preference, static_cast<std::size_t>(live)); };
     int live = most_;
-    Tried widest = interleaved(given, preference, live);
-    for (int tries = is_long ? 1 : 4; tries > 0 && widest.registers > most_; --tries) {
-      live -= widest.registers - most_;
+    OrderedCode widest = allocated(with(live));
+    for (int tries = is_long ? 1 : 4; tries > 0 && registers(widest) > most_; --tries) {
+      live -= registers(widest) - most_;
       if (live <= 0) return;
-      widest = interleaved(given, preference, live);
+      widest = allocated(with(live));
     }
-    if (widest.registers > most_ || widest.cycles > best_cycles_ || is_long) return;
-    for (int fewest = 0; live - fewest > 1;) {
+    const double needed = cycles(widest.code);
+    if (registers(widest) > most_ || needed > best_cycles_) return;
+    offer(std::move(widest));
+    for (int fewest = 0; !is_long && live - fewest > 1;) {
       const int middle = (fewest + live) / 2;
-      if (interleaved(given, preference, middle).cycles > widest.cycles) fewest = middle;
-      else live = middle;
+      std::vector<ScalarInstruction> code = with(middle);
+      if (cycles(code) > needed) {
+        fewest = middle;
+        continue;
+      }
+      live = middle;
+      offer(allocated(std::move(code)));
     }
   }
 
@@ -100,14 +97,18 @@ class Search {
   int most_ = 0;  ///< registers that cost no warp
 };
 
+/// Whether the shader takes a difference where a neighbour may be idle, or has been since it was discarded
+/// inside control flow.
 bool differs_in_divergent_flow(const ScalarShader& shader) {
   int depth = 0;
+  bool discarded = false;
   return std::ranges::any_of(shader.code, [&](const ScalarInstruction& i) {
     if (i.op == Op::kIf || i.op == Op::kLoop) ++depth;
     if (i.op == Op::kEndIf || i.op == Op::kEndLoop) --depth;
+    discarded = discarded || (i.op == Op::kKillIf && depth > 0);
     const bool differs =
         (i.op >= Op::kDdxFine && i.op <= Op::kDdyCoarse) || i.op == Op::kTexImplicit || i.op == Op::kTexBias;
-    return differs && depth > 0;
+    return differs && (depth > 0 || discarded);
   });
 }
 

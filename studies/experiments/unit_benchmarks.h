@@ -36,7 +36,7 @@ struct SlackFrame {
   double value = 0;       ///< that the parameter has; it is halved and doubled
 };
 
-/// At least one of each kind, in the order of the pipeline. The work grows with the frame's pixels.
+/// At least one of each kind. The work grows with the frame's pixels.
 [[nodiscard]] std::vector<LimitedFrame> limited_frames(std::uint32_t width, std::uint32_t height);
 [[nodiscard]] std::vector<SlackFrame> slack_frames(std::uint32_t width, std::uint32_t height);
 

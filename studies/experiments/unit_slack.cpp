@@ -1,4 +1,5 @@
-/// Frames that a unit works for but does not limit: another one, named in each, needs at least twice its time.
+/// Frames that a unit works for but does not limit: another one, named in each, needs at least twice its
+/// time.
 #include "studies/experiments/measured_meshes.h"
 #include "studies/experiments/unit_benchmarks.h"
 #include "studies/experiments/unit_streams.h"

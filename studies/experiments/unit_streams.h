@@ -1,5 +1,5 @@
-/// Frames of the units' benchmarks: small pictures drawn over many times, so that the beginning and the end of
-/// a frame are a small part of it.
+/// Frames of the units' benchmarks: small pictures drawn over many times, so that the beginning and the end
+/// of a frame are a small part of it.
 #pragma once
 
 #include <string>

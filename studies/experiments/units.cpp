@@ -1,5 +1,5 @@
-/// Every kind of unit by itself: a frame that it limits against arithmetic, and one in which its rate is of no
-/// account.
+/// Every kind of unit by itself: a frame that it limits against arithmetic, and one in which its rate is of
+/// no account.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -87,8 +87,18 @@ Result judged(const std::vector<LimitedFrame>& limited, const std::vector<SlackF
 }
 
 Result units(const Setting& setting) {
-  return judged(limited_frames(setting.width, setting.height), slack_frames(setting.width, setting.height),
-                setting);
+  Result result = judged(limited_frames(setting.width, setting.height),
+                         slack_frames(setting.width, setting.height), setting);
+  result.remarks = {
+      "Cycles are those until the pass is flushed, of scan-out those after it. The arithmetic is work over "
+      "rate; what is left over is the frame's beginning, until the first work reaches the unit, and its end, "
+      "the flush: about 500 cycles whatever the frame.",
+      "Two have more of it: frames that sample textures begin with texels from memory, and a chain by itself "
+      "also pays for the change from one warp to the next.",
+      "The work distributor, a slice of the L2 cache and scan-out do one thing a cycle and have no parameter "
+      "for that. The second table turns what they have instead: places on the way to a core, the latency of "
+      "a hit, lines under way."};
+  return result;
 }
 
 }  // namespace quadrille::studies::experiments
