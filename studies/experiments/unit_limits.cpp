@@ -79,7 +79,8 @@ void add_geometry(Frames& frames, std::uint32_t width, std::uint32_t height) {
   frames.add("primitive_assembly", "culled triangles, what follows twice as fast",
              "(triangles + ends of batches) / triangles_per_clk", pixel_triangles(width, height, 6),
              {.cull = traces::CullMode::kBack},
-             {"clipper.triangles_per_clk=2", "triangle_setup.culled_per_clk=2"},
+             {"clipper.triangles_per_clk=2", "triangle_setup.culled_per_clk=2",
+              "link.clipper_to_setup.width=2", "link.clipper_to_setup.depth=16"},
              [](const Work& w, const MachineConfig& m) {
                return (w.triangles + w.batches) / m.primitive_assembly.triangles_per_clk;
              });

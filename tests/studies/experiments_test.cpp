@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <map>
 #include <stdexcept>
 
 using namespace quadrille::studies::experiments;
@@ -85,13 +86,35 @@ TEST_CASE("units: a frame that a unit limits takes the cycles of arithmetic, oth
   check_holds(result.verdicts);
 }
 
-TEST_CASE("units: a unit that is faster than its parameters say fails") {
-  std::vector<LimitedFrame> limited = limited_frames(64, 64);
-  std::erase_if(limited, [](const LimitedFrame& f) { return f.unit != "rop"; });
-  for (LimitedFrame& f : limited) f.settings = {"rop.quads_per_clk=2"};  // the prediction is of 1
-  const Result result = judged(limited, {}, sized(64, 64));
+TEST_CASE("units: a unit of another rate than the arithmetic's fails, so each frame measures its unit") {
+  // The work distributor has no rate to set.
+  const std::map<std::string_view, std::vector<std::string>> other_rates{
+      {"command_processor", {"command_processor.draw_clk=8"}},
+      {"vertex_fetch", {"vertex_fetch.indices_per_clk=2"}},
+      {"primitive_assembly", {"primitive_assembly.triangles_per_clk=2", "link.assembly_to_clipper.width=2"}},
+      {"clipper", {"clipper.clip_clk=10"}},
+      {"triangle_setup", {"triangle_setup.drawn_per_clk=0.3"}},
+      {"coarse_raster", {"coarse_raster.tests_per_clk=2"}},
+      {"fine_raster", {"fine_raster.quads_per_clk=8"}},
+      {"depth", {"depth.quads_per_clk=2"}},
+      {"warp_packer", {"warp_packer.quads_per_clk=2"}},
+      {"core", {"core.simd_lanes=16", "core.alu_clk=7"}},
+      {"texture", {"texture.filter_quads_per_clk=2"}},
+      {"rop", {"rop.quads_per_clk=2"}},
+      {"l2", {"gpu.channels=3"}},
+      {"memory", {"gpu.memory_mhz=1100"}},
+      {"scan_out", {"scan_out.lines_in_flight=32"}},
+  };
+  std::vector<LimitedFrame> limited = limited_frames(128, 128);
+  std::erase_if(limited, [](const LimitedFrame& f) { return f.unit == "work_distributor"; });
+  for (LimitedFrame& f : limited)
+    f.settings.insert(f.settings.end(), other_rates.at(f.unit).begin(), other_rates.at(f.unit).end());
+  const Result result = judged(limited, {}, sized(128, 128));
   REQUIRE(result.verdicts.size() == limited.size());
-  CHECK_FALSE(result.holds());
+  for (const Verdict& v : result.verdicts) {
+    INFO(v.what << " " << v.value);
+    CHECK_FALSE(v.holds());
+  }
   CHECK(result.table.rows[0].back() == "FAILS");
 }
 
