@@ -102,7 +102,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
-  build_frame(stream, config.precision(), frame, options.leave_out);
+  build_frame(stream, config.precision(), frame, options.leave_out, config.shader_target());
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
   if (detail.any()) log.emplace(machine, frame, detail);

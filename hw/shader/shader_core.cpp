@@ -17,8 +17,15 @@ int hungriest_fragment_program(const Frame& frame) {
   return rows;
 }
 
-/// Cycles by class. A class without results that others read has the latency of its issue.
-models::IssueTiming issue_timing(const ShaderCore::Params& params) {
+Simd::Cycle first_end(const std::vector<Simd>& simds) {
+  Simd::Cycle first = Simd::kNever;
+  for (const Simd& simd : simds) first = std::min(first, simd.next_end());
+  return first;
+}
+
+}  // namespace
+
+models::IssueTiming ShaderCore::issue_timing(const Params& params) {
   const auto cycles = [](int lanes) {
     return static_cast<std::uint32_t>((models::kWarpLanes + lanes - 1) / lanes);
   };
@@ -36,14 +43,6 @@ models::IssueTiming issue_timing(const ShaderCore::Params& params) {
   set(models::IssueClass::kExport, plain, params.alu_clk);
   return timing;
 }
-
-Simd::Cycle first_end(const std::vector<Simd>& simds) {
-  Simd::Cycle first = Simd::kNever;
-  for (const Simd& simd : simds) first = std::min(first, simd.next_end());
-  return first;
-}
-
-}  // namespace
 
 ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
                        const Stores& stores, bool textured)

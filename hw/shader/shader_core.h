@@ -103,6 +103,9 @@ class ShaderCore final : public Unit {
     std::vector<Store<WarpSlot>*> warps;          ///< by partition
     std::vector<const TriangleStore*> triangles;  ///< by raster engine
   };
+  /// Cycles of the core's instructions by class. A class without results that others read has the latency of
+  /// its issue.
+  [[nodiscard]] static models::IssueTiming issue_timing(const Params& params);
   /// `textured`: it has ports to a texture unit.
   ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
              const Stores& stores, bool textured);

@@ -68,14 +68,14 @@ void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, con
 
 CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, std::string_view vertex_name,
                                   std::span<const std::uint32_t> fragment_spirv,
-                                  std::string_view fragment_name) {
+                                  std::string_view fragment_name, const ShaderTarget& target) {
   ScalarShader fragment = compile_stage(fragment_spirv, fragment_name, traces::ShaderStage::kFragment);
   clean_up(fragment);
   const Linkage linkage = link(fragment);
   ScalarShader vertex = compile_stage(vertex_spirv, vertex_name, traces::ShaderStage::kVertex);
   drop_unread_outputs(vertex, fragment, linkage);
   clean_up(vertex);
-  CompiledPipeline pipeline{emit_program(vertex, linkage), emit_program(fragment, linkage),
+  CompiledPipeline pipeline{emit_program(vertex, linkage, target), emit_program(fragment, linkage, target),
                             vertex.integer_inputs};
   models::prepare(pipeline.vertex);
   models::prepare(pipeline.fragment);

@@ -2,7 +2,7 @@
 
 #include "models/base/error.h"
 #include "models/shader/warp.h"
-#include "pipeline/compiler/allocate.h"
+#include "pipeline/compiler/order.h"
 #include "pipeline/compiler/passes.h"
 
 #include <algorithm>
@@ -19,7 +19,6 @@ using models::Operand;
 
 constexpr std::uint32_t kMaxConstantWords = 65535;
 constexpr std::uint32_t kSmallGap = 4;  ///< unused words that are kept so that two ranges become one
-constexpr int kFewRegisters = 64;       ///< up to here the texture order is kept whatever it costs
 
 /// The words of the constant file that the code reads, and where they are put.
 class ConstantFile {
@@ -97,29 +96,6 @@ class ConstantFile {
   std::map<std::uint32_t, std::uint32_t> uniform_at_;
 };
 
-struct Candidate {
-  std::vector<ScalarInstruction> code;
-  Allocation allocation;
-};
-
-/// Of the two texture orders the one with fewer registers; the source's order where that saves many.
-Candidate best_order(const ScalarShader& shader) {
-  const auto build = [&](Order order) {
-    Candidate candidate;
-    candidate.code = schedule(shader, order);
-    candidate.allocation = allocate_registers(candidate.code, shader.variable.size());
-    return candidate;
-  };
-  Candidate best = build(Order::kTextures);
-  if (Candidate other = build(Order::kTexturesDemand); other.allocation.num_regs < best.allocation.num_regs)
-    best = std::move(other);
-  if (best.allocation.num_regs <= kFewRegisters) return best;
-  if (Candidate other = build(Order::kSource); 2 * other.allocation.num_regs < best.allocation.num_regs ||
-                                               best.allocation.num_regs > models::kMaxRegisters)
-    if (other.allocation.num_regs < best.allocation.num_regs) best = std::move(other);
-  return best;
-}
-
 int control_depth(const std::vector<Instruction>& code) {
   int depth = 0, deepest = 0;
   for (const Instruction& i : code) {
@@ -139,8 +115,11 @@ std::map<std::uint16_t, std::uint16_t> pack(const Slots& used) {
 
 class Encoder {
  public:
-  Encoder(const ScalarShader& shader, const Linkage& linkage)
-      : shader_(shader), linkage_(linkage), chosen_(best_order(shader)), constants_(shader, chosen_.code) {
+  Encoder(const ScalarShader& shader, const Linkage& linkage, const ShaderTarget& target)
+      : shader_(shader),
+        linkage_(linkage),
+        chosen_(best_order(shader, target)),
+        constants_(shader, chosen_.code) {
     std::set<std::uint16_t> inputs, textures;
     for (const ScalarInstruction& i : chosen_.code) {
       if (i.op == Op::kInput && i.imm < models::kFirstSystemValue) inputs.insert(i.imm);
@@ -230,15 +209,15 @@ class Encoder {
 
   const ScalarShader& shader_;
   const Linkage& linkage_;
-  Candidate chosen_;
+  OrderedCode chosen_;
   ConstantFile constants_;
   std::map<std::uint16_t, std::uint16_t> inputs_, textures_;
 };
 
 }  // namespace
 
-models::Program emit_program(const ScalarShader& shader, const Linkage& linkage) {
-  return Encoder(shader, linkage).run();
+models::Program emit_program(const ScalarShader& shader, const Linkage& linkage, const ShaderTarget& target) {
+  return Encoder(shader, linkage, target).run();
 }
 
 }  // namespace quadrille::pipeline

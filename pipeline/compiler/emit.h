@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pipeline/compiler/ir.h"
+#include "pipeline/compiler/target.h"
 
 namespace quadrille::pipeline {
 
@@ -12,6 +13,7 @@ struct Linkage {
 };
 
 /// Schedules, allocates and encodes. Throws `UserError` naming the shader where a limit of the ISA is passed.
-[[nodiscard]] models::Program emit_program(const ScalarShader& shader, const Linkage& linkage);
+[[nodiscard]] models::Program emit_program(const ScalarShader& shader, const Linkage& linkage,
+                                           const ShaderTarget& target);
 
 }  // namespace quadrille::pipeline

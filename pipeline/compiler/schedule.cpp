@@ -1,10 +1,11 @@
 /// Texture grouping: within a straight-line stretch, texture instructions that do not depend on each other
 /// are issued together.
 #include "models/shader/warp.h"
+#include "pipeline/compiler/dependences.h"
 #include "pipeline/compiler/passes.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <span>
 
 namespace quadrille::pipeline {
 namespace {
@@ -14,11 +15,15 @@ using models::Op;
 class Stretch {
  public:
   Stretch(const ScalarShader& shader, std::size_t first, std::size_t last)
-      : shader_(shader), first_(first), size_(last - first) {
-    needs_.resize(size_);
+      : shader_(shader),
+        first_(first),
+        size_(last - first),
+        needs_(dependences(std::span(shader.code).subspan(first, size_), shader.variable)) {
     level_.assign(size_, 0);
     done_.assign(size_, false);
-    for (std::size_t at = 0; at < size_; ++at) connect(at);
+    for (std::size_t at = 0; at < size_; ++at)
+      for (const std::size_t before : needs_[at])
+        level_[at] = std::max(level_[at], level_[before] + (is_texture(code(before).op) ? 1 : 0));
   }
 
   void append(std::vector<ScalarInstruction>& out, Order order) {
@@ -34,36 +39,6 @@ class Stretch {
   [[nodiscard]] const ScalarInstruction& code(std::size_t at) const { return shader_.code[first_ + at]; }
   [[nodiscard]] bool writes_variable(std::size_t at) const {
     return models::destination_count(code(at).op) > 0 && shader_.variable[code(at).dst];
-  }
-
-  void need(std::size_t at, std::size_t before) {
-    needs_[at].push_back(before);
-    level_[at] = std::max(level_[at], level_[before] + (is_texture(code(before).op) ? 1 : 0));
-  }
-
-  /// Notes what must come before the instruction: makers of its operands, earlier readers and writers of its
-  /// variable, earlier outputs.
-  void connect(std::size_t at) {
-    const ScalarInstruction& i = code(at);
-    for (const Value& v : {i.a, i.b, i.c}) {
-      if (!v.is_register()) continue;
-      if (const auto made = writer_.find(v.bits); made != writer_.end()) need(at, made->second);
-      if (shader_.variable[v.bits]) readers_[v.bits].push_back(at);
-    }
-    if (i.op == Op::kOutput) {
-      if (last_output_ < size_) need(at, last_output_);
-      last_output_ = at;
-    }
-    for (int k = 0; k < models::destination_count(i.op); ++k) {
-      const std::uint32_t target = i.dst + static_cast<std::uint32_t>(k);
-      if (shader_.variable[target]) {
-        if (const auto made = writer_.find(target); made != writer_.end()) need(at, made->second);
-        for (const std::size_t reader : readers_[target])
-          if (reader != at) need(at, reader);
-        readers_[target].clear();
-      }
-      writer_[target] = at;
-    }
   }
 
   /// Emits an instruction after what it needs; depth first, without recursion.
@@ -108,9 +83,6 @@ class Stretch {
   std::vector<std::vector<std::size_t>> needs_;
   std::vector<int> level_;
   std::vector<bool> done_;
-  std::unordered_map<std::uint32_t, std::size_t> writer_;
-  std::unordered_map<std::uint32_t, std::vector<std::size_t>> readers_;
-  std::size_t last_output_ = static_cast<std::size_t>(-1);
   std::vector<std::size_t> stack_;
   std::vector<ScalarInstruction>* out_ = nullptr;
 };

@@ -42,8 +42,13 @@ models::BlendState blend_state(const traces::BlendState& b) {
 
 class FrameBuilder {
  public:
-  FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out)
-      : stream_(stream), out_(out), resources_(stream, out.memory, out.fills), lives_(stream) {
+  FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision,
+               const ShaderTarget& target, DeviceFrame& out)
+      : stream_(stream),
+        target_(target),
+        out_(out),
+        resources_(stream, out.memory, out.fills),
+        lives_(stream) {
     out.frame.precision = precision;
   }
 
@@ -142,7 +147,8 @@ class FrameBuilder {
     if (found != programs_.end()) return *found->second;
     const traces::Shader& vertex = stream_.shaders[key.first];
     const traces::Shader& fragment = stream_.shaders[key.second];
-    out_.programs.push_back(compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name));
+    out_.programs.push_back(
+        compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name, target_));
     programs_[key] = &out_.programs.back();
     return out_.programs.back();
   }
@@ -307,6 +313,7 @@ class FrameBuilder {
   }
 
   const traces::CommandStream& stream_;
+  const ShaderTarget& target_;
   DeviceFrame& out_;
   DeviceResources resources_;
   std::map<std::pair<Index, Index>, const CompiledPipeline*> programs_;
@@ -341,8 +348,8 @@ bool DeviceFrame::blends() const {
 }
 
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,
-                 bool leave_out) {
-  FrameBuilder(stream, precision, out).build(leave_out);
+                 bool leave_out, const ShaderTarget& target) {
+  FrameBuilder(stream, precision, target, out).build(leave_out);
 }
 
 }  // namespace quadrille::pipeline

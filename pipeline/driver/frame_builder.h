@@ -41,10 +41,10 @@ struct DeviceFrame {
 };
 
 /// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all
-/// else, so that no address depends on it, and all texels come now.
+/// else, so that no address depends on it, and all texels come now. Programs are compiled for `target`.
 /// The stream must live as long as `out` is run. Throws `UserError` for a shader that does not compile, a
 /// stage interface that does not match, or memory that does not fit.
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,
-                 bool leave_out = true);
+                 bool leave_out = true, const ShaderTarget& target = {});
 
 }  // namespace quadrille::pipeline

@@ -9,6 +9,7 @@
 /// program, and what was changed since.
 #pragma once
 
+#include "pipeline/compiler/target.h"
 #include "pipeline/machine/machine_plan.h"
 
 #include <functional>
@@ -183,6 +184,10 @@ class MachineConfig {
   void check() const;
   [[nodiscard]] models::Precision precision() const {
     return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2};
+  }
+  /// What the shader compiler knows of the cores.
+  [[nodiscard]] ShaderTarget shader_target() const {
+    return {core.warp_slots, core.register_rows, hw::ShaderCore::issue_timing(core)};
   }
 
  private:

@@ -96,6 +96,16 @@ const Experiment kExperiments[] = {
      &hidden_surfaces,
      {},
      "960x540"},
+    {"units",
+     "Every unit by itself",
+     "Nothing is published to compare with: the ruler is arithmetic.",
+     "For each kind of unit a frame that it limits, whose cycles follow from its work and its parameters, "
+     "and "
+     "a frame that it does not limit, in which half and twice its main rate must change nothing. Predictions "
+     "come from the command stream and the machine's parameters, before the frame is drawn.",
+     &units,
+     {},
+     "128x128"},
     {"limits",
      "What limits a frame",
      "Nothing is published to compare with: the ruler is the machine itself, drawn again with one resource "
@@ -143,6 +153,38 @@ std::string padded(const std::string& text, std::size_t width) {
 std::string verdict_text(const Verdict& v) {
   return fmt::format("{:<5}  {}: {:.3g}, band {:.3g} to {:.3g}", v.holds() ? "holds" : "FAILS", v.what,
                      v.value, v.least, v.most);
+}
+
+std::vector<Table> tables_of(const Result& result) {
+  std::vector<Table> tables{result.table};
+  tables.insert(tables.end(), result.further_tables.begin(), result.further_tables.end());
+  return tables;
+}
+
+std::string table_text(const Table& table) {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < table.head.size(); ++c) {
+    std::size_t width = table.head[c].size();
+    for (const auto& row : table.rows) width = std::max(width, row[c].size());
+    widths.push_back(width);
+  }
+  const auto line = [&](const std::vector<std::string>& cells) {
+    std::string text = " ";
+    for (std::size_t c = 0; c < cells.size(); ++c) text += " " + padded(cells[c], widths[c] + 1);
+    return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+  };
+  std::string text = line(table.head);
+  for (const auto& row : table.rows) text += line(row);
+  return text;
+}
+
+std::string table_markdown(const Table& table) {
+  const auto line = [](const std::vector<std::string>& cells) {
+    return fmt::format("| {} |\n", fmt::join(cells, " | "));
+  };
+  std::string text = line(table.head) + line(std::vector<std::string>(table.head.size(), "---"));
+  for (const auto& row : table.rows) text += line(row);
+  return text;
 }
 
 }  // namespace
@@ -231,36 +273,18 @@ std::vector<Readings> draw(const std::vector<Frame>& frames, const Setting& sett
 }
 
 std::string result_text(const Experiment& experiment, const Result& result) {
-  std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < result.table.head.size(); ++c) {
-    std::size_t width = result.table.head[c].size();
-    for (const auto& row : result.table.rows) width = std::max(width, row[c].size());
-    widths.push_back(width);
-  }
-  const auto line = [&](const std::vector<std::string>& cells) {
-    std::string text = " ";
-    for (std::size_t c = 0; c < cells.size(); ++c) text += " " + padded(cells[c], widths[c] + 1);
-    return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
-  };
   std::string text = fmt::format("EXPERIMENT  {}: {}\n  published: {}\n  here: {}\n\n", experiment.name,
                                  experiment.title, experiment.published, experiment.how);
-  text += line(result.table.head);
-  for (const auto& row : result.table.rows) text += line(row);
-  text += "\n";
+  for (const Table& table : tables_of(result)) text += table_text(table) + "\n";
   for (const Verdict& v : result.verdicts) text += "  " + verdict_text(v) + "\n";
   for (const std::string& remark : result.remarks) text += "  note: " + remark + "\n";
   return text;
 }
 
 std::string result_markdown(const Experiment& experiment, const Result& result, const std::string& picture) {
-  const auto line = [](const std::vector<std::string>& cells) {
-    return fmt::format("| {} |\n", fmt::join(cells, " | "));
-  };
   std::string text = fmt::format("# {}\n\n**Published.** {}\n\n**Here.** {}\n\n", experiment.title,
                                  experiment.published, experiment.how);
-  text += line(result.table.head) + line(std::vector<std::string>(result.table.head.size(), "---"));
-  for (const auto& row : result.table.rows) text += line(row);
-  text += "\n";
+  for (const Table& table : tables_of(result)) text += table_markdown(table) + "\n";
   for (const Verdict& v : result.verdicts) text += "- " + verdict_text(v) + "\n";
   for (const std::string& remark : result.remarks) text += "\n" + remark + "\n";
   if (!picture.empty()) text += fmt::format("\n![{}]({})\n", experiment.title, picture);

@@ -40,6 +40,7 @@ struct Verdict {
 
 struct Result {
   Table table;
+  std::vector<Table> further_tables;
   std::vector<Verdict> verdicts;
   std::string plot;                  ///< commands for gnuplot
   std::vector<std::string> remarks;  ///< what a reader would ask
@@ -101,5 +102,6 @@ class Readings {
 [[nodiscard]] Result setup_rate(const Setting& setting);
 [[nodiscard]] Result quad_overhead(const Setting& setting);
 [[nodiscard]] Result hidden_surfaces(const Setting& setting);
+[[nodiscard]] Result units(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

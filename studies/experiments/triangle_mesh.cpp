@@ -69,8 +69,21 @@ traces::Pipeline pipeline_of(const DrawOptions& options) {
 }
 
 const char* fragment_shader_of(const DrawOptions& options) {
+  if (!options.fragment_shader.empty()) return options.fragment_shader.c_str();
   if (options.discards) return kDiscardingShader;
   return options.blends ? kTranslucentShader : kFragmentShader;
+}
+
+void add_texture(const DrawTexture& texture, traces::CommandStream& stream) {
+  traces::Image image{
+      "grey", traces::Format::kR8G8B8A8Unorm, texture.width, texture.height, texture.levels, {}, nullptr};
+  image.texels.assign(traces::texel_bytes(image), std::byte{0x80});
+  stream.images = {std::move(image)};
+  traces::Sampler sampler;
+  sampler.mag = sampler.min = sampler.mip = texture.filter;
+  stream.samplers = {sampler};
+  stream.descriptor_sets = {{{}, {{0, 0, 0}}}};
+  stream.commands.emplace_back(traces::BindDescriptorSet{0, 0});
 }
 
 }  // namespace
@@ -133,9 +146,10 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
       traces::BindVertexBuffer{0, 0, 0},
       traces::BindIndexBuffer{1, 0, traces::IndexType::kUint32},
       traces::SetViewport{0, 0, static_cast<float>(mesh.width), static_cast<float>(mesh.height), 0, 1},
-      traces::SetScissor{0, 0, mesh.width, mesh.height},
-      draw,
-      traces::EndPass{}};
+      traces::SetScissor{0, 0, mesh.width, mesh.height}};
+  if (options.texture.width > 0) add_texture(options.texture, stream);
+  stream.commands.insert(stream.commands.end(), options.draws, draw);
+  stream.commands.emplace_back(traces::EndPass{});
   traces::validate(stream);
   return stream;
 }

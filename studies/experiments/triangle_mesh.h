@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "traces/command_stream.h"
@@ -35,13 +36,24 @@ struct TriangleMesh {
 [[nodiscard]] TriangleMesh tiled_frame(std::uint32_t width, std::uint32_t height, std::uint32_t tile_width,
                                        std::uint32_t tile_height, std::uint32_t column_tiles = 4);
 
+/// A texture at set 0, binding 0 of the fragment shader. What it shows does not matter: its texels are all
+/// alike.
+struct DrawTexture {
+  std::uint32_t width = 0, height = 0;  ///< texels; 0: none
+  std::uint32_t levels = 1;
+  traces::Filter filter = traces::Filter::kNearest;  ///< within a level and between levels
+};
+
 struct DrawOptions {
   traces::CullMode cull = traces::CullMode::kNone;
   bool depth = false;     ///< test "less" and write
   bool discards = false;  ///< the fragment shader drops half of its fragments
   bool blends = false;    ///< over what is there, by alpha, so that each fragment reads the colour it changes
+  std::string fragment_shader{};  ///< GLSL; empty: one colour
+  DrawTexture texture{};
+  std::uint32_t draws = 1;  ///< so often, each a draw of its own
 };
-/// One indexed draw of the mesh; the shaders hand positions through and write one colour.
+/// An indexed draw of the mesh; the shaders hand positions through and write one colour.
 [[nodiscard]] traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& options = {});
 
 }  // namespace quadrille::studies::experiments

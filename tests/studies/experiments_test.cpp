@@ -1,7 +1,10 @@
 /// Experiments: readings are summed over the units of a kind, and a verdict is the band's.
 #include "studies/experiments/experiment.h"
+#include "studies/experiments/unit_benchmarks.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <map>
 #include <stdexcept>
 
 using namespace quadrille::studies::experiments;
@@ -64,6 +67,65 @@ void check_holds(const std::vector<Verdict>& verdicts) {
 
 TEST_CASE("experiments: the set-up rate is the closed form") {
   check_holds(setup_rate(sized(128, 128)).verdicts);
+}
+
+TEST_CASE("units: each kind of the machine plan has a frame that it limits and one that it does not") {
+  const std::vector<LimitedFrame> limited = limited_frames(32, 32);
+  const std::vector<SlackFrame> slack = slack_frames(32, 32);
+  quadrille::pipeline::visit_unit_kinds([&]<class Unit>() {
+    const std::string_view name = quadrille::pipeline::UnitKind<Unit>::name;
+    INFO(name);
+    CHECK(std::ranges::find(limited, name, &LimitedFrame::unit) != limited.end());
+    CHECK(std::ranges::find(slack, name, &SlackFrame::unit) != slack.end());
+  });
+}
+
+TEST_CASE("units: a frame that a unit limits takes the cycles of arithmetic, others do not feel its rate") {
+  const Result result = units(sized(128, 128));
+  CHECK(result.table.rows.size() >= 16);
+  check_holds(result.verdicts);
+}
+
+TEST_CASE("units: a unit of another rate than the arithmetic's fails, so each frame measures its unit") {
+  // The work distributor has no rate to set.
+  const std::map<std::string_view, std::vector<std::string>> other_rates{
+      {"command_processor", {"command_processor.draw_clk=8"}},
+      {"vertex_fetch", {"vertex_fetch.indices_per_clk=2"}},
+      {"primitive_assembly", {"primitive_assembly.triangles_per_clk=2", "link.assembly_to_clipper.width=2"}},
+      {"clipper", {"clipper.clip_clk=10"}},
+      {"triangle_setup", {"triangle_setup.drawn_per_clk=0.3"}},
+      {"coarse_raster", {"coarse_raster.tests_per_clk=2"}},
+      {"fine_raster", {"fine_raster.quads_per_clk=8"}},
+      {"depth", {"depth.quads_per_clk=2"}},
+      {"warp_packer", {"warp_packer.quads_per_clk=2"}},
+      {"core", {"core.simd_lanes=16", "core.alu_clk=7"}},
+      {"texture", {"texture.filter_quads_per_clk=2"}},
+      {"rop", {"rop.quads_per_clk=2"}},
+      {"l2", {"gpu.channels=3"}},
+      {"memory", {"gpu.memory_mhz=1100"}},
+      {"scan_out", {"scan_out.lines_in_flight=32"}},
+  };
+  std::vector<LimitedFrame> limited = limited_frames(128, 128);
+  std::erase_if(limited, [](const LimitedFrame& f) { return f.unit == "work_distributor"; });
+  for (LimitedFrame& f : limited)
+    f.settings.insert(f.settings.end(), other_rates.at(f.unit).begin(), other_rates.at(f.unit).end());
+  const Result result = judged(limited, {}, sized(128, 128));
+  REQUIRE(result.verdicts.size() == limited.size());
+  for (const Verdict& v : result.verdicts) {
+    INFO(v.what << " " << v.value);
+    CHECK_FALSE(v.holds());
+  }
+  CHECK(result.table.rows[0].back() == "FAILS");
+}
+
+TEST_CASE("units: a parameter that moves a frame fails as one that should not") {
+  std::vector<LimitedFrame> limited = limited_frames(64, 64);
+  const auto rop = std::ranges::find(limited, "rop", &LimitedFrame::unit);
+  const SlackFrame slack{"rop", "limited by it", rop->stream, {}, "rop.quads_per_clk", 2};
+  const Result result = judged({}, {slack}, sized(64, 64));
+  REQUIRE(result.verdicts.size() == 1);
+  CHECK_FALSE(result.holds());
+  CHECK(result.further_tables[0].rows[0].back() == "FAILS");
 }
 
 TEST_CASE("experiments: of layers from front to back one is shaded, from back to front all") {

@@ -83,11 +83,11 @@ LanePlace place_of_lane(std::size_t lane) {
   return {16.5f + static_cast<float>(2 * quad + pixel % 2), 20.5f + static_cast<float>(pixel / 2)};
 }
 
-RandomShaderResult run_compiled(const RandomShader& shader) {
+RandomShaderResult run_compiled(const RandomShader& shader, const ShaderTarget& target) {
   const std::vector<std::uint32_t> words = words_of(shader);
   if (shader.stage == ShaderStage::kVertex)
-    return run_vertex_program(compile_pipeline(words, "random", plain_fragment(), "plain").vertex);
-  return run_fragment_program(compile_pipeline(plain_vertex(), "plain", words, "random").fragment);
+    return run_vertex_program(compile_pipeline(words, "random", plain_fragment(), "plain", target).vertex);
+  return run_fragment_program(compile_pipeline(plain_vertex(), "plain", words, "random", target).fragment);
 }
 
 RandomShaderResult run_in_reference(const RandomShader& shader) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "models/shader/isa.h"
+#include "pipeline/compiler/target.h"
 #include "tests/pipeline/compiler/random_shader.h"
 
 #include <array>
@@ -22,7 +23,7 @@ struct LanePlace {
 [[nodiscard]] LanePlace place_of_lane(std::size_t lane);
 
 /// `UserError` if it cannot be compiled.
-[[nodiscard]] RandomShaderResult run_compiled(const RandomShader& shader);
+[[nodiscard]] RandomShaderResult run_compiled(const RandomShader& shader, const ShaderTarget& target = {});
 [[nodiscard]] RandomShaderResult run_in_reference(const RandomShader& shader);
 
 }  // namespace quadrille::pipeline

@@ -30,9 +30,9 @@ std::vector<std::uint32_t> vertex_spirv(const std::string& source) {
   return scenes::compile_glsl(source, traces::ShaderStage::kVertex, "test.vert");
 }
 
-models::Program compile_fragment(const std::string& source) {
+models::Program compile_fragment(const std::string& source, const ShaderTarget& target) {
   static const std::vector<std::uint32_t> vertex = vertex_spirv(plain_vertex_source());
-  return compile_pipeline(vertex, "test.vert", fragment_spirv(source), "test.frag").fragment;
+  return compile_pipeline(vertex, "test.vert", fragment_spirv(source), "test.frag", target).fragment;
 }
 
 std::vector<std::uint32_t> constant_file(const models::ConstantLayout& layout, const RunInput& input) {

@@ -62,7 +62,7 @@ struct RunOutput {
 [[nodiscard]] std::vector<std::uint32_t> fragment_spirv(const std::string& source);
 [[nodiscard]] std::vector<std::uint32_t> vertex_spirv(const std::string& source);
 /// Compiles a whole fragment shader with `plain_vertex_source`.
-[[nodiscard]] models::Program compile_fragment(const std::string& source);
+[[nodiscard]] models::Program compile_fragment(const std::string& source, const ShaderTarget& target = {});
 /// The words of a draw's constant file.
 [[nodiscard]] std::vector<std::uint32_t> constant_file(const models::ConstantLayout& layout,
                                                        const RunInput& input);
