@@ -32,8 +32,8 @@ hw::FifoIn<T>& port_for(const hw::FifoInGroup<T>& group, std::size_t i) {
 /// kinds that stand more often.
 template <class Port>
 auto& port_for_single(Port& port) {
-  if constexpr (requires { port.size(); }) return port_for(port, port.size() - 1);
-  else return port_for(port, 0);
+  if constexpr (std::is_base_of_v<hw::PortBase, Port>) return port_for(port, 0);
+  else return port_for(port, port.size() - 1);
 }
 
 /// "vertex" of the input "vertex_in".

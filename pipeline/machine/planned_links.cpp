@@ -1,7 +1,6 @@
 #include "pipeline/machine/planned_links.h"
 
 #include <algorithm>
-#include <ranges>
 #include <set>
 
 namespace quadrille::pipeline {
@@ -47,8 +46,9 @@ void add_class(std::string_view name, LinkWay way, std::vector<PlannedLink>& lin
 /// from the last to the first.
 void follow(std::string_view kind, std::set<std::string_view>& seen, std::vector<std::string_view>& order) {
   if (!seen.insert(kind).second) return;
-  for (const PlannedLink& link : planned_links() | std::views::reverse)
-    if (link.way == LinkWay::kOnward && link.from == kind) follow(link.to, seen, order);
+  const std::vector<PlannedLink>& links = planned_links();
+  for (auto link = links.rbegin(); link != links.rend(); ++link)
+    if (link->way == LinkWay::kOnward && link->from == kind) follow(link->to, seen, order);
   order.insert(order.begin(), kind);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace quadrille::pipeline {
 
@@ -34,7 +35,9 @@ constexpr double kTaken = 0.5;
 /// downstream. Units that are not of the plan come before those that are.
 struct Downstream {
   std::ptrdiff_t at = 0, kind = 0, named = 0;
-  auto operator<=>(const Downstream&) const = default;
+  bool operator<(const Downstream& other) const {
+    return std::tie(at, kind, named) < std::tie(other.at, other.kind, other.named);
+  }
 };
 
 Downstream downstream(std::string_view kind, const ResourceFigure& places, std::size_t named) {

@@ -91,7 +91,7 @@ class DramController::PseudoChannel {
   void chain_bursts(Action action, std::vector<DramDone>& done, DramCommandCounts& counts,
                     const std::function<void(const DramCommand&)>& trace);
   /// True when it was the request's last one. Fills in `command` where there is one.
-  bool move_burst(std::uint32_t entry, Cycle now, std::vector<DramDone>& done, DramCommand* command);
+  bool move_burst(std::uint32_t index, Cycle now, std::vector<DramDone>& done, DramCommand* command);
   [[nodiscard]] DramCommand command(Step step, std::uint32_t bank, Cycle now) const;
 
   const DramControllerParams& params_;

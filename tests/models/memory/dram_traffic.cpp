@@ -2,7 +2,6 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
-#include <ranges>
 #include <stdexcept>
 
 namespace quadrille::models {
@@ -211,14 +210,15 @@ const std::vector<DramPolicy>& dram_policies() {
     const auto& drains = dram_write_drains().all();
     const auto& mappings = dram_mappings().all();
     std::vector<DramPolicy> all;
-    for (const DramSchedulerPolicy* scheduler : dram_schedulers().all() | std::views::reverse) {
+    const auto& schedulers = dram_schedulers().all();
+    for (auto scheduler = schedulers.rbegin(); scheduler != schedulers.rend(); ++scheduler) {
       for (const DramPagePolicyEntry* page : dram_page_policies().all()) {
         const std::size_t turn = all.size();
         const auto* drain = drains[(turn + 1) % drains.size()];
         const auto* mapping = mappings[turn % mappings.size()];
-        all.push_back({fmt::format("scheduler {}, page {}, write_drain {}, mapping {}", scheduler->name,
+        all.push_back({fmt::format("scheduler {}, page {}, write_drain {}, mapping {}", (*scheduler)->name,
                                    page->name, drain->name, mapping->name),
-                       scheduler, page, drain, mapping, turn % 2 == 0});
+                       *scheduler, page, drain, mapping, turn % 2 == 0});
       }
     }
     return all;
