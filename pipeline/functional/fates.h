@@ -6,7 +6,7 @@
 namespace quadrille::pipeline {
 
 struct Fates {
-  // Triangles; of those that were cut, their pieces.
+  // Triangles; of those that were cut, their pieces. From set-up on, in each raster engine that they went to.
   std::uint64_t off_screen = 0;  ///< outside the view volume or the scissor
   std::uint64_t not_finite = 0;  ///< a position is NaN or infinite
   std::uint64_t culled = 0;      ///< face the way that is culled

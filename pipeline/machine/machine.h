@@ -51,6 +51,7 @@ class Machine {
   /// Of a kind that stands once.
   template <class Unit>
   [[nodiscard]] Unit& one() const {
+    static_assert(UnitKind<Unit>::stands == Stands::kOnce);
     return *all<Unit>().front();
   }
   [[nodiscard]] const hw::Driver& driver() const { return *driver_; }

@@ -143,15 +143,15 @@ namespace {
 
 Fates fates_of(const Machine& m) {
   const hw::Clipper::Stats& clipper = *m.one<hw::Clipper>().stats();
-  const hw::TriangleSetupUnit::Stats& setup = *m.one<hw::TriangleSetupUnit>().stats();
+  using SetUp = hw::TriangleSetupUnit;
   using Depth = hw::DepthUnit::Stats;
-  return {.off_screen = clipper.rejected.value() + setup.offscreen.value(),
+  return {.off_screen = clipper.rejected.value() + sum<SetUp>(m, &SetUp::Stats::offscreen),
           .not_finite = clipper.not_finite.value(),
-          .culled = setup.culled.value(),
-          .no_area = setup.zero_area.value(),
-          .no_sample = setup.no_sample.value(),
-          .rasterised = setup.kept.value(),
-          .tiles_hidden = m.one<hw::CoarseRaster>().stats()->tiles_hidden.value(),
+          .culled = sum<SetUp>(m, &SetUp::Stats::culled),
+          .no_area = sum<SetUp>(m, &SetUp::Stats::zero_area),
+          .no_sample = sum<SetUp>(m, &SetUp::Stats::no_sample),
+          .rasterised = sum<SetUp>(m, &SetUp::Stats::kept),
+          .tiles_hidden = sum<hw::CoarseRaster>(m, &hw::CoarseRaster::Stats::tiles_hidden),
           .hidden = sum<hw::DepthUnit>(m, &Depth::early_killed) + sum<hw::DepthUnit>(m, &Depth::late_killed),
           .discarded = sum<hw::Rop>(m, &hw::Rop::Stats::discarded)};
 }
@@ -168,7 +168,7 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame, std::optiona
   f.frame.draws = m.one<hw::CommandProcessor>().stats()->draws.value();
   f.frame.triangles = m.one<hw::PrimitiveAssembly>().stats()->triangles.value();
   f.frame.vertices = sum<hw::ShaderCore>(m, &Core::vertices);
-  f.frame.fragments_covered = m.one<hw::FineRaster>().stats()->fragments.value();
+  f.frame.fragments_covered = sum<hw::FineRaster>(m, &hw::FineRaster::Stats::fragments);
   f.frame.fragments_shaded = sum<hw::ShaderCore>(m, &Core::fragments);
   f.frame.helper_lanes = sum<hw::ShaderCore>(m, &Core::helper_lanes);
   f.frame.fragment_warps = sum<hw::ShaderCore>(m, &Core::fragment_warps);

@@ -103,5 +103,6 @@ class Readings {
 [[nodiscard]] Result quad_overhead(const Setting& setting);
 [[nodiscard]] Result hidden_surfaces(const Setting& setting);
 [[nodiscard]] Result units(const Setting& setting);
+[[nodiscard]] Result engines(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

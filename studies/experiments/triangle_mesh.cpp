@@ -78,11 +78,11 @@ void add_texture(const DrawTexture& texture, traces::CommandStream& stream) {
   traces::Image image{
       "grey", traces::Format::kR8G8B8A8Unorm, texture.width, texture.height, texture.levels, {}, nullptr};
   image.texels.assign(traces::texel_bytes(image), std::byte{0x80});
-  stream.images = {std::move(image)};
+  stream.images.push_back(std::move(image));
   traces::Sampler sampler;
   sampler.mag = sampler.min = sampler.mip = texture.filter;
   stream.samplers = {sampler};
-  stream.descriptor_sets = {{{}, {{0, 0, 0}}}};
+  stream.descriptor_sets = {{{}, {{0, static_cast<traces::Index>(stream.images.size() - 1), 0}}}};
   stream.commands.emplace_back(traces::BindDescriptorSet{0, 0});
 }
 
