@@ -11,7 +11,7 @@ namespace {
 ProgramRun render(const ScratchFolder& folder, std::vector<std::string> more) {
   std::vector<std::string> arguments{"render", "builtin:triangle", "--size", "16x16"};
   arguments.insert(arguments.end(), more.begin(), more.end());
-  const ProgramRun run = run_quadrille(folder, arguments);
+  ProgramRun run = run_quadrille(folder, arguments);
   CAPTURE(arguments, run.err);
   CHECK(run.exit_code == 0);
   return run;
