@@ -41,7 +41,8 @@ const DeviceResources::Texture& DeviceResources::texture(traces::Index image) {
   std::optional<Texture>& texture = textures_[image];
   if (!texture) {
     const traces::Image& i = stream_.images[image];
-    if (i.is_attachment()) return texture.emplace(models::view_of_surface(attachment(image), i.format));
+    if (i.is_attachment())
+      return texture.emplace(Texture{models::view_of_surface(attachment(image), i.format), nullptr});
     const models::TextureView view = models::allocate_texture(memory_, i.format, i.width, i.height, i.levels);
     texture = {view, &fills_.add(i, view)};
     texture_bytes_ += view.layout.bytes;

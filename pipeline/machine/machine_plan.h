@@ -49,7 +49,8 @@
   unit(scan_out,           hw::ScanOut,           kOnce,      kByAllFrames)
 
 // Links: name, default depth, width and latency, how many tokens their producer can have for them, what they
-// do for the flow of work, and which ports they join. The types of the ports say what they carry; how often
+// do for the flow of work, and which ports they join. Cores finish fragment warps at the rate at which they
+// get them: one a cycle over all. The types of the ports say what they carry; how often
 // their units stand says how many links there are.
 #define QUADRILLE_LINKS(link)                                                                      \
   link(command_to_fetch,         4, 1, 1, kOneACycle,     kOnward,                                 \
@@ -101,7 +102,7 @@
        QUADRILLE_WIRE(WorkDistributor, fragment_out, ShaderCore, fragment_in))                     \
   link(core_to_assembly,         8, 1, 1, kOneACycle,     kOnward,                                 \
        QUADRILLE_WIRE(ShaderCore, vertex_out, PrimitiveAssembly, done_in))                         \
-  link(core_to_rop,              8, 1, 2, kSeveralACycle, kOnward,                                 \
+  link(core_to_rop,              8, 1, 2, kOneACycle,     kOnward,                                 \
        QUADRILLE_WIRE(ShaderCore, fragment_out, Rop, done_in))                                     \
   link(core_to_texture,          8, 1, 2, kOneACycle,     kOnward,                                 \
        QUADRILLE_WIRE(ShaderCore, texture_out, TextureUnit, request_in))                           \

@@ -10,7 +10,7 @@
 using namespace quadrille;
 
 TEST_CASE("lavapipe: five passes over attachments of six formats agree") {
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
     const traces::CommandStream stream = pipeline::test::passes_stream(seed, 320, 200);
     std::optional<lavapipe::Rendered> theirs;
     try {

@@ -53,7 +53,7 @@ TEST_CASE("passes: the default machine keeps its contract over five passes") {
 }
 
 TEST_CASE("passes: the machine's picture is the reference's in given mode") {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const auto pictures = studies::render_with_reference(passes_stream(seed, 160, 120), {});
     const auto difference = models::reference::compare_images({160, 120, pictures.machine.color},
                                                               {160, 120, pictures.reference.color});
