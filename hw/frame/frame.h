@@ -20,6 +20,7 @@
 #include "models/texture/sample.h"
 #include "models/texture/texture_fill.h"
 
+#include <bit>
 #include <string>
 #include <vector>
 
@@ -81,12 +82,19 @@ struct DrawState {
   [[nodiscard]] int varyings() const { return static_cast<int>(vertex_program->varyings.size()); }
   [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
-  [[nodiscard]] bool writes_color(std::size_t attachment) const {
-    return (color_outputs >> 4 * attachment & 0xfu) != 0;
+  /// Calls `visit(attachment)` for each colour attachment that the program writes.
+  template <class Visit>
+  void visit_colors(const Visit& visit) const {
+    std::uint32_t left = color_outputs;
+    while (left != 0) {
+      const auto attachment = static_cast<std::size_t>(std::countr_zero(left)) / 4;
+      visit(attachment);
+      left &= ~(0xfu << 4 * attachment);
+    }
   }
   /// Does a write to this attachment need the old pixel?
   [[nodiscard]] bool reads_color(std::size_t attachment) const {
-    return writes_color(attachment) && models::reads_destination(blend[attachment]);
+    return (color_outputs >> 4 * attachment & 0xfu) != 0 && models::reads_destination(blend[attachment]);
   }
 };
 

@@ -19,8 +19,8 @@
       "primitive_assembly.triangles", "clipper.triangles") \
   law(kTrianglesClipped, "triangles to clip = passed + cut + dropped", \
       "clipper.triangles", "clipper.passed + clipped + rejected + not_finite") \
-  law(kPieces, "triangles and pieces passed = triangles set up", \
-      "clipper.passed + pieces", "triangle_setup.triangles") \
+  law(kPieces, "triangles and pieces passed, to each engine = triangles set up", \
+      "clipper.passed + pieces + copies", "triangle_setup.triangles") \
   law(kTrianglesSetUp, "triangles set up = kept + dropped", \
       "triangle_setup.triangles", "triangle_setup.kept + culled + zero_area + offscreen + no_sample") \
   law(kTrianglesWalked, "triangles kept = triangles walked", \

@@ -35,16 +35,4 @@ void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles,
   }
 }
 
-void take_colors(const DrawState& draw, std::span<const models::LaneWords> outputs, WarpSlot& warp) {
-  for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
-    if (!draw.writes_color(color)) continue;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const std::size_t slot = 4 * color + c;
-      if ((draw.color_outputs >> slot & 1u) != 0)
-        warp.color[color][c] = std::bit_cast<models::LaneFloats>(outputs[slot]);
-      else warp.color[color][c].fill(0);
-    }
-  }
-}
-
 }  // namespace quadrille::hw

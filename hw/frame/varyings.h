@@ -23,7 +23,4 @@ void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components
 void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles,
                           models::FragmentInputs& inputs);
 
-/// Hands the colours that a fragment warp's program wrote to the ROP's slot; `outputs` by output slot.
-void take_colors(const DrawState& draw, std::span<const models::LaneWords> outputs, WarpSlot& warp);
-
 }  // namespace quadrille::hw

@@ -111,8 +111,8 @@ void Clipper::send(Tick now, const PrimitiveToken& token, const ClippedPiece& pi
                                {token.corner[0], token.corner[1], token.corner[2]},
                                ring_[e]});
     ring_[e] = ring_[e] + 1 == pieces_[e]->size() ? 0 : ring_[e] + 1;
-    ++stats_.sent;
   }
+  stats_.copies += static_cast<std::uint64_t>(std::popcount(engines) - 1);
 }
 
 void Clipper::audit(Audit& audit) const {
@@ -120,7 +120,7 @@ void Clipper::audit(Audit& audit) const {
   audit.both(
       laws::kTrianglesClipped, stats_.triangles.value(),
       stats_.passed.value() + stats_.clipped.value() + stats_.rejected.value() + stats_.not_finite.value());
-  audit.left(laws::kPieces, stats_.sent.value());
+  audit.left(laws::kPieces, stats_.passed.value() + stats_.pieces.value() + stats_.copies.value());
 }
 
 void Clipper::details(Details& details) const {

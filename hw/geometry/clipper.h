@@ -47,8 +47,10 @@ class Clipper final : public Unit {
     Counter not_finite{*this, "not_finite", "triangle",
                        "Triangles dropped because a position is NaN or infinite"};
     Counter pieces{*this, "pieces", "triangle", "Triangles that cutting produced and passed on"};
-    Counter sent{*this, "sent", "triangle",
-                 "Triangles and pieces sent to raster engines: to each whose part of the screen they touch"};
+    Counter copies{
+        *this, "copies", "triangle",
+        "Triangles and pieces sent to further raster engines, beyond the first: one for each whose "
+        "part of the screen they touch too"};
   };
   Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
           const Store<BatchSlot>& batches, std::vector<Store<ClippedPiece>*> pieces);

@@ -1,6 +1,7 @@
 #include "hw/rop/depth_unit.h"
 
 #include "hw/frame/detail_counts.h"
+#include "hw/frame/fragment_output.h"
 #include "hw/frame/laws.h"
 
 #include "models/raster/interpolate.h"
@@ -370,22 +371,13 @@ bool DepthUnit::test_late(Tick now) {
 
 models::LaneMask DepthUnit::test_quad(const DrawState& draw, const WarpSlot& warp, int q, Tick now) {
   const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-  const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-  const std::uint32_t tx = place.tile_x, ty = place.tile_y;
+  const QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), (warp.alive >> (4 * q)) & 0xf};
+  const std::uint32_t tx = part.place.tile_x, ty = part.place.tile_y;
   --late_in_flight_[tile_number(tx, ty)];
-  const models::LaneMask lanes = (warp.alive >> (4 * q)) & 0xf;
-  if (lanes == 0) return 0;
-  alignas(32) float incoming[models::kTilePixels] = {};
-  const int first = place.first_pixel();
-  std::copy_n(warp.depth.begin() + 4 * q, 4, incoming + first);
-  float* const stored = depths(tx, ty);
-  const std::uint64_t survivors =
-      models::depth_test(draw.depth_compare, stored, incoming, std::uint64_t{lanes} << first);
-  if (draw.depth_write && survivors != 0) {
-    models::depth_write(stored, incoming, survivors);
-    send_hiz(now, tx, ty);
-  }
-  return static_cast<models::LaneMask>(survivors >> first) & 0xf;
+  if (part.lanes == 0) return 0;
+  const models::LaneMask passed = test_depth(draw, warp, part, depths(tx, ty));
+  if (draw.depth_write && passed != 0) send_hiz(now, tx, ty);
+  return passed;
 }
 
 void DepthUnit::advance_flush(Tick now) {

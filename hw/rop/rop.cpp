@@ -1,8 +1,8 @@
 #include "hw/rop/rop.h"
 
 #include "hw/frame/detail_counts.h"
+#include "hw/frame/fragment_output.h"
 #include "hw/frame/laws.h"
-#include "models/raster/quad_place.h"
 
 #include <algorithm>
 #include <bit>
@@ -212,16 +212,14 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
   const DrawState& draw = frame_.draw(warp.draw);
   std::array<TileTouch, models::kWarpQuads> tiles;
   const int count = touched_tiles(warp, tiles);
-  for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
-    if (!draw.writes_color(color)) continue;
+  bool placed = true;
+  draw.visit_colors([&](std::size_t color) {
     const bool reads = draw.reads_color(color);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (!cache_.acquire({color, tiles[i].tile_x, tiles[i].tile_y}, wishes_of(tiles[i].pixels, reads),
-                          number, entry.missing, entry.done[color][i], port_))
-        return false;
-    }
-  }
-  return true;
+    for (std::size_t i = 0; placed && i < static_cast<std::size_t>(count); ++i)
+      placed = cache_.acquire({color, tiles[i].tile_x, tiles[i].tile_y}, wishes_of(tiles[i].pixels, reads),
+                              number, entry.missing, entry.done[color][i], port_);
+  });
+  return placed;
 }
 
 void Rop::retire(Tick now) {
@@ -289,13 +287,12 @@ bool Rop::claim_colors(const WarpSlot& warp) {
   const DrawState& draw = frame_.draw(warp.draw);
   std::array<TileTouch, models::kWarpQuads> tiles;
   const int count = touched_tiles(warp, tiles);
-  for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
-    if (!draw.writes_color(color)) continue;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (!cache_.write({color, tiles[i].tile_x, tiles[i].tile_y}, tiles[i].pixels, port_)) return false;
-    }
-  }
-  return true;
+  bool placed = true;
+  draw.visit_colors([&](std::size_t color) {
+    for (std::size_t i = 0; placed && i < static_cast<std::size_t>(count); ++i)
+      placed = cache_.write({color, tiles[i].tile_x, tiles[i].tile_y}, tiles[i].pixels, port_);
+  });
+  return placed;
 }
 
 int Rop::write_colors(const WarpSlot& warp) {
@@ -306,32 +303,19 @@ int Rop::write_colors(const WarpSlot& warp) {
     if (lanes == 0) continue;
     ++quads;
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-    const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-    stats_.working_at(place.tile_x, place.tile_y);
-    stats_.written += static_cast<std::uint64_t>(std::popcount(lanes));
-    for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
-      if (draw.writes_color(color)) write_quad(warp, q, place, color);
-    }
+    const QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), lanes};
+    stats_.working_at(part.place.tile_x, part.place.tile_y);
+    const auto pixels = static_cast<std::uint64_t>(std::popcount(lanes));
+    stats_.written += pixels;
+    draw.visit_colors([&](std::size_t color) {
+      stats_.pixels_written += pixels;
+      if (draw.reads_color(color)) stats_.blended += pixels;
+      write_color(draw, frame_.passes[pass_], color, warp, part, device_);
+    });
   }
   int quad_cycles = 0;
-  for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
-    if (draw.writes_color(color)) quad_cycles += draw.reads_color(color) ? 2 * quads : quads;
-  }
+  draw.visit_colors([&](std::size_t color) { quad_cycles += draw.reads_color(color) ? 2 * quads : quads; });
   return std::max(1, (quad_cycles + params_.quads_per_clk - 1) / params_.quads_per_clk);
-}
-
-void Rop::write_quad(const WarpSlot& warp, int q, const models::QuadPlace& place, std::size_t color) {
-  const DrawState& draw = frame_.draw(warp.draw);
-  const AttachmentState& attachment = frame_.passes[pass_].color[color];
-  const models::LaneMask lanes = lanes_of(warp, q);
-  const auto pixels = static_cast<std::uint64_t>(std::popcount(lanes));
-  stats_.pixels_written += pixels;
-  if (draw.reads_color(color)) stats_.blended += pixels;
-  float rgba[4][4];
-  for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp.color[color][c].begin() + 4 * q, 4, rgba[c]);
-  const std::uint64_t address = attachment.surface.tile_address(place.tile_x, place.tile_y);
-  auto* const tile = reinterpret_cast<std::uint32_t*>(device_.write(address, models::kTileBytes).data());
-  models::blend_quad(draw.blend[color], attachment.format, rgba, tile + place.first_pixel(), lanes);
 }
 
 void Rop::advance_flush(Tick now) {

@@ -16,7 +16,6 @@
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
 #include "hw/rop/surface_cache.h"
-#include "models/raster/quad_place.h"
 
 namespace quadrille::hw {
 
@@ -100,7 +99,6 @@ class Rop final : public Unit {
   void retire_boundary(Tick now, const Entry& entry);
   bool claim_colors(const WarpSlot& warp);
   int write_colors(const WarpSlot& warp);
-  void write_quad(const WarpSlot& warp, int q, const models::QuadPlace& place, std::size_t color);
   void advance_flush(Tick now);
 
   const Params& params_;

@@ -1,6 +1,7 @@
 #include "hw/shader/shader_core.h"
 
 #include "hw/frame/detail_counts.h"
+#include "hw/frame/fragment_output.h"
 #include "hw/frame/laws.h"
 #include "hw/frame/varyings.h"
 
@@ -288,10 +289,7 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
   } else {
     WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
     work.alive = work.covered & ~slot.warp.killed;
-    take_colors(frame_.draw(work.draw), slot.outputs, work);
-    work.depth = slot.warp.program->writes_depth
-                     ? std::bit_cast<models::LaneFloats>(slot.outputs[models::kDepthOutput])
-                     : slot.fragment.z;
+    take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment.z, work);
     fragment_out[slot.partition]->push(now, {slot.store_slot});
   }
   --simd_warps_[slot.simd];

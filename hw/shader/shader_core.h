@@ -72,8 +72,8 @@ class ShaderCore final : public Unit {
                           Effect::kSlower};
     PolicyParam<SimdSharingPolicy> scheduler{*this, "scheduler", simd_sharing_policies(), kRoundRobinSharing,
                                              "Which warp of a SIMD issues when several could: the longest "
-                                             "ready, or all in turn. [G: in turn is 0 to 2 "
-                                             "% faster on our scenes]"};
+                                             "ready, or all in turn. [G: within 1 % of each "
+                                             "other on our scenes at 640x360]"};
     Param<int> warp_slots{*this, "warp_slots", 32, "warp", {2, 1024}, "Warps resident on the core. [G]"};
     Param<int> register_rows{*this, "register_rows", 1024,
                              "row", {16, 1 << 20},   "Register rows of 32 words: 1024 are 128 KiB. [G]"};

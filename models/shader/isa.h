@@ -7,6 +7,8 @@
 /// of lane masks. docs/isa.md is the reference; `disassemble` prints a listing and `assemble` reads it back.
 #pragma once
 
+#include "models/memory/attachment.h"
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -22,7 +24,7 @@ inline constexpr int kQuadPixels = 4;
 inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxVaryings = 64;      ///< scalar components between vertex and fragment shader
 inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attributes of 4)
-inline constexpr int kMaxColorOutputs = 32;  ///< scalar components of eight colour attachments
+inline constexpr int kMaxColorOutputs = 4 * kMaxColorAttachments;  ///< scalar components
 
 /// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones
 /// (true) or zero.

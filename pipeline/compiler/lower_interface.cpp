@@ -99,7 +99,7 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
   if (component > 3) return slot;
   const bool vertex = shader_.stage == Stage::kVertex;
   const bool color = !vertex && output;
-  const std::uint32_t limit = color               ? models::kMaxColorOutputs / 4
+  const std::uint32_t limit = color               ? models::kMaxColorAttachments
                               : vertex && !output ? kMaxAttributeLocations
                                                   : kMaxLocations;
   if (location >= limit || (color && d.index > 0)) return slot;

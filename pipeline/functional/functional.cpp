@@ -1,5 +1,6 @@
 #include "pipeline/functional/functional.h"
 
+#include "hw/frame/fragment_output.h"
 #include "hw/frame/varyings.h"
 #include "models/base/error.h"
 #include "models/geometry/post_transform.h"
@@ -198,9 +199,8 @@ class FunctionalRenderer {
     }
   }
 
-  float* depths(std::int32_t tile_x, std::int32_t tile_y) {
-    const std::uint64_t address = pass_->depth.surface.tile_address(static_cast<std::uint32_t>(tile_x),
-                                                                    static_cast<std::uint32_t>(tile_y));
+  float* depths(std::uint32_t tile_x, std::uint32_t tile_y) {
+    const std::uint64_t address = pass_->depth.surface.tile_address(tile_x, tile_y);
     return reinterpret_cast<float*>(memory_.write(address, models::kTileBytes).data());
   }
 
@@ -208,7 +208,8 @@ class FunctionalRenderer {
                           std::uint64_t coverage) {
     alignas(32) float incoming[models::kTilePixels];
     models::tile_depths(setup, tile.tile_x, tile.tile_y, incoming);
-    float* const stored = depths(tile.tile_x, tile.tile_y);
+    float* const stored =
+        depths(static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y));
     const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, coverage);
     if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
     counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(coverage & ~survivors));
@@ -241,7 +242,7 @@ class FunctionalRenderer {
     run_warp(engine_, draw_->fragment_textures, frame_.precision, memory_, plan_);
     warp_.alive = warp_.covered & ~engine_.killed;
     counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & engine_.killed));
-    hw::take_colors(*draw_, outputs_, warp_);
+    hw::take_outputs(*draw_, outputs_, inputs_.z, warp_);
     for (int q = 0; q < warp_.quads; ++q) write_quad(q);
     warp_.quads = 0;
     warp_.covered = 0;
@@ -249,40 +250,19 @@ class FunctionalRenderer {
 
   void write_quad(int q) {
     const WarpSlot::Quad& quad = warp_.quad[static_cast<std::size_t>(q)];
-    std::uint32_t lanes = (warp_.alive >> (4 * q)) & 0xf;
-    const int place = 4 * ((quad.y % 8) / 2) + (quad.x % 8) / 2;
-    if (lanes != 0 && draw_->late_depth) lanes = test_quad(quad, q, place, lanes);
-    if (lanes == 0) return;
-    counts_.fragments_written += static_cast<std::uint64_t>(std::popcount(lanes));
-    for (std::size_t color = 0; color < models::kMaxColorAttachments; ++color) {
-      if (draw_->writes_color(color)) blend(color, quad, q, place, lanes);
-    }
+    hw::QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), (warp_.alive >> (4 * q)) & 0xf};
+    if (part.lanes != 0 && draw_->late_depth) test_late(part);
+    if (part.lanes == 0) return;
+    counts_.fragments_written += static_cast<std::uint64_t>(std::popcount(part.lanes));
+    draw_->visit_colors(
+        [&](std::size_t attachment) { hw::write_color(*draw_, *pass_, attachment, warp_, part, memory_); });
   }
 
-  void blend(std::size_t color, const WarpSlot::Quad& quad, int q, int place, std::uint32_t lanes) {
-    float rgba[4][4];
-    for (std::size_t c = 0; c < 4; ++c) std::copy_n(warp_.color[color][c].begin() + 4 * q, 4, rgba[c]);
-    const hw::AttachmentState& attachment = pass_->color[color];
-    const std::uint64_t address = attachment.surface.tile_address(quad.x / 8u, quad.y / 8u);
-    auto* const tile = reinterpret_cast<std::uint32_t*>(memory_.write(address, models::kTileBytes).data());
-    models::blend_quad(draw_->blend[color], attachment.format, rgba, tile + 4 * place, lanes);
-  }
-
-  std::uint32_t test_quad(const WarpSlot::Quad& quad, int q, int place, std::uint32_t lanes) {
-    alignas(32) float incoming[models::kTilePixels] = {};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const std::size_t lane = static_cast<std::size_t>(4 * q) + i;
-      incoming[static_cast<std::size_t>(4 * place) + i] =
-          draw_->fragment_program->writes_depth ? std::bit_cast<float>(outputs_[models::kDepthOutput][lane])
-                                                : inputs_.z[lane];
-    }
-    float* const stored = depths(quad.x / 8, quad.y / 8);
-    const std::uint64_t survivors =
-        models::depth_test(draw_->depth_compare, stored, incoming, std::uint64_t{lanes} << (4 * place));
-    if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
-    const std::uint32_t left = static_cast<std::uint32_t>(survivors >> (4 * place)) & 0xf;
-    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(lanes & ~left));
-    return left;
+  void test_late(hw::QuadOfWarp& part) {
+    const models::LaneMask passed =
+        hw::test_depth(*draw_, warp_, part, depths(part.place.tile_x, part.place.tile_y));
+    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(part.lanes & ~passed));
+    part.lanes = passed;
   }
 
   const hw::Frame& frame_;

@@ -83,6 +83,20 @@ TEST_CASE("passes: what was not stored, or is being drawn, cannot be sampled") {
   CHECK_THAT(refusal(own), Catch::Contains("samples image 0 '0', which its own pass draws to"));
 }
 
+TEST_CASE("passes: what is not cared about is zero, for colours and depths, on the machine too") {
+  traces::CommandStream stream = passes_stream(4);
+  for (traces::ColorAttachmentUse& color : pass(stream, 0).colors) color.load = traces::LoadOp::kDontCare;
+  pass(stream, 2).depth.load = traces::LoadOp::kDontCare;
+  stream.pipelines[3].depth.compare = traces::CompareOp::kGreater;  // of pass 2: nothing is nearer than zero
+  const hw::contract::Outcome outcome = hw::contract::run_forked(machine_builder(stream, 0), {});
+  REQUIRE(outcome.failure.empty());
+  CHECK(outcome.digest == functional_digest(stream));
+  const auto pictures = studies::render_with_reference(stream, {});
+  const auto difference =
+      models::reference::compare_images({88, 56, pictures.machine.color}, {88, 56, pictures.reference.color});
+  CHECK(difference.fraction_within(2) >= 0.999);
+}
+
 TEST_CASE("passes: a stream of several passes survives its trace file") {
   const traces::CommandStream stream = passes_stream(3);
   CHECK(traces::decode_trace(traces::encode_trace(stream), "t") == stream);

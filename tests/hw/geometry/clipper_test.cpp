@@ -14,7 +14,7 @@ using namespace quadrille::hw::bench;
 namespace {
 
 /// Lanes of the batch: a triangle each.
-enum Shape : std::uint8_t { kInside, kOneOut, kTwoOut, kBeside, kNan };
+enum Shape : std::uint8_t { kInside, kOneOut, kTwoOut, kBeside, kNan, kSmall };
 
 struct ClipBench final : Bench {
   struct Setup {
@@ -22,9 +22,16 @@ struct ClipBench final : Bench {
     int clip_clk = 12, triangles_per_clk = 1;
     Pace pace{};
     LinkSpec out{.depth = 64};
+    int engines = 1;
   };
   ClipBench(Driver& driver, const contract::Variation& v, const Setup& s)
-      : Bench(driver, v), batches(1), pieces(static_cast<std::size_t>(s.out.depth) + 2) {
+      : Bench(driver, v),
+        batches(1),
+        pieces(static_cast<std::size_t>(s.out.depth) + 2),
+        second_pieces(static_cast<std::size_t>(s.out.depth) + 2) {
+    PassState pass;
+    pass.width = pass.height = 64;
+    frame.passes = {pass};
     DrawState draw;
     draw.viewport = {0, 0, 64, 64, 0, 1};
     draw.clip = models::make_clip_state(draw.viewport, false, 8);
@@ -37,17 +44,25 @@ struct ClipBench final : Bench {
     triangle(kTwoOut, {-0.5f, -0.5f, 0.5f}, 0);
     triangle(kBeside, {0.5f, 0.5f, 0.5f}, 5);
     triangle(kNan, {0.5f, nan, 0.5f}, 0);
+    triangle(kSmall, {0.5f, 0.5f, 0.5f}, 0);
+    for (std::size_t i = 0; i < 3; ++i) {  // within the first 8x8 pixels
+      for (std::size_t c = 0; c < 2; ++c) {
+        std::uint32_t& word = batches[0].outputs[c][3 * kSmall + i];
+        word = std::bit_cast<std::uint32_t>(std::bit_cast<float>(word) * 0.1f - 0.9f);
+      }
+    }
     params.clip_clk.set(s.clip_clk);
     params.triangles_per_clk.set(s.triangles_per_clk);
-    unit = std::make_unique<Clipper>("unit", context(), params, batches, std::vector{&pieces});
+    unit = std::make_unique<Clipper>(
+        "unit", context({.partitions = s.engines, .engines = s.engines}), params, batches,
+        s.engines == 1 ? std::vector{&pieces} : std::vector{&pieces, &second_pieces});
     add(*unit);
     feed(unit->primitive_in, s.primitives);
-    sink = &drain<ClippedToken>(
-        *unit->clipped_out[0],
-        [](const ClippedToken& t) {
-          return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind);
-        },
-        s.pace, s.out);
+    const auto shown = [](const ClippedToken& t) {
+      return t.kind == TokenKind::kWork ? t.primitive : 900u + static_cast<unsigned>(t.kind);
+    };
+    sink = &drain<ClippedToken>(*unit->clipped_out[0], shown, s.pace, s.out);
+    if (s.engines > 1) second = &drain<ClippedToken>(*unit->clipped_out[1], shown, {}, s.out);
   }
   void triangle(Shape shape, std::array<float, 3> z, float x) {
     const float corner[3][2] = {{-0.5f, -0.5f}, {0.5f, -0.5f}, {0.0f, 0.5f}};
@@ -59,9 +74,9 @@ struct ClipBench final : Bench {
   }
   Clipper::Params params;
   Store<BatchSlot> batches;
-  Store<ClippedPiece> pieces;
+  Store<ClippedPiece> pieces, second_pieces;
   std::unique_ptr<Clipper> unit;
-  StubSink<ClippedToken>* sink = nullptr;
+  StubSink<ClippedToken>*sink = nullptr, *second = nullptr;
 };
 
 ClipBench::Setup shapes(const std::vector<Shape>& list) {
@@ -129,6 +144,28 @@ TEST_CASE("clipper: dropped triangles cost a cycle each, and every triangle is a
                            counter(u, "pieces"));
       });
   CHECK(text == "4:0 17:1 18:1 31:2 of 6: 1 passed 2 clipped 2 rejected 1 not finite; 3 pieces");
+}
+
+TEST_CASE("clipper: each engine gets the triangles that touch its part of the screen, and all boundaries") {
+  // The triangle inside spans tiles of both engines; the small one lies in the first tile, which is the first
+  // engine's.
+  auto s = shapes({kInside, kSmall, kBeside});
+  s.engines = 2;
+  s.primitives.push_back({0, {TokenKind::kDrawEnd, 0, 0, 0, {}}});
+  const auto text = run<ClipBench>(s, [](const ClipBench& b) {
+    return fmt::format("{} | {} | {} copies", b.sink->text(), b.second->text(), counter(*b.unit, "copies"));
+  });
+  const unsigned end = 900 + static_cast<unsigned>(TokenKind::kDrawEnd);
+  CHECK(text == fmt::format("2:0 3:5 5:{0} | 2:0 5:{0} | 1 copies", end));
+}
+
+TEST_CASE("clipper: all triangles wait while one engine's link is full") {
+  auto s = shapes({kInside, kSmall, kInside, kSmall, kInside});
+  s.engines = 2;
+  s.out = {.depth = 1};
+  s.pace = {.from = 100, .period = 1};
+  const auto text = run<ClipBench>(s, [](const ClipBench& b) { return b.second->text(); });
+  CHECK_THAT(text, Catch::StartsWith("2:0 10"));  // the second engine's next triangle waits for the first's
 }
 
 TEST_CASE("clipper: the window position of a piece is there when its token is") {

@@ -22,6 +22,7 @@ struct FetchBench final : Bench {
     int indices_per_clk = 4, attributes_per_clk = 8;
     std::uint32_t slots = 8;
     std::vector<Timed<ReleaseToken>> releases{};
+    std::vector<Timed<ReleaseToken>> second_engine{};  ///< its releases; empty: there is one engine
     Pace pace{};
   };
   FetchBench(Driver& driver, const contract::Variation& v, const Setup& s)
@@ -50,11 +51,13 @@ struct FetchBench final : Bench {
     frame.draws = {draw};
     params.indices_per_clk.set(s.indices_per_clk);
     params.attributes_per_clk.set(s.attributes_per_clk);
-    unit = std::make_unique<VertexFetch>("unit", context(), params, batches);
+    unit = std::make_unique<VertexFetch>(
+        "unit", context({.partitions = 2, .engines = s.second_engine.empty() ? 1 : 2}), params, batches);
     add(*unit);
     feed(unit->draw_in,
          {{0, {TokenKind::kPassBegin, 0}}, {0, {TokenKind::kWork, 0}}, {0, {TokenKind::kDrawEnd, 0}}});
     feed(unit->release_in[0], s.releases);
+    if (!s.second_engine.empty()) feed(unit->release_in[1], s.second_engine);
     memory = &serve(unit->memory_port(), kLatency);
     warps = &drain<WarpToken>(unit->warp_out, [](const WarpToken& t) { return t.slot; });
     sink = &drain<BatchToken>(
@@ -154,6 +157,18 @@ TEST_CASE("vertex_fetch: the rate of attributes moves nothing while the indices 
         [](const FetchBench& b) { return fmt::format("{}", b.batch_cycles()); });
   };
   CHECK(cycles(2) == cycles(256));
+}
+
+TEST_CASE("vertex_fetch: a slot is free when every raster engine has given it back") {
+  const FetchBench::Setup s{
+      .triangles = 30, .slots = 2, .releases = {{500, {0}}}, .second_engine = {{800, {0}}}};
+  const auto text = run<FetchBench>(s, [](const FetchBench& b) {
+    std::string late;
+    for (const auto& [cycle, token] : b.sink->got)
+      late += token.kind == TokenKind::kWork ? (cycle < 800 ? "before " : "after ") : "";
+    return late;
+  });
+  CHECK(text == "before before after ");
 }
 
 TEST_CASE("vertex_fetch: without a free slot the next batch waits for a release") {

@@ -1,6 +1,6 @@
 /// First-level cache: hits, merged misses, stalls, and sectors written whole or in part.
 #include "hw/memory/l1_cache.h"
-#include "tests/hw/bench_stub.h"
+#include "tests/hw/cache_user.h"
 
 #include <catch2/catch.hpp>
 
@@ -12,89 +12,47 @@ namespace {
 
 constexpr int kLatency = 20;  ///< of the memory behind the cache, cycles
 
-class CacheUser;
-using Use = std::function<void(CacheUser&)>;
-
-/// Uses a cache as its script says and notes what it is told.
-class CacheUser final : public StubUnit {
- public:
-  struct Shape {
-    int lines = 4, ways = 4, misses = 4;
-  };
-  CacheUser(sc_core::sc_module_name name, const Clock& clock, Shape shape, models::DeviceMemory& memory,
-            std::vector<Timed<Use>> script)
-      : StubUnit(name, Kind::kChooser, clock),
-        cache(stats_, shape.lines, shape.ways, shape.misses),
-        port(*this, stats_, 1),
-        script_(std::move(script)) {
-    cache.own_dirty_lines(memory, 1);
-  }
-  Wake next() const override {
-    Wake wake = played_ < script_.size() ? Wake(script_[played_].cycle * kCycle) : Wake(kNever);
-    if (!port.queue_empty()) wake = Wake::sooner(wake, port.send_wake());
-    return Wake::sooner(wake, port.receive_wake());
-  }
-  void act(Tick now) override {
-    port.receive(now, [&](const MemoryResponse& answer) {
-      cache.fill(answer, [&](std::uint32_t waiter) { log += fmt::format("ready {}; ", waiter); });
-    });
-    while (played_ < script_.size() && script_[played_].cycle * kCycle <= now)
-      script_[played_++].token(*this);
-    port.send(now);
-  }
-  bool finished() const override { return played_ == script_.size() && port.queue_empty(); }
-  const StatGroup* stats() const override { return &stats_; }
-
- private:
-  StatGroup stats_;
-
- public:
-  L1Cache cache;
-  MemoryPort port;
-  std::string log;
-
- private:
-  std::vector<Timed<Use>> script_;
-  std::size_t played_ = 0;
+using User = CacheUser<L1Cache>;
+using Use = User::Use;
+struct Shape {
+  int lines = 4, ways = 4, misses = 4;
 };
 
 Use read(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter) {
-  return [=](CacheUser& u) {
+  return [=](User& u) {
     constexpr const char* kNames[] = {"hit", "pending", "stall"};
     u.log += fmt::format("{}; ", kNames[static_cast<int>(u.cache.access(line, sectors, waiter, u.port))]);
   };
 }
 Use claim(std::uint32_t line, std::uint8_t sectors) {
-  return [=](CacheUser& u) { u.log += u.cache.claim(line, sectors, u.port) ? "" : "no place; "; };
+  return [=](User& u) { u.log += u.cache.claim(line, sectors, u.port) ? "" : "no place; "; };
 }
 Use write(std::uint32_t line, std::uint32_t words) {
-  return [=](CacheUser& u) { u.cache.write(line, words); };
+  return [=](User& u) { u.cache.write(line, words); };
 }
-const Use kFlush = [](CacheUser& u) { u.cache.flush(u.port); };
+const Use kFlush = [](User& u) { u.cache.flush(u.port); };
 
 struct CacheBench final : Bench {
   struct Setup {
     std::vector<Timed<Use>> script;
-    CacheUser::Shape shape{};
+    Shape shape{};
   };
   CacheBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     (void)device.allocate(1 << 12);
-    unit = std::make_unique<CacheUser>("unit", clock, s.shape, device, s.script);
+    unit = std::make_unique<User>("unit", clock, s.script, s.shape.lines, s.shape.ways, s.shape.misses);
+    unit->cache.own_dirty_lines(device, 1);
     add(*unit);
     memory = &serve(unit->port, kLatency);
   }
-  std::unique_ptr<CacheUser> unit;
+  std::unique_ptr<User> unit;
   StubMemory* memory = nullptr;
 };
 
 /// What the user was told, and what reached memory as "kind line/sectors" without times.
 std::string seen(const CacheBench& b) {
-  std::string text = b.unit->log + "|";
-  for (const auto& [cycle, r] : b.memory->got)
-    text += fmt::format(" {}{}/{:x}", "rwpf"[static_cast<int>(r.kind)], r.line, r.sectors);
-  return text + fmt::format(" | dirty {}", b.device.dirty_lines());
+  return fmt::format("{}|{} | dirty {}", b.unit->log, requests_seen(*b.memory), b.device.dirty_lines());
 }
-std::string seen(std::vector<Timed<Use>> script, CacheUser::Shape shape = {}) {
+std::string seen(std::vector<Timed<Use>> script, Shape shape = {}) {
   return run<CacheBench>({std::move(script), shape}, [](const CacheBench& b) { return seen(b); });
 }
 

@@ -1,7 +1,7 @@
 /// The surface cache by itself: tiles that are marked instead of cleared, sectors that are fetched, written
 /// whole or in part, and what a flush writes.
 #include "hw/rop/surface_cache.h"
-#include "tests/hw/bench_stub.h"
+#include "tests/hw/cache_user.h"
 
 #include <catch2/catch.hpp>
 
@@ -15,55 +15,21 @@ namespace {
 
 constexpr int kLatency = 20;  ///< of the memory behind the cache, cycles
 
-class SurfaceUser;
-using Use = std::function<void(SurfaceUser&)>;
-
-/// Uses a surface cache as its script says and notes what it is told.
-class SurfaceUser final : public StubUnit {
- public:
-  struct Shape {
-    int lines = 16, ways = 16, misses = 4;
-  };
-  SurfaceUser(sc_core::sc_module_name name, const Clock& clock, Shape shape, models::DeviceMemory& memory,
-              std::vector<Timed<Use>> script)
-      : StubUnit(name, Kind::kChooser, clock),
-        cache(stats_, shape.lines, shape.ways, shape.misses, memory, surface_writer(SurfaceKind::kColor, 0)),
-        port(*this, stats_, 1),
-        script_(std::move(script)) {}
-  Wake next() const override {
-    Wake wake = played_ < script_.size() ? Wake(script_[played_].cycle * kCycle) : Wake(kNever);
-    if (!port.queue_empty()) wake = Wake::sooner(wake, port.send_wake());
-    return Wake::sooner(wake, port.receive_wake());
-  }
-  void act(Tick now) override {
-    port.receive(now, [&](const MemoryResponse& answer) {
-      cache.fill(answer, [&](std::uint32_t waiter) { log += fmt::format("ready {}; ", waiter); });
-    });
-    while (played_ < script_.size() && script_[played_].cycle * kCycle <= now)
-      script_[played_++].token(*this);
-    port.send(now);
-  }
-  bool finished() const override { return played_ == script_.size() && port.queue_empty(); }
-  const StatGroup* stats() const override { return &stats_; }
-
- private:
-  StatGroup stats_;
-
- public:
-  SurfaceCache cache;
-  MemoryPort port;
-  std::string log;
-  std::uint8_t done = 0;  ///< of the tile that is being acquired
-
- private:
-  std::vector<Timed<Use>> script_;
-  std::size_t played_ = 0;
+/// With what `acquire` remembers of the tile that is being acquired.
+struct RememberingCache : SurfaceCache {
+  using SurfaceCache::SurfaceCache;
+  std::uint8_t done = 0;
+};
+using User = CacheUser<RememberingCache>;
+using Use = User::Use;
+struct Shape {
+  int lines = 16, ways = 16, misses = 4;
 };
 
 struct SurfaceBench final : Bench {
   struct Setup {
     std::vector<Timed<Use>> script;
-    SurfaceUser::Shape shape{};
+    Shape shape{};
     std::uint32_t partitions = 1;  ///< that share the surface; the cache is of the first
     models::LoadOp load = models::LoadOp::kClear;
     models::StoreOp store = models::StoreOp::kStore;
@@ -72,7 +38,8 @@ struct SurfaceBench final : Bench {
   SurfaceBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     surface = models::allocate_surface(device, 8, 32);
     attachment = {surface, models::Format::kR8G8B8A8Unorm, s.load, s.store, 7, s.read_later};
-    unit = std::make_unique<SurfaceUser>("unit", clock, s.shape, device, s.script);
+    unit = std::make_unique<User>("unit", clock, s.script, s.shape.lines, s.shape.ways, s.shape.misses,
+                                  device, surface_writer(SurfaceKind::kColor, 0));
     unit->cache.begin_pass({&attachment, 1}, 0, s.partitions);
     add(*unit);
     memory = &serve(unit->port, kLatency);
@@ -80,37 +47,35 @@ struct SurfaceBench final : Bench {
   /// A column of four tiles: lines 0 and 1 of the surface are the first tile's, and so on.
   models::SurfaceLayout surface;
   AttachmentState attachment;
-  std::unique_ptr<SurfaceUser> unit;
+  std::unique_ptr<User> unit;
   StubMemory* memory = nullptr;
 };
 
 /// Asks for sectors of tile (0, y): what is missing is noted, or "no place".
 Use acquire(std::uint32_t y, const SectorWishes& wishes, std::uint32_t waiter) {
-  return [=](SurfaceUser& u) {
+  return [=](User& u) {
     int missing = 0;
-    const bool placed = u.cache.acquire({0, 0, y}, wishes, waiter, missing, u.done, u.port);
+    const bool placed = u.cache.acquire({0, 0, y}, wishes, waiter, missing, u.cache.done, u.port);
     u.log += placed ? fmt::format("missing {}; ", missing) : fmt::format("no place, missing {}; ", missing);
-    if (placed) u.done = 0;
+    if (placed) u.cache.done = 0;
   };
 }
 /// Pixels of tile (0, y) are written: the same of each of these sectors.
 Use write(std::uint32_t y, std::uint8_t sectors, std::uint8_t pixels) {
-  return [=](SurfaceUser& u) {
+  return [=](User& u) {
     SectorPixels written{};
     for (unsigned s = 0; s < 8; ++s) written[s] = (sectors >> s & 1) != 0 ? pixels : std::uint8_t{0};
     u.log += u.cache.write({0, 0, y}, written, u.port) ? "" : "not written; ";
   };
 }
-const Use kFlush = [](SurfaceUser& u) { u.cache.flush(u.port); };
+const Use kFlush = [](User& u) { u.cache.flush(u.port); };
 
 /// What the user was told, then what reached memory as "kind line/sectors", lines counted from the surface's
 /// first, then the counts of clears.
 std::string seen(const SurfaceBench::Setup& setup) {
   return run<SurfaceBench>(setup, [](const SurfaceBench& b) {
     const auto first = static_cast<std::uint32_t>(b.surface.base / models::kLineBytes);
-    std::string text = b.unit->log + "|";
-    for (const auto& [cycle, r] : b.memory->got)
-      text += fmt::format(" {}{}/{:x}", "rwpf"[static_cast<int>(r.kind)], r.line - first, r.sectors);
+    const std::string text = fmt::format("{}|{}", b.unit->log, requests_seen(*b.memory, first));
     return text + fmt::format(" | marked {} found {} written {} dirty {}",
                               counter(*b.unit, "fast_cleared_tiles"), counter(*b.unit, "clear_hits"),
                               counter(*b.unit, "clear_writes"), b.device.dirty_lines());

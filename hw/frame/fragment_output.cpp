@@ -1,0 +1,46 @@
+#include "hw/frame/fragment_output.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outputs,
+                  const models::LaneFloats& interpolated_depth, WarpSlot& warp) {
+  warp.depth = draw.fragment_program->writes_depth
+                   ? std::bit_cast<models::LaneFloats>(outputs[models::kDepthOutput])
+                   : interpolated_depth;
+  draw.visit_colors([&](std::size_t attachment) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const std::size_t slot = 4 * attachment + c;
+      if ((draw.color_outputs >> slot & 1u) != 0)
+        warp.color[attachment][c] = std::bit_cast<models::LaneFloats>(outputs[slot]);
+      else warp.color[attachment][c].fill(0);
+    }
+  });
+}
+
+models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp, const QuadOfWarp& quad,
+                            float* tile_depths) {
+  alignas(32) float incoming[models::kTilePixels] = {};
+  const int first = quad.place.first_pixel();
+  std::copy_n(warp.depth.begin() + 4 * quad.number, 4, incoming + first);
+  const std::uint64_t passed =
+      models::depth_test(draw.depth_compare, tile_depths, incoming, std::uint64_t{quad.lanes} << first);
+  if (draw.depth_write) models::depth_write(tile_depths, incoming, passed);
+  return static_cast<models::LaneMask>(passed >> first) & 0xf;
+}
+
+void write_color(const DrawState& draw, const PassState& pass, std::size_t attachment, const WarpSlot& warp,
+                 const QuadOfWarp& quad, models::DeviceMemory& memory) {
+  float rgba[4][4];
+  for (std::size_t c = 0; c < 4; ++c)
+    std::copy_n(warp.color[attachment][c].begin() + 4 * quad.number, 4, rgba[c]);
+  const AttachmentState& target = pass.color[attachment];
+  const std::uint64_t address = target.surface.tile_address(quad.place.tile_x, quad.place.tile_y);
+  auto* const tile = reinterpret_cast<std::uint32_t*>(memory.write(address, models::kTileBytes).data());
+  models::blend_quad(draw.blend[attachment], target.format, rgba, tile + quad.place.first_pixel(),
+                     quad.lanes);
+}
+
+}  // namespace quadrille::hw
