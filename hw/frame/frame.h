@@ -6,9 +6,9 @@
 /// by its index here, so state is versioned by draw and no unit has to be told of a state change.
 #pragma once
 
+#include "models/base/attachment.h"
 #include "models/geometry/assembly.h"
 #include "models/geometry/attribute_format.h"
-#include "models/memory/attachment.h"
 #include "models/memory/surface.h"
 #include "models/precision.h"
 #include "models/raster/clip.h"

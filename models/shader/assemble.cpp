@@ -65,7 +65,7 @@ class Assembler {
   // Directives.
 
   void read_directive(std::string_view name, const std::vector<std::string_view>& words) {
-    if (name == "stage") program_.stage = one_of<Stage>(words, kStageNames, "stage");
+    if (name == "stage") program_.stage = one_of<ShaderStage>(words, kStageNames, "stage");
     else if (name == "varying")
       program_.varyings.push_back(one_of<Interpolation>(words, kInterpolationNames, "interpolation"));
     else if (name == "regs") registers_ = static_cast<int>(count(words, kMaxRegisters));

@@ -80,7 +80,7 @@ class Checker {
                 program_.varyings.size());
         break;
       case Immediate::kOutputSlot: {
-        const std::size_t slots = program_.stage == Stage::kVertex
+        const std::size_t slots = program_.stage == ShaderStage::kVertex
                                       ? kFirstVaryingOutput + program_.varyings.size()
                                       : kDepthOutput + 1u;
         require(in.imm < slots, "output slot {} does not exist; the stage has {}", in.imm, slots);
@@ -97,7 +97,7 @@ class Checker {
   void check_input(std::uint16_t slot) const {
     constexpr auto kFirstFragment = static_cast<std::uint16_t>(SystemValue::kFragCoordX);
     constexpr auto kLast = static_cast<std::uint16_t>(SystemValue::kPrimitiveId);
-    const bool vertex = program_.stage == Stage::kVertex;
+    const bool vertex = program_.stage == ShaderStage::kVertex;
     if (slot < kFirstSystemValue)
       require(vertex && slot < program_.vertex_inputs.size(),
               "vertex input {} does not exist; the program has {}", slot,
@@ -120,8 +120,8 @@ class Checker {
     const bool implicit = in.op == Op::kTexImplicit || in.op == Op::kTexBias;
     const bool derivative = in.op >= Op::kDdxFine && in.op <= Op::kDdyCoarse;
     const bool fragment_only = implicit || derivative || in.op == Op::kInterp || in.op == Op::kKillIf;
-    require(!fragment_only || program_.stage == Stage::kFragment, "'{}' exists only in fragment shaders",
-            op_name(in.op));
+    require(!fragment_only || program_.stage == ShaderStage::kFragment,
+            "'{}' exists only in fragment shaders", op_name(in.op));
   }
 
   struct Construct {

@@ -137,7 +137,7 @@ const OpInfo* find_op(std::string_view name) {
 
 std::uint32_t color_outputs(const Program& program) {
   std::uint32_t outputs = 0;
-  if (program.stage != Stage::kFragment) return outputs;
+  if (program.stage != ShaderStage::kFragment) return outputs;
   for (const Instruction& i : program.code) {
     if (i.op == Op::kOutput && i.imm < kMaxColorOutputs) outputs |= 1u << i.imm;
   }

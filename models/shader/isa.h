@@ -7,7 +7,8 @@
 /// of lane masks. docs/isa.md is the reference; `disassemble` prints a listing and `assemble` reads it back.
 #pragma once
 
-#include "models/memory/attachment.h"
+#include "models/base/attachment.h"
+#include "models/base/pipeline_state.h"
 
 #include <cstdint>
 #include <memory>
@@ -202,8 +203,6 @@ struct VertexInputUse {
   friend bool operator==(const VertexInputUse&, const VertexInputUse&) = default;
 };
 
-enum class Stage : std::uint8_t { kVertex, kFragment };
-
 /// The form in which a program executes (models/shader/decode.h). A program holds it once it has been
 /// prepared; a copy of a program starts without.
 struct DecodedProgram;
@@ -228,7 +227,7 @@ class DecodedCache {
 };
 
 struct Program {
-  Stage stage = Stage::kVertex;
+  ShaderStage stage = ShaderStage::kVertex;
   std::string name;               ///< for listings and errors
   std::vector<Instruction> code;  ///< ends with kEnd
   int num_regs = 0;
