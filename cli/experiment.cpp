@@ -80,6 +80,7 @@ std::string picture_of(const ExperimentArguments& a, const experiments::Experime
 int run_experiments(const ExperimentArguments& a) {
   const std::vector<const experiments::Experiment*> all = chosen_of(a.names);
   std::vector<experiments::Setting> settings;
+  settings.reserve(all.size());
   for (const experiments::Experiment* e : all) settings.push_back(setting_of(*e, a));
   if (a.list) {
     for (const experiments::Experiment* e : all) fmt::print("{:<24}{}\n", e->name, e->title);
