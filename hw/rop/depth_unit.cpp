@@ -17,7 +17,6 @@ namespace quadrille::hw {
 
 namespace {
 
-constexpr std::uint32_t kFenceTag = 0xffffffffu;
 constexpr std::uint32_t kLateBit = 0x80000000u;
 
 bool can_raise(const DrawState& draw) {
@@ -107,7 +106,7 @@ Wake DepthUnit::early_test_wake() const {
 }
 
 Wake DepthUnit::late_take_wake() const {
-  if (late_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()) || flush_ != Flush::kNone)
+  if (late_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()) || flush_.running())
     return Wake::never(late_out);
   return Wake().input(late_in);
 }
@@ -121,8 +120,7 @@ Wake DepthUnit::late_test_wake() const {
 }
 
 Wake DepthUnit::flush_wake() const {
-  if (flush_ != Flush::kFenced || fences_ > 0) return Wake(kNever);
-  return Wake(free_).output(late_out);
+  return flush_.done() ? Wake(free_).output(late_out) : Wake(kNever);
 }
 
 Wake DepthUnit::next() const {
@@ -141,7 +139,7 @@ void DepthUnit::act(Tick now) {
   take_answers(now);
   if (flush_wake().at() <= now) {
     late_out.push(now, {TokenKind::kPassEnd, 0});
-    flush_ = Flush::kNone;
+    flush_.end();
   }
   if (late_take_wake().at() <= now) take_late(now);
   if (early_take_wake().at() <= now) take_early(now);
@@ -149,7 +147,8 @@ void DepthUnit::act(Tick now) {
   const bool late_done = late_ready(now) && test_late(now);
   if (!late_done && early_ready(now)) test_early(now);
   port_.send(now);
-  advance_flush(now);
+  // Without depths nothing was written that others could miss.
+  if (flush_.running() && flush_.advance(frame_.passes[pass_].has_depth)) free_ = after(now, 1);
 }
 
 bool DepthUnit::early_ready(Tick now) const {
@@ -162,10 +161,7 @@ bool DepthUnit::late_ready(Tick now) const {
 
 void DepthUnit::take_answers(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
-    if (answer.tag == kFenceTag) {
-      --fences_;
-      return;
-    }
+    if (flush_.take(answer)) return;
     stalled_ = false;
     cache_.fill(answer, [&](std::uint32_t waiter) {
       if ((waiter & kLateBit) != 0) {
@@ -334,7 +330,7 @@ bool DepthUnit::test_late(Tick now) {
   if (token.kind == TokenKind::kPassEnd) {
     stats_.working_for(kNoDraw);
     cache_.flush(port_);
-    flush_ = Flush::kDraining;
+    flush_.begin();
     late_.pop_front();
     ++first_late_;
     return true;
@@ -378,16 +374,6 @@ models::LaneMask DepthUnit::test_quad(const DrawState& draw, const WarpSlot& war
   const models::LaneMask passed = test_depth(draw, warp, part, depths(tx, ty));
   if (draw.depth_write && passed != 0) send_hiz(now, tx, ty);
   return passed;
-}
-
-void DepthUnit::advance_flush(Tick now) {
-  if (flush_ != Flush::kDraining || !port_.queue_empty()) return;
-  if (frame_.passes[pass_].has_depth) {  // without depths nothing was written that others could miss
-    port_.fence(kFenceTag);
-    fences_ = port_.slices();
-  }
-  flush_ = Flush::kFenced;
-  free_ = after(now, 1);
 }
 
 void DepthUnit::audit(Audit& audit) const {

@@ -17,6 +17,7 @@
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
+#include "hw/memory/flush.h"
 #include "hw/rop/surface_cache.h"
 
 namespace quadrille::hw {
@@ -89,7 +90,6 @@ class DepthUnit final : public Unit {
     bool acquired = false;
     std::array<std::uint8_t, models::kWarpQuads> done{};  ///< of `SurfaceCache::acquire`, by quad
   };
-  enum class Flush : std::uint8_t { kNone, kDraining, kFenced };
 
   // Early port.
   [[nodiscard]] Wake early_take_wake() const;
@@ -113,9 +113,7 @@ class DepthUnit final : public Unit {
   bool acquire_late(LateEntry& entry, std::uint32_t number);
   void take_answers(Tick now);
   [[nodiscard]] Wake flush_wake() const;
-  void advance_flush(Tick now);
   void begin_pass(std::uint32_t pass);
-  void note_direction(const DrawState& draw);
   void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] std::size_t tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const;
@@ -138,8 +136,7 @@ class DepthUnit final : public Unit {
   bool lowering_ = true;                       ///< no draw of the pass so far can raise a depth
   std::vector<std::uint32_t> late_in_flight_;  ///< quads by tile
   std::vector<float> known_max_;               ///< by tile: what Hi-Z was told
-  Flush flush_ = Flush::kNone;
-  int fences_ = 0;
+  Flush flush_{port_};
   Tick free_ = 0, take_free_ = 0;
 };
 

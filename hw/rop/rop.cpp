@@ -11,8 +11,6 @@ namespace quadrille::hw {
 
 namespace {
 
-constexpr std::uint32_t kFenceTag = 0xffffffffu;
-
 /// The part of a tile that one quad of a warp covers.
 models::LaneMask lanes_of(const WarpSlot& warp, int q) { return (warp.alive >> (4 * q)) & 0xf; }
 
@@ -113,8 +111,8 @@ Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
 }
 
 Wake Rop::retire_wake() const {
-  if (flush_ == Flush::kFenced && fences_ == 0) return Wake(free_).output(retire_out);
-  if (flush_ != Flush::kNone) return Wake(kNever);
+  if (flush_.done()) return Wake(free_).output(retire_out);
+  if (depth_flushes_ || flush_.running()) return Wake(kNever);
   if (entries_.empty() || acquired_ == 0) return Wake(kNever);
   const Entry& head = entries_.front();
   if (head.missing > 0 || claim_stalled_) return Wake::never(port_.response_in[0]);
@@ -140,15 +138,12 @@ void Rop::act(Tick now) {
   if (acquire_wake().at() <= now) acquire(now);
   if (retire_wake().at() <= now) retire(now);
   port_.send(now);
-  advance_flush(now);
+  if (flush_.advance()) free_ = after(now, 1);
 }
 
 void Rop::take_inputs(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
-    if (answer.tag == kFenceTag) {
-      --fences_;
-      return;
-    }
+    if (flush_.take(answer)) return;
     stalled_ = false;
     claim_stalled_ = false;
     cache_.fill(answer, [&](std::uint32_t number) {
@@ -171,7 +166,8 @@ void Rop::take_late(Tick now) {
   if (late_in.pop(now).kind == TokenKind::kPassEnd) {
     stats_.working_for(kNoDraw);
     cache_.flush(port_);
-    flush_ = Flush::kDraining;
+    depth_flushes_ = false;
+    flush_.begin();
     return;
   }
   entries_[awaiting_].stage = Stage::kTested;
@@ -223,9 +219,9 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
 }
 
 void Rop::retire(Tick now) {
-  if (flush_ == Flush::kFenced) {
+  if (flush_.done()) {
     retire_out.push(now, {TokenKind::kPassEnd, pass_});
-    flush_ = Flush::kNone;
+    flush_.end();
     return;
   }
   const Entry entry = entries_.front();
@@ -274,7 +270,7 @@ void Rop::retire_boundary(Tick now, const Entry& entry) {
       retire_out.push(now, {TokenKind::kDrawEnd, entry.token.index});
       return;
     case TokenKind::kPassEnd:
-      flush_ = Flush::kDepth;
+      depth_flushes_ = true;
       late_out.push(now, {TokenKind::kPassEnd, 0});
       return;
     case TokenKind::kSync: sync_out.push(now, {0, entry.token.sync}); return;
@@ -316,14 +312,6 @@ int Rop::write_colors(const WarpSlot& warp) {
   int quad_cycles = 0;
   draw.visit_colors([&](std::size_t color) { quad_cycles += draw.reads_color(color) ? 2 * quads : quads; });
   return std::max(1, (quad_cycles + params_.quads_per_clk - 1) / params_.quads_per_clk);
-}
-
-void Rop::advance_flush(Tick now) {
-  if (flush_ != Flush::kDraining || !port_.queue_empty()) return;
-  port_.fence(kFenceTag);
-  fences_ = port_.slices();
-  flush_ = Flush::kFenced;
-  free_ = after(now, 1);
 }
 
 void Rop::audit(Audit& audit) const {

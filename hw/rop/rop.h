@@ -15,6 +15,7 @@
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
+#include "hw/memory/flush.h"
 #include "hw/rop/surface_cache.h"
 
 namespace quadrille::hw {
@@ -84,7 +85,6 @@ class Rop final : public Unit {
     /// of `SurfaceCache::acquire`, by colour attachment and touched tile
     std::array<std::array<std::uint8_t, models::kWarpQuads>, models::kMaxColorAttachments> done{};
   };
-  enum class Flush : std::uint8_t { kNone, kDepth, kDraining, kFenced };
 
   [[nodiscard]] Wake test_wake() const;
   [[nodiscard]] Wake acquire_wake() const;
@@ -99,7 +99,6 @@ class Rop final : public Unit {
   void retire_boundary(Tick now, const Entry& entry);
   bool claim_colors(const WarpSlot& warp);
   int write_colors(const WarpSlot& warp);
-  void advance_flush(Tick now);
 
   const Params& params_;
   const Frame& frame_;
@@ -119,8 +118,8 @@ class Rop final : public Unit {
   /// no place for the colours of the next entry; a fill will make one
   bool stalled_ = false;
   bool claim_stalled_ = false;  ///< the same for the head, whose lines were evicted
-  Flush flush_ = Flush::kNone;
-  int fences_ = 0;
+  bool depth_flushes_ = false;  ///< the pass is over, and the depth unit flushes before this one
+  Flush flush_{port_};
   Tick free_ = 0, test_free_ = 0, acquire_free_ = 0;
 };
 
