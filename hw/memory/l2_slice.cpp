@@ -170,8 +170,8 @@ bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request)
 }
 
 std::optional<std::uint32_t> L2Slice::fetch(Tick now, std::uint32_t client, const MemoryRequest& request) {
-  const auto asked = misses_.ask(tags_.find(request.line), request.sectors,
-                                 [&] { return place(now, request.line); });
+  const auto asked =
+      misses_.ask(tags_.find(request.line), request.sectors, [&] { return place(now, request.line); });
   if (!asked) return {};
   if (asked->missing == 0) {
     ++stats_.merged;
@@ -179,9 +179,9 @@ std::optional<std::uint32_t> L2Slice::fetch(Tick now, std::uint32_t client, cons
   }
   ++stats_.misses;
   stats_.fill_bytes += bytes_of(asked->missing);
-  to_memory_.push_back(
-      {after(now, params_.hit_clk),
-       {request.line, asked->tag, asked->missing, MemoryRequest::Kind::kRead, client_kinds_[client], request.draw}});
+  to_memory_.push_back({after(now, params_.hit_clk),
+                        {request.line, asked->tag, asked->missing, MemoryRequest::Kind::kRead,
+                         client_kinds_[client], request.draw}});
   return asked->tag;
 }
 

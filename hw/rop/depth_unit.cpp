@@ -57,18 +57,18 @@ float greatest_depth(const float* depths, const models::SurfaceLayout& surface, 
 }  // namespace
 
 DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                     const TriangleStore& triangles, Store<WarpSlot>& warps)
+                     const TriangleStore& triangles, WarpStore& warps)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
       device_(context.memory),
       triangles_(triangles),
       warps_(warps),
-      partition_(static_cast<std::uint32_t>(context.number)),
+      partition_(context.partition()),
       partitions_(static_cast<std::uint32_t>(context.machine.partitions)),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
-             surface_writer(SurfaceKind::kDepth, context.number)) {
+             surface_writer(SurfaceKind::kDepth, context.partition())) {
   add_initiation_rate("quads_per_clk");
   add_places("tiles_in_flight",
              [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
@@ -80,12 +80,12 @@ std::string DepthUnit::state_text() const {
 }
 
 std::size_t DepthUnit::tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const {
-  return std::size_t{tile_y} * frame_.passes[pass_].depth.surface.tiles_x + tile_x;
+  return std::size_t{tile_y} * frame_.pass(pass_).depth.surface.tiles_x + tile_x;
 }
 
 float* DepthUnit::depths(std::uint32_t tile_x, std::uint32_t tile_y) {
   return reinterpret_cast<float*>(
-      device_.write(frame_.passes[pass_].depth.surface.tile_address(tile_x, tile_y), models::kTileBytes)
+      device_.write(frame_.pass(pass_).depth.surface.tile_address(tile_x, tile_y), models::kTileBytes)
           .data());
 }
 
@@ -119,9 +119,7 @@ Wake DepthUnit::late_test_wake() const {
   return Wake(std::max(free_, head.ready)).output(late_out);
 }
 
-Wake DepthUnit::flush_wake() const {
-  return flush_.done() ? Wake(free_).output(late_out) : Wake(kNever);
-}
+Wake DepthUnit::flush_wake() const { return flush_.done() ? Wake(free_).output(late_out) : Wake(kNever); }
 
 Wake DepthUnit::next() const {
   Wake wake = Wake::sooner(early_test_wake(), early_take_wake());
@@ -138,7 +136,7 @@ Wake DepthUnit::next() const {
 void DepthUnit::act(Tick now) {
   take_answers(now);
   if (flush_wake().at() <= now) {
-    late_out.push(now, {TokenKind::kPassEnd, 0});
+    late_out.push(now, {TokenKind::kPassEnd, {}});
     flush_.end();
   }
   if (late_take_wake().at() <= now) take_late(now);
@@ -148,7 +146,7 @@ void DepthUnit::act(Tick now) {
   if (!late_done && early_ready(now)) test_early(now);
   port_.send(now);
   // Without depths nothing was written that others could miss.
-  if (flush_.running() && flush_.advance(frame_.passes[pass_].has_depth)) free_ = after(now, 1);
+  if (flush_.running() && flush_.advance(frame_.pass(pass_).has_depth)) free_ = after(now, 1);
 }
 
 bool DepthUnit::early_ready(Tick now) const {
@@ -211,8 +209,8 @@ void DepthUnit::acquire_waiting(Tick now) {
 }
 
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
-  stats_.working_for(draw_of(entry.token.kind, entry.token.index));
-  if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.index).depth_test) {
+  stats_.working_for(entry.token.part.draw());
+  if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
     if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y}, {.read = sectors}, number & ~kLateBit,
                         entry.missing, entry.done, port_))
@@ -241,10 +239,10 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
   return true;
 }
 
-void DepthUnit::begin_pass(std::uint32_t pass) {
+void DepthUnit::begin_pass(PassId pass) {
   pass_ = pass;
   lowering_ = true;
-  const PassState& state = frame_.passes[pass];
+  const PassState& state = frame_.pass(pass);
   if (!state.has_depth) return;
   cache_.begin_pass({&state.depth, 1}, partition_, partitions_);
   const std::size_t tiles = std::size_t{state.depth.surface.tiles_x} * state.depth.surface.tiles_y;
@@ -254,13 +252,13 @@ void DepthUnit::begin_pass(std::uint32_t pass) {
 
 void DepthUnit::test_early(Tick now) {
   CoverageToken token = early_.front().token;
-  if (token.kind == TokenKind::kWork) stats_.working_for(token.index, token.tile_x, token.tile_y);
-  else stats_.working_for(draw_of(token.kind, token.index));
+  if (token.kind == TokenKind::kWork) stats_.working_for(token.part.draw(), token.tile_x, token.tile_y);
+  else stats_.working_for(token.part.draw());
   int cycles = 1;
-  if (token.kind == TokenKind::kPassBegin) begin_pass(token.index);
+  if (token.kind == TokenKind::kPassBegin) begin_pass(token.part.pass());
   if (token.kind == TokenKind::kWork) {
     cycles = std::max(1, (quads_in(token.coverage) + params_.quads_per_clk - 1) / params_.quads_per_clk);
-    if (!test_tile(frame_.draw(token.index), token, now)) {
+    if (!test_tile(frame_.draw(token.part.draw()), token, now)) {
       early_.front().acquired = false;  // no place for its lines now: ask again after the next fill
       stalled_ = true;
       return;
@@ -313,7 +311,7 @@ void DepthUnit::send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y) {
   if (!lowering_) return;
   float& known = known_max_[tile_number(tile_x, tile_y)];
   const float greatest =
-      greatest_depth(depths(tile_x, tile_y), frame_.passes[pass_].depth.surface, tile_x, tile_y);
+      greatest_depth(depths(tile_x, tile_y), frame_.pass(pass_).depth.surface, tile_x, tile_y);
   if (!(greatest < known)) return;
   if (!hiz_out.room_at(now)) {
     ++stats_.hiz_dropped;

@@ -58,7 +58,7 @@ class DepthUnit final : public Unit {
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-            const TriangleStore& triangles, Store<WarpSlot>& warps);
+            const TriangleStore& triangles, WarpStore& warps);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
@@ -113,7 +113,7 @@ class DepthUnit final : public Unit {
   bool acquire_late(LateEntry& entry, std::uint32_t number);
   void take_answers(Tick now);
   [[nodiscard]] Wake flush_wake() const;
-  void begin_pass(std::uint32_t pass);
+  void begin_pass(PassId pass);
   void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] std::size_t tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const;
@@ -122,12 +122,13 @@ class DepthUnit final : public Unit {
   const Frame& frame_;
   models::DeviceMemory& device_;
   const TriangleStore& triangles_;
-  Store<WarpSlot>& warps_;
-  const std::uint32_t partition_, partitions_;
+  WarpStore& warps_;
+  const PartitionId partition_;
+  const std::uint32_t partitions_;
   Stats stats_;
   MemoryPort port_;
   SurfaceCache cache_;
-  std::uint32_t pass_ = 0;
+  PassId pass_;
   Queue<EarlyEntry> early_;
   Queue<LateEntry> late_;
   /// numbers of the fronts; waiters are named by number and port

@@ -53,18 +53,17 @@ SectorWishes wishes_of(const SectorPixels& pixels, bool reads_old) {
 
 }  // namespace
 
-Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-         Store<WarpSlot>& warps)
+Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
       device_(context.memory),
       warps_(warps),
-      partition_(static_cast<std::uint32_t>(context.number)),
+      partition_(context.partition()),
       partitions_(static_cast<std::uint32_t>(context.machine.partitions)),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
-             surface_writer(SurfaceKind::kColor, context.number)),
+             surface_writer(SurfaceKind::kColor, context.partition())),
       shaded_(static_cast<std::size_t>(warps.size()), false) {
   add_initiation_rate("quads_per_clk");
   add_places("warps_in_flight",
@@ -84,7 +83,7 @@ Wake Rop::test_wake() const {
   if (tested_ >= entries_.size()) return Wake::never(order_in);
   const Entry& entry = entries_[tested_];
   if (entry.token.kind != TokenKind::kWork) return Wake(test_free_);
-  if (!shaded_[entry.token.slot]) return Wake::never(done_in[0]);
+  if (!shaded_[entry.token.slot.index()]) return Wake::never(done_in[0]);
   return warps_[entry.token.slot].late ? Wake(test_free_).output(late_out) : Wake(test_free_);
 }
 
@@ -155,7 +154,7 @@ void Rop::take_inputs(Tick now) {
   done_in.visit_holding(0, [&](std::size_t core, FifoIn<FragmentDoneToken>& in) {
     for (; in.ready_at(now) && load_out.room_at(now);
          load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
-      shaded_[in.pop(now).slot] = true;
+      shaded_[in.pop(now).slot.index()] = true;
     return false;
   });
   while (late_in.ready_at(now)) take_late(now);
@@ -241,8 +240,8 @@ void Rop::retire(Tick now) {
     if (warp.late) stats_.late_discarded += discarded;
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
     cycles = write_colors(warp);
-    shaded_[entry.token.slot] = false;
-    release_out.push(now, {entry.token.slot, 0});
+    shaded_[entry.token.slot.index()] = false;
+    release_out.push(now, {entry.token.slot});
     if (entry.token.sync != 0) sync_out.push(now, {0, entry.token.sync});
   } else {
     retire_boundary(now, entry);
@@ -257,21 +256,21 @@ void Rop::retire(Tick now) {
 }
 
 void Rop::retire_boundary(Tick now, const Entry& entry) {
-  stats_.working_for(draw_of(entry.token.kind, entry.token.index));
+  stats_.working_for(entry.token.part.draw());
   switch (entry.token.kind) {
     case TokenKind::kPassBegin: {
-      pass_ = entry.token.index;
-      const PassState& pass = frame_.passes[pass_];
+      pass_ = entry.token.part.pass();
+      const PassState& pass = frame_.pass(pass_);
       cache_.begin_pass({pass.color.data(), pass.colors}, partition_, partitions_);
       return;
     }
     case TokenKind::kDrawEnd:
       ++stats_.draws;
-      retire_out.push(now, {TokenKind::kDrawEnd, entry.token.index});
+      retire_out.push(now, {TokenKind::kDrawEnd, entry.token.part});
       return;
     case TokenKind::kPassEnd:
       depth_flushes_ = true;
-      late_out.push(now, {TokenKind::kPassEnd, 0});
+      late_out.push(now, {TokenKind::kPassEnd, {}});
       return;
     case TokenKind::kSync: sync_out.push(now, {0, entry.token.sync}); return;
     case TokenKind::kWork:
@@ -306,7 +305,7 @@ int Rop::write_colors(const WarpSlot& warp) {
     draw.visit_colors([&](std::size_t color) {
       stats_.pixels_written += pixels;
       if (draw.reads_color(color)) stats_.blended += pixels;
-      write_color(draw, frame_.passes[pass_], color, warp, part, device_);
+      write_color(draw, frame_.pass(pass_), color, warp, part, device_);
     });
   }
   int quad_cycles = 0;

@@ -52,7 +52,7 @@ class Rop final : public Unit {
     Counter draws{*this, "draws", "draw", "Draws retired"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
-  Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps);
+  Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps);
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
   FifoInGroup<FragmentDoneToken> done_in;
@@ -60,7 +60,7 @@ class Rop final : public Unit {
   FifoOut<ReleaseToken> load_out{*this, "load_out", LinkRole::kReply};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
   FifoOut<LateToken> late_out{*this, "late_out", LinkRole::kReply};
-  FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
+  FifoOut<WarpReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
   FifoOut<ReleaseToken> sync_out{*this, "sync_out", LinkRole::kReply};
   FifoOut<RetireToken> retire_out{*this, "retire_out", LinkRole::kReply};
 
@@ -103,12 +103,13 @@ class Rop final : public Unit {
   const Params& params_;
   const Frame& frame_;
   models::DeviceMemory& device_;
-  Store<WarpSlot>& warps_;
-  const std::uint32_t partition_, partitions_;
+  WarpStore& warps_;
+  const PartitionId partition_;
+  const std::uint32_t partitions_;
   Stats stats_;
   MemoryPort port_;
   SurfaceCache cache_;
-  std::uint32_t pass_ = 0;
+  PassId pass_;
   Queue<Entry> entries_;
   std::uint32_t first_entry_ = 0;  ///< number of entries_.front()
   /// entries from the front that are past these stages (tested: test sent or not needed)

@@ -12,9 +12,12 @@ struct CoreSlot {
   std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs;  ///< fragment stage: colour, depth
   /// Filtered texels of `warp.textures`, by request.
   std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseTextures> texels;
-  std::uint32_t draw = 0, store_slot = 0;
-  std::uint16_t partition = 0;
-  std::uint16_t tile_x = 0, tile_y = 0;  ///< fragment stage: of the warp's first quad
+  DrawId draw;
+  std::uint32_t batch = 0;  ///< vertex stage: its slot in the batch store
+  // Fragment stage: the warp's slot, and the place of its first quad.
+  WarpSlotId warp_slot;
+  PartitionId partition;
+  std::uint16_t tile_x = 0, tile_y = 0;
   bool vertex_stage = false;
   std::uint16_t simd = 0;                                  ///< where its clauses issue
   models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues

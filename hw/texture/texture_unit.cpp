@@ -106,10 +106,10 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
   group.filter_cycles = std::max<std::int64_t>(1, per(quads, params_.filter_quads_per_clk));
 }
 
-void TextureUnit::begin_pass(std::uint32_t pass) {
+void TextureUnit::begin_pass(PassId pass) {
   if (pass == pass_) return;
   pass_ = pass;
-  if (!frame_.passes[pass].samples_attachments) return;
+  if (!frame_.pass(pass).samples_attachments) return;
   cache_.forget();
   ++stats_.cache_emptied;
 }

@@ -52,7 +52,7 @@ class FrameBuilder {
       color.clear = use.load == traces::LoadOp::kClear ? models::encode_color(color.format, use.clear) : 0;
     }
     pass.clear_depth = c.depth.load == traces::LoadOp::kClear ? c.depth.clear : 0;
-    pass.first_draw = static_cast<std::uint32_t>(out_.frame.draws.size());
+    pass.first_draw = hw::DrawId(out_.frame.draws.size());
     out_.frame.passes.push_back(pass);
     scissor_ = {0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)};
     viewport_ = {0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
@@ -61,11 +61,10 @@ class FrameBuilder {
     hw::PassState& pass = out_.frame.passes.back();
     const bool attached = begun_->depth.image != kNone;
     out_.shown_has_depth = attached;
-    pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw;
+    pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw.index();
     if (!attached) return;
-    const auto first = out_.frame.draws.begin() + pass.first_draw;
     const bool tests =
-        std::any_of(first, out_.frame.draws.end(), [](const hw::DrawState& d) { return d.depth_test; });
+        std::ranges::any_of(out_.frame.draws_of(pass), [](const hw::DrawState& d) { return d.depth_test; });
     const bool kept = lives_.read_after(begun_->depth.image, out_.frame.passes.size() - 1);
     if (tests || kept) {
       pass.has_depth = true;
@@ -101,7 +100,7 @@ class FrameBuilder {
     const CompiledPipeline& programs = compiled(pipeline_);
     hw::DrawState draw;
     draw.label = c.label;
-    draw.pass = static_cast<std::uint32_t>(out_.frame.passes.size()) - 1;
+    draw.pass = hw::PassId(out_.frame.passes.size() - 1);
     draw.vertex_program = &programs.vertex;
     draw.fragment_program = &programs.fragment;
     const auto bits = static_cast<unsigned>(4 * out_.frame.passes.back().colors);

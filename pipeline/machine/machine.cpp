@@ -68,8 +68,8 @@ Machine::Stores::Stores(const MachineConfig& config)
         static_cast<std::size_t>(config.triangle_setup.triangle_slots.value()) + 1));
   }
   for (int p = 0; p < config.gpu.partitions; ++p)
-    warps.push_back(std::make_unique<hw::Store<hw::WarpSlot>>(
-        static_cast<std::size_t>(config.warp_packer.warp_slots.value())));
+    warps.push_back(
+        std::make_unique<hw::WarpStore>(static_cast<std::size_t>(config.warp_packer.warp_slots.value())));
   for (int c = 0; c < config.gpu.cores; ++c)
     cores.push_back(
         std::make_unique<hw::Store<hw::CoreSlot>>(static_cast<std::size_t>(config.core.warp_slots.value())));

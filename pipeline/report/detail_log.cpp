@@ -83,11 +83,11 @@ double DetailLog::work_of(std::string_view kind, const std::array<std::uint64_t,
   return static_cast<double>(busy);
 }
 
-void DetailLog::collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const {
+void DetailLog::collect_draw(const LoggedUnit& u, hw::DrawId id, DrawFigures& draw) const {
   std::array<std::uint64_t, kDrawCounts> counts{};
-  for (const Column& c : u.draws) counts[c.count] += u.log->of_draw(c.column, row);
+  for (const Column& c : u.draws) counts[c.count] += u.log->of_draw(c.column, id);
   const std::string& kind = detail_.kinds[u.kind];
-  std::int64_t busy = u.unit->to_cycles(static_cast<std::int64_t>(u.log->of_draw(u.busy, row)));
+  std::int64_t busy = u.unit->to_cycles(static_cast<std::int64_t>(u.log->of_draw(u.busy, id)));
   for (std::size_t i = 0; i < kDrawCounts; ++i) draw.counts[i] += counts[i];
   draw.work[u.kind] = std::max(draw.work[u.kind], work_of(kind, counts, busy));
   // Several draws are on the SIMD units of a core, and in the queue of a memory channel, at a time.
@@ -127,8 +127,8 @@ Detail DetailLog::collect() {
   std::array<bool, kTileCounts> counted_elsewhere{};
   for (const LoggedUnit& u : units_) {
     u.log->settle();
-    for (std::uint32_t i = 0; i < draws; ++i) collect_draw(u, i, d.draws[i]);
-    collect_draw(u, draws, d.outside_draws);
+    for (std::uint32_t i = 0; i < draws; ++i) collect_draw(u, hw::DrawId(i), d.draws[i]);
+    collect_draw(u, hw::kNoDraw, d.outside_draws);
     collect_tiles(u, d.tiles);
     for (const Column& c : u.draws) d.draw_totals[c.count] += c.counter->value();
     for (const Column& c : u.tiles) own[c.count] += c.counter->value();

@@ -34,7 +34,7 @@ class DetailLog {
 
  private:
   void add(const hw::Unit& unit);
-  void collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const;
+  void collect_draw(const LoggedUnit& u, hw::DrawId id, DrawFigures& draw) const;
   void collect_tiles(const LoggedUnit& u, TileFigures& tiles) const;
   /// GPU cycles of a unit's work for one draw at its peak rates.
   [[nodiscard]] double work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts,

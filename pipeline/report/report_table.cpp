@@ -226,7 +226,7 @@ std::string draws_text(const Figures& f) {
     if (label.size() > 39) label = "..." + label.substr(label.size() - 36);  // the end tells draws apart
     out +=
         fmt::format("  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n", draw - d.draws.data(), label,
-                    draw->pass, grouped(static_cast<std::uint64_t>(draw->in_flight())),
+                    draw->pass.index(), grouped(static_cast<std::uint64_t>(draw->in_flight())),
                     grouped(draw->of(DrawCount::kTrianglesIn)), grouped(draw->of(DrawCount::kTrianglesDrawn)),
                     grouped(draw->of(DrawCount::kShaded)), limiter_text(d.limiter(*draw)));
   }

@@ -65,7 +65,8 @@ struct FlushBench final : Bench {
     add(*unit);
     for (int i = 0; i < 2; ++i) {
       const auto slice = static_cast<std::size_t>(i);
-      memory[slice] = &serve(*unit->port.request_out[slice], unit->port.response_in[slice], i == 0 ? s.near : s.far);
+      memory[slice] =
+          &serve(*unit->port.request_out[slice], unit->port.response_in[slice], i == 0 ? s.near : s.far);
     }
   }
   std::unique_ptr<Flusher> unit;
@@ -79,7 +80,8 @@ std::string seen(const FlushBench::Setup& setup) {
       for (const auto& [cycle, r] : slice->got) text += "rwpf"[static_cast<int>(r.kind)];
       text += ' ';
     }
-    return fmt::format("{}| fenced {} done {} others {}", text, b.unit->fenced_at, b.unit->done_at, b.unit->others);
+    return fmt::format("{}| fenced {} done {} others {}", text, b.unit->fenced_at, b.unit->done_at,
+                       b.unit->others);
   });
 }
 

@@ -56,7 +56,7 @@ struct TextureBench final : Bench {
   StubMemory* memory = nullptr;
 };
 
-TextureToken slot(std::uint32_t i) { return {i, 0, false}; }
+TextureToken slot(std::uint32_t i) { return {i, DrawId(0), false}; }
 std::string answers(const TextureBench& b) { return b.sink->text(); }
 
 }  // namespace
