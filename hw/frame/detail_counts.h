@@ -36,7 +36,6 @@ enum class DrawCount : std::uint8_t {
   kAtRop,
   kTextureSent,
   kTextureTaken,
-  kBilinearQuads,
   kSimdBusy,
   kClientRequests,
   kL2Requests,

@@ -12,7 +12,9 @@
 #include "hw/base/work_log.h"
 #include "models/geometry/post_transform.h"
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace quadrille::hw {
 
@@ -171,6 +173,11 @@ struct TextureToken {
 
 /// On whose behalf memory is accessed.
 enum class MemoryClient : std::uint8_t { kVertexFetch, kTexture, kDepth, kColor, kScanOut, kWriteBack };
+[[nodiscard]] constexpr std::string_view name_of(MemoryClient client) {
+  constexpr std::array<std::string_view, 6> kNames{"vertex_fetch", "texture",  "depth",
+                                                   "color",        "scan_out", "write_back"};
+  return kNames[static_cast<std::size_t>(client)];
+}
 
 /// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer.
 /// Writes are not answered; a fence is, once all requests of its client before it have been taken in.

@@ -99,6 +99,7 @@ class VertexFetch final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kVertexFetch;
 
  private:
   /// A batch or a boundary on its way out, in order.

@@ -74,6 +74,7 @@ class DepthUnit final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kDepth;
 
  private:
   struct EarlyEntry {

@@ -72,6 +72,7 @@ class Rop final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kColor;
 
  private:
   /// Stages of an entry of the reorder buffer, in order.

@@ -332,6 +332,8 @@ void ShaderCore::details(Details& details) const {
   details.total_of_tiles(TileCount::kShaded, stats_.fragments);
   details.by_draw(DrawCount::kTextureSent, stats_.texture);
   details.by_draw(DrawCount::kSimdBusy, stats_.simd_busy);
+  details.shared_by_draws(&stats_.simd_busy);
+  details.work({&stats_.simd_busy}, params_.simds);
 }
 
 std::vector<Facet> ShaderCore::row() const {

@@ -156,9 +156,9 @@ void TextureUnit::details(Details& details) const {
   details.by_draw(DrawCount::kTextureTaken, stats_.requests);
   details.by_draw(DrawCount::kSamples, stats_.lanes);
   details.by_draw(DrawCount::kTexels, stats_.texels);
-  details.by_draw(DrawCount::kBilinearQuads, stats_.bilinear_quads);
   details.by_draw(DrawCount::kTextureMisses, cache_.stats().misses);
   details.by_tile(TileCount::kTextureMisses, cache_.stats().misses);
+  details.work({&stats_.bilinear_quads}, params_.filter_quads_per_clk);
   port_.details(details, DrawCount::kTextureBytes);
 }
 

@@ -80,6 +80,7 @@ class TextureUnit final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kTexture;
 
  private:
   struct Group {

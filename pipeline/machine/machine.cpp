@@ -106,14 +106,23 @@ void Machine::leave_out(bool wanted) {
 }
 
 void Machine::list_clients() {
-  clients_ = {{"vertex_fetch", hw::MemoryClient::kVertexFetch}};
-  for (int c = 0; textured_ && c < config_.gpu.cores; ++c)
-    clients_.push_back({fmt::format("texture_{}", c), hw::MemoryClient::kTexture});
-  for (int p = 0; p < config_.gpu.partitions; ++p) {
-    if (depth_memory_) clients_.push_back({fmt::format("depth_{}", p), hw::MemoryClient::kDepth});
-    clients_.push_back({fmt::format("rop_{}", p), hw::MemoryClient::kColor});
+  struct ClientKind {
+    std::string_view name;
+    Stands stands;
+    Needed needed;
+    hw::MemoryClient client;
+  };
+  std::vector<ClientKind> kinds;
+  visit_client_kinds([&]<class Unit>(Needed needed) {
+    static_assert(MemoryClientUnit<Unit>);
+    kinds.push_back({UnitKind<Unit>::name, UnitKind<Unit>::stands, needed, Unit::kMemoryClient});
+  });
+  for (auto first = kinds.begin(), last = first; first != kinds.end(); first = last) {
+    last = std::find_if(first, kinds.end(), [&](const ClientKind& k) { return k.stands != first->stands; });
+    for (int i = 0; i < count(first->stands); ++i)
+      for (auto k = first; k != last; ++k)
+        if (builds(k->needed)) clients_.push_back({name_of(k->name, k->stands, i), k->client});
   }
-  clients_.push_back({"scan_out", hw::MemoryClient::kScanOut});
 }
 
 int Machine::count(Stands stands) const {
@@ -136,6 +145,7 @@ bool Machine::builds(Needed needed) const {
   switch (needed) {
     case Needed::kByAllFrames: return true;
     case Needed::kByFramesThatReadTextures: return textured_;
+    case Needed::kByFramesThatKeepDepths: return depth_memory_;
   }
   return true;
 }

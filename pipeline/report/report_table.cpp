@@ -278,9 +278,8 @@ std::string_view without_number(std::string_view name) {
 }
 
 double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
-  const double burst = static_cast<double>(machine.memory.burst_bytes) * machine.memory.pseudo_channels /
-                       std::max<int>(machine.memory.t_burst, machine.memory.t_ccd_s);
-  return machine.gpu.channels * burst * machine.gpu.memory_mhz / machine.gpu.clock_mhz;
+  return machine.gpu.channels * machine.memory.bytes_per_clk() * machine.gpu.memory_mhz /
+         machine.gpu.clock_mhz;
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
