@@ -77,6 +77,8 @@ class DepthUnit final : public Unit {
   static constexpr MemoryClient kMemoryClient = MemoryClient::kDepth;
 
  private:
+  /// Marks, in the number by which the cache knows who waits, an entry of the late port.
+  static constexpr std::uint32_t kLateBit = 0x80000000u;
   struct EarlyEntry {
     CoverageToken token;
     int missing = 0;
