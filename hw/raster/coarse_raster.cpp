@@ -34,7 +34,7 @@ CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& cont
 }
 
 std::string CoarseRaster::state_text() const {
-  return fmt::format("triangle {} of draw {}", triangle_, draw_);
+  return fmt::format("triangle {} of draw {}", triangle_, draw_.index());
 }
 
 Wake CoarseRaster::work_wake() const {
