@@ -48,8 +48,8 @@
   unit(memory,             hw::MemoryChannel,     kChannel,   kByAllFrames)              \
   unit(scan_out,           hw::ScanOut,           kOnce,      kByAllFrames)
 
-// Who asks the L2 slices, in the order of their ports, and in which frames. Neighbours that stand equally often
-// take turns: the first of each, then the second of each.
+// Who asks the L2 slices, in the order of their ports, and in which frames. Neighbours that stand equally
+// often take turns: the first of each, then the second of each.
 #define QUADRILLE_CLIENTS(client)                    \
   client(VertexFetch, kByAllFrames)                  \
   client(TextureUnit, kByFramesThatReadTextures)     \
@@ -134,7 +134,7 @@ namespace quadrille::pipeline {
 /// How often a kind of unit stands in a machine: once, or once a raster engine, partition, core or channel.
 /// Of several, each carries its number in its name.
 enum class Stands : std::uint8_t { kOnce, kEngine, kPartition, kCore, kChannel };
-/// Which frames need a kind of unit, or its links to memory; a machine leaves out what its frame does not need.
+/// Which frames need a kind of unit, or its links to memory; a machine leaves out what no draw needs.
 enum class Needed : std::uint8_t { kByAllFrames, kByFramesThatReadTextures, kByFramesThatKeepDepths };
 /// What the tokens of a link do: carry work onward, tell of work that comes another way, or bring answers,
 /// releases and reports back.
@@ -160,7 +160,7 @@ void visit_unit_kinds(const Visit& visit) {
 #undef QUADRILLE_VISIT
 }
 
-/// Calls `visit.operator()<Unit>(needed)` for each kind of client of the L2 slices, in the order of their ports.
+/// Calls `visit.operator()<Unit>(needed)` for each kind of client of the L2 slices, in their ports' order.
 template <class Visit>
 void visit_client_kinds(const Visit& visit) {
 #define QUADRILLE_VISIT(type, frames) visit.template operator()<hw::type>(Needed::frames);
