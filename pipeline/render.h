@@ -18,8 +18,16 @@ struct FrameImage {
   std::vector<float> depth;          ///< rows top to bottom; empty when the target has no depth
 };
 
+/// What a buffer that programs wrote held at the end of the frame.
+struct BufferContents {
+  traces::Index buffer = traces::kNone;
+  std::vector<std::byte> data;
+  friend bool operator==(const BufferContents&, const BufferContents&) = default;
+};
+
 struct RenderedFrame {
   FrameImage image;
+  std::vector<BufferContents> buffers;  ///< in order of the stream's buffers
   Figures figures;
 };
 

@@ -167,9 +167,17 @@ struct TextureDescriptor {
   Index image = kNone, sampler = kNone;
   friend bool operator==(const TextureDescriptor&, const TextureDescriptor&) = default;
 };
+/// A range of a buffer that programs may read and write.
+struct StorageBinding {
+  std::uint32_t binding = 0;
+  Index buffer = kNone;
+  std::uint32_t offset = 0, range = 0;  ///< bytes
+  friend bool operator==(const StorageBinding&, const StorageBinding&) = default;
+};
 struct DescriptorSet {
   std::vector<UniformBinding> uniforms;
   std::vector<TextureDescriptor> textures;
+  std::vector<StorageBinding> buffers{};
   friend bool operator==(const DescriptorSet&, const DescriptorSet&) = default;
 };
 

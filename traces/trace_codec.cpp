@@ -209,6 +209,8 @@ template <class A>
 void transfer(A& a, DescriptorSet& v) {
   a.table(v.uniforms, [&](UniformBinding& u) { numbers(a, u.binding, u.buffer, u.offset, u.range); });
   a.table(v.textures, [&](TextureDescriptor& t) { numbers(a, t.binding, t.image, t.sampler); });
+  if (a.version() >= 2)
+    a.table(v.buffers, [&](StorageBinding& b) { numbers(a, b.binding, b.buffer, b.offset, b.range); });
 }
 
 template <class A>

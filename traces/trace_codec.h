@@ -41,7 +41,7 @@ inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
                                                    {"PIPE", 2},
-                                                   {"DESC", 1},
+                                                   {"DESC", 2},
                                                    {"TARG", 0},
                                                    {"CMDS", 2}}};
 

@@ -7,7 +7,7 @@ namespace quadrille::hw {
 
 void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outputs,
                   const models::LaneFloats& interpolated_depth, WarpSlot& warp) {
-  warp.depth = draw.fragment_program->writes_depth
+  warp.depth = draw.fragment.program->writes_depth
                    ? std::bit_cast<models::LaneFloats>(outputs[models::kDepthOutput])
                    : interpolated_depth;
   draw.visit_colors([&](std::size_t attachment) {

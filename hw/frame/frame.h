@@ -9,6 +9,7 @@
 #include "models/geometry/assembly.h"
 #include "models/geometry/attribute_format.h"
 #include "models/memory/attachment.h"
+#include "models/memory/storage.h"
 #include "models/memory/surface.h"
 #include "models/precision.h"
 #include "models/raster/clip.h"
@@ -47,6 +48,15 @@ struct TextureState {
   }
 };
 
+/// The program of a stage with what it is bound to.
+struct ProgramState {
+  const models::Program* program = nullptr;
+  std::vector<std::uint32_t> constants;
+  std::vector<TextureState> textures;  ///< by the program's texture index
+  std::vector<models::TextureSize> texture_sizes;
+  std::vector<models::StorageView> buffers;  ///< by the program's buffer index
+};
+
 struct DrawState {
   std::string label;
   std::uint32_t pass = 0;
@@ -60,11 +70,7 @@ struct DrawState {
   std::uint32_t instances = 1, first_instance = 0;
   std::vector<AttributeFetch> attributes;
   // Programs.
-  const models::Program* vertex_program = nullptr;
-  const models::Program* fragment_program = nullptr;
-  std::vector<std::uint32_t> vertex_constants, fragment_constants;
-  std::vector<TextureState> vertex_textures, fragment_textures;  ///< by the program's binding index
-  std::vector<models::TextureSize> vertex_texture_sizes, fragment_texture_sizes;
+  ProgramState vertex, fragment;
   // Fixed function.
   models::Viewport viewport;
   models::ClipState clip;
@@ -76,12 +82,23 @@ struct DrawState {
   /// `models::color_outputs`. Attachments without any keep what they hold; the other components of the rest
   /// are written as 0.
   std::uint32_t color_outputs = 0;
-  /// Depth is tested after shading: the program discards or writes depth, and does not force early tests.
+  /// Depth is tested after shading: the program discards, writes depth or writes memory, and does not force
+  /// early tests.
   bool late_depth = false;
+  /// The fragment program writes memory.
+  bool writes_memory = false;
 
-  [[nodiscard]] int varyings() const { return static_cast<int>(vertex_program->varyings.size()); }
+  [[nodiscard]] const ProgramState& stage(models::Stage stage) const {
+    return stage == models::Stage::kVertex ? vertex : fragment;
+  }
+  [[nodiscard]] int varyings() const { return static_cast<int>(vertex.program->varyings.size()); }
   [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
+  /// Hidden fragments are shaded all the same: their program writes memory before their depth is tested.
+  /// [VK1.3 #fragops-early]
+  [[nodiscard]] bool shades_hidden() const { return writes_memory && late_depth; }
+  /// No fragment may be shaded before it is known to be visible: its program writes memory after the test.
+  [[nodiscard]] bool shades_visible_only() const { return writes_memory && depth_test && !late_depth; }
   /// Calls `visit(attachment)` for each colour attachment that the program writes.
   template <class Visit>
   void visit_colors(const Visit& visit) const {
@@ -124,6 +141,7 @@ struct PassState {
 };
 
 struct Frame {
+  models::StorageMemory* storage = nullptr;  ///< what programs with storage buffers access
   std::vector<PassState> passes;
   std::vector<DrawState> draws;
   models::Precision precision;

@@ -27,7 +27,7 @@ struct BatchSlot {
 /// A triangle from set-up to its last retired fragment. Owner: set-up.
 struct TriangleSlot {
   models::TriangleSetup setup;
-  std::uint32_t draw = 0, primitive = 0;
+  std::uint32_t draw = 0, instance = 0, primitive = 0;
   std::vector<float> varyings;  ///< 3 a component: a0, a1 - a0, a2 - a0 of the original triangle
 };
 

@@ -11,6 +11,7 @@
 
 #include "hw/base/work_log.h"
 #include "models/geometry/post_transform.h"
+#include "models/shader/isa.h"
 
 #include <cstdint>
 
@@ -139,11 +140,26 @@ struct RetireToken {
 struct TextureToken {
   std::uint32_t slot = 0;
   std::uint32_t draw = 0;
-  bool vertex_stage = false;
+  models::Stage stage = models::Stage::kVertex;
+};
+
+/// Core <-> load-store unit: the storage requests of the warp in this core slot.
+struct StorageToken {
+  std::uint32_t slot = 0;
+  std::uint32_t draw = 0;
+  models::Stage stage = models::Stage::kVertex;
 };
 
 /// On whose behalf memory is accessed.
-enum class MemoryClient : std::uint8_t { kVertexFetch, kTexture, kDepth, kColor, kScanOut, kWriteBack };
+enum class MemoryClient : std::uint8_t {
+  kVertexFetch,
+  kTexture,
+  kStorage,
+  kDepth,
+  kColor,
+  kScanOut,
+  kWriteBack
+};
 
 /// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer.
 /// Writes are not answered; a fence is, once all requests of its client before it have been taken in.
@@ -152,6 +168,7 @@ struct MemoryRequest {
     kRead,
     kWrite,      ///< sectors that are known whole
     kWritePart,  ///< a part of each sector: whoever lacks the rest fetches it
+    kAtomic,     ///< words of each sector are updated where they are; answered with what they were
     kFence
   };
   std::uint32_t line = 0;  ///< device address / 128

@@ -88,6 +88,7 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   ++stats_.kept;
   slot.draw = token.index;
   slot.primitive = token.primitive;
+  slot.instance = batches_[token.corner[0].slot].inputs.instance_index[token.corner[0].lane];
   std::array<CornerOutputs, 3> corners;
   for (std::size_t i = 0; i < 3; ++i)
     corners[i] = {&batches_[token.corner[i].slot].outputs, token.corner[i].lane};

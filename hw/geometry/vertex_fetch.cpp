@@ -175,7 +175,7 @@ void VertexFetch::form_batch(Tick now) {
   BatchSlot& batch = batches_[slot];
   batch.draw = draw_;
   batch.triangles.clear();
-  batch.attributes.resize(draw.vertex_program->vertex_inputs.size());
+  batch.attributes.resize(draw.vertex.program->vertex_inputs.size());
   batch.outputs.resize(static_cast<std::size_t>(models::kFirstVaryingOutput + draw.varyings()));
   lines_.clear();
   next_line_ = last_touched_ = 0;

@@ -113,6 +113,7 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
     case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
     case MemoryRequest::Kind::kWrite: taken = write(now, request); break;
     case MemoryRequest::Kind::kWritePart: taken = write_part(now, client, request); break;
+    case MemoryRequest::Kind::kAtomic: taken = atomic(now, client, request); break;
     case MemoryRequest::Kind::kFence:
       answer(after(now, params_.hit_clk), client, {request.line, request.tag, 0});
       break;
@@ -220,6 +221,23 @@ bool L2Slice::write_part(Tick now, std::uint32_t client, const MemoryRequest& re
   tags_.mark_dirty(miss->slot, there);
   miss->dirty = static_cast<std::uint8_t>(miss->dirty | (request.sectors & ~there));
   stats_.write_bytes += bytes_of(request.sectors);
+  return true;
+}
+
+/// Needs the old words, so sectors that are not there are fetched first, as for a write of a part.
+bool L2Slice::atomic(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  const MemoryResponse token{request.line, request.tag, request.sectors};
+  const int slot = tags_.find(request.line);
+  const bool there =
+      slot != models::TagArray::kNone && (tags_.at(slot).valid & request.sectors) == request.sectors;
+  if (!write_part(now, client, request)) return false;
+  if (there) {
+    answer(after(now, params_.hit_clk), client, token);
+  } else {
+    const int held = tags_.find(request.line);
+    misses_[static_cast<std::size_t>(miss_of_slot_[static_cast<std::size_t>(held)])].waiters.push_back(
+        {client, token});
+  }
   return true;
 }
 

@@ -71,6 +71,7 @@ DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, c
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
              surface_writer(SurfaceKind::kDepth, context.number)) {
   add_initiation_rate("quads_per_clk");
+  some_wait_for_late_ = std::ranges::any_of(frame_.draws, &DrawState::shades_visible_only);
   add_places("tiles_in_flight",
              [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
   add_memory_places("cache_misses", [this] { return cache_.full(); });
@@ -103,6 +104,7 @@ Wake DepthUnit::early_test_wake() const {
   const EarlyEntry& head = early_.front();
   if (!head.acquired && !stalled_) return Wake(std::max(free_, head.ready));
   if (!head.acquired || head.missing > 0) return Wake::never(port_.response_in[0]);
+  if (some_wait_for_late_ && waits_for_late(head.token)) return Wake::never(late_in);
   return Wake(std::max(free_, head.ready)).output(coverage_out);
 }
 
@@ -256,6 +258,13 @@ void DepthUnit::begin_pass(std::uint32_t pass) {
   known_max_.assign(tiles, state.loads_depth() ? std::numeric_limits<float>::infinity() : state.clear_depth);
 }
 
+/// Fragments before it in this tile are still to be tested, and it may not be shaded before it is known to be
+/// visible.
+bool DepthUnit::waits_for_late(const CoverageToken& token) const {
+  return token.kind == TokenKind::kWork && frame_.draw(token.index).shades_visible_only() &&
+         late_in_flight_[tile_number(token.tile_x, token.tile_y)] > 0;
+}
+
 void DepthUnit::test_early(Tick now) {
   CoverageToken token = early_.front().token;
   if (token.kind == TokenKind::kWork) stats_.working_for(token.index, token.tile_x, token.tile_y);
@@ -286,8 +295,8 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
   }
   std::uint32_t& in_flight = late_in_flight_[tile_number(token.tile_x, token.tile_y)];
   token.late = draw.late_depth || in_flight > 0;
-  const bool decidable =
-      !token.late || (lowering_ && asks_for_less(draw) && !draw.fragment_program->writes_depth);
+  const bool decidable = !token.late || (lowering_ && asks_for_less(draw) &&
+                                         !draw.fragment.program->writes_depth && !draw.shades_hidden());
   float* const stored = depths(token.tile_x, token.tile_y);
   const std::uint64_t covered = token.coverage;
   alignas(32) float incoming[models::kTilePixels];

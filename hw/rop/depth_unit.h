@@ -114,6 +114,7 @@ class DepthUnit final : public Unit {
   void take_answers(Tick now);
   [[nodiscard]] Wake flush_wake() const;
   void advance_flush(Tick now);
+  [[nodiscard]] bool waits_for_late(const CoverageToken& token) const;
   void begin_pass(std::uint32_t pass);
   void note_direction(const DrawState& draw);
   void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
@@ -137,6 +138,7 @@ class DepthUnit final : public Unit {
   bool stalled_ = false;                       ///< the cache had no place; a fill will make one
   bool lowering_ = true;                       ///< no draw of the pass so far can raise a depth
   std::vector<std::uint32_t> late_in_flight_;  ///< quads by tile
+  bool some_wait_for_late_ = false;            ///< draws of the frame: `waits_for_late`
   std::vector<float> known_max_;               ///< by tile: what Hi-Z was told
   Flush flush_ = Flush::kNone;
   int fences_ = 0;

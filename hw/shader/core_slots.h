@@ -1,5 +1,5 @@
-/// The warps that live on a core. Shared with the core's texture unit: a slot's requests and results belong
-/// to whoever holds its token.
+/// The warps that live on a core. Shared with the core's texture and load-store unit: a slot's requests and
+/// results belong to whoever holds its token.
 #pragma once
 
 #include "hw/frame/stores.h"
@@ -11,11 +11,13 @@ struct CoreSlot {
   models::FragmentInputs fragment;
   std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs;  ///< fragment stage: colour, depth
   /// Filtered texels of `warp.textures`, by request.
-  std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseTextures> texels;
+  std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseRequests> texels;
+  models::WarpStorage storage;
+  int replies = 0;  ///< units that work on the requests of the clause that ended
   std::uint32_t draw = 0, store_slot = 0;
   std::uint16_t partition = 0;
   std::uint16_t tile_x = 0, tile_y = 0;  ///< fragment stage: of the warp's first quad
-  bool vertex_stage = false;
+  models::Stage stage = models::Stage::kVertex;
   std::uint16_t simd = 0;                                  ///< where its clauses issue
   models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues
   /// cycles from that clause's last issue until its results are there

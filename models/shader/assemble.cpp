@@ -65,7 +65,7 @@ class Assembler {
   // Directives.
 
   void read_directive(std::string_view name, const std::vector<std::string_view>& words) {
-    if (name == "stage") program_.stage = one_of<Stage>(words, kStageNames, "stage");
+    if (name == "stage") program_.stage = read_stage(words);
     else if (name == "varying")
       program_.varyings.push_back(one_of<Interpolation>(words, kInterpolationNames, "interpolation"));
     else if (name == "regs") registers_ = static_cast<int>(count(words, kMaxRegisters));
@@ -73,6 +73,8 @@ class Assembler {
     else if (name == "flags") read_flags(words);
     else if (name == "texture")
       program_.textures.push_back({field(words, 0, "set"), field(words, 1, "binding")});
+    else if (name == "buffer")
+      program_.buffers.push_back({field(words, 0, "set"), field(words, 1, "binding")});
     else if (name == "input")
       program_.vertex_inputs.push_back(
           {small_field(words, 0, "location"), small_field(words, 1, "component")});
@@ -81,14 +83,20 @@ class Assembler {
     else if (name == "uniform") read_block(words, ConstantLayout::Source::kUniformBlock);
     else
       fail(
-          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture input "
-          "varying",
+          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture buffer "
+          "input varying",
           name);
   }
 
+  [[nodiscard]] Stage read_stage(const std::vector<std::string_view>& words) const {
+    std::array<std::string_view, kStages> names;
+    for (std::size_t s = 0; s < kStages; ++s) names[s] = stage_info(static_cast<Stage>(s)).name;
+    return one_of<Stage>(words, names, "stage");
+  }
+
   template <class Enum, std::size_t kCount>
-  Enum one_of(const std::vector<std::string_view>& words, const std::array<std::string_view, kCount>& names,
-              std::string_view what) const {
+  [[nodiscard]] Enum one_of(const std::vector<std::string_view>& words,
+                            const std::array<std::string_view, kCount>& names, std::string_view what) const {
     const auto found = words.size() == 1 ? std::find(names.begin(), names.end(), words[0]) : names.end();
     if (found == names.end()) {
       std::string legal;
@@ -109,7 +117,7 @@ class Assembler {
       const auto* flag = std::find_if(kProgramFlags.begin(), kProgramFlags.end(),
                                       [&](const NamedFlag& f) { return f.name == word; });
       if (flag == kProgramFlags.end())
-        fail("unknown flag '{}'; legal: discard depth early-tests derivatives", word);
+        fail("unknown flag '{}'; legal: discard depth early-tests derivatives atomic-outputs", word);
       program_.*flag->member = true;
     }
   }

@@ -91,19 +91,22 @@ class Checker {
         require(in.imm < program_.textures.size(), "texture {} does not exist; the program has {}", in.imm,
                 program_.textures.size());
         break;
+      case Immediate::kBufferBinding:
+        require(in.imm < program_.buffers.size(), "buffer {} does not exist; the program has {}", in.imm,
+                program_.buffers.size());
+        break;
     }
   }
 
   void check_input(std::uint16_t slot) const {
-    constexpr auto kFirstFragment = static_cast<std::uint16_t>(SystemValue::kFragCoordX);
-    constexpr auto kLast = static_cast<std::uint16_t>(SystemValue::kPrimitiveId);
-    const bool vertex = program_.stage == Stage::kVertex;
+    const StageInfo& stage = stage_info(program_.stage);
     if (slot < kFirstSystemValue)
-      require(vertex && slot < program_.vertex_inputs.size(),
+      require(stage.fetches && slot < program_.vertex_inputs.size(),
               "vertex input {} does not exist; the program has {}", slot,
-              vertex ? program_.vertex_inputs.size() : 0u);
+              stage.fetches ? program_.vertex_inputs.size() : 0u);
     else
-      require(slot <= kLast && (slot < kFirstFragment) == vertex,
+      require(slot >= static_cast<std::uint16_t>(stage.first_system_value) &&
+                  slot <= static_cast<std::uint16_t>(stage.last_system_value),
               "system value {} does not exist in this stage", slot);
   }
 
@@ -119,8 +122,8 @@ class Checker {
   void check_stage(const Instruction& in) const {
     const bool implicit = in.op == Op::kTexImplicit || in.op == Op::kTexBias;
     const bool derivative = in.op >= Op::kDdxFine && in.op <= Op::kDdyCoarse;
-    const bool fragment_only = implicit || derivative || in.op == Op::kInterp || in.op == Op::kKillIf;
-    require(!fragment_only || program_.stage == Stage::kFragment, "'{}' exists only in fragment shaders",
+    const bool needs_quads = implicit || derivative || in.op == Op::kInterp || in.op == Op::kKillIf;
+    require(!needs_quads || stage_info(program_.stage).quads, "'{}' exists only in fragment shaders",
             op_name(in.op));
   }
 

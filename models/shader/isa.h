@@ -9,6 +9,7 @@
 
 #include "models/memory/attachment.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -114,6 +115,21 @@ enum class Op : std::uint8_t {
   kTexBias,
   kTexLod,
   kTexSize,  ///< dst, dst+1 = width, height (integers) of texture `imm` at level a
+  // Storage buffers: a = byte offset, a multiple of 4; `imm` = buffer binding. Atomic operations write what
+  // the word was to dst.
+  kLoadBuffer,   ///< dst = the word
+  kStoreBuffer,  ///< the word = b
+  kAtomicAdd,    ///< the word = word + b; and so on
+  kAtomicIMin,
+  kAtomicUMin,
+  kAtomicIMax,
+  kAtomicUMax,
+  kAtomicAnd,
+  kAtomicOr,
+  kAtomicXor,
+  kAtomicExchange,
+  kAtomicCompareExchange,  ///< the word = b where it equals c
+  kBufferSize,             ///< dst = bytes of the buffer
   // Control. IF pushes the mask and keeps lanes with a != 0.
   // LOOP repeats until no lane is left; lanes that break rejoin after ENDLOOP, lanes that continue rejoin at
   // CONTINUING (a loop may have one, directly in its body: the continue block of SPIR-V follows it) or else
@@ -133,7 +149,7 @@ enum class Op : std::uint8_t {
 // clang-format on
 
 /// What an instruction occupies while it issues; decides its cycles.
-enum class IssueClass : std::uint8_t { kAlu, kSfu, kInterp, kConst, kTex, kControl, kExport };
+enum class IssueClass : std::uint8_t { kAlu, kSfu, kInterp, kConst, kTex, kControl, kExport, kStorage };
 
 struct Operand {
   enum Kind : std::uint8_t { kNone, kRegister, kConstant };
@@ -197,12 +213,28 @@ struct TextureBinding {
   friend bool operator==(const TextureBinding&, const TextureBinding&) = default;
 };
 
+/// A storage buffer.
+struct BufferBinding {
+  std::uint32_t set = 0, binding = 0;
+  friend bool operator==(const BufferBinding&, const BufferBinding&) = default;
+};
+
 struct VertexInputUse {
   std::uint16_t location = 0, component = 0;  ///< slot i of `Program::vertex_inputs` feeds kInput imm == i
   friend bool operator==(const VertexInputUse&, const VertexInputUse&) = default;
 };
 
 enum class Stage : std::uint8_t { kVertex, kFragment };
+inline constexpr std::size_t kStages = 2;
+
+/// What a stage of the pipeline gives to its programs; a row a stage, in the order of `Stage`.
+struct StageInfo {
+  std::string_view name;
+  SystemValue first_system_value, last_system_value;
+  bool fetches;  ///< has vertex inputs
+  bool quads;    ///< runs quads of pixels: varyings, derivatives, implicit levels of detail, discards
+};
+[[nodiscard]] const StageInfo& stage_info(Stage stage);
 
 /// The form in which a program executes (models/shader/decode.h). A program holds it once it has been
 /// prepared; a copy of a program starts without.
@@ -234,6 +266,7 @@ struct Program {
   int num_regs = 0;
   ConstantLayout constants;
   std::vector<TextureBinding> textures;       ///< kTex* imm indexes this
+  std::vector<BufferBinding> buffers;         ///< imm of storage operations indexes this
   std::vector<VertexInputUse> vertex_inputs;  ///< vertex stage
   /// both stages of a pipeline hold the same list: scalar components, packed
   std::vector<Interpolation> varyings;
@@ -241,7 +274,9 @@ struct Program {
   bool writes_depth = false;
   bool early_fragment_tests = false;
   bool uses_derivatives = false;  ///< explicit or through implicit-lod texturing: helper lanes are needed
-  mutable DecodedCache decoded;   ///< filled by `prepare`
+  /// What an atomic operation returned reaches its outputs or discards: they depend on the order of warps.
+  bool outputs_follow_atomics = false;
+  mutable DecodedCache decoded;  ///< filled by `prepare`
   friend bool operator==(const Program&, const Program&) = default;
 };
 
@@ -252,6 +287,12 @@ void prepare(const Program& program);
 
 /// Components of colours that a fragment program writes: bit 4 * attachment + component.
 [[nodiscard]] std::uint32_t color_outputs(const Program& program);
+
+[[nodiscard]] bool is_atomic(Op op);
+/// Does the operation write a word of a storage buffer?
+[[nodiscard]] bool writes_buffer(Op op);
+/// Does some instruction of the program?
+[[nodiscard]] bool writes_buffers(const Program& program);
 
 [[nodiscard]] std::string_view op_name(Op op);
 [[nodiscard]] IssueClass issue_class(Op op);

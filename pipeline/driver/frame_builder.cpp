@@ -48,14 +48,17 @@ class FrameBuilder {
         target_(target),
         out_(out),
         resources_(stream, out.memory, out.fills),
+        storage_(stream, resources_),
         lives_(stream) {
     out.frame.precision = precision;
+    out.frame.storage = &out.storage;
   }
 
   void build(bool leave_out) {
     for (const traces::Command& command : stream_.commands) {
       std::visit([this](const auto& c) { apply(c); }, command);
     }
+    out_.written_buffers = storage_.finish(out_.frame, out_.storage);
     if (!leave_out) resources_.place_rest();
     out_.buffer_bytes = resources_.buffer_bytes();
     out_.texture_bytes = resources_.texture_bytes();
@@ -126,17 +129,19 @@ class FrameBuilder {
     hw::DrawState draw;
     draw.label = c.label;
     draw.pass = static_cast<std::uint32_t>(out_.frame.passes.size()) - 1;
-    draw.vertex_program = &programs.vertex;
-    draw.fragment_program = &programs.fragment;
+    draw.vertex.program = &programs.vertex;
+    draw.fragment.program = &programs.fragment;
     const auto bits = static_cast<unsigned>(4 * out_.frame.passes.back().colors);
     draw.color_outputs = models::color_outputs(programs.fragment) & (bits < 32 ? (1u << bits) - 1 : ~0u);
     geometry(c, pipeline, draw);
     attributes(pipeline, programs.integer_inputs, draw);
     fixed_function(pipeline, draw);
-    draw.vertex_constants = constants(programs.vertex);
-    draw.fragment_constants = constants(programs.fragment);
-    textures(programs.vertex, draw.vertex_textures, draw.vertex_texture_sizes);
-    textures(programs.fragment, draw.fragment_textures, draw.fragment_texture_sizes);
+    draw.vertex.constants = constants(programs.vertex);
+    draw.fragment.constants = constants(programs.fragment);
+    textures(programs.vertex, draw.vertex.textures, draw.vertex.texture_sizes);
+    textures(programs.fragment, draw.fragment.textures, draw.fragment.texture_sizes);
+    storage_.bind(draw.vertex, sets_);
+    storage_.bind(draw.fragment, sets_);
     out_.frame.draws.push_back(std::move(draw));
   }
 
@@ -165,11 +170,12 @@ class FrameBuilder {
       draw.index_bytes = 1u << static_cast<int>(index_buffer_.type);
       draw.index_address = resources_.buffer(index_buffer_.buffer) + index_buffer_.offset +
                            std::uint64_t{c.first} * draw.index_bytes;
+      storage_.note_read(index_buffer_.buffer, "an index buffer");
     }
   }
 
   void attributes(const traces::Pipeline& pipeline, std::uint32_t integer_inputs, hw::DrawState& draw) {
-    const auto& uses = draw.vertex_program->vertex_inputs;
+    const auto& uses = draw.vertex.program->vertex_inputs;
     for (const traces::VertexAttribute& attribute : pipeline.attributes) {
       hw::AttributeFetch fetch;
       bool used = false;
@@ -185,13 +191,14 @@ class FrameBuilder {
       const bool integers = (integer_inputs >> attribute.location & 1u) != 0;
       if (integers != traces::is_integer_format(attribute.format)) {
         throw user_error("{}: reads vertex input location {} as {}, which pipeline '{}' supplies as {}",
-                         draw.vertex_program->name, attribute.location, integers ? "integers" : "floats",
+                         draw.vertex.program->name, attribute.location, integers ? "integers" : "floats",
                          pipeline.name, integers ? "floats" : "integers");
       }
       const auto binding =
           std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
       const traces::BindVertexBuffer& bound = vertex_buffers_.at(attribute.binding);
       fetch.address = resources_.buffer(bound.buffer) + bound.offset + attribute.offset;
+      storage_.note_read(bound.buffer, "a vertex buffer");
       fetch.stride = binding->stride;
       fetch.per_instance = binding->per_instance;
       fetch.format = attribute.format;
@@ -202,7 +209,7 @@ class FrameBuilder {
           std::ranges::any_of(pipeline.attributes, [&](const auto& a) { return a.location == use.location; });
       if (!given) {
         throw user_error("{}: reads vertex input location {}, which pipeline '{}' does not supply",
-                         draw.vertex_program->name, use.location, pipeline.name);
+                         draw.vertex.program->name, use.location, pipeline.name);
       }
     }
   }
@@ -223,9 +230,10 @@ class FrameBuilder {
     draw.depth_write = draw.depth_test && pipeline.depth.write;
     draw.depth_compare = static_cast<models::CompareOp>(pipeline.depth.compare);
     std::ranges::transform(pipeline.blend, draw.blend.begin(), blend_state);
-    const models::Program& program = *draw.fragment_program;
-    draw.late_depth =
-        draw.depth_test && (program.uses_discard || program.writes_depth) && !program.early_fragment_tests;
+    const models::Program& program = *draw.fragment.program;
+    draw.writes_memory = models::writes_buffers(program);
+    draw.late_depth = draw.depth_test && !program.early_fragment_tests &&
+                      (program.uses_discard || program.writes_depth || draw.writes_memory);
   }
 
   std::vector<std::uint32_t> constants(const models::Program& program) {
@@ -241,6 +249,7 @@ class FrameBuilder {
           break;
         case models::ConstantLayout::Source::kUniformBlock: {
           const traces::UniformBinding& bound = uniform(program, range.set, range.binding);
+          storage_.note_read(bound.buffer, "a uniform block");
           const auto& data = stream_.buffers[bound.buffer].data;
           const std::span<const std::byte> view = std::span(data).subspan(bound.offset, bound.range);
           copy_words(view, range, to, program, [&] {
@@ -316,6 +325,7 @@ class FrameBuilder {
   const ShaderTarget& target_;
   DeviceFrame& out_;
   DeviceResources resources_;
+  StorageBinder storage_;
   std::map<std::pair<Index, Index>, const CompiledPipeline*> programs_;
   std::map<std::uint32_t, Index> sets_;
   std::map<std::uint32_t, traces::BindVertexBuffer> vertex_buffers_;
@@ -333,8 +343,21 @@ class FrameBuilder {
 
 bool DeviceFrame::reads_textures() const {
   return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) {
-    return !d.vertex_textures.empty() || !d.fragment_textures.empty();
+    return !d.vertex.textures.empty() || !d.fragment.textures.empty();
   });
+}
+bool DeviceFrame::uses_storage() const {
+  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) {
+    return !d.vertex.buffers.empty() || !d.fragment.buffers.empty();
+  });
+}
+std::vector<std::string> DeviceFrame::order_dependent() const {
+  std::vector<std::string> names;
+  for (const CompiledPipeline& pipeline : programs)
+    for (const models::Program* program : {&pipeline.vertex, &pipeline.fragment})
+      if (program->outputs_follow_atomics && std::ranges::find(names, program->name) == names.end())
+        names.push_back(program->name);
+  return names;
 }
 bool DeviceFrame::keeps_depth() const {
   return std::ranges::any_of(frame.passes, [](const hw::PassState& p) { return p.has_depth; });

@@ -1,6 +1,7 @@
 #include "pipeline/functional/functional.h"
 
 #include "hw/frame/fragment_output.h"
+#include "hw/frame/invocations.h"
 #include "hw/frame/varyings.h"
 #include "models/base/error.h"
 #include "models/geometry/post_transform.h"
@@ -24,7 +25,7 @@ void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures,
               const models::Precision& precision, const models::DeviceMemory& memory,
               models::TexturePlan& plan) {
   std::array<models::LaneFloats, 4> rgba;
-  while (models::run_clause(warp).end == models::ClauseEnd::kTextures) {
+  while (models::run_clause(warp).end == models::ClauseEnd::kRequests) {
     for (int i = 0; i < warp.texture_count; ++i) {
       const models::TextureRequest& request = warp.textures[static_cast<std::size_t>(i)];
       const hw::TextureState& texture = textures[request.binding];
@@ -96,7 +97,7 @@ class FunctionalRenderer {
       batch_.triangles.push_back(triangle);
     }
     batch_.lanes = reuse.size();
-    batch_.attributes.resize(draw_->vertex_program->vertex_inputs.size());
+    batch_.attributes.resize(draw_->vertex.program->vertex_inputs.size());
     batch_.outputs.resize(static_cast<std::size_t>(models::kFirstVaryingOutput + draw_->varyings()));
     fetch(reuse);
     shade_vertices();
@@ -130,11 +131,12 @@ class FunctionalRenderer {
     engine_.vertex = &batch_.inputs;
     engine_.fragment = nullptr;
     engine_.outputs = batch_.outputs.data();
-    engine_.texture_sizes = draw_->vertex_texture_sizes.data();
+    hw::bind_storage(frame_, warp_.draw, batch_, storage_, engine_);
+    engine_.texture_sizes = draw_->vertex.texture_sizes.data();
     const models::LaneMask lanes =
         batch_.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch_.lanes) - 1;
-    engine_.launch(*draw_->vertex_program, draw_->vertex_constants.data(), lanes);
-    run_warp(engine_, draw_->vertex_textures, frame_.precision, memory_, plan_);
+    engine_.launch(*draw_->vertex.program, draw_->vertex.constants.data(), lanes);
+    run_warp(engine_, draw_->vertex.textures, frame_.precision, memory_, plan_);
   }
 
   void clip(const BatchSlot::Triangle& triangle) {
@@ -179,6 +181,7 @@ class FunctionalRenderer {
     if (observer_) observer_(window);
     slot.draw = warp_.draw;
     slot.primitive = triangle.primitive;
+    slot.instance = draw_->first_instance + instance_;
     std::array<hw::CornerOutputs, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = {&batch_.outputs, triangle.corner[k].lane};
     hw::gather_varyings(corners, draw_->varyings(), slot.varyings);
@@ -237,9 +240,10 @@ class FunctionalRenderer {
     engine_.vertex = nullptr;
     engine_.fragment = &inputs_;
     engine_.outputs = outputs_.data();
-    engine_.texture_sizes = draw_->fragment_texture_sizes.data();
-    engine_.launch(*draw_->fragment_program, draw_->fragment_constants.data(), lanes);
-    run_warp(engine_, draw_->fragment_textures, frame_.precision, memory_, plan_);
+    hw::bind_storage(frame_, warp_, triangles_, storage_, engine_);
+    engine_.texture_sizes = draw_->fragment.texture_sizes.data();
+    engine_.launch(*draw_->fragment.program, draw_->fragment.constants.data(), lanes);
+    run_warp(engine_, draw_->fragment.textures, frame_.precision, memory_, plan_);
     warp_.alive = warp_.covered & ~engine_.killed;
     counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & engine_.killed));
     hw::take_outputs(*draw_, outputs_, inputs_.z, warp_);
@@ -279,6 +283,7 @@ class FunctionalRenderer {
   models::FragmentInputs inputs_;
   std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs_{};
   models::Warp engine_;
+  models::WarpStorage storage_;
   models::TexturePlan plan_;
 };
 

@@ -78,8 +78,8 @@ Machine::Stores::Stores(const MachineConfig& config)
 void Machine::check_registers() const {
   int vertex = 0, fragment = 0;
   for (const hw::DrawState& draw : frame_.frame.draws) {
-    vertex = std::max(vertex, draw.vertex_program->num_regs);
-    fragment = std::max(fragment, draw.fragment_program->num_regs);
+    vertex = std::max(vertex, draw.vertex.program->num_regs);
+    fragment = std::max(fragment, draw.fragment.program->num_regs);
   }
   if (vertex + fragment > config_.core.register_rows) {
     throw user_error(
@@ -95,6 +95,10 @@ void Machine::leave_out(bool wanted) {
   if (!textured_)
     left_out_.push_back({"texture units", "no program of a draw reads a texture",
                          fmt::format("{} units and their caches", cores)});
+  stored_ = frame_.uses_storage() || !wanted;
+  if (!stored_)
+    left_out_.push_back({"load-store units", "no program of a draw has a storage buffer",
+                         fmt::format("{} units and their caches", cores)});
   depth_memory_ = frame_.keeps_depth() || !wanted;
   if (!depth_memory_) {
     left_out_.push_back({"depth units' links to memory", "no draw tests depth",
@@ -109,6 +113,8 @@ void Machine::list_clients() {
   clients_ = {{"vertex_fetch", hw::MemoryClient::kVertexFetch}};
   for (int c = 0; textured_ && c < config_.gpu.cores; ++c)
     clients_.push_back({fmt::format("texture_{}", c), hw::MemoryClient::kTexture});
+  for (int c = 0; stored_ && c < config_.gpu.cores; ++c)
+    clients_.push_back({fmt::format("load_store_{}", c), hw::MemoryClient::kStorage});
   for (int p = 0; p < config_.gpu.partitions; ++p) {
     if (depth_memory_) clients_.push_back({fmt::format("depth_{}", p), hw::MemoryClient::kDepth});
     clients_.push_back({fmt::format("rop_{}", p), hw::MemoryClient::kColor});
@@ -136,6 +142,7 @@ bool Machine::builds(Needed needed) const {
   switch (needed) {
     case Needed::kByAllFrames: return true;
     case Needed::kByFramesThatReadTextures: return textured_;
+    case Needed::kByFramesWithStorage: return stored_;
   }
   return true;
 }

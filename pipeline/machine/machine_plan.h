@@ -18,6 +18,7 @@
 #include "hw/raster/warp_packer.h"
 #include "hw/rop/depth_unit.h"
 #include "hw/rop/rop.h"
+#include "hw/shader/load_store_unit.h"
 #include "hw/shader/shader_core.h"
 #include "hw/shader/work_distributor.h"
 #include "hw/texture/texture_unit.h"
@@ -43,6 +44,7 @@
   unit(work_distributor,   hw::WorkDistributor,   kOnce,      kByAllFrames)              \
   unit(core,               hw::ShaderCore,        kCore,      kByAllFrames)              \
   unit(texture,            hw::TextureUnit,       kCore,      kByFramesThatReadTextures) \
+  unit(load_store,         hw::LoadStoreUnit,     kCore,      kByFramesWithStorage)      \
   unit(rop,                hw::Rop,               kPartition, kByAllFrames)              \
   unit(l2,                 hw::L2Slice,           kChannel,   kByAllFrames)              \
   unit(memory,             hw::MemoryChannel,     kChannel,   kByAllFrames)              \
@@ -108,6 +110,10 @@
        QUADRILLE_WIRE(ShaderCore, texture_out, TextureUnit, request_in))                           \
   link(texture_to_core,          8, 1, 2, kOneACycle,     kBack,                                   \
        QUADRILLE_WIRE(TextureUnit, response_out, ShaderCore, texture_in))                          \
+  link(core_to_load_store,       8, 1, 2, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(ShaderCore, storage_out, LoadStoreUnit, request_in))                         \
+  link(load_store_to_core,       8, 1, 2, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(LoadStoreUnit, response_out, ShaderCore, storage_in))                        \
   link(client_to_l2,            16, 1, 8, kSeveralACycle, kOnward,                                 \
        QUADRILLE_WIRE(MemoryPort, request_out, L2Slice, request_in))                               \
   link(l2_to_client,            16, 1, 8, kSeveralACycle, kBack,                                   \
@@ -126,7 +132,7 @@ namespace quadrille::pipeline {
 /// Of several, each carries its number in its name.
 enum class Stands : std::uint8_t { kOnce, kEngine, kPartition, kCore, kChannel };
 /// Which frames need a kind of unit; a machine leaves out what its frame does not need.
-enum class Needed : std::uint8_t { kByAllFrames, kByFramesThatReadTextures };
+enum class Needed : std::uint8_t { kByAllFrames, kByFramesThatReadTextures, kByFramesWithStorage };
 /// What the tokens of a link do: carry work onward, tell of work that comes another way, or bring answers,
 /// releases and reports back.
 enum class LinkWay : std::uint8_t { kOnward, kAhead, kBack };

@@ -223,6 +223,7 @@ SceneData build_fill() {
 
 std::string meant_builtin(std::string_view name) {
   std::vector<std::string> names;
+  names.reserve(std::size(kEntries));
   for (const Entry& entry : kEntries) names.emplace_back(entry.scene.name);
   std::vector<std::string> near = near_names(name, names);
   for (std::string& one : near) one.insert(0, "builtin:");
@@ -245,6 +246,7 @@ const Entry& entry_of(const std::string& name) {
   const auto found = std::ranges::find(kEntries, name, [](const Entry& entry) { return entry.scene.name; });
   if (found != kEntries.end()) return *found;
   std::vector<std::string> names;
+  names.reserve(std::size(kEntries));
   for (const Entry& entry : kEntries) names.push_back(fmt::format("builtin:{}", entry.scene.name));
   throw user_error("builtin:{}: no such built-in scene; there are {}{}", name.substr(0, 60),
                    fmt::join(names, ", "), meant_builtin(name));

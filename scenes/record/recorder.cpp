@@ -61,7 +61,7 @@ Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
     : scene_(scene),
       seen_(make_view(scene, options)),
       range_(needed_range(PlacedScene(scene), seen_)),
-      moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
+      moved_(range_ ? std::optional(moved(static_cast<const Placements&>(scene), *range_)) : std::nullopt),
       placed_(moved_ ? PlacedScene(scene, *moved_) : PlacedScene(scene)),
       options_(range_ ? moved(options, *range_) : options),
       view_(range_ ? make_view(placed_, options_) : seen_),

@@ -226,6 +226,8 @@ void VulkanDevice::create_device() {
   features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
   features.features.geometryShader = present.geometryShader;      // gl_PrimitiveID in a fragment shader
   features.features.robustBufferAccess = present.robustBufferAccess;
+  features.features.fragmentStoresAndAtomics = present.fragmentStoresAndAtomics;
+  features.features.vertexPipelineStoresAndAtomics = present.vertexPipelineStoresAndAtomics;
   features.features.pipelineStatisticsQuery = present.pipelineStatisticsQuery;
   features.features.occlusionQueryPrecise = present.occlusionQueryPrecise;
 

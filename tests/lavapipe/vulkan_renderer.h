@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,11 +34,13 @@ struct DeviceInfo {
   double timestamp_ns = 0;               ///< nanoseconds a tick
 };
 
-/// The attachments of the last pass, rows top to bottom.
+/// The attachments of the last pass, rows top to bottom, and what programs may have written.
 struct Rendered {
   std::uint32_t width = 0, height = 0;  ///< pixels
   std::vector<std::uint32_t> color;     ///< RGBA8 as stored (sRGB targets: encoded), red in the low byte
   std::vector<float> depth;             ///< empty when the target has none
+  /// What the buffers that a descriptor set holds as storage held at the end, by index in the stream.
+  std::map<traces::Index, std::vector<std::byte>> buffers{};
 };
 
 /// Time of one submission of the whole stream, uploads and read-back excluded.

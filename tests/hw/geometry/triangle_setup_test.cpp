@@ -26,7 +26,7 @@ struct SetupBench final : Bench {
       : Bench(driver, v), batches(1), pieces(5), triangles(s.slots) {
     DrawState draw;
     program.varyings.resize(1);
-    draw.vertex_program = &program;
+    draw.vertex.program = &program;
     draw.setup.cull = models::CullMode::kBack;
     draw.setup.scissor = {0, 0, 64, 64};
     frame.draws = {draw};

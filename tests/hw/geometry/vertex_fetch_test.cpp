@@ -30,7 +30,7 @@ struct FetchBench final : Bench {
     program.vertex_inputs.resize(3);
     const std::uint32_t vertices = 3 * s.triangles;
     DrawState draw;
-    draw.vertex_program = &program;
+    draw.vertex.program = &program;
     draw.count = 3 * s.triangles;
     AttributeFetch position;
     position.stride = 12;

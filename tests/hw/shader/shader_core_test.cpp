@@ -33,9 +33,9 @@ struct CoreBench final : Bench {
     fragment_program =
         models::assemble(".stage fragment\n.texture set=0 binding=0\n" + s.code + "end\n", "fragment");
     DrawState draw;
-    draw.vertex_program = &vertex_program;
-    draw.fragment_program = &fragment_program;
-    draw.fragment_constants.assign(fragment_program.constants.words, 0);
+    draw.vertex.program = &vertex_program;
+    draw.fragment.program = &fragment_program;
+    draw.fragment.constants.assign(fragment_program.constants.words, 0);
     frame.draws = {draw};
     triangles[0] = flat_triangle({glm::ivec2{0, 0}, {0, 40}, {40, 0}});
     triangles[0].varyings.assign(3, 0);
