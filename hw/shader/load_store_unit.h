@@ -1,7 +1,7 @@
 /// Load-store unit of one core: moves what its warps read from storage buffers and write to them.
 ///
 /// In    request_in   the storage requests of one clause (up to 8 warp instructions)
-/// Out   response_out the clause's loads and atomic operations have their results, its stores are on their way
+/// Out   response_out loads and atomic operations of the clause have their results, stores are on their way
 /// Mem   loads that miss the first-level cache; stores, which go through it; atomic operations, which the L2
 ///       cache does
 /// Time  the lanes of an instruction are gathered to lines of 128 bytes, `lines_per_clk` a cycle; updates of

@@ -96,8 +96,8 @@ class StubSink final : public StubUnit {
   Tick free_ = 0;
 };
 
-/// One slice of a memory: takes a request a cycle and pushes the answer of a read, atomic request or fence `latency` cycles
-/// after it took it in, in order.
+/// One slice of a memory: takes a request a cycle and pushes the answer of a read, atomic request or fence
+/// `latency` cycles after it took it in, in order.
 class StubMemory final : public StubUnit {
  public:
   StubMemory(sc_core::sc_module_name name, const Clock& clock, int latency)

@@ -13,7 +13,7 @@ namespace {
 
 std::optional<lavapipe::Rendered> by_driver(const traces::CommandStream& stream) {
   try {
-    return lavapipe::VulkanRenderer(true).render(stream);
+    return lavapipe::VulkanRenderer().render(stream);
   } catch (const UserError& error) {
     WARN("skipped: " << error.what());
     return std::nullopt;

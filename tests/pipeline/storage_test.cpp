@@ -1,5 +1,5 @@
-/// Storage buffers in whole frames: buffers and pictures are those of the functional run on any machine, early
-/// and late tests decide who writes, and races are named.
+/// Storage buffers in whole frames: buffers and pictures are those of the functional run on any machine,
+/// early and late tests decide who writes, and races are named.
 #include "models/base/error.h"
 #include "pipeline/render.h"
 #include "tests/pipeline/machine_specimen.h"

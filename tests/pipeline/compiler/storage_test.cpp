@@ -1,5 +1,5 @@
-/// Storage buffers through the compiler: layouts, atomic operations, lengths, what may not be moved, and which
-/// programs' outputs follow atomic operations.
+/// Storage buffers through the compiler: layouts, atomic operations, lengths, what may not be moved, and
+/// programs whose outputs follow atomic operations.
 #include "models/base/error.h"
 #include "tests/pipeline/compiler/shader_runner.h"
 
