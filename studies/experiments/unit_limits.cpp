@@ -177,7 +177,7 @@ void add_storage(Frames& frames, std::uint32_t width, std::uint32_t height) {
   constexpr std::uint32_t kWordsOfLine = 32;
   frames.add("load_store",
              "every lane of a warp loads from a line of its own, which the first-level cache holds",
-             "warps x 32 lines / lines_per_clk / cores", covered_frame(width, height, 8),
+             "warps x 32 lines / lines_per_clk / cores", covered_frame(width, height, 16),
              {.fragment_shader = storage_shader(
                   "o = vec4(b.w[32u * (uint(gl_FragCoord.x) % 8u + 8u * (uint(gl_FragCoord.y) % 4u))]);"),
               .storage_words = 32 * kWordsOfLine},
@@ -185,7 +185,7 @@ void add_storage(Frames& frames, std::uint32_t width, std::uint32_t height) {
                return w.warps * kWarpLanes / m.load_store.lines_per_clk / m.gpu.cores;
              });
   frames.add("l2", "every fragment adds to one word", "fragments: a slice updates a word once a cycle",
-             covered_frame(width, height, 2),
+             covered_frame(width, height, 4),
              {.fragment_shader = storage_shader("atomicAdd(b.w[0], 1u); o = vec4(1);"), .storage_words = 4},
              {}, [](const Work& w, const MachineConfig&) { return 4 * w.quads; });
 }
