@@ -6,7 +6,7 @@ namespace {
 namespace ref = models::reference;
 
 ref::GivenTriangle given(const pipeline::RasterizedTriangle& t) {
-  ref::GivenTriangle g{t.draw, t.instance, t.primitive, {}, {}, {}, {}, {}};
+  ref::GivenTriangle g{t.draw.index(), t.instance, t.primitive, {}, {}, {}, {}, {}};
   for (std::size_t i = 0; i < 3; ++i) {
     g.x[i] = t.vertices[i].x;
     g.y[i] = t.vertices[i].y;

@@ -18,21 +18,35 @@
 #include <variant>
 #include <vector>
 
+#include "models/base/attachment.h"
 #include "models/base/format.h"
-#include "models/memory/attachment.h"
+#include "models/base/pipeline_state.h"
+#include "models/base/sampler.h"
 
 namespace quadrille::traces {
 
-using Index = std::uint32_t;  ///< into one of the tables of `CommandStream`
+using Index = std::uint32_t;                 ///< into one of the tables of `CommandStream`
+inline constexpr Index kNone = 0xffffffffu;  ///< an index that names nothing
 
+using models::BlendFactor;
+using models::BlendOp;
+using models::BlendState;
+using models::CompareOp;
+using models::CullMode;
+using models::Filter;
 using models::Format;
 using models::format_bytes;
 using models::format_components;
+using models::FrontFace;
 using models::is_integer_format;
 using models::kLastFormat;
 using models::kMaxColorAttachments;
 using models::LoadOp;
+using models::ShaderStage;
 using models::StoreOp;
+using models::Topology;
+using models::Wrap;
+using Sampler = models::SamplerState;
 
 struct Buffer {
   std::string name;
@@ -70,53 +84,12 @@ struct Image {
 /// Puts the texels of a packed image into `texels`. Throws `UserError`.
 void unpack(Image& image);
 
-enum class Filter : std::uint8_t { kNearest, kLinear };
-enum class Wrap : std::uint8_t { kRepeat, kMirroredRepeat, kClampToEdge };
-struct Sampler {
-  Filter mag = Filter::kLinear, min = Filter::kLinear, mip = Filter::kLinear;
-  Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
-  float lod_bias = 0, min_lod = 0, max_lod = 1000;
-  friend bool operator==(const Sampler&, const Sampler&) = default;
-};
-
-enum class ShaderStage : std::uint8_t { kVertex, kFragment };
 struct Shader {
   std::string name;
   ShaderStage stage = ShaderStage::kVertex;
   std::vector<std::uint32_t> spirv;  ///< entry point "main"
   friend bool operator==(const Shader&, const Shader&) = default;
 };
-
-enum class Topology : std::uint8_t { kTriangleList, kTriangleStrip, kTriangleFan };
-enum class CullMode : std::uint8_t { kNone, kFront, kBack };
-/// as Vulkan: by signed area in framebuffer coordinates (y down)
-enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };
-enum class CompareOp : std::uint8_t {
-  kNever,
-  kLess,
-  kEqual,
-  kLessOrEqual,
-  kGreater,
-  kNotEqual,
-  kGreaterOrEqual,
-  kAlways
-};
-enum class BlendFactor : std::uint8_t {
-  kZero,
-  kOne,
-  kSrcColor,
-  kOneMinusSrcColor,
-  kDstColor,
-  kOneMinusDstColor,
-  kSrcAlpha,
-  kOneMinusSrcAlpha,
-  kDstAlpha,
-  kOneMinusDstAlpha
-};
-enum class BlendOp : std::uint8_t { kAdd, kSubtract, kReverseSubtract, kMin, kMax };
-
-/// an index that names nothing (declared after the enumerations, whose kNone it would shadow)
-inline constexpr Index kNone = 0xffffffffu;
 
 struct VertexBinding {
   std::uint32_t binding = 0, stride = 0;
@@ -133,14 +106,6 @@ struct DepthState {
   bool test = false, write = false;
   CompareOp compare = CompareOp::kLess;
   friend bool operator==(const DepthState&, const DepthState&) = default;
-};
-struct BlendState {
-  bool enable = false;
-  BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne,
-              dst_alpha = BlendFactor::kZero;
-  BlendOp color = BlendOp::kAdd, alpha = BlendOp::kAdd;
-  std::uint8_t write_mask = 0xf;  ///< bit 0 red .. bit 3 alpha
-  friend bool operator==(const BlendState&, const BlendState&) = default;
 };
 struct Pipeline {
   std::string name;

@@ -48,11 +48,11 @@ class StatGroup {
 
   /// What is counted from here on is for this draw, `kNoDraw` if for none, and, where one is known, for this
   /// tile of 8x8 pixels of its target.
-  void working_for(std::uint32_t draw) {
+  void working_for(DrawId draw) {
     if (log_ != nullptr) [[unlikely]]
       log_->turn_to({draw, kNoTile});
   }
-  void working_for(std::uint32_t draw, std::uint32_t tile_x, std::uint32_t tile_y) {
+  void working_for(DrawId draw, std::uint32_t tile_x, std::uint32_t tile_y) {
     if (log_ != nullptr) [[unlikely]]
       log_->turn_to({draw, tile_at(tile_x, tile_y)});
   }

@@ -5,17 +5,23 @@
 /// decides may depend on its log.
 #pragma once
 
+#include "models/base/id.h"
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace quadrille::hw {
 
-inline constexpr std::uint32_t kNoDraw = 0xffffffffu, kNoTile = 0xffffffffu;
+using models::DrawId;
+
+inline constexpr DrawId kNoDraw{0xffffffffu};
+inline constexpr std::uint32_t kNoTile = 0xffffffffu;
 
 /// A draw of the frame, and a tile of 8x8 pixels of its target; either may be none.
 struct Work {
-  std::uint32_t draw = kNoDraw;
+  DrawId draw = kNoDraw;
   std::uint32_t tile = kNoTile;  ///< y * 65536 + x
   bool operator==(const Work&) const = default;
 };
@@ -25,13 +31,14 @@ struct Work {
 
 /// The screen in square cells of several tiles. Only work of the draws that are on the screen has a cell.
 struct ScreenCells {
-  std::uint32_t first_draw = 0, draws = 0;  ///< those of the pass that is shown
-  std::uint32_t columns = 0, rows = 0;      ///< cells
-  std::uint32_t tiles = 4;                  ///< side of a cell, in tiles
+  DrawId first_draw;                    ///< of the pass that is shown
+  std::uint32_t draws = 0;              ///< those of the pass
+  std::uint32_t columns = 0, rows = 0;  ///< cells
+  std::uint32_t tiles = 4;              ///< side of a cell, in tiles
   [[nodiscard]] std::uint32_t count() const { return columns * rows; }
   /// `count()` where there is none.
   [[nodiscard]] std::uint32_t cell_of(Work work) const {
-    if (work.tile == kNoTile || work.draw - first_draw >= draws) return count();
+    if (work.tile == kNoTile || work.draw.index() - first_draw.index() >= draws) return count();
     const std::uint32_t x = (work.tile & 0xffffu) / tiles, y = (work.tile >> 16) / tiles;
     return x < columns && y < rows ? y * columns + x : count();
   }
@@ -58,9 +65,9 @@ class WorkLog {
   /// Adds what was counted since the latest turn; then the rows add up to the counts.
   void settle();
 
-  /// `draw` or `cell`: their number for what belongs to none.
-  [[nodiscard]] std::uint64_t of_draw(std::size_t column, std::uint32_t draw) const {
-    return draw_rows_.at(draw, column);
+  /// `kNoDraw`, or the number of cells: what belongs to none.
+  [[nodiscard]] std::uint64_t of_draw(std::size_t column, DrawId draw) const {
+    return draw_rows_.at(row_of(draw), column);
   }
   [[nodiscard]] std::uint64_t of_cell(std::size_t column, std::uint32_t cell) const {
     return cell_rows_.at(cell, column);
@@ -95,7 +102,7 @@ class WorkLog {
     std::vector<std::uint64_t> sums_;
   };
 
-  [[nodiscard]] std::uint32_t row_of(std::uint32_t draw) const { return draw < draws_ ? draw : draws_; }
+  [[nodiscard]] std::uint32_t row_of(DrawId draw) const { return std::min(draw.index(), draws_); }
   std::uint32_t draws_;
   ScreenCells screen_;
   Work now_;

@@ -71,16 +71,16 @@ void CommandProcessor::take_retirements(Tick now) {
 
 void CommandProcessor::issue(Tick now) {
   const PassState& pass = frame_.passes[std::min<std::size_t>(pass_, frame_.passes.size() - 1)];
-  stats_.working_for(step_ == Step::kDraw || step_ == Step::kDrawEnd ? draw_ : kNoDraw);
+  stats_.working_for(step_ == Step::kDraw || step_ == Step::kDrawEnd ? DrawId(draw_) : kNoDraw);
   switch (step_) {
     case Step::kPassBegin:
       quiet_log_.add(quiet_since_, now);
-      draw_out.push(now, {TokenKind::kPassBegin, pass_});
+      draw_out.push(now, {TokenKind::kPassBegin, PassId(pass_)});
       ++stats_.passes;
       step_ = pass.draws > 0 ? Step::kDraw : Step::kPassEnd;
       break;
     case Step::kDraw:
-      draw_out.push(now, {TokenKind::kWork, draw_});
+      draw_out.push(now, {TokenKind::kWork, DrawId(draw_)});
       ++stats_.draws;
       issued_at_.push_back(now);
       free_ = after(now, params_.draw_clk);
@@ -88,16 +88,16 @@ void CommandProcessor::issue(Tick now) {
       step_ = Step::kDrawEnd;
       return;
     case Step::kDrawEnd:
-      draw_out.push(now, {TokenKind::kDrawEnd, draw_});
+      draw_out.push(now, {TokenKind::kDrawEnd, DrawId(draw_)});
       ++draw_;
-      step_ = draw_ == pass.first_draw + pass.draws ? Step::kPassEnd : Step::kDraw;
+      step_ = draw_ == pass.first_draw.index() + pass.draws ? Step::kPassEnd : Step::kDraw;
       break;
     case Step::kPassEnd:
-      draw_out.push(now, {TokenKind::kPassEnd, pass_});
+      draw_out.push(now, {TokenKind::kPassEnd, PassId(pass_)});
       step_ = Step::kWaitFlush;
       break;
     case Step::kScan:
-      scan_out.push(now, {pass_});
+      scan_out.push(now, {PassId(pass_)});
       step_ = Step::kWaitScan;
       break;
     case Step::kWaitScan:

@@ -36,6 +36,7 @@ class ScanOut final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kScanOut;
 
  private:
   [[nodiscard]] Wake ask_wake() const;

@@ -37,7 +37,6 @@ enum class DrawCount : std::uint8_t {
   kAtRop,
   kTextureSent,
   kTextureTaken,
-  kBilinearQuads,
   kSimdBusy,
   kClientRequests,
   kL2Requests,

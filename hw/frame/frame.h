@@ -6,9 +6,10 @@
 /// by its index here, so state is versioned by draw and no unit has to be told of a state change.
 #pragma once
 
+#include "models/base/attachment.h"
+#include "models/base/id.h"
 #include "models/geometry/assembly.h"
 #include "models/geometry/attribute_format.h"
-#include "models/memory/attachment.h"
 #include "models/memory/storage.h"
 #include "models/memory/surface.h"
 #include "models/precision.h"
@@ -22,10 +23,16 @@
 #include "models/texture/texture_fill.h"
 
 #include <bit>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace quadrille::hw {
+
+using models::DrawId;
+using models::PartitionId;
+using models::PassId;
+using models::WarpSlotId;
 
 /// One vertex attribute the vertex program reads: where it comes from and which rows of the warp's inputs it
 /// feeds.
@@ -59,7 +66,7 @@ struct ProgramState {
 
 struct DrawState {
   std::string label;
-  std::uint32_t pass = 0;
+  PassId pass;
   // Geometry.
   models::Topology topology = models::Topology::kTriangleList;
   bool indexed = false;
@@ -88,8 +95,8 @@ struct DrawState {
   /// The fragment program writes memory.
   bool writes_memory = false;
 
-  [[nodiscard]] const ProgramState& stage(models::Stage stage) const {
-    return stage == models::Stage::kVertex ? vertex : fragment;
+  [[nodiscard]] const ProgramState& stage(models::ShaderStage stage) const {
+    return stage == models::ShaderStage::kVertex ? vertex : fragment;
   }
   [[nodiscard]] int varyings() const { return static_cast<int>(vertex.program->varyings.size()); }
   [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
@@ -137,7 +144,8 @@ struct PassState {
   bool samples_attachments = false;  ///< that earlier passes drew
   /// No depth of the pass is known when it begins.
   [[nodiscard]] bool loads_depth() const { return has_depth && depth.loads(); }
-  std::uint32_t first_draw = 0, draws = 0;
+  DrawId first_draw;
+  std::uint32_t draws = 0;
 };
 
 struct Frame {
@@ -145,8 +153,12 @@ struct Frame {
   std::vector<PassState> passes;
   std::vector<DrawState> draws;
   models::Precision precision;
-  [[nodiscard]] const DrawState& draw(std::uint32_t index) const { return draws[index]; }
-  [[nodiscard]] const PassState& pass_of(std::uint32_t draw) const { return passes[draws[draw].pass]; }
+  [[nodiscard]] const DrawState& draw(DrawId id) const { return draws[id.index()]; }
+  [[nodiscard]] const PassState& pass(PassId id) const { return passes[id.index()]; }
+  [[nodiscard]] const PassState& pass_of(DrawId id) const { return pass(draw(id).pass); }
+  [[nodiscard]] std::span<const DrawState> draws_of(const PassState& pass) const {
+    return std::span(draws).subspan(pass.first_draw.index(), pass.draws);
+  }
 };
 
 }  // namespace quadrille::hw

@@ -12,7 +12,7 @@ namespace quadrille::hw {
 /// A vertex batch: inputs written by vertex fetch, outputs by a core, read by primitive assembly, clipper and
 /// set-up. Owner: vertex fetch.
 struct BatchSlot {
-  std::uint32_t draw = 0;
+  DrawId draw;
   int lanes = 0;
   models::VertexInputs inputs;
   std::vector<models::LaneWords> attributes;  ///< rows by Program::vertex_inputs
@@ -27,7 +27,8 @@ struct BatchSlot {
 /// A triangle from set-up to its last retired fragment. Owner: set-up.
 struct TriangleSlot {
   models::TriangleSetup setup;
-  std::uint32_t draw = 0, instance = 0, primitive = 0;
+  DrawId draw;
+  std::uint32_t instance = 0, primitive = 0;
   std::vector<float> varyings;  ///< 3 a component: a0, a1 - a0, a2 - a0 of the original triangle
 };
 
@@ -37,7 +38,7 @@ struct WarpSlot {
     std::uint64_t triangle = 0;
     std::uint16_t x = 0, y = 0;  ///< pixel position of the top-left pixel
   };
-  std::uint32_t draw = 0;
+  DrawId draw;
   int quads = 0;
   bool late = false;             ///< depth is tested after shading
   models::LaneMask covered = 0;  ///< live lanes at launch
@@ -54,17 +55,25 @@ struct ClippedPiece {
   std::array<glm::vec2, 3> weights;
 };
 
-template <class T>
+/// `Slot` names a place: a number, or an id where one could be taken for another.
+template <class T, class Slot = std::uint64_t>
 class Store {
  public:
   explicit Store(std::size_t slots) : slots_(slots) {}
-  [[nodiscard]] T& operator[](std::uint64_t i) { return slots_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] const T& operator[](std::uint64_t i) const { return slots_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] T& operator[](Slot slot) { return slots_[place_of(slot)]; }
+  [[nodiscard]] const T& operator[](Slot slot) const { return slots_[place_of(slot)]; }
   [[nodiscard]] std::uint64_t size() const { return slots_.size(); }
 
  private:
+  static std::size_t place_of(std::uint64_t slot) { return static_cast<std::size_t>(slot); }
+  template <class Tag>
+  static std::size_t place_of(models::Id<Tag> slot) {
+    return slot.index();
+  }
   std::vector<T> slots_;
 };
+/// The fragment warps of a partition.
+using WarpStore = Store<WarpSlot, WarpSlotId>;
 
 /// The triangle store: a ring addressed by sequence number.
 class TriangleStore {

@@ -10,39 +10,63 @@
 #pragma once
 
 #include "hw/base/work_log.h"
+#include "models/base/pipeline_state.h"
 #include "models/geometry/post_transform.h"
-#include "models/shader/isa.h"
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace quadrille::hw {
 
+using models::PartitionId;
+using models::PassId;
+using models::WarpSlotId;
+
 enum class TokenKind : std::uint8_t { kWork, kBatchEnd, kDrawEnd, kPassBegin, kPassEnd, kSync };
 
-/// The draw that a token of this kind and index belongs to; the bounds of a pass belong to none.
-[[nodiscard]] constexpr std::uint32_t draw_of(TokenKind kind, std::uint32_t index) {
-  return kind == TokenKind::kPassBegin || kind == TokenKind::kPassEnd ? kNoDraw : index;
-}
+/// What a token is a part of: a draw, or, of one that begins or ends a pass, the pass.
+class FramePart {
+ public:
+  constexpr FramePart() = default;
+  // Either is a part of the frame as it is: not explicit.
+  constexpr FramePart(DrawId draw) : bits_(draw.index()) {}            // NOLINT(google-explicit-constructor)
+  constexpr FramePart(PassId pass) : bits_(pass.index() | kIsPass) {}  // NOLINT(google-explicit-constructor)
+  /// `kNoDraw` if it is a pass.
+  [[nodiscard]] constexpr DrawId draw() const { return (bits_ & kIsPass) != 0 ? kNoDraw : DrawId(bits_); }
+  /// It is a pass.
+  [[nodiscard]] constexpr PassId pass() const { return PassId(bits_ & ~kIsPass); }
 
-/// Command processor -> vertex fetch: draw it, or a pass boundary (then `index` is the pass).
+ private:
+  static constexpr std::uint32_t kIsPass = 0x80000000u;
+  std::uint32_t bits_ = 0;
+};
+
+/// Command processor -> vertex fetch: draw it, or a pass boundary.
 struct DrawToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;
+  FramePart part;
 };
 
 /// Vertex fetch -> primitive assembly: a batch's triangles, in draw order.
 struct BatchToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;  ///< draw or pass
-  std::uint32_t slot = 0;   ///< in the batch store
+  FramePart part;
+  std::uint32_t slot = 0;  ///< in the batch store
 };
 
-/// Vertex fetch or warp packer -> core: run this warp.
-struct WarpToken {
-  std::uint32_t draw = 0;
-  std::uint32_t slot = 0;                ///< batch store or warp store
-  std::uint16_t partition = 0;           ///< fragment warps
-  std::uint16_t tile_x = 0, tile_y = 0;  ///< of their first quad
+/// Vertex fetch -> core: shade this batch.
+struct VertexWarpToken {
+  DrawId draw;
+  std::uint32_t slot = 0;  ///< in the batch store
+};
+
+/// Warp packer -> core: run this fragment warp.
+struct FragmentWarpToken {
+  DrawId draw;
+  WarpSlotId slot;
+  PartitionId partition;
+  std::uint16_t tile_x = 0, tile_y = 0;  ///< of its first quad
 };
 
 /// Core -> primitive assembly: the batch in this slot is shaded.
@@ -53,7 +77,7 @@ struct VertexDoneToken {
 /// Primitive assembly -> clipper: one triangle of shaded vertices.
 struct PrimitiveToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;      ///< draw or pass
+  FramePart part;
   std::uint32_t slot = 0;       ///< kBatchEnd: batch
   std::uint32_t primitive = 0;  ///< 0-based in the draw's instance
   models::VertexPlace corner[3] = {};
@@ -62,7 +86,7 @@ struct PrimitiveToken {
 /// Clipper -> set-up: a triangle or a piece of a clipped one; its window vertices are in the clipper's ring.
 struct ClippedToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;
+  FramePart part;
   std::uint32_t slot = 0;  ///< kBatchEnd: batch
   std::uint32_t primitive = 0;
   models::VertexPlace corner[3] = {};
@@ -73,7 +97,7 @@ struct ClippedToken {
 /// remainder by the store's size.
 struct TriangleToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;  ///< draw or pass
+  FramePart part;
   std::uint64_t triangle = 0;
 };
 
@@ -82,7 +106,7 @@ struct TileToken {
   TokenKind kind = TokenKind::kWork;
   bool fully_covered = false;
   std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint32_t index = 0;
+  FramePart part;
   std::uint64_t triangle = 0;  ///< kSync: every triangle before this one
 };
 
@@ -91,7 +115,7 @@ struct CoverageToken {
   TokenKind kind = TokenKind::kWork;
   bool late = false;  ///< set by the depth unit: test and write after shading
   std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint32_t index = 0;
+  FramePart part;
   std::uint64_t triangle = 0;
   std::uint64_t coverage = 0;  ///< quad-major
 };
@@ -100,21 +124,26 @@ struct CoverageToken {
 /// reported when it has retired.
 struct OrderToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t index = 0;
-  std::uint32_t slot = 0;
+  FramePart part;
+  WarpSlotId slot;
   std::uint64_t sync = 0;
 };
 
 /// Core -> ROP: the fragment warp in this slot is shaded.
 struct FragmentDoneToken {
-  std::uint32_t slot = 0;
+  WarpSlotId slot;
 };
 
 /// ROP <-> late port of the depth unit: test the warp in this slot (the survivors are written to it), or
 /// (kPassEnd) flush.
 struct LateToken {
   TokenKind kind = TokenKind::kWork;
-  std::uint32_t slot = 0;
+  WarpSlotId slot;
+};
+
+/// ROP -> warp packer: the slot of a retired warp is free again.
+struct WarpReleaseToken {
+  WarpSlotId slot;
 };
 
 /// A slot is free again. With `sequence`: everything before it is.
@@ -126,28 +155,28 @@ struct ReleaseToken {
 /// Depth unit -> coarse rasteriser: no depth in this tile is greater than `max_depth`.
 struct HiZToken {
   std::uint16_t tile_x = 0, tile_y = 0;
-  std::uint32_t pass = 0;
+  PassId pass;
   float max_depth = 1;
 };
 
 /// ROP -> command processor: draw retired in this partition, or pass flushed.
 struct RetireToken {
   TokenKind kind = TokenKind::kDrawEnd;
-  std::uint32_t index = 0;
+  FramePart part;
 };
 
 /// Core <-> texture unit: the texture requests of the warp in this core slot.
 struct TextureToken {
   std::uint32_t slot = 0;
-  std::uint32_t draw = 0;
-  models::Stage stage = models::Stage::kVertex;
+  DrawId draw;
+  models::ShaderStage stage = models::ShaderStage::kVertex;
 };
 
 /// Core <-> load-store unit: the storage requests of the warp in this core slot.
 struct StorageToken {
   std::uint32_t slot = 0;
-  std::uint32_t draw = 0;
-  models::Stage stage = models::Stage::kVertex;
+  DrawId draw;
+  models::ShaderStage stage = models::ShaderStage::kVertex;
 };
 
 /// On whose behalf memory is accessed.
@@ -160,6 +189,11 @@ enum class MemoryClient : std::uint8_t {
   kScanOut,
   kWriteBack
 };
+[[nodiscard]] constexpr std::string_view name_of(MemoryClient client) {
+  constexpr std::array<std::string_view, 7> kNames{"vertex_fetch", "texture",  "storage",   "depth",
+                                                   "color",        "scan_out", "write_back"};
+  return kNames[static_cast<std::size_t>(client)];
+}
 
 /// A client's request to the memory system: sectors of one 128-byte line. `tag` comes back with the answer.
 /// Writes are not answered; a fence is, once all requests of its client before it have been taken in.
@@ -176,7 +210,7 @@ struct MemoryRequest {
   std::uint8_t sectors = 0;
   Kind kind = Kind::kRead;
   MemoryClient client = MemoryClient::kVertexFetch;  ///< written by the L2 slice
-  std::uint32_t draw = kNoDraw;                      ///< for the figures alone: on whose behalf
+  DrawId draw = kNoDraw;                             ///< for the figures alone: on whose behalf
 };
 struct MemoryResponse {
   std::uint32_t line = 0;
@@ -186,7 +220,7 @@ struct MemoryResponse {
 
 /// Command processor -> scan-out: show the target of this pass.
 struct ScanToken {
-  std::uint32_t pass = 0;
+  PassId pass;
 };
 
 }  // namespace quadrille::hw

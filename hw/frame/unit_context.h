@@ -31,6 +31,9 @@ struct UnitContext {
   /// channel
   int number = 0;
 
+  /// Of a unit that stands once a partition.
+  [[nodiscard]] PartitionId partition() const { return PartitionId(number); }
+
   /// Of a unit that has no link to memory in this machine.
   [[nodiscard]] UnitContext without_memory() const {
     UnitContext context = *this;

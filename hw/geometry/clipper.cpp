@@ -40,10 +40,10 @@ void Clipper::spend(Tick now, std::int64_t cost) {
 void Clipper::act(Tick now) {
   const PrimitiveToken& token = primitive_in.front();
   if (next_piece_ == 0 && token.kind == TokenKind::kWork) return take_triangle(now);
-  if (next_piece_ == 0) stats_.working_for(draw_of(token.kind, token.index));
+  if (next_piece_ == 0) stats_.working_for(token.part.draw());
   spend(now, WorkRate::cost(params_.triangles_per_clk));
   if (next_piece_ > 0) return emit_piece(now, next_piece_);
-  for (const auto& out : clipped_out) out->push(now, {token.kind, token.index, token.slot, 0, {}, 0});
+  for (const auto& out : clipped_out) out->push(now, {token.kind, token.part, token.slot, 0, {}, 0});
   (void)primitive_in.pop(now);
 }
 
@@ -55,10 +55,10 @@ void Clipper::take_triangle(Tick now) {
     for (int c = 0; c < 4; ++c)
       position[i][c] = std::bit_cast<float>(batches_[slot].outputs[static_cast<std::size_t>(c)][lane]);
   }
-  stats_.working_for(token.index);
+  stats_.working_for(token.part.draw());
   ++stats_.triangles;
   const models::ClipOutcome outcome =
-      models::clip_triangle(position, frame_.draw(token.index).clip, polygon_);
+      models::clip_triangle(position, frame_.draw(token.part.draw()).clip, polygon_);
   spend(now, outcome == models::ClipOutcome::kClipped ? params_.clip_clk * WorkRate::kCycle
                                                       : WorkRate::cost(params_.triangles_per_clk));
   switch (outcome) {
@@ -76,7 +76,7 @@ void Clipper::take_triangle(Tick now) {
 
 void Clipper::emit_piece(Tick now, int i) {
   const PrimitiveToken token = primitive_in.front();
-  const DrawState& draw = frame_.draw(token.index);
+  const DrawState& draw = frame_.draw(token.part.draw());
   ClippedPiece piece;
   const std::array<int, 3> corner{0, i, i + 1};
   bool valid = true;
@@ -86,7 +86,8 @@ void Clipper::emit_piece(Tick now, int i) {
             valid;
     piece.weights[k] = {v.b1, v.b2};
   }
-  QUADRILLE_CHECK(valid, "{}: a clipped vertex of draw {} has no window position", name(), token.index);
+  QUADRILLE_CHECK(valid, "{}: a clipped vertex of draw {} has no window position", name(),
+                  token.part.draw().index());
   send(now, token, piece);
   next_piece_ = i + 2 < polygon_.count ? i + 1 : 0;
   if (next_piece_ == 0) (void)primitive_in.pop(now);
@@ -94,7 +95,7 @@ void Clipper::emit_piece(Tick now, int i) {
 
 std::uint32_t Clipper::engines_of(const PrimitiveToken& token, const ClippedPiece& piece) {
   if (screen_.engines == 1) return 1;
-  const PassState& pass = frame_.pass_of(token.index);
+  const PassState& pass = frame_.pass_of(token.part.draw());
   return models::engines_touched(piece.vertices, frame_.precision.subpixel_bits, pass.width, pass.height,
                                  screen_, turn_++);
 }
@@ -105,7 +106,7 @@ void Clipper::send(Tick now, const PrimitiveToken& token, const ClippedPiece& pi
     if ((engines >> e & 1u) == 0) continue;
     (*pieces_[e])[ring_[e]] = piece;
     clipped_out[e]->push(now, {TokenKind::kWork,
-                               token.index,
+                               token.part,
                                token.slot,
                                token.primitive,
                                {token.corner[0], token.corner[1], token.corner[2]},

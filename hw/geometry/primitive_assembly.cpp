@@ -45,11 +45,11 @@ void PrimitiveAssembly::act(Tick now) {
 
 void PrimitiveAssembly::emit(Tick now) {
   const BatchToken head = batch_in.front();
-  if (next_triangle_ == 0) stats_.working_for(draw_of(head.kind, head.index));
+  if (next_triangle_ == 0) stats_.working_for(head.part.draw());
   free_ = rate_.charge(now, WorkRate::cost(params_.triangles_per_clk));
   occupy(now, rate_.cycles());
   if (head.kind != TokenKind::kWork) {
-    primitive_out.push(now, {head.kind, head.index, 0, 0, {}});
+    primitive_out.push(now, {head.kind, head.part, 0, 0, {}});
     (void)batch_in.pop(now);
     return;
   }
@@ -57,11 +57,11 @@ void PrimitiveAssembly::emit(Tick now) {
   if (next_triangle_ < batch.triangles.size()) {
     const BatchSlot::Triangle& t = batch.triangles[next_triangle_++];
     primitive_out.push(
-        now, {TokenKind::kWork, head.index, head.slot, t.primitive, {t.corner[0], t.corner[1], t.corner[2]}});
+        now, {TokenKind::kWork, head.part, head.slot, t.primitive, {t.corner[0], t.corner[1], t.corner[2]}});
     ++stats_.triangles;
     return;
   }
-  primitive_out.push(now, {TokenKind::kBatchEnd, head.index, head.slot, 0, {}});
+  primitive_out.push(now, {TokenKind::kBatchEnd, head.part, head.slot, 0, {}});
   ++stats_.batches;
   stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
   shaded_[head.slot] = false;

@@ -62,10 +62,10 @@ void TriangleSetupUnit::work(Tick now) {
   } else if (token.kind == TokenKind::kBatchEnd) {
     release_out.push(now, {token.slot, 0});
   } else {
-    triangle_out.push(now, {token.kind, token.index, sequence_});
+    triangle_out.push(now, {token.kind, token.part, sequence_});
   }
   if (token.kind != TokenKind::kWork) {
-    stats_.working_for(draw_of(token.kind, token.index));
+    stats_.working_for(token.part.draw());
     cost = std::min(cost, WorkRate::kCycle);
   }
   free_ = rate_.charge(now, cost);
@@ -73,10 +73,10 @@ void TriangleSetupUnit::work(Tick now) {
 }
 
 bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
-  const DrawState& draw = frame_.draw(token.index);
+  const DrawState& draw = frame_.draw(token.part.draw());
   const ClippedPiece& piece = pieces_[token.piece];
   TriangleSlot& slot = triangles_[sequence_];
-  stats_.working_for(token.index);
+  stats_.working_for(token.part.draw());
   ++stats_.triangles;
   switch (models::setup_triangle(piece.vertices, piece.weights, draw.setup, slot.setup)) {
     case models::SetupOutcome::kKept: break;
@@ -86,14 +86,14 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
     case models::SetupOutcome::kNoSample: ++stats_.no_sample; return false;
   }
   ++stats_.kept;
-  slot.draw = token.index;
+  slot.draw = token.part.draw();
   slot.primitive = token.primitive;
   slot.instance = batches_[token.corner[0].slot].inputs.instance_index[token.corner[0].lane];
   std::array<CornerOutputs, 3> corners;
   for (std::size_t i = 0; i < 3; ++i)
     corners[i] = {&batches_[token.corner[i].slot].outputs, token.corner[i].lane};
   gather_varyings(corners, draw.varyings(), slot.varyings);
-  triangle_out.push(now, {TokenKind::kWork, token.index, sequence_++});
+  triangle_out.push(now, {TokenKind::kWork, token.part, sequence_++});
   return true;
 }
 

@@ -37,7 +37,7 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& contex
 }
 
 std::string VertexFetch::state_text() const {
-  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_, triangle_,
+  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_.index(), triangle_,
                      pending_.size(), slots_.free());
 }
 
@@ -95,17 +95,17 @@ void VertexFetch::build(Tick now) {
   if (next_line_ < lines_.size()) return look_up(now);
   if (drawing_) return form_batch(now);
   const DrawToken token = draw_in.pop(now);
-  stats_.working_for(draw_of(token.kind, token.index));
+  stats_.working_for(token.part.draw());
   if (token.kind == TokenKind::kWork) {
-    start_draw(token.index);
+    start_draw(token.part.draw());
   } else {
-    pending_.push_back({token.kind, token.index, 0, 0, now});
+    pending_.push_back({token.kind, token.part, 0, 0, now});
   }
   free_ = after(now, 1);
   occupy(now, 1);
 }
 
-void VertexFetch::start_draw(std::uint32_t draw) {
+void VertexFetch::start_draw(DrawId draw) {
   draw_ = draw;
   instance_ = 0;
   triangle_ = 0;
@@ -246,8 +246,8 @@ void VertexFetch::leave(Tick now) {
   const Pending head = pending_.front();
   pending_.pop_front();
   ++first_pending_;
-  if (shades(head)) warp_out.push(now, {head.index, head.slot, 0});
-  batch_out.push(now, {head.kind, head.index, head.slot});
+  if (shades(head)) warp_out.push(now, {head.part.draw(), head.slot});
+  batch_out.push(now, {head.kind, head.part, head.slot});
 }
 
 void VertexFetch::audit(Audit& audit) const {

@@ -88,7 +88,7 @@ class VertexFetch final : public Unit {
 
   FifoIn<DrawToken> draw_in{*this, "draw_in"};
   FifoInGroup<ReleaseToken> release_in;  ///< by raster engine
-  FifoOut<WarpToken> warp_out{*this, "warp_out"};
+  FifoOut<VertexWarpToken> warp_out{*this, "warp_out"};
   FifoOut<BatchToken> batch_out{*this, "batch_out"};
 
   [[nodiscard]] Wake next() const override;
@@ -99,12 +99,14 @@ class VertexFetch final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kVertexFetch;
 
  private:
   /// A batch or a boundary on its way out, in order.
   struct Pending {
     TokenKind kind = TokenKind::kWork;
-    std::uint32_t index = 0, slot = 0;
+    FramePart part;
+    std::uint32_t slot = 0;
     int missing = 0;  ///< look-ups not complete
     Tick ready = 0;
   };
@@ -120,7 +122,7 @@ class VertexFetch final : public Unit {
   /// A batch may name vertices of earlier ones only; then there is nothing to shade.
   [[nodiscard]] bool shades(const Pending& head) const;
   void leave(Tick now);
-  void start_draw(std::uint32_t draw);
+  void start_draw(DrawId draw);
   void form_batch(Tick now);
   /// The vertex at a position of the draw's list.
   [[nodiscard]] std::uint32_t vertex_number(std::uint32_t position) const;
@@ -143,7 +145,8 @@ class VertexFetch final : public Unit {
   std::unique_ptr<models::VertexReuse> reuse_;
 
   bool drawing_ = false;
-  std::uint32_t draw_ = 0, instance_ = 0, triangle_ = 0;  ///< next triangle to take
+  DrawId draw_;
+  std::uint32_t instance_ = 0, triangle_ = 0;  ///< next triangle to take
   BatchSlots slots_;
   Queue<Pending> pending_;
   std::uint32_t first_pending_ = 0;  ///< number of pending_.front(); waiters are named by number

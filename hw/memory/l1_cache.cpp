@@ -27,45 +27,24 @@ std::uint8_t sectors_with_all(std::uint32_t words) {
 
 L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses)
     : tags_(static_cast<std::uint32_t>(lines), static_cast<std::uint32_t>(ways)),
-      misses_(static_cast<std::size_t>(misses)),
-      miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
+      misses_(tags_, static_cast<std::size_t>(misses)),
       group_(stats),
-      stats_(stats) {
-  for (std::size_t i = misses_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
-}
+      stats_(stats) {}
 
 L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter,
                                 MemoryPort& port) {
-  int slot = tags_.lookup(line);
+  const int slot = tags_.lookup(line);
   if (slot != models::TagArray::kNone && (tags_.at(slot).valid & sectors) == sectors) {
     ++stats_.requests;
     ++stats_.hits;
     return Result::kHit;
   }
-  const bool under_way =
-      slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
-  if (!under_way && free_.empty()) return Result::kStall;
-  if (slot == models::TagArray::kNone) {
-    slot = place(line, port);
-    if (slot == models::TagArray::kNone) return Result::kStall;
-  }
-  if (!under_way) {
-    miss_of_slot_[static_cast<std::size_t>(slot)] = static_cast<int>(free_.back());
-    misses_[free_.back()].slot = slot;
-    misses_[free_.back()].outstanding = 0;
-    free_.pop_back();
-  }
-  const auto tag = static_cast<std::uint32_t>(miss_of_slot_[static_cast<std::size_t>(slot)]);
-  const models::TagArray::Line& held = tags_.at(slot);
-  const auto missing = static_cast<std::uint8_t>(sectors & ~(held.valid | held.pending));
+  const auto asked = misses_.ask(slot, sectors, [&] { return place(line, port); });
+  if (!asked) return Result::kStall;
   ++stats_.requests;
-  ++(missing != 0 ? stats_.misses : stats_.merged);
-  if (missing != 0) {
-    tags_.mark_pending(slot, missing);
-    ++misses_[tag].outstanding;
-    port.read(line, missing, tag);
-  }
-  misses_[tag].waiters.push_back(waiter);
+  ++(asked->missing != 0 ? stats_.misses : stats_.merged);
+  if (asked->missing != 0) port.read(line, asked->missing, asked->tag);
+  misses_.wait(asked->tag, waiter);
   return Result::kPending;
 }
 
@@ -135,12 +114,12 @@ void L1Cache::write(std::uint32_t line, std::uint32_t words) {
 
 void L1Cache::forget() {
   QUADRILLE_CHECK(idle() && parts_.empty(), "a cache is emptied with {} misses under way",
-                  misses_.size() - free_.size());
+                  misses_.under_way());
   tags_.invalidate_all();
 }
 
 void L1Cache::discard(std::uint32_t first, std::uint32_t end) {
-  QUADRILLE_CHECK(idle(), "lines are discarded with {} misses under way", misses_.size() - free_.size());
+  QUADRILLE_CHECK(idle(), "lines are discarded with {} misses under way", misses_.under_way());
   for (int slot = 0; slot < tags_.slots(); ++slot) {
     const models::TagArray::Line& held = tags_.at(slot);
     if (held.line < first || held.line >= end) continue;
@@ -151,7 +130,7 @@ void L1Cache::discard(std::uint32_t first, std::uint32_t end) {
 }
 
 void L1Cache::flush(MemoryPort& port) {
-  QUADRILLE_CHECK(idle(), "flush with {} misses under way", misses_.size() - free_.size());
+  QUADRILLE_CHECK(idle(), "flush with {} misses under way", misses_.under_way());
   for (int slot = 0; slot < tags_.slots(); ++slot) {
     const models::TagArray::Line& held = tags_.at(slot);
     write_back(slot, held.line, held.dirty, port);

@@ -1,8 +1,8 @@
 /// The first-level caches (vertex fetch, texture, depth, colour): tags, misses under way, and who waits for
 /// them.
 ///
-/// One entry of the miss table serves all who want sectors of a line that is under way. Functional data live
-/// in `DeviceMemory`; only presence is kept. A cache that writes names itself as the owner of its dirty lines
+/// A miss table (models/cache/miss_table.h) serves all who want sectors of a line that is under way.
+/// Functional data live in `DeviceMemory`; only presence is kept. A cache that writes names itself as the owner of its dirty lines
 /// there, so that a read from below it is noticed.
 ///
 /// A sector that is written in part is not read first: a mask keeps which of its words (of 4 bytes) were
@@ -14,6 +14,7 @@
 #pragma once
 
 #include "hw/memory/memory_port.h"
+#include "models/cache/miss_table.h"
 #include "models/cache/tag_array.h"
 #include "models/memory/device_memory.h"
 
@@ -56,14 +57,9 @@ class L1Cache {
   /// Takes an answer in; calls `ready(waiter)` once for each pending access that is now complete.
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {
-    Miss& miss = misses_[response.tag];
-    tags_.fill(miss.slot, response.sectors);
-    complete(miss.slot, response.sectors);
-    if (--miss.outstanding > 0) return;
-    for (const std::uint32_t waiter : miss.waiters) ready(waiter);
-    miss.waiters.clear();
-    miss_of_slot_[static_cast<std::size_t>(miss.slot)] = -1;
-    free_.push_back(response.tag);
+    const bool all = misses_.arrive(response.tag, response.sectors);
+    complete(misses_.slot_of(response.tag), response.sectors);
+    if (all) misses_.release(response.tag, ready);
   }
   /// Gives the line a place and makes sectors (there may be none) present without fetching them, because they
   /// are about to be overwritten whole. False when no way is free: try again after a fill.
@@ -80,16 +76,11 @@ class L1Cache {
   /// Queues all dirty sectors for writing and forgets all lines; nothing may be under way.
   void flush(MemoryPort& port);
   /// No more lines may be asked for.
-  [[nodiscard]] bool full() const { return free_.empty(); }
-  [[nodiscard]] bool idle() const { return free_.size() == misses_.size(); }
+  [[nodiscard]] bool full() const { return misses_.full(); }
+  [[nodiscard]] bool idle() const { return misses_.idle(); }
   [[nodiscard]] const L1CacheStats& stats() const { return stats_; }
 
  private:
-  struct Miss {
-    int slot = 0;
-    int outstanding = 0;
-    std::vector<std::uint32_t> waiters;
-  };
   int place(std::uint32_t line, MemoryPort& port);
   /// Sectors became whole: what was written of them in parts is in them now.
   void complete(int slot, std::uint8_t sectors);
@@ -98,11 +89,9 @@ class L1Cache {
   void note_writer(int slot);
 
   models::TagArray tags_;
+  models::MissTable<std::uint32_t> misses_;
   models::DeviceMemory* memory_ = nullptr;
   models::DeviceMemory::Owner owner_ = models::DeviceMemory::kClean;
-  std::vector<Miss> misses_;
-  std::vector<std::uint32_t> free_;
-  std::vector<int> miss_of_slot_;
   StatGroup& group_;
   /// by slot: for whom a dirty line was written last, while the unit keeps a log
   std::vector<Work> writers_;

@@ -32,26 +32,25 @@ L2Slice::L2Slice(sc_core::sc_module_name name, const UnitContext& context, const
       tags_(static_cast<std::uint32_t>(params.cache_lines.value()),
             static_cast<std::uint32_t>(params.cache_ways.value()),
             static_cast<std::uint32_t>(context.machine.channels)),
-      misses_(static_cast<std::size_t>(params.cache_misses.value())),
-      miss_of_slot_(static_cast<std::size_t>(tags_.slots()), -1),
+      misses_(tags_, static_cast<std::size_t>(params.cache_misses.value())),
+      parts_(static_cast<std::size_t>(tags_.slots()), 0),
       answers_(clients.size()),
       answering_((clients.size() + 63) / 64, 0),
       interleave_(static_cast<std::uint32_t>(context.machine.channels)),
       write_back_(
           params.write_back.value().make({static_cast<std::uint32_t>(params.write_back_lines.value())})) {
   add_initiation_rate("rate");
-  add_places("cache_misses", [this] { return free_misses_.empty(); });
+  add_places("cache_misses", [this] { return misses_.full(); });
   for (const auto& [client, kind] : clients) {
     client_kinds_.push_back(kind);
     request_in.add(*this, port_name(client, "in").c_str());
     response_out.push_back(
         std::make_unique<FifoOut<MemoryResponse>>(*this, port_name(client, "out").c_str(), LinkRole::kReply));
   }
-  for (std::size_t i = misses_.size(); i-- > 0;) free_misses_.push_back(static_cast<std::uint32_t>(i));
 }
 
 std::string L2Slice::state_text() const {
-  return fmt::format("{} lines under way, {} requests for the channel", misses_.size() - free_misses_.size(),
+  return fmt::format("{} lines under way, {} requests for the channel", misses_.under_way(),
                      to_memory_.size());
 }
 
@@ -165,40 +164,26 @@ bool L2Slice::read(Tick now, std::uint32_t client, const MemoryRequest& request)
     answer(after(now, params_.hit_clk), client, token);
     return true;
   }
-  Miss* const miss = fetch(now, client, request);
-  if (miss == nullptr) return false;
-  miss->waiters.push_back({client, token});
+  const auto tag = fetch(now, client, request);
+  if (!tag) return false;
+  misses_.wait(*tag, {client, token});
   return true;
 }
 
-L2Slice::Miss* L2Slice::fetch(Tick now, std::uint32_t client, const MemoryRequest& request) {
-  int slot = tags_.find(request.line);
-  const bool under_way =
-      slot != models::TagArray::kNone && miss_of_slot_[static_cast<std::size_t>(slot)] >= 0;
-  if (!under_way && free_misses_.empty()) return nullptr;
-  if (slot == models::TagArray::kNone) slot = place(now, request.line);
-  if (slot == models::TagArray::kNone) return nullptr;
-  if (!under_way) {
-    miss_of_slot_[static_cast<std::size_t>(slot)] = static_cast<int>(free_misses_.back());
-    misses_[free_misses_.back()].slot = slot;
-    free_misses_.pop_back();
-  }
-  const auto tag = static_cast<std::uint32_t>(miss_of_slot_[static_cast<std::size_t>(slot)]);
-  Miss& miss = misses_[tag];
-  const auto missing =
-      static_cast<std::uint8_t>(request.sectors & ~(tags_.at(slot).valid | tags_.at(slot).pending));
-  if (missing != 0) {
-    ++stats_.misses;
-    tags_.mark_pending(slot, missing);
-    miss.pending |= missing;
-    stats_.fill_bytes += bytes_of(missing);
-    to_memory_.push_back(
-        {after(now, params_.hit_clk),
-         {request.line, tag, missing, MemoryRequest::Kind::kRead, client_kinds_[client], request.draw}});
-  } else {
+std::optional<std::uint32_t> L2Slice::fetch(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  const auto asked =
+      misses_.ask(tags_.find(request.line), request.sectors, [&] { return place(now, request.line); });
+  if (!asked) return {};
+  if (asked->missing == 0) {
     ++stats_.merged;
+    return asked->tag;
   }
-  return &miss;
+  ++stats_.misses;
+  stats_.fill_bytes += bytes_of(asked->missing);
+  to_memory_.push_back({after(now, params_.hit_clk),
+                        {request.line, asked->tag, asked->missing, MemoryRequest::Kind::kRead,
+                         client_kinds_[client], request.draw}});
+  return asked->tag;
 }
 
 bool L2Slice::write(Tick now, const MemoryRequest& request) {
@@ -211,48 +196,50 @@ bool L2Slice::write(Tick now, const MemoryRequest& request) {
   return true;
 }
 
-bool L2Slice::write_part(Tick now, std::uint32_t client, const MemoryRequest& request) {
+bool L2Slice::all_there(const MemoryRequest& request) const {
+  const int slot = tags_.find(request.line);
+  return slot != models::TagArray::kNone && (tags_.at(slot).valid & request.sectors) == request.sectors;
+}
+
+std::optional<std::uint32_t> L2Slice::write_when_fetched(Tick now, std::uint32_t client,
+                                                         const MemoryRequest& request) {
   const int slot = tags_.lookup(request.line);
   const auto there =
       static_cast<std::uint8_t>(slot == models::TagArray::kNone ? 0 : tags_.at(slot).valid & request.sectors);
-  if (there == request.sectors) return write(now, request);
-  Miss* const miss = fetch(now, client, request);
-  if (miss == nullptr) return false;
-  tags_.mark_dirty(miss->slot, there);
-  miss->dirty = static_cast<std::uint8_t>(miss->dirty | (request.sectors & ~there));
+  const auto tag = fetch(now, client, request);
+  if (!tag) return {};
+  const int place = misses_.slot_of(*tag);
+  tags_.mark_dirty(place, there);
+  std::uint8_t& parts = parts_[static_cast<std::size_t>(place)];
+  parts = static_cast<std::uint8_t>(parts | (request.sectors & ~there));
   stats_.write_bytes += bytes_of(request.sectors);
-  return true;
+  return tag;
+}
+
+bool L2Slice::write_part(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  if (all_there(request)) return write(now, request);
+  return write_when_fetched(now, client, request).has_value();
 }
 
 /// Needs the old words, so sectors that are not there are fetched first, as for a write of a part.
 bool L2Slice::atomic(Tick now, std::uint32_t client, const MemoryRequest& request) {
   const MemoryResponse token{request.line, request.tag, request.sectors};
-  const int slot = tags_.find(request.line);
-  const bool there =
-      slot != models::TagArray::kNone && (tags_.at(slot).valid & request.sectors) == request.sectors;
-  if (!write_part(now, client, request)) return false;
-  if (there) {
+  if (all_there(request)) {
     answer(after(now, params_.hit_clk), client, token);
-  } else {
-    const int held = tags_.find(request.line);
-    misses_[static_cast<std::size_t>(miss_of_slot_[static_cast<std::size_t>(held)])].waiters.push_back(
-        {client, token});
+    return write(now, request);
   }
-  return true;
+  const auto tag = write_when_fetched(now, client, request);
+  if (tag) misses_.wait(*tag, {client, token});
+  return tag.has_value();
 }
 
 void L2Slice::take_fill(Tick now) {
   const MemoryResponse fill = fill_in.pop(now);
   stalled_ = false;
-  Miss& miss = misses_[fill.tag];
-  tags_.fill(miss.slot, fill.sectors);
-  miss.pending &= static_cast<std::uint8_t>(~fill.sectors);
-  if (miss.pending != 0) return;
-  tags_.mark_dirty(miss.slot, std::exchange(miss.dirty, std::uint8_t{0}));
-  for (const Waiter& w : miss.waiters) answer(now, w.client, w.answer);
-  miss.waiters.clear();
-  miss_of_slot_[static_cast<std::size_t>(miss.slot)] = -1;
-  free_misses_.push_back(fill.tag);
+  if (!misses_.arrive(fill.tag, fill.sectors)) return;
+  const int slot = misses_.slot_of(fill.tag);
+  tags_.mark_dirty(slot, std::exchange(parts_[static_cast<std::size_t>(slot)], std::uint8_t{0}));
+  misses_.release(fill.tag, [&](const Waiter& w) { answer(now, w.client, w.answer); });
 }
 
 void L2Slice::answer(Tick at, std::uint32_t client, const MemoryResponse& token) {

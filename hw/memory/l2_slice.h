@@ -16,11 +16,13 @@
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
 #include "hw/memory/write_back.h"
+#include "models/cache/miss_table.h"
 #include "models/cache/tag_array.h"
 #include "models/memory/interleave.h"
 
 #include <bit>
 #include <memory>
+#include <optional>
 
 namespace quadrille::hw {
 
@@ -88,12 +90,6 @@ class L2Slice final : public Unit {
     std::uint32_t client = 0;
     MemoryResponse answer;
   };
-  struct Miss {
-    int slot = 0;
-    std::uint8_t pending = 0;  ///< sectors on their way
-    std::uint8_t dirty = 0;    ///< those of them that were written in part
-    std::vector<Waiter> waiters;
-  };
   struct Answer {
     Tick at = 0;
     MemoryResponse token;
@@ -110,10 +106,15 @@ class L2Slice final : public Unit {
   bool read(Tick now, std::uint32_t client, const MemoryRequest& request);
   bool write(Tick now, const MemoryRequest& request);
   bool write_part(Tick now, std::uint32_t client, const MemoryRequest& request);
+  [[nodiscard]] bool all_there(const MemoryRequest& request) const;
+  /// Marks what is written dirty once the rest is there, which is fetched; returns the tag of the line's miss,
+  /// none when the line has no place now.
+  std::optional<std::uint32_t> write_when_fetched(Tick now, std::uint32_t client,
+                                                  const MemoryRequest& request);
   bool atomic(Tick now, std::uint32_t client, const MemoryRequest& request);
-  /// The entry of a line's misses, with what the request lacks asked of the channel; none when the line has
-  /// no place now.
-  Miss* fetch(Tick now, std::uint32_t client, const MemoryRequest& request);
+  /// Asks the channel for what the request lacks, and returns the tag of the line's miss; none when the line
+  /// has no place now.
+  std::optional<std::uint32_t> fetch(Tick now, std::uint32_t client, const MemoryRequest& request);
   [[nodiscard]] int place(Tick now, std::uint32_t line);
   void write_back(Tick now, std::uint32_t line, std::uint8_t sectors);
   void write_back_others(Tick now, std::uint32_t victim);
@@ -132,9 +133,8 @@ class L2Slice final : public Unit {
   const Params& params_;
   Stats stats_;
   models::TagArray tags_;
-  std::vector<Miss> misses_;
-  std::vector<std::uint32_t> free_misses_;
-  std::vector<int> miss_of_slot_;
+  models::MissTable<Waiter> misses_;
+  std::vector<std::uint8_t> parts_;       ///< by slot: sectors on their way that were written in part
   std::vector<Queue<Answer>> answers_;    ///< by client, in order of time
   std::vector<std::uint64_t> answering_;  ///< a bit a client: it has answers
   Tick answer_due_ = kNever;              ///< no client has an answer due before

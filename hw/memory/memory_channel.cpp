@@ -5,6 +5,7 @@
 
 #include "models/memory/device_memory.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace quadrille::hw {
@@ -60,6 +61,10 @@ models::DramControllerParams MemoryChannel::Params::controller() const {
   p.reads = queue_depth;
   p.writes = write_queue;
   return p;
+}
+
+double MemoryChannel::Params::bytes_per_clk() const {
+  return static_cast<double>(burst_bytes) * pseudo_channels / std::max<int>(t_burst, t_ccd_s);
 }
 
 Histogram& MemoryChannel::Stats::latency(MemoryClient client) {
@@ -226,6 +231,8 @@ void MemoryChannel::details(Details& details) const {
   details.by_draw(DrawCount::kMemoryBytes, stats_->read_bytes);
   details.by_draw(DrawCount::kMemoryBytes, stats_->write_bytes);
   details.by_draw(DrawCount::kMemoryReadBytes, stats_->read_bytes);
+  details.shared_by_draws(nullptr);
+  details.work({&stats_->read_bytes, &stats_->write_bytes}, params_.bytes_per_clk());
 }
 
 std::vector<Facet> MemoryChannel::row() const {

@@ -290,6 +290,8 @@ struct MemoryChannel::Params : ParamGroup {
                Effect::kSlower};
 
   [[nodiscard]] models::DramControllerParams controller() const;
+  /// What the data buses move at most, in a cycle of the memory clock.
+  [[nodiscard]] double bytes_per_clk() const;
 };
 
 struct MemoryChannel::Stats : StatGroup {

@@ -34,7 +34,7 @@ CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& cont
 }
 
 std::string CoarseRaster::state_text() const {
-  return fmt::format("triangle {} of draw {}", triangle_, draw_);
+  return fmt::format("triangle {} of draw {}", triangle_, draw_.index());
 }
 
 Wake CoarseRaster::work_wake() const {
@@ -55,8 +55,7 @@ void CoarseRaster::take_updates(Tick now) {
   hiz_in.take_ready(now, [&](std::size_t, const HiZToken& update) {
     ++stats_.hiz_updates;
     if (update.pass != pass_ || hiz_.empty()) return;
-    float& held =
-        hiz_[std::size_t{update.tile_y} * frame_.passes[pass_].depth.surface.tiles_x + update.tile_x];
+    float& held = hiz_[std::size_t{update.tile_y} * frame_.pass(pass_).depth.surface.tiles_x + update.tile_x];
     held = std::min(held, update.max_depth);
   });
 }
@@ -79,10 +78,11 @@ void CoarseRaster::spend(Tick now, std::int64_t cost) {
 
 void CoarseRaster::take_token(Tick now) {
   const TriangleToken token = triangle_in.pop(now);
-  stats_.working_for(draw_of(token.kind, token.index));
+  stats_.working_for(token.part.draw());
   if (token.kind == TokenKind::kWork) {
-    if (stats_.triangles.value() == 0 || token.index != draw_) note_direction(frame_.draw(token.index));
-    draw_ = token.index;
+    if (stats_.triangles.value() == 0 || token.part.draw() != draw_)
+      note_direction(frame_.draw(token.part.draw()));
+    draw_ = token.part.draw();
     triangle_ = token.triangle;
     walk_ = models::TileWalk(triangles_[triangle_].setup);
     charged_tests_ = touched_ = owned_ = 0;
@@ -92,19 +92,19 @@ void CoarseRaster::take_token(Tick now) {
     free_ = now;  // the first tile may leave in this very cycle
     return;
   }
-  if (token.kind == TokenKind::kPassBegin) begin_pass(token.index);
-  tile_out.push(now, {token.kind, false, 0, 0, token.index, token.triangle});
+  if (token.kind == TokenKind::kPassBegin) begin_pass(token.part.pass());
+  tile_out.push(now, {token.kind, false, 0, 0, token.part, token.triangle});
   spend(now, WorkRate::kCycle);
 }
 
-void CoarseRaster::begin_pass(std::uint32_t pass) {
+void CoarseRaster::begin_pass(PassId pass) {
   pass_ = pass;
-  const PassState& state = frame_.passes[pass];
+  const PassState& state = frame_.pass(pass);
   hiz_trusted_ = true;
   hiz_.clear();
-  const auto first = frame_.draws.begin() + state.first_draw;
-  const bool tests = state.has_depth && std::any_of(first, first + state.draws,
-                                                    [](const DrawState& d) { return d.uses_depth(); });
+  const bool tests = state.has_depth && std::ranges::any_of(frame_.draws_of(state), [](const DrawState& d) {
+                       return d.uses_depth();
+                     });
   if (tests && params_.hiz)
     hiz_.assign(std::size_t{state.depth.surface.tiles_x} * state.depth.surface.tiles_y,
                 state.loads_depth() ? std::numeric_limits<float>::infinity() : state.clear_depth);
@@ -123,7 +123,7 @@ void CoarseRaster::note_direction(const DrawState& draw) {
 
 bool CoarseRaster::hidden(const models::TileHit& tile) const {
   if (!hiz_usable_) return false;
-  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.passes[pass_].depth.surface.tiles_x +
+  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.pass(pass_).depth.surface.tiles_x +
                           static_cast<std::size_t>(tile.tile_x)];
   const float nearest = models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y).min;
   return frame_.draw(draw_).depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;

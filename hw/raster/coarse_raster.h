@@ -80,7 +80,7 @@ class CoarseRaster final : public Unit {
   /// Of this walk so far: those of its own tiles, and its share of those that failed.
   [[nodiscard]] std::uint64_t tests() const;
   void walk(Tick now);
-  void begin_pass(std::uint32_t pass);
+  void begin_pass(PassId pass);
   [[nodiscard]] bool hidden(const models::TileHit& tile) const;
   void drop(const models::TileHit& tile);
   void note_direction(const DrawState& draw);
@@ -98,7 +98,8 @@ class CoarseRaster final : public Unit {
   std::uint64_t charged_tests_ = 0;        ///< of this walk
   std::uint64_t touched_ = 0, owned_ = 0;  ///< tiles of this walk, and those of them that are the engine's
   std::uint64_t triangle_ = 0;             ///< being walked
-  std::uint32_t draw_ = 0, pass_ = 0;
+  DrawId draw_;
+  PassId pass_;
   bool hiz_usable_ = false;  ///< this draw may be tested
   bool hiz_trusted_ = true;  ///< no draw of the pass has raised depths
   std::uint64_t since_sync_ = 0;

@@ -34,14 +34,15 @@ Wake FineRaster::next() const {
 }
 
 FifoOut<CoverageToken>& FineRaster::output_of(const TileToken& tile) const {
-  return *coverage_out[models::partition_of(tile.tile_x, tile.tile_y, screen_.partitions) / screen_.engines];
+  return *coverage_out[models::partition_of(tile.tile_x, tile.tile_y, screen_.partitions).index() /
+                       screen_.engines];
 }
 
 void FineRaster::act(Tick now) {
   const TileToken tile = tile_in.pop(now);
-  stats_.working_for(draw_of(tile.kind, tile.index));
+  stats_.working_for(tile.part.draw());
   if (tile.kind == TokenKind::kWork) return rasterize(now, tile);
-  for (auto& out : coverage_out) out->push(now, {tile.kind, false, 0, 0, tile.index, tile.triangle, 0});
+  for (auto& out : coverage_out) out->push(now, {tile.kind, false, 0, 0, tile.part, tile.triangle, 0});
   free_ = rate_.charge(now, WorkRate::kCycle);
   occupy(now, rate_.cycles());
 }
@@ -61,7 +62,7 @@ void FineRaster::rasterize(Tick now, const TileToken& tile) {
   occupy(now, rate_.cycles());
   if (coverage == 0) return;
   output_of(tile).push(
-      now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.index, tile.triangle, coverage});
+      now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.part, tile.triangle, coverage});
 }
 
 void FineRaster::audit(Audit& audit) const {

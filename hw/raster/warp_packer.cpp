@@ -10,11 +10,11 @@
 namespace quadrille::hw {
 
 WarpPacker::WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                       Store<WarpSlot>& warps)
+                       WarpStore& warps)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       warps_(warps),
-      partition_(static_cast<std::uint16_t>(context.number)) {
+      partition_(context.partition()) {
   add_initiation_rate("quads_per_clk");
   add_places("warp_slots", [this] { return opened_ - retired_ >= warps_.size(); });
 }
@@ -25,15 +25,13 @@ std::string WarpPacker::state_text() const {
 
 Wake WarpPacker::launch_wake(Tick own) const { return Wake(own).output(warp_out).output(order_out); }
 
-bool WarpPacker::full() const {
-  return open_ && warps_[(opened_ - 1) % warps_.size()].quads == models::kWarpQuads;
-}
+bool WarpPacker::full() const { return open_ && warps_[slot_of(opened_ - 1)].quads == models::kWarpQuads; }
 
 bool WarpPacker::must_launch_first() const {
   if (!open_) return false;
-  const WarpSlot& warp = warps_[(opened_ - 1) % warps_.size()];
+  const WarpSlot& warp = warps_[slot_of(opened_ - 1)];
   const CoverageToken& token = coverage_in.front();
-  if (token.kind == TokenKind::kWork) return token.index != warp.draw || token.late != warp.late;
+  if (token.kind == TokenKind::kWork) return token.part.draw() != warp.draw || token.late != warp.late;
   return token.kind != TokenKind::kSync;
 }
 
@@ -77,11 +75,11 @@ void WarpPacker::work(Tick now) {
 
 void WarpPacker::take_boundary(Tick now) {
   const CoverageToken token = coverage_in.pop(now);
-  stats_.working_for(draw_of(token.kind, token.index));
+  stats_.working_for(token.part.draw());
   if (token.kind == TokenKind::kSync && open_) {
     sync_ = token.triangle;
   } else {
-    order_out.push(now, {token.kind, token.index, 0, token.kind == TokenKind::kSync ? token.triangle : 0});
+    order_out.push(now, {token.kind, token.part, {}, token.kind == TokenKind::kSync ? token.triangle : 0});
   }
   free_ = after(now, 1);
   occupy(now, 1);
@@ -89,14 +87,13 @@ void WarpPacker::take_boundary(Tick now) {
 
 void WarpPacker::take_quads(Tick now) {
   const CoverageToken& token = coverage_in.front();
-  stats_.working_for(token.index, token.tile_x, token.tile_y);
-  const std::uint64_t slot = (open_ ? opened_ - 1 : opened_) % warps_.size();
-  WarpSlot& warp = warps_[slot];
+  stats_.working_for(token.part.draw(), token.tile_x, token.tile_y);
+  WarpSlot& warp = warps_[slot_of(open_ ? opened_ - 1 : opened_)];
   if (!open_) {
     ++opened_;
     open_ = true;
     sync_ = 0;
-    warp.draw = token.index;
+    warp.draw = token.part.draw();
     warp.late = token.late;
     warp.quads = 0;
     warp.covered = 0;
@@ -129,15 +126,14 @@ void WarpPacker::take_quads(Tick now) {
 }
 
 void WarpPacker::launch(Tick now) {
-  const std::uint64_t slot = (opened_ - 1) % warps_.size();
+  const WarpSlotId slot = slot_of(opened_ - 1);
   WarpSlot& warp = warps_[slot];
   warp.alive = warp.covered;
   ++stats_.warps;
   if (warp.quads < models::kWarpQuads) ++stats_.partial_warps;
-  warp_out.push(
-      now, {warp.draw, static_cast<std::uint32_t>(slot), partition_,
-            static_cast<std::uint16_t>(warp.quad[0].x / 8), static_cast<std::uint16_t>(warp.quad[0].y / 8)});
-  order_out.push(now, {TokenKind::kWork, warp.draw, static_cast<std::uint32_t>(slot), sync_});
+  warp_out.push(now, {warp.draw, slot, partition_, static_cast<std::uint16_t>(warp.quad[0].x / 8),
+                      static_cast<std::uint16_t>(warp.quad[0].y / 8)});
+  order_out.push(now, {TokenKind::kWork, warp.draw, slot, sync_});
   open_ = false;
   free_ = params_.launch_clk == 0 ? now : after(now, params_.launch_clk);
   occupy(now, params_.launch_clk);

@@ -45,11 +45,11 @@ class WarpPacker final : public Unit {
     Counter timeouts{*this, "timeouts", "warp", "Warps launched because no input came"};
   };
   WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-             Store<WarpSlot>& warps);
+             WarpStore& warps);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
-  FifoIn<ReleaseToken> release_in{*this, "release_in", LinkRole::kReply};
-  FifoOut<WarpToken> warp_out{*this, "warp_out"};
+  FifoIn<WarpReleaseToken> release_in{*this, "release_in", LinkRole::kReply};
+  FifoOut<FragmentWarpToken> warp_out{*this, "warp_out"};
   FifoOut<OrderToken> order_out{*this, "order_out"};
 
   [[nodiscard]] Wake next() const override;
@@ -71,10 +71,12 @@ class WarpPacker final : public Unit {
   void take_quads(Tick now);
   void take_boundary(Tick now);
   void launch(Tick now);
+  /// Of the warp that was opened as this one, counted from 0.
+  [[nodiscard]] WarpSlotId slot_of(std::uint64_t warp) const { return WarpSlotId(warp % warps_.size()); }
 
   const Params& params_;
-  Store<WarpSlot>& warps_;
-  const std::uint16_t partition_;
+  WarpStore& warps_;
+  const PartitionId partition_;
   Stats stats_;
   std::uint64_t opened_ = 0;  ///< warps opened so far; the open one is opened_ - 1
   std::uint64_t retired_ = 0;

@@ -17,6 +17,7 @@
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
+#include "hw/memory/flush.h"
 #include "hw/rop/surface_cache.h"
 
 namespace quadrille::hw {
@@ -57,7 +58,7 @@ class DepthUnit final : public Unit {
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-            const TriangleStore& triangles, Store<WarpSlot>& warps);
+            const TriangleStore& triangles, WarpStore& warps);
 
   FifoIn<CoverageToken> coverage_in{*this, "coverage_in"};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
@@ -73,8 +74,11 @@ class DepthUnit final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kDepth;
 
  private:
+  /// Marks, in the number by which the cache knows who waits, an entry of the late port.
+  static constexpr std::uint32_t kLateBit = 0x80000000u;
   struct EarlyEntry {
     CoverageToken token;
     int missing = 0;
@@ -89,7 +93,6 @@ class DepthUnit final : public Unit {
     bool acquired = false;
     std::array<std::uint8_t, models::kWarpQuads> done{};  ///< of `SurfaceCache::acquire`, by quad
   };
-  enum class Flush : std::uint8_t { kNone, kDraining, kFenced };
 
   // Early port.
   [[nodiscard]] Wake early_take_wake() const;
@@ -113,10 +116,8 @@ class DepthUnit final : public Unit {
   bool acquire_late(LateEntry& entry, std::uint32_t number);
   void take_answers(Tick now);
   [[nodiscard]] Wake flush_wake() const;
-  void advance_flush(Tick now);
   [[nodiscard]] bool waits_for_late(const CoverageToken& token) const;
-  void begin_pass(std::uint32_t pass);
-  void note_direction(const DrawState& draw);
+  void begin_pass(PassId pass);
   void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] std::size_t tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const;
@@ -125,12 +126,13 @@ class DepthUnit final : public Unit {
   const Frame& frame_;
   models::DeviceMemory& device_;
   const TriangleStore& triangles_;
-  Store<WarpSlot>& warps_;
-  const std::uint32_t partition_, partitions_;
+  WarpStore& warps_;
+  const PartitionId partition_;
+  const std::uint32_t partitions_;
   Stats stats_;
   MemoryPort port_;
   SurfaceCache cache_;
-  std::uint32_t pass_ = 0;
+  PassId pass_;
   Queue<EarlyEntry> early_;
   Queue<LateEntry> late_;
   /// numbers of the fronts; waiters are named by number and port
@@ -140,8 +142,7 @@ class DepthUnit final : public Unit {
   std::vector<std::uint32_t> late_in_flight_;  ///< quads by tile
   bool some_wait_for_late_ = false;            ///< draws of the frame: `waits_for_late`
   std::vector<float> known_max_;               ///< by tile: what Hi-Z was told
-  Flush flush_ = Flush::kNone;
-  int fences_ = 0;
+  Flush flush_{port_};
   Tick free_ = 0, take_free_ = 0;
 };
 

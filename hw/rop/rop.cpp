@@ -11,8 +11,6 @@ namespace quadrille::hw {
 
 namespace {
 
-constexpr std::uint32_t kFenceTag = 0xffffffffu;
-
 /// The part of a tile that one quad of a warp covers.
 models::LaneMask lanes_of(const WarpSlot& warp, int q) { return (warp.alive >> (4 * q)) & 0xf; }
 
@@ -55,18 +53,17 @@ SectorWishes wishes_of(const SectorPixels& pixels, bool reads_old) {
 
 }  // namespace
 
-Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-         Store<WarpSlot>& warps)
+Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
       device_(context.memory),
       warps_(warps),
-      partition_(static_cast<std::uint32_t>(context.number)),
+      partition_(context.partition()),
       partitions_(static_cast<std::uint32_t>(context.machine.partitions)),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
-             surface_writer(SurfaceKind::kColor, context.number)),
+             surface_writer(SurfaceKind::kColor, context.partition())),
       shaded_(static_cast<std::size_t>(warps.size()), false) {
   add_initiation_rate("quads_per_clk");
   add_places("warps_in_flight",
@@ -86,7 +83,7 @@ Wake Rop::test_wake() const {
   if (tested_ >= entries_.size()) return Wake::never(order_in);
   const Entry& entry = entries_[tested_];
   if (entry.token.kind != TokenKind::kWork) return Wake(test_free_);
-  if (!shaded_[entry.token.slot]) return Wake::never(done_in[0]);
+  if (!shaded_[entry.token.slot.index()]) return Wake::never(done_in[0]);
   return warps_[entry.token.slot].late ? Wake(test_free_).output(late_out) : Wake(test_free_);
 }
 
@@ -113,8 +110,8 @@ Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
 }
 
 Wake Rop::retire_wake() const {
-  if (flush_ == Flush::kFenced && fences_ == 0) return Wake(free_).output(retire_out);
-  if (flush_ != Flush::kNone) return Wake(kNever);
+  if (flush_.done()) return Wake(free_).output(retire_out);
+  if (depth_flushes_ || flush_.running()) return Wake(kNever);
   if (entries_.empty() || acquired_ == 0) return Wake(kNever);
   const Entry& head = entries_.front();
   if (head.missing > 0 || claim_stalled_) return Wake::never(port_.response_in[0]);
@@ -140,15 +137,12 @@ void Rop::act(Tick now) {
   if (acquire_wake().at() <= now) acquire(now);
   if (retire_wake().at() <= now) retire(now);
   port_.send(now);
-  advance_flush(now);
+  if (flush_.advance()) free_ = after(now, 1);
 }
 
 void Rop::take_inputs(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
-    if (answer.tag == kFenceTag) {
-      --fences_;
-      return;
-    }
+    if (flush_.take(answer)) return;
     stalled_ = false;
     claim_stalled_ = false;
     cache_.fill(answer, [&](std::uint32_t number) {
@@ -160,7 +154,7 @@ void Rop::take_inputs(Tick now) {
   done_in.visit_holding(0, [&](std::size_t core, FifoIn<FragmentDoneToken>& in) {
     for (; in.ready_at(now) && load_out.room_at(now);
          load_out.push(now, {static_cast<std::uint32_t>(core), 0}))
-      shaded_[in.pop(now).slot] = true;
+      shaded_[in.pop(now).slot.index()] = true;
     return false;
   });
   while (late_in.ready_at(now)) take_late(now);
@@ -171,7 +165,8 @@ void Rop::take_late(Tick now) {
   if (late_in.pop(now).kind == TokenKind::kPassEnd) {
     stats_.working_for(kNoDraw);
     cache_.flush(port_);
-    flush_ = Flush::kDraining;
+    depth_flushes_ = false;
+    flush_.begin();
     return;
   }
   entries_[awaiting_].stage = Stage::kTested;
@@ -223,9 +218,9 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
 }
 
 void Rop::retire(Tick now) {
-  if (flush_ == Flush::kFenced) {
+  if (flush_.done()) {
     retire_out.push(now, {TokenKind::kPassEnd, pass_});
-    flush_ = Flush::kNone;
+    flush_.end();
     return;
   }
   const Entry entry = entries_.front();
@@ -245,8 +240,8 @@ void Rop::retire(Tick now) {
     if (warp.late) stats_.late_discarded += discarded;
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
     cycles = write_colors(warp);
-    shaded_[entry.token.slot] = false;
-    release_out.push(now, {entry.token.slot, 0});
+    shaded_[entry.token.slot.index()] = false;
+    release_out.push(now, {entry.token.slot});
     if (entry.token.sync != 0) sync_out.push(now, {0, entry.token.sync});
   } else {
     retire_boundary(now, entry);
@@ -261,21 +256,21 @@ void Rop::retire(Tick now) {
 }
 
 void Rop::retire_boundary(Tick now, const Entry& entry) {
-  stats_.working_for(draw_of(entry.token.kind, entry.token.index));
+  stats_.working_for(entry.token.part.draw());
   switch (entry.token.kind) {
     case TokenKind::kPassBegin: {
-      pass_ = entry.token.index;
-      const PassState& pass = frame_.passes[pass_];
+      pass_ = entry.token.part.pass();
+      const PassState& pass = frame_.pass(pass_);
       cache_.begin_pass({pass.color.data(), pass.colors}, partition_, partitions_);
       return;
     }
     case TokenKind::kDrawEnd:
       ++stats_.draws;
-      retire_out.push(now, {TokenKind::kDrawEnd, entry.token.index});
+      retire_out.push(now, {TokenKind::kDrawEnd, entry.token.part});
       return;
     case TokenKind::kPassEnd:
-      flush_ = Flush::kDepth;
-      late_out.push(now, {TokenKind::kPassEnd, 0});
+      depth_flushes_ = true;
+      late_out.push(now, {TokenKind::kPassEnd, {}});
       return;
     case TokenKind::kSync: sync_out.push(now, {0, entry.token.sync}); return;
     case TokenKind::kWork:
@@ -310,20 +305,12 @@ int Rop::write_colors(const WarpSlot& warp) {
     draw.visit_colors([&](std::size_t color) {
       stats_.pixels_written += pixels;
       if (draw.reads_color(color)) stats_.blended += pixels;
-      write_color(draw, frame_.passes[pass_], color, warp, part, device_);
+      write_color(draw, frame_.pass(pass_), color, warp, part, device_);
     });
   }
   int quad_cycles = 0;
   draw.visit_colors([&](std::size_t color) { quad_cycles += draw.reads_color(color) ? 2 * quads : quads; });
   return std::max(1, (quad_cycles + params_.quads_per_clk - 1) / params_.quads_per_clk);
-}
-
-void Rop::advance_flush(Tick now) {
-  if (flush_ != Flush::kDraining || !port_.queue_empty()) return;
-  port_.fence(kFenceTag);
-  fences_ = port_.slices();
-  flush_ = Flush::kFenced;
-  free_ = after(now, 1);
 }
 
 void Rop::audit(Audit& audit) const {

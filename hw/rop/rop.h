@@ -15,6 +15,7 @@
 #include "hw/base/queue.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
+#include "hw/memory/flush.h"
 #include "hw/rop/surface_cache.h"
 
 namespace quadrille::hw {
@@ -51,7 +52,7 @@ class Rop final : public Unit {
     Counter draws{*this, "draws", "draw", "Draws retired"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
-  Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, Store<WarpSlot>& warps);
+  Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps);
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
   FifoInGroup<FragmentDoneToken> done_in;
@@ -59,7 +60,7 @@ class Rop final : public Unit {
   FifoOut<ReleaseToken> load_out{*this, "load_out", LinkRole::kReply};
   FifoIn<LateToken> late_in{*this, "late_in", LinkRole::kReply};
   FifoOut<LateToken> late_out{*this, "late_out", LinkRole::kReply};
-  FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
+  FifoOut<WarpReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
   FifoOut<ReleaseToken> sync_out{*this, "sync_out", LinkRole::kReply};
   FifoOut<RetireToken> retire_out{*this, "retire_out", LinkRole::kReply};
 
@@ -71,6 +72,7 @@ class Rop final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kColor;
 
  private:
   /// Stages of an entry of the reorder buffer, in order.
@@ -84,7 +86,6 @@ class Rop final : public Unit {
     /// of `SurfaceCache::acquire`, by colour attachment and touched tile
     std::array<std::array<std::uint8_t, models::kWarpQuads>, models::kMaxColorAttachments> done{};
   };
-  enum class Flush : std::uint8_t { kNone, kDepth, kDraining, kFenced };
 
   [[nodiscard]] Wake test_wake() const;
   [[nodiscard]] Wake acquire_wake() const;
@@ -99,17 +100,17 @@ class Rop final : public Unit {
   void retire_boundary(Tick now, const Entry& entry);
   bool claim_colors(const WarpSlot& warp);
   int write_colors(const WarpSlot& warp);
-  void advance_flush(Tick now);
 
   const Params& params_;
   const Frame& frame_;
   models::DeviceMemory& device_;
-  Store<WarpSlot>& warps_;
-  const std::uint32_t partition_, partitions_;
+  WarpStore& warps_;
+  const PartitionId partition_;
+  const std::uint32_t partitions_;
   Stats stats_;
   MemoryPort port_;
   SurfaceCache cache_;
-  std::uint32_t pass_ = 0;
+  PassId pass_;
   Queue<Entry> entries_;
   std::uint32_t first_entry_ = 0;  ///< number of entries_.front()
   /// entries from the front that are past these stages (tested: test sent or not needed)
@@ -119,8 +120,8 @@ class Rop final : public Unit {
   /// no place for the colours of the next entry; a fill will make one
   bool stalled_ = false;
   bool claim_stalled_ = false;  ///< the same for the head, whose lines were evicted
-  Flush flush_ = Flush::kNone;
-  int fences_ = 0;
+  bool depth_flushes_ = false;  ///< the pass is over, and the depth unit flushes before this one
+  Flush flush_{port_};
   Tick free_ = 0, test_free_ = 0, acquire_free_ = 0;
 };
 

@@ -17,7 +17,7 @@ SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, mo
   cache_.own_dirty_lines(memory, owner);
 }
 
-void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, std::uint32_t partition,
+void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, PartitionId partition,
                               std::uint32_t partitions) {
   count_ = surfaces.size();
   for (std::size_t i = 0; i < count_; ++i) {
@@ -28,7 +28,7 @@ void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, std::ui
   }
 }
 
-void SurfaceCache::mark_cleared(Surface& surface, std::uint32_t partition, std::uint32_t partitions) {
+void SurfaceCache::mark_cleared(Surface& surface, PartitionId partition, std::uint32_t partitions) {
   const models::SurfaceLayout& layout = surface.state->surface;
   for (std::uint32_t y = 0; y < layout.tiles_y; ++y) {
     for (std::uint32_t x = 0; x < layout.tiles_x; ++x) {

@@ -53,8 +53,9 @@ struct SurfaceCacheStats {
 /// The surfaces that a partition writes through a cache.
 enum class SurfaceKind : std::uint8_t { kDepth, kColor };
 /// Who may write a line of memory while it is dirty: the cache of that surface in that partition.
-[[nodiscard]] constexpr models::DeviceMemory::Owner surface_writer(SurfaceKind surface, int partition) {
-  return static_cast<models::DeviceMemory::Owner>(1 + 2 * partition +
+[[nodiscard]] constexpr models::DeviceMemory::Owner surface_writer(SurfaceKind surface,
+                                                                   PartitionId partition) {
+  return static_cast<models::DeviceMemory::Owner>(1 + 2 * partition.index() +
                                                   (surface == SurfaceKind::kColor ? 1 : 0));
 }
 
@@ -65,8 +66,7 @@ class SurfaceCache {
 
   /// Begins a pass on these surfaces, of which this partition draws its tiles: what is not loaded is filled
   /// and marked. The attachments must outlive the pass.
-  void begin_pass(std::span<const AttachmentState> surfaces, std::uint32_t partition,
-                  std::uint32_t partitions);
+  void begin_pass(std::span<const AttachmentState> surfaces, PartitionId partition, std::uint32_t partitions);
   /// Asks for sectors of a tile: those in `read` with their contents, and a place for those in `write`, which
   /// will be overwritten whole, and in `part`. Adds what is not there yet to `missing` and tells `waiter` of
   /// each. False when there is no place now: try again after a fill, with the same `done`, which starts at 0
@@ -100,7 +100,7 @@ class SurfaceCache {
     Surface& surface = surfaces_[tile.surface];
     return surface.cleared[std::size_t{tile.y} * surface.state->surface.tiles_x + tile.x];
   }
-  void mark_cleared(Surface& surface, std::uint32_t partition, std::uint32_t partitions);
+  void mark_cleared(Surface& surface, PartitionId partition, std::uint32_t partitions);
   void write_marked(Surface& surface, MemoryPort& port);
   bool materialize(const SurfaceTile& tile, std::uint8_t& done, MemoryPort& port);
 

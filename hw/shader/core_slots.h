@@ -14,10 +14,13 @@ struct CoreSlot {
   std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseRequests> texels;
   models::WarpStorage storage;
   int replies = 0;  ///< units that work on the requests of the clause that ended
-  std::uint32_t draw = 0, store_slot = 0;
-  std::uint16_t partition = 0;
-  std::uint16_t tile_x = 0, tile_y = 0;  ///< fragment stage: of the warp's first quad
-  models::Stage stage = models::Stage::kVertex;
+  DrawId draw;
+  std::uint32_t batch = 0;  ///< vertex stage: its slot in the batch store
+  // Fragment stage: the warp's slot, and the place of its first quad.
+  WarpSlotId warp_slot;
+  PartitionId partition;
+  std::uint16_t tile_x = 0, tile_y = 0;
+  models::ShaderStage stage = models::ShaderStage::kVertex;
   std::uint16_t simd = 0;                                  ///< where its clauses issue
   models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues
   /// cycles from that clause's last issue until its results are there

@@ -26,7 +26,7 @@ class Distribution {
   /// Do fragment warps go to the core of their place on the screen, and wait while it has no room?
   [[nodiscard]] virtual bool by_place() const { return false; }
   /// That core; asked only of a policy that goes `by_place`.
-  [[nodiscard]] virtual std::size_t core_at(const WarpToken& /*warp*/) const { return 0; }
+  [[nodiscard]] virtual std::size_t core_at(const FragmentWarpToken& /*warp*/) const { return 0; }
 
  protected:
   /// The core with the fewest warps of those with room; of equals the next in turn.

@@ -13,9 +13,11 @@ class TileDistribution final : public Distribution {
   explicit TileDistribution(const DistributionSetup& setup) : setup_(setup) {}
   [[nodiscard]] std::size_t choose(const Cores& cores) const override { return least_loaded(cores); }
   [[nodiscard]] bool by_place() const override { return true; }
-  [[nodiscard]] std::size_t core_at(const WarpToken& warp) const override {
+  [[nodiscard]] std::size_t core_at(const FragmentWarpToken& warp) const override {
+    // The squares are spread over the cores as tiles are over partitions.
     return models::partition_of(warp.tile_x / setup_.block_tiles, warp.tile_y / setup_.block_tiles,
-                                setup_.cores);
+                                setup_.cores)
+        .index();
   }
 
  private:

@@ -108,9 +108,9 @@ void LoadStoreUnit::gather(const CoreSlot& slot, const StorageToken& token) {
 void LoadStoreUnit::take(Tick now) {
   const StorageToken token = request_in.pop(now);
   const CoreSlot& slot = slots_[token.slot];
-  if (token.stage == models::Stage::kVertex) stats_.working_for(token.draw);
+  if (token.stage == models::ShaderStage::kVertex) stats_.working_for(token.draw);
   else stats_.working_for(token.draw, slot.tile_x, slot.tile_y);
-  if (const std::uint32_t pass = frame_.draw(token.draw).pass; pass != pass_) {
+  if (const PassId pass = frame_.draw(token.draw).pass; pass != pass_) {
     pass_ = pass;
     cache_.forget();
   }

@@ -64,6 +64,7 @@ class LoadStoreUnit final : public Unit {
   LoadStoreUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
                 Store<CoreSlot>& slots);
 
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kStorage;
   FifoIn<StorageToken> request_in{*this, "request_in"};
   FifoOut<StorageToken> response_out{*this, "response_out", LinkRole::kReply};
 
@@ -102,7 +103,7 @@ class LoadStoreUnit final : public Unit {
   Stats stats_;
   MemoryPort port_;
   L1Cache cache_;
-  std::uint32_t pass_ = 0;  ///< of the latest request
+  PassId pass_;  ///< of the latest request
   Queue<Group> groups_;
   std::uint32_t first_group_ = 0;  ///< number of groups_.front(); waiters are named by number
   std::vector<Line> lines_;        ///< of the newest group

@@ -93,25 +93,31 @@ bool ShaderCore::fits(const models::Program& program, int kept_rows, int kept_sl
   return static_cast<int>(free_slots_.size()) > kept_slots && free_rows_ >= program.num_regs + kept_rows;
 }
 
-bool ShaderCore::kept_out(bool by_slots) const {
-  const auto out = [&](const FifoIn<WarpToken>& in, bool vertex) {
-    if (in.ready() == kNever) return false;
-    const DrawState& draw = frame_.draw(in.front().draw);
-    if (vertex ? fits(*draw.vertex.program, fragment_rows_, 1) : fits(*draw.fragment.program, 0, 0))
-      return false;
-    return (static_cast<int>(free_slots_.size()) <= (vertex ? 1 : 0)) == by_slots;
-  };
-  return out(fragment_in, false) || out(vertex_in, true);
+// What a vertex warp leaves free is enough for one fragment warp, so fragments always drain.
+bool ShaderCore::vertex_fits() const {
+  return fits(*frame_.draw(vertex_in.front().draw).vertex.program, fragment_rows_, 1);
 }
 
-Wake ShaderCore::accept_wake(const FifoIn<WarpToken>& in, bool vertex) const {
-  Wake wake = Wake(accept_free_).input(in);
-  if (in.ready() == kNever) return wake;
-  const DrawState& draw = frame_.draw(in.front().draw);
-  // What a vertex warp leaves free is enough for one fragment warp, so fragments always drain.
-  const bool room =
-      vertex ? fits(*draw.vertex.program, fragment_rows_, 1) : fits(*draw.fragment.program, 0, 0);
-  return room ? wake : Wake(kNever);
+bool ShaderCore::fragment_fits() const {
+  return fits(*frame_.draw(fragment_in.front().draw).fragment.program, 0, 0);
+}
+
+bool ShaderCore::kept_out(bool by_slots) const {
+  const auto out = [&](int kept_slots) {
+    return (static_cast<int>(free_slots_.size()) <= kept_slots) == by_slots;
+  };
+  return (fragment_in.ready() != kNever && !fragment_fits() && out(0)) ||
+         (vertex_in.ready() != kNever && !vertex_fits() && out(1));
+}
+
+Wake ShaderCore::vertex_wake() const {
+  const Wake wake = Wake(accept_free_).input(vertex_in);
+  return vertex_in.ready() == kNever || vertex_fits() ? wake : Wake(kNever);
+}
+
+Wake ShaderCore::fragment_wake() const {
+  const Wake wake = Wake(accept_free_).input(fragment_in);
+  return fragment_in.ready() == kNever || fragment_fits() ? wake : Wake(kNever);
 }
 
 Wake ShaderCore::issue_wake() const { return Wake(ready_.empty() ? kNever : ready_.front().at); }
@@ -129,8 +135,8 @@ Wake ShaderCore::completion_wake(const Completion& done) const {
     if (slot.warp.access_count > 0) wake.output(*storage_out);
     return wake;
   }
-  return slot.stage == models::Stage::kVertex ? wake.output(vertex_out)
-                                              : wake.output(*fragment_out[slot.partition]);
+  return slot.stage == models::ShaderStage::kVertex ? wake.output(vertex_out)
+                                                    : wake.output(*fragment_out[slot.partition.index()]);
 }
 
 const ShaderCore::Completion* ShaderCore::next_completion(Wake& wake) const {
@@ -151,8 +157,8 @@ Wake ShaderCore::next() const {
   (void)next_completion(wake);
   wake = Wake::sooner(wake, issue_wake());
   wake = Wake::sooner(wake, simd_wake());
-  wake = Wake::sooner(wake, accept_wake(vertex_in, true));
-  wake = Wake::sooner(wake, accept_wake(fragment_in, false));
+  wake = Wake::sooner(wake, vertex_wake());
+  wake = Wake::sooner(wake, fragment_wake());
   if (texture_in) wake = Wake::sooner(wake, Wake().input(*texture_in));
   if (storage_in) wake = Wake::sooner(wake, Wake().input(*storage_in));
   if (wake.at() != kNever || wake.cause() != nullptr) return wake;
@@ -171,8 +177,8 @@ void ShaderCore::act(Tick now) {
     completions_.erase(completions_.begin() + (done - completions_.data()));
     complete(now, taken);
   }
-  if (accept_wake(fragment_in, false).at() <= now) accept(now, fragment_in, false);
-  else if (accept_wake(vertex_in, true).at() <= now) accept(now, vertex_in, true);
+  if (fragment_wake().at() <= now) accept_fragment(now);
+  else if (vertex_wake().at() <= now) accept_vertex(now);
   while (issue_wake().at() <= now) issue(now);
   // The SIMDs issue at least until the first of their clauses ends.
   if (const Simd::Cycle until = first_end(simds_); until != Simd::kNever)
@@ -193,21 +199,36 @@ void ShaderCore::take_reply(Tick now, std::uint32_t index) {
   if (--slots_[index].replies == 0) ready_.push_back({now, index});
 }
 
-void ShaderCore::accept(Tick now, FifoIn<WarpToken>& in, bool vertex) {
-  const WarpToken token = in.pop(now);
-  stats_.working_for(token.draw);
+void ShaderCore::accept_vertex(Tick now) {
+  const VertexWarpToken token = vertex_in.pop(now);
+  accept(now, token.draw, [&](CoreSlot& slot) {
+    slot.stage = models::ShaderStage::kVertex;
+    slot.batch = token.slot;
+    launch_vertex(slot);
+  });
+}
+
+void ShaderCore::accept_fragment(Tick now) {
+  const FragmentWarpToken token = fragment_in.pop(now);
+  accept(now, token.draw, [&](CoreSlot& slot) {
+    slot.stage = models::ShaderStage::kFragment;
+    slot.warp_slot = token.slot;
+    slot.partition = token.partition;
+    slot.tile_x = token.tile_x;
+    slot.tile_y = token.tile_y;
+    launch_fragment(slot);
+  });
+}
+
+template <class Launch>
+void ShaderCore::accept(Tick now, DrawId draw, const Launch& launch) {
+  stats_.working_for(draw);
   const std::uint32_t index = free_slots_.back();
   free_slots_.pop_back();
   CoreSlot& slot = slots_[index];
-  slot.draw = token.draw;
-  slot.store_slot = token.slot;
-  slot.partition = token.partition;
-  slot.tile_x = token.tile_x;
-  slot.tile_y = token.tile_y;
-  slot.stage = vertex ? models::Stage::kVertex : models::Stage::kFragment;
+  slot.draw = draw;
   give_simd(slot);
-  if (vertex) launch_vertex(slot);
-  else launch_fragment(slot);
+  launch(slot);
   free_rows_ -= slot.warp.program->num_regs;
   ready_.push_back({after(now, 1), index});
   accept_free_ = after(now, 1);
@@ -215,7 +236,7 @@ void ShaderCore::accept(Tick now, FifoIn<WarpToken>& in, bool vertex) {
 
 void ShaderCore::launch_vertex(CoreSlot& slot) {
   const DrawState& draw = frame_.draw(slot.draw);
-  BatchSlot& batch = batches_[slot.store_slot];
+  BatchSlot& batch = batches_[slot.batch];
   const models::LaneMask lanes =
       batch.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch.lanes) - 1;
   slot.warp.vertex = &batch.inputs;
@@ -230,7 +251,7 @@ void ShaderCore::launch_vertex(CoreSlot& slot) {
 
 void ShaderCore::launch_fragment(CoreSlot& slot) {
   const DrawState& draw = frame_.draw(slot.draw);
-  const WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
+  const WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
   const std::uint32_t engine =
       models::engine_of_partition(slot.partition, static_cast<std::uint32_t>(triangles_.size()));
   fill_fragment_inputs(work, *triangles_[engine], slot.fragment);
@@ -304,13 +325,13 @@ void ShaderCore::complete(Tick now, const Completion& done) {
 
 void ShaderCore::retire(Tick now, std::uint32_t index) {
   CoreSlot& slot = slots_[index];
-  if (slot.stage == models::Stage::kVertex) {
-    vertex_out.push(now, {slot.store_slot});
+  if (slot.stage == models::ShaderStage::kVertex) {
+    vertex_out.push(now, {slot.batch});
   } else {
-    WarpSlot& work = (*warps_[slot.partition])[slot.store_slot];
+    WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
     work.alive = work.covered & ~slot.warp.killed;
     take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment.z, work);
-    fragment_out[slot.partition]->push(now, {slot.store_slot});
+    fragment_out[slot.partition.index()]->push(now, {slot.warp_slot});
   }
   --simd_warps_[slot.simd];
   free_rows_ += slot.warp.program->num_regs;
@@ -332,6 +353,8 @@ void ShaderCore::details(Details& details) const {
   details.total_of_tiles(TileCount::kShaded, stats_.fragments);
   details.by_draw(DrawCount::kTextureSent, stats_.texture);
   details.by_draw(DrawCount::kSimdBusy, stats_.simd_busy);
+  details.shared_by_draws(&stats_.simd_busy);
+  details.work({&stats_.simd_busy}, params_.simds);
 }
 
 std::vector<Facet> ShaderCore::row() const {

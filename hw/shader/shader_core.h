@@ -104,7 +104,7 @@ class ShaderCore final : public Unit {
   struct Stores {
     Store<CoreSlot>& slots;  ///< the core's own
     Store<BatchSlot>& batches;
-    std::vector<Store<WarpSlot>*> warps;          ///< by partition
+    std::vector<WarpStore*> warps;                ///< by partition
     std::vector<const TriangleStore*> triangles;  ///< by raster engine
   };
   /// Cycles of the core's instructions by class. A class without results that others read has the latency of
@@ -118,8 +118,8 @@ class ShaderCore final : public Unit {
              const Stores& stores, const Neighbours& neighbours);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
-  FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
-  FifoIn<WarpToken> fragment_in{*this, "fragment_in", LinkRole::kFlow, kFragmentStream};
+  FifoIn<VertexWarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
+  FifoIn<FragmentWarpToken> fragment_in{*this, "fragment_in", LinkRole::kFlow, kFragmentStream};
   FifoOut<VertexDoneToken> vertex_out{*this, "vertex_out", LinkRole::kFlow, kVertexStream};
   std::vector<std::unique_ptr<FifoOut<FragmentDoneToken>>> fragment_out;
   /// absent when no program of the frame reads a texture
@@ -151,11 +151,19 @@ class ShaderCore final : public Unit {
   [[nodiscard]] bool fits(const models::Program& program, int kept_rows, int kept_slots) const;
   /// Does a warp wait for a slot, or else for registers?
   [[nodiscard]] bool kept_out(bool by_slots) const;
-  [[nodiscard]] Wake accept_wake(const FifoIn<WarpToken>& in, bool vertex) const;
+  /// Is there room for the vertex warp, or the fragment warp, at the head of its input?
+  [[nodiscard]] bool vertex_fits() const;
+  [[nodiscard]] bool fragment_fits() const;
+  [[nodiscard]] Wake vertex_wake() const;
+  [[nodiscard]] Wake fragment_wake() const;
   [[nodiscard]] Wake issue_wake() const;
   [[nodiscard]] Wake completion_wake(const Completion& done) const;
   [[nodiscard]] const Completion* next_completion(Wake& wake) const;
-  void accept(Tick now, FifoIn<WarpToken>& in, bool vertex);
+  void accept_vertex(Tick now);
+  void accept_fragment(Tick now);
+  /// Takes a free slot for a warp of this draw, and lets it be ready once `launch(slot)` has made it so.
+  template <class Launch>
+  void accept(Tick now, DrawId draw, const Launch& launch);
   void launch_vertex(CoreSlot& slot);
   void launch_fragment(CoreSlot& slot);
   void issue(Tick now);
@@ -172,7 +180,7 @@ class ShaderCore final : public Unit {
   const Frame& frame_;
   Store<CoreSlot>& slots_;
   Store<BatchSlot>& batches_;
-  std::vector<Store<WarpSlot>*> warps_;
+  std::vector<WarpStore*> warps_;
   std::vector<const TriangleStore*> triangles_;  ///< by raster engine
   const int fragment_rows_;                      ///< registers of the hungriest fragment program
   Stats stats_;

@@ -20,9 +20,9 @@ WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const UnitContext
   for (int i = 0; i <= context.machine.partitions; ++i)
     load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
   for (int c = 0; c < context.machine.cores; ++c) {
-    vertex_out.push_back(std::make_unique<FifoOut<WarpToken>>(*this, fmt::format("vertex_out_{}", c).c_str(),
-                                                              LinkRole::kFlow, kVertexStream));
-    fragment_out.push_back(std::make_unique<FifoOut<WarpToken>>(
+    vertex_out.push_back(std::make_unique<FifoOut<VertexWarpToken>>(
+        *this, fmt::format("vertex_out_{}", c).c_str(), LinkRole::kFlow, kVertexStream));
+    fragment_out.push_back(std::make_unique<FifoOut<FragmentWarpToken>>(
         *this, fmt::format("fragment_out_{}", c).c_str(), LinkRole::kFlow, kFragmentStream));
   }
 }
@@ -31,8 +31,9 @@ std::string WorkDistributor::state_text() const {
   return fmt::format("warps out by core: {}", fmt::join(loads_, ", "));
 }
 
-const FifoOut<WarpToken>& WorkDistributor::first_with_room(const Outputs& outputs) {
-  const FifoOut<WarpToken>* first = outputs[0].get();
+template <class Token>
+const FifoOut<Token>& WorkDistributor::first_with_room(const Outputs<Token>& outputs) {
+  const FifoOut<Token>* first = outputs[0].get();
   for (const auto& out : outputs) {
     if (out->room() < first->room()) first = out.get();
   }
@@ -49,7 +50,7 @@ Wake WorkDistributor::fragment_wake() const {
   if (first.at() == kNever) return first;
   if (!by_place_) return Wake(first).output(first_with_room(fragment_out));
   bool any = false;
-  fragment_in.visit_holding(0, [&](std::size_t, FifoIn<WarpToken>& in) {
+  fragment_in.visit_holding(0, [&](std::size_t, FifoIn<FragmentWarpToken>& in) {
     const Wake wake =
         Wake(fragment_free_).input(in).output(*fragment_out[distribution_->core_at(in.front())]);
     first = any ? Wake::sooner(first, wake) : wake;
@@ -74,7 +75,7 @@ void WorkDistributor::act(Tick now) {
 }
 
 void WorkDistributor::hand_out_fragments(Tick now) {
-  fragment_in.visit_holding(partition_turn_, [&](std::size_t p, FifoIn<WarpToken>& in) {
+  fragment_in.visit_holding(partition_turn_, [&](std::size_t p, FifoIn<FragmentWarpToken>& in) {
     if (!in.ready_at(now)) return false;
     const std::size_t core =
         by_place_ ? distribution_->core_at(in.front()) : choose(now, fragment_out, fragment_turn_);
@@ -87,14 +88,16 @@ void WorkDistributor::hand_out_fragments(Tick now) {
   });
 }
 
-std::size_t WorkDistributor::choose(Tick now, const Outputs& outputs, std::size_t turn) const {
+template <class Token>
+std::size_t WorkDistributor::choose(Tick now, const Outputs<Token>& outputs, std::size_t turn) const {
   Distribution::Cores cores{.loads = loads_, .next = turn};
   for (std::size_t c = 0; c < outputs.size(); ++c)
     cores.with_room |= std::uint64_t{outputs[c]->room_at(now)} << c;
   return distribution_->choose(cores);
 }
 
-void WorkDistributor::hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core,
+template <class Token>
+void WorkDistributor::hand_out(Tick now, FifoIn<Token>& in, Outputs<Token>& outputs, std::size_t core,
                                std::size_t& turn) {
   stats_.working_for(in.front().draw);
   outputs[core]->push(now, in.pop(now));

@@ -42,11 +42,13 @@ class WorkDistributor final : public Unit {
   WorkDistributor(sc_core::sc_module_name name, const UnitContext& context, const Params& params);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
-  FifoIn<WarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
-  FifoInGroup<WarpToken> fragment_in;
-  FifoInGroup<ReleaseToken> load_in;  ///< `slot` is the core
-  std::vector<std::unique_ptr<FifoOut<WarpToken>>> vertex_out;
-  std::vector<std::unique_ptr<FifoOut<WarpToken>>> fragment_out;
+  FifoIn<VertexWarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
+  FifoInGroup<FragmentWarpToken> fragment_in;  ///< by partition
+  FifoInGroup<ReleaseToken> load_in;           ///< `slot` is the core
+  template <class Token>
+  using Outputs = std::vector<std::unique_ptr<FifoOut<Token>>>;  ///< by core
+  Outputs<VertexWarpToken> vertex_out;
+  Outputs<FragmentWarpToken> fragment_out;
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
@@ -56,13 +58,15 @@ class WorkDistributor final : public Unit {
   [[nodiscard]] std::string state_text() const override;
 
  private:
-  using Outputs = std::vector<std::unique_ptr<FifoOut<WarpToken>>>;
-  [[nodiscard]] static const FifoOut<WarpToken>& first_with_room(const Outputs& outputs);
+  template <class Token>
+  [[nodiscard]] static const FifoOut<Token>& first_with_room(const Outputs<Token>& outputs);
   [[nodiscard]] Wake vertex_wake() const;
   [[nodiscard]] Wake fragment_wake() const;
   /// The core that gets the next warp of a kind; `kNone` of the policy where none has room.
-  [[nodiscard]] std::size_t choose(Tick now, const Outputs& outputs, std::size_t turn) const;
-  void hand_out(Tick now, FifoIn<WarpToken>& in, Outputs& outputs, std::size_t core, std::size_t& turn);
+  template <class Token>
+  [[nodiscard]] std::size_t choose(Tick now, const Outputs<Token>& outputs, std::size_t turn) const;
+  template <class Token>
+  void hand_out(Tick now, FifoIn<Token>& in, Outputs<Token>& outputs, std::size_t core, std::size_t& turn);
   void hand_out_fragments(Tick now);
 
   std::unique_ptr<Distribution> distribution_;

@@ -104,17 +104,17 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
   group.filter_cycles = std::max<std::int64_t>(1, per(quads, params_.filter_quads_per_clk));
 }
 
-void TextureUnit::begin_pass(std::uint32_t pass) {
+void TextureUnit::begin_pass(PassId pass) {
   if (pass == pass_) return;
   pass_ = pass;
-  if (!frame_.passes[pass].samples_attachments) return;
+  if (!frame_.pass(pass).samples_attachments) return;
   cache_.forget();
   ++stats_.cache_emptied;
 }
 
 void TextureUnit::take(Tick now) {
   const TextureToken token = request_in.pop(now);
-  if (token.stage == models::Stage::kVertex) stats_.working_for(token.draw);
+  if (token.stage == models::ShaderStage::kVertex) stats_.working_for(token.draw);
   else stats_.working_for(token.draw, slots_[token.slot].tile_x, slots_[token.slot].tile_y);
   begin_pass(frame_.draw(token.draw).pass);
   lines_.clear();
@@ -154,9 +154,9 @@ void TextureUnit::details(Details& details) const {
   details.by_draw(DrawCount::kTextureTaken, stats_.requests);
   details.by_draw(DrawCount::kSamples, stats_.lanes);
   details.by_draw(DrawCount::kTexels, stats_.texels);
-  details.by_draw(DrawCount::kBilinearQuads, stats_.bilinear_quads);
   details.by_draw(DrawCount::kTextureMisses, cache_.stats().misses);
   details.by_tile(TileCount::kTextureMisses, cache_.stats().misses);
+  details.work({&stats_.bilinear_quads}, params_.filter_quads_per_clk);
   port_.details(details, DrawCount::kTextureBytes);
 }
 

@@ -80,6 +80,7 @@ class TextureUnit final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  static constexpr MemoryClient kMemoryClient = MemoryClient::kTexture;
 
  private:
   struct Group {
@@ -90,7 +91,7 @@ class TextureUnit final : public Unit {
   };
   [[nodiscard]] Wake address_wake() const;
   [[nodiscard]] Wake answer_wake() const;
-  void begin_pass(std::uint32_t pass);
+  void begin_pass(PassId pass);
   void take(Tick now);
   void plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles);
   void look_up(Tick now);
@@ -102,7 +103,7 @@ class TextureUnit final : public Unit {
   Stats stats_;
   MemoryPort port_;
   L1Cache cache_;
-  std::uint32_t pass_ = 0;  ///< of the latest request
+  PassId pass_;  ///< of the latest request
   models::TexturePlan plan_;
   Queue<Group> groups_;
   std::uint32_t first_group_ = 0;           ///< number of groups_.front(); waiters are named by number

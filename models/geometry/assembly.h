@@ -1,12 +1,12 @@
 /// Primitive assembly: which vertices of a draw form its i-th triangle. [VK1.3 #drawing-primitive-topologies]
 #pragma once
 
+#include "models/base/pipeline_state.h"
+
 #include <array>
 #include <cstdint>
 
 namespace quadrille::models {
-
-enum class Topology : std::uint8_t { kTriangleList, kTriangleStrip, kTriangleFan };
 
 /// Triangles that `vertices` vertices of a draw form; left-over vertices form none.
 [[nodiscard]] constexpr std::uint32_t triangle_count(Topology topology, std::uint32_t vertices) {

@@ -54,12 +54,12 @@ constexpr std::array<RowSteps, 64> kRowSteps{{
 
 const std::array<std::array<std::uint32_t, 256>, 4> kScatter = make_scatter();
 
-std::uint32_t partition_of(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t partitions) {
+PartitionId partition_of(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t partitions) {
   QUADRILLE_CHECK(partitions >= 1 && partitions <= kRowSteps.size(), "{} partitions", partitions);
   const RowSteps& steps = kRowSteps[partitions - 1];
-  return (tile_x + steps.row * tile_y + steps.group * (tile_y >> steps.group_rows) +
-          steps.block * (tile_y >> steps.block_rows)) %
-         partitions;
+  return PartitionId((tile_x + steps.row * tile_y + steps.group * (tile_y >> steps.group_rows) +
+                      steps.block * (tile_y >> steps.block_rows)) %
+                     partitions);
 }
 
 }  // namespace quadrille::models

@@ -14,6 +14,7 @@
 #pragma once
 
 #include "models/base/error.h"
+#include "models/base/id.h"
 
 #include <array>
 #include <cstdint>
@@ -64,7 +65,6 @@ class Interleave {
 };
 
 /// Partition, below `partitions` (1 to 64), that owns a tile of 8x8 pixels.
-[[nodiscard]] std::uint32_t partition_of(std::uint32_t tile_x, std::uint32_t tile_y,
-                                         std::uint32_t partitions);
+[[nodiscard]] PartitionId partition_of(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t partitions);
 
 }  // namespace quadrille::models

@@ -12,8 +12,8 @@
 
 namespace quadrille::models {
 
-[[nodiscard]] inline std::uint32_t engine_of_partition(std::uint32_t partition, std::uint32_t engines) {
-  return partition % engines;
+[[nodiscard]] inline std::uint32_t engine_of_partition(PartitionId partition, std::uint32_t engines) {
+  return partition.index() % engines;
 }
 
 /// How the screen is shared out.

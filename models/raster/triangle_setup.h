@@ -9,6 +9,7 @@
 /// size of the triangle.
 #pragma once
 
+#include "models/base/pipeline_state.h"
 #include "models/raster/tile.h"
 #include "models/raster/viewport.h"
 
@@ -18,9 +19,6 @@
 #include <cstdint>
 
 namespace quadrille::models {
-
-enum class CullMode : std::uint8_t { kNone, kFront, kBack };
-enum class FrontFace : std::uint8_t { kCounterClockwise, kClockwise };
 
 /// Inside: origin + a * px + b * py >= 0, at the centre of pixel (px, py). |a|, |b| < 2^30; values fit 62
 /// bits for pixels within the window grid.

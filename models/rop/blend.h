@@ -6,33 +6,12 @@
 #pragma once
 
 #include "models/base/format.h"
+#include "models/base/pipeline_state.h"
 
 #include <array>
 #include <cstdint>
 
 namespace quadrille::models {
-
-enum class BlendFactor : std::uint8_t {
-  kZero,
-  kOne,
-  kSrcColor,
-  kOneMinusSrcColor,
-  kDstColor,
-  kOneMinusDstColor,
-  kSrcAlpha,
-  kOneMinusSrcAlpha,
-  kDstAlpha,
-  kOneMinusDstAlpha
-};
-enum class BlendOp : std::uint8_t { kAdd, kSubtract, kReverseSubtract, kMin, kMax };
-
-struct BlendState {
-  bool enable = false;
-  BlendFactor src_color = BlendFactor::kOne, dst_color = BlendFactor::kZero, src_alpha = BlendFactor::kOne,
-              dst_alpha = BlendFactor::kZero;
-  BlendOp color = BlendOp::kAdd, alpha = BlendOp::kAdd;
-  std::uint8_t write_mask = 0xf;  ///< bit 0 red .. bit 3 alpha
-};
 
 /// Does a write under this state need the old pixel (blending with it, or a partial write mask)?
 [[nodiscard]] bool reads_destination(const BlendState& state);

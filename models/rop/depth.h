@@ -1,20 +1,11 @@
 /// Depth test of a tile, and the bounds that Hi-Z keeps of one. [VK1.3 #fragops-depth]
 #pragma once
 
+#include "models/base/pipeline_state.h"
+
 #include <cstdint>
 
 namespace quadrille::models {
-
-enum class CompareOp : std::uint8_t {
-  kNever,
-  kLess,
-  kEqual,
-  kLessOrEqual,
-  kGreater,
-  kNotEqual,
-  kGreaterOrEqual,
-  kAlways
-};
 
 /// Pixels of `mask` for which `incoming op stored` holds; arrays and mask are quad-major (raster/tile.h).
 /// NaN compares as unordered: it fails all but kNotEqual and kAlways.

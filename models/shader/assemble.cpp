@@ -88,10 +88,10 @@ class Assembler {
           name);
   }
 
-  [[nodiscard]] Stage read_stage(const std::vector<std::string_view>& words) const {
+  [[nodiscard]] ShaderStage read_stage(const std::vector<std::string_view>& words) const {
     std::array<std::string_view, kStages> names;
-    for (std::size_t s = 0; s < kStages; ++s) names[s] = stage_info(static_cast<Stage>(s)).name;
-    return one_of<Stage>(words, names, "stage");
+    for (std::size_t s = 0; s < kStages; ++s) names[s] = stage_info(static_cast<ShaderStage>(s)).name;
+    return one_of<ShaderStage>(words, names, "stage");
   }
 
   template <class Enum, std::size_t kCount>

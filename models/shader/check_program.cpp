@@ -80,7 +80,7 @@ class Checker {
                 program_.varyings.size());
         break;
       case Immediate::kOutputSlot: {
-        const std::size_t slots = program_.stage == Stage::kVertex
+        const std::size_t slots = program_.stage == ShaderStage::kVertex
                                       ? kFirstVaryingOutput + program_.varyings.size()
                                       : kDepthOutput + 1u;
         require(in.imm < slots, "output slot {} does not exist; the stage has {}", in.imm, slots);

@@ -144,7 +144,7 @@ class Execution {
 };
 
 void check_interface(const Warp& warp) {
-  const bool vertex = warp.program->stage == Stage::kVertex;
+  const bool vertex = warp.program->stage == ShaderStage::kVertex;
   const bool has_inputs = vertex ? warp.vertex != nullptr : warp.fragment != nullptr;
   QUADRILLE_CHECK(has_inputs && warp.outputs != nullptr, "warp of '{}' runs without inputs or outputs",
                   warp.program->name);

@@ -161,7 +161,7 @@ const OpInfo* find_op(std::string_view name) {
 
 std::uint32_t color_outputs(const Program& program) {
   std::uint32_t outputs = 0;
-  if (program.stage != Stage::kFragment) return outputs;
+  if (program.stage != ShaderStage::kFragment) return outputs;
   for (const Instruction& i : program.code) {
     if (i.op == Op::kOutput && i.imm < kMaxColorOutputs) outputs |= 1u << i.imm;
   }
@@ -174,7 +174,7 @@ bool writes_buffers(const Program& program) {
   return std::ranges::any_of(program.code, [](const Instruction& i) { return writes_buffer(i.op); });
 }
 
-const StageInfo& stage_info(Stage stage) {
+const StageInfo& stage_info(ShaderStage stage) {
   static constexpr std::array<StageInfo, kStages> kInfos{
       {{"vertex", SystemValue::kVertexIndex, SystemValue::kInstanceIndex, true, false},
        {"fragment", SystemValue::kFragCoordX, SystemValue::kPrimitiveId, false, true}}};

@@ -7,7 +7,8 @@
 /// of lane masks. docs/isa.md is the reference; `disassemble` prints a listing and `assemble` reads it back.
 #pragma once
 
-#include "models/memory/attachment.h"
+#include "models/base/attachment.h"
+#include "models/base/pipeline_state.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -224,17 +225,16 @@ struct VertexInputUse {
   friend bool operator==(const VertexInputUse&, const VertexInputUse&) = default;
 };
 
-enum class Stage : std::uint8_t { kVertex, kFragment };
 inline constexpr std::size_t kStages = 2;
 
-/// What a stage of the pipeline gives to its programs; a row a stage, in the order of `Stage`.
+/// What a stage of the pipeline gives to its programs; a row a stage, in the order of `ShaderStage`.
 struct StageInfo {
   std::string_view name;
   SystemValue first_system_value, last_system_value;
   bool fetches;  ///< has vertex inputs
   bool quads;    ///< runs quads of pixels: varyings, derivatives, implicit levels of detail, discards
 };
-[[nodiscard]] const StageInfo& stage_info(Stage stage);
+[[nodiscard]] const StageInfo& stage_info(ShaderStage stage);
 
 /// The form in which a program executes (models/shader/decode.h). A program holds it once it has been
 /// prepared; a copy of a program starts without.
@@ -260,7 +260,7 @@ class DecodedCache {
 };
 
 struct Program {
-  Stage stage = Stage::kVertex;
+  ShaderStage stage = ShaderStage::kVertex;
   std::string name;               ///< for listings and errors
   std::vector<Instruction> code;  ///< ends with kEnd
   int num_regs = 0;

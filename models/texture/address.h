@@ -2,9 +2,9 @@
 /// #textures-texel-coordinate-systems, #textures-wrapping-operation]
 #pragma once
 
+#include "models/base/sampler.h"
 #include "models/texture/lanes.h"
 #include "models/texture/layout.h"
-#include "models/texture/sampler.h"
 
 namespace quadrille::models {
 

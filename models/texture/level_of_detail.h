@@ -2,10 +2,10 @@
 /// them.
 #pragma once
 
+#include "models/base/sampler.h"
 #include "models/precision.h"
 #include "models/shader/warp.h"
 #include "models/texture/layout.h"
-#include "models/texture/sampler.h"
 
 #include <array>
 #include <cstdint>

@@ -12,11 +12,11 @@
 /// too; no texel outside the texture is ever read.
 #pragma once
 
+#include "models/base/sampler.h"
 #include "models/memory/device_memory.h"
 #include "models/precision.h"
 #include "models/shader/warp.h"
 #include "models/texture/layout.h"
-#include "models/texture/sampler.h"
 
 #include <array>
 #include <cstdint>

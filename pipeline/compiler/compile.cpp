@@ -15,12 +15,11 @@ namespace {
 using models::Op;
 
 ScalarShader compile_stage(std::span<const std::uint32_t> words, std::string_view name,
-                           traces::ShaderStage stage) {
+                           models::ShaderStage stage) {
   OptimisedSpirv optimised = optimise_spirv(words, name);
   spirv::Module module(std::move(optimised.words), stage, name);
   module.kills_return = optimised.kills_return;
-  ScalarShader lowered = lower_shader(
-      module, stage == traces::ShaderStage::kVertex ? models::Stage::kVertex : models::Stage::kFragment);
+  ScalarShader lowered = lower_shader(module, stage);
   if (!module.unsupported_capability.empty()) throw user_error("{}: {}", name, module.unsupported_capability);
   return lowered;
 }
@@ -69,10 +68,10 @@ void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, con
 CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, std::string_view vertex_name,
                                   std::span<const std::uint32_t> fragment_spirv,
                                   std::string_view fragment_name, const ShaderTarget& target) {
-  ScalarShader fragment = compile_stage(fragment_spirv, fragment_name, traces::ShaderStage::kFragment);
+  ScalarShader fragment = compile_stage(fragment_spirv, fragment_name, models::ShaderStage::kFragment);
   clean_up(fragment);
   const Linkage linkage = link(fragment);
-  ScalarShader vertex = compile_stage(vertex_spirv, vertex_name, traces::ShaderStage::kVertex);
+  ScalarShader vertex = compile_stage(vertex_spirv, vertex_name, models::ShaderStage::kVertex);
   drop_unread_outputs(vertex, fragment, linkage);
   clean_up(vertex);
   CompiledPipeline pipeline{emit_program(vertex, linkage, target), emit_program(fragment, linkage, target),

@@ -154,7 +154,7 @@ class Encoder {
                            out.a.modifiers == 0 && out.a.index == out.dst;
       if (useless) continue;
       program.uses_discard |= out.op == Op::kKillIf;
-      program.writes_depth |= shader_.stage == models::Stage::kFragment && out.op == Op::kOutput &&
+      program.writes_depth |= shader_.stage == models::ShaderStage::kFragment && out.op == Op::kOutput &&
                               out.imm == models::kDepthOutput;
       program.uses_derivatives |= (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) ||
                                   out.op == Op::kTexImplicit || out.op == Op::kTexBias;
@@ -196,7 +196,7 @@ class Encoder {
     if (i.op == Op::kInterp) return linkage_.varyings.at(i.imm);
     if (names(i, models::Immediate::kTextureBinding)) return textures_.at(i.imm);
     if (names(i, models::Immediate::kBufferBinding)) return buffers_.at(i.imm);
-    if (i.op == Op::kOutput && shader_.stage == models::Stage::kVertex &&
+    if (i.op == Op::kOutput && shader_.stage == models::ShaderStage::kVertex &&
         i.imm >= models::kFirstVaryingOutput)
       return static_cast<std::uint16_t>(
           models::kFirstVaryingOutput +

@@ -52,7 +52,7 @@ inline constexpr std::uint32_t kMaxAttributeLocations = 32;
 /// (or a system value), kOutput names the ISA's output slot, with varyings at kFirstVaryingOutput + 4 *
 /// location + component. Linking packs them.
 struct ScalarShader {
-  models::Stage stage = models::Stage::kVertex;
+  models::ShaderStage stage = models::ShaderStage::kVertex;
   std::string name;
   std::vector<ScalarInstruction> code;
   std::vector<bool> variable;  ///< by virtual register

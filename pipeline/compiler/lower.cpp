@@ -10,7 +10,7 @@ constexpr std::size_t kMaxScalarCode = 60000;
 
 }  // namespace
 
-ScalarShader lower_shader(const spirv::Module& module, models::Stage stage) {
+ScalarShader lower_shader(const spirv::Module& module, models::ShaderStage stage) {
   Attempts attempts;
   for (;;) {
     try {
@@ -22,7 +22,7 @@ ScalarShader lower_shader(const spirv::Module& module, models::Stage stage) {
   }
 }
 
-Lowering::Lowering(const spirv::Module& module, models::Stage stage, const Attempts& attempts)
+Lowering::Lowering(const spirv::Module& module, models::ShaderStage stage, const Attempts& attempts)
     : module_(module), attempts_(attempts) {
   shader_.stage = stage;
   shader_.name = module.shader;

@@ -8,6 +8,6 @@
 namespace quadrille::pipeline {
 
 /// Lowers the entry point. Throws `UserError` with shader name and line for what is not supported.
-[[nodiscard]] ScalarShader lower_shader(const spirv::Module& module, models::Stage stage);
+[[nodiscard]] ScalarShader lower_shader(const spirv::Module& module, models::ShaderStage stage);
 
 }  // namespace quadrille::pipeline

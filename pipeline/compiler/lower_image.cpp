@@ -65,7 +65,7 @@ void Lowering::sample(const spirv::Instruction& i, bool projective) {
     throw unsupported(i, "sampling with gradients, offsets or a minimum level (textureGrad, textureOffset)");
   const bool bias = (mask & spv::ImageOperandsBiasMask) != 0, lod = (mask & spv::ImageOperandsLodMask) != 0;
   const bool is_implicit = i.op == spv::OpImageSampleImplicitLod || i.op == spv::OpImageSampleProjImplicitLod;
-  if (is_implicit && shader_.stage == models::Stage::kVertex)
+  if (is_implicit && shader_.stage == models::ShaderStage::kVertex)
     throw unsupported(i, "implicit level of detail in a vertex shader (use textureLod)");
   const Op op = lod ? Op::kTexLod : bias ? Op::kTexBias : Op::kTexImplicit;
   const Value first =

@@ -8,7 +8,7 @@ namespace quadrille::pipeline {
 namespace {
 
 using models::Op;
-using models::Stage;
+using models::ShaderStage;
 using models::SystemValue;
 using Kind = spirv::Type::Kind;
 
@@ -62,7 +62,7 @@ void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Deco
     slots.push_back(inherited.built_in >= 0 ? built_in_slot(inherited.built_in, k, output)
                                             : location_slot(location, first + k, inherited, output));
   const Id scalar_type = type.kind == Kind::kVector ? type.element : type_id;
-  const bool integers = shader_.stage == Stage::kVertex && !output && inherited.built_in < 0 &&
+  const bool integers = shader_.stage == ShaderStage::kVertex && !output && inherited.built_in < 0 &&
                         module_.type(scalar_type).kind != Kind::kFloat;
   if (integers && location < kMaxAttributeLocations) shader_.integer_inputs |= 1u << location;
   ++location;
@@ -79,7 +79,7 @@ Lowering::Slot Lowering::built_in_slot(std::int64_t built_in, std::uint32_t comp
     slot.system = true;
     return use(static_cast<std::uint32_t>(v) + component);
   };
-  const bool vertex = shader_.stage == Stage::kVertex;
+  const bool vertex = shader_.stage == ShaderStage::kVertex;
   switch (built_in) {
     case spv::BuiltInPosition: return vertex && output ? use(component) : slot;
     case spv::BuiltInPointSize: slot.kind = output ? Slot::Kind::kIgnored : Slot::Kind::kRefused; return slot;
@@ -97,7 +97,7 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
                                        const spirv::Decorations& d, bool output) const {
   Slot slot;
   if (component > 3) return slot;
-  const bool vertex = shader_.stage == Stage::kVertex;
+  const bool vertex = shader_.stage == ShaderStage::kVertex;
   const bool color = !vertex && output;
   const std::uint32_t limit = color               ? models::kMaxColorAttachments
                               : vertex && !output ? kMaxAttributeLocations
@@ -117,7 +117,8 @@ Value Lowering::load_input(Id variable, std::uint32_t place, const spirv::Instru
   if (slot.kind != Slot::Kind::kUsed)
     throw unsupported(
         i, fmt::format("input {} (a built-in, or a location beyond the limit)", module_.name(variable)));
-  if (shader_.stage == Stage::kVertex || slot.system) return build_.emit(Op::kInput, {}, {}, {}, slot.imm);
+  if (shader_.stage == ShaderStage::kVertex || slot.system)
+    return build_.emit(Op::kInput, {}, {}, {}, slot.imm);
   shader_.varyings[slot.imm] = slot.interpolation;
   return build_.emit(Op::kInterp, {}, {}, {}, slot.imm);
 }

@@ -35,7 +35,7 @@ struct StartAgain {
 
 class Lowering {
  public:
-  Lowering(const spirv::Module& module, models::Stage stage, const Attempts& attempts);
+  Lowering(const spirv::Module& module, models::ShaderStage stage, const Attempts& attempts);
   ScalarShader run();
 
  private:

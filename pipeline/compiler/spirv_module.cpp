@@ -48,7 +48,7 @@ std::vector<Id> successors(const Block& block) {
   return result;
 }
 
-Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std::string_view shader_name)
+Module::Module(std::vector<std::uint32_t> words, models::ShaderStage stage, std::string_view shader_name)
     : shader(shader_name), words_(std::move(words)), stage_(stage) {
   bound = words_.size() > 3 ? words_[3] : 0;
   for (std::size_t at = 5; at < words_.size();) {
@@ -71,7 +71,7 @@ Module::Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std:
   if (entry == 0)
     throw user_error(
         "{}: no entry point \"main\" of the {} stage{}", shader,
-        stage_ == traces::ShaderStage::kVertex ? "vertex" : "fragment",
+        stage_ == models::ShaderStage::kVertex ? "vertex" : "fragment",
         other_entry_points_.empty() ? "" : fmt::format("; it has {}", fmt::join(other_entry_points_, ", ")));
 }
 
@@ -192,7 +192,7 @@ void Module::add_capability(std::uint32_t capability) {
 
 void Module::add_entry_point(const Instruction& instruction) {
   const spv::ExecutionModel wanted =
-      stage_ == traces::ShaderStage::kVertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
+      stage_ == models::ShaderStage::kVertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
   const std::string name = literal_string(instruction.operands.subspan(2));
   const bool of_stage = instruction.operands[0] == static_cast<std::uint32_t>(wanted);
   if (of_stage && name == "main") entry_function_ = instruction.operands[1];

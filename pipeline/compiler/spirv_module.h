@@ -2,7 +2,7 @@
 /// that is left after optimisation.
 #pragma once
 
-#include "traces/command_stream.h"
+#include "models/base/pipeline_state.h"
 
 #ifndef SPV_ENABLE_UTILITY_CODE
 #define SPV_ENABLE_UTILITY_CODE
@@ -82,7 +82,7 @@ class Module {
  public:
   /// Reads an optimised, valid module. Throws `UserError` naming `shader` for what the compiler cannot take:
   /// types of other than 32 bits, several functions, no entry point "main" of the stage.
-  Module(std::vector<std::uint32_t> words, traces::ShaderStage stage, std::string_view shader);
+  Module(std::vector<std::uint32_t> words, models::ShaderStage stage, std::string_view shader);
 
   [[nodiscard]] const Type& type(Id id) const;
   [[nodiscard]] const Decorations& decorations(Id id) const;
@@ -122,7 +122,7 @@ class Module {
   void add_to_function(const Instruction& instruction);
 
   std::vector<std::uint32_t> words_;
-  traces::ShaderStage stage_;
+  models::ShaderStage stage_;
   std::unordered_map<Id, Type> types_;
   std::unordered_map<Id, std::vector<std::uint32_t>> constants_;
   std::unordered_map<Id, Id> constant_types_;

@@ -16,30 +16,6 @@ namespace {
 using traces::Index;
 using traces::kNone;
 
-// The models have their own enumerations with the command stream's values; a conversion is a cast.
-static_assert(static_cast<int>(models::CompareOp::kAlways) == static_cast<int>(traces::CompareOp::kAlways));
-static_assert(static_cast<int>(models::BlendFactor::kOneMinusDstAlpha) ==
-              static_cast<int>(traces::BlendFactor::kOneMinusDstAlpha));
-static_assert(static_cast<int>(models::BlendOp::kMax) == static_cast<int>(traces::BlendOp::kMax));
-static_assert(static_cast<int>(models::CullMode::kBack) == static_cast<int>(traces::CullMode::kBack));
-static_assert(static_cast<int>(models::FrontFace::kClockwise) ==
-              static_cast<int>(traces::FrontFace::kClockwise));
-static_assert(static_cast<int>(models::Topology::kTriangleFan) ==
-              static_cast<int>(traces::Topology::kTriangleFan));
-static_assert(static_cast<int>(models::Wrap::kClampToEdge) == static_cast<int>(traces::Wrap::kClampToEdge));
-static_assert(static_cast<int>(models::Filter::kLinear) == static_cast<int>(traces::Filter::kLinear));
-
-models::BlendState blend_state(const traces::BlendState& b) {
-  return {b.enable,
-          static_cast<models::BlendFactor>(b.src_color),
-          static_cast<models::BlendFactor>(b.dst_color),
-          static_cast<models::BlendFactor>(b.src_alpha),
-          static_cast<models::BlendFactor>(b.dst_alpha),
-          static_cast<models::BlendOp>(b.color),
-          static_cast<models::BlendOp>(b.alpha),
-          b.write_mask};
-}
-
 class FrameBuilder {
  public:
   FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision,
@@ -79,7 +55,7 @@ class FrameBuilder {
       color.clear = use.load == traces::LoadOp::kClear ? models::encode_color(color.format, use.clear) : 0;
     }
     pass.clear_depth = c.depth.load == traces::LoadOp::kClear ? c.depth.clear : 0;
-    pass.first_draw = static_cast<std::uint32_t>(out_.frame.draws.size());
+    pass.first_draw = hw::DrawId(out_.frame.draws.size());
     out_.frame.passes.push_back(pass);
     scissor_ = {0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)};
     viewport_ = {0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
@@ -88,11 +64,10 @@ class FrameBuilder {
     hw::PassState& pass = out_.frame.passes.back();
     const bool attached = begun_->depth.image != kNone;
     out_.shown_has_depth = attached;
-    pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw;
+    pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw.index();
     if (!attached) return;
-    const auto first = out_.frame.draws.begin() + pass.first_draw;
     const bool tests =
-        std::any_of(first, out_.frame.draws.end(), [](const hw::DrawState& d) { return d.depth_test; });
+        std::ranges::any_of(out_.frame.draws_of(pass), [](const hw::DrawState& d) { return d.depth_test; });
     const bool kept = lives_.read_after(begun_->depth.image, out_.frame.passes.size() - 1);
     if (tests || kept) {
       pass.has_depth = true;
@@ -128,7 +103,7 @@ class FrameBuilder {
     const CompiledPipeline& programs = compiled(pipeline_);
     hw::DrawState draw;
     draw.label = c.label;
-    draw.pass = static_cast<std::uint32_t>(out_.frame.passes.size()) - 1;
+    draw.pass = hw::PassId(out_.frame.passes.size() - 1);
     draw.vertex.program = &programs.vertex;
     draw.fragment.program = &programs.fragment;
     const auto bits = static_cast<unsigned>(4 * out_.frame.passes.back().colors);
@@ -159,7 +134,7 @@ class FrameBuilder {
   }
 
   void geometry(const traces::Draw& c, const traces::Pipeline& pipeline, hw::DrawState& draw) {
-    draw.topology = static_cast<models::Topology>(pipeline.topology);
+    draw.topology = pipeline.topology;
     draw.indexed = c.indexed;
     draw.count = c.count;
     draw.instances = c.instances;
@@ -220,16 +195,11 @@ class FrameBuilder {
     const int bits = out_.frame.precision.subpixel_bits;
     draw.viewport = viewport_;
     draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
-    draw.setup = {static_cast<models::CullMode>(pipeline.cull),
-                  static_cast<models::FrontFace>(pipeline.front),
-                  rect,
-                  bits,
-                  viewport_.min_depth,
-                  viewport_.max_depth};
+    draw.setup = {pipeline.cull, pipeline.front, rect, bits, viewport_.min_depth, viewport_.max_depth};
     draw.depth_test = pipeline.depth.test && begun_->depth.image != kNone;
     draw.depth_write = draw.depth_test && pipeline.depth.write;
-    draw.depth_compare = static_cast<models::CompareOp>(pipeline.depth.compare);
-    std::ranges::transform(pipeline.blend, draw.blend.begin(), blend_state);
+    draw.depth_compare = pipeline.depth.compare;
+    draw.blend = pipeline.blend;
     const models::Program& program = *draw.fragment.program;
     draw.writes_memory = models::writes_buffers(program);
     draw.late_depth = draw.depth_test && !program.early_fragment_tests &&
@@ -286,16 +256,11 @@ class FrameBuilder {
                 std::vector<models::TextureSize>& sizes) {
     for (const models::TextureBinding& use : program.textures) {
       const traces::TextureDescriptor& bound = texture(program, use.set, use.binding);
-      const traces::Sampler& s = stream_.samplers[bound.sampler];
       const traces::Image& image = stream_.images[bound.image];
       lives_.check_sampled(bound.image, out_.frame.passes.size() - 1, program.name);
       out_.frame.passes.back().samples_attachments |= image.is_attachment();
       const DeviceResources::Texture& texture = resources_.texture(bound.image);
-      states.push_back({texture.view,
-                        {static_cast<models::Filter>(s.mag), static_cast<models::Filter>(s.min),
-                         static_cast<models::Filter>(s.mip), static_cast<models::Wrap>(s.wrap_u),
-                         static_cast<models::Wrap>(s.wrap_v), s.lod_bias, s.min_lod, s.max_lod},
-                        texture.fill});
+      states.push_back({texture.view, stream_.samplers[bound.sampler], texture.fill});
       sizes.push_back({image.width, image.height, image.levels});
     }
   }

@@ -46,7 +46,7 @@ class FunctionalRenderer {
     for (const hw::PassState& pass : frame_.passes) {
       for (std::size_t c = 0; c < pass.colors; ++c) begin(pass.color[c]);
       if (pass.has_depth) begin(pass.depth);
-      for (std::uint32_t d = pass.first_draw; d < pass.first_draw + pass.draws; ++d) draw(d);
+      for (std::uint32_t d = 0; d < pass.draws; ++d) draw(hw::DrawId(pass.first_draw.index() + d));
     }
     return counts_;
   }
@@ -59,10 +59,10 @@ class FunctionalRenderer {
     if (!attachment.loads()) models::fill_surface(memory_, attachment.surface, attachment.clear);
   }
 
-  void draw(std::uint32_t index) {
-    draw_ = &frame_.draw(index);
-    pass_ = &frame_.pass_of(index);
-    warp_.draw = index;
+  void draw(hw::DrawId id) {
+    draw_ = &frame_.draw(id);
+    pass_ = &frame_.pass_of(id);
+    warp_.draw = id;
     for (instance_ = 0; instance_ < draw_->instances; ++instance_) {
       for (std::uint32_t t = 0; t < draw_->triangles();) t = batch(t);
     }
@@ -165,7 +165,7 @@ class FunctionalRenderer {
       const models::ClipVertex& v = polygon.vertices[static_cast<std::size_t>(corner[k])];
       const bool valid =
           models::to_window(v.position, draw_->viewport, frame_.precision.subpixel_bits, window.vertices[k]);
-      QUADRILLE_CHECK(valid, "a clipped vertex of draw {} has no window position", warp_.draw);
+      QUADRILLE_CHECK(valid, "a clipped vertex of draw {} has no window position", warp_.draw.index());
       window.weights[k] = {v.b1, v.b2};
     }
     // Quads that wait in the warp still need their triangles' slots.

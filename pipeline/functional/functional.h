@@ -19,7 +19,8 @@ struct FunctionalCounts {
 
 /// A window-space triangle as it was rasterised, for the reference renderer.
 struct RasterizedTriangle {
-  std::uint32_t draw = 0, instance = 0, primitive = 0;
+  hw::DrawId draw;
+  std::uint32_t instance = 0, primitive = 0;
   std::array<models::WindowVertex, 3> vertices;
   std::array<glm::vec2, 3> weights;
 };

@@ -68,8 +68,8 @@ Machine::Stores::Stores(const MachineConfig& config)
         static_cast<std::size_t>(config.triangle_setup.triangle_slots.value()) + 1));
   }
   for (int p = 0; p < config.gpu.partitions; ++p)
-    warps.push_back(std::make_unique<hw::Store<hw::WarpSlot>>(
-        static_cast<std::size_t>(config.warp_packer.warp_slots.value())));
+    warps.push_back(
+        std::make_unique<hw::WarpStore>(static_cast<std::size_t>(config.warp_packer.warp_slots.value())));
   for (int c = 0; c < config.gpu.cores; ++c)
     cores.push_back(
         std::make_unique<hw::Store<hw::CoreSlot>>(static_cast<std::size_t>(config.core.warp_slots.value())));
@@ -110,16 +110,23 @@ void Machine::leave_out(bool wanted) {
 }
 
 void Machine::list_clients() {
-  clients_ = {{"vertex_fetch", hw::MemoryClient::kVertexFetch}};
-  for (int c = 0; textured_ && c < config_.gpu.cores; ++c)
-    clients_.push_back({fmt::format("texture_{}", c), hw::MemoryClient::kTexture});
-  for (int c = 0; stored_ && c < config_.gpu.cores; ++c)
-    clients_.push_back({fmt::format("load_store_{}", c), hw::MemoryClient::kStorage});
-  for (int p = 0; p < config_.gpu.partitions; ++p) {
-    if (depth_memory_) clients_.push_back({fmt::format("depth_{}", p), hw::MemoryClient::kDepth});
-    clients_.push_back({fmt::format("rop_{}", p), hw::MemoryClient::kColor});
+  struct ClientKind {
+    std::string_view name;
+    Stands stands;
+    Needed needed;
+    hw::MemoryClient client;
+  };
+  std::vector<ClientKind> kinds;
+  visit_client_kinds([&]<class Unit>(Needed needed) {
+    static_assert(MemoryClientUnit<Unit>);
+    kinds.push_back({UnitKind<Unit>::name, UnitKind<Unit>::stands, needed, Unit::kMemoryClient});
+  });
+  for (auto first = kinds.begin(), last = first; first != kinds.end(); first = last) {
+    last = std::find_if(first, kinds.end(), [&](const ClientKind& k) { return k.stands != first->stands; });
+    for (int i = 0; i < count(first->stands); ++i)
+      for (auto k = first; k != last; ++k)
+        if (builds(k->needed)) clients_.push_back({name_of(k->name, k->stands, i), k->client});
   }
-  clients_.push_back({"scan_out", hw::MemoryClient::kScanOut});
 }
 
 int Machine::count(Stands stands) const {
@@ -143,6 +150,7 @@ bool Machine::builds(Needed needed) const {
     case Needed::kByAllFrames: return true;
     case Needed::kByFramesThatReadTextures: return textured_;
     case Needed::kByFramesWithStorage: return stored_;
+    case Needed::kByFramesThatKeepDepths: return depth_memory_;
   }
   return true;
 }

@@ -50,6 +50,16 @@
   unit(memory,             hw::MemoryChannel,     kChannel,   kByAllFrames)              \
   unit(scan_out,           hw::ScanOut,           kOnce,      kByAllFrames)
 
+// Who asks the L2 slices, in the order of their ports, and in which frames. Neighbours that stand equally often
+// take turns: the first of each, then the second of each.
+#define QUADRILLE_CLIENTS(client)                    \
+  client(VertexFetch, kByAllFrames)                  \
+  client(TextureUnit, kByFramesThatReadTextures)     \
+  client(LoadStoreUnit, kByFramesWithStorage)        \
+  client(DepthUnit,   kByFramesThatKeepDepths)       \
+  client(Rop,         kByAllFrames)                  \
+  client(ScanOut,     kByAllFrames)
+
 // Links: name, default depth, width and latency, how many tokens their producer can have for them, what they
 // do for the flow of work, and which ports they join. Cores finish fragment warps at the rate at which they
 // get them: one a cycle over all. The types of the ports say what they carry; how often
@@ -131,8 +141,14 @@ namespace quadrille::pipeline {
 /// How often a kind of unit stands in a machine: once, or once a raster engine, partition, core or channel.
 /// Of several, each carries its number in its name.
 enum class Stands : std::uint8_t { kOnce, kEngine, kPartition, kCore, kChannel };
-/// Which frames need a kind of unit; a machine leaves out what its frame does not need.
-enum class Needed : std::uint8_t { kByAllFrames, kByFramesThatReadTextures, kByFramesWithStorage };
+/// Which frames need a kind of unit, or its links to memory; a machine leaves out what its frame does not
+/// need.
+enum class Needed : std::uint8_t {
+  kByAllFrames,
+  kByFramesThatReadTextures,
+  kByFramesWithStorage,
+  kByFramesThatKeepDepths
+};
 /// What the tokens of a link do: carry work onward, tell of work that comes another way, or bring answers,
 /// releases and reports back.
 enum class LinkWay : std::uint8_t { kOnward, kAhead, kBack };
@@ -157,11 +173,20 @@ void visit_unit_kinds(const Visit& visit) {
 #undef QUADRILLE_VISIT
 }
 
+/// Calls `visit.operator()<Unit>(needed)` for each kind of client of the L2 slices, in the order of their ports.
+template <class Visit>
+void visit_client_kinds(const Visit& visit) {
+#define QUADRILLE_VISIT(type, frames) visit.template operator()<hw::type>(Needed::frames);
+  QUADRILLE_CLIENTS(QUADRILLE_VISIT)
+#undef QUADRILLE_VISIT
+}
+
 /// Does this kind of unit ask the L2 cache? It then has a `hw::MemoryPort`, whose links are those of the
 /// class `client_to_l2` and back.
 template <class Unit>
 concept MemoryClientUnit = requires(Unit& unit) {
   { unit.memory_port() } -> std::same_as<hw::MemoryPort&>;
+  { Unit::kMemoryClient } -> std::convertible_to<hw::MemoryClient>;
 };
 
 /// A port as a member of its unit: alone, absent in some machines, or one of a group with a port for each

@@ -49,7 +49,8 @@ Machine::Maker::Made<hw::FineRaster> Machine::Maker::make(Kind<hw::FineRaster> /
 Machine::Maker::Made<hw::DepthUnit> Machine::Maker::make(Kind<hw::DepthUnit> /*kind*/, const char* name,
                                                          int i) const {
   return std::make_unique<hw::DepthUnit>(name, m_.depth_memory_ ? context(i) : context(i).without_memory(),
-                                         c_.depth, triangles_of_partition(i), *s_.warps[at(i)]);
+                                         c_.depth, triangles_of_partition(hw::PartitionId(i)),
+                                         *s_.warps[at(i)]);
 }
 
 Machine::Maker::Made<hw::WarpPacker> Machine::Maker::make(Kind<hw::WarpPacker> /*kind*/, const char* name,
@@ -64,7 +65,7 @@ Machine::Maker::Made<hw::WorkDistributor> Machine::Maker::make(Kind<hw::WorkDist
 
 Machine::Maker::Made<hw::ShaderCore> Machine::Maker::make(Kind<hw::ShaderCore> /*kind*/, const char* name,
                                                           int i) const {
-  std::vector<hw::Store<hw::WarpSlot>*> warps;
+  std::vector<hw::WarpStore*> warps;
   for (const auto& of_partition : s_.warps) warps.push_back(of_partition.get());
   std::vector<const hw::TriangleStore*> triangles;
   for (const auto& of_engine : s_.triangles) triangles.push_back(of_engine.get());

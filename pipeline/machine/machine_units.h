@@ -32,8 +32,8 @@ class Machine::Maker {
   }
 
   /// Those of a partition come from its engine.
-  [[nodiscard]] hw::TriangleStore& triangles_of_partition(int partition) const {
-    return *s_.triangles[models::engine_of_partition(static_cast<std::uint32_t>(partition),
+  [[nodiscard]] hw::TriangleStore& triangles_of_partition(hw::PartitionId partition) const {
+    return *s_.triangles[models::engine_of_partition(partition,
                                                      static_cast<std::uint32_t>(c_.gpu.engines.value()))];
   }
 

@@ -7,7 +7,7 @@ namespace quadrille::pipeline {
 
 namespace {
 
-/// "WarpToken" of `quadrille::hw::WarpToken`, as the compiler spells it.
+/// "TileToken" of `quadrille::hw::TileToken`, as the compiler spells it.
 template <class T>
 std::string type_name() {
   std::string_view text = __PRETTY_FUNCTION__;

@@ -14,7 +14,7 @@ namespace quadrille::pipeline {
 struct PlannedLink {
   std::string_view name;      ///< of the class: "core_to_rop"
   std::string_view from, to;  ///< kinds of units
-  std::string token;          ///< what it carries: "WarpToken"
+  std::string token;          ///< what it carries: "TileToken"
   LinkWay way = LinkWay::kOnward;
 };
 /// In the plan's order. A class that joins clients to the L2 cache has a link for each kind of client.

@@ -142,7 +142,6 @@ const std::array<DetailCount, kDrawCounts>& draw_counts() {
       {"", "", {}},
       {"", "", {}},
       {"", "", {}},
-      {"", "", {}},
       {"",
        "",
        {"cycles of SIMD units for draws and for none = for the frame", "draws.busy.core + outside_draws",

@@ -8,10 +8,6 @@ namespace quadrille::pipeline {
 
 namespace {
 
-constexpr std::string_view kCores = UnitKind<hw::ShaderCore>::name,
-                           kTextures = UnitKind<hw::TextureUnit>::name,
-                           kMemory = UnitKind<hw::MemoryChannel>::name;
-
 std::string kind_of(const hw::Unit& unit) { return std::string(without_number(unit.name())); }
 
 hw::ScreenCells screen_of(const hw::Frame& frame) {
@@ -38,6 +34,16 @@ class Columns final : public hw::Details {
   }
   void total_of_tiles(TileCount count, const hw::Counter& counter) override {
     unit_.tile_totals.push_back({static_cast<std::size_t>(count), 0, &counter});
+  }
+  void shared_by_draws(const hw::Counter* cycles) override {
+    unit_.shared = true;
+    if (cycles != nullptr) unit_.own_busy = DetailLog::Column{0, log_.by_draw(cycles->storage()), cycles};
+  }
+  void work(std::initializer_list<const hw::Counter*> counters, double per_cycle) override {
+    DetailLog::LoggedUnit::Work work{{}, per_cycle};
+    work.columns.reserve(counters.size());
+    for (const hw::Counter* counter : counters) work.columns.push_back(log_.by_draw(counter->storage()));
+    unit_.work.push_back(std::move(work));
   }
 
  private:
@@ -69,31 +75,26 @@ void DetailLog::add(const hw::Unit& unit) {
   units_.push_back(std::move(u));
 }
 
-// The units of other kinds than these are busy for as long as their work takes at their peak rate.
-double DetailLog::work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts,
-                          std::int64_t busy) const {
-  const MachineConfig& config = machine_.config();
-  const auto count = [&](DrawCount c) { return static_cast<double>(counts[static_cast<std::size_t>(c)]); };
-  if (kind == kCores) return count(DrawCount::kSimdBusy) / config.core.simds;
-  if (kind == kMemory)
-    return count(DrawCount::kMemoryBytes) * config.gpu.channels / peak_memory_bytes_per_cycle(config);
-  if (kind == kTextures)
-    return std::max(static_cast<double>(busy),
-                    count(DrawCount::kBilinearQuads) / config.texture.filter_quads_per_clk);
-  return static_cast<double>(busy);
+std::int64_t DetailLog::busy_of(const LoggedUnit& u, hw::DrawId id) {
+  if (u.own_busy) return static_cast<std::int64_t>(u.log->of_draw(u.own_busy->column, id));
+  return u.shared ? 0 : u.unit->to_cycles(static_cast<std::int64_t>(u.log->of_draw(u.busy, id)));
 }
 
-void DetailLog::collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const {
-  std::array<std::uint64_t, kDrawCounts> counts{};
-  for (const Column& c : u.draws) counts[c.count] += u.log->of_draw(c.column, row);
-  const std::string& kind = detail_.kinds[u.kind];
-  std::int64_t busy = u.unit->to_cycles(static_cast<std::int64_t>(u.log->of_draw(u.busy, row)));
-  for (std::size_t i = 0; i < kDrawCounts; ++i) draw.counts[i] += counts[i];
-  draw.work[u.kind] = std::max(draw.work[u.kind], work_of(kind, counts, busy));
-  // Several draws are on the SIMD units of a core, and in the queue of a memory channel, at a time.
-  if (kind == kCores)
-    busy = static_cast<std::int64_t>(counts[static_cast<std::size_t>(DrawCount::kSimdBusy)]);
-  if (kind != kMemory) draw.busy[u.kind] += busy;
+double DetailLog::work_of(const LoggedUnit& u, hw::DrawId id) const {
+  double most = u.shared ? 0 : static_cast<double>(busy_of(u, id));
+  for (const LoggedUnit::Work& work : u.work) {
+    std::uint64_t sum = 0;
+    for (const std::size_t column : work.columns) sum += u.log->of_draw(column, id);
+    most = std::max(most, static_cast<double>(sum) / work.per_cycle);
+  }
+  return most * static_cast<double>(machine_.clock().frequency_hz()) /
+         static_cast<double>(u.unit->clock().frequency_hz());
+}
+
+void DetailLog::collect_draw(const LoggedUnit& u, hw::DrawId id, DrawFigures& draw) const {
+  for (const Column& c : u.draws) draw.counts[c.count] += u.log->of_draw(c.column, id);
+  draw.work[u.kind] = std::max(draw.work[u.kind], work_of(u, id));
+  draw.busy[u.kind] += busy_of(u, id);
 }
 
 void DetailLog::collect_tiles(const LoggedUnit& u, TileFigures& tiles) const {
@@ -127,8 +128,8 @@ Detail DetailLog::collect() {
   std::array<bool, kTileCounts> counted_elsewhere{};
   for (const LoggedUnit& u : units_) {
     u.log->settle();
-    for (std::uint32_t i = 0; i < draws; ++i) collect_draw(u, i, d.draws[i]);
-    collect_draw(u, draws, d.outside_draws);
+    for (std::uint32_t i = 0; i < draws; ++i) collect_draw(u, hw::DrawId(i), d.draws[i]);
+    collect_draw(u, hw::kNoDraw, d.outside_draws);
     collect_tiles(u, d.tiles);
     for (const Column& c : u.draws) d.draw_totals[c.count] += c.counter->value();
     for (const Column& c : u.tiles) own[c.count] += c.counter->value();
@@ -136,11 +137,10 @@ Detail DetailLog::collect() {
       others[c.count] += c.counter->value();
       counted_elsewhere[c.count] = true;
     }
-    const std::string& kind = d.kinds[u.kind];
-    if (kind != kMemory && kind != kCores) d.busy_total += u.unit->busy_cycles();
+    if (!u.shared) d.busy_total += u.unit->busy_cycles();
+    if (u.own_busy) d.busy_total += static_cast<std::int64_t>(u.own_busy->counter->value());
   }
   for (std::size_t i = 0; i < kTileCounts; ++i) d.tile_totals[i] = counted_elsewhere[i] ? others[i] : own[i];
-  d.busy_total += static_cast<std::int64_t>(d.draw_totals[static_cast<std::size_t>(DrawCount::kSimdBusy)]);
   return d;
 }
 

@@ -7,6 +7,7 @@
 #include "pipeline/report/detail.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace quadrille::pipeline {
@@ -30,15 +31,23 @@ class DetailLog {
     std::vector<Column> draws, tiles;
     std::vector<Column> tile_totals;  ///< by counters that are not kept by tile
     std::size_t busy = 0;             ///< column
+    bool shared = false;              ///< several draws are in it at a time
+    std::optional<Column> own_busy;   ///< then: cycles of each, where they are counted
+    struct Work {
+      std::vector<std::size_t> columns;
+      double per_cycle = 1;
+    };
+    std::vector<Work> work;
   };
 
  private:
   void add(const hw::Unit& unit);
-  void collect_draw(const LoggedUnit& u, std::uint32_t row, DrawFigures& draw) const;
+  void collect_draw(const LoggedUnit& u, hw::DrawId id, DrawFigures& draw) const;
   void collect_tiles(const LoggedUnit& u, TileFigures& tiles) const;
-  /// GPU cycles of a unit's work for one draw at its peak rates.
-  [[nodiscard]] double work_of(std::string_view kind, const std::array<std::uint64_t, kDrawCounts>& counts,
-                               std::int64_t busy) const;
+  /// Cycles that a unit was busy for a draw; 0 where that is not known.
+  [[nodiscard]] static std::int64_t busy_of(const LoggedUnit& u, hw::DrawId id);
+  /// GPU cycles of a unit's work for a draw at its peak rates.
+  [[nodiscard]] double work_of(const LoggedUnit& u, hw::DrawId id) const;
 
   const Machine& machine_;
   const DeviceFrame& frame_;

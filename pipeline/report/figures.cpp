@@ -83,22 +83,17 @@ std::uint64_t sum(const Machine& m, hw::Counter Unit::Stats::*counter) {
   return sum;
 }
 
-template <class Unit>
-ClientFigures traffic(const Machine& m, const char* client) {
-  ClientFigures figures{client, 0, 0};
-  for (Unit* unit : m.all<Unit>()) {
-    figures.read_bytes += unit->memory_port().stats().read_bytes.value();
-    figures.write_bytes += unit->memory_port().stats().write_bytes.value();
-  }
-  return figures;
-}
-
 std::vector<ClientFigures> bandwidth(const Machine& m) {
-  std::vector<ClientFigures> all{traffic<hw::VertexFetch>(m, "vertex_fetch")};
-  if (!m.all<hw::TextureUnit>().empty()) all.push_back(traffic<hw::TextureUnit>(m, "texture"));
-  all.push_back(traffic<hw::DepthUnit>(m, "depth"));
-  all.push_back(traffic<hw::Rop>(m, "color"));
-  all.push_back(traffic<hw::ScanOut>(m, "scan_out"));
+  std::vector<ClientFigures> all;
+  visit_client_kinds([&]<class Unit>(Needed) {
+    if (m.all<Unit>().empty()) return;
+    ClientFigures figures{std::string(name_of(Unit::kMemoryClient)), 0, 0};
+    for (Unit* unit : m.all<Unit>()) {
+      figures.read_bytes += unit->memory_port().stats().read_bytes.value();
+      figures.write_bytes += unit->memory_port().stats().write_bytes.value();
+    }
+    all.push_back(std::move(figures));
+  });
   return all;
 }
 

@@ -144,7 +144,7 @@ Json by_kind(const std::vector<std::string>& kinds, const std::vector<Cycles>& c
 
 Json draw_json(const Detail& d, const DrawFigures& draw) {
   Json all = {{"label", draw.label},
-              {"pass", draw.pass},
+              {"pass", draw.pass.index()},
               {"issued", draw.issued},
               {"retired", draw.retired},
               {"cycles_in_flight", draw.in_flight()}};

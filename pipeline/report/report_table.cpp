@@ -226,7 +226,7 @@ std::string draws_text(const Figures& f) {
     if (label.size() > 39) label = "..." + label.substr(label.size() - 36);  // the end tells draws apart
     out +=
         fmt::format("  {:>6}  {:<40}{:>5}{:>12}{:>11}{:>11}{:>12}  {}\n", draw - d.draws.data(), label,
-                    draw->pass, grouped(static_cast<std::uint64_t>(draw->in_flight())),
+                    draw->pass.index(), grouped(static_cast<std::uint64_t>(draw->in_flight())),
                     grouped(draw->of(DrawCount::kTrianglesIn)), grouped(draw->of(DrawCount::kTrianglesDrawn)),
                     grouped(draw->of(DrawCount::kShaded)), limiter_text(d.limiter(*draw)));
   }
@@ -278,9 +278,8 @@ std::string_view without_number(std::string_view name) {
 }
 
 double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
-  const double burst = static_cast<double>(machine.memory.burst_bytes) * machine.memory.pseudo_channels /
-                       std::max<int>(machine.memory.t_burst, machine.memory.t_ccd_s);
-  return machine.gpu.channels * burst * machine.gpu.memory_mhz / machine.gpu.clock_mhz;
+  return machine.gpu.channels * machine.memory.bytes_per_clk() * machine.gpu.memory_mhz /
+         machine.gpu.clock_mhz;
 }
 
 std::string report_table(const ReportSubject& subject, UnitRows rows) {

@@ -10,17 +10,15 @@
 #include <fmt/format.h>
 
 #include <glm/ext/matrix_double4x4.hpp>
-#include <glm/ext/quaternion_double.hpp>
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 #include "models/base/error.h"
-#include "scenes/data/named_choice.h"
 #include "scenes/gltf/animation.h"
 #include "scenes/gltf/file.h"
 #include "scenes/gltf/images.h"
 #include "scenes/gltf/instancing.h"
 #include "scenes/gltf/mesh.h"
+#include "scenes/gltf/nodes.h"
 #include "scenes/gltf/skin.h"
 #include "scenes/gltf/value.h"
 #include "scenes/gltf/view.h"
@@ -33,10 +31,8 @@ constexpr int kExtentMoments = 32, kFewestMoments = 4;
 constexpr std::size_t kExtentVisits = std::size_t{1} << 22;
 // vertices times attributes that targets of weight move
 constexpr std::uint64_t kMaxMorphWork = std::uint64_t{1} << 28;
-constexpr std::size_t kMaxPoseValues =
-    std::size_t{1}  // joints and weights of all posed primitives: a file may show one skin
-    // any number of times
-    << 22;
+// joints and weights of all posed primitives: a file may show one skin any number of times
+constexpr std::size_t kMaxPoseValues = std::size_t{1} << 22;
 
 bool all_finite(const glm::dmat4& m) {
   for (int i = 0; i < 16; ++i) {
@@ -90,10 +86,7 @@ class GltfScene::Reader {
     bool visible = true;  ///< what is above it
   };
 
-  /// Made when it is needed: a file may have a million nodes, each visited at many moments.
-  static std::string place_of(int node) { return fmt::format("nodes[{}]", node); }
-
-  [[noreturn]] void fail(int node, const std::string& reason) const { fail(place_of(node), reason); }
+  [[noreturn]] void fail(int node, const std::string& reason) const { fail(place_of_node(node), reason); }
   [[noreturn]] void fail(const std::string& place, const std::string& reason) const {
     throw user_error("{}: {}: {}", file_.path, place, reason);
   }
@@ -128,72 +121,6 @@ class GltfScene::Reader {
 
   // ---- nodes ----
 
-  glm::dmat4 local_matrix(const tinygltf::Node& node, const NodeMotion& motion, int number) const {
-    const auto sized = [&](const std::vector<double>& values, std::size_t size, const char* member) {
-      if (!values.empty() && values.size() != size)
-        fail(number, fmt::format("{}: {} numbers instead of {}", member, values.size(), size));
-      return !values.empty();
-    };
-    glm::dmat4 m(1);
-    if (sized(node.matrix, 16, "matrix")) {
-      for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-      return m;
-    }
-    if (motion.rotation) {
-      m = glm::mat4_cast(*motion.rotation);
-    } else if (sized(node.rotation, 4, "rotation")) {
-      const glm::dquat q(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-      const double length = glm::length(q);
-      if (!(length > 0) || !std::isfinite(length)) fail(number, "rotation: not a quaternion");
-      m = glm::mat4_cast(q / length);
-    }
-    if (motion.scale) {
-      for (int i = 0; i < 3; ++i) m[i] *= (*motion.scale)[i];
-    } else if (sized(node.scale, 3, "scale")) {
-      for (int i = 0; i < 3; ++i) m[i] *= node.scale[static_cast<std::size_t>(i)];
-    }
-    if (motion.translation) {
-      m[3] = glm::dvec4(*motion.translation, 1);
-    } else if (sized(node.translation, 3, "translation")) {
-      m[3] = glm::dvec4(node.translation[0], node.translation[1], node.translation[2], 1);
-    }
-    return m;
-  }
-
-  /// The roots of the scene that was asked for, or of the file's own; without any scene, the nodes that are
-  /// nobody's child. [glTF2.0 #scenes]
-  std::vector<int> roots() const {
-    const tinygltf::Model& model = file_.model;
-    if (!model.scenes.empty()) {
-      const int scene = choice_.scene.empty() ? std::max(0, model.defaultScene) : chosen_scene();
-      if (static_cast<std::size_t>(scene) >= model.scenes.size())
-        fail("scene", fmt::format("scene {} does not exist (the file has {})", scene, model.scenes.size()));
-      return model.scenes[static_cast<std::size_t>(scene)].nodes;
-    }
-    if (!choice_.scene.empty()) (void)chosen_scene();
-    std::vector<bool> child(model.nodes.size());
-    for (const tinygltf::Node& node : model.nodes) {
-      for (const int c : node.children) {
-        if (c >= 0 && static_cast<std::size_t>(c) < child.size()) child[static_cast<std::size_t>(c)] = true;
-      }
-    }
-    std::vector<int> result;
-    for (std::size_t i = 0; i < child.size(); ++i) {
-      if (!child[i]) result.push_back(static_cast<int>(i));
-    }
-    return result;
-  }
-
-  int chosen_scene() const {
-    std::vector<std::string> names;
-    for (const tinygltf::Scene& scene : file_.model.scenes) names.push_back(scene.name);
-    const std::optional<std::size_t> found = find_choice(names, choice_.scene);
-    if (!found)
-      fail("scenes", fmt::format("scene '{}' does not exist; scenes: {}", choice_.scene.substr(0, 60),
-                                 list_of_choices(names)));
-    return static_cast<int>(*found);
-  }
-
   /// Depth first, children in order, without recursion. A node seen twice would make the graph no tree, or a
   /// loop.
   void visit_nodes() {
@@ -207,7 +134,7 @@ class GltfScene::Reader {
     const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& parent, bool visible) {
       for (auto it = nodes.rbegin(); it != nodes.rend(); ++it) open.push_back({*it, parent, visible});
     };
-    push(roots(), glm::dmat4(1), true);
+    push(scene_roots(file_, choice_.scene), glm::dmat4(1), true);
     while (!open.empty()) {
       const Visit visit = open.back();
       open.pop_back();
@@ -218,7 +145,7 @@ class GltfScene::Reader {
       const tinygltf::Node& node = file_.model.nodes[index];
       const auto moved = motions_.find(visit.node);
       const NodeMotion& motion = moved == motions_.end() ? kStill : moved->second;
-      const glm::dmat4 world = visit.parent * local_matrix(node, motion, visit.node);
+      const glm::dmat4 world = visit.parent * local_matrix(file_, visit.node, motion);
       if (!all_finite(world)) fail(visit.node, "its world matrix is not finite");
       worlds_[index] = world;
       const bool visible = visit.visible && is_visible(node);
@@ -226,14 +153,6 @@ class GltfScene::Reader {
       push(node.children, world, visible);
     }
     for (const SkinnedNode& s : skinned_) pose_skinned(s);
-  }
-
-  /// By the node itself. [KHR_node_visibility]
-  static bool is_visible(const tinygltf::Node& node) {
-    const auto found = node.extensions.find("KHR_node_visibility");
-    if (found == node.extensions.end() || !found->second.Has("visible")) return true;
-    const tinygltf::Value& visible = found->second.Get("visible");
-    return !visible.IsBool() || visible.Get<bool>();
   }
 
   /// What is hidden shows neither mesh nor light; a camera there takes pictures.
@@ -249,7 +168,7 @@ class GltfScene::Reader {
     }
     if (const auto found = node.extensions.find("KHR_lights_punctual");
         visible && found != node.extensions.end())
-      place_light(found->second, world, place_of(number));
+      place_light(found->second, world, place_of_node(number));
   }
 
   void place_mesh(const tinygltf::Node& node, const NodeMotion& motion, const glm::dmat4& world, int at) {
@@ -257,7 +176,7 @@ class GltfScene::Reader {
     if (mesh >= file_.model.meshes.size())
       fail(at, fmt::format("mesh {} does not exist (the file has {})", node.mesh, file_.model.meshes.size()));
     const std::vector<std::uint32_t>& primitives = meshes_.primitives(node.mesh);
-    Pose pose{morph_weights(node, file_.model.meshes[mesh], motion, at), {}, false};
+    Pose pose{morph_weights(file_, at, motion), {}, false};
     const bool posed = node.skin >= 0 || std::ranges::any_of(pose.weights, [](float w) { return w != 0; });
     const int number = posed ? static_cast<int>(scene_.poses.size()) : -1;
     if (posed) {
@@ -267,7 +186,7 @@ class GltfScene::Reader {
     }
     if (node.skin >= 0) {
       const auto [skin, added] = skins_.try_emplace(node.skin);
-      if (added) skin->second = read_skin(file_, node.skin, place_of(at));
+      if (added) skin->second = read_skin(file_, node.skin, place_of_node(at));
       charge_pose(skin->second.joints.size() * primitives.size(), at);
       meshes_.read_skinning(node.mesh, skin->second.joints.size(), node.skin);
       skinned_.push_back(
@@ -287,29 +206,11 @@ class GltfScene::Reader {
   void place_copies_of(const tinygltf::Node& node, const tinygltf::Value& extension, const glm::dmat4& world,
                        int at, std::size_t first) {
     const bool skinned = node.skin >= 0;
-    if (!skinned && place_copies(file_, extension, place_of(at), world, first, scene_, copies_)) return;
+    if (!skinned && place_copies(file_, extension, place_of_node(at), world, first, scene_, copies_)) return;
     if (!std::exchange(warned_of_copies_, true))
-      file_.notes.push_back(fmt::format("{}: EXT_mesh_gpu_instancing {}; it is drawn once", place_of(at),
+      file_.notes.push_back(fmt::format("{}: EXT_mesh_gpu_instancing {}; it is drawn once", place_of_node(at),
                                         skinned ? "counts for nothing on a node with a skin"
                                                 : "has no attribute that says how many copies there are"));
-  }
-
-  /// The node's weights over the mesh's, and the animation's over both; zeros by default. [glTF2.0
-  /// #morph-targets]
-  std::vector<float> morph_weights(const tinygltf::Node& node, const tinygltf::Mesh& mesh,
-                                   const NodeMotion& motion, int at) const {
-    const std::size_t targets = mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
-    const std::vector<double>& weights = motion.weights         ? *motion.weights
-                                         : node.weights.empty() ? mesh.weights
-                                                                : node.weights;
-    if (!weights.empty() && weights.size() != targets)
-      fail(at, fmt::format("{} weights for a mesh of {} morph targets", weights.size(), targets));
-    std::vector<float> result;
-    for (const double weight : weights) {
-      result.push_back(static_cast<float>(weight));
-      if (!std::isfinite(result.back())) fail(at, "a morph target's weight is not finite");
-    }
-    return result;
   }
 
   void charge_pose(std::size_t values, int at) {

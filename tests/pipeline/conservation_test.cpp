@@ -57,7 +57,7 @@ TEST_CASE("conservation: a lost triangle is noticed") {
 TEST_CASE("conservation: a lost tile is noticed") {
   const std::string broken = broken_laws([](const Machine& machine) {
     link<hw::TileToken>(machine, "coarse_to_fine").inject_fault([n = 0](hw::TileToken& t) mutable {
-      if (t.kind == hw::TokenKind::kWork && ++n == 4) t = {hw::TokenKind::kSync, false, 0, 0, t.index, 0};
+      if (t.kind == hw::TokenKind::kWork && ++n == 4) t = {hw::TokenKind::kSync, false, 0, 0, t.part, 0};
     });
   });
   CHECK(broken.find("tiles kept = tiles rasterised") != std::string::npos);

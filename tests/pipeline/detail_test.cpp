@@ -108,11 +108,12 @@ TEST_CASE("detail: work of a pass that is not shown has no place on the screen")
     const RenderedFrame frame = render_exact(stream, MachineConfig(), {}, {}, kBoth);
     const Detail& d = *frame.figures.detail;
     std::uint64_t hidden = 0, shown = 0;
-    for (const DrawFigures& draw : d.draws) (draw.pass == 0 ? hidden : shown) += draw.of(DrawCount::kShaded);
+    for (const DrawFigures& draw : d.draws)
+      (draw.pass.index() == 0 ? hidden : shown) += draw.of(DrawCount::kShaded);
     const auto& cells = d.tiles.counts[static_cast<std::size_t>(TileCount::kShaded)];
     const std::uint64_t placed = std::accumulate(cells.begin(), cells.end() - 1, std::uint64_t{0});
     return failed_checks(frame.figures) + fmt::format("{} {} {}", hidden > 0 && hidden == cells.back(),
-                                                      shown == placed, d.draws.back().pass);
+                                                      shown == placed, d.draws.back().pass.index());
   });
   CHECK(text == "true true 1");
 }
@@ -168,7 +169,7 @@ TEST_CASE("detail: work that is charged to another draw is noticed") {
       [](const Machine& machine) {
         link<hw::MemoryRequest>(machine, "vertex_fetch_to_l2_0")
             .inject_fault([n = 0](hw::MemoryRequest& r) mutable {
-              if (++n == 3) r.draw = r.draw == 0 ? 1 : 0;
+              if (++n == 3) r.draw = hw::DrawId(r.draw == hw::DrawId(0) ? 1 : 0);
             });
       },
       kBoth);

@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "models/base/error.h"
-#include "scenes/gltf/loader.h"
 
 namespace quadrille::scenes {
 
@@ -42,12 +41,14 @@ std::string triangle_gltf(const std::string& primitive, const std::string& extra
          "\"}]" + extra + "}";
 }
 
-std::string load_result(const std::string& text) {
+std::string load_result(const std::string& text, const GltfChoice& choice) {
   const TempGltf file(text);
   try {
-    (void)load_gltf(file.path());
+    (void)GltfScene(file.path(), choice);
   } catch (const UserError& error) { return error.what(); }
   return "loaded";
 }
+
+std::string animated_result(const std::string& text) { return load_result(text, {"", true, ""}); }
 
 }  // namespace quadrille::scenes

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scenes/gltf/loader.h"
+
 namespace quadrille::scenes {
 
 /// `data:application/octet-stream;base64,...`
@@ -37,6 +39,8 @@ class TempGltf {
                                         const std::string& node = "");
 
 /// The message of the UserError that loading the text raises, or "loaded".
-[[nodiscard]] std::string load_result(const std::string& text);
+[[nodiscard]] std::string load_result(const std::string& text, const GltfChoice& choice = {});
+/// The same, posed by the file's first animation.
+[[nodiscard]] std::string animated_result(const std::string& text);
 
 }  // namespace quadrille::scenes

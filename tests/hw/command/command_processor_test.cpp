@@ -21,7 +21,7 @@ struct CommandBench final : Bench {
   CommandBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     for (const std::uint32_t draws : s.draws_of_pass) {
       PassState pass;
-      pass.first_draw = static_cast<std::uint32_t>(frame.draws.size());
+      pass.first_draw = DrawId(frame.draws.size());
       pass.draws = draws;
       frame.passes.push_back(pass);
       frame.draws.resize(frame.draws.size() + draws);
@@ -34,9 +34,13 @@ struct CommandBench final : Bench {
     feed(unit->retire_in[1], s.retire_1);
     feed(unit->scan_done_in, s.scan_done);
     issued = &drain<DrawToken>(
-        unit->draw_out, [](const DrawToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; },
+        unit->draw_out,
+        [](const DrawToken& t) {
+          const bool pass = t.kind == TokenKind::kPassBegin || t.kind == TokenKind::kPassEnd;
+          return 100 * static_cast<unsigned>(t.kind) + (pass ? t.part.pass().index() : t.part.draw().index());
+        },
         s.pace, s.out);
-    scans = &drain<ScanToken>(unit->scan_out, [](const ScanToken& t) { return t.pass; });
+    scans = &drain<ScanToken>(unit->scan_out, [](const ScanToken& t) { return t.pass.index(); });
   }
   [[nodiscard]] bool finished() const override { return Bench::finished() && unit->finished(); }
   QuietLog quiet;
@@ -47,7 +51,7 @@ struct CommandBench final : Bench {
 };
 
 // Keys: 3xx pass begin, 0xx draw, 2xx draw end, 4xx pass end.
-const RetireToken kRetired{TokenKind::kDrawEnd, 0}, kFlushed{TokenKind::kPassEnd, 0};
+const RetireToken kRetired{TokenKind::kDrawEnd, DrawId(0)}, kFlushed{TokenKind::kPassEnd, PassId(0)};
 
 }  // namespace
 

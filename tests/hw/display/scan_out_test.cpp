@@ -42,21 +42,23 @@ std::string report(const ScanBench& b) {
 }  // namespace
 
 TEST_CASE("scan_out: asks for one line a cycle and is done the cycle the last answer arrives") {
-  CHECK(run<ScanBench>({.scans = {{0, {0}}}}, report) == "3:r2/f 4:r3/f 5:r4/f 6:r5/f done 18:0 lines 4");
+  CHECK(run<ScanBench>({.scans = {{0, {PassId(0)}}}}, report) ==
+        "3:r2/f 4:r3/f 5:r4/f 6:r5/f done 18:0 lines 4");
 }
 
 TEST_CASE("scan_out: keeps no more lines under way than allowed") {
-  CHECK(run<ScanBench>({.scans = {{0, {0}}}, .lines_in_flight = 1}, report) ==
+  CHECK(run<ScanBench>({.scans = {{0, {PassId(0)}}}, .lines_in_flight = 1}, report) ==
         "3:r2/f 15:r3/f 27:r4/f 39:r5/f done 51:0 lines 4");
-  CHECK(run<ScanBench>({.scans = {{0, {0}}}, .lines_in_flight = 2}, report) ==
+  CHECK(run<ScanBench>({.scans = {{0, {PassId(0)}}}, .lines_in_flight = 2}, report) ==
         "3:r2/f 4:r3/f 15:r4/f 16:r5/f done 28:0 lines 4");
 }
 
 TEST_CASE("scan_out: a line that a cache still holds dirty is noticed") {
-  CHECK_THAT(run<ScanBench>({.scans = {{0, {0}}}, .dirty = true}, report),
+  CHECK_THAT(run<ScanBench>({.scans = {{0, {PassId(0)}}}, .dirty = true}, report),
              Catch::StartsWith("failed: signal"));
 }
 
 TEST_CASE("scan_out: keeps the contract, one-deep links included") {
-  CHECK(contract_text<ScanBench>({.scans = {{0, {0}}, {5, {0}}}, .lines_in_flight = 3, .latency = 7}) == "");
+  CHECK(contract_text<ScanBench>(
+            {.scans = {{0, {PassId(0)}}, {5, {PassId(0)}}}, .lines_in_flight = 3, .latency = 7}) == "");
 }

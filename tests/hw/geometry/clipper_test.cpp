@@ -85,7 +85,7 @@ ClipBench::Setup shapes(const std::vector<Shape>& list) {
     const auto first = static_cast<std::uint8_t>(3 * shape);
     s.primitives.push_back({0,
                             {TokenKind::kWork,
-                             0,
+                             DrawId(0),
                              0,
                              shape,
                              {{0, first},
@@ -125,7 +125,7 @@ TEST_CASE(
       s.triangles_per_clk = rate;
       s.pace = {.from = 0, .period = 0};
       s.out = {.depth = 64, .width = 8};
-      s.primitives.push_back({0, {TokenKind::kDrawEnd, 0, 0, 0, {}}});
+      s.primitives.push_back({0, {TokenKind::kDrawEnd, DrawId(0), 0, 0, {}}});
       const auto last = std::stod(
           run<ClipBench>(s, [](const ClipBench& b) { return fmt::format("{}", b.sink->got.back().cycle); }));
       const double each = shape == kOneOut ? 12 + 2.0 / rate : 1.0 / rate;
@@ -151,7 +151,7 @@ TEST_CASE("clipper: each engine gets the triangles that touch its part of the sc
   // engine's.
   auto s = shapes({kInside, kSmall, kBeside});
   s.engines = 2;
-  s.primitives.push_back({0, {TokenKind::kDrawEnd, 0, 0, 0, {}}});
+  s.primitives.push_back({0, {TokenKind::kDrawEnd, DrawId(0), 0, 0, {}}});
   const auto text = run<ClipBench>(s, [](const ClipBench& b) {
     return fmt::format("{} | {} | {} copies", b.sink->text(), b.second->text(), counter(*b.unit, "copies"));
   });
@@ -186,7 +186,7 @@ TEST_CASE("clipper: stops between pieces while clipped_out is full") {
 
 TEST_CASE("clipper: keeps the contract, one-deep links included") {
   auto s = shapes({kInside, kOneOut, kNan, kTwoOut, kBeside, kInside});
-  s.primitives.push_back({30, {TokenKind::kBatchEnd, 0, 0, 0, {}}});
+  s.primitives.push_back({30, {TokenKind::kBatchEnd, DrawId(0), 0, 0, {}}});
   s.pace = {.from = 0, .period = 3};
   CHECK(contract_text<ClipBench>(s) == "");
 }

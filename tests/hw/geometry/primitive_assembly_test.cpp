@@ -51,7 +51,7 @@ struct AssemblyBench final : Bench {
   StubSink<ReleaseToken>* loads = nullptr;
 };
 
-BatchToken batch(std::uint32_t slot) { return {TokenKind::kWork, 0, slot}; }
+BatchToken batch(std::uint32_t slot) { return {TokenKind::kWork, DrawId(0), slot}; }
 std::string primitives(const AssemblyBench::Setup& s) {
   return run<AssemblyBench>(s, [](const AssemblyBench& b) { return b.sink->text(); });
 }
@@ -110,9 +110,10 @@ TEST_CASE(
 TEST_CASE(
     "primitive_assembly: boundaries pass without waiting for a report, and a batch without triangles has "
     "only its end") {
-  const AssemblyBench::Setup s{
-      .batches = {{0, {TokenKind::kPassBegin, 0, 0}}, {0, batch(2)}, {0, {TokenKind::kDrawEnd, 0, 0}}},
-      .done_0 = {{10, {2}}}};
+  const AssemblyBench::Setup s{.batches = {{0, {TokenKind::kPassBegin, PassId(0), 0}},
+                                           {0, batch(2)},
+                                           {0, {TokenKind::kDrawEnd, DrawId(0), 0}}},
+                               .done_0 = {{10, {2}}}};
   CHECK(primitives(s) == "2:903 12:901 13:902");
 }
 
@@ -139,11 +140,11 @@ TEST_CASE("primitive_assembly: takes reports while primitive_out is full") {
 }
 
 TEST_CASE("primitive_assembly: keeps the contract, one-deep links included") {
-  const AssemblyBench::Setup s{.batches = {{0, {TokenKind::kPassBegin, 0, 0}},
+  const AssemblyBench::Setup s{.batches = {{0, {TokenKind::kPassBegin, PassId(0), 0}},
                                            {0, batch(0)},
                                            {0, batch(2)},
                                            {0, batch(1)},
-                                           {5, {TokenKind::kDrawEnd, 0, 0}}},
+                                           {5, {TokenKind::kDrawEnd, DrawId(0), 0}}},
                                .done_0 = {{7, {1}}, {9, {0}}},
                                .done_1 = {{9, {2}}},
                                .pace = {.from = 0, .period = 3}};

@@ -69,8 +69,10 @@ struct SetupBench final : Bench {
   StubSink<ReleaseToken>* released = nullptr;
 };
 
-ClippedToken piece(std::uint32_t i) { return {TokenKind::kWork, 0, 0, 0, {{0, 0}, {0, 1}, {0, 2}}, i}; }
-ClippedToken boundary(TokenKind kind) { return {kind, 0, 0, 0, {}, 0}; }
+ClippedToken piece(std::uint32_t i) {
+  return {TokenKind::kWork, DrawId(0), 0, 0, {{0, 0}, {0, 1}, {0, 2}}, i};
+}
+ClippedToken boundary(TokenKind kind) { return {kind, {}, 0, 0, {}, 0}; }
 std::string kept(const SetupBench& b) { return b.kept->text(); }
 
 }  // namespace

@@ -54,12 +54,13 @@ struct FetchBench final : Bench {
     unit = std::make_unique<VertexFetch>(
         "unit", context({.partitions = 2, .engines = s.second_engine.empty() ? 1 : 2}), params, batches);
     add(*unit);
-    feed(unit->draw_in,
-         {{0, {TokenKind::kPassBegin, 0}}, {0, {TokenKind::kWork, 0}}, {0, {TokenKind::kDrawEnd, 0}}});
+    feed(unit->draw_in, {{0, {TokenKind::kPassBegin, PassId(0)}},
+                         {0, {TokenKind::kWork, DrawId(0)}},
+                         {0, {TokenKind::kDrawEnd, DrawId(0)}}});
     feed(unit->release_in[0], s.releases);
     if (!s.second_engine.empty()) feed(unit->release_in[1], s.second_engine);
     memory = &serve(unit->memory_port(), kLatency);
-    warps = &drain<WarpToken>(unit->warp_out, [](const WarpToken& t) { return t.slot; });
+    warps = &drain<VertexWarpToken>(unit->warp_out, [](const VertexWarpToken& t) { return t.slot; });
     sink = &drain<BatchToken>(
         unit->batch_out,
         [](const BatchToken& t) {
@@ -82,7 +83,7 @@ struct FetchBench final : Bench {
   VertexFetch::Params params;
   std::unique_ptr<VertexFetch> unit;
   StubMemory* memory = nullptr;
-  StubSink<WarpToken>* warps = nullptr;
+  StubSink<VertexWarpToken>* warps = nullptr;
   StubSink<BatchToken>* sink = nullptr;
 };
 

@@ -74,9 +74,9 @@ struct CoarseBench final : Bench {
 };
 
 TriangleToken triangle(std::uint64_t sequence, std::uint32_t draw = 0) {
-  return {TokenKind::kWork, draw, sequence};
+  return {TokenKind::kWork, DrawId(draw), sequence};
 }
-const TriangleToken kBegin{TokenKind::kPassBegin, 0, 0};
+const TriangleToken kBegin{TokenKind::kPassBegin, PassId(0), 0};
 
 std::uint64_t counter(const CoarseBench& b, std::size_t i) { return b.unit->stats()->counters()[i]->value(); }
 std::string tiles(const CoarseBench::Setup& setup) {
@@ -116,8 +116,8 @@ TEST_CASE(
     "up") {
   // A thin diagonal crosses many rows, each of which costs its kept tiles and the failing tests beside them.
   const auto cycles_at = [](int rate) {
-    CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(5)}, {0, {TokenKind::kDrawEnd, 0, 0}}},
-                         .rate = rate};
+    CoarseBench::Setup s{
+        .triangles = {{0, kBegin}, {0, triangle(5)}, {0, {TokenKind::kDrawEnd, DrawId(0), 0}}}, .rate = rate};
     return contract::in_child([&] {
       Dispatcher driver("driver");
       CoarseBench b(driver, {}, s);
@@ -142,7 +142,7 @@ TEST_CASE(
 }
 
 TEST_CASE("coarse_raster: a tile that Hi-Z proves hidden is dropped, from the cycle the update is there") {
-  const HiZToken update{0, 0, 0, 0.5f};
+  const HiZToken update{0, 0, PassId(0), 0.5f};
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(3)}}, .hiz = {{10, update}}};
   const auto read = [](const CoarseBench& b) {
     return fmt::format("{} hidden {} updates {}", b.sink->text(), counter(b, 3), counter(b, 4));
@@ -156,7 +156,7 @@ TEST_CASE("coarse_raster: a tile that Hi-Z proves hidden is dropped, from the cy
 }
 
 TEST_CASE("coarse_raster: with 'less' a triangle at the held depth is hidden, a nearer one is kept") {
-  const HiZToken update{0, 0, 0, 0.5f};
+  const HiZToken update{0, 0, PassId(0), 0.5f};
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(1)}, {10, triangle(2)}},
                        .hiz = {{5, update}}};
   CHECK(tiles(s) == "2:903 13:20");  // the hidden one costs a cycle
@@ -164,20 +164,20 @@ TEST_CASE("coarse_raster: with 'less' a triangle at the held depth is hidden, a 
 
 TEST_CASE("coarse_raster: an update never raises what Hi-Z holds, and one of another pass changes nothing") {
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(3)}},
-                       .hiz = {{4, {0, 0, 0, 0.5f}}, {5, {0, 0, 0, 0.9f}}}};
+                       .hiz = {{4, {0, 0, PassId(0), 0.5f}}, {5, {0, 0, PassId(0), 0.9f}}}};
   CHECK(tiles(s) == "2:903");
-  s.hiz = {{4, {0, 0, 1, 0.5f}}};
+  s.hiz = {{4, {0, 0, PassId(1), 0.5f}}};
   CHECK(tiles(s) == "2:903 12:30");
 }
 
 TEST_CASE(
     "coarse_raster: Hi-Z is not trusted after a draw that may have raised depths, until the pass ends") {
-  const HiZToken update{0, 0, 0, 0.5f};
+  const HiZToken update{0, 0, PassId(0), 0.5f};
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(4, 1)}, {20, triangle(3, 2)}},
                        .hiz = {{5, update}}};
   CHECK(tiles(s) == "2:903 12:40 22:30");  // both kept although they lie behind what Hi-Z was told
   // the draw that only tests with "greater": it is kept, but leaves the trust
-  s.triangles[1].token.index = 3;
+  s.triangles[1].token.part = DrawId(3);
   CHECK(tiles(s) == "2:903 12:40");
   s.triangles = {{0, kBegin}, {10, triangle(4, 1)}, {15, kBegin}, {20, triangle(3, 2)}};
   s.hiz = {{17, update}};
@@ -199,7 +199,7 @@ TEST_CASE("coarse_raster: a sync follows every eighth part of the triangle store
 }
 
 TEST_CASE("coarse_raster: stops while tile_out is full but still takes Hi-Z updates") {
-  const HiZToken update{0, 0, 0, 0.6f};
+  const HiZToken update{0, 0, PassId(0), 0.6f};
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {0, triangle(0)}, {0, triangle(3)}},
                        .hiz = {{20, update}},
                        .pace = {.from = 100},
@@ -215,7 +215,7 @@ TEST_CASE("coarse_raster: keeps the contract, one-deep links included") {
                                      {0, triangle(1)},
                                      {0, triangle(4, 1)},
                                      {0, triangle(2, 2)}},
-                       .hiz = {{1, {0, 0, 0, 0.5f}}, {9, {1, 0, 0, 0.5f}}},
+                       .hiz = {{1, {0, 0, PassId(0), 0.5f}}, {9, {1, 0, PassId(0), 0.5f}}},
                        .rate = 1,
                        .pace = {.from = 0, .period = 3},
                        .use_hiz = false,

@@ -11,7 +11,8 @@ using namespace quadrille::hw::bench;
 namespace {
 
 TileToken tile(int x, int y, bool full = false, std::uint64_t triangle = 0) {
-  return {TokenKind::kWork, full, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), 0, triangle};
+  return {TokenKind::kWork, full,    static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y),
+          DrawId(0),        triangle};
 }
 
 struct FineBench final : Bench {
@@ -115,7 +116,7 @@ TEST_CASE("fine_raster: stops while coverage_out is full, and goes on the cycle 
 TEST_CASE("fine_raster: tiles go to the partition that owns them, boundaries to all in one cycle") {
   FineBench::Setup setup = tiles_of({tile(0, 0, true),
                                      tile(1, 0, true),
-                                     {TokenKind::kDrawEnd, false, 0, 0, 0, 0},
+                                     {TokenKind::kDrawEnd, false, 0, 0, DrawId(0), 0},
                                      tile(0, 1, true),
                                      tile(1, 1, true)},
                                     16);
@@ -130,7 +131,7 @@ TEST_CASE("fine_raster: keeps the contract, one-deep links included") {
                          tile(1, 0),
                          tile(0, 0, false, 1),
                          tile(7, 7),
-                         {TokenKind::kSync, false, 0, 0, 0, 1},
+                         {TokenKind::kSync, false, 0, 0, DrawId(0), 1},
                          tile(2, 1),
                          tile(1, 2)},
                         2);

@@ -12,7 +12,7 @@ namespace {
 struct PackerBench final : Bench {
   struct Setup {
     std::vector<Timed<CoverageToken>> coverage;
-    std::vector<Timed<ReleaseToken>> releases{};
+    std::vector<Timed<WarpReleaseToken>> releases{};
     int rate = 4, slots = 16, patience = 64, launch = 1;
     Pace pace{};
     LinkSpec out{.depth = 64};
@@ -26,16 +26,16 @@ struct PackerBench final : Bench {
     add(*unit);
     feed(unit->coverage_in, s.coverage);
     feed(unit->release_in, s.releases);
-    work = &drain<WarpToken>(
-        unit->warp_out, [](const WarpToken& t) { return t.slot; }, s.pace, s.out);
+    work = &drain<FragmentWarpToken>(
+        unit->warp_out, [](const FragmentWarpToken& t) { return t.slot.index(); }, s.pace, s.out);
     order = &drain<OrderToken>(unit->order_out, [](const OrderToken& t) {
-      return t.kind == TokenKind::kWork ? t.slot : 900u + static_cast<unsigned>(t.kind);
+      return t.kind == TokenKind::kWork ? t.slot.index() : 900u + static_cast<unsigned>(t.kind);
     });
   }
   WarpPacker::Params params;
-  Store<WarpSlot> warps;
+  WarpStore warps;
   std::unique_ptr<WarpPacker> unit;
-  StubSink<WarpToken>* work = nullptr;
+  StubSink<FragmentWarpToken>* work = nullptr;
   StubSink<OrderToken>* order = nullptr;
 };
 
@@ -43,10 +43,10 @@ struct PackerBench final : Bench {
 CoverageToken tile(int quads, std::uint32_t draw = 0, std::uint64_t triangle = 0, int x = 0,
                    bool late = false) {
   const std::uint64_t mask = quads == 16 ? ~std::uint64_t{0} : (std::uint64_t{1} << (4 * quads)) - 1;
-  return {TokenKind::kWork, late, static_cast<std::uint16_t>(x), 0, draw, triangle, mask};
+  return {TokenKind::kWork, late, static_cast<std::uint16_t>(x), 0, DrawId(draw), triangle, mask};
 }
 CoverageToken boundary(TokenKind kind, std::uint64_t triangle = 0) {
-  return {kind, false, 0, 0, 0, triangle, 0};
+  return {kind, false, 0, 0, DrawId(0), triangle, 0};
 }
 
 std::uint64_t counter(const PackerBench& b, std::size_t i) { return b.unit->stats()->counters()[i]->value(); }
@@ -74,13 +74,13 @@ TEST_CASE("warp_packer: quads of several triangles and tiles of a draw share a w
       {.coverage = {{0, tile(3, 0, 7, 1)}, {0, tile(3, 0, 8, 2)}, {0, tile(2, 0, 9, 3)}}},
       [](const PackerBench& b) {
         std::string all = b.work->text();
-        const WarpSlot& warp = b.warps[0];
+        const WarpSlot& warp = b.warps[WarpSlotId(0)];
         for (int q = 0; q < warp.quads; ++q) {
           const auto& quad = warp.quad[static_cast<std::size_t>(q)];
           all += fmt::format(" {}@{},{}", quad.triangle, quad.x, quad.y);
         }
         return fmt::format("{} covered {:x} partition {} warps {} partial {}", all, warp.covered,
-                           b.work->got[0].token.partition, counter(b, 3), counter(b, 4));
+                           b.work->got[0].token.partition.index(), counter(b, 3), counter(b, 4));
       });
   CHECK(text ==
         "5:0 7@8,0 7@10,0 7@12,0 8@16,0 8@18,0 8@20,0 9@24,0 9@26,0 covered ffffffff partition 3 warps 1 "
@@ -127,9 +127,10 @@ TEST_CASE("warp_packer: a sync travels with the open warp, alone when there is n
 TEST_CASE("warp_packer: opens no more warps than the reorder buffer has places") {
   // Four warps; the second place comes free at cycle 51 and the others at 61 and 71: the quads of the waiting
   // tile start then.
-  const PackerBench::Setup s{.coverage = {{0, tile(16)}, {0, tile(16)}},
-                             .releases = {{50, {0, 0}}, {60, {1, 0}}, {70, {2, 0}}},
-                             .slots = 1};
+  const PackerBench::Setup s{
+      .coverage = {{0, tile(16)}, {0, tile(16)}},
+      .releases = {{50, {WarpSlotId(0)}}, {60, {WarpSlotId(1)}}, {70, {WarpSlotId(2)}}},
+      .slots = 1};
   CHECK(warps(s) == "4:0 54:0 64:0 74:0");
   PackerBench::Setup wide = s;
   wide.slots = 3;
@@ -149,7 +150,11 @@ TEST_CASE("warp_packer: keeps the contract, one-deep links included") {
                                     {0, tile(5, 1)},
                                     {0, boundary(TokenKind::kDrawEnd)},
                                     {0, tile(9, 2)}},
-                       .releases = {{40, {0, 0}}, {60, {1, 0}}, {70, {2, 0}}, {80, {3, 0}}, {90, {0, 0}}},
+                       .releases = {{40, {WarpSlotId(0)}},
+                                    {60, {WarpSlotId(1)}},
+                                    {70, {WarpSlotId(2)}},
+                                    {80, {WarpSlotId(3)}},
+                                    {90, {WarpSlotId(0)}}},
                        .slots = 2,
                        .patience = 7};
   CHECK(contract_text<PackerBench>(s) == "");

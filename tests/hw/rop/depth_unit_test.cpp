@@ -45,7 +45,7 @@ struct DepthBench final : Bench {
     frame.draws[3].depth_compare = models::CompareOp::kGreater;
     for (std::uint32_t i = 0; i < 8; ++i) {
       triangles[i] = flat_triangle({glm::ivec2{0, 0}, {0, 40}, {40, 0}}, static_cast<float>(i) / 8);
-      if (i < 4) fill(warps[i], static_cast<float>(i + 1) / 8);
+      if (i < 4) fill(warps[WarpSlotId(i)], static_cast<float>(i + 1) / 8);
     }
     set_cache(params, s.lines, s.ways, s.misses);
     unit = std::make_unique<DepthUnit>("unit", context(), params, triangles, warps);
@@ -57,15 +57,16 @@ struct DepthBench final : Bench {
                  ? 100u * static_cast<unsigned>(t.late) + static_cast<unsigned>(t.triangle)
                  : 900u + static_cast<unsigned>(t.kind);
     });
-    late = &drain<LateToken>(unit->late_out,
-                             [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
+    late = &drain<LateToken>(unit->late_out, [](const LateToken& t) {
+      return 100 * static_cast<unsigned>(t.kind) + t.slot.index();
+    });
     hiz = &drain<HiZToken>(unit->hiz_out,
                            [](const HiZToken& t) { return static_cast<std::uint64_t>(1000 * t.max_depth); });
     memory = &serve(unit->memory_port(), 10);
   }
   /// The upper half of the left tile.
   static void fill(WarpSlot& warp, float depth) {
-    warp.draw = 1;
+    warp.draw = DrawId(1);
     warp.quads = 8;
     warp.late = true;
     warp.covered = warp.alive = ~0u;
@@ -82,7 +83,7 @@ struct DepthBench final : Bench {
   models::Program program;
   DepthUnit::Params params;
   TriangleStore triangles;
-  Store<WarpSlot> warps;
+  WarpStore warps;
   std::unique_ptr<DepthUnit> unit;
   StubSink<CoverageToken>* out = nullptr;
   StubSink<LateToken>* late = nullptr;
@@ -91,11 +92,11 @@ struct DepthBench final : Bench {
 };
 
 constexpr std::uint64_t kAll = ~std::uint64_t{0}, kUpperHalf = 0xffffffffu;
-const CoverageToken kBegin{TokenKind::kPassBegin, false, 0, 0, 0, 0, 0};
+const CoverageToken kBegin{TokenKind::kPassBegin, false, 0, 0, PassId(0), 0, 0};
 
 CoverageToken tile(std::uint64_t triangle, std::uint32_t draw = 0, std::uint64_t mask = kAll,
                    std::uint16_t x = 0) {
-  return {TokenKind::kWork, false, x, 0, draw, triangle, mask};
+  return {TokenKind::kWork, false, x, 0, DrawId(draw), triangle, mask};
 }
 std::string outputs(const DepthBench& b) { return b.out->text(); }
 
@@ -145,12 +146,13 @@ TEST_CASE(
 TEST_CASE(
     "depth_unit: an early draw goes late while late fragments of its tile are in flight, and is early again "
     "after them") {
-  const DepthBench::Setup s{.coverage = {{0, kBegin},
-                                         {10, tile(4, 1, kUpperHalf)},
-                                         {20, tile(3, 0, kUpperHalf)},
-                                         {25, tile(3, 0, kUpperHalf, 1)},
-                                         {60, tile(1, 0, kUpperHalf)}},
-                            .late = {{40, {TokenKind::kWork, 3}}, {40, {TokenKind::kWork, 2}}}};
+  const DepthBench::Setup s{
+      .coverage = {{0, kBegin},
+                   {10, tile(4, 1, kUpperHalf)},
+                   {20, tile(3, 0, kUpperHalf)},
+                   {25, tile(3, 0, kUpperHalf, 1)},
+                   {60, tile(1, 0, kUpperHalf)}},
+      .late = {{40, {TokenKind::kWork, WarpSlotId(3)}}, {40, {TokenKind::kWork, WarpSlotId(2)}}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
     return fmt::format("{} | {} deferred {} late {}", b.out->text(), b.late->text(),
                        counter(*b.unit, "deferred"), counter(*b.unit, "late_tested"));
@@ -162,9 +164,9 @@ TEST_CASE(
 TEST_CASE("depth_unit: late tests kill in their order and leave the survivors in the warp") {
   const DepthBench::Setup s{
       .coverage = {{0, kBegin}, {10, tile(4, 1, kUpperHalf)}, {20, tile(3, 1, kUpperHalf)}},
-      .late = {{40, {TokenKind::kWork, 0}}, {40, {TokenKind::kWork, 2}}}};
+      .late = {{40, {TokenKind::kWork, WarpSlotId(0)}}, {40, {TokenKind::kWork, WarpSlotId(2)}}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
-    return fmt::format("{:x} {:x} killed {}", b.warps[0].alive, b.warps[2].alive,
+    return fmt::format("{:x} {:x} killed {}", b.warps[WarpSlotId(0)].alive, b.warps[WarpSlotId(2)].alive,
                        counter(*b.unit, "late_killed"));
   });
   CHECK(text == "ffffffff 0 killed 32");
@@ -195,7 +197,7 @@ TEST_CASE("depth_unit: Hi-Z is told of a tile that the frame cuts, whose other p
 
 TEST_CASE("depth_unit: the flush writes dirty lines, no cleared tiles, and answers after its fence") {
   const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4)}},
-                            .late = {{100, {TokenKind::kPassEnd, 0}}}};
+                            .late = {{100, {TokenKind::kPassEnd, {}}}}};
   const auto text = run<DepthBench>(s, [](const DepthBench& b) {
     return fmt::format("{} writes {} dirty {}", b.late->text(), b.memory->count(MemoryRequest::Kind::kWrite),
                        b.device.dirty_lines());
@@ -205,7 +207,7 @@ TEST_CASE("depth_unit: the flush writes dirty lines, no cleared tiles, and answe
 
 TEST_CASE(
     "depth_unit: the flush writes what a later pass reads, and nothing of a surface that is discarded") {
-  DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4)}}, .late = {{100, {TokenKind::kPassEnd, 0}}}};
+  DepthBench::Setup s{.coverage = {{0, kBegin}, {10, tile(4)}}, .late = {{100, {TokenKind::kPassEnd, {}}}}};
   const auto text = [](const DepthBench& b) {
     return fmt::format("writes {} cleared {} dirty {}", b.memory->count(MemoryRequest::Kind::kWrite),
                        counter(*b.unit, "clear_writes"), b.device.dirty_lines());
@@ -228,7 +230,7 @@ TEST_CASE("depth_unit: a surface that is loaded has no cleared tiles and is read
 }
 
 TEST_CASE("depth_unit: a cache of one line gets through, and to the same depths") {
-  DepthBench::Setup s{.coverage = {{0, kBegin}}, .late = {{400, {TokenKind::kPassEnd, 0}}}};
+  DepthBench::Setup s{.coverage = {{0, kBegin}}, .late = {{400, {TokenKind::kPassEnd, {}}}}};
   for (std::uint64_t i = 7; i > 0; --i) {
     s.coverage.push_back({0, tile(i, 0, kUpperHalf, static_cast<std::uint16_t>(i % 2))});
     s.coverage.push_back(
@@ -251,7 +253,7 @@ TEST_CASE("depth_unit: keeps the contract, one-deep links included") {
                                    {0, tile(5, 2)},
                                    {9, tile(5, 0, kUpperHalf, 1)},
                                    {80, tile(3)}},
-                      .late = {{60, {TokenKind::kWork, 2}}, {300, {TokenKind::kPassEnd, 0}}}};
+                      .late = {{60, {TokenKind::kWork, WarpSlotId(2)}}, {300, {TokenKind::kPassEnd, {}}}}};
   CHECK(contract_text<DepthBench>(s) == "");
   // slower: whether a tile meets late fragments in flight depends on the links
   s.lines = s.ways = s.misses = 1;

@@ -39,20 +39,24 @@ struct RopBench final : Bench {
     pass.colors = s.colors;
     frame.passes = {pass};
     frame.draws = {draw};
-    for (std::uint32_t i = 0; i < 4; ++i) fill(warps[i], i, s);
+    for (std::uint32_t i = 0; i < 4; ++i) fill(warps[WarpSlotId(i)], i, s);
     set_cache(params, s.lines, s.ways, s.misses);
     unit = std::make_unique<Rop>("unit", context(), params, warps);
     add(*unit);
     feed(unit->order_in, s.order);
     feed(unit->done_in[0], s.done);
     feed(unit->late_in, s.late);
-    late = &drain<LateToken>(unit->late_out,
-                             [](const LateToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.slot; });
-    released = &drain<ReleaseToken>(unit->release_out, [](const ReleaseToken& t) { return t.slot; });
+    late = &drain<LateToken>(unit->late_out, [](const LateToken& t) {
+      return 100 * static_cast<unsigned>(t.kind) + t.slot.index();
+    });
+    released =
+        &drain<WarpReleaseToken>(unit->release_out, [](const WarpReleaseToken& t) { return t.slot.index(); });
     drain<ReleaseToken>(unit->load_out, [](const ReleaseToken& t) { return t.slot; });
     synced = &drain<ReleaseToken>(unit->sync_out, [](const ReleaseToken& t) { return t.sequence; });
-    retired = &drain<RetireToken>(
-        unit->retire_out, [](const RetireToken& t) { return 100 * static_cast<unsigned>(t.kind) + t.index; });
+    retired = &drain<RetireToken>(unit->retire_out, [](const RetireToken& t) {
+      return 100 * static_cast<unsigned>(t.kind) +
+             (t.kind == TokenKind::kPassEnd ? t.part.pass().index() : t.part.draw().index());
+    });
     memory = &serve(unit->memory_port(), s.memory_latency);
   }
   static void fill(WarpSlot& warp, std::uint32_t number, const Setup& s) {
@@ -83,17 +87,22 @@ struct RopBench final : Bench {
   }
   [[nodiscard]] std::uint64_t digest() const override { return Bench::digest() ^ image(); }
   Rop::Params params;
-  Store<WarpSlot> warps;
+  WarpStore warps;
   std::unique_ptr<Rop> unit;
   StubSink<LateToken>* late = nullptr;
-  StubSink<ReleaseToken>*released = nullptr, *synced = nullptr;
+  StubSink<WarpReleaseToken>* released = nullptr;
+  StubSink<ReleaseToken>* synced = nullptr;
   StubSink<RetireToken>* retired = nullptr;
   StubMemory* memory = nullptr;
 };
 
-OrderToken warp(std::uint32_t slot, std::uint64_t sync = 0) { return {TokenKind::kWork, 0, slot, sync}; }
-const OrderToken kBegin{TokenKind::kPassBegin, 0, 0, 0}, kDrawEnd{TokenKind::kDrawEnd, 0, 0, 0},
-    kPassEnd{TokenKind::kPassEnd, 0, 0, 0};
+OrderToken warp(std::uint32_t slot, std::uint64_t sync = 0) {
+  return {TokenKind::kWork, DrawId(0), WarpSlotId(slot), sync};
+}
+const OrderToken kBegin{TokenKind::kPassBegin, PassId(0), {}, 0},
+    kDrawEnd{TokenKind::kDrawEnd, DrawId(0), {}, 0}, kPassEnd{TokenKind::kPassEnd, PassId(0), {}, 0};
+/// The warp in this slot is shaded.
+Timed<FragmentDoneToken> done(std::int64_t cycle, std::uint32_t slot) { return {cycle, {WarpSlotId(slot)}}; }
 std::string released(const RopBench& b) { return b.released->text(); }
 
 /// Four warps, all shaded by cycle 20, and the depth unit's answer to the flush at cycle 300.
@@ -101,21 +110,22 @@ RopBench::Setup whole_pass() {
   return {
       .order =
           {{0, kBegin}, {0, warp(0)}, {0, warp(1)}, {0, warp(2)}, {0, warp(3)}, {0, kDrawEnd}, {0, kPassEnd}},
-      .done = {{20, {2}}, {20, {0}}, {20, {3}}, {20, {1}}},
-      .late = {{300, {TokenKind::kPassEnd, 0}}}};
+      .done = {done(20, 2), done(20, 0), done(20, 3), done(20, 1)},
+      .late = {{300, {TokenKind::kPassEnd, {}}}}};
 }
 
 }  // namespace
 
 TEST_CASE("rop: warps retire in order although the later one is shaded first") {
-  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(1)}}, .done = {{10, {1}}, {30, {0}}}};
+  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(1)}},
+                          .done = {done(10, 1), done(30, 0)}};
   CHECK(run<RopBench>(s, released) == "32:0 34:1");  // eight quads at four a cycle
 }
 
 TEST_CASE(
     "rop: a warp takes its live quads divided by the rate, blending with the old colour takes twice that") {
   RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}, {0, warp(0)}},
-                    .done = {{30, {0}}, {30, {2}}}};
+                    .done = {done(30, 0), done(30, 2)}};
   s.order.pop_back();
   s.order.push_back({0, kDrawEnd});
   const auto text = [](const RopBench& b) {
@@ -129,7 +139,7 @@ TEST_CASE(
 }
 
 TEST_CASE("rop: fragments that were discarded are counted and not written") {
-  RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}}, .done = {{10, {0}}}, .alive = 0x0000ff01};
+  RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}}, .done = {done(10, 0)}, .alive = 0x0000ff01};
   const auto text = run<RopBench>(s, [](const RopBench& b) {
     int changed = 0;
     for (const std::uint32_t pixel : models::detile(b.device, b.frame.passes[0].color[0].surface))
@@ -143,8 +153,8 @@ TEST_CASE("rop: fragments that were discarded are counted and not written") {
 
 TEST_CASE("rop: what a program discards of a warp that is tested late is counted by itself") {
   const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}},
-                          .done = {{10, {0}}},
-                          .late = {{50, {TokenKind::kWork, 0}}},
+                          .done = {done(10, 0)},
+                          .late = {{50, {TokenKind::kWork, WarpSlotId(0)}}},
                           .late_warps = true,
                           .alive = 0x0000ff01};
   CHECK(run<RopBench>(s, [](const RopBench& b) {
@@ -154,18 +164,19 @@ TEST_CASE("rop: what a program discards of a warp that is tested late is counted
 }
 
 TEST_CASE("rop: a late-tested warp is sent when it is shaded and retires when its answer is there") {
-  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(1)}},
-                          .done = {{10, {1}}, {20, {0}}},
-                          .late = {{50, {TokenKind::kWork, 0}}, {80, {TokenKind::kWork, 1}}},
-                          .late_warps = true};
+  const RopBench::Setup s{
+      .order = {{0, kBegin}, {0, warp(0)}, {0, warp(1)}},
+      .done = {done(10, 1), done(20, 0)},
+      .late = {{50, {TokenKind::kWork, WarpSlotId(0)}}, {80, {TokenKind::kWork, WarpSlotId(1)}}},
+      .late_warps = true};
   const auto text = run<RopBench>(
       s, [](const RopBench& b) { return fmt::format("{} | {}", b.late->text(), b.released->text()); });
   CHECK(text == "22:0 23:1 | 52:0 82:1");
 }
 
 TEST_CASE("rop: a sync is reported when its warp retires, a lone one in its turn") {
-  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0, 5)}, {0, {TokenKind::kSync, 0, 0, 9}}},
-                          .done = {{30, {0}}}};
+  const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0, 5)}, {0, {TokenKind::kSync, DrawId(0), {}, 9}}},
+                          .done = {done(30, 0)}};
   CHECK(run<RopBench>(s, [](const RopBench& b) { return b.synced->text(); }) == "32:5 34:9");
 }
 
@@ -183,7 +194,7 @@ TEST_CASE("rop: a pass ends when depth is flushed, every line is written and the
 
 TEST_CASE("rop: a tile that was only cleared is written by the flush") {
   const RopBench::Setup s{
-      .order = {{0, kBegin}, {0, kPassEnd}}, .done = {}, .late = {{50, {TokenKind::kPassEnd, 0}}}};
+      .order = {{0, kBegin}, {0, kPassEnd}}, .done = {}, .late = {{50, {TokenKind::kPassEnd, {}}}}};
   const auto text = run<RopBench>(s, [](const RopBench& b) {
     return fmt::format("{} cleared {} written {} requests {}", b.retired->text(),
                        counter(*b.unit, "fast_cleared_tiles"), counter(*b.unit, "clear_writes"),

@@ -39,8 +39,8 @@ struct SurfaceBench final : Bench {
     surface = models::allocate_surface(device, 8, 32);
     attachment = {surface, models::Format::kR8G8B8A8Unorm, s.load, s.store, 7, s.read_later};
     unit = std::make_unique<User>("unit", clock, s.script, s.shape.lines, s.shape.ways, s.shape.misses,
-                                  device, surface_writer(SurfaceKind::kColor, 0));
-    unit->cache.begin_pass({&attachment, 1}, 0, s.partitions);
+                                  device, surface_writer(SurfaceKind::kColor, PartitionId(0)));
+    unit->cache.begin_pass({&attachment, 1}, PartitionId(0), s.partitions);
     add(*unit);
     memory = &serve(unit->port, kLatency);
   }
@@ -168,7 +168,7 @@ TEST_CASE("surface_cache: the caches of depth and colour of all partitions are w
   std::vector<models::DeviceMemory::Owner> writers;
   for (int partition = 0; partition < 64; ++partition)
     for (const SurfaceKind kind : {SurfaceKind::kDepth, SurfaceKind::kColor})
-      writers.push_back(surface_writer(kind, partition));
+      writers.push_back(surface_writer(kind, PartitionId(partition)));
   std::sort(writers.begin(), writers.end());
   CHECK(std::adjacent_find(writers.begin(), writers.end()) == writers.end());
   CHECK(writers.front() != models::DeviceMemory::kClean);

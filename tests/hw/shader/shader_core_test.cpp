@@ -16,7 +16,8 @@ namespace {
 struct CoreBench final : Bench {
   struct Setup {
     std::string code = "output out0, r0\noutput out1, r0\noutput out2, r0\noutput out3, r0\n";
-    std::vector<Timed<WarpToken>> vertex{}, fragment{};
+    std::vector<Timed<VertexWarpToken>> vertex{};
+    std::vector<Timed<FragmentWarpToken>> fragment{};
     std::vector<Timed<TextureToken>> texels{};
     int simds = 4, simd_lanes = 8, sfu_lanes = 2, warp_slots = 32, rows = 1024;
     int alu_clk = 4, sfu_clk = 0, interp_clk = 0, const_clk = 0, branch_clk = 0;
@@ -42,8 +43,8 @@ struct CoreBench final : Bench {
     for (std::uint32_t i = 0; i < 8; ++i) {
       batches[i].lanes = 5;
       batches[i].outputs.resize(4);
-      warps[i].quads = 2;
-      warps[i].covered = 0x7f;
+      warps[WarpSlotId(i)].quads = 2;
+      warps[WarpSlotId(i)].covered = 0x7f;
     }
     params.simds.set(s.simds);
     params.simd_lanes.set(s.simd_lanes);
@@ -64,7 +65,7 @@ struct CoreBench final : Bench {
     vertex_done = &drain<VertexDoneToken>(
         unit->vertex_out, [](const VertexDoneToken& t) { return t.slot; }, s.pace, s.out);
     fragment_done = &drain<FragmentDoneToken>(
-        *unit->fragment_out[0], [](const FragmentDoneToken& t) { return t.slot; }, s.pace, s.out);
+        *unit->fragment_out[0], [](const FragmentDoneToken& t) { return t.slot.index(); }, s.pace, s.out);
     if (!s.textured) return;
     requests = &drain<TextureToken>(*unit->texture_out, [](const TextureToken& t) { return t.slot; });
     feed(*unit->texture_in, s.texels);
@@ -73,7 +74,7 @@ struct CoreBench final : Bench {
   ShaderCore::Params params;
   Store<CoreSlot> slots;
   Store<BatchSlot> batches;
-  Store<WarpSlot> warps;
+  WarpStore warps;
   TriangleStore triangles;
   std::unique_ptr<ShaderCore> unit;
   StubSink<VertexDoneToken>* vertex_done = nullptr;
@@ -81,10 +82,19 @@ struct CoreBench final : Bench {
   StubSink<TextureToken>* requests = nullptr;
 };
 
-std::vector<Timed<WarpToken>> work(std::uint32_t first, int count) {
-  std::vector<Timed<WarpToken>> all;
+std::vector<Timed<VertexWarpToken>> vertices(std::uint32_t first, int count) {
+  std::vector<Timed<VertexWarpToken>> all;
   all.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) all.push_back({0, {0, first + static_cast<std::uint32_t>(i), 0}});
+  for (int i = 0; i < count; ++i) all.push_back({0, {DrawId(0), first + static_cast<std::uint32_t>(i)}});
+  return all;
+}
+Timed<FragmentWarpToken> warp(std::int64_t cycle, int slot) {
+  return {cycle, {DrawId(0), WarpSlotId(slot), PartitionId(0)}};
+}
+std::vector<Timed<FragmentWarpToken>> fragments(int first, int count) {
+  std::vector<Timed<FragmentWarpToken>> all;
+  all.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) all.push_back(warp(0, first + i));
   return all;
 }
 std::string vertex_text(const CoreBench& b) { return b.vertex_done->text(); }
@@ -96,7 +106,7 @@ TEST_CASE(
     "for its last result") {
   for (const int lanes : {1, 8, 12, 32}) {
     for (const int latency : {0, 4, 50}) {
-      const CoreBench::Setup s{.vertex = work(0, 1), .simd_lanes = lanes, .alu_clk = latency};
+      const CoreBench::Setup s{.vertex = vertices(0, 1), .simd_lanes = lanes, .alu_clk = latency};
       // Accepted at 1, ready at 2; a sink sees the end one cycle after it. The last of four exports issues
       // after three.
       const int issue = (32 + lanes - 1) / lanes;
@@ -111,7 +121,7 @@ namespace {
 /// Cycles from the first acceptance until the last of `warps` warps that run `code` is seen by a sink.
 int cycles_of(CoreBench::Setup s, const std::string& code, int warps) {
   s.code = code;
-  s.fragment = work(0, warps);
+  s.fragment = fragments(0, warps);
   const std::string text = run<CoreBench>(s, [](const CoreBench& b) { return b.fragment_done->text(); });
   int last = 0;
   std::istringstream in(text);
@@ -167,7 +177,8 @@ TEST_CASE("shader_core: varyings and indexed constants are there after the laten
 }
 
 TEST_CASE("shader_core: waiting for operands is counted apart from issuing") {
-  CoreBench::Setup s{.code = repeated(kDependent, 10), .fragment = work(0, 1), .simds = 1, .alu_clk = 20};
+  CoreBench::Setup s{
+      .code = repeated(kDependent, 10), .fragment = fragments(0, 1), .simds = 1, .alu_clk = 20};
   const auto text = run<CoreBench>(s, [](const CoreBench& b) {
     return fmt::format("{} {}", counter(*b.unit, "simd_busy"), counter(*b.unit, "operand_waits"));
   });
@@ -227,7 +238,8 @@ TEST_CASE("shader_core: a branch waits for its condition, and the next instructi
 }
 
 TEST_CASE("shader_core: special functions go through their own lanes") {
-  const CoreBench::Setup s{.code = "frcp r0, r1\nfadd r0, r0, r0\noutput out0, r0\n", .vertex = work(0, 1)};
+  const CoreBench::Setup s{.code = "frcp r0, r1\nfadd r0, r0, r0\noutput out0, r0\n",
+                           .vertex = vertices(0, 1)};
   const auto text = run<CoreBench>(s, [](const CoreBench& b) {
     return fmt::format("{} sfu {} alu {} simd {}", b.vertex_done->text(),
                        counter(*b.unit, "sfu_instructions"), counter(*b.unit, "alu_instructions"),
@@ -237,13 +249,13 @@ TEST_CASE("shader_core: special functions go through their own lanes") {
 }
 
 TEST_CASE("shader_core: as many clauses run at a time as there are SIMDs, one warp is accepted a cycle") {
-  CHECK(run<CoreBench>({.vertex = work(0, 3)}, vertex_text) == "20:0 21:1 22:2");
-  CHECK(run<CoreBench>({.vertex = work(0, 3), .simds = 1}, vertex_text) == "20:0 37:1 54:2");
-  CHECK(run<CoreBench>({.vertex = work(0, 3), .simds = 2}, vertex_text) == "20:0 21:1 37:2");
+  CHECK(run<CoreBench>({.vertex = vertices(0, 3)}, vertex_text) == "20:0 21:1 22:2");
+  CHECK(run<CoreBench>({.vertex = vertices(0, 3), .simds = 1}, vertex_text) == "20:0 37:1 54:2");
+  CHECK(run<CoreBench>({.vertex = vertices(0, 3), .simds = 2}, vertex_text) == "20:0 21:1 37:2");
 }
 
 TEST_CASE("shader_core: a slot for one fragment warp is never given to vertex warps") {
-  CoreBench::Setup s{.vertex = work(0, 3), .fragment = {{5, {0, 7, 0}}}, .warp_slots = 2};
+  CoreBench::Setup s{.vertex = vertices(0, 3), .fragment = {warp(5, 7)}, .warp_slots = 2};
   const auto text = [](const CoreBench& b) {
     return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text());
   };
@@ -253,7 +265,7 @@ TEST_CASE("shader_core: a slot for one fragment warp is never given to vertex wa
 
 TEST_CASE("shader_core: registers for one fragment warp are never given to vertex warps") {
   CoreBench::Setup s{
-      .code = "output out0, r15\n", .vertex = work(0, 2), .fragment = {{5, {0, 7, 0}}}, .rows = 47};
+      .code = "output out0, r15\n", .vertex = vertices(0, 2), .fragment = {warp(5, 7)}, .rows = 47};
   const auto text = [](const CoreBench& b) {
     return fmt::format("{} | {}", b.vertex_done->text(), b.fragment_done->text());
   };
@@ -264,10 +276,11 @@ TEST_CASE("shader_core: registers for one fragment warp are never given to verte
 
 TEST_CASE("shader_core: helper lanes run but are not fragments, and killed ones are reported dead") {
   const CoreBench::Setup s{.code = "input r0, primitive_id\nieq r0, r0, r1\nkillif r0\noutput out0, r0\n",
-                           .fragment = work(3, 1)};
+                           .fragment = fragments(3, 1)};
   const auto text = run<CoreBench>(s, [](const CoreBench& b) {
     return fmt::format("{} fragments {} helpers {} alive {:x}", b.fragment_done->text(),
-                       counter(*b.unit, "fragments"), counter(*b.unit, "helper_lanes"), b.warps[3].alive);
+                       counter(*b.unit, "fragments"), counter(*b.unit, "helper_lanes"),
+                       b.warps[WarpSlotId(3)].alive);
   });
   CHECK(text == "17:3 fragments 7 helpers 1 alive 0");
 }
@@ -277,8 +290,8 @@ TEST_CASE(
   // Slots are given out from 0. A clause of one request (four cycles) and one of an export and the end
   // (five).
   const CoreBench::Setup s{.code = "tex r0, t0, r8, r9\noutput out0, r0\n",
-                           .fragment = work(5, 2),
-                           .texels = {{50, {1, 0, false}}, {100, {0, 0, false}}},
+                           .fragment = fragments(5, 2),
+                           .texels = {{50, {1, DrawId(0), false}}, {100, {0, DrawId(0), false}}},
                            .simds = 1,
                            .textured = true};
   CHECK(run<CoreBench>(s, [](const CoreBench& b) {
@@ -287,13 +300,13 @@ TEST_CASE(
 }
 
 TEST_CASE("shader_core: waits while vertex_out is full") {
-  CHECK(run<CoreBench>({.vertex = work(0, 3), .pace = {.from = 100, .period = 10}, .out = {.depth = 1}},
+  CHECK(run<CoreBench>({.vertex = vertices(0, 3), .pace = {.from = 100, .period = 10}, .out = {.depth = 1}},
                        vertex_text) == "100:0 110:1 120:2");
 }
 
 TEST_CASE("shader_core: keeps the contract, one-deep links included") {
-  const CoreBench::Setup s{.vertex = work(0, 4),
-                           .fragment = work(0, 6),
+  const CoreBench::Setup s{.vertex = vertices(0, 4),
+                           .fragment = fragments(0, 6),
                            .simds = 2,
                            .warp_slots = 3,
                            .pace = {.from = 0, .period = 9}};

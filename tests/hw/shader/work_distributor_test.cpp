@@ -13,7 +13,8 @@ namespace {
 
 struct DistributorBench final : Bench {
   struct Setup {
-    std::vector<Timed<WarpToken>> vertex{}, fragment_0{}, fragment_1{};
+    std::vector<Timed<VertexWarpToken>> vertex{};
+    std::vector<Timed<FragmentWarpToken>> fragment_0{}, fragment_1{};
     std::vector<Pace> cores;
     LinkSpec out{.depth = 4};
     const DistributionPolicy* policy = &kLeastLoadedDistribution;
@@ -32,21 +33,35 @@ struct DistributorBench final : Bench {
     feed(unit->load_in[0], s.done);
     feed(unit->load_in[1], {});
     feed(unit->load_in[2], {});
-    const auto key = [](const WarpToken& t) { return t.slot; };
     for (std::size_t c = 0; c < s.cores.size(); ++c) {
-      vertex.push_back(&drain<WarpToken>(*unit->vertex_out[c], key, s.cores[c], s.out));
-      fragment.push_back(&drain<WarpToken>(*unit->fragment_out[c], key, s.cores[c], s.out));
+      vertex.push_back(&drain<VertexWarpToken>(
+          *unit->vertex_out[c], [](const VertexWarpToken& t) { return t.slot; }, s.cores[c], s.out));
+      fragment.push_back(&drain<FragmentWarpToken>(
+          *unit->fragment_out[c], [](const FragmentWarpToken& t) { return t.slot.index(); }, s.cores[c],
+          s.out));
     }
   }
   WorkDistributor::Params params;
   std::unique_ptr<WorkDistributor> unit;
-  std::vector<StubSink<WarpToken>*> vertex, fragment;
+  std::vector<StubSink<VertexWarpToken>*> vertex;
+  std::vector<StubSink<FragmentWarpToken>*> fragment;
 };
 
-std::vector<Timed<WarpToken>> warps(std::uint32_t first, int count, std::int64_t apart = 0) {
-  std::vector<Timed<WarpToken>> all;
+std::vector<Timed<VertexWarpToken>> vertices(int first, int count, std::int64_t apart = 0) {
+  std::vector<Timed<VertexWarpToken>> all;
   all.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) all.push_back({i * apart, {0, first + static_cast<std::uint32_t>(i), 0}});
+  for (int i = 0; i < count; ++i)
+    all.push_back({i * apart, {DrawId(0), static_cast<std::uint32_t>(first + i)}});
+  return all;
+}
+/// The fragment warp in this slot, whose first quad is in this tile.
+FragmentWarpToken warp(int slot, std::uint16_t tile_x = 0, std::uint16_t tile_y = 0) {
+  return {DrawId(0), WarpSlotId(slot), PartitionId(0), tile_x, tile_y};
+}
+std::vector<Timed<FragmentWarpToken>> warps(int first, int count, std::int64_t apart = 0) {
+  std::vector<Timed<FragmentWarpToken>> all;
+  all.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) all.push_back({i * apart, warp(first + i)});
   return all;
 }
 
@@ -66,7 +81,7 @@ std::string fragment_text(const DistributorBench& b) {
 
 TEST_CASE("work_distributor: cores that are equally loaded take turns, one warp a cycle") {
   for (const DistributionPolicy* policy : distribution_policies().all())
-    CHECK(run<DistributorBench>({.vertex = warps(0, 6), .cores = {{}, {}, {}}, .policy = policy},
+    CHECK(run<DistributorBench>({.vertex = vertices(0, 6), .cores = {{}, {}, {}}, .policy = policy},
                                 vertex_text) == "2:0 5:3 | 3:1 6:4 | 4:2 7:5");
 }
 
@@ -74,7 +89,7 @@ TEST_CASE(
     "work_distributor: a core that is not done with its warps gets no more while others have fewer, though "
     "it has room, in turn it does") {
   // Cores 1 and 2 are done with each warp seven cycles after it was sent, core 0 never.
-  DistributorBench::Setup s{.vertex = warps(0, 7, 10), .cores = {{}, {}, {}}};
+  DistributorBench::Setup s{.vertex = vertices(0, 7, 10), .cores = {{}, {}, {}}};
   for (const auto& [cycle, core] : {std::pair{18, 1u}, {28, 2u}, {38, 1u}, {48, 2u}, {58, 1u}, {68, 2u}})
     s.done.push_back({cycle, {core, 0}});
   CHECK(run<DistributorBench>(s, vertex_text) == "2:0 | 12:1 32:3 52:5 | 22:2 42:4 62:6");
@@ -84,7 +99,7 @@ TEST_CASE(
 }
 
 TEST_CASE("work_distributor: vertex and fragment warps of a core count together") {
-  const DistributorBench::Setup s{.vertex = warps(0, 1), .fragment_0 = warps(10, 1, 1), .cores = {{}, {}}};
+  const DistributorBench::Setup s{.vertex = vertices(0, 1), .fragment_0 = warps(10, 1, 1), .cores = {{}, {}}};
   auto later = s;
   later.fragment_0[0].cycle = 20;
   CHECK(run<DistributorBench>(later, fragment_text) == " | 22:10");
@@ -95,15 +110,15 @@ TEST_CASE(
     "to others") {
   DistributorBench::Setup s{
       .cores = {{}, {}, {}, {}}, .out = {.depth = 64}, .policy = &kTileDistribution, .block_tiles = 2};
-  std::uint32_t slot = 0;
+  int slot = 0;
   for (std::uint16_t y = 0; y < 4; ++y) {
     for (std::uint16_t x = 0; x < 4; ++x, ++slot)
-      (x % 2 == 0 ? s.fragment_0 : s.fragment_1).push_back({0, {0, slot, 0, x, y}});
+      (x % 2 == 0 ? s.fragment_0 : s.fragment_1).push_back({0, warp(slot, x, y)});
   }
   const auto cores = run<DistributorBench>(s, [](const DistributorBench& b) {
     std::vector<std::size_t> core_of(16);
     for (std::size_t c = 0; c < 4; ++c) {
-      for (const auto& got : b.fragment[c]->got) core_of[got.token.slot] = c;
+      for (const auto& got : b.fragment[c]->got) core_of[got.token.slot.index()] = c;
     }
     bool together = true;
     for (std::size_t i = 0; i < 16; ++i)
@@ -121,15 +136,15 @@ TEST_CASE(
                             .out = {.depth = 2},
                             .policy = &kTileDistribution,
                             .block_tiles = 1};
-  for (std::uint32_t i = 0; i < 3; ++i) s.fragment_0.push_back({0, {0, i, 0, 0, 0}});
-  s.fragment_1.push_back({50, {0, 9, 1, 1, 0}});
+  for (int i = 0; i < 3; ++i) s.fragment_0.push_back({0, warp(i)});
+  s.fragment_1.push_back({50, warp(9, 1)});
   CHECK(run<DistributorBench>(s, fragment_text) == "100:0 101:1 102:2 | 100:9");
   s.policy = &kLeastLoadedDistribution;
   CHECK(run<DistributorBench>(s, fragment_text) == "100:0 101:2 | 100:1 101:9");
 }
 
 TEST_CASE("work_distributor: partitions take turns, and vertex work does not slow fragments") {
-  const DistributorBench::Setup s{.vertex = warps(0, 3),
+  const DistributorBench::Setup s{.vertex = vertices(0, 3),
                                   .fragment_0 = warps(10, 3),
                                   .fragment_1 = warps(20, 3),
                                   .cores = {{}},
@@ -144,13 +159,13 @@ TEST_CASE("work_distributor: partitions take turns, and vertex work does not slo
 TEST_CASE(
     "work_distributor: waits while every core is full, and gives the next warp to the first with room") {
   const DistributorBench::Setup s{
-      .vertex = warps(0, 5), .cores = {{.from = 60}, {.from = 50, .period = 100}}, .out = {.depth = 1}};
+      .vertex = vertices(0, 5), .cores = {{.from = 60}, {.from = 50, .period = 100}}, .out = {.depth = 1}};
   CHECK(run<DistributorBench>(s, vertex_text) == "60:0 62:3 64:4 | 50:1 150:2");
 }
 
 TEST_CASE("work_distributor: keeps the contract, one-deep links included") {
   for (const DistributionPolicy* policy : distribution_policies().all()) {
-    DistributorBench::Setup s{.vertex = warps(0, 9),
+    DistributorBench::Setup s{.vertex = vertices(0, 9),
                               .fragment_0 = warps(10, 7),
                               .fragment_1 = warps(20, 5, 3),
                               .cores = {{.from = 0, .period = 4}, {.from = 9, .period = 3}},

@@ -56,7 +56,7 @@ struct TextureBench final : Bench {
   StubMemory* memory = nullptr;
 };
 
-TextureToken slot(std::uint32_t i) { return {i, 0, models::Stage::kFragment}; }
+TextureToken slot(std::uint32_t i) { return {i, DrawId(0), models::ShaderStage::kFragment}; }
 std::string answers(const TextureBench& b) { return b.sink->text(); }
 
 }  // namespace

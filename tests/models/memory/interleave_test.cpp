@@ -35,7 +35,8 @@ std::uint32_t excess_of_areas(std::uint32_t partitions, std::uint32_t least, std
     for (std::uint32_t width = least; width <= most; ++width) {
       Load load(partitions, 0);
       for (std::uint32_t height = 1; height <= most; ++height) {
-        for (std::uint32_t x = 0; x < width; ++x) ++load[partition_of(x, top + height - 1, partitions)];
+        for (std::uint32_t x = 0; x < width; ++x)
+          ++load[partition_of(x, top + height - 1, partitions).index()];
         if (height < least) continue;
         const std::uint32_t even = mean_rounded_up(width * height, partitions), most_loaded = fullest(load);
         if (most_loaded > even) worst = std::max(worst, most_loaded - even);
@@ -125,7 +126,7 @@ TEST_CASE("interleave: areas of 64 tiles a partition and more are within a quart
       const std::uint32_t height = (64 * partitions + width - 1) / width;
       Load load(partitions, 0);
       for (std::uint32_t y = 3; y < 3 + height; ++y) {
-        for (std::uint32_t x = 5; x < 5 + width; ++x) ++load[partition_of(x, y, partitions)];
+        for (std::uint32_t x = 5; x < 5 + width; ++x) ++load[partition_of(x, y, partitions).index()];
       }
       INFO(partitions << " partitions, " << width << "x" << height);
       CHECK(4 * fullest(load) * partitions <= 5 * width * height);
@@ -137,13 +138,15 @@ TEST_CASE("interleave: rows of tiles use partitions in turn and columns and diag
   for (std::uint32_t partitions = 1; partitions <= 64; ++partitions) {
     INFO(partitions << " partitions");
     for (std::uint32_t x = 0; x < 100; ++x) {
-      REQUIRE(partition_of(x + 1, 7, partitions) == (partition_of(x, 7, partitions) + 1) % partitions);
+      REQUIRE(partition_of(x + 1, 7, partitions).index() ==
+              (partition_of(x, 7, partitions).index() + 1) % partitions);
     }
     for (const int right : {0, 1, 2, -1, -2}) {
       Load load(partitions, 0);
       for (int y = 0; y < 8 * static_cast<int>(partitions); ++y) {
         ++load[partition_of(static_cast<std::uint32_t>(2000 + right * y), static_cast<std::uint32_t>(y),
-                            partitions)];
+                            partitions)
+                   .index()];
       }
       // of 8; no steps were found for 24 that are even in areas and along every line
       CHECK(fullest(load) <= (partitions == 24 ? 32 : 14));

@@ -15,7 +15,7 @@ constexpr std::uint16_t kCondition = 3, kResult = 4;
 /// `instruction`, alone or inside an IF on r3.
 Program single(const Instruction& instruction, bool masked) {
   Program p;
-  p.stage = Stage::kFragment;
+  p.stage = ShaderStage::kFragment;
   p.name = "single";
   p.num_regs = 5;
   p.constants.words = 3;

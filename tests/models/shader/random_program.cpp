@@ -34,7 +34,7 @@ class Generator {
   [[nodiscard]] std::uint16_t below(std::size_t n) { return static_cast<std::uint16_t>(random_() % n); }
 
   void header() {
-    program_.stage = Stage::kFragment;
+    program_.stage = ShaderStage::kFragment;
     program_.name = "random";
     program_.num_regs = kFirstCounter + kMaxNesting;
     program_.uses_discard = below(2) != 0;

@@ -2,11 +2,11 @@
 /// tests.
 #pragma once
 
+#include "models/base/sampler.h"
 #include "models/precision.h"
 #include "models/rop/srgb.h"
 #include "models/shader/warp.h"
 #include "models/texture/layout.h"
-#include "models/texture/sampler.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,143 @@
+/// The early port: covered tiles are tested before they are shaded, or go late.
+#include "hw/rop/depth_unit.h"
+
+#include "models/raster/interpolate.h"
+#include "models/rop/depth.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+namespace {
+
+bool can_raise(const DrawState& draw) {
+  if (!draw.depth_test || !draw.depth_write) return false;
+  switch (draw.depth_compare) {
+    case models::CompareOp::kNever:
+    case models::CompareOp::kLess:
+    case models::CompareOp::kEqual:
+    case models::CompareOp::kLessOrEqual: return false;
+    case models::CompareOp::kGreater:
+    case models::CompareOp::kNotEqual:
+    case models::CompareOp::kGreaterOrEqual:
+    case models::CompareOp::kAlways: return true;
+  }
+  return true;
+}
+
+bool asks_for_less(const DrawState& draw) {
+  return draw.depth_compare == models::CompareOp::kLess ||
+         draw.depth_compare == models::CompareOp::kLessOrEqual;
+}
+
+int quads_in(std::uint64_t coverage) { return std::popcount(models::quads_of(coverage)); }
+
+}  // namespace
+
+Wake DepthUnit::early_take_wake() const {
+  if (early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()))
+    return Wake::never(coverage_out);
+  return Wake(take_free_).input(coverage_in);
+}
+
+Wake DepthUnit::early_test_wake() const {
+  if (early_.empty()) return Wake::never(coverage_in);
+  const EarlyEntry& head = early_.front();
+  if (!head.acquired && !stalled_) return Wake(std::max(free_, head.ready));
+  if (!head.acquired || head.missing > 0) return Wake::never(port_.response_in[0]);
+  if (some_wait_for_late_ && waits_for_late(head.token)) return Wake::never(late_in);
+  return Wake(std::max(free_, head.ready)).output(coverage_out);
+}
+
+bool DepthUnit::early_ready(Tick now) const {
+  return !early_.empty() && early_.front().acquired && early_test_wake().at() <= now;
+}
+
+void DepthUnit::take_early(Tick now) {
+  const CoverageToken token = coverage_in.pop(now);
+  if (token.kind == TokenKind::kWork) {
+    ++stats_.tiles;
+    stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(token.coverage));
+  }
+  early_.push_back({token, 0, after(now, 1), false});
+  take_free_ = after(now, 1);
+}
+
+bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
+  stats_.working_for(entry.token.part.draw());
+  if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).depth_test) {
+    const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
+    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y}, {.read = sectors}, number & ~kLateBit,
+                        entry.missing, entry.done, port_))
+      return false;
+  }
+  entry.acquired = true;
+  return true;
+}
+
+/// Fragments before it in this tile are still to be tested, and it may not be shaded before it is known to be
+/// visible.
+bool DepthUnit::waits_for_late(const CoverageToken& token) const {
+  return token.kind == TokenKind::kWork && frame_.draw(token.part.draw()).shades_visible_only() &&
+         late_in_flight_[tile_number(token.tile_x, token.tile_y)] > 0;
+}
+
+void DepthUnit::test_early(Tick now) {
+  CoverageToken token = early_.front().token;
+  if (token.kind == TokenKind::kWork) stats_.working_for(token.part.draw(), token.tile_x, token.tile_y);
+  else stats_.working_for(token.part.draw());
+  int cycles = 1;
+  if (token.kind == TokenKind::kPassBegin) begin_pass(token.part.pass());
+  if (token.kind == TokenKind::kWork) {
+    cycles = std::max(1, (quads_in(token.coverage) + params_.quads_per_clk - 1) / params_.quads_per_clk);
+    if (!test_tile(frame_.draw(token.part.draw()), token, now)) {
+      early_.front().acquired = false;  // no place for its lines now: ask again after the next fill
+      stalled_ = true;
+      return;
+    }
+    stats_.fragments_out += static_cast<std::uint64_t>(std::popcount(token.coverage));
+  }
+  if (token.kind != TokenKind::kWork || token.coverage != 0) coverage_out.push(now, token);
+  early_.pop_front();
+  ++first_early_;
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+}
+
+bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now) {
+  if (can_raise(draw)) lowering_ = false;
+  if (!draw.depth_test) {
+    stats_.untested += static_cast<std::uint64_t>(std::popcount(token.coverage));
+    return true;
+  }
+  std::uint32_t& in_flight = late_in_flight_[tile_number(token.tile_x, token.tile_y)];
+  token.late = draw.late_depth || in_flight > 0;
+  const bool decidable =
+      !token.late || (lowering_ && asks_for_less(draw) && !draw.fragment.program->writes_depth && !draw.shades_hidden());
+  float* const stored = depths(token.tile_x, token.tile_y);
+  const std::uint64_t covered = token.coverage;
+  alignas(32) float incoming[models::kTilePixels];
+  if (decidable) {
+    models::tile_depths(triangles_[token.triangle].setup, token.tile_x, token.tile_y, incoming);
+    token.coverage = models::depth_test(draw.depth_compare, stored, incoming, covered);
+  }
+  if (!token.late && draw.depth_write && token.coverage != 0) {
+    if (!cache_.write({0, token.tile_x, token.tile_y}, std::bit_cast<SectorPixels>(token.coverage), port_))
+      return false;
+    models::depth_write(stored, incoming, token.coverage);
+    send_hiz(now, token.tile_x, token.tile_y);
+  }
+  const auto killed = static_cast<std::uint64_t>(std::popcount(covered & ~token.coverage));
+  stats_.early_killed += killed;
+  if (token.late) {
+    in_flight += static_cast<std::uint32_t>(quads_in(token.coverage));
+    stats_.early_tested += killed;  // of a late tile, those alone are settled
+    stats_.deferred += static_cast<std::uint64_t>(std::popcount(token.coverage));
+  } else {
+    stats_.early_tested += static_cast<std::uint64_t>(std::popcount(covered));
+  }
+  return true;
+}
+
+}  // namespace quadrille::hw

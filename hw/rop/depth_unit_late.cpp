@@ -1,0 +1,103 @@
+/// The late port: shaded warps are tested in their order, and its flush ends a pass.
+#include "hw/rop/depth_unit.h"
+
+#include "hw/frame/fragment_output.h"
+
+#include "models/raster/quad_place.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace quadrille::hw {
+
+Wake DepthUnit::late_take_wake() const {
+  if (late_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()) || flush_.running())
+    return Wake::never(late_out);
+  return Wake().input(late_in);
+}
+
+Wake DepthUnit::late_test_wake() const {
+  if (late_.empty()) return Wake::never(late_in);
+  const LateEntry& head = late_.front();
+  if (!head.acquired && !stalled_) return Wake(std::max(free_, head.ready));
+  if (!head.acquired || head.missing > 0) return Wake::never(port_.response_in[0]);
+  return Wake(std::max(free_, head.ready)).output(late_out);
+}
+
+bool DepthUnit::late_ready(Tick now) const {
+  return !late_.empty() && late_.front().acquired && late_test_wake().at() <= now;
+}
+
+void DepthUnit::take_late(Tick now) { late_.push_back({late_in.pop(now), 0, now, false}); }
+
+bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
+  if (entry.token.kind == TokenKind::kWork) {
+    const WarpSlot& warp = warps_[entry.token.slot];
+    stats_.working_for(warp.draw);
+    for (int q = 0; q < warp.quads; ++q) {
+      if (((warp.alive >> (4 * q)) & 0xf) == 0) continue;
+      const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+      const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
+      const std::uint8_t sector = sectors_of_quads(1u << place.quad);
+      if (!cache_.acquire({0, place.tile_x, place.tile_y}, {.read = sector}, (number & ~kLateBit) | kLateBit,
+                          entry.missing, entry.done[static_cast<std::size_t>(q)], port_)) {
+        return false;
+      }
+    }
+  }
+  entry.acquired = true;
+  return true;
+}
+
+bool DepthUnit::test_late(Tick now) {
+  const LateToken token = late_.front().token;
+  if (token.kind == TokenKind::kPassEnd) {
+    stats_.working_for(kNoDraw);
+    cache_.flush(port_);
+    flush_.begin();
+    late_.pop_front();
+    ++first_late_;
+    return true;
+  }
+  WarpSlot& warp = warps_[token.slot];
+  stats_.working_for(warp.draw);
+  const DrawState& draw = frame_.draw(warp.draw);
+  for (int q = 0; q < warp.quads && draw.depth_write; ++q) {
+    const std::uint64_t lanes = (warp.alive >> (4 * q)) & 0xf;
+    if (lanes == 0) continue;
+    const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+    const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
+    if (!cache_.write({0, place.tile_x, place.tile_y},
+                      std::bit_cast<SectorPixels>(lanes << place.first_pixel()), port_)) {
+      late_.front().acquired = false;
+      stalled_ = !cache_.idle();
+      return false;
+    }
+  }
+  const models::LaneMask tested = warp.alive;
+  models::LaneMask survivors = 0;
+  for (int q = 0; q < warp.quads; ++q) survivors |= test_quad(draw, warp, q, now) << (4 * q);
+  stats_.late_tested += static_cast<std::uint64_t>(std::popcount(tested));
+  stats_.late_killed += static_cast<std::uint64_t>(std::popcount(tested & ~survivors));
+  warp.alive = survivors;
+  late_out.push(now, token);
+  late_.pop_front();
+  ++first_late_;
+  const int cycles = std::max(1, (warp.quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+  return true;
+}
+
+models::LaneMask DepthUnit::test_quad(const DrawState& draw, const WarpSlot& warp, int q, Tick now) {
+  const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+  const QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), (warp.alive >> (4 * q)) & 0xf};
+  const std::uint32_t tx = part.place.tile_x, ty = part.place.tile_y;
+  --late_in_flight_[tile_number(tx, ty)];
+  if (part.lanes == 0) return 0;
+  const models::LaneMask passed = test_depth(draw, warp, part, depths(tx, ty));
+  if (draw.depth_write && passed != 0) send_hiz(now, tx, ty);
+  return passed;
+}
+
+}  // namespace quadrille::hw
