@@ -12,6 +12,7 @@
 #include "models/memory/surface.h"
 #include "models/precision.h"
 #include "models/raster/clip.h"
+#include "models/raster/primitives.h"
 #include "models/raster/triangle_setup.h"
 #include "models/raster/viewport.h"
 #include "models/rop/blend.h"
@@ -52,6 +53,7 @@ struct DrawState {
   std::uint32_t pass = 0;
   // Geometry.
   models::Topology topology = models::Topology::kTriangleList;
+  bool restarts = false;  ///< a special index ends a strip or fan
   bool indexed = false;
   std::uint32_t index_bytes = 2;
   std::uint64_t index_address = 0;  ///< of the draw's first index
@@ -66,6 +68,7 @@ struct DrawState {
   std::vector<TextureState> vertex_textures, fragment_textures;  ///< by the program's binding index
   std::vector<models::TextureSize> vertex_texture_sizes, fragment_texture_sizes;
   // Fixed function.
+  models::PrimitiveState primitives;
   models::Viewport viewport;
   models::ClipState clip;
   models::SetupState setup;
@@ -80,7 +83,9 @@ struct DrawState {
   bool late_depth = false;
 
   [[nodiscard]] int varyings() const { return static_cast<int>(vertex_program->varyings.size()); }
-  [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
+  [[nodiscard]] bool smooth_lines() const {
+    return setup.line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
+  }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
   /// Calls `visit(attachment)` for each colour attachment that the program writes.
   template <class Visit>

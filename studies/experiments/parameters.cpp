@@ -44,7 +44,8 @@ std::string_view cause_of(const std::string& path) {
 }
 
 /// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up,
-/// layers that lie behind each other, and fragments that the shader drops.
+/// layers that lie behind each other, fragments that the shader drops, lines within and beyond the guard band,
+/// and points.
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   constexpr std::int32_t kBeyond = 100'000;  // pixels
   constexpr int kLayers = 8;
@@ -58,6 +59,9 @@ std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   streams.push_back(stream_of(small, {.cull = traces::CullMode::kBack}));
   streams.push_back(stream_of(hiding, {.depth = true}));
   streams.push_back(stream_of(hiding, {.depth = true, .discards = true}));
+  streams.push_back(stream_of(clipped, {.topology = traces::Topology::kLineList}));
+  streams.push_back(stream_of(small, {.topology = traces::Topology::kLineList}));
+  streams.push_back(stream_of(small, {.topology = traces::Topology::kPointList}));
   return streams;
 }
 
