@@ -78,7 +78,7 @@ void finish_host(HostFigures& host, const FrameFigures& frame) {
 }  // namespace
 
 RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision,
-                                      const TriangleObserver& observer) {
+                                      const PieceObserver& observer) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(std::uint64_t{4} << 30);

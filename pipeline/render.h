@@ -35,7 +35,7 @@ struct RenderedFrame {
 /// the host times and what was left out.
 [[nodiscard]] RenderedFrame render_functional_frame(const traces::CommandStream& stream,
                                                     const models::Precision& precision,
-                                                    const TriangleObserver& observer = {});
+                                                    const PieceObserver& observer = {});
 
 /// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream
 /// or the machine cannot do. `detail`: what the figures tell of single draws and parts of the screen; it

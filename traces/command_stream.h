@@ -41,7 +41,9 @@ using models::FrontFace;
 using models::is_integer_format;
 using models::kLastFormat;
 using models::kMaxColorAttachments;
+using models::LineMode;
 using models::LoadOp;
+using models::PolygonMode;
 using models::ShaderStage;
 using models::StoreOp;
 using models::Topology;
@@ -113,6 +115,11 @@ struct Pipeline {
   std::vector<VertexBinding> bindings;
   std::vector<VertexAttribute> attributes;
   Topology topology = Topology::kTriangleList;
+  /// An index of all ones ends a strip or fan, and the next index begins another.
+  bool primitive_restart = false;
+  PolygonMode polygon_mode = PolygonMode::kFill;
+  LineMode line_mode = LineMode::kBresenham;
+  float line_width = 1;  ///< pixels
   CullMode cull = CullMode::kNone;
   FrontFace front = FrontFace::kCounterClockwise;
   bool depth_clamp = false;
@@ -210,7 +217,7 @@ struct SetScissor {
   friend bool operator==(const SetScissor&, const SetScissor&) = default;
 };
 /// Indexed when `indexed`: `first` is the first index, `vertex_offset` is added to each; otherwise `first` is
-/// the first vertex. No primitive restart.
+/// the first vertex.
 struct Draw {
   bool indexed = false;
   std::uint32_t count = 0, first = 0;

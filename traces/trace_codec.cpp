@@ -196,7 +196,13 @@ void transfer(A& a, Pipeline& v) {
     a.choice(t.format, kLastFormat);
     numbers(a, t.offset);
   });
-  a.choice(v.topology, Topology::kTriangleFan);
+  a.choice(v.topology, a.version() >= 3 ? Topology::kLineStrip : Topology::kTriangleFan);
+  if (a.version() >= 3) {
+    numbers(a, v.primitive_restart);
+    a.choice(v.polygon_mode, PolygonMode::kPoint);
+    a.choice(v.line_mode, LineMode::kSmooth);
+    numbers(a, v.line_width);
+  }
   a.choice(v.cull, CullMode::kBack);
   a.choice(v.front, FrontFace::kClockwise);
   numbers(a, v.depth_clamp, v.depth.test, v.depth.write);

@@ -40,7 +40,7 @@ inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"IMGS", 2},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
-                                                   {"PIPE", 2},
+                                                   {"PIPE", 3},
                                                    {"DESC", 2},
                                                    {"TARG", 0},
                                                    {"CMDS", 2}}};

@@ -123,10 +123,20 @@ void check_vertex_input(const Pipeline& pipeline, std::size_t index) {
   }
 }
 
+void check_primitives(const Pipeline& pipeline, std::size_t index) {
+  if (pipeline.primitive_restart && models::is_list(pipeline.topology))
+    throw user_error("pipeline {} '{}': primitive restart in a list of primitives (strips and fans have it)",
+                     index, pipeline.name);
+  if (!(pipeline.line_width >= models::kMinLineWidth && pipeline.line_width <= models::kMaxLineWidth))
+    throw user_error("pipeline {} '{}': line width {} is outside {}..{}", index, pipeline.name,
+                     pipeline.line_width, models::kMinLineWidth, models::kMaxLineWidth);
+}
+
 void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::size_t index) {
   check_stage(stream, pipeline, index, pipeline.vertex_shader, ShaderStage::kVertex, "vertex");
   check_stage(stream, pipeline, index, pipeline.fragment_shader, ShaderStage::kFragment, "fragment");
   check_vertex_input(pipeline, index);
+  check_primitives(pipeline, index);
   for (const BlendState& blend : pipeline.blend) {
     if (blend.write_mask > 0xf)
       throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,

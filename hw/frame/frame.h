@@ -14,6 +14,7 @@
 #include "models/memory/surface.h"
 #include "models/precision.h"
 #include "models/raster/clip.h"
+#include "models/raster/primitives.h"
 #include "models/raster/triangle_setup.h"
 #include "models/raster/viewport.h"
 #include "models/rop/blend.h"
@@ -69,6 +70,7 @@ struct DrawState {
   PassId pass;
   // Geometry.
   models::Topology topology = models::Topology::kTriangleList;
+  bool restarts = false;  ///< a special index ends a strip or fan
   bool indexed = false;
   std::uint32_t index_bytes = 2;
   std::uint64_t index_address = 0;  ///< of the draw's first index
@@ -79,6 +81,7 @@ struct DrawState {
   // Programs.
   ProgramState vertex, fragment;
   // Fixed function.
+  models::PrimitiveState primitives;
   models::Viewport viewport;
   models::ClipState clip;
   models::SetupState setup;
@@ -99,7 +102,9 @@ struct DrawState {
     return stage == models::ShaderStage::kVertex ? vertex : fragment;
   }
   [[nodiscard]] int varyings() const { return static_cast<int>(vertex.program->varyings.size()); }
-  [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
+  [[nodiscard]] bool smooth_lines() const {
+    return setup.line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
+  }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
   /// Hidden fragments are shaded all the same: their program writes memory before their depth is tested.
   /// [VK1.3 #fragops-early]

@@ -254,7 +254,7 @@ void ShaderCore::launch_fragment(CoreSlot& slot) {
   const WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
   const std::uint32_t engine =
       models::engine_of_partition(slot.partition, static_cast<std::uint32_t>(triangles_.size()));
-  fill_fragment_inputs(work, *triangles_[engine], slot.fragment);
+  fill_fragment_inputs(work, *triangles_[engine], frame_.draw(work.draw).smooth_lines(), slot.fragment);
   const models::LaneMask lanes =
       work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
   slot.warp.vertex = nullptr;
@@ -330,7 +330,7 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
   } else {
     WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
     work.alive = work.covered & ~slot.warp.killed;
-    take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment.z, work);
+    take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment, work);
     fragment_out[slot.partition.index()]->push(now, {slot.warp_slot});
   }
   --simd_warps_[slot.simd];

@@ -78,13 +78,14 @@ class Assembler {
     else if (name == "input")
       program_.vertex_inputs.push_back(
           {small_field(words, 0, "location"), small_field(words, 1, "component")});
+    else if (name == "extras") read_extras(words);
     else if (name == "literal") read_literals(words);
     else if (name == "push") read_block(words, ConstantLayout::Source::kPushConstant);
     else if (name == "uniform") read_block(words, ConstantLayout::Source::kUniformBlock);
     else
       fail(
           "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture buffer "
-          "input varying",
+          "input varying extras",
           name);
   }
 
@@ -120,6 +121,17 @@ class Assembler {
         fail("unknown flag '{}'; legal: discard depth early-tests derivatives atomic-outputs", word);
       program_.*flag->member = true;
     }
+  }
+
+  void read_extras(const std::vector<std::string_view>& words) {
+    const auto at_most = [&](std::size_t i, std::string_view name, std::uint32_t most) {
+      const std::uint32_t value = field(words, i, name);
+      if (value > most) fail("{} is {}; legal: at most {}", name, value, most);
+      return static_cast<std::uint8_t>(value);
+    };
+    program_.extras.point_size = at_most(0, "point_size", 1) != 0;
+    program_.extras.clip_distances = at_most(1, "clip", kMaxUserDistances);
+    program_.extras.cull_distances = at_most(2, "cull", kMaxUserDistances);
   }
 
   /// The value of word `i`, which must read `name=number`.

@@ -46,6 +46,9 @@ class Checker {
             program_.varyings.size(), kMaxVaryings);
     require(program_.vertex_inputs.size() <= kMaxVertexInputs,
             "{} vertex input components; legal: at most {}", program_.vertex_inputs.size(), kMaxVertexInputs);
+    require(program_.extras.clip_distances + program_.extras.cull_distances <= kMaxUserDistances,
+            "{} clip and {} cull distances; legal: at most {} together", program_.extras.clip_distances,
+            program_.extras.cull_distances, kMaxUserDistances);
   }
 
   void check_operands(const Instruction& in) const {
@@ -81,7 +84,7 @@ class Checker {
         break;
       case Immediate::kOutputSlot: {
         const std::size_t slots = program_.stage == ShaderStage::kVertex
-                                      ? kFirstVaryingOutput + program_.varyings.size()
+                                      ? static_cast<std::size_t>(vertex_outputs(program_))
                                       : kDepthOutput + 1u;
         require(in.imm < slots, "output slot {} does not exist; the stage has {}", in.imm, slots);
         break;

@@ -177,7 +177,7 @@ bool writes_buffers(const Program& program) {
 const StageInfo& stage_info(ShaderStage stage) {
   static constexpr std::array<StageInfo, kStages> kInfos{
       {{"vertex", SystemValue::kVertexIndex, SystemValue::kInstanceIndex, true, false},
-       {"fragment", SystemValue::kFragCoordX, SystemValue::kPrimitiveId, false, true}}};
+       {"fragment", SystemValue::kFragCoordX, SystemValue::kPointCoordY, false, true}}};
   return kInfos[static_cast<std::size_t>(stage)];
 }
 

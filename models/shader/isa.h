@@ -26,6 +26,7 @@ inline constexpr int kQuadPixels = 4;
 inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxVaryings = 64;      ///< scalar components between vertex and fragment shader
 inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attributes of 4)
+inline constexpr int kMaxUserDistances = 8;  ///< clip and cull distances of a vertex, together
 inline constexpr int kMaxColorOutputs = 4 * kMaxColorAttachments;  ///< scalar components
 
 /// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones
@@ -181,11 +182,13 @@ enum class SystemValue : std::uint16_t {
   kFragCoordZ,
   kFragCoordW,
   kFrontFacing,
-  kPrimitiveId
+  kPrimitiveId,
+  kPointCoordX,
+  kPointCoordY
 };
 
-/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 4 to each of
-/// eight colour attachments, then depth.
+/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4, then what `VertexExtras` says.
+/// Fragment stage: 4 to each of eight colour attachments, then depth.
 inline constexpr std::uint16_t kFirstVaryingOutput = 4;
 inline constexpr std::uint16_t kDepthOutput = kMaxColorOutputs;
 
@@ -207,6 +210,14 @@ struct ConstantLayout {
   std::vector<Range> ranges;
   std::uint32_t words = 0;  ///< size of the constant file
   friend bool operator==(const ConstantLayout&, const ConstantLayout&) = default;
+};
+
+/// What a vertex program writes for the fixed functions behind it: slots behind its varyings, in this order.
+struct VertexExtras {
+  bool point_size = false;
+  std::uint8_t clip_distances = 0, cull_distances = 0;  ///< together at most 8
+  [[nodiscard]] int count() const { return (point_size ? 1 : 0) + clip_distances + cull_distances; }
+  friend bool operator==(const VertexExtras&, const VertexExtras&) = default;
 };
 
 struct TextureBinding {
@@ -270,6 +281,7 @@ struct Program {
   std::vector<VertexInputUse> vertex_inputs;  ///< vertex stage
   /// both stages of a pipeline hold the same list: scalar components, packed
   std::vector<Interpolation> varyings;
+  VertexExtras extras;  ///< vertex stage
   bool uses_discard = false;
   bool writes_depth = false;
   bool early_fragment_tests = false;
@@ -284,6 +296,14 @@ struct Program {
 /// execution; `Warp::launch` does so by itself the first time. Call it again after changing `code` of a
 /// program that has run. Throws `UserError` naming the program and the instruction.
 void prepare(const Program& program);
+
+/// Of a vertex program: the slot of its first extra output, and how many outputs there are.
+[[nodiscard]] inline int first_extra_output(const Program& program) {
+  return kFirstVaryingOutput + static_cast<int>(program.varyings.size());
+}
+[[nodiscard]] inline int vertex_outputs(const Program& program) {
+  return first_extra_output(program) + program.extras.count();
+}
 
 /// Components of colours that a fragment program writes: bit 4 * attachment + component.
 [[nodiscard]] std::uint32_t color_outputs(const Program& program);

@@ -22,9 +22,9 @@ inline constexpr std::array<NamedFlag, 5> kProgramFlags{
 
 /// By value of the enumeration.
 inline constexpr std::array<std::string_view, 3> kInterpolationNames{"perspective", "linear", "flat"};
-inline constexpr std::array<std::string_view, 8> kSystemValueNames{
-    "vertex_index", "instance_index", "frag_coord_x", "frag_coord_y",
-    "frag_coord_z", "frag_coord_w",   "front_facing", "primitive_id"};
+inline constexpr std::array<std::string_view, 10> kSystemValueNames{
+    "vertex_index", "instance_index", "frag_coord_x", "frag_coord_y",  "frag_coord_z",
+    "frag_coord_w", "front_facing",   "primitive_id", "point_coord_x", "point_coord_y"};
 
 /// Prefix of the slot number of an immediate.
 constexpr std::string_view slot_prefix(Immediate immediate) {

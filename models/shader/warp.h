@@ -26,8 +26,10 @@ struct FragmentInputs {
   alignas(64) LaneFloats x, y, z, inv_w;  ///< FragCoord: pixel centre (pixels), window depth, 1/w_clip
   /// perspective-correct weights of the triangle's second and third vertex
   alignas(64) LaneFloats persp_1, persp_2;
-  alignas(64) LaneFloats linear_1, linear_2;  ///< the same, linear in screen space
-  LaneWords front_facing, primitive_id;       ///< all ones / zero; 0-based primitive of the draw
+  /// the same, linear in screen space; of a point, its coordinates
+  alignas(64) LaneFloats linear_1, linear_2;
+  alignas(64) LaneFloats line_coverage;  ///< of smooth lines: how much of the pixel is covered
+  LaneWords front_facing, primitive_id;  ///< all ones / zero; 0-based primitive of the draw
   /// Per quad: `3 * varyings.size()` floats, (a0, a1 - a0, a2 - a0) for each scalar component. A quad that is
   /// not used points at a valid one.
   std::array<const float*, kWarpQuads> varyings{};

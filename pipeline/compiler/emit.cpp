@@ -141,6 +141,7 @@ class Encoder {
     program.num_regs = chosen_.allocation.num_regs;
     program.constants = constants_.layout;
     program.varyings = linkage_.interpolation;
+    if (shader_.stage == models::ShaderStage::kVertex) program.extras = linkage_.extras;
     program.early_fragment_tests = shader_.early_fragment_tests;
     for (const auto& [raw, slot] : inputs_)
       program.vertex_inputs.push_back(
@@ -196,13 +197,23 @@ class Encoder {
     if (i.op == Op::kInterp) return linkage_.varyings.at(i.imm);
     if (names(i, models::Immediate::kTextureBinding)) return textures_.at(i.imm);
     if (names(i, models::Immediate::kBufferBinding)) return buffers_.at(i.imm);
-    if (i.op == Op::kOutput && shader_.stage == models::ShaderStage::kVertex &&
-        i.imm >= models::kFirstVaryingOutput)
-      return static_cast<std::uint16_t>(
-          models::kFirstVaryingOutput +
-          linkage_.varyings.at(static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput)));
+    if (i.op == Op::kOutput && shader_.stage == models::ShaderStage::kVertex) return vertex_output(i.imm);
     if (i.op == Op::kLoadConst) return constants_.word_of(i.c);
     return i.imm;
+  }
+
+  [[nodiscard]] std::uint16_t vertex_output(std::uint16_t raw) const {
+    if (raw < models::kFirstVaryingOutput) return raw;
+    const auto varying = [&] {
+      return linkage_.varyings.at(static_cast<std::uint16_t>(raw - models::kFirstVaryingOutput));
+    };
+    if (raw < kRawPointSize) return static_cast<std::uint16_t>(models::kFirstVaryingOutput + varying());
+    const auto extra = static_cast<int>(models::kFirstVaryingOutput + linkage_.interpolation.size());
+    const int clip = extra + (linkage_.extras.point_size ? 1 : 0),
+              cull = clip + linkage_.extras.clip_distances;
+    if (raw == kRawPointSize) return static_cast<std::uint16_t>(extra);
+    if (raw < kRawCullDistance) return static_cast<std::uint16_t>(clip + (raw - kRawClipDistance));
+    return static_cast<std::uint16_t>(cull + (raw - kRawCullDistance));
   }
 
   [[nodiscard]] Instruction encode(const ScalarInstruction& i) const {

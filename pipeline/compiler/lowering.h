@@ -53,7 +53,7 @@ class Lowering {
   };
   /// Where a scalar of an input or output variable goes.
   struct Slot {
-    enum class Kind : std::uint8_t { kUsed, kIgnored, kRefused };
+    enum class Kind : std::uint8_t { kUsed, kRefused };
     Kind kind = Kind::kRefused;
     bool system = false;
     std::uint16_t imm = 0;

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstring>
 #include <map>
+#include <tuple>
 
 namespace quadrille::pipeline {
 
@@ -122,19 +123,23 @@ class FrameBuilder {
 
   const CompiledPipeline& compiled(Index index) {
     const traces::Pipeline& pipeline = stream_.pipelines[index];
-    const auto key = std::pair{pipeline.vertex_shader, pipeline.fragment_shader};
+    const bool points =
+        models::PrimitiveState{models::assembled_kind(pipeline.topology), pipeline.polygon_mode}.pieces() ==
+        models::PieceKind::kPoint;
+    const auto key = std::tuple{pipeline.vertex_shader, pipeline.fragment_shader, points};
     const auto found = programs_.find(key);
     if (found != programs_.end()) return *found->second;
-    const traces::Shader& vertex = stream_.shaders[key.first];
-    const traces::Shader& fragment = stream_.shaders[key.second];
+    const traces::Shader& vertex = stream_.shaders[pipeline.vertex_shader];
+    const traces::Shader& fragment = stream_.shaders[pipeline.fragment_shader];
     out_.programs.push_back(
-        compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name, target_));
+        compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name, target_, points));
     programs_[key] = &out_.programs.back();
     return out_.programs.back();
   }
 
   void geometry(const traces::Draw& c, const traces::Pipeline& pipeline, hw::DrawState& draw) {
     draw.topology = pipeline.topology;
+    draw.restarts = pipeline.primitive_restart && c.indexed;
     draw.indexed = c.indexed;
     draw.count = c.count;
     draw.instances = c.instances;
@@ -189,13 +194,22 @@ class FrameBuilder {
     }
   }
 
+  static models::PrimitiveState primitives(const traces::Pipeline& pipeline, const models::Program& vertex) {
+    return {models::assembled_kind(pipeline.topology), pipeline.polygon_mode, vertex.extras.clip_distances,
+            vertex.extras.cull_distances, vertex.extras.point_size};
+  }
+
   void fixed_function(const traces::Pipeline& pipeline, hw::DrawState& draw) {
+    draw.primitives = primitives(pipeline, *draw.vertex.program);
+    // A point whose centre is in the view volume is drawn whole.
+    const bool points = draw.primitives.pieces() == models::PieceKind::kPoint;
     const models::PixelRect rect = models::drawable_rect(viewport_, scissor_, out_.frame.passes.back().width,
                                                          out_.frame.passes.back().height);
     const int bits = out_.frame.precision.subpixel_bits;
     draw.viewport = viewport_;
     draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
-    draw.setup = {pipeline.cull, pipeline.front, rect, bits, viewport_.min_depth, viewport_.max_depth};
+    draw.setup = {pipeline.cull,       pipeline.front,      points ? scissor_ : rect, bits,
+                  viewport_.min_depth, viewport_.max_depth, pipeline.line_mode,       pipeline.line_width};
     draw.depth_test = pipeline.depth.test && begun_->depth.image != kNone;
     draw.depth_write = draw.depth_test && pipeline.depth.write;
     draw.depth_compare = pipeline.depth.compare;
@@ -291,7 +305,7 @@ class FrameBuilder {
   DeviceFrame& out_;
   DeviceResources resources_;
   StorageBinder storage_;
-  std::map<std::pair<Index, Index>, const CompiledPipeline*> programs_;
+  std::map<std::tuple<Index, Index, bool>, const CompiledPipeline*> programs_;  ///< true: for points
   std::map<std::uint32_t, Index> sets_;
   std::map<std::uint32_t, traces::BindVertexBuffer> vertex_buffers_;
   traces::BindIndexBuffer index_buffer_;

@@ -58,6 +58,7 @@ traces::Pipeline pipeline_of(const DrawOptions& options) {
       options.depth ? traces::Format::kR32G32B32Float : traces::Format::kR32G32Float;
   pipeline.bindings = {{0, traces::format_bytes(format), false}};
   pipeline.attributes = {{0, 0, format, 0}};
+  pipeline.topology = options.topology;
   pipeline.cull = options.cull;
   if (options.depth) pipeline.depth = {true, true, traces::CompareOp::kLess};
   if (options.blends) {

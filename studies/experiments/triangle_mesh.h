@@ -45,6 +45,8 @@ struct DrawTexture {
 };
 
 struct DrawOptions {
+  /// what the mesh's indices are: triangles, or lines or points of the same corners
+  traces::Topology topology = traces::Topology::kTriangleList;
   traces::CullMode cull = traces::CullMode::kNone;
   bool depth = false;     ///< test "less" and write
   bool discards = false;  ///< the fragment shader drops half of its fragments

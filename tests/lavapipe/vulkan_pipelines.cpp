@@ -59,10 +59,10 @@ VkPipelineRasterizationStateCreateInfo raster_state(const traces::Pipeline& pipe
   VkPipelineRasterizationStateCreateInfo state{};
   state.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
   state.depthClampEnable = pipeline.depth_clamp ? VK_TRUE : VK_FALSE;
-  state.polygonMode = VK_POLYGON_MODE_FILL;
+  state.polygonMode = vk_polygon_mode(pipeline.polygon_mode);
   state.cullMode = vk_cull(pipeline.cull);
   state.frontFace = vk_front(pipeline.front);
-  state.lineWidth = 1;
+  state.lineWidth = pipeline.line_width;
   return state;
 }
 
@@ -228,10 +228,15 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
   assembly.topology = vk_topology(pipeline.topology);
+  assembly.primitiveRestartEnable = pipeline.primitive_restart ? VK_TRUE : VK_FALSE;
   VkPipelineViewportStateCreateInfo viewport{};
   viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
   viewport.viewportCount = viewport.scissorCount = 1;
-  const VkPipelineRasterizationStateCreateInfo raster = raster_state(pipeline);
+  VkPipelineRasterizationStateCreateInfo raster = raster_state(pipeline);
+  VkPipelineRasterizationLineStateCreateInfoEXT lines{};
+  lines.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT;
+  lines.lineRasterizationMode = vk_line_mode(pipeline.line_mode);
+  if (device_.info().line_modes) raster.pNext = &lines;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;

@@ -30,6 +30,7 @@ struct DeviceInfo {
   std::string api_version{};             ///< for example "1.3.230"
   bool pipeline_statistics = false;      ///< counts its stages' work (feature pipelineStatisticsQuery)
   bool precise_occlusion = false;        ///< counts samples exactly (feature occlusionQueryPrecise)
+  bool line_modes = false;               ///< chooses how lines become pixels (VK_EXT_line_rasterization)
   std::uint32_t timestamp_bits = 0;      ///< valid bits of a timestamp of the queue used; 0: it has none
   double timestamp_ns = 0;               ///< nanoseconds a tick
 };

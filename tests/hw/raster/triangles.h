@@ -14,7 +14,7 @@ namespace quadrille::hw::bench {
   models::SetupState state;
   state.scissor = {0, 0, 64, 64};
   TriangleSlot slot;
-  slot.draw = draw;
+  slot.draw = DrawId(draw);
   const models::SetupOutcome outcome =
       models::setup_triangle(vertices, models::whole_triangle_weights(), state, slot.setup);
   QUADRILLE_CHECK(outcome == models::SetupOutcome::kKept, "the test's triangle is not kept");

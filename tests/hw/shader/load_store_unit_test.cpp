@@ -35,7 +35,7 @@ struct StorageBench final : Bench {
     DrawState draw;
     draw.fragment.buffers = {{device.allocate(1 << 16), 1 << 16, models::StorageView::kReadOnly}};
     frame.draws = {draw, draw};
-    frame.draws[1].pass = 1;
+    frame.draws[1].pass = PassId(1);
     frame.passes.resize(2);
     for (std::size_t i = 0; i < s.accesses.size(); ++i) {
       models::StorageRequest& request = slots[i].warp.accesses[0];
@@ -64,7 +64,7 @@ struct StorageBench final : Bench {
   StubMemory* memory = nullptr;
 };
 
-StorageToken slot(std::uint32_t i, std::uint32_t draw = 0) { return {i, draw, models::ShaderStage::kFragment}; }
+StorageToken slot(std::uint32_t i, std::uint32_t draw = 0) { return {i, DrawId(draw), models::ShaderStage::kFragment}; }
 std::string answers(const StorageBench& b) { return b.sink->text(); }
 
 }  // namespace

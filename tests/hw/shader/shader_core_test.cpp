@@ -58,7 +58,8 @@ struct CoreBench final : Bench {
     params.warp_slots.set(s.warp_slots);
     params.register_rows.set(s.rows);
     unit = std::make_unique<ShaderCore>(
-        "unit", context(), params, ShaderCore::Stores{slots, batches, {&warps}, {&triangles}}, s.textured);
+        "unit", context(), params, ShaderCore::Stores{slots, batches, {&warps}, {&triangles}},
+        ShaderCore::Neighbours{s.textured, false});
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in, s.fragment);
@@ -291,7 +292,7 @@ TEST_CASE(
   // (five).
   const CoreBench::Setup s{.code = "tex r0, t0, r8, r9\noutput out0, r0\n",
                            .fragment = fragments(5, 2),
-                           .texels = {{50, {1, DrawId(0), false}}, {100, {0, DrawId(0), false}}},
+                           .texels = {{50, {1, DrawId(0)}}, {100, {0, DrawId(0)}}},
                            .simds = 1,
                            .textured = true};
   CHECK(run<CoreBench>(s, [](const CoreBench& b) {

@@ -62,7 +62,8 @@ TEST_CASE("unsupported features are refused by name and line") {
   CHECK_THAT(error_of("double d = double(a.x); color = vec4(d);"), Catch::Contains("test.frag"));
   CHECK_THAT(error_of("other = a; color = a;", "layout(location=8) out vec4 other;"),
              Catch::Contains("other"));
-  CHECK_THAT(error_of("color = vec4(gl_PointCoord, 0, 0);"), Catch::Contains("gl_PointCoord"));
+  CHECK_THAT(error_of("color = vec4(gl_ClipDistance[0]);", "in float gl_ClipDistance[1];"),
+             Catch::Contains("gl_ClipDistance"));
   const auto vertex = vertex_spirv(
       "#version 450\nlayout(location=40) in vec2 p; void main() { gl_Position = vec4(p, 0, 1); }");
   const auto fragment =
