@@ -36,6 +36,15 @@ FrameImage read_image(const DeviceFrame& frame) {
   return image;
 }
 
+std::vector<BufferContents> read_buffers(const DeviceFrame& frame) {
+  std::vector<BufferContents> buffers;
+  for (const WrittenBuffer& written : frame.written_buffers) {
+    const std::span<const std::byte> data = frame.memory.read(written.address, written.bytes);
+    buffers.push_back({written.buffer, {data.begin(), data.end()}});
+  }
+  return buffers;
+}
+
 /// Times a run on a frame, without what bringing its textures took.
 class RunTimer {
  public:
@@ -69,7 +78,7 @@ void finish_host(HostFigures& host, const FrameFigures& frame) {
 }  // namespace
 
 RenderedFrame render_functional_frame(const traces::CommandStream& stream, const models::Precision& precision,
-                                      const TriangleObserver& observer) {
+                                      const PieceObserver& observer) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(std::uint64_t{4} << 30);
@@ -82,6 +91,7 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   out.figures.fidelity = "functional";
   out.figures.scene = stream.name;
   out.figures.left_out = frame.left_out;
+  out.figures.order_dependent = frame.order_dependent();
   note_pending(frame, out.figures.left_out);
   FrameFigures& f = out.figures.frame;
   f.draws = frame.frame.draws.size();
@@ -94,6 +104,7 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   f.fates = counts.fates;
   finish_host(host, f);
   out.image = read_image(frame);
+  out.buffers = read_buffers(frame);
   return out;
 }
 
@@ -116,6 +127,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   host.actions = out.figures.host.actions;
   out.figures.host = host;
   note_pending(frame, out.figures.left_out);
+  out.figures.order_dependent = frame.order_dependent();
   out.figures.scene = stream.name;
   if (options.window > 0) {
     out.figures.fidelity = "approximate";
@@ -123,6 +135,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   }
   finish_host(out.figures.host, out.figures.frame);
   out.image = read_image(frame);
+  out.buffers = read_buffers(frame);
   return out;
 }
 

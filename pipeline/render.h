@@ -18,8 +18,16 @@ struct FrameImage {
   std::vector<float> depth;          ///< rows top to bottom; empty when the target has no depth
 };
 
+/// What a buffer that programs wrote held at the end of the frame.
+struct BufferContents {
+  traces::Index buffer = traces::kNone;
+  std::vector<std::byte> data;
+  friend bool operator==(const BufferContents&, const BufferContents&) = default;
+};
+
 struct RenderedFrame {
   FrameImage image;
+  std::vector<BufferContents> buffers;  ///< in order of the stream's buffers
   Figures figures;
 };
 
@@ -27,7 +35,7 @@ struct RenderedFrame {
 /// the host times and what was left out.
 [[nodiscard]] RenderedFrame render_functional_frame(const traces::CommandStream& stream,
                                                     const models::Precision& precision,
-                                                    const TriangleObserver& observer = {});
+                                                    const PieceObserver& observer = {});
 
 /// Simulates the machine. Once per process (SystemC elaborates once). Throws `UserError` for what the stream
 /// or the machine cannot do. `detail`: what the figures tell of single draws and parts of the screen; it

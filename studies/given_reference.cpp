@@ -5,15 +5,19 @@ namespace {
 
 namespace ref = models::reference;
 
-ref::GivenTriangle given(const pipeline::RasterizedTriangle& t) {
-  ref::GivenTriangle g{t.draw.index(), t.instance, t.primitive, {}, {}, {}, {}, {}};
+ref::GivenTriangle given(const pipeline::RasterizedPiece& t) {
+  ref::GivenTriangle g;
+  g.draw = t.draw.index(), g.instance = t.instance, g.primitive = t.primitive;
   for (std::size_t i = 0; i < 3; ++i) {
-    g.x[i] = t.vertices[i].x;
-    g.y[i] = t.vertices[i].y;
-    g.z[i] = static_cast<double>(t.vertices[i].z);
-    g.inv_w[i] = static_cast<double>(t.vertices[i].inv_w);
-    g.barycentric[i] = {static_cast<double>(t.weights[i].x), static_cast<double>(t.weights[i].y)};
+    const models::WindowVertex& v = t.piece.vertices[i];
+    g.x[i] = v.x;
+    g.y[i] = v.y;
+    g.z[i] = static_cast<double>(v.z);
+    g.inv_w[i] = static_cast<double>(v.inv_w);
+    g.barycentric[i] = {static_cast<double>(t.piece.weights[i].x), static_cast<double>(t.piece.weights[i].y)};
   }
+  g.point_size = static_cast<double>(t.piece.point_size);
+  g.front = t.piece.front;
   return g;
 }
 
@@ -24,7 +28,7 @@ MachineAndReference render_with_reference(const traces::CommandStream& stream,
   ref::Options options;
   options.mode = ref::Mode::kGiven;
   options.precision = {precision.subpixel_bits, precision.subtexel_bits, precision.lod_bits};
-  const auto observe = [&](const pipeline::RasterizedTriangle& t) { options.given.push_back(given(t)); };
+  const auto observe = [&](const pipeline::RasterizedPiece& t) { options.given.push_back(given(t)); };
   MachineAndReference both;
   both.machine = pipeline::render_functional_frame(stream, precision, observe).image;
   both.reference = ref::render(stream, options);

@@ -41,7 +41,9 @@ using models::FrontFace;
 using models::is_integer_format;
 using models::kLastFormat;
 using models::kMaxColorAttachments;
+using models::LineMode;
 using models::LoadOp;
+using models::PolygonMode;
 using models::ShaderStage;
 using models::StoreOp;
 using models::Topology;
@@ -113,6 +115,11 @@ struct Pipeline {
   std::vector<VertexBinding> bindings;
   std::vector<VertexAttribute> attributes;
   Topology topology = Topology::kTriangleList;
+  /// An index of all ones ends a strip or fan, and the next index begins another.
+  bool primitive_restart = false;
+  PolygonMode polygon_mode = PolygonMode::kFill;
+  LineMode line_mode = LineMode::kBresenham;
+  float line_width = 1;  ///< pixels
   CullMode cull = CullMode::kNone;
   FrontFace front = FrontFace::kCounterClockwise;
   bool depth_clamp = false;
@@ -132,9 +139,17 @@ struct TextureDescriptor {
   Index image = kNone, sampler = kNone;
   friend bool operator==(const TextureDescriptor&, const TextureDescriptor&) = default;
 };
+/// A range of a buffer that programs may read and write.
+struct StorageBinding {
+  std::uint32_t binding = 0;
+  Index buffer = kNone;
+  std::uint32_t offset = 0, range = 0;  ///< bytes
+  friend bool operator==(const StorageBinding&, const StorageBinding&) = default;
+};
 struct DescriptorSet {
   std::vector<UniformBinding> uniforms;
   std::vector<TextureDescriptor> textures;
+  std::vector<StorageBinding> buffers{};
   friend bool operator==(const DescriptorSet&, const DescriptorSet&) = default;
 };
 
@@ -202,7 +217,7 @@ struct SetScissor {
   friend bool operator==(const SetScissor&, const SetScissor&) = default;
 };
 /// Indexed when `indexed`: `first` is the first index, `vertex_offset` is added to each; otherwise `first` is
-/// the first vertex. No primitive restart.
+/// the first vertex.
 struct Draw {
   bool indexed = false;
   std::uint32_t count = 0, first = 0;

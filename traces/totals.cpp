@@ -1,6 +1,7 @@
 /// Counts what a stream asks for and prints it for a person.
 #include <fmt/format.h>
 
+#include "models/geometry/assembly.h"
 #include "traces/trace_file.h"
 
 namespace quadrille::traces {
@@ -18,7 +19,15 @@ struct Counter {
   }
   void operator()(const Draw& c) const {
     ++totals.draws;
-    totals.triangles += std::uint64_t{triangle_count(topology, c.count)} * c.instances;
+    const std::uint64_t primitives = std::uint64_t{models::primitive_count(topology, c.count)} * c.instances;
+    switch (topology) {
+      case Topology::kPointList: totals.points += primitives; break;
+      case Topology::kLineList:
+      case Topology::kLineStrip: totals.lines += primitives; break;
+      case Topology::kTriangleList:
+      case Topology::kTriangleStrip:
+      case Topology::kTriangleFan: totals.triangles += primitives; break;
+    }
     totals.vertices += std::uint64_t{c.count} * c.instances;
   }
   template <class Other>
@@ -30,11 +39,6 @@ std::string megabytes(std::uint64_t bytes) {
 }
 
 }  // namespace
-
-std::uint32_t triangle_count(Topology topology, std::uint32_t count) {
-  if (topology == Topology::kTriangleList) return count / 3;
-  return count < 3 ? 0 : count - 2;
-}
 
 StreamTotals stream_totals(const CommandStream& stream) {
   StreamTotals totals;
@@ -61,8 +65,10 @@ std::string trace_info(const CommandStream& stream) {
   text += fmt::format("  pipelines  {:6}\n  sets       {:6}\n", stream.pipelines.size(),
                       stream.descriptor_sets.size());
   text += fmt::format("  commands   {:6}\n  passes     {:6}\n", stream.commands.size(), totals.passes);
-  text += fmt::format("  draws      {:6}\n  triangles  {:6}\n  vertices   {:6}\n", totals.draws,
-                      totals.triangles, totals.vertices);
+  text += fmt::format("  draws      {:6}\n  triangles  {:6}\n", totals.draws, totals.triangles);
+  if (totals.lines > 0) text += fmt::format("  lines      {:6}\n", totals.lines);
+  if (totals.points > 0) text += fmt::format("  points     {:6}\n", totals.points);
+  text += fmt::format("  vertices   {:6}\n", totals.vertices);
   return text;
 }
 

@@ -196,7 +196,13 @@ void transfer(A& a, Pipeline& v) {
     a.choice(t.format, kLastFormat);
     numbers(a, t.offset);
   });
-  a.choice(v.topology, Topology::kTriangleFan);
+  a.choice(v.topology, a.version() >= 3 ? Topology::kLineStrip : Topology::kTriangleFan);
+  if (a.version() >= 3) {
+    numbers(a, v.primitive_restart);
+    a.choice(v.polygon_mode, PolygonMode::kPoint);
+    a.choice(v.line_mode, LineMode::kSmooth);
+    numbers(a, v.line_width);
+  }
   a.choice(v.cull, CullMode::kBack);
   a.choice(v.front, FrontFace::kClockwise);
   numbers(a, v.depth_clamp, v.depth.test, v.depth.write);
@@ -209,6 +215,8 @@ template <class A>
 void transfer(A& a, DescriptorSet& v) {
   a.table(v.uniforms, [&](UniformBinding& u) { numbers(a, u.binding, u.buffer, u.offset, u.range); });
   a.table(v.textures, [&](TextureDescriptor& t) { numbers(a, t.binding, t.image, t.sampler); });
+  if (a.version() >= 2)
+    a.table(v.buffers, [&](StorageBinding& b) { numbers(a, b.binding, b.buffer, b.offset, b.range); });
 }
 
 template <class A>

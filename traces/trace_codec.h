@@ -40,8 +40,8 @@ inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"IMGS", 2},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
-                                                   {"PIPE", 2},
-                                                   {"DESC", 1},
+                                                   {"PIPE", 3},
+                                                   {"DESC", 2},
                                                    {"TARG", 0},
                                                    {"CMDS", 2}}};
 

@@ -35,18 +35,17 @@ void write_trace(const CommandStream& stream, const std::string& path);
 /// Reads and validates the trace at `path`. Throws `UserError` with file, chunk and reason.
 [[nodiscard]] CommandStream read_trace(const std::string& path);
 
-/// A summary for a person: objects and their bytes, passes, draws, triangles.
+/// A summary for a person: objects and their bytes, passes, draws, primitives.
 [[nodiscard]] std::string trace_info(const CommandStream& stream);
 
 /// What a stream asks for, counted from its commands.
 struct StreamTotals {
   std::uint64_t buffer_bytes = 0, image_bytes = 0;
   std::uint64_t passes = 0, draws = 0;
-  std::uint64_t triangles = 0;  ///< of all draws and instances, degenerate ones included
-  std::uint64_t vertices = 0;   ///< vertex references, before any reuse
+  /// of all draws and instances, degenerate ones included; without regard to indices that end a strip
+  std::uint64_t triangles = 0, lines = 0, points = 0;
+  std::uint64_t vertices = 0;  ///< vertex references, before any reuse
 };
 [[nodiscard]] StreamTotals stream_totals(const CommandStream& stream);
-/// Triangles of `count` vertices in `topology`.
-[[nodiscard]] std::uint32_t triangle_count(Topology topology, std::uint32_t count);
 
 }  // namespace quadrille::traces

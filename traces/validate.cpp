@@ -22,8 +22,9 @@ constexpr std::uint32_t kMaxVertexSlots = 16;
 constexpr std::uint32_t kMaxStride = 2048;
 // bytes [VK1.3 #limits-required: maxVertexInputAttributeOffset]
 constexpr std::uint32_t kMaxAttributeOffset = 2047;
-constexpr std::uint32_t kMaxUniformRange = 65536;  // bytes
-constexpr std::uint32_t kUniformAlignment = 16;    // bytes
+constexpr std::uint32_t kMaxUniformRange = 65536;                   // bytes
+constexpr std::uint32_t kMaxStorageRange = std::uint32_t{1} << 30;  // bytes
+constexpr std::uint32_t kBlockAlignment = 16;                       // bytes
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 
 void check_side(const char* what, std::size_t index, std::uint32_t width, std::uint32_t height) {
@@ -122,10 +123,20 @@ void check_vertex_input(const Pipeline& pipeline, std::size_t index) {
   }
 }
 
+void check_primitives(const Pipeline& pipeline, std::size_t index) {
+  if (pipeline.primitive_restart && models::is_list(pipeline.topology))
+    throw user_error("pipeline {} '{}': primitive restart in a list of primitives (strips and fans have it)",
+                     index, pipeline.name);
+  if (!(pipeline.line_width >= models::kMinLineWidth && pipeline.line_width <= models::kMaxLineWidth))
+    throw user_error("pipeline {} '{}': line width {} is outside {}..{}", index, pipeline.name,
+                     pipeline.line_width, models::kMinLineWidth, models::kMaxLineWidth);
+}
+
 void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::size_t index) {
   check_stage(stream, pipeline, index, pipeline.vertex_shader, ShaderStage::kVertex, "vertex");
   check_stage(stream, pipeline, index, pipeline.fragment_shader, ShaderStage::kFragment, "fragment");
   check_vertex_input(pipeline, index);
+  check_primitives(pipeline, index);
   for (const BlendState& blend : pipeline.blend) {
     if (blend.write_mask > 0xf)
       throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,
@@ -133,18 +144,21 @@ void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::
   }
 }
 
-void check_uniform(const CommandStream& stream, std::size_t set, const UniformBinding& u) {
-  if (u.buffer >= stream.buffers.size())
-    throw user_error("descriptor set {} binding {}: buffer {} does not exist", set, u.binding, u.buffer);
-  const std::uint64_t size = stream.buffers[u.buffer].data.size();
-  if (u.range == 0 || u.range > kMaxUniformRange || std::uint64_t{u.offset} + u.range > size) {
+/// Of a uniform or storage buffer.
+template <class Block>
+void check_block(const CommandStream& stream, std::size_t set, const Block& block, std::uint32_t most) {
+  if (block.buffer >= stream.buffers.size())
+    throw user_error("descriptor set {} binding {}: buffer {} does not exist", set, block.binding,
+                     block.buffer);
+  const std::uint64_t size = stream.buffers[block.buffer].data.size();
+  if (block.range == 0 || block.range > most || std::uint64_t{block.offset} + block.range > size) {
     throw user_error(
         "descriptor set {} binding {}: bytes {}+{} are not within buffer {} of {} bytes (at most {})", set,
-        u.binding, u.offset, u.range, u.buffer, size, kMaxUniformRange);
+        block.binding, block.offset, block.range, block.buffer, size, most);
   }
-  if (u.offset % kUniformAlignment != 0)
-    throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set, u.binding,
-                     u.offset, kUniformAlignment);
+  if (block.offset % kBlockAlignment != 0)
+    throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set, block.binding,
+                     block.offset, kBlockAlignment);
 }
 
 void check_descriptors(const CommandStream& stream, const DescriptorSet& descriptors, std::size_t set) {
@@ -155,7 +169,11 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
   };
   for (const auto& u : descriptors.uniforms) {
     claim(u.binding);
-    check_uniform(stream, set, u);
+    check_block(stream, set, u, kMaxUniformRange);
+  }
+  for (const auto& b : descriptors.buffers) {
+    claim(b.binding);
+    check_block(stream, set, b, kMaxStorageRange);
   }
   for (const auto& t : descriptors.textures) {
     claim(t.binding);

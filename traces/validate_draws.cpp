@@ -22,14 +22,18 @@ std::uint32_t index_bytes(IndexType type) {
   return type == IndexType::kUint8 ? 1 : type == IndexType::kUint16 ? 2 : 4;
 }
 
+/// Smallest and greatest index; the first exceeds the second if there is none. With `restarts`, that of all
+/// ones is not counted.
 template <class T>
-std::pair<std::uint32_t, std::uint32_t> scan(const std::byte* data, std::uint32_t count) {
-  T low = std::numeric_limits<T>::max(), high = 0;
+std::pair<std::uint32_t, std::uint32_t> scan(const std::byte* data, std::uint32_t count, bool restarts) {
+  constexpr T kSpecial = std::numeric_limits<T>::max();
+  std::uint32_t low = 0xffffffffu, high = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     T value;
     std::memcpy(&value, data + std::size_t{i} * sizeof(T), sizeof(T));
-    low = std::min(low, value);
-    high = std::max(high, value);
+    if (restarts && value == kSpecial) continue;
+    low = std::min<std::uint32_t>(low, value);
+    high = std::max<std::uint32_t>(high, value);
   }
   return {low, high};
 }
@@ -199,30 +203,33 @@ std::pair<std::uint32_t, std::uint32_t> CommandWalk::index_range(const Draw& dra
     throw user_error("command {}: indices {}+{} reach beyond index buffer {} of {} bytes", at_, draw.first,
                      draw.count, indices_.buffer, data.size());
   }
-  const auto [entry, added] = index_ranges_.try_emplace({indices_.buffer, begin, indices_.type, draw.count});
+  const bool restarts = stream_.pipelines[pipeline_].primitive_restart;
+  const auto [entry, added] =
+      index_ranges_.try_emplace({indices_.buffer, begin, indices_.type, draw.count, restarts});
   if (added) {
     const std::byte* source = data.data() + begin;
     switch (indices_.type) {
-      case IndexType::kUint8: entry->second = scan<std::uint8_t>(source, draw.count); break;
-      case IndexType::kUint16: entry->second = scan<std::uint16_t>(source, draw.count); break;
-      case IndexType::kUint32: entry->second = scan<std::uint32_t>(source, draw.count); break;
+      case IndexType::kUint8: entry->second = scan<std::uint8_t>(source, draw.count, restarts); break;
+      case IndexType::kUint16: entry->second = scan<std::uint16_t>(source, draw.count, restarts); break;
+      case IndexType::kUint32: entry->second = scan<std::uint32_t>(source, draw.count, restarts); break;
     }
   }
   return entry->second;
 }
 
-CommandWalk::VertexRange CommandWalk::vertex_range(const Draw& draw) {
+std::optional<CommandWalk::VertexRange> CommandWalk::vertex_range(const Draw& draw) {
   if (!draw.indexed) {
     const std::uint64_t last = std::uint64_t{draw.first} + draw.count - 1;
     if (last > 0xffffffffu) throw user_error("command {}: vertex number {} does not fit 32 bits", at_, last);
-    return {draw.first, last};
+    return VertexRange{draw.first, last};
   }
   const auto [low, high] = index_range(draw);
+  if (low > high) return std::nullopt;
   const std::int64_t first = std::int64_t{low} + draw.vertex_offset,
                      last = std::int64_t{high} + draw.vertex_offset;
   if (first < 0 || last > 0xffffffff)
     throw user_error("command {}: vertices {}..{} (index plus offset) do not fit 32 bits", at_, first, last);
-  return {static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(last)};
+  return VertexRange{static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(last)};
 }
 
 void CommandWalk::check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute,
@@ -246,13 +253,14 @@ void CommandWalk::visit(const Draw& c) {
   check_draw_state();
   if (c.count == 0 || c.instances == 0) return;
   count_vertices(c);
-  const VertexRange vertices = vertex_range(c);
+  const std::optional<VertexRange> vertices = vertex_range(c);
+  if (!vertices) return;
   const VertexRange instances{c.first_instance, std::uint64_t{c.first_instance} + c.instances - 1};
   if (instances.last > 0xffffffffu)
     throw user_error("command {}: instance number {} does not fit 32 bits", at_, instances.last);
   const Pipeline& pipeline = stream_.pipelines[pipeline_];
   for (const VertexAttribute& attribute : pipeline.attributes)
-    check_attribute(pipeline, attribute, vertices, instances);
+    check_attribute(pipeline, attribute, *vertices, instances);
 }
 
 }  // namespace quadrille::traces

@@ -48,7 +48,8 @@ class CommandWalk {
   void check_draw_state() const;
   void check_scissor() const;
   void count_vertices(const Draw& draw);
-  [[nodiscard]] VertexRange vertex_range(const Draw& draw);
+  /// None: all its indices only end strips.
+  [[nodiscard]] std::optional<VertexRange> vertex_range(const Draw& draw);
   [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> index_range(const Draw& draw);
   void check_attribute(const Pipeline& pipeline, const VertexAttribute& attribute, VertexRange vertices,
                        VertexRange instances) const;
@@ -66,7 +67,7 @@ class CommandWalk {
   BindIndexBuffer indices_;
   std::optional<SetViewport> viewport_;
   std::optional<SetScissor> scissor_;
-  std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t>,
+  std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t, bool>,
            /// scanned once
            std::pair<std::uint32_t, std::uint32_t>>
       index_ranges_;

@@ -26,6 +26,7 @@ enum class DrawCount : std::uint8_t {
   kTextureBytes,
   kDepthBytes,
   kColorBytes,
+  kStorageBytes,
   kMemoryBytes,
   kVerticesFetched,
   kVerticesAssembled,

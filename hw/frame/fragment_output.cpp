@@ -6,10 +6,10 @@
 namespace quadrille::hw {
 
 void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outputs,
-                  const models::LaneFloats& interpolated_depth, WarpSlot& warp) {
-  warp.depth = draw.fragment_program->writes_depth
+                  const models::FragmentInputs& inputs, WarpSlot& warp) {
+  warp.depth = draw.fragment.program->writes_depth
                    ? std::bit_cast<models::LaneFloats>(outputs[models::kDepthOutput])
-                   : interpolated_depth;
+                   : inputs.z;
   draw.visit_colors([&](std::size_t attachment) {
     for (std::size_t c = 0; c < 4; ++c) {
       const std::size_t slot = 4 * attachment + c;
@@ -17,6 +17,9 @@ void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outp
         warp.color[attachment][c] = std::bit_cast<models::LaneFloats>(outputs[slot]);
       else warp.color[attachment][c].fill(0);
     }
+    if (!draw.smooth_lines()) return;
+    models::LaneFloats& alpha = warp.color[attachment][3];
+    for (std::size_t lane = 0; lane < alpha.size(); ++lane) alpha[lane] *= inputs.line_coverage[lane];
   });
 }
 

@@ -10,9 +10,11 @@
 #include "models/base/id.h"
 #include "models/geometry/assembly.h"
 #include "models/geometry/attribute_format.h"
+#include "models/memory/storage.h"
 #include "models/memory/surface.h"
 #include "models/precision.h"
 #include "models/raster/clip.h"
+#include "models/raster/primitives.h"
 #include "models/raster/triangle_setup.h"
 #include "models/raster/viewport.h"
 #include "models/rop/blend.h"
@@ -54,11 +56,21 @@ struct TextureState {
   }
 };
 
+/// The program of a stage with what it is bound to.
+struct ProgramState {
+  const models::Program* program = nullptr;
+  std::vector<std::uint32_t> constants;
+  std::vector<TextureState> textures;  ///< by the program's texture index
+  std::vector<models::TextureSize> texture_sizes;
+  std::vector<models::StorageView> buffers;  ///< by the program's buffer index
+};
+
 struct DrawState {
   std::string label;
   PassId pass;
   // Geometry.
   models::Topology topology = models::Topology::kTriangleList;
+  bool restarts = false;  ///< a special index ends a strip or fan
   bool indexed = false;
   std::uint32_t index_bytes = 2;
   std::uint64_t index_address = 0;  ///< of the draw's first index
@@ -67,12 +79,9 @@ struct DrawState {
   std::uint32_t instances = 1, first_instance = 0;
   std::vector<AttributeFetch> attributes;
   // Programs.
-  const models::Program* vertex_program = nullptr;
-  const models::Program* fragment_program = nullptr;
-  std::vector<std::uint32_t> vertex_constants, fragment_constants;
-  std::vector<TextureState> vertex_textures, fragment_textures;  ///< by the program's binding index
-  std::vector<models::TextureSize> vertex_texture_sizes, fragment_texture_sizes;
+  ProgramState vertex, fragment;
   // Fixed function.
+  models::PrimitiveState primitives;
   models::Viewport viewport;
   models::ClipState clip;
   models::SetupState setup;
@@ -83,12 +92,25 @@ struct DrawState {
   /// `models::color_outputs`. Attachments without any keep what they hold; the other components of the rest
   /// are written as 0.
   std::uint32_t color_outputs = 0;
-  /// Depth is tested after shading: the program discards or writes depth, and does not force early tests.
+  /// Depth is tested after shading: the program discards, writes depth or writes memory, and does not force
+  /// early tests.
   bool late_depth = false;
+  /// The fragment program writes memory.
+  bool writes_memory = false;
 
-  [[nodiscard]] int varyings() const { return static_cast<int>(vertex_program->varyings.size()); }
-  [[nodiscard]] std::uint32_t triangles() const { return models::triangle_count(topology, count); }
+  [[nodiscard]] const ProgramState& stage(models::ShaderStage stage) const {
+    return stage == models::ShaderStage::kVertex ? vertex : fragment;
+  }
+  [[nodiscard]] int varyings() const { return static_cast<int>(vertex.program->varyings.size()); }
+  [[nodiscard]] bool smooth_lines() const {
+    return setup.line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
+  }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
+  /// Hidden fragments are shaded all the same: their program writes memory before their depth is tested.
+  /// [VK1.3 #fragops-early]
+  [[nodiscard]] bool shades_hidden() const { return writes_memory && late_depth; }
+  /// No fragment may be shaded before it is known to be visible: its program writes memory after the test.
+  [[nodiscard]] bool shades_visible_only() const { return writes_memory && depth_test && !late_depth; }
   /// Calls `visit(attachment)` for each colour attachment that the program writes.
   template <class Visit>
   void visit_colors(const Visit& visit) const {
@@ -132,6 +154,7 @@ struct PassState {
 };
 
 struct Frame {
+  models::StorageMemory* storage = nullptr;  ///< what programs with storage buffers access
   std::vector<PassState> passes;
   std::vector<DrawState> draws;
   models::Precision precision;

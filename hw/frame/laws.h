@@ -52,6 +52,11 @@
   law(kTextureGroups, "texture groups taken = answered", "texture.groups", "texture.groups_answered") \
   law(kTextureCache, "texture.cache: requests = hits + merged + misses", \
       "texture.cache.requests", "texture.cache.hits + merged + misses") \
+  law(kStorageRequests, "storage requests sent = answered", \
+      "core.storage_instructions", "load_store.requests") \
+  law(kStorageGroups, "storage groups taken = answered", "load_store.groups", "load_store.groups_answered") \
+  law(kStorageCache, "load_store.cache: requests = hits + merged + misses", \
+      "load_store.cache.requests", "load_store.cache.hits + merged + misses") \
   law(kDepthCache, "depth.cache: requests = hits + merged + misses", \
       "depth.cache.requests", "depth.cache.hits + merged + misses") \
   law(kColorCache, "rop.cache: requests = hits + merged + misses", \

@@ -4,6 +4,7 @@
 
 #include "hw/frame/frame.h"
 #include "models/geometry/post_transform.h"
+#include "models/raster/primitives.h"
 
 #include <memory>
 
@@ -17,6 +18,7 @@ struct BatchSlot {
   models::VertexInputs inputs;
   std::vector<models::LaneWords> attributes;  ///< rows by Program::vertex_inputs
   std::vector<models::LaneWords> outputs;     ///< rows by output slot
+  /// a triangle, line or point: a vertex that it lacks is its last one
   struct Triangle {
     models::VertexPlace corner[3];  ///< in this batch, or in an earlier one whose slot is kept
     std::uint32_t primitive;
@@ -24,11 +26,14 @@ struct BatchSlot {
   std::vector<Triangle> triangles;
 };
 
-/// A triangle from set-up to its last retired fragment. Owner: set-up.
+using models::ClippedPiece;
+
+/// A triangle, line or point from set-up to its last retired fragment. Owner: set-up.
 struct TriangleSlot {
   models::TriangleSetup setup;
+  models::LineCoverage line;  ///< of a smooth line
   DrawId draw;
-  std::uint32_t primitive = 0;
+  std::uint32_t instance = 0, primitive = 0;
   std::vector<float> varyings;  ///< 3 a component: a0, a1 - a0, a2 - a0 of the original triangle
 };
 
@@ -47,12 +52,6 @@ struct WarpSlot {
   /// by colour attachment; those that the draw's program writes
   std::array<std::array<models::LaneFloats, 4>, models::kMaxColorAttachments> color;
   models::LaneFloats depth;
-};
-
-/// A piece of a triangle between clipper and set-up.
-struct ClippedPiece {
-  std::array<models::WindowVertex, 3> vertices;
-  std::array<glm::vec2, 3> weights;
 };
 
 /// `Slot` names a place: a number, or an id where one could be taken for another.

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "hw/base/work_log.h"
+#include "models/base/pipeline_state.h"
 #include "models/geometry/post_transform.h"
 
 #include <array>
@@ -168,13 +169,28 @@ struct RetireToken {
 struct TextureToken {
   std::uint32_t slot = 0;
   DrawId draw;
-  bool vertex_stage = false;
+  models::ShaderStage stage = models::ShaderStage::kVertex;
+};
+
+/// Core <-> load-store unit: the storage requests of the warp in this core slot.
+struct StorageToken {
+  std::uint32_t slot = 0;
+  DrawId draw;
+  models::ShaderStage stage = models::ShaderStage::kVertex;
 };
 
 /// On whose behalf memory is accessed.
-enum class MemoryClient : std::uint8_t { kVertexFetch, kTexture, kDepth, kColor, kScanOut, kWriteBack };
+enum class MemoryClient : std::uint8_t {
+  kVertexFetch,
+  kTexture,
+  kStorage,
+  kDepth,
+  kColor,
+  kScanOut,
+  kWriteBack
+};
 [[nodiscard]] constexpr std::string_view name_of(MemoryClient client) {
-  constexpr std::array<std::string_view, 6> kNames{"vertex_fetch", "texture",  "depth",
+  constexpr std::array<std::string_view, 7> kNames{"vertex_fetch", "texture",  "storage",   "depth",
                                                    "color",        "scan_out", "write_back"};
   return kNames[static_cast<std::size_t>(client)];
 }
@@ -186,6 +202,7 @@ struct MemoryRequest {
     kRead,
     kWrite,      ///< sectors that are known whole
     kWritePart,  ///< a part of each sector: whoever lacks the rest fetches it
+    kAtomic,     ///< words of each sector are updated where they are; answered with what they were
     kFence
   };
   std::uint32_t line = 0;  ///< device address / 128

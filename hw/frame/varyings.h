@@ -19,8 +19,8 @@ struct CornerOutputs {
 void gather_varyings(const std::array<CornerOutputs, 3>& corners, int components, std::vector<float>& out);
 
 /// The inputs of a fragment warp: planes of its quads' triangles at their pixels. Quads that are not used
-/// repeat the last one's varyings.
-void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles,
+/// repeat the last one's varyings. `smooth`: they are of smooth lines, whose coverage counts.
+void fill_fragment_inputs(const WarpSlot& work, const TriangleStore& triangles, bool smooth,
                           models::FragmentInputs& inputs);
 
 }  // namespace quadrille::hw

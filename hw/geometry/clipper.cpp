@@ -9,7 +9,7 @@
 namespace quadrille::hw {
 
 Clipper::Clipper(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                 const Store<BatchSlot>& batches, std::vector<Store<ClippedPiece>*> pieces)
+                 const Store<BatchSlot>& batches, std::vector<Store<models::ClippedPiece>*> pieces)
     : Unit(name, Kind::kFixedOrder, context.clock),
       params_(params),
       frame_(context.frame),
@@ -39,68 +39,76 @@ void Clipper::spend(Tick now, std::int64_t cost) {
 
 void Clipper::act(Tick now) {
   const PrimitiveToken& token = primitive_in.front();
-  if (next_piece_ == 0 && token.kind == TokenKind::kWork) return take_triangle(now);
-  if (next_piece_ == 0) stats_.working_for(token.part.draw());
+  if (!emitting_ && token.kind == TokenKind::kWork) return take_primitive(now);
+  if (!emitting_) stats_.working_for(token.part.draw());
   spend(now, WorkRate::cost(params_.triangles_per_clk));
-  if (next_piece_ > 0) return emit_piece(now, next_piece_);
+  if (emitting_) return emit_piece(now);
   for (const auto& out : clipped_out) out->push(now, {token.kind, token.part, token.slot, 0, {}, 0});
   (void)primitive_in.pop(now);
 }
 
-void Clipper::take_triangle(Tick now) {
+void Clipper::read_vertices(const PrimitiveToken& token, const DrawState& draw) {
+  const auto output = [&](std::size_t i, int slot) {
+    const auto& [batch, lane] = token.corner[i];
+    return std::bit_cast<float>(batches_[batch].outputs[static_cast<std::size_t>(slot)][lane]);
+  };
+  models::read_vertices(draw.primitives, models::first_extra_output(*draw.vertex.program), output, vertices_);
+}
+
+void Clipper::take_primitive(Tick now) {
   const PrimitiveToken& token = primitive_in.front();
-  std::array<glm::vec4, 3> position;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto& [slot, lane] = token.corner[i];
-    for (int c = 0; c < 4; ++c)
-      position[i][c] = std::bit_cast<float>(batches_[slot].outputs[static_cast<std::size_t>(c)][lane]);
-  }
+  const DrawState& draw = frame_.draw(token.part.draw());
+  read_vertices(token, draw);
+  models::clip_primitive(vertices_, draw.primitives, draw.clip, draw.setup, draw.viewport, clipped_);
   stats_.working_for(token.part.draw());
+  tally(draw);
+  spend(now, cost(draw));
+  next_piece_ = 0;
+  emitting_ = clipped_.count > 0;
+  if (!emitting_) (void)primitive_in.pop(now);
+  else if (clipped_.outcome == models::ClipOutcome::kInside) emit_piece(now);
+}
+
+/// A triangle that is not filled is no polygon any more: its edges are cut as lines are.
+std::int64_t Clipper::cost(const DrawState& draw) const {
+  if (clipped_.outcome != models::ClipOutcome::kClipped) return WorkRate::cost(params_.triangles_per_clk);
+  const bool polygon = draw.primitives.pieces() == models::PieceKind::kTriangle;
+  const std::int64_t each = polygon ? params_.clip_clk : params_.line_clip_clk;
+  return clipped_.cuts * each * WorkRate::kCycle;
+}
+
+void Clipper::tally(const DrawState& draw) {
   ++stats_.triangles;
-  const models::ClipOutcome outcome =
-      models::clip_triangle(position, frame_.draw(token.part.draw()).clip, polygon_);
-  spend(now, outcome == models::ClipOutcome::kClipped ? params_.clip_clk * WorkRate::kCycle
-                                                      : WorkRate::cost(params_.triangles_per_clk));
-  switch (outcome) {
-    case models::ClipOutcome::kInside: ++stats_.passed; return emit_piece(now, 1);
-    case models::ClipOutcome::kClipped:
-      ++stats_.clipped;
-      stats_.pieces += static_cast<std::uint64_t>(polygon_.count - 2);
-      next_piece_ = 1;
-      return;
+  if (draw.primitives.assembled == models::PieceKind::kLine) ++stats_.lines;
+  if (draw.primitives.assembled == models::PieceKind::kPoint) ++stats_.points;
+  const bool whole = draw.primitives.pieces() == draw.primitives.assembled;
+  switch (clipped_.outcome) {
+    case models::ClipOutcome::kInside: ++(whole ? stats_.passed : stats_.outlined); break;
+    case models::ClipOutcome::kClipped: ++stats_.clipped; break;
     case models::ClipOutcome::kRejected: ++stats_.rejected; break;
+    case models::ClipOutcome::kCulled: ++stats_.culled; break;
     case models::ClipOutcome::kNotFinite: ++stats_.not_finite; break;
   }
-  (void)primitive_in.pop(now);
+  if (!whole || clipped_.outcome == models::ClipOutcome::kClipped)
+    stats_.pieces += static_cast<std::uint64_t>(clipped_.count);
 }
 
-void Clipper::emit_piece(Tick now, int i) {
-  const PrimitiveToken token = primitive_in.front();
-  const DrawState& draw = frame_.draw(token.part.draw());
-  ClippedPiece piece;
-  const std::array<int, 3> corner{0, i, i + 1};
-  bool valid = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const models::ClipVertex& v = polygon_.vertices[static_cast<std::size_t>(corner[k])];
-    valid = models::to_window(v.position, draw.viewport, frame_.precision.subpixel_bits, piece.vertices[k]) &&
-            valid;
-    piece.weights[k] = {v.b1, v.b2};
-  }
-  QUADRILLE_CHECK(valid, "{}: a clipped vertex of draw {} has no window position", name(),
-                  token.part.draw().index());
-  send(now, token, piece);
-  next_piece_ = i + 2 < polygon_.count ? i + 1 : 0;
-  if (next_piece_ == 0) (void)primitive_in.pop(now);
+void Clipper::emit_piece(Tick now) {
+  send(now, primitive_in.front(), clipped_.pieces[static_cast<std::size_t>(next_piece_)]);
+  emitting_ = ++next_piece_ < clipped_.count;
+  if (!emitting_) (void)primitive_in.pop(now);
 }
 
-std::uint32_t Clipper::engines_of(const PrimitiveToken& token, const ClippedPiece& piece) {
+std::uint32_t Clipper::engines_of(const PrimitiveToken& token, const models::ClippedPiece& piece) {
   if (screen_.engines == 1) return 1;
+  const DrawState& draw = frame_.draw(token.part.draw());
   const PassState& pass = frame_.pass_of(token.part.draw());
-  return models::engines_touched(piece.vertices, frame_.precision.subpixel_bits, pass.width, pass.height,
-                                 screen_, turn_++);
+  const std::int32_t reach = models::piece_reach(piece, draw.primitives.pieces(), draw.setup);
+  return models::engines_touched(piece.vertices, reach, frame_.precision.subpixel_bits, pass.width,
+                                 pass.height, screen_, turn_++);
 }
 
-void Clipper::send(Tick now, const PrimitiveToken& token, const ClippedPiece& piece) {
+void Clipper::send(Tick now, const PrimitiveToken& token, const models::ClippedPiece& piece) {
   const std::uint32_t engines = engines_of(token, piece);
   for (std::size_t e = 0; e < pieces_.size(); ++e) {
     if ((engines >> e & 1u) == 0) continue;
@@ -118,9 +126,9 @@ void Clipper::send(Tick now, const PrimitiveToken& token, const ClippedPiece& pi
 
 void Clipper::audit(Audit& audit) const {
   audit.right(laws::kTrianglesAssembled, stats_.triangles.value());
-  audit.both(
-      laws::kTrianglesClipped, stats_.triangles.value(),
-      stats_.passed.value() + stats_.clipped.value() + stats_.rejected.value() + stats_.not_finite.value());
+  audit.both(laws::kTrianglesClipped, stats_.triangles.value(),
+             stats_.passed.value() + stats_.clipped.value() + stats_.outlined.value() +
+                 stats_.culled.value() + stats_.rejected.value() + stats_.not_finite.value());
   audit.left(laws::kPieces, stats_.passed.value() + stats_.pieces.value() + stats_.copies.value());
 }
 

@@ -58,7 +58,7 @@ void TriangleSetupUnit::work(Tick now) {
   const ClippedToken token = clipped_in.pop(now);
   std::int64_t cost = WorkRate::cost(params_.culled_per_clk);
   if (token.kind == TokenKind::kWork) {
-    if (set_up(now, token)) cost = WorkRate::cost(params_.drawn_per_clk);
+    if (set_up(now, token)) cost = this->cost(frame_.draw(token.part.draw()));
   } else if (token.kind == TokenKind::kBatchEnd) {
     release_out.push(now, {token.slot, 0});
   } else {
@@ -72,13 +72,22 @@ void TriangleSetupUnit::work(Tick now) {
   occupy(now, rate_.cycles());
 }
 
+std::int64_t TriangleSetupUnit::cost(const DrawState& draw) const {
+  switch (draw.primitives.pieces()) {
+    case models::PieceKind::kTriangle: return WorkRate::cost(params_.drawn_per_clk);
+    case models::PieceKind::kLine: return WorkRate::cost(params_.lines_per_clk);
+    case models::PieceKind::kPoint: return WorkRate::cost(params_.points_per_clk);
+  }
+  return 0;
+}
+
 bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   const DrawState& draw = frame_.draw(token.part.draw());
   const ClippedPiece& piece = pieces_[token.piece];
   TriangleSlot& slot = triangles_[sequence_];
   stats_.working_for(token.part.draw());
   ++stats_.triangles;
-  switch (models::setup_triangle(piece.vertices, piece.weights, draw.setup, slot.setup)) {
+  switch (models::setup_piece(piece, draw.primitives, draw.setup, slot.setup)) {
     case models::SetupOutcome::kKept: break;
     case models::SetupOutcome::kCulledFace: ++stats_.culled; return false;
     case models::SetupOutcome::kZeroArea: ++stats_.zero_area; return false;
@@ -86,8 +95,13 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
     case models::SetupOutcome::kNoSample: ++stats_.no_sample; return false;
   }
   ++stats_.kept;
+  const models::PieceKind kind = draw.primitives.pieces();
+  if (kind == models::PieceKind::kLine) ++stats_.lines;
+  if (kind == models::PieceKind::kPoint) ++stats_.points;
+  if (draw.smooth_lines()) slot.line = models::piece_coverage(piece, draw.setup);
   slot.draw = token.part.draw();
   slot.primitive = token.primitive;
+  slot.instance = batches_[token.corner[0].slot].inputs.instance_index[token.corner[0].lane];
   std::array<CornerOutputs, 3> corners;
   for (std::size_t i = 0; i < 3; ++i)
     corners[i] = {&batches_[token.corner[i].slot].outputs, token.corner[i].lane};

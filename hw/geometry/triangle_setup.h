@@ -1,10 +1,10 @@
-/// Triangle set-up: edge functions, bounds and planes of each triangle, culling, and the triangle store that
-/// bounds how far geometry runs ahead.
+/// Set-up: edge functions, bounds and planes of each triangle, line and point, culling, and the triangle store
+/// that bounds how far geometry runs ahead.
 ///
-/// In    clipped_in     triangles with window positions; boundaries      sync_in[p]  triangles before a
+/// In    clipped_in     primitives with window positions; boundaries      sync_in[p]  triangles before a
 /// sequence number are retired in partition p Out   triangle_out   kept triangles and boundaries
-/// release_out  a vertex batch may be reused Time  `drawn_per_clk` triangles a cycle that are kept,
-/// `culled_per_clk` that are not; a boundary takes the place of a culled one, a cycle at most; waits while
+/// release_out  a vertex batch may be reused Time  `drawn_per_clk` triangles, `lines_per_clk` lines and
+/// `points_per_clk` points a cycle that are kept, `culled_per_clk` that are not; a boundary takes the place of a culled one, a cycle at most; waits while
 /// the triangle
 ///       store is full
 #pragma once
@@ -37,17 +37,36 @@ class TriangleSetupUnit final : public Unit {
         {0.001, 64},
         "Triangles a cycle that are culled. More than 1 needs width on link.assembly_to_clipper and "
         "link.clipper_to_setup. [G: one triangle a cycle]"};
+    Param<double> lines_per_clk{
+        *this,
+        "lines_per_clk",
+        0.5,
+        "line/clk",
+        {0.001, 64},
+        "Lines set up a cycle that are kept. [G: two cycles each: up to four edges where a "
+        "triangle has three, and a reciprocal root]"};
+    Param<double> points_per_clk{
+        *this,
+        "points_per_clk",
+        1,
+        "point/clk",
+        {0.001, 64},
+        "Points set up a cycle that are kept. [G: no edges; the place in the triangle "
+        "store is written as a triangle's is]"};
     Param<int> triangle_slots{*this,        "triangle_slots",
                               1024,         "triangle",
                               {1, 1 << 20}, "Triangles between set-up and their last retired fragment. [G]"};
   };
   struct Stats : StatGroup {
-    Counter triangles{*this, "triangles", "triangle", "Triangles taken in"};
-    Counter kept{*this, "kept", "triangle", "Triangles handed to the rasteriser"};
+    Counter triangles{*this, "triangles", "triangle", "Triangles, lines and points taken in"};
+    Counter kept{*this, "kept", "triangle", "Those handed to the rasteriser"};
+    Counter lines{*this, "lines", "line", "Lines among those handed on"};
+    Counter points{*this, "points", "point", "Points among those handed on"};
     Counter culled{*this, "culled", "triangle", "Triangles that face the way that is culled"};
-    Counter zero_area{*this, "zero_area", "triangle", "Triangles without area on the sub-pixel grid"};
-    Counter offscreen{*this, "offscreen", "triangle", "Triangles whose pixels are outside the scissor"};
-    Counter no_sample{*this, "no_sample", "triangle", "Triangles whose bounds hold no pixel centre"};
+    Counter zero_area{*this, "zero_area", "triangle",
+                      "Triangles without area, and lines without length, on the sub-pixel grid"};
+    Counter offscreen{*this, "offscreen", "triangle", "Primitives whose pixels are outside the scissor"};
+    Counter no_sample{*this, "no_sample", "triangle", "Primitives whose bounds hold no pixel centre"};
   };
   /// What the unit reads, and the ring of triangles that it fills.
   struct Stores {
@@ -76,6 +95,8 @@ class TriangleSetupUnit final : public Unit {
   void work(Tick now);
   /// Is it kept?
   bool set_up(Tick now, const ClippedToken& token);
+  /// Of a primitive of this draw that is kept.
+  [[nodiscard]] std::int64_t cost(const DrawState& draw) const;
   void take_syncs(Tick now);
 
   const Params& params_;

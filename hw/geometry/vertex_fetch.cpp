@@ -37,8 +37,8 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& contex
 }
 
 std::string VertexFetch::state_text() const {
-  return fmt::format("draw {}, triangle {}, {} batches on their way, {} free slots", draw_.index(), triangle_,
-                     pending_.size(), slots_.free());
+  return fmt::format("draw {}, primitive {}, {} batches on their way, {} free slots", draw_.index(),
+                     walk_.primitive(), pending_.size(), slots_.free());
 }
 
 Wake VertexFetch::build_wake() const {
@@ -108,17 +108,40 @@ void VertexFetch::build(Tick now) {
 void VertexFetch::start_draw(DrawId draw) {
   draw_ = draw;
   instance_ = 0;
-  triangle_ = 0;
+  passed_.clear();
+  start_instance();
+  drawing_ = frame_.draw(draw).instances > 0 && primitive_left();
+}
+
+void VertexFetch::start_instance() {
+  const DrawState& draw = frame_.draw(draw_);
+  walk_.start(draw.topology, draw.count, draw.restarts);
   reuse_->start_draw();
-  drawing_ = frame_.draw(draw).triangles() > 0 && frame_.draw(draw).instances > 0;
+}
+
+bool VertexFetch::primitive_left() {
+  const DrawState& draw = frame_.draw(draw_);
+  return walk_.look(
+      [&](std::uint32_t position) { return index_at(position) == models::restart_index(draw.index_bytes); },
+      [&](std::uint32_t position) { passed_.push_back(position); });
+}
+
+void VertexFetch::fetch_passed() {
+  for (const std::uint32_t position : passed_) fetch_index(position);
+  passed_.clear();
+}
+
+std::uint32_t VertexFetch::index_at(std::uint32_t position) const {
+  const DrawState& draw = frame_.draw(draw_);
+  std::uint32_t index = 0;
+  std::memcpy(&index, device_.read(index_address(draw, position), draw.index_bytes).data(), draw.index_bytes);
+  return index;
 }
 
 std::uint32_t VertexFetch::vertex_number(std::uint32_t position) const {
   const DrawState& draw = frame_.draw(draw_);
   if (!draw.indexed) return draw.first_vertex + position;
-  std::uint32_t index = 0;
-  std::memcpy(&index, device_.read(index_address(draw, position), draw.index_bytes).data(), draw.index_bytes);
-  return index + static_cast<std::uint32_t>(draw.vertex_offset);
+  return index_at(position) + static_cast<std::uint32_t>(draw.vertex_offset);
 }
 
 void VertexFetch::fetch_index(std::uint32_t position) {
@@ -169,34 +192,49 @@ void VertexFetch::fetch_attributes(BatchSlot& batch) {
   }
 }
 
+void VertexFetch::clear_extras(const DrawState& draw, BatchSlot& batch) {
+  for (auto row = static_cast<std::size_t>(models::first_extra_output(*draw.vertex.program));
+       row < batch.outputs.size(); ++row)
+    batch.outputs[row].fill(0);
+}
+
+void VertexFetch::take_primitives(BatchSlot& batch) {
+  const std::size_t corners = frame_.draw(draw_).primitives.corners();
+  while (batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value()) &&
+         primitive_left()) {
+    const auto position = walk_.positions();
+    std::array<std::uint32_t, 3> vertex{};
+    for (std::size_t i = 0; i < corners; ++i) vertex[i] = vertex_number(position[i]);
+    // If it does not fit it is the first of the next batch, which pays for its indices.
+    if (!reuse_->fits(std::span(vertex).first(corners))) break;
+    BatchSlot::Triangle primitive{{}, walk_.primitive()};
+    for (std::size_t i = 0; i < corners; ++i) {
+      fetch_index(position[i]);
+      primitive.corner[i] = reuse_->place(vertex[i]);
+      slots_.note_use(primitive.corner[i].slot);
+    }
+    for (std::size_t i = corners; i < 3; ++i) primitive.corner[i] = primitive.corner[corners - 1];
+    batch.triangles.push_back(primitive);
+    walk_.advance();
+  }
+}
+
 void VertexFetch::form_batch(Tick now) {
   const DrawState& draw = frame_.draw(draw_);
   const std::uint32_t slot = slots_.take();
   BatchSlot& batch = batches_[slot];
   batch.draw = draw_;
   batch.triangles.clear();
-  batch.attributes.resize(draw.vertex_program->vertex_inputs.size());
-  batch.outputs.resize(static_cast<std::size_t>(models::kFirstVaryingOutput + draw.varyings()));
+  batch.attributes.resize(draw.vertex.program->vertex_inputs.size());
+  batch.outputs.resize(static_cast<std::size_t>(models::vertex_outputs(*draw.vertex.program)));
+  clear_extras(draw, batch);
   lines_.clear();
   next_line_ = last_touched_ = 0;
   fetches_ = 0;
   indices_ = 0;
+  fetch_passed();
   reuse_->start_batch(slot);
-  while (triangle_ < draw.triangles() &&
-         batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value())) {
-    const auto corner = models::triangle_vertices(draw.topology, triangle_);
-    const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]),
-                                              vertex_number(corner[2])};
-    if (!reuse_->fits(vertex)) break;  // it is the first of the next batch, which pays for its indices
-    for (const std::uint32_t position : corner) fetch_index(position);
-    BatchSlot::Triangle triangle{{}, triangle_};
-    for (std::size_t i = 0; i < 3; ++i) {
-      triangle.corner[i] = reuse_->place(vertex[i]);
-      slots_.note_use(triangle.corner[i].slot);
-    }
-    batch.triangles.push_back(triangle);
-    ++triangle_;
-  }
+  take_primitives(batch);
   batch.lanes = reuse_->size();
   for (int lane = 0; lane < batch.lanes; ++lane) {
     batch.inputs.vertex_index[static_cast<std::size_t>(lane)] = reuse_->index(lane);
@@ -204,11 +242,12 @@ void VertexFetch::form_batch(Tick now) {
   }
   fetch_attributes(batch);
   batch.inputs.attributes = batch.attributes.data();
-  if (triangle_ == draw.triangles()) {
-    triangle_ = 0;
+  if (!primitive_left()) {
     drawing_ = ++instance_ < draw.instances;
-    reuse_->start_draw();
+    if (drawing_) start_instance();
+    drawing_ = drawing_ && primitive_left();
   }
+  fetch_passed();
   // One slot is for the next batch, whatever is remembered.
   reuse_->limit_slots(static_cast<int>(batches_.size()) - 1);
   slots_.sweep(*reuse_);

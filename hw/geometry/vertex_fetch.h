@@ -9,6 +9,8 @@
 /// all (models/geometry/post_transform.h). Under the FIFO the outputs of a batch stay in its slot while
 ///       a vertex of it is remembered or a triangle on its way names one; the oldest are forgotten rather
 ///       than that they hold the last slot.
+/// Primitives  points, lines and triangles: a primitive's indices are looked up one by one, shared ones of a
+///       strip or fan again. A special index (primitive restart) costs a look-up like any other.
 /// Not modelled: a post-transform store apart from the batches' slots (docs/deviations.md#D2)
 #pragma once
 
@@ -21,6 +23,7 @@
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 #include "models/geometry/post_transform.h"
+#include "models/geometry/primitive_walk.h"
 
 namespace quadrille::hw {
 
@@ -123,11 +126,21 @@ class VertexFetch final : public Unit {
   [[nodiscard]] bool shades(const Pending& head) const;
   void leave(Tick now);
   void start_draw(DrawId draw);
+  void start_instance();
+  /// Is there another primitive in this instance?
+  [[nodiscard]] bool primitive_left();
   void form_batch(Tick now);
-  /// The vertex at a position of the draw's list.
+  /// Takes primitives into the batch while they fit.
+  void take_primitives(BatchSlot& batch);
+  /// Begins with zeros what programs write for the fixed functions: none of it may depend on older batches.
+  static void clear_extras(const DrawState& draw, BatchSlot& batch);
+  /// The index at a position of the draw's list, and the vertex.
+  [[nodiscard]] std::uint32_t index_at(std::uint32_t position) const;
   [[nodiscard]] std::uint32_t vertex_number(std::uint32_t position) const;
   /// Counts the index at a position, and its bytes among the look-ups of this batch.
   void fetch_index(std::uint32_t position);
+  /// Does so for the special indices that the walk has passed.
+  void fetch_passed();
   void fetch_attributes(BatchSlot& batch);
   void touch_bytes(std::uint64_t address, std::uint32_t bytes);
   /// Number of a line among the look-ups of this batch; adds it if it is new.
@@ -146,7 +159,9 @@ class VertexFetch final : public Unit {
 
   bool drawing_ = false;
   DrawId draw_;
-  std::uint32_t instance_ = 0, triangle_ = 0;  ///< next triangle to take
+  std::uint32_t instance_ = 0;
+  models::PrimitiveWalk walk_;         ///< at the next primitive to take
+  std::vector<std::uint32_t> passed_;  ///< positions of special indices that no batch has paid for
   BatchSlots slots_;
   Queue<Pending> pending_;
   std::uint32_t first_pending_ = 0;  ///< number of pending_.front(); waiters are named by number

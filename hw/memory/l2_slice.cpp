@@ -112,6 +112,7 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
     case MemoryRequest::Kind::kRead: taken = read(now, client, request); break;
     case MemoryRequest::Kind::kWrite: taken = write(now, request); break;
     case MemoryRequest::Kind::kWritePart: taken = write_part(now, client, request); break;
+    case MemoryRequest::Kind::kAtomic: taken = atomic(now, client, request); break;
     case MemoryRequest::Kind::kFence:
       answer(after(now, params_.hit_clk), client, {request.line, request.tag, 0});
       break;
@@ -195,19 +196,41 @@ bool L2Slice::write(Tick now, const MemoryRequest& request) {
   return true;
 }
 
-bool L2Slice::write_part(Tick now, std::uint32_t client, const MemoryRequest& request) {
+bool L2Slice::all_there(const MemoryRequest& request) const {
+  const int slot = tags_.find(request.line);
+  return slot != models::TagArray::kNone && (tags_.at(slot).valid & request.sectors) == request.sectors;
+}
+
+std::optional<std::uint32_t> L2Slice::write_when_fetched(Tick now, std::uint32_t client,
+                                                         const MemoryRequest& request) {
   const int slot = tags_.lookup(request.line);
   const auto there =
       static_cast<std::uint8_t>(slot == models::TagArray::kNone ? 0 : tags_.at(slot).valid & request.sectors);
-  if (there == request.sectors) return write(now, request);
   const auto tag = fetch(now, client, request);
-  if (!tag) return false;
+  if (!tag) return {};
   const int place = misses_.slot_of(*tag);
   tags_.mark_dirty(place, there);
   std::uint8_t& parts = parts_[static_cast<std::size_t>(place)];
   parts = static_cast<std::uint8_t>(parts | (request.sectors & ~there));
   stats_.write_bytes += bytes_of(request.sectors);
-  return true;
+  return tag;
+}
+
+bool L2Slice::write_part(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  if (all_there(request)) return write(now, request);
+  return write_when_fetched(now, client, request).has_value();
+}
+
+/// Needs the old words, so sectors that are not there are fetched first, as for a write of a part.
+bool L2Slice::atomic(Tick now, std::uint32_t client, const MemoryRequest& request) {
+  const MemoryResponse token{request.line, request.tag, request.sectors};
+  if (all_there(request)) {
+    answer(after(now, params_.hit_clk), client, token);
+    return write(now, request);
+  }
+  const auto tag = write_when_fetched(now, client, request);
+  if (tag) misses_.wait(*tag, {client, token});
+  return tag.has_value();
 }
 
 void L2Slice::take_fill(Tick now) {

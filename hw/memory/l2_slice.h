@@ -4,7 +4,8 @@
 /// In    request_in[c]   sectors of a line, from client c      fill_in   a line's sectors from the channel
 /// Out   response_out[c] answers to reads and fences           memory_out  misses and write-backs
 ///       Ports are named for their client: those of texture_3 are texture_in_3 and texture_out_3.
-/// Time  one request a cycle, clients take turns; `hit_clk` after its look-up a hit is answered and a miss
+/// Time  one request a cycle, clients take turns; updates of one word by atomic requests follow each other at
+/// that rate; `hit_clk` after its look-up a hit is answered and a miss
 /// goes to the channel, whose fill is answered when it
 ///       comes; a line that is under way serves all who ask for it.
 #pragma once
@@ -105,6 +106,12 @@ class L2Slice final : public Unit {
   bool read(Tick now, std::uint32_t client, const MemoryRequest& request);
   bool write(Tick now, const MemoryRequest& request);
   bool write_part(Tick now, std::uint32_t client, const MemoryRequest& request);
+  [[nodiscard]] bool all_there(const MemoryRequest& request) const;
+  /// Marks what is written dirty once the rest is there, which is fetched; returns the tag of the line's miss,
+  /// none when the line has no place now.
+  std::optional<std::uint32_t> write_when_fetched(Tick now, std::uint32_t client,
+                                                  const MemoryRequest& request);
+  bool atomic(Tick now, std::uint32_t client, const MemoryRequest& request);
   /// Asks the channel for what the request lacks, and returns the tag of the line's miss; none when the line
   /// has no place now.
   std::optional<std::uint32_t> fetch(Tick now, std::uint32_t client, const MemoryRequest& request);

@@ -71,6 +71,7 @@ Histogram& MemoryChannel::Stats::latency(MemoryClient client) {
   switch (client) {
     case MemoryClient::kVertexFetch: return latency_vertex_fetch;
     case MemoryClient::kTexture: return latency_texture;
+    case MemoryClient::kStorage: return latency_storage;
     case MemoryClient::kDepth: return latency_depth;
     case MemoryClient::kColor: return latency_color;
     case MemoryClient::kScanOut: return latency_scan_out;

@@ -324,6 +324,7 @@ struct MemoryChannel::Stats : StatGroup {
       *this, "latency_vertex_fetch", "clk",
       "Histogram of the time from the queue to the last data: reads for vertex fetch"};
   Histogram latency_texture{*this, "latency_texture", "clk", "The same: reads for the texture units"};
+  Histogram latency_storage{*this, "latency_storage", "clk", "The same: reads for the load-store units"};
   Histogram latency_depth{*this, "latency_depth", "clk", "The same: reads for the depth units"};
   Histogram latency_color{*this, "latency_color", "clk", "The same: reads for the ROPs"};
   Histogram latency_scan_out{*this, "latency_scan_out", "clk", "The same: reads for scan-out"};

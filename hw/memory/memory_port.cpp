@@ -33,6 +33,14 @@ void MemoryPort::write_part(std::uint32_t line, std::uint8_t sectors) {
   queue_write(line, sectors, MemoryRequest::Kind::kWritePart);
 }
 
+void MemoryPort::atomic(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag) {
+  const std::uint64_t bytes = models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors));
+  ++stats_.writes;
+  stats_.write_bytes += bytes;
+  stats_.read_bytes += bytes;
+  queue({line, tag, sectors, MemoryRequest::Kind::kAtomic});
+}
+
 void MemoryPort::queue_write(std::uint32_t line, std::uint8_t sectors, MemoryRequest::Kind kind) {
   ++stats_.writes;
   stats_.write_bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(sectors));

@@ -18,7 +18,7 @@ namespace quadrille::hw {
 struct MemoryPortStats {
   explicit MemoryPortStats(StatGroup& group)
       : reads{group, "memory_reads", "request", "Read requests sent to the L2 cache"},
-        writes{group, "memory_writes", "request", "Write requests sent to the L2 cache"},
+        writes{group, "memory_writes", "request", "Write and atomic requests sent to the L2 cache"},
         read_bytes{group, "read_bytes", "byte", "Bytes asked of the L2 cache"},
         write_bytes{group, "write_bytes", "byte", "Bytes written to the L2 cache"} {}
   Counter reads, writes, read_bytes, write_bytes;
@@ -33,6 +33,8 @@ class MemoryPort {
   void write(std::uint32_t line, std::uint8_t sectors);
   /// Writes a part of each of these sectors. The link carries them whole, with a mask.
   void write_part(std::uint32_t line, std::uint8_t sectors);
+  /// Updates words of these sectors where they are; the answer, with `tag`, brings the sectors back.
+  void atomic(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag);
   /// Asks every slice to answer once all earlier requests of this client have been taken in; `answers` counts
   /// them.
   void fence(std::uint32_t tag);

@@ -116,9 +116,9 @@ void CoarseRaster::note_direction(const DrawState& draw) {
     hiz_trusted_ = false;
   }
   // A program that writes depth moves fragments away from the triangle's plane; its tiles cannot be judged by
-  // it.
+  // it. One that writes memory does so for hidden fragments too.
   hiz_usable_ = hiz_trusted_ && !hiz_.empty() && draw.depth_test && lowers_depth(draw.depth_compare) &&
-                !draw.fragment_program->writes_depth;
+                !draw.fragment.program->writes_depth && !draw.shades_hidden();
 }
 
 bool CoarseRaster::hidden(const models::TileHit& tile) const {

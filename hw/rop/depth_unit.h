@@ -116,6 +116,7 @@ class DepthUnit final : public Unit {
   bool acquire_late(LateEntry& entry, std::uint32_t number);
   void take_answers(Tick now);
   [[nodiscard]] Wake flush_wake() const;
+  [[nodiscard]] bool waits_for_late(const CoverageToken& token) const;
   void begin_pass(PassId pass);
   void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y);
@@ -139,6 +140,7 @@ class DepthUnit final : public Unit {
   bool stalled_ = false;                       ///< the cache had no place; a fill will make one
   bool lowering_ = true;                       ///< no draw of the pass so far can raise a depth
   std::vector<std::uint32_t> late_in_flight_;  ///< quads by tile
+  bool some_wait_for_late_ = false;            ///< draws of the frame: `waits_for_late`
   std::vector<float> known_max_;               ///< by tile: what Hi-Z was told
   Flush flush_{port_};
   Tick free_ = 0, take_free_ = 0;

@@ -46,6 +46,7 @@ Wake DepthUnit::early_test_wake() const {
   const EarlyEntry& head = early_.front();
   if (!head.acquired && !stalled_) return Wake(std::max(free_, head.ready));
   if (!head.acquired || head.missing > 0) return Wake::never(port_.response_in[0]);
+  if (some_wait_for_late_ && waits_for_late(head.token)) return Wake::never(late_in);
   return Wake(std::max(free_, head.ready)).output(coverage_out);
 }
 
@@ -73,6 +74,13 @@ bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   }
   entry.acquired = true;
   return true;
+}
+
+/// Fragments before it in this tile are still to be tested, and it may not be shaded before it is known to be
+/// visible.
+bool DepthUnit::waits_for_late(const CoverageToken& token) const {
+  return token.kind == TokenKind::kWork && frame_.draw(token.part.draw()).shades_visible_only() &&
+         late_in_flight_[tile_number(token.tile_x, token.tile_y)] > 0;
 }
 
 void DepthUnit::test_early(Tick now) {
@@ -105,8 +113,8 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
   }
   std::uint32_t& in_flight = late_in_flight_[tile_number(token.tile_x, token.tile_y)];
   token.late = draw.late_depth || in_flight > 0;
-  const bool decidable =
-      !token.late || (lowering_ && asks_for_less(draw) && !draw.fragment_program->writes_depth);
+  const bool decidable = !token.late || (lowering_ && asks_for_less(draw) &&
+                                         !draw.fragment.program->writes_depth && !draw.shades_hidden());
   float* const stored = depths(token.tile_x, token.tile_y);
   const std::uint64_t covered = token.coverage;
   alignas(32) float incoming[models::kTilePixels];

@@ -1,5 +1,5 @@
-/// The warps that live on a core. Shared with the core's texture unit: a slot's requests and results belong
-/// to whoever holds its token.
+/// The warps that live on a core. Shared with the core's texture and load-store unit: a slot's requests and
+/// results belong to whoever holds its token.
 #pragma once
 
 #include "hw/frame/stores.h"
@@ -11,14 +11,16 @@ struct CoreSlot {
   models::FragmentInputs fragment;
   std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs;  ///< fragment stage: colour, depth
   /// Filtered texels of `warp.textures`, by request.
-  std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseTextures> texels;
+  std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseRequests> texels;
+  models::WarpStorage storage;
+  int replies = 0;  ///< units that work on the requests of the clause that ended
   DrawId draw;
   std::uint32_t batch = 0;  ///< vertex stage: its slot in the batch store
   // Fragment stage: the warp's slot, and the place of its first quad.
   WarpSlotId warp_slot;
   PartitionId partition;
   std::uint16_t tile_x = 0, tile_y = 0;
-  bool vertex_stage = false;
+  models::ShaderStage stage = models::ShaderStage::kVertex;
   std::uint16_t simd = 0;                                  ///< where its clauses issue
   models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues
   /// cycles from that clause's last issue until its results are there

@@ -2,6 +2,7 @@
 
 #include "hw/frame/detail_counts.h"
 #include "hw/frame/fragment_output.h"
+#include "hw/frame/invocations.h"
 #include "hw/frame/laws.h"
 #include "hw/frame/varyings.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 int hungriest_fragment_program(const Frame& frame) {
   int rows = 0;
-  for (const DrawState& draw : frame.draws) rows = std::max(rows, draw.fragment_program->num_regs);
+  for (const DrawState& draw : frame.draws) rows = std::max(rows, draw.fragment.program->num_regs);
   return rows;
 }
 
@@ -42,11 +43,12 @@ models::IssueTiming ShaderCore::issue_timing(const Params& params) {
   set(models::IssueClass::kTex, plain, params.alu_clk);
   set(models::IssueClass::kControl, 1, params.branch_clk);
   set(models::IssueClass::kExport, plain, params.alu_clk);
+  set(models::IssueClass::kStorage, plain, params.alu_clk);
   return timing;
 }
 
 ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                       const Stores& stores, bool textured)
+                       const Stores& stores, const Neighbours& neighbours)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
@@ -70,9 +72,13 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
     fragment_out.push_back(std::make_unique<FifoOut<FragmentDoneToken>>(
         *this, fmt::format("fragment_out_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
   }
-  if (textured) {
+  if (neighbours.texture) {
     texture_out = std::make_unique<FifoOut<TextureToken>>(*this, "texture_out");
     texture_in = std::make_unique<FifoIn<TextureToken>>(*this, "texture_in", LinkRole::kReply);
+  }
+  if (neighbours.load_store) {
+    storage_out = std::make_unique<FifoOut<StorageToken>>(*this, "storage_out");
+    storage_in = std::make_unique<FifoIn<StorageToken>>(*this, "storage_in", LinkRole::kReply);
   }
   for (std::uint64_t i = stores.slots.size(); i-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(i));
 }
@@ -89,11 +95,11 @@ bool ShaderCore::fits(const models::Program& program, int kept_rows, int kept_sl
 
 // What a vertex warp leaves free is enough for one fragment warp, so fragments always drain.
 bool ShaderCore::vertex_fits() const {
-  return fits(*frame_.draw(vertex_in.front().draw).vertex_program, fragment_rows_, 1);
+  return fits(*frame_.draw(vertex_in.front().draw).vertex.program, fragment_rows_, 1);
 }
 
 bool ShaderCore::fragment_fits() const {
-  return fits(*frame_.draw(fragment_in.front().draw).fragment_program, 0, 0);
+  return fits(*frame_.draw(fragment_in.front().draw).fragment.program, 0, 0);
 }
 
 bool ShaderCore::kept_out(bool by_slots) const {
@@ -123,9 +129,14 @@ Wake ShaderCore::simd_wake() const {
 
 Wake ShaderCore::completion_wake(const Completion& done) const {
   Wake wake(done.at);
-  if (done.end == models::ClauseEnd::kTextures) return wake.output(*texture_out);
   const CoreSlot& slot = slots_[done.slot];
-  return slot.vertex_stage ? wake.output(vertex_out) : wake.output(*fragment_out[slot.partition.index()]);
+  if (done.end == models::ClauseEnd::kRequests) {
+    if (slot.warp.texture_count > 0) wake.output(*texture_out);
+    if (slot.warp.access_count > 0) wake.output(*storage_out);
+    return wake;
+  }
+  return slot.stage == models::ShaderStage::kVertex ? wake.output(vertex_out)
+                                                    : wake.output(*fragment_out[slot.partition.index()]);
 }
 
 const ShaderCore::Completion* ShaderCore::next_completion(Wake& wake) const {
@@ -149,15 +160,16 @@ Wake ShaderCore::next() const {
   wake = Wake::sooner(wake, vertex_wake());
   wake = Wake::sooner(wake, fragment_wake());
   if (texture_in) wake = Wake::sooner(wake, Wake().input(*texture_in));
-  if (wake.at() == kNever && wake.cause() == nullptr) {
-    return ready_.empty() && texture_in && free_slots_.size() < slots_.size() ? Wake::never(*texture_in)
-                                                                              : Wake::never(fragment_in);
-  }
-  return wake;
+  if (storage_in) wake = Wake::sooner(wake, Wake().input(*storage_in));
+  if (wake.at() != kNever || wake.cause() != nullptr) return wake;
+  const bool waits = ready_.empty() && free_slots_.size() < slots_.size();
+  if (waits && texture_in) return Wake::never(*texture_in);
+  return waits && storage_in ? Wake::never(*storage_in) : Wake::never(fragment_in);
 }
 
 void ShaderCore::act(Tick now) {
   if (texture_in && texture_in->ready_at(now)) take_texels(now);
+  if (storage_in && storage_in->ready_at(now)) take_reply(now, storage_in->pop(now).slot);
   end_clauses(now);
   Wake wake;
   if (const Completion* done = next_completion(wake); done != nullptr && wake.at() <= now) {
@@ -180,13 +192,17 @@ void ShaderCore::take_texels(Tick now) {
     models::write_texture_result(slot.warp, slot.warp.textures[static_cast<std::size_t>(i)],
                                  slot.texels[static_cast<std::size_t>(i)]);
   }
-  ready_.push_back({now, index});
+  take_reply(now, index);
+}
+
+void ShaderCore::take_reply(Tick now, std::uint32_t index) {
+  if (--slots_[index].replies == 0) ready_.push_back({now, index});
 }
 
 void ShaderCore::accept_vertex(Tick now) {
   const VertexWarpToken token = vertex_in.pop(now);
   accept(now, token.draw, [&](CoreSlot& slot) {
-    slot.vertex_stage = true;
+    slot.stage = models::ShaderStage::kVertex;
     slot.batch = token.slot;
     launch_vertex(slot);
   });
@@ -195,7 +211,7 @@ void ShaderCore::accept_vertex(Tick now) {
 void ShaderCore::accept_fragment(Tick now) {
   const FragmentWarpToken token = fragment_in.pop(now);
   accept(now, token.draw, [&](CoreSlot& slot) {
-    slot.vertex_stage = false;
+    slot.stage = models::ShaderStage::kFragment;
     slot.warp_slot = token.slot;
     slot.partition = token.partition;
     slot.tile_x = token.tile_x;
@@ -226,8 +242,9 @@ void ShaderCore::launch_vertex(CoreSlot& slot) {
   slot.warp.vertex = &batch.inputs;
   slot.warp.fragment = nullptr;
   slot.warp.outputs = batch.outputs.data();
-  slot.warp.texture_sizes = draw.vertex_texture_sizes.data();
-  slot.warp.launch(*draw.vertex_program, draw.vertex_constants.data(), lanes);
+  bind_storage(frame_, slot.draw, batch, slot.storage, slot.warp);
+  slot.warp.texture_sizes = draw.vertex.texture_sizes.data();
+  slot.warp.launch(*draw.vertex.program, draw.vertex.constants.data(), lanes);
   ++stats_.vertex_warps;
   stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
 }
@@ -237,14 +254,15 @@ void ShaderCore::launch_fragment(CoreSlot& slot) {
   const WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
   const std::uint32_t engine =
       models::engine_of_partition(slot.partition, static_cast<std::uint32_t>(triangles_.size()));
-  fill_fragment_inputs(work, *triangles_[engine], slot.fragment);
+  fill_fragment_inputs(work, *triangles_[engine], frame_.draw(work.draw).smooth_lines(), slot.fragment);
   const models::LaneMask lanes =
       work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
   slot.warp.vertex = nullptr;
   slot.warp.fragment = &slot.fragment;
   slot.warp.outputs = slot.outputs.data();
-  slot.warp.texture_sizes = draw.fragment_texture_sizes.data();
-  slot.warp.launch(*draw.fragment_program, draw.fragment_constants.data(), lanes);
+  bind_storage(frame_, work, *triangles_[engine], slot.storage, slot.warp);
+  slot.warp.texture_sizes = draw.fragment.texture_sizes.data();
+  slot.warp.launch(*draw.fragment.program, draw.fragment.constants.data(), lanes);
   const auto live = static_cast<std::uint64_t>(std::popcount(work.covered));
   ++stats_.fragment_warps;
   stats_.fragments += live;
@@ -275,13 +293,14 @@ void ShaderCore::issue(Tick now) {
   slot.end = result.end;
   slot.drain = warp_clock_.drain() - warp_clock_.span();
   simds_[slot.simd].add(clock().edges_before(now), index, warp_clock_.work(), warp_clock_.span());
-  const auto textures =
-      static_cast<std::uint32_t>(result.end == models::ClauseEnd::kTextures ? slot.warp.texture_count : 0);
+  const auto textures = static_cast<std::uint32_t>(slot.warp.texture_count);
+  const auto accesses = static_cast<std::uint32_t>(slot.warp.access_count);
   ++stats_.clauses;
-  stats_.instructions += cost.instructions() + textures;
+  stats_.instructions += cost.instructions() + textures + accesses;
   stats_.alu += cost.alu + cost.interp + cost.constant + cost.exported;
   stats_.sfu += cost.sfu;
   stats_.texture += textures;
+  stats_.storage += accesses;
   stats_.lane_operations += cost.lane_ops;
   stats_.simd_busy += warp_clock_.work();
   stats_.operand_waits += warp_clock_.span() - warp_clock_.work();
@@ -297,20 +316,21 @@ void ShaderCore::end_clauses(Tick now) {
 }
 
 void ShaderCore::complete(Tick now, const Completion& done) {
-  const CoreSlot& slot = slots_[done.slot];
-  if (done.end == models::ClauseEnd::kTextures)
-    texture_out->push(now, {done.slot, slot.draw, slot.vertex_stage});
-  else retire(now, done.slot);
+  if (done.end != models::ClauseEnd::kRequests) return retire(now, done.slot);
+  CoreSlot& slot = slots_[done.slot];
+  slot.replies = (slot.warp.texture_count > 0) + (slot.warp.access_count > 0);
+  if (slot.warp.texture_count > 0) texture_out->push(now, {done.slot, slot.draw, slot.stage});
+  if (slot.warp.access_count > 0) storage_out->push(now, {done.slot, slot.draw, slot.stage});
 }
 
 void ShaderCore::retire(Tick now, std::uint32_t index) {
   CoreSlot& slot = slots_[index];
-  if (slot.vertex_stage) {
+  if (slot.stage == models::ShaderStage::kVertex) {
     vertex_out.push(now, {slot.batch});
   } else {
     WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
     work.alive = work.covered & ~slot.warp.killed;
-    take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment.z, work);
+    take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment, work);
     fragment_out[slot.partition.index()]->push(now, {slot.warp_slot});
   }
   --simd_warps_[slot.simd];
@@ -324,6 +344,7 @@ void ShaderCore::audit(Audit& audit) const {
   audit.right(laws::kFragmentsPacked, stats_.fragments.value());
   audit.left(laws::kFragmentsShaded, stats_.fragments.value());
   if (texture_out) audit.left(laws::kTextureRequests, stats_.texture.value());
+  if (storage_out) audit.left(laws::kStorageRequests, stats_.storage.value());
 }
 
 void ShaderCore::details(Details& details) const {

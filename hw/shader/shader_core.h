@@ -1,9 +1,12 @@
 /// Unified shader core: runs vertex and fragment warps of 32 lanes, a clause at a time, on several SIMD
 /// units.
 ///
-/// In    vertex_in, fragment_in  warps to run          texture_in  the texels of a warp have been filtered
-/// Out   vertex_out              batch shaded          fragment_out[p]  fragment warp shaded    texture_out
-/// a clause's texture requests Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes
+/// In    vertex_in, fragment_in  warps to run
+///       texture_in, storage_in  the requests of a warp have been answered
+/// Out   vertex_out              batch shaded
+///       fragment_out[p]         fragment warp shaded
+///       texture_out, storage_out  a clause's texture and storage requests
+/// Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes
 /// for special functions), and one that reads its result waits for the latency of
 ///       its class (models/shader/timing.h); other warps of the SIMD issue meanwhile, as `scheduler` says
 ///       (hw/shader/simd.h). A warp stays on the SIMD that it was given, the one with the fewest warps. It
@@ -90,6 +93,7 @@ class ShaderCore final : public Unit {
                 "Warp instructions of the ALU, interpolation, constant and export classes"};
     Counter sfu{*this, "sfu_instructions", "instruction", "Warp instructions of the special-function class"};
     Counter texture{*this, "texture_instructions", "instruction", "Texture requests sent"};
+    Counter storage{*this, "storage_instructions", "instruction", "Storage requests sent"};
     Counter lane_operations{*this, "lane_operations", "lane", "Lanes executed, summed over instructions"};
     Counter simd_busy{*this, "simd_busy", "clk", "Cycles in which SIMD units issued, summed over the units"};
     Counter operand_waits{
@@ -106,9 +110,12 @@ class ShaderCore final : public Unit {
   /// Cycles of the core's instructions by class. A class without results that others read has the latency of
   /// its issue.
   [[nodiscard]] static models::IssueTiming issue_timing(const Params& params);
-  /// `textured`: it has ports to a texture unit.
+  /// Units of its own that a core has in this machine.
+  struct Neighbours {
+    bool texture = false, load_store = false;
+  };
   ShaderCore(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-             const Stores& stores, bool textured);
+             const Stores& stores, const Neighbours& neighbours);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<VertexWarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
@@ -118,6 +125,9 @@ class ShaderCore final : public Unit {
   /// absent when no program of the frame reads a texture
   std::unique_ptr<FifoOut<TextureToken>> texture_out;
   std::unique_ptr<FifoIn<TextureToken>> texture_in;
+  /// absent when no program of the frame has a storage buffer
+  std::unique_ptr<FifoOut<StorageToken>> storage_out;
+  std::unique_ptr<FifoIn<StorageToken>> storage_in;
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
@@ -128,7 +138,7 @@ class ShaderCore final : public Unit {
   [[nodiscard]] std::string state_text() const override;
 
  private:
-  /// A clause whose results are there at `at`; then its warp asks for texels or is done.
+  /// A clause whose results are there at `at`; then its warp makes its requests or is done.
   struct Completion {
     Tick at = 0;
     std::uint32_t slot = 0;
@@ -164,6 +174,7 @@ class ShaderCore final : public Unit {
   void complete(Tick now, const Completion& done);
   void retire(Tick now, std::uint32_t index);
   void take_texels(Tick now);
+  void take_reply(Tick now, std::uint32_t index);
 
   const Params& params_;
   const Frame& frame_;

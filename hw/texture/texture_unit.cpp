@@ -78,9 +78,7 @@ void TextureUnit::act(Tick now) {
 
 void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
                        std::int64_t& address_cycles) {
-  const DrawState& draw = frame_.draw(token.draw);
-  const std::vector<TextureState>& textures =
-      token.vertex_stage ? draw.vertex_textures : draw.fragment_textures;
+  const std::vector<TextureState>& textures = frame_.draw(token.draw).stage(token.stage).textures;
   std::uint32_t quads = 0;
   for (int i = 0; i < slot.warp.texture_count; ++i) {
     const models::TextureRequest& request = slot.warp.textures[static_cast<std::size_t>(i)];
@@ -116,7 +114,7 @@ void TextureUnit::begin_pass(PassId pass) {
 
 void TextureUnit::take(Tick now) {
   const TextureToken token = request_in.pop(now);
-  if (token.vertex_stage) stats_.working_for(token.draw);
+  if (token.stage == models::ShaderStage::kVertex) stats_.working_for(token.draw);
   else stats_.working_for(token.draw, slots_[token.slot].tile_x, slots_[token.slot].tile_y);
   begin_pass(frame_.draw(token.draw).pass);
   lines_.clear();

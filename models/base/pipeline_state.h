@@ -12,7 +12,31 @@ namespace quadrille::models {
 enum class ShaderStage : std::uint8_t { kVertex, kFragment };
 
 /// [VK1.3 #drawing-primitive-topologies]
-enum class Topology : std::uint8_t { kTriangleList, kTriangleStrip, kTriangleFan };
+enum class Topology : std::uint8_t {
+  kTriangleList,
+  kTriangleStrip,
+  kTriangleFan,
+  kPointList,
+  kLineList,
+  kLineStrip
+};
+/// Is each primitive on its own, so that no special index may end it?
+[[nodiscard]] constexpr bool is_list(Topology topology) {
+  return topology != Topology::kTriangleStrip && topology != Topology::kTriangleFan &&
+         topology != Topology::kLineStrip;
+}
+
+/// How triangles are drawn. [VK1.3 #primsrast-polygonmode]
+enum class PolygonMode : std::uint8_t { kFill, kLine, kPoint };
+/// How lines become pixels. [VK1.3 #primsrast-lines, VK_EXT_line_rasterization]
+enum class LineMode : std::uint8_t {
+  kBresenham,    ///< the diamond-exit rule; a wide line repeats its pixels across
+  kRectangular,  ///< the pixels whose centre is within the rectangle around the line
+  kSmooth        ///< the same, and alpha is multiplied by how much of each pixel is covered
+};
+/// Widths that a line can have, and sizes of points, pixels.
+inline constexpr float kMinLineWidth = 1, kMaxLineWidth = 64;
+inline constexpr float kMinPointSize = 1, kMaxPointSize = 256;
 
 /// [VK1.3 #primsrast-polygons-basic]
 enum class CullMode : std::uint8_t { kNone, kFront, kBack };

@@ -1,5 +1,5 @@
 /// Post-transform reuse: which vertices of a draw are shaded, in which batch and lane, and where a triangle
-/// finds those that were shaded before. One file a policy (reuse_*.cpp).
+/// (or a line, or a point) finds those that were shaded before. One file a policy (reuse_*.cpp).
 ///
 /// A batch of up to 32 vertices is shaded as one warp. Vertices are told apart by index. The counts are those
 /// of meshoptimizer's analyser: (n, n, triangles a batch) for batches of n vertices, (entries, 0, 0) for the
@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace quadrille::models {
 
@@ -38,9 +39,9 @@ class VertexReuse {
     size_ = 0;
     slot_ = slot;
   }
-  /// Does a triangle with these vertices fit into the batch?
-  [[nodiscard]] bool fits(const std::array<std::uint32_t, 3>& triangle) const {
-    return size_ + lanes_for(triangle) <= batch_vertices_;
+  /// Does a primitive with these vertices fit into the batch?
+  [[nodiscard]] bool fits(std::span<const std::uint32_t> primitive) const {
+    return size_ + lanes_for(primitive) <= batch_vertices_;
   }
   /// Where the vertex is or, if it is not at hand, will be: it then takes the batch's next lane, which must
   /// be there.
@@ -58,8 +59,10 @@ class VertexReuse {
   virtual void limit_slots(int /*slots*/) {}
 
  protected:
-  /// Lanes to have at hand for a triangle.
-  [[nodiscard]] virtual int lanes_for(const std::array<std::uint32_t, 3>& /*triangle*/) const { return 3; }
+  /// Lanes to have at hand for a primitive.
+  [[nodiscard]] virtual int lanes_for(std::span<const std::uint32_t> primitive) const {
+    return static_cast<int>(primitive.size());
+  }
   /// The next lane of the batch takes the vertex.
   std::uint8_t add_lane(std::uint32_t index);
   [[nodiscard]] std::uint32_t slot() const { return slot_; }

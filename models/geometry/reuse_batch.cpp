@@ -27,9 +27,10 @@ class BatchReuse final : public VertexReuse {
 
  protected:
   /// Each corner whose vertex is at hand is free, any other takes a lane, also where two corners share a new
-  /// vertex: the hardware's rule, since it looks all three up at once.
-  [[nodiscard]] int lanes_for(const std::array<std::uint32_t, 3>& triangle) const override {
-    return static_cast<int>(std::ranges::count_if(triangle, [this](std::uint32_t v) { return find(v) < 0; }));
+  /// vertex: the hardware's rule, since it looks all of them up at once.
+  [[nodiscard]] int lanes_for(std::span<const std::uint32_t> primitive) const override {
+    return static_cast<int>(
+        std::ranges::count_if(primitive, [this](std::uint32_t v) { return find(v) < 0; }));
   }
 
  private:

@@ -11,8 +11,9 @@ constexpr std::int64_t floor_div(std::int64_t a, std::int64_t positive) {
 
 }  // namespace
 
-TileWalk::TileWalk(const TriangleSetup& triangle) {
-  for (std::size_t i = 0; i < 3; ++i) {
+TileWalk::TileWalk(const TriangleSetup& triangle)
+    : edge_count_(static_cast<std::size_t>(triangle.edge_count)) {
+  for (std::size_t i = 0; i < edge_count_; ++i) {
     const EdgeFunction& e = triangle.edges[i];
     edges_[i] = {e.origin, e.a * kTileSize, e.b * kTileSize};
     best_[i] = (kTileSize - 1) * (std::max<std::int64_t>(e.a, 0) + std::max<std::int64_t>(e.b, 0));
@@ -33,7 +34,7 @@ TileWalk::TileWalk(const TriangleSetup& triangle) {
 
 void TileWalk::enter_row() {
   std::int64_t low = first_x_, high = last_x_;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < edge_count_; ++i) {
     const EdgeFunction& e = edges_[i];
     const std::int64_t at_zero = e.at(0, y_) + best_[i];  // best value of tile x is at_zero + a * x
     if (e.a == 0) {
@@ -69,7 +70,7 @@ bool TileWalk::next(TileHit& hit) {
   hit.tile_y = y_;
   hit.fully_covered =
       hit.tile_x >= full_x0_ && hit.tile_x < full_x1_ && hit.tile_y >= full_y0_ && hit.tile_y < full_y1_;
-  for (std::size_t i = 0; i < 3 && hit.fully_covered; ++i) {
+  for (std::size_t i = 0; i < edge_count_ && hit.fully_covered; ++i) {
     hit.fully_covered = edges_[i].at(hit.tile_x, hit.tile_y) + worst_[i] >= 0;
   }
   return true;

@@ -1,4 +1,4 @@
-/// Coarse rasterisation: the 8x8-pixel tiles that a triangle touches, row by row, left to right.
+/// Coarse rasterisation: the 8x8-pixel tiles that a triangle, line or point touches, row by row, left to right.
 ///
 /// A tile is kept unless all its pixels are outside one edge (exact for each edge, at the pixel of the tile
 /// that is deepest inside). Along a row the kept tiles are one interval, found by a division an edge; so the
@@ -32,9 +32,10 @@ class TileWalk {
  private:
   void enter_row();
 
-  std::array<EdgeFunction, 3> edges_;  // stepped by tiles
+  std::size_t edge_count_ = 0;
+  std::array<EdgeFunction, 4> edges_;  // stepped by tiles
   // what the best and the worst pixel of a tile add to its first one
-  std::array<std::int64_t, 3> best_{}, worst_{};
+  std::array<std::int64_t, 4> best_{}, worst_{};
   std::int32_t first_x_ = 0, last_x_ = -1, last_y_ = -1;  // tiles of the bounding box
   // tiles that lie wholly within the bounds
   std::int32_t full_x0_ = 0, full_y0_ = 0, full_x1_ = 0, full_y1_ = 0;

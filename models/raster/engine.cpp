@@ -24,15 +24,15 @@ TileRange tiles_between(std::int32_t low, std::int32_t high, int subpixel_bits, 
 
 }  // namespace
 
-std::uint32_t engines_touched(const std::array<WindowVertex, 3>& triangle, int subpixel_bits,
-                              std::uint32_t width, std::uint32_t height, const ScreenShare& share,
-                              std::uint32_t turn) {
+std::uint32_t engines_touched(const std::array<WindowVertex, 3>& triangle, std::int32_t reach,
+                              int subpixel_bits, std::uint32_t width, std::uint32_t height,
+                              const ScreenShare& share, std::uint32_t turn) {
   const std::uint32_t all = (1u << share.engines) - 1;
   if (share.engines == 1) return all;
   const auto [left, right] = std::minmax({triangle[0].x, triangle[1].x, triangle[2].x});
   const auto [top, bottom] = std::minmax({triangle[0].y, triangle[1].y, triangle[2].y});
-  const TileRange x = tiles_between(left, right, subpixel_bits, width),
-                  y = tiles_between(top, bottom, subpixel_bits, height);
+  const TileRange x = tiles_between(left - reach, right + reach, subpixel_bits, width),
+                  y = tiles_between(top - reach, bottom + reach, subpixel_bits, height);
   if (x.count() <= 0 || y.count() <= 0) return 1u << turn % share.engines;
   if (std::int64_t{x.count()} * y.count() > kMostTiles) return all;
   std::uint32_t touched = 0;

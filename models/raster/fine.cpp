@@ -65,7 +65,8 @@ std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_
   constexpr std::int64_t kReach = kTileSize - 1;
   const int px = tile_x * kTileSize, py = tile_y * kTileSize;
   std::uint64_t covered = pixels_within(triangle.bounds, px, py);
-  for (const EdgeFunction& edge : triangle.edges) {
+  for (int i = 0; i < triangle.edge_count; ++i) {
+    const EdgeFunction& edge = triangle.edges[static_cast<std::size_t>(i)];
     const std::int64_t corner = edge.at(px, py);
     const std::int64_t lowest =
         corner + kReach * (std::min<std::int64_t>(edge.a, 0) + std::min<std::int64_t>(edge.b, 0));

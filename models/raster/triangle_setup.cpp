@@ -6,23 +6,6 @@
 namespace quadrille::models {
 namespace {
 
-struct Point {
-  std::int64_t x, y;
-};
-
-/// The edge from a to b of a triangle whose inside is where the value is positive (clockwise on the screen, y
-/// down).
-EdgeFunction make_edge(const Point& a, const Point& b, int subpixel_bits) {
-  EdgeFunction edge;
-  edge.a = a.y - b.y;
-  edge.b = b.x - a.x;
-  const bool top_left = edge.a > 0 || (edge.a == 0 && edge.b > 0);
-  const std::int64_t half = std::int64_t{1} << (subpixel_bits - 1);
-  const std::int64_t at_first_centre = edge.a * (half - a.x) + edge.b * (half - a.y) - (top_left ? 0 : 1);
-  edge.origin = at_first_centre >> subpixel_bits;  // rounds down: keeps the sign at every centre
-  return edge;
-}
-
 /// Fits f = value + dx * X + dy * Y through three vertices.
 struct PlaneFitter {
   double x1, y1, x2, y2;  ///< second and third vertex minus the first, pixels
@@ -56,10 +39,7 @@ void fit_planes(const std::array<WindowVertex, 3>& v, const std::array<glm::vec2
   out.linear_2 = fit(weights[0].y, weights[1].y, weights[2].y);
 
   const auto [low, high] = std::minmax({v[0].z, v[1].z, v[2].z});
-  const float range_low = std::min(state.min_depth, state.max_depth),
-              range_high = std::max(state.min_depth, state.max_depth);
-  out.z_min = std::clamp(low, range_low, range_high);
-  out.z_max = std::clamp(high, range_low, range_high);
+  limit_depths(low, high, state, out);
 }
 
 /// Pixels whose centre lies within the bounding box.
@@ -75,17 +55,28 @@ PixelRect centres_within(const std::array<WindowVertex, 3>& v, int subpixel_bits
 
 }  // namespace
 
+std::int64_t doubled_area(const std::array<WindowVertex, 3>& v) {
+  const std::int64_t x1 = std::int64_t{v[1].x} - v[0].x, y1 = std::int64_t{v[1].y} - v[0].y;
+  const std::int64_t x2 = std::int64_t{v[2].x} - v[0].x, y2 = std::int64_t{v[2].y} - v[0].y;
+  return x1 * y2 - x2 * y1;
+}
+
+void limit_depths(float low, float high, const SetupState& state, TriangleSetup& out) {
+  const float range_low = std::min(state.min_depth, state.max_depth),
+              range_high = std::max(state.min_depth, state.max_depth);
+  out.z_min = std::clamp(low, range_low, range_high);
+  out.z_max = std::clamp(high, range_low, range_high);
+}
+
 SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices,
                             const std::array<glm::vec2, 3>& weights, const SetupState& state,
                             TriangleSetup& out) {
-  std::array<Point, 3> p;
+  std::array<GridPoint, 3> p;
   for (std::size_t i = 0; i < 3; ++i) p[i] = {vertices[i].x, vertices[i].y};
-  // Twice the signed area, positive when clockwise on the screen; Vulkan's area has the opposite sign. [VK1.3
-  // #primsrast-polygons-basic]
-  const std::int64_t area2 = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+  const std::int64_t area2 = doubled_area(vertices);
   if (area2 == 0) return SetupOutcome::kZeroArea;
-  const bool front = (area2 < 0) == (state.front == FrontFace::kCounterClockwise);
-  if (state.cull == (front ? CullMode::kFront : CullMode::kBack)) return SetupOutcome::kCulledFace;
+  const bool front = is_front(area2, state);
+  if (culls(front, state)) return SetupOutcome::kCulledFace;
   const PixelRect box = centres_within(vertices, state.subpixel_bits);
   if (box.empty()) return SetupOutcome::kNoSample;
   out.bounds = intersect(box, state.scissor);
@@ -94,6 +85,7 @@ SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices,
   out.front_facing = front;
   fit_planes(vertices, weights, area2, state, out);
   if (area2 < 0) std::swap(p[1], p[2]);
+  out.edge_count = 3;
   for (std::size_t i = 0; i < 3; ++i) out.edges[i] = make_edge(p[i], p[(i + 1) % 3], state.subpixel_bits);
   return SetupOutcome::kKept;
 }

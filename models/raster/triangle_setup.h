@@ -10,6 +10,7 @@
 #pragma once
 
 #include "models/base/pipeline_state.h"
+#include "models/raster/edge.h"
 #include "models/raster/tile.h"
 #include "models/raster/viewport.h"
 
@@ -20,20 +21,11 @@
 
 namespace quadrille::models {
 
-/// Inside: origin + a * px + b * py >= 0, at the centre of pixel (px, py). |a|, |b| < 2^30; values fit 62
-/// bits for pixels within the window grid.
-struct EdgeFunction {
-  std::int64_t origin = 0, a = 0, b = 0;
-  [[nodiscard]] std::int64_t at(std::int64_t px, std::int64_t py) const { return origin + a * px + b * py; }
-};
-
-/// value + dx * X + dy * Y, X and Y in pixels from the triangle's reference point to the pixel's centre.
-struct Plane {
-  double value = 0, dx = 0, dy = 0;
-};
-
+/// What the rasteriser asks about a primitive. A triangle has three edges; a line has two or four, and a point
+/// none: its bounds are its pixels (line_setup.h, point_setup.h).
 struct TriangleSetup {
-  std::array<EdgeFunction, 3> edges;
+  std::array<EdgeFunction, 4> edges;
+  int edge_count = 3;
   /// pixels that may be covered: bounding box of the triangle within the scissor
   PixelRect bounds;
   double ref_x = 0, ref_y = 0;  ///< reference point, pixels
@@ -52,12 +44,14 @@ struct SetupState {
   PixelRect scissor;
   int subpixel_bits = 8;
   float min_depth = 0, max_depth = 1;
+  LineMode line_mode = LineMode::kBresenham;
+  float line_width = 1;  ///< pixels
 };
 
 enum class SetupOutcome : std::uint8_t {
   kKept,
   kCulledFace,  ///< faces the way that is culled
-  kZeroArea,    ///< no area after snapping
+  kZeroArea,    ///< no area, or no length, after snapping
   kOffscreen,   ///< its pixels are outside the scissor
   kNoSample     ///< its bounding box holds no pixel centre
 };
@@ -68,6 +62,20 @@ enum class SetupOutcome : std::uint8_t {
 [[nodiscard]] SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices,
                                           const std::array<glm::vec2, 3>& weights, const SetupState& state,
                                           TriangleSetup& out);
+
+/// Twice the signed area, in squares of the grid's unit: positive when clockwise on the screen; Vulkan's area
+/// has the opposite sign. [VK1.3 #primsrast-polygons-basic]
+[[nodiscard]] std::int64_t doubled_area(const std::array<WindowVertex, 3>& vertices);
+/// Does a triangle of this area (not 0) show its front?
+[[nodiscard]] inline bool is_front(std::int64_t area2, const SetupState& state) {
+  return (area2 < 0) == (state.front == FrontFace::kCounterClockwise);
+}
+[[nodiscard]] inline bool culls(bool front, const SetupState& state) {
+  return state.cull == (front ? CullMode::kFront : CullMode::kBack);
+}
+
+/// Limits depths to the range of a primitive's vertices (from `low` to `high`) within the viewport's.
+void limit_depths(float low, float high, const SetupState& state, TriangleSetup& out);
 
 /// (b1, b2) of a triangle that was not clipped.
 [[nodiscard]] inline std::array<glm::vec2, 3> whole_triangle_weights() {

@@ -59,6 +59,8 @@ double doubled_area(const WindowTriangle& t) {
 }
 
 SamplePlace locate_sample(const WindowTriangle& t, int x, int y) {
+  if (t.shape == Shape::kLine) return locate_on_line(t, x, y);
+  if (t.shape == Shape::kPoint) return locate_in_point(t, x, y);
   if (t.exact) {
     const std::int64_t one = std::int64_t{1} << t.subpixel_bits;
     return locate<std::int64_t, Wide>(t.fixed_x, t.fixed_y, x * one + one / 2, y * one + one / 2,

@@ -1,4 +1,5 @@
-/// Which samples a triangle in window space covers, and where in it they are. Internal to the reference.
+/// Which samples a triangle, line or point in window space covers, and where in it they are. Internal to the
+/// reference.
 ///
 /// Mode *given*: exact integers of any size the input allows. Mode *ideal*: doubles, each edge evaluated from
 /// its lexicographically smaller end, so that two triangles get opposite values from a shared edge and every
@@ -8,13 +9,23 @@
 #include <array>
 #include <cstdint>
 
+#include "traces/command_stream.h"
+
 namespace quadrille::models::reference {
 
-/// A triangle to be drawn. The first three members are the *original* triangle's, for its attributes.
+using traces::LineMode;
+
+enum class Shape : std::uint8_t { kTriangle, kLine, kPoint };
+
+/// A triangle to be drawn; or a line between the first two corners, or a point at the first, whose other
+/// corners repeat the last one. The first three members are the *original* primitive's, for its attributes.
 struct WindowTriangle {
   std::uint32_t instance = 0, primitive = 0;
   std::array<std::uint32_t, 3> vertices{};  ///< distinct vertices (ShadedVertices) in assembly order
-  bool exact = false;                       ///< `fixed_x`, `fixed_y` hold; else `x`, `y` alone
+  Shape shape = Shape::kTriangle;
+  LineMode line_mode = LineMode::kBresenham;
+  double line_width = 1, point_size = 1;  ///< pixels
+  bool exact = false;                     ///< `fixed_x`, `fixed_y` hold; else `x`, `y` alone
   int subpixel_bits = 0;
   std::array<std::int64_t, 3> fixed_x{}, fixed_y{};
   std::array<double, 3> x{}, y{}, z{}, inv_w{};  ///< framebuffer coordinates, depth, 1 / clip w
@@ -31,12 +42,16 @@ struct WindowTriangle {
 /// Zero exactly for degenerate triangles.
 [[nodiscard]] double doubled_area(const WindowTriangle& triangle);
 
-/// A pixel centre's place in a triangle whose `clockwise` is set.
+/// A pixel centre's place in a primitive; a triangle's `clockwise` is set.
 struct SamplePlace {
   bool covered = false;
   /// linear in the framebuffer, of the three corners; sum 1; extrapolated outside
   std::array<double, 3> weights{};
+  double part = 1;                ///< of the pixel, that a smooth line covers
+  std::array<double, 2> point{};  ///< coordinates within a point, 0 to 1
 };
+[[nodiscard]] SamplePlace locate_on_line(const WindowTriangle& line, int x, int y);
+[[nodiscard]] SamplePlace locate_in_point(const WindowTriangle& point, int x, int y);
 [[nodiscard]] SamplePlace locate_sample(const WindowTriangle& triangle, int x, int y);
 
 }  // namespace quadrille::models::reference

@@ -73,8 +73,8 @@ void Decoder::texture_variable(const SpirvInstruction& in, Value& v) {
 /// takes a location of its own. [VK1.3 #interfaces-iointerfaces-locations]
 void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& decorations, Id type, Slot slot,
                                 std::uint32_t location, bool input) {
-  if (decorations.builtin != kNoNumber) return builtin(decorations.builtin, slot);
   const SpirvType& t = module_.type(type);
+  if (decorations.builtin != kNoNumber) return builtin(decorations.builtin, slot, t.cells);
   if (t.cells == 0) return;
   if (t.kind == TypeKind::kStruct) {
     for (std::uint32_t i = 0; i < t.members.size(); ++i) {
@@ -103,7 +103,7 @@ void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& dec
   }
 }
 
-void Decoder::builtin(std::uint32_t which, Slot slot) {
+void Decoder::builtin(std::uint32_t which, Slot slot, std::uint32_t cells) {
   BuiltinSlots& b = program_.builtins;
   switch (which) {
     case spv::BuiltInPosition: b.position = slot; return;
@@ -113,13 +113,15 @@ void Decoder::builtin(std::uint32_t which, Slot slot) {
     case spv::BuiltInFrontFacing: b.front_facing = slot; return;
     case spv::BuiltInPrimitiveId: b.primitive_id = slot; return;
     case spv::BuiltInFragDepth: b.frag_depth = slot; return;
-    case spv::BuiltInPointSize:
-    case spv::BuiltInClipDistance:
-    case spv::BuiltInCullDistance: return;  // members of gl_PerVertex; using one is rejected
+    case spv::BuiltInPointSize: b.point_size = slot; return;
+    case spv::BuiltInPointCoord: b.point_coord = slot; return;
+    case spv::BuiltInClipDistance: b.clip_distance = slot, b.clip_distances = cells; return;
+    case spv::BuiltInCullDistance: b.cull_distance = slot, b.cull_distances = cells; return;
     default:
       unsupported(
-          "a built-in other than Position, VertexIndex, InstanceIndex, FragCoord, FrontFacing, PrimitiveId "
-          "and FragDepth");
+          "a built-in other than Position, PointSize, ClipDistance, CullDistance, VertexIndex, "
+          "InstanceIndex, "
+          "FragCoord, FrontFacing, PrimitiveId, PointCoord and FragDepth");
   }
 }
 

@@ -39,6 +39,8 @@ struct Quad {
   unsigned covered = 0;
   std::array<double, kLanes> z{}, inv_w{};
   std::array<std::array<double, 2>, kLanes> perspective{}, linear{};  ///< (b1, b2)
+  std::array<double, kLanes> part{};                                  ///< covered by a smooth line
+  std::array<std::array<double, 2>, kLanes> point{};                  ///< coordinates within a point
 };
 
 /// Draws all triangles within one band after another, in order.
@@ -82,7 +84,10 @@ class BandWorker {
       if (places[static_cast<std::size_t>(lane)].covered && in_bounds(px, py)) quad.covered |= 1u << lane;
     }
     if (quad.covered == 0) return;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) place_fragment(t, places[lane].weights, quad, lane);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      place_fragment(t, places[lane].weights, quad, lane);
+      quad.part[lane] = places[lane].part, quad.point[lane] = places[lane].point;
+    }
     shade_and_write(t, quad);
   }
 
@@ -196,6 +201,10 @@ class BandWorker {
         coord[2].set_f(lane, quad.z[l]);
         coord[3].set_f(lane, quad.inv_w[l]);
       }
+      if (b.point_coord != kNoSlot) {
+        lanes_.at(b.point_coord)[0].set_f(lane, quad.point[l][0]);
+        lanes_.at(b.point_coord)[1].set_f(lane, quad.point[l][1]);
+      }
       if (b.front_facing != kNoSlot) lanes_.at(b.front_facing)->set_u(lane, t.front ? 1u : 0u);
       if (b.primitive_id != kNoSlot) lanes_.at(b.primitive_id)->set_u(lane, t.primitive);
     }
@@ -209,17 +218,18 @@ class BandWorker {
       if (has_depth() && state_.pipeline->depth.write) (*state_.depth)[at] = depth[lane];
       if (program_ == nullptr) continue;
       for (std::size_t color = 0; color < state_.colors.size(); ++color)
-        write_color(t, color, at, static_cast<int>(lane));
+        write_color(t, color, at, static_cast<int>(lane), quad.part[lane]);
     }
   }
 
   /// An attachment that the program has no output for keeps what it holds.
-  void write_color(const WindowTriangle& t, std::size_t color, std::size_t at, int lane) {
+  void write_color(const WindowTriangle& t, std::size_t color, std::size_t at, int lane, double part) {
     const std::array<Slot, 4>& slots = color_slots_[color];
     const traces::BlendState& state = state_.pipeline->blend[color];
     if (state.write_mask == 0 || std::ranges::all_of(slots, [](Slot s) { return s == kNoSlot; })) return;
     std::array<double, 4> source{};
     for (std::size_t c = 0; c < 4; ++c) source[c] = slots[c] == kNoSlot ? 0.0 : lanes_.at(slots[c])->f(lane);
+    source[3] *= part;
     ColorTarget& target = *state_.colors[color];
     const auto linear = target.linear.begin() + static_cast<std::ptrdiff_t>(4 * at);
     StoredColor before{target.code[at], {}};

@@ -111,6 +111,8 @@ struct TextureUse {
 struct BuiltinSlots {
   Slot position = kNoSlot, vertex_index = kNoSlot, instance_index = kNoSlot;
   Slot frag_coord = kNoSlot, front_facing = kNoSlot, primitive_id = kNoSlot, frag_depth = kNoSlot;
+  Slot point_size = kNoSlot, point_coord = kNoSlot, clip_distance = kNoSlot, cull_distance = kNoSlot;
+  std::uint32_t clip_distances = 0, cull_distances = 0;  ///< as declared
 };
 
 struct ShaderProgram {

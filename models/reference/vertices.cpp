@@ -62,8 +62,9 @@ double component(std::uint32_t word, const FormatLayout& layout) {
       -1.0);
 }
 
-/// VertexIndex of each vertex of the draw. [VK1.3 #interfaces-builtin-variables-vertexindex]
-std::vector<std::uint32_t> vertex_indices(const DrawState& state) {
+/// VertexIndex of each vertex of the draw, and the positions of indices that end a strip or fan. [VK1.3
+/// #interfaces-builtin-variables-vertexindex]
+std::vector<std::uint32_t> vertex_indices(const DrawState& state, std::vector<std::uint32_t>& breaks) {
   const traces::Draw& draw = *state.draw;
   std::vector<std::uint32_t> indices(draw.count);
   for (std::uint32_t i = 0; i < draw.count; ++i) {
@@ -75,8 +76,10 @@ std::vector<std::uint32_t> vertex_indices(const DrawState& state) {
                                 : state.index_buffer.type == traces::IndexType::kUint16 ? 2
                                                                                         : 4;
     const std::uint64_t offset = state.index_buffer.offset + (std::uint64_t{draw.first} + i) * bytes;
-    indices[i] = read_bytes(state.stream->buffers[state.index_buffer.buffer], offset, bytes) +
-                 static_cast<std::uint32_t>(draw.vertex_offset);
+    const std::uint32_t index = read_bytes(state.stream->buffers[state.index_buffer.buffer], offset, bytes);
+    indices[i] = index + static_cast<std::uint32_t>(draw.vertex_offset);
+    const std::uint32_t special = bytes == 4 ? 0xffffffffu : bytes == 2 ? 0xffffu : 0xffu;
+    if (state.pipeline->primitive_restart && index == special) breaks.push_back(i);
   }
   return indices;
 }
@@ -167,6 +170,17 @@ class VertexWorker {
       out_.clip[vertex][c] = lanes_.cells[program_.builtins.position + c].f(static_cast<int>(lane));
     for (std::size_t i = 0; i < out_.ports; ++i)
       out_.outputs[vertex * out_.ports + i] = lanes_.cells[program_.outputs[i].slot].bits[lane];
+    store_extras(vertex, static_cast<int>(lane));
+  }
+
+  void store_extras(std::size_t vertex, int lane) {
+    const BuiltinSlots& b = program_.builtins;
+    if (b.point_size != kNoSlot) out_.point_size[vertex] = lanes_.cells[b.point_size].f(lane);
+    if (out_.distances.empty()) return;
+    for (std::uint32_t i = 0; i < b.clip_distances; ++i)
+      out_.distances[vertex].push_back(lanes_.cells[b.clip_distance + i].f(lane));
+    for (std::uint32_t i = 0; i < b.cull_distances; ++i)
+      out_.distances[vertex].push_back(lanes_.cells[b.cull_distance + i].f(lane));
   }
 
   const ShaderProgram& program_;
@@ -196,7 +210,7 @@ ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader,
   ShadedVertices out;
   std::vector<std::uint32_t> distinct;
   std::unordered_map<std::uint32_t, std::uint32_t> number;
-  for (const std::uint32_t index : vertex_indices(state)) {
+  for (const std::uint32_t index : vertex_indices(state, out.breaks)) {
     const auto [at, fresh] = number.try_emplace(index, static_cast<std::uint32_t>(distinct.size()));
     if (fresh) distinct.push_back(index);
     out.sequence.push_back(at->second);
@@ -204,6 +218,10 @@ ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader,
   out.ports = shader.program->outputs.size();
   out.clip.resize(distinct.size());
   out.outputs.resize(distinct.size() * out.ports);
+  const BuiltinSlots& b = shader.program->builtins;
+  if (b.point_size != kNoSlot) out.point_size.resize(distinct.size());
+  if (b.clip_distances + b.cull_distances > 0) out.distances.resize(distinct.size());
+  out.clip_distances = b.clip_distances;
   const std::vector<AttributeFeed> feeds = attribute_feeds(state, *shader.program);
   const std::uint32_t instance_index = state.draw->first_instance + instance;
   run_tasks((distinct.size() + kVerticesPerTask - 1) / kVerticesPerTask, threads,
@@ -211,20 +229,50 @@ ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader,
   return out;
 }
 
-std::vector<std::array<std::uint32_t, 3>> assemble(traces::Topology topology, std::uint32_t vertices) {
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+namespace {
+
+using Primitives = std::vector<std::array<std::uint32_t, 3>>;
+
+/// Those of the vertices from `first` to before `end`.
+void assemble_run(traces::Topology topology, std::uint32_t first, std::uint32_t end, Primitives& out) {
+  using traces::Topology;
   switch (topology) {
-    case traces::Topology::kTriangleList:
-      for (std::uint32_t i = 0; vertices - i >= 3; i += 3) triangles.push_back({i, i + 1, i + 2});
+    case Topology::kTriangleList:
+      for (std::uint32_t i = first; end - i >= 3; i += 3) out.push_back({i, i + 1, i + 2});
       break;
-    case traces::Topology::kTriangleStrip:
-      for (std::uint32_t i = 0; i + 2 < vertices; ++i) triangles.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
+    case Topology::kTriangleStrip:
+      for (std::uint32_t i = first; i + 2 < end; ++i) {
+        const std::uint32_t odd = (i - first) % 2;
+        out.push_back({i, i + 1 + odd, i + 2 - odd});
+      }
       break;
-    case traces::Topology::kTriangleFan:
-      for (std::uint32_t i = 0; i + 2 < vertices; ++i) triangles.push_back({i + 1, i + 2, 0});
+    case Topology::kTriangleFan:
+      for (std::uint32_t i = first; i + 2 < end; ++i) out.push_back({i + 1, i + 2, first});
+      break;
+    case Topology::kPointList:
+      for (std::uint32_t i = first; i < end; ++i) out.push_back({i, i, i});
+      break;
+    case Topology::kLineList:
+      for (std::uint32_t i = first; end - i >= 2; i += 2) out.push_back({i, i + 1, i + 1});
+      break;
+    case Topology::kLineStrip:
+      for (std::uint32_t i = first; i + 1 < end; ++i) out.push_back({i, i + 1, i + 1});
       break;
   }
-  return triangles;
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 3>> assemble(traces::Topology topology, std::uint32_t vertices,
+                                                   std::span<const std::uint32_t> breaks) {
+  Primitives primitives;
+  std::uint32_t first = 0;
+  for (const std::uint32_t at : breaks) {
+    assemble_run(topology, first, at, primitives);
+    first = at + 1;
+  }
+  if (first < vertices) assemble_run(topology, first, vertices, primitives);
+  return primitives;
 }
 
 }  // namespace quadrille::models::reference

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "models/reference/draw_state.h"
@@ -17,6 +18,11 @@ struct ShadedVertices {
   std::vector<std::uint64_t> outputs;
   std::size_t ports = 0;
   std::vector<std::uint32_t> sequence;  ///< draw order -> distinct vertex
+  std::vector<std::uint32_t> breaks;    ///< positions at which a strip or fan ends; in order
+  std::vector<double> point_size;       ///< by distinct vertex; empty: none is written
+  /// by distinct vertex: clip distances, then cull distances
+  std::vector<std::vector<double>> distances;
+  std::size_t clip_distances = 0;
 };
 
 /// An attribute's four components as the shader sees them; bytes beyond the buffer read as zero. [VK1.3
@@ -28,9 +34,11 @@ struct ShadedVertices {
 [[nodiscard]] ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader,
                                             std::uint32_t instance, int threads);
 
-/// Positions within the draw of the vertices of its primitives, in Vulkan's order. [VK1.3
+/// Positions within the draw of the vertices of its primitives, in Vulkan's order; a line or a point repeats
+/// its last one. Strips and fans begin anew after each position in `breaks`. [VK1.3
 /// #drawing-primitive-topologies]
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> assemble(traces::Topology topology,
-                                                                 std::uint32_t vertices);
+                                                                 std::uint32_t vertices,
+                                                                 std::span<const std::uint32_t> breaks = {});
 
 }  // namespace quadrille::models::reference

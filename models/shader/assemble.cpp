@@ -65,7 +65,7 @@ class Assembler {
   // Directives.
 
   void read_directive(std::string_view name, const std::vector<std::string_view>& words) {
-    if (name == "stage") program_.stage = one_of<ShaderStage>(words, kStageNames, "stage");
+    if (name == "stage") program_.stage = read_stage(words);
     else if (name == "varying")
       program_.varyings.push_back(one_of<Interpolation>(words, kInterpolationNames, "interpolation"));
     else if (name == "regs") registers_ = static_cast<int>(count(words, kMaxRegisters));
@@ -73,22 +73,31 @@ class Assembler {
     else if (name == "flags") read_flags(words);
     else if (name == "texture")
       program_.textures.push_back({field(words, 0, "set"), field(words, 1, "binding")});
+    else if (name == "buffer")
+      program_.buffers.push_back({field(words, 0, "set"), field(words, 1, "binding")});
     else if (name == "input")
       program_.vertex_inputs.push_back(
           {small_field(words, 0, "location"), small_field(words, 1, "component")});
+    else if (name == "extras") read_extras(words);
     else if (name == "literal") read_literals(words);
     else if (name == "push") read_block(words, ConstantLayout::Source::kPushConstant);
     else if (name == "uniform") read_block(words, ConstantLayout::Source::kUniformBlock);
     else
       fail(
-          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture input "
-          "varying",
+          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture buffer "
+          "input varying extras",
           name);
   }
 
+  [[nodiscard]] ShaderStage read_stage(const std::vector<std::string_view>& words) const {
+    std::array<std::string_view, kStages> names;
+    for (std::size_t s = 0; s < kStages; ++s) names[s] = stage_info(static_cast<ShaderStage>(s)).name;
+    return one_of<ShaderStage>(words, names, "stage");
+  }
+
   template <class Enum, std::size_t kCount>
-  Enum one_of(const std::vector<std::string_view>& words, const std::array<std::string_view, kCount>& names,
-              std::string_view what) const {
+  [[nodiscard]] Enum one_of(const std::vector<std::string_view>& words,
+                            const std::array<std::string_view, kCount>& names, std::string_view what) const {
     const auto found = words.size() == 1 ? std::find(names.begin(), names.end(), words[0]) : names.end();
     if (found == names.end()) {
       std::string legal;
@@ -109,9 +118,20 @@ class Assembler {
       const auto* flag = std::find_if(kProgramFlags.begin(), kProgramFlags.end(),
                                       [&](const NamedFlag& f) { return f.name == word; });
       if (flag == kProgramFlags.end())
-        fail("unknown flag '{}'; legal: discard depth early-tests derivatives", word);
+        fail("unknown flag '{}'; legal: discard depth early-tests derivatives atomic-outputs", word);
       program_.*flag->member = true;
     }
+  }
+
+  void read_extras(const std::vector<std::string_view>& words) {
+    const auto at_most = [&](std::size_t i, std::string_view name, std::uint32_t most) {
+      const std::uint32_t value = field(words, i, name);
+      if (value > most) fail("{} is {}; legal: at most {}", name, value, most);
+      return static_cast<std::uint8_t>(value);
+    };
+    program_.extras.point_size = at_most(0, "point_size", 1) != 0;
+    program_.extras.clip_distances = at_most(1, "clip", kMaxUserDistances);
+    program_.extras.cull_distances = at_most(2, "cull", kMaxUserDistances);
   }
 
   /// The value of word `i`, which must read `name=number`.

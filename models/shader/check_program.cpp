@@ -46,6 +46,9 @@ class Checker {
             program_.varyings.size(), kMaxVaryings);
     require(program_.vertex_inputs.size() <= kMaxVertexInputs,
             "{} vertex input components; legal: at most {}", program_.vertex_inputs.size(), kMaxVertexInputs);
+    require(program_.extras.clip_distances + program_.extras.cull_distances <= kMaxUserDistances,
+            "{} clip and {} cull distances; legal: at most {} together", program_.extras.clip_distances,
+            program_.extras.cull_distances, kMaxUserDistances);
   }
 
   void check_operands(const Instruction& in) const {
@@ -81,7 +84,7 @@ class Checker {
         break;
       case Immediate::kOutputSlot: {
         const std::size_t slots = program_.stage == ShaderStage::kVertex
-                                      ? kFirstVaryingOutput + program_.varyings.size()
+                                      ? static_cast<std::size_t>(vertex_outputs(program_))
                                       : kDepthOutput + 1u;
         require(in.imm < slots, "output slot {} does not exist; the stage has {}", in.imm, slots);
         break;
@@ -91,19 +94,22 @@ class Checker {
         require(in.imm < program_.textures.size(), "texture {} does not exist; the program has {}", in.imm,
                 program_.textures.size());
         break;
+      case Immediate::kBufferBinding:
+        require(in.imm < program_.buffers.size(), "buffer {} does not exist; the program has {}", in.imm,
+                program_.buffers.size());
+        break;
     }
   }
 
   void check_input(std::uint16_t slot) const {
-    constexpr auto kFirstFragment = static_cast<std::uint16_t>(SystemValue::kFragCoordX);
-    constexpr auto kLast = static_cast<std::uint16_t>(SystemValue::kPrimitiveId);
-    const bool vertex = program_.stage == ShaderStage::kVertex;
+    const StageInfo& stage = stage_info(program_.stage);
     if (slot < kFirstSystemValue)
-      require(vertex && slot < program_.vertex_inputs.size(),
+      require(stage.fetches && slot < program_.vertex_inputs.size(),
               "vertex input {} does not exist; the program has {}", slot,
-              vertex ? program_.vertex_inputs.size() : 0u);
+              stage.fetches ? program_.vertex_inputs.size() : 0u);
     else
-      require(slot <= kLast && (slot < kFirstFragment) == vertex,
+      require(slot >= static_cast<std::uint16_t>(stage.first_system_value) &&
+                  slot <= static_cast<std::uint16_t>(stage.last_system_value),
               "system value {} does not exist in this stage", slot);
   }
 
@@ -119,9 +125,9 @@ class Checker {
   void check_stage(const Instruction& in) const {
     const bool implicit = in.op == Op::kTexImplicit || in.op == Op::kTexBias;
     const bool derivative = in.op >= Op::kDdxFine && in.op <= Op::kDdyCoarse;
-    const bool fragment_only = implicit || derivative || in.op == Op::kInterp || in.op == Op::kKillIf;
-    require(!fragment_only || program_.stage == ShaderStage::kFragment,
-            "'{}' exists only in fragment shaders", op_name(in.op));
+    const bool needs_quads = implicit || derivative || in.op == Op::kInterp || in.op == Op::kKillIf;
+    require(!needs_quads || stage_info(program_.stage).quads, "'{}' exists only in fragment shaders",
+            op_name(in.op));
   }
 
   struct Construct {

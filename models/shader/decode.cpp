@@ -38,6 +38,7 @@ Kernel choose_kernel(const Program& program, const Instruction& in) {
   if (kernel.all_lanes == nullptr) kernel = special_kernel(in.op, shape);
   if (kernel.all_lanes == nullptr) kernel = integer_kernel(in.op, shape);
   if (kernel.all_lanes == nullptr) kernel = interface_kernel(program, in, shape);
+  if (kernel.all_lanes == nullptr) kernel = storage_kernel(in.op, shape);
   return kernel;
 }
 
@@ -61,7 +62,8 @@ void count(IssueCounts& counts, IssueClass issue) {
     case IssueClass::kSfu: ++counts.sfu; break;
     case IssueClass::kInterp: ++counts.interp; break;
     case IssueClass::kConst: ++counts.constant; break;
-    case IssueClass::kTex: break;
+    case IssueClass::kTex:
+    case IssueClass::kStorage: break;
     case IssueClass::kControl: ++counts.control; break;
     case IssueClass::kExport: ++counts.exported; break;
   }

@@ -56,7 +56,17 @@ struct IssueCounts {
   std::uint32_t alu = 0, sfu = 0, interp = 0, constant = 0, control = 0, exported = 0;
 };
 
+struct DecodedProgram;
+/// Executes instructions [begin, end) of a straight run for the lanes of the context, which are all that were
+/// launched (`all_lanes`) or not.
+using RunExecutor = void (*)(const DecodedProgram& program, std::uint32_t begin, std::uint32_t end,
+                             bool all_lanes, ExecutionContext& context);
+/// Calls each instruction's kernel.
+void interpret_run(const DecodedProgram& program, std::uint32_t begin, std::uint32_t end, bool all_lanes,
+                   ExecutionContext& context);
+
 struct DecodedProgram {
+  RunExecutor execute_run = &interpret_run;  ///< another executor has to compute the same bits
   std::vector<DecodedInstruction> code;
   std::vector<Flow> flow;
   std::vector<IssueCounts> counts;  ///< code.size() + 1
@@ -79,6 +89,7 @@ struct KernelShape {
 [[nodiscard]] Kernel float_kernel(Op op, const KernelShape& shape);
 [[nodiscard]] Kernel special_kernel(Op op, const KernelShape& shape);
 [[nodiscard]] Kernel integer_kernel(Op op, const KernelShape& shape);
+[[nodiscard]] Kernel storage_kernel(Op op, const KernelShape& shape);
 [[nodiscard]] Kernel interface_kernel(const Program& program, const Instruction& instruction,
                                       const KernelShape& shape);
 

@@ -32,8 +32,7 @@ std::string header_text(const Program& p) {
   std::string title = p.name;
   std::replace_if(
       title.begin(), title.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  std::string text = fmt::format("; {}\n.stage {}\n.regs {}\n", title,
-                                 kStageNames[static_cast<std::size_t>(p.stage)], p.num_regs);
+  std::string text = fmt::format("; {}\n.stage {}\n.regs {}\n", title, stage_info(p.stage).name, p.num_regs);
   std::string flags;
   for (const NamedFlag& flag : kProgramFlags)
     if (p.*flag.member) flags += fmt::format(" {}", flag.name);
@@ -42,10 +41,15 @@ std::string header_text(const Program& p) {
   for (const auto& range : p.constants.ranges) text += fmt::format("{}\n", range_text(range));
   for (const TextureBinding& t : p.textures)
     text += fmt::format(".texture set={} binding={}\n", t.set, t.binding);
+  for (const BufferBinding& b : p.buffers)
+    text += fmt::format(".buffer set={} binding={}\n", b.set, b.binding);
   for (const VertexInputUse& v : p.vertex_inputs)
     text += fmt::format(".input location={} component={}\n", v.location, v.component);
   for (const Interpolation mode : p.varyings)
     text += fmt::format(".varying {}\n", kInterpolationNames[static_cast<std::size_t>(mode)]);
+  if (p.extras.count() > 0)
+    text += fmt::format(".extras point_size={} clip={} cull={}\n", p.extras.point_size ? 1 : 0,
+                        p.extras.clip_distances, p.extras.cull_distances);
   return text;
 }
 

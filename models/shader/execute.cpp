@@ -30,8 +30,8 @@ class Execution {
     ClauseResult result;
     for (;;) {
       const Flow& flow = program_.flow[warp_.pc];
-      if (flow.waits && warp_.texture_count > 0) {
-        result.end = ClauseEnd::kTextures;
+      if (flow.waits && warp_.requests() > 0) {
+        result.end = ClauseEnd::kRequests;
         return result;
       }
       if (flow.control) {
@@ -56,13 +56,7 @@ class Execution {
 
   void run_straight(std::uint32_t end, ClauseCost& cost) {
     const std::uint32_t begin = std::exchange(warp_.pc, end);
-    const DecodedInstruction* const last = program_.code.data() + end;
-    if (warp_.exec == warp_.launched)
-      for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d)
-        d->all_lanes(*d, context_);
-    else
-      for (const DecodedInstruction* d = program_.code.data() + begin; d != last; ++d)
-        d->some_lanes(*d, context_);
+    program_.execute_run(program_, begin, end, warp_.exec == warp_.launched, context_);
     warp_.instructions += end - begin;
     charge(begin, end, cost);
   }
@@ -157,14 +151,25 @@ void check_interface(const Warp& warp) {
 }
 
 ClauseResult run(Warp& warp, WarpClock* clock) {
-  warp.instructions += kTextureInstructions * static_cast<std::uint64_t>(warp.texture_count);
+  warp.instructions += kRequestInstructions * static_cast<std::uint64_t>(warp.requests());
   warp.texture_count = 0;
+  warp.access_count = 0;
   if (warp.launched == 0) return {};
   check_interface(warp);
   return Execution(warp, clock).run();
 }
 
 }  // namespace
+
+void interpret_run(const DecodedProgram& program, std::uint32_t begin, std::uint32_t end, bool all_lanes,
+                   ExecutionContext& context) {
+  const DecodedInstruction* const last = program.code.data() + end;
+  if (all_lanes)
+    for (const DecodedInstruction* d = program.code.data() + begin; d != last; ++d) d->all_lanes(*d, context);
+  else
+    for (const DecodedInstruction* d = program.code.data() + begin; d != last; ++d)
+      d->some_lanes(*d, context);
+}
 
 ClauseResult run_clause(Warp& warp) { return run(warp, nullptr); }
 ClauseResult run_clause(Warp& warp, WarpClock& clock) { return run(warp, &clock); }

@@ -1,4 +1,4 @@
-/// Finds the runs of a program, where its jumps lead, and where texture results must have arrived.
+/// Finds the runs of a program, where its jumps lead, and where results of requests must have arrived.
 #include "models/shader/decode.h"
 #include "models/shader/op_table.h"
 
@@ -12,14 +12,18 @@ namespace {
 /// kKillIf changes no mask that execution depends on, so it is an instruction like others here.
 bool changes_flow(Op op) { return issue_class(op) == IssueClass::kControl && op != Op::kKillIf; }
 
-/// Registers that outstanding texture requests will write.
+bool is_request(Op op) {
+  return issue_class(op) == IssueClass::kTex || issue_class(op) == IssueClass::kStorage;
+}
+
+/// Registers that outstanding requests will write.
 class Outstanding {
  public:
   /// Must the instruction wait for the requests before it?
   [[nodiscard]] bool conflicts(const Instruction& in) const {
     if (count_ == 0) return false;
     const OpInfo& info = op_info(in.op);
-    if (changes_flow(in.op) || (info.issue == IssueClass::kTex && count_ == kMaxClauseTextures)) return true;
+    if (changes_flow(in.op) || (is_request(in.op) && count_ == kMaxClauseRequests)) return true;
     const std::array<const Operand*, 3> operands{&in.a, &in.b, &in.c};
     for (unsigned i = 0; i < info.sources; ++i)
       if (operands[i]->kind == Operand::kRegister && registers_[operands[i]->index]) return true;
@@ -32,7 +36,7 @@ class Outstanding {
     count_ = 0;
   }
   void add(const Instruction& in) {
-    if (issue_class(in.op) != IssueClass::kTex) return;
+    if (!is_request(in.op)) return;
     for (unsigned i = 0; i < op_info(in.op).destinations; ++i) registers_.set(in.dst + i);
     ++count_;
   }

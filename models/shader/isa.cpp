@@ -11,7 +11,7 @@ namespace quadrille::models {
 namespace {
 
 constexpr IssueClass kAluOp = IssueClass::kAlu, kSfuOp = IssueClass::kSfu, kControlOp = IssueClass::kControl,
-                     kTexOp = IssueClass::kTex;
+                     kTexOp = IssueClass::kTex, kStorageOp = IssueClass::kStorage;
 
 constexpr OpInfo float_op(Op op, std::string_view name, int sources, IssueClass issue = kAluOp) {
   return {
@@ -30,6 +30,17 @@ constexpr OpInfo texture(Op op, std::string_view name, int sources) {
           kTexOp, static_cast<std::uint8_t>(sources),
           4,      static_cast<std::uint8_t>((1 << sources) - 1),
           false,  Immediate::kTextureBinding};
+}
+
+constexpr OpInfo storage(Op op, std::string_view name, int sources, int destinations) {
+  return {op,
+          name,
+          kStorageOp,
+          static_cast<std::uint8_t>(sources),
+          static_cast<std::uint8_t>(destinations),
+          0,
+          false,
+          Immediate::kBufferBinding};
 }
 
 constexpr auto kOps = std::to_array<OpInfo>({
@@ -103,6 +114,19 @@ constexpr auto kOps = std::to_array<OpInfo>({
     texture(Op::kTexBias, "texbias", 3),
     texture(Op::kTexLod, "texlod", 3),
     {Op::kTexSize, "texsize", IssueClass::kConst, 1, 2, 0, false, Immediate::kTextureBinding},
+    storage(Op::kLoadBuffer, "ldbuf", 1, 1),
+    storage(Op::kStoreBuffer, "stbuf", 2, 0),
+    storage(Op::kAtomicAdd, "atomadd", 2, 1),
+    storage(Op::kAtomicIMin, "atomimin", 2, 1),
+    storage(Op::kAtomicUMin, "atomumin", 2, 1),
+    storage(Op::kAtomicIMax, "atomimax", 2, 1),
+    storage(Op::kAtomicUMax, "atomumax", 2, 1),
+    storage(Op::kAtomicAnd, "atomand", 2, 1),
+    storage(Op::kAtomicOr, "atomor", 2, 1),
+    storage(Op::kAtomicXor, "atomxor", 2, 1),
+    storage(Op::kAtomicExchange, "atomxchg", 2, 1),
+    storage(Op::kAtomicCompareExchange, "atomcas", 3, 1),
+    {Op::kBufferSize, "bufsize", IssueClass::kConst, 0, 1, 0, false, Immediate::kBufferBinding},
     control(Op::kIf, "if", 1),
     control(Op::kElse, "else", 0),
     control(Op::kEndIf, "endif", 0),
@@ -142,6 +166,19 @@ std::uint32_t color_outputs(const Program& program) {
     if (i.op == Op::kOutput && i.imm < kMaxColorOutputs) outputs |= 1u << i.imm;
   }
   return outputs;
+}
+
+bool is_atomic(Op op) { return op >= Op::kAtomicAdd && op <= Op::kAtomicCompareExchange; }
+bool writes_buffer(Op op) { return op == Op::kStoreBuffer || is_atomic(op); }
+bool writes_buffers(const Program& program) {
+  return std::ranges::any_of(program.code, [](const Instruction& i) { return writes_buffer(i.op); });
+}
+
+const StageInfo& stage_info(ShaderStage stage) {
+  static constexpr std::array<StageInfo, kStages> kInfos{
+      {{"vertex", SystemValue::kVertexIndex, SystemValue::kInstanceIndex, true, false},
+       {"fragment", SystemValue::kFragCoordX, SystemValue::kPointCoordY, false, true}}};
+  return kInfos[static_cast<std::size_t>(stage)];
 }
 
 std::string_view op_name(Op op) { return op_info(op).name; }

@@ -10,6 +10,7 @@
 #include "models/base/attachment.h"
 #include "models/base/pipeline_state.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -25,6 +26,7 @@ inline constexpr int kQuadPixels = 4;
 inline constexpr int kMaxRegisters = 256;
 inline constexpr int kMaxVaryings = 64;      ///< scalar components between vertex and fragment shader
 inline constexpr int kMaxVertexInputs = 64;  ///< scalar components (16 attributes of 4)
+inline constexpr int kMaxUserDistances = 8;  ///< clip and cull distances of a vertex, together
 inline constexpr int kMaxColorOutputs = 4 * kMaxColorAttachments;  ///< scalar components
 
 /// Operations. `f` marks float operands, `i` signed and `u` unsigned integers; comparisons write all ones
@@ -115,6 +117,21 @@ enum class Op : std::uint8_t {
   kTexBias,
   kTexLod,
   kTexSize,  ///< dst, dst+1 = width, height (integers) of texture `imm` at level a
+  // Storage buffers: a = byte offset, a multiple of 4; `imm` = buffer binding. Atomic operations write what
+  // the word was to dst.
+  kLoadBuffer,   ///< dst = the word
+  kStoreBuffer,  ///< the word = b
+  kAtomicAdd,    ///< the word = word + b; and so on
+  kAtomicIMin,
+  kAtomicUMin,
+  kAtomicIMax,
+  kAtomicUMax,
+  kAtomicAnd,
+  kAtomicOr,
+  kAtomicXor,
+  kAtomicExchange,
+  kAtomicCompareExchange,  ///< the word = b where it equals c
+  kBufferSize,             ///< dst = bytes of the buffer
   // Control. IF pushes the mask and keeps lanes with a != 0.
   // LOOP repeats until no lane is left; lanes that break rejoin after ENDLOOP, lanes that continue rejoin at
   // CONTINUING (a loop may have one, directly in its body: the continue block of SPIR-V follows it) or else
@@ -134,7 +151,7 @@ enum class Op : std::uint8_t {
 // clang-format on
 
 /// What an instruction occupies while it issues; decides its cycles.
-enum class IssueClass : std::uint8_t { kAlu, kSfu, kInterp, kConst, kTex, kControl, kExport };
+enum class IssueClass : std::uint8_t { kAlu, kSfu, kInterp, kConst, kTex, kControl, kExport, kStorage };
 
 struct Operand {
   enum Kind : std::uint8_t { kNone, kRegister, kConstant };
@@ -165,11 +182,13 @@ enum class SystemValue : std::uint16_t {
   kFragCoordZ,
   kFragCoordW,
   kFrontFacing,
-  kPrimitiveId
+  kPrimitiveId,
+  kPointCoordX,
+  kPointCoordY
 };
 
-/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4. Fragment stage: 4 to each of
-/// eight colour attachments, then depth.
+/// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4, then what `VertexExtras` says.
+/// Fragment stage: 4 to each of eight colour attachments, then depth.
 inline constexpr std::uint16_t kFirstVaryingOutput = 4;
 inline constexpr std::uint16_t kDepthOutput = kMaxColorOutputs;
 
@@ -193,15 +212,40 @@ struct ConstantLayout {
   friend bool operator==(const ConstantLayout&, const ConstantLayout&) = default;
 };
 
+/// What a vertex program writes for the fixed functions behind it: slots behind its varyings, in this order.
+struct VertexExtras {
+  bool point_size = false;
+  std::uint8_t clip_distances = 0, cull_distances = 0;  ///< together at most 8
+  [[nodiscard]] int count() const { return (point_size ? 1 : 0) + clip_distances + cull_distances; }
+  friend bool operator==(const VertexExtras&, const VertexExtras&) = default;
+};
+
 struct TextureBinding {
   std::uint32_t set = 0, binding = 0;
   friend bool operator==(const TextureBinding&, const TextureBinding&) = default;
+};
+
+/// A storage buffer.
+struct BufferBinding {
+  std::uint32_t set = 0, binding = 0;
+  friend bool operator==(const BufferBinding&, const BufferBinding&) = default;
 };
 
 struct VertexInputUse {
   std::uint16_t location = 0, component = 0;  ///< slot i of `Program::vertex_inputs` feeds kInput imm == i
   friend bool operator==(const VertexInputUse&, const VertexInputUse&) = default;
 };
+
+inline constexpr std::size_t kStages = 2;
+
+/// What a stage of the pipeline gives to its programs; a row a stage, in the order of `ShaderStage`.
+struct StageInfo {
+  std::string_view name;
+  SystemValue first_system_value, last_system_value;
+  bool fetches;  ///< has vertex inputs
+  bool quads;    ///< runs quads of pixels: varyings, derivatives, implicit levels of detail, discards
+};
+[[nodiscard]] const StageInfo& stage_info(ShaderStage stage);
 
 /// The form in which a program executes (models/shader/decode.h). A program holds it once it has been
 /// prepared; a copy of a program starts without.
@@ -233,14 +277,18 @@ struct Program {
   int num_regs = 0;
   ConstantLayout constants;
   std::vector<TextureBinding> textures;       ///< kTex* imm indexes this
+  std::vector<BufferBinding> buffers;         ///< imm of storage operations indexes this
   std::vector<VertexInputUse> vertex_inputs;  ///< vertex stage
   /// both stages of a pipeline hold the same list: scalar components, packed
   std::vector<Interpolation> varyings;
+  VertexExtras extras;  ///< vertex stage
   bool uses_discard = false;
   bool writes_depth = false;
   bool early_fragment_tests = false;
   bool uses_derivatives = false;  ///< explicit or through implicit-lod texturing: helper lanes are needed
-  mutable DecodedCache decoded;   ///< filled by `prepare`
+  /// What an atomic operation returned reaches its outputs or discards: they depend on the order of warps.
+  bool outputs_follow_atomics = false;
+  mutable DecodedCache decoded;  ///< filled by `prepare`
   friend bool operator==(const Program&, const Program&) = default;
 };
 
@@ -249,8 +297,22 @@ struct Program {
 /// program that has run. Throws `UserError` naming the program and the instruction.
 void prepare(const Program& program);
 
+/// Of a vertex program: the slot of its first extra output, and how many outputs there are.
+[[nodiscard]] inline int first_extra_output(const Program& program) {
+  return kFirstVaryingOutput + static_cast<int>(program.varyings.size());
+}
+[[nodiscard]] inline int vertex_outputs(const Program& program) {
+  return first_extra_output(program) + program.extras.count();
+}
+
 /// Components of colours that a fragment program writes: bit 4 * attachment + component.
 [[nodiscard]] std::uint32_t color_outputs(const Program& program);
+
+[[nodiscard]] bool is_atomic(Op op);
+/// Does the operation write a word of a storage buffer?
+[[nodiscard]] bool writes_buffer(Op op);
+/// Does some instruction of the program?
+[[nodiscard]] bool writes_buffers(const Program& program);
 
 [[nodiscard]] std::string_view op_name(Op op);
 [[nodiscard]] IssueClass issue_class(Op op);

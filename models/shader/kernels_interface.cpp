@@ -52,6 +52,8 @@ Kernel input_kernel(std::uint16_t slot) {
     case SysVal::kFragCoordW: return kInputKernel<FragmentValue<&FragmentInputs::inv_w>>;
     case SysVal::kFrontFacing: return kInputKernel<FragmentValue<&FragmentInputs::front_facing>>;
     case SysVal::kPrimitiveId: return kInputKernel<FragmentValue<&FragmentInputs::primitive_id>>;
+    case SysVal::kPointCoordX: return kInputKernel<FragmentValue<&FragmentInputs::linear_1>>;
+    case SysVal::kPointCoordY: return kInputKernel<FragmentValue<&FragmentInputs::linear_2>>;
   }
   return {};
 }

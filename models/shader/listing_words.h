@@ -13,17 +13,18 @@ struct NamedFlag {
   std::string_view name;
   bool Program::*member;
 };
-inline constexpr std::array<NamedFlag, 4> kProgramFlags{{{"discard", &Program::uses_discard},
-                                                         {"depth", &Program::writes_depth},
-                                                         {"early-tests", &Program::early_fragment_tests},
-                                                         {"derivatives", &Program::uses_derivatives}}};
+inline constexpr std::array<NamedFlag, 5> kProgramFlags{
+    {{"discard", &Program::uses_discard},
+     {"depth", &Program::writes_depth},
+     {"early-tests", &Program::early_fragment_tests},
+     {"derivatives", &Program::uses_derivatives},
+     {"atomic-outputs", &Program::outputs_follow_atomics}}};
 
 /// By value of the enumeration.
-inline constexpr std::array<std::string_view, 2> kStageNames{"vertex", "fragment"};
 inline constexpr std::array<std::string_view, 3> kInterpolationNames{"perspective", "linear", "flat"};
-inline constexpr std::array<std::string_view, 8> kSystemValueNames{
-    "vertex_index", "instance_index", "frag_coord_x", "frag_coord_y",
-    "frag_coord_z", "frag_coord_w",   "front_facing", "primitive_id"};
+inline constexpr std::array<std::string_view, 10> kSystemValueNames{
+    "vertex_index", "instance_index", "frag_coord_x", "frag_coord_y",  "frag_coord_z",
+    "frag_coord_w", "front_facing",   "primitive_id", "point_coord_x", "point_coord_y"};
 
 /// Prefix of the slot number of an immediate.
 constexpr std::string_view slot_prefix(Immediate immediate) {
@@ -34,6 +35,7 @@ constexpr std::string_view slot_prefix(Immediate immediate) {
     case Immediate::kOutputSlot: return "out";
     case Immediate::kConstantWord: return "c";
     case Immediate::kTextureBinding: return "t";
+    case Immediate::kBufferBinding: return "b";
   }
   return "";
 }

@@ -13,7 +13,8 @@ enum class Immediate : std::uint8_t {
   kVaryingSlot,
   kOutputSlot,
   kConstantWord,
-  kTextureBinding
+  kTextureBinding,
+  kBufferBinding
 };
 
 struct OpInfo {

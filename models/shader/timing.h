@@ -17,7 +17,7 @@
 
 namespace quadrille::models {
 
-inline constexpr std::size_t kIssueClasses = 7;
+inline constexpr std::size_t kIssueClasses = 8;
 
 /// Cycles, by IssueClass.
 struct IssueTiming {

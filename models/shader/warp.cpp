@@ -16,12 +16,13 @@ void Warp::launch(const Program& p, const std::uint32_t* constant_file, LaneMask
   QUADRILLE_CHECK(code->code.size() == p.code.size(), "program '{}' changed after it was prepared", p.name);
   QUADRILLE_CHECK(p.constants.words == 0 || constant_file != nullptr, "program '{}' has no constant file",
                   p.name);
+  QUADRILLE_CHECK(p.buffers.empty() || storage != nullptr, "program '{}' has no storage", p.name);
   constants = constant_file;
   launched = exec = lanes;
   killed = 0;
   pc = 0;
   control_depth = 0;
-  texture_count = 0;
+  texture_count = access_count = 0;
   back_edges = 0;
   instructions = 0;
   regs.resize(static_cast<std::size_t>(p.num_regs));

@@ -6,6 +6,7 @@
 /// program. Values depend on the warp's own lanes only, never on time.
 #pragma once
 
+#include "models/memory/storage.h"
 #include "models/shader/isa.h"
 
 #include <array>
@@ -25,8 +26,10 @@ struct FragmentInputs {
   alignas(64) LaneFloats x, y, z, inv_w;  ///< FragCoord: pixel centre (pixels), window depth, 1/w_clip
   /// perspective-correct weights of the triangle's second and third vertex
   alignas(64) LaneFloats persp_1, persp_2;
-  alignas(64) LaneFloats linear_1, linear_2;  ///< the same, linear in screen space
-  LaneWords front_facing, primitive_id;       ///< all ones / zero; 0-based primitive of the draw
+  /// the same, linear in screen space; of a point, its coordinates
+  alignas(64) LaneFloats linear_1, linear_2;
+  alignas(64) LaneFloats line_coverage;  ///< of smooth lines: how much of the pixel is covered
+  LaneWords front_facing, primitive_id;  ///< all ones / zero; 0-based primitive of the draw
   /// Per quad: `3 * varyings.size()` floats, (a0, a1 - a0, a2 - a0) for each scalar component. A quad that is
   /// not used points at a valid one.
   std::array<const float*, kWarpQuads> varyings{};
@@ -36,6 +39,26 @@ struct FragmentInputs {
 struct VertexInputs {
   const LaneWords* attributes = nullptr;
   LaneWords vertex_index, instance_index;
+};
+
+/// What a warp of a program with storage buffers needs besides.
+struct WarpStorage {
+  StorageMemory* memory = nullptr;
+  const StorageView* buffers = nullptr;  ///< by the program's buffer index
+  std::uint32_t pass = 0;                ///< of the frame
+  LaneMask live = 0;                     ///< lanes that may write: helpers may not
+  bool may_repeat = false;               ///< the invocations may have run before (vertices)
+  std::array<Invocation, kWarpLanes> invocations;
+  LaneWords updates{};  ///< atomic operations done, by lane
+};
+
+/// One storage instruction of a warp. Its effect and result are there when it has executed; the request says
+/// what it moves.
+struct StorageRequest {
+  LaneWords offset;     ///< bytes in the buffer
+  LaneMask active = 0;  ///< lanes that accessed
+  Op op = Op::kLoadBuffer;
+  std::uint16_t binding = 0;  ///< index into Program::buffers
 };
 
 /// One texture instruction of a warp, from its issue to its result.
@@ -48,12 +71,13 @@ struct TextureRequest {
   std::uint16_t dst = 0;
 };
 
-inline constexpr int kMaxClauseTextures = 8;
+inline constexpr int kMaxClauseRequests = 8;  ///< texture and storage instructions
 inline constexpr int kMaxControlDepth = 32;
 
 /// Instructions issued by one clause, by class; a divided warp issues both sides, and a side that no lane
-/// takes is jumped over and not counted. Texture instructions are not among them: `Warp::texture_count` says
-/// how many the clause issued (their lanes are in `lane_ops`).
+/// takes is jumped over and not counted. Texture and storage instructions are not among them:
+/// `Warp::texture_count` and `Warp::access_count` say how many the clause issued (their lanes are in
+/// `lane_ops`).
 struct ClauseCost {
   std::uint32_t alu = 0, sfu = 0, interp = 0, constant = 0, control = 0, exported = 0;
   std::uint64_t lane_ops = 0;  ///< sum over instructions of active lanes
@@ -71,9 +95,9 @@ struct TextureSize {
 struct alignas(64) RegisterRow : LaneWords {};
 
 /// Back edges one warp may take, and instructions it may have executed at one, before its program counts as
-/// endless. A texture request counts as many.
+/// endless. A texture or storage request counts as many.
 inline constexpr std::uint32_t kMaxBackEdges = 1u << 20;
-inline constexpr std::uint64_t kMaxLoopInstructions = std::uint64_t{1} << 26, kTextureInstructions = 256;
+inline constexpr std::uint64_t kMaxLoopInstructions = std::uint64_t{1} << 26, kRequestInstructions = 256;
 
 struct Warp {
   const Program* program = nullptr;
@@ -82,6 +106,7 @@ struct Warp {
   const FragmentInputs* fragment = nullptr;  ///< fragment stage
   /// by texture binding of the program; needed only by programs with kTexSize
   const TextureSize* texture_sizes = nullptr;
+  WarpStorage* storage = nullptr;  ///< needed only by programs with storage buffers
   /// rows by output slot; owned by the caller; only executing lanes are written
   LaneWords* outputs = nullptr;
   LaneMask launched = 0;  ///< lanes that exist (helpers included)
@@ -95,12 +120,15 @@ struct Warp {
     std::uint32_t start = 0;  ///< LOOP: index of its first instruction
   };
   std::array<Frame, kMaxControlDepth> frames{};
-  int texture_count = 0;  ///< requests of the clause that just ended
-  std::array<TextureRequest, kMaxClauseTextures> textures;
+  int texture_count = 0, access_count = 0;  ///< requests of the clause that just ended
+  std::array<TextureRequest, kMaxClauseRequests> textures;
+  std::array<StorageRequest, kMaxClauseRequests> accesses;
   std::vector<RegisterRow> regs;         ///< num_regs rows; kept between launches so that no launch allocates
   const DecodedProgram* code = nullptr;  ///< the form of `program` that executes
   std::uint32_t back_edges = 0;          ///< taken so far
   std::uint64_t instructions = 0;        ///< executed so far, by which a loop without an end is known
+
+  [[nodiscard]] int requests() const { return texture_count + access_count; }
 
   /// Prepares a launch: lanes in `lanes` run `p` from its start. Registers are zeroed. The program must
   /// outlive the run and stay unchanged. A lane that is not launched has no defined register values. Throws
@@ -108,15 +136,16 @@ struct Warp {
   void launch(const Program& p, const std::uint32_t* constant_file, LaneMask lanes);
 };
 
-enum class ClauseEnd : std::uint8_t { kTextures, kProgramEnd };
+enum class ClauseEnd : std::uint8_t { kRequests, kProgramEnd };
 
 struct ClauseResult {
   ClauseEnd end = ClauseEnd::kProgramEnd;
   ClauseCost cost;
 };
 
-/// Runs the warp until it must wait for the texture requests it made (`warp.textures[0 .. texture_count)`) or
-/// until the program ends. The caller writes the results with `write_texture_result` before it calls again.
+/// Runs the warp until it must wait for the requests it made (`warp.textures[0 .. texture_count)`,
+/// `warp.accesses[0 .. access_count)`) or until the program ends. The caller writes the results of textures
+/// with `write_texture_result` before it calls again.
 /// Throws `UserError` when a loop does not end (`kMaxBackEdges`, `kMaxLoopInstructions`).
 ClauseResult run_clause(Warp& warp);
 /// The same; `clock`, which was restarted for the warp's program, counts the clause's cycles.

@@ -149,12 +149,19 @@ Value ScalarBuilder::lookup_or_append(const ScalarInstruction& instruction, int 
   return value;
 }
 
-void ScalarBuilder::effect(Op op, Value a, std::uint16_t imm) {
+void ScalarBuilder::effect(Op op, Value a, std::uint16_t imm, Value b) {
   ScalarInstruction instruction;
   instruction.op = op;
   instruction.imm = imm;
   instruction.a = takes_modifiers(op, 0) ? a : plain(a);
+  instruction.b = plain(b);
   shader_.code.push_back(instruction);
+}
+
+Value ScalarBuilder::emit_anew(Op op, std::uint16_t imm, Value a, Value b, Value c) {
+  const std::uint32_t result = new_register(false);
+  shader_.code.push_back({op, 0, imm, result, plain(a), plain(b), plain(c)});
+  return {Value::Kind::kRegister, 0, result};
 }
 
 Value ScalarBuilder::fclamp(Value x, Value lo, Value hi) {

@@ -27,7 +27,9 @@ class ScalarBuilder {
   /// A pure operation with several results (textures): the first of its consecutive registers.
   Value emit_wide(models::Op op, Value a, Value b, Value c, std::uint16_t imm);
   /// An operation with an effect and no result.
-  void effect(models::Op op, Value a = {}, std::uint16_t imm = 0);
+  void effect(models::Op op, Value a = {}, std::uint16_t imm = 0, Value b = {});
+  /// An operation whose result depends on when it is done: never found again.
+  Value emit_anew(models::Op op, std::uint16_t imm, Value a = {}, Value b = {}, Value c = {});
 
   /// A register that may be assigned many times.
   Value new_variable();

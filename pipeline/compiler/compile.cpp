@@ -42,13 +42,34 @@ Linkage link(const ScalarShader& fragment) {
   return linkage;
 }
 
+/// What the vertex shader writes for the fixed functions; of gl_ClipDistance and gl_CullDistance, up to the last
+/// element that is written.
+models::VertexExtras extras_of(const ScalarShader& vertex) {
+  models::VertexExtras extras;
+  const auto up_to = [](std::uint8_t& count, std::uint16_t index) {
+    count = std::max(count, static_cast<std::uint8_t>(index + 1));
+  };
+  for (const ScalarInstruction& i : vertex.code) {
+    if (i.op != Op::kOutput || i.imm < kRawPointSize) continue;
+    if (i.imm == kRawPointSize) extras.point_size = true;
+    else if (i.imm < kRawCullDistance)
+      up_to(extras.clip_distances, static_cast<std::uint16_t>(i.imm - kRawClipDistance));
+    else up_to(extras.cull_distances, static_cast<std::uint16_t>(i.imm - kRawCullDistance));
+  }
+  if (extras.clip_distances + extras.cull_distances > models::kMaxUserDistances)
+    throw user_error("{}: {} clip and {} cull distances; at most {} together are possible", vertex.name,
+                     extras.clip_distances, extras.cull_distances, models::kMaxUserDistances);
+  return extras;
+}
+
 /// Removes vertex outputs that nobody reads and checks that those read are written.
-void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, const Linkage& linkage) {
+void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, const Linkage& linkage,
+                         bool points) {
   const auto varying = [](const ScalarInstruction& i) {
     return static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput);
   };
   const auto is_varying = [](const ScalarInstruction& i) {
-    return i.op == Op::kOutput && i.imm >= models::kFirstVaryingOutput;
+    return i.op == Op::kOutput && i.imm >= models::kFirstVaryingOutput && i.imm < kRawPointSize;
   };
   for (const auto& [raw, packed] : linkage.varyings) {
     const bool written = std::any_of(
@@ -59,6 +80,7 @@ void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, con
                        fragment.name, raw / 4, raw % 4, vertex.name);
   }
   std::erase_if(vertex.code, [&](const ScalarInstruction& i) {
+    if (i.op == Op::kOutput && i.imm == kRawPointSize) return !points;
     return is_varying(i) && !linkage.varyings.contains(varying(i));
   });
 }
@@ -67,12 +89,13 @@ void drop_unread_outputs(ScalarShader& vertex, const ScalarShader& fragment, con
 
 CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv, std::string_view vertex_name,
                                   std::span<const std::uint32_t> fragment_spirv,
-                                  std::string_view fragment_name, const ShaderTarget& target) {
+                                  std::string_view fragment_name, const ShaderTarget& target, bool points) {
   ScalarShader fragment = compile_stage(fragment_spirv, fragment_name, models::ShaderStage::kFragment);
   clean_up(fragment);
-  const Linkage linkage = link(fragment);
+  Linkage linkage = link(fragment);
   ScalarShader vertex = compile_stage(vertex_spirv, vertex_name, models::ShaderStage::kVertex);
-  drop_unread_outputs(vertex, fragment, linkage);
+  drop_unread_outputs(vertex, fragment, linkage, points);
+  linkage.extras = extras_of(vertex);
   clean_up(vertex);
   CompiledPipeline pipeline{emit_program(vertex, linkage, target), emit_program(fragment, linkage, target),
                             vertex.integer_inputs};

@@ -1,7 +1,9 @@
 #include "pipeline/compiler/emit.h"
 
 #include "models/base/error.h"
+#include "models/shader/op_table.h"
 #include "models/shader/warp.h"
+#include "pipeline/compiler/atomic_outputs.h"
 #include "pipeline/compiler/order.h"
 #include "pipeline/compiler/passes.h"
 
@@ -105,7 +107,7 @@ int control_depth(const std::vector<Instruction>& code) {
   return deepest;
 }
 
-/// Packed slots for vertex inputs and textures, in order of raw slot.
+/// Packed slots for vertex inputs, textures and buffers, in order of raw slot.
 template <class Slots>
 std::map<std::uint16_t, std::uint16_t> pack(const Slots& used) {
   std::map<std::uint16_t, std::uint16_t> packed;
@@ -120,13 +122,15 @@ class Encoder {
         linkage_(linkage),
         chosen_(best_order(shader, target)),
         constants_(shader, chosen_.code) {
-    std::set<std::uint16_t> inputs, textures;
+    std::set<std::uint16_t> inputs, textures, buffers;
     for (const ScalarInstruction& i : chosen_.code) {
       if (i.op == Op::kInput && i.imm < models::kFirstSystemValue) inputs.insert(i.imm);
-      if (is_texture(i.op) || i.op == Op::kTexSize) textures.insert(i.imm);
+      if (names(i, models::Immediate::kTextureBinding)) textures.insert(i.imm);
+      if (names(i, models::Immediate::kBufferBinding)) buffers.insert(i.imm);
     }
     inputs_ = pack(inputs);
     textures_ = pack(textures);
+    buffers_ = pack(buffers);
   }
 
   models::Program run() {
@@ -137,11 +141,14 @@ class Encoder {
     program.num_regs = chosen_.allocation.num_regs;
     program.constants = constants_.layout;
     program.varyings = linkage_.interpolation;
+    if (shader_.stage == models::ShaderStage::kVertex) program.extras = linkage_.extras;
     program.early_fragment_tests = shader_.early_fragment_tests;
     for (const auto& [raw, slot] : inputs_)
       program.vertex_inputs.push_back(
           {static_cast<std::uint16_t>(raw / 4), static_cast<std::uint16_t>(raw % 4)});
     for (const auto& [raw, slot] : textures_) program.textures.push_back(shader_.textures[raw]);
+    for (const auto& [raw, slot] : buffers_) program.buffers.push_back(shader_.buffers[raw]);
+    program.outputs_follow_atomics = outputs_follow_atomics(shader_);
     for (const ScalarInstruction& i : chosen_.code) {
       const Instruction out = encode(i);
       const bool useless = out.op == Op::kMov && out.flags == 0 && out.a.kind == Operand::kRegister &&
@@ -161,6 +168,10 @@ class Encoder {
   }
 
  private:
+  [[nodiscard]] static bool names(const ScalarInstruction& i, models::Immediate what) {
+    return models::op_info(i.op).immediate == what;
+  }
+
   void check_limits() const {
     if (chosen_.allocation.num_regs > models::kMaxRegisters)
       throw user_error("{}: the shader needs {} registers; a lane has {}", shader_.name,
@@ -184,14 +195,25 @@ class Encoder {
   [[nodiscard]] std::uint16_t slot(const ScalarInstruction& i) const {
     if (i.op == Op::kInput && i.imm < models::kFirstSystemValue) return inputs_.at(i.imm);
     if (i.op == Op::kInterp) return linkage_.varyings.at(i.imm);
-    if (is_texture(i.op) || i.op == Op::kTexSize) return textures_.at(i.imm);
-    if (i.op == Op::kOutput && shader_.stage == models::ShaderStage::kVertex &&
-        i.imm >= models::kFirstVaryingOutput)
-      return static_cast<std::uint16_t>(
-          models::kFirstVaryingOutput +
-          linkage_.varyings.at(static_cast<std::uint16_t>(i.imm - models::kFirstVaryingOutput)));
+    if (names(i, models::Immediate::kTextureBinding)) return textures_.at(i.imm);
+    if (names(i, models::Immediate::kBufferBinding)) return buffers_.at(i.imm);
+    if (i.op == Op::kOutput && shader_.stage == models::ShaderStage::kVertex) return vertex_output(i.imm);
     if (i.op == Op::kLoadConst) return constants_.word_of(i.c);
     return i.imm;
+  }
+
+  [[nodiscard]] std::uint16_t vertex_output(std::uint16_t raw) const {
+    if (raw < models::kFirstVaryingOutput) return raw;
+    const auto varying = [&] {
+      return linkage_.varyings.at(static_cast<std::uint16_t>(raw - models::kFirstVaryingOutput));
+    };
+    if (raw < kRawPointSize) return static_cast<std::uint16_t>(models::kFirstVaryingOutput + varying());
+    const auto extra = static_cast<int>(models::kFirstVaryingOutput + linkage_.interpolation.size());
+    const int clip = extra + (linkage_.extras.point_size ? 1 : 0),
+              cull = clip + linkage_.extras.clip_distances;
+    if (raw == kRawPointSize) return static_cast<std::uint16_t>(extra);
+    if (raw < kRawCullDistance) return static_cast<std::uint16_t>(clip + (raw - kRawClipDistance));
+    return static_cast<std::uint16_t>(cull + (raw - kRawCullDistance));
   }
 
   [[nodiscard]] Instruction encode(const ScalarInstruction& i) const {
@@ -211,7 +233,7 @@ class Encoder {
   const Linkage& linkage_;
   OrderedCode chosen_;
   ConstantFile constants_;
-  std::map<std::uint16_t, std::uint16_t> inputs_, textures_;
+  std::map<std::uint16_t, std::uint16_t> inputs_, textures_, buffers_;
 };
 
 }  // namespace

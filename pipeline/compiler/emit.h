@@ -10,6 +10,7 @@ namespace quadrille::pipeline {
 struct Linkage {
   std::map<std::uint16_t, std::uint16_t> varyings;   ///< 4 * location + component -> packed component
   std::vector<models::Interpolation> interpolation;  ///< by packed component
+  models::VertexExtras extras;                       ///< behind them
 };
 
 /// Schedules, allocates and encodes. Throws `UserError` naming the shader where a limit of the ISA is passed.

@@ -20,7 +20,7 @@ using Cycle = std::int64_t;
 /// Instructions that could go next and are looked at. A bound on the host's work; real programs stay below.
 constexpr int kWindow = 64;
 
-/// A straight-line piece, as nodes: an instruction, or texture instructions that stay together.
+/// A straight-line piece, as nodes: an instruction, or requests that stay together.
 class Piece {
  public:
   /// `behind`: registers that later code reads.
@@ -28,7 +28,7 @@ class Piece {
         const RegisterSet& behind)
       : code_(code), timing_(timing) {
     for (std::size_t at = 0; at < code.size(); ++at) {
-      const bool joins = at > 0 && is_texture(code[at].op) && is_texture(code[at - 1].op);
+      const bool joins = at > 0 && is_request(code[at].op) && is_request(code[at - 1].op);
       if (joins) ++nodes_.back().last;
       else nodes_.push_back({at, at + 1, 0, {}, {}, 0});
       node_of_.push_back(nodes_.size() - 1);
@@ -178,15 +178,15 @@ class Piece {
   Cycle now_ = 0;
 };
 
-/// Whether the instruction reads a texel that has been asked for since `pending` was empty.
+/// Whether the instruction reads a value that has been asked for since `pending` was empty.
 bool waits(const ScalarInstruction& i, const std::vector<std::uint32_t>& pending) {
   return std::ranges::any_of(std::array{i.a, i.b, i.c}, [&](const Value& v) {
     return v.is_register() && std::ranges::find(pending, v.bits) != pending.end();
   });
 }
 
-void note_texels(const ScalarInstruction& i, std::vector<std::uint32_t>& pending) {
-  if (!is_texture(i.op)) return;
+void note_request(const ScalarInstruction& i, std::vector<std::uint32_t>& pending) {
+  if (!is_request(i.op)) return;
   for (std::uint32_t k = 0; k < result_count(i); ++k) pending.push_back(i.dst + k);
 }
 
@@ -206,7 +206,7 @@ std::vector<Range> pieces_of(const std::vector<ScalarInstruction>& code, const B
     if (wait) pending.clear();
     if (ranges.empty() || wait || fixed || ranges.back().fixed) ranges.push_back({at, at, fixed});
     ranges.back().last = at + 1;
-    note_texels(code[at], pending);
+    note_request(code[at], pending);
   }
   return ranges;
 }
@@ -254,7 +254,7 @@ double issue_cycles(const std::vector<ScalarInstruction>& code, std::size_t regi
     for (std::uint32_t k = 0; k < result_count(i); ++k) ready[i.dst + k] = done;
     all = std::max(all, done);
     now = is_control(i.op) ? done : now + timing.of(i.op).issue;
-    note_texels(i, pending);
+    note_request(i, pending);
     cycles += turns * static_cast<double>(now - before);
     if (i.op == Op::kLoop) turns *= kTurns;
     if (i.op == Op::kEndLoop) turns /= kTurns;

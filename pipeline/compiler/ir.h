@@ -48,9 +48,15 @@ inline constexpr std::uint32_t kMaxLocations = 64;  ///< varyings
 /// vertex inputs: raw slots stay below the system values
 inline constexpr std::uint32_t kMaxAttributeLocations = 32;
 
+/// Raw output slots of a vertex shader beyond those of its varyings.
+inline constexpr std::uint16_t kRawPointSize = models::kFirstVaryingOutput + 4 * kMaxLocations;
+inline constexpr std::uint16_t kRawClipDistance = kRawPointSize + 1;
+inline constexpr std::uint16_t kRawCullDistance = kRawClipDistance + models::kMaxUserDistances;
+inline constexpr std::uint16_t kRawOutputsEnd = kRawCullDistance + models::kMaxUserDistances;
+
 /// One shader between lowering and emission. Slots are raw: kInput and kInterp name 4 * location + component
 /// (or a system value), kOutput names the ISA's output slot, with varyings at kFirstVaryingOutput + 4 *
-/// location + component. Linking packs them.
+/// location + component, and the extra ones above. Linking packs them.
 struct ScalarShader {
   models::ShaderStage stage = models::ShaderStage::kVertex;
   std::string name;
@@ -58,6 +64,7 @@ struct ScalarShader {
   std::vector<bool> variable;  ///< by virtual register
   std::vector<ConstantBlock> blocks;
   std::vector<models::TextureBinding> textures;
+  std::vector<models::BufferBinding> buffers;               ///< storage buffers
   std::map<std::uint16_t, models::Interpolation> varyings;  ///< fragment: interpolation by raw slot
   /// vertex: bit i: input location i is of integers
   std::uint32_t integer_inputs = 0;

@@ -79,15 +79,21 @@ Lowering::Slot Lowering::built_in_slot(std::int64_t built_in, std::uint32_t comp
     slot.system = true;
     return use(static_cast<std::uint32_t>(v) + component);
   };
+  const auto distance = [&](std::uint32_t first) {
+    return component < models::kMaxUserDistances ? use(first + component) : slot;
+  };
   const bool vertex = shader_.stage == ShaderStage::kVertex;
   switch (built_in) {
     case spv::BuiltInPosition: return vertex && output ? use(component) : slot;
-    case spv::BuiltInPointSize: slot.kind = output ? Slot::Kind::kIgnored : Slot::Kind::kRefused; return slot;
+    case spv::BuiltInPointSize: return vertex && output ? use(kRawPointSize) : slot;
+    case spv::BuiltInClipDistance: return vertex && output ? distance(kRawClipDistance) : slot;
+    case spv::BuiltInCullDistance: return vertex && output ? distance(kRawCullDistance) : slot;
     case spv::BuiltInVertexIndex: return vertex ? system(SystemValue::kVertexIndex) : slot;
     case spv::BuiltInInstanceIndex: return vertex ? system(SystemValue::kInstanceIndex) : slot;
     case spv::BuiltInFragCoord: return vertex ? slot : system(SystemValue::kFragCoordX);
     case spv::BuiltInFrontFacing: return vertex ? slot : system(SystemValue::kFrontFacing);
     case spv::BuiltInPrimitiveId: return vertex ? slot : system(SystemValue::kPrimitiveId);
+    case spv::BuiltInPointCoord: return vertex ? slot : system(SystemValue::kPointCoordX);
     case spv::BuiltInFragDepth: return !vertex && output ? use(models::kDepthOutput) : slot;
     default: return slot;
   }
@@ -125,12 +131,13 @@ Value Lowering::load_input(Id variable, std::uint32_t place, const spirv::Instru
 
 void Lowering::store_output(const Pointer& p, std::uint32_t place, Value v, const spirv::Instruction& i) {
   const Slot& slot = slots_[p.variable].at(place);
-  if (slot.kind == Slot::Kind::kIgnored) return;
   if (slot.kind == Slot::Kind::kRefused)
     throw unsupported(
-        i, fmt::format(
-               "output {} (only colour locations 0 to 7, gl_FragDepth, gl_Position and varyings are written)",
-               module_.name(p.variable)));
+        i,
+        fmt::format(
+            "output {} (only colour locations 0 to 7, gl_FragDepth, gl_Position, gl_PointSize, clip and cull "
+            "distances and varyings are written)",
+            module_.name(p.variable)));
   build_.effect(Op::kOutput, v, slot.imm);
 }
 

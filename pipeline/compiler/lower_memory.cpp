@@ -13,11 +13,13 @@ using models::Op;
 using Kind = spirv::Type::Kind;
 
 constexpr std::uint32_t kMaxBlockWords = 65536;
+constexpr std::uint64_t kMaxBufferBytes = std::uint64_t{1} << 31;  ///< that a constant index may reach
 constexpr std::size_t kMaxSelectedPlaces = 64;  ///< elements that an index into registers may reach
 constexpr std::uint32_t kMaxLocalScalars = 1024;
 
 bool is_block(spv::StorageClass storage) {
-  return storage == spv::StorageClassUniform || storage == spv::StorageClassPushConstant;
+  return storage == spv::StorageClassUniform || storage == spv::StorageClassPushConstant ||
+         storage == spv::StorageClassStorageBuffer;
 }
 
 }  // namespace
@@ -82,6 +84,9 @@ void Lowering::declare(const spirv::Variable& variable) {
     case spv::StorageClassInput:
     case spv::StorageClassOutput: declare_interface(variable); break;
     case spv::StorageClassUniform:
+      if (module_.decorations(variable.type).buffer_block) p.storage = spv::StorageClassStorageBuffer;
+      break;
+    case spv::StorageClassStorageBuffer:
     case spv::StorageClassPushConstant: break;
     case spv::StorageClassFunction:
     case spv::StorageClassPrivate: {
@@ -102,12 +107,13 @@ void Lowering::declare(const spirv::Variable& variable) {
     }
     default:
       throw user_error(
-          "{}",
-          module_.at_use(variable.id,
-                         fmt::format("variable {} has storage class {}, which is not supported ({})",
-                                     module_.name(variable.id), spirv::storage_class_name(variable.storage),
-                                     "use a uniform block, push constants, inputs, outputs or locals")));
+          "{}", module_.at_use(
+                    variable.id,
+                    fmt::format("variable {} has storage class {}, which is not supported ({})",
+                                module_.name(variable.id), spirv::storage_class_name(variable.storage),
+                                "use a uniform block, push constants, a buffer, inputs, outputs or locals")));
   }
+  if (p.storage == spv::StorageClassStorageBuffer) declare_buffer(variable);
   pointers_[variable.id] = p;
 }
 
@@ -157,10 +163,11 @@ void Lowering::step(Pointer& p, Id index, const spirv::Instruction& i) {
     throw unsupported(i, "indexing this type");
   }
   if (at.is_literal()) {
-    const std::uint64_t offset =
-        p.offset + std::uint64_t{stride} * std::min(at.bits, type.count == 0 ? 0 : type.count - 1);
-    if (offset >= kMaxBlockWords * 4)
-      throw unsupported(i, fmt::format("an offset of more than {} bytes", kMaxBlockWords * 4));
+    const bool buffer = p.storage == spv::StorageClassStorageBuffer;
+    const std::uint32_t last = type.count != 0 ? type.count - 1 : buffer ? at.bits : 0;
+    const std::uint64_t offset = p.offset + std::uint64_t{stride} * std::min(at.bits, last);
+    const std::uint64_t most = buffer ? kMaxBufferBytes : kMaxBlockWords * 4;
+    if (offset >= most) throw unsupported(i, fmt::format("an offset of more than {} bytes", most));
     p.offset = static_cast<std::uint32_t>(offset);
   } else {
     p.dynamic.push_back({at, stride, type.count});
@@ -185,7 +192,10 @@ void Lowering::load(const spirv::Instruction& i) {
   if (p.type != i.type) throw unsupported(i, "a load of another type than was declared");
   if (is_block(p.storage)) {
     Values words;
-    load_block(words, p, i);
+    visit_words(p, i, [&](const Pointer& word) {
+      words.push_back(word.storage == spv::StorageClassStorageBuffer ? load_word(word, i)
+                                                                     : block_word(word, i));
+    });
     const spirv::Type& type = module_.type(p.type);
     if (type.kind == Kind::kMatrix && p.row_major) transposed_.insert(i.result);
     return define(i, std::move(words));
@@ -208,19 +218,17 @@ std::uint32_t Lowering::block_of(const Pointer& p) {
   return index;
 }
 
-/// Appends the words of a value in a block, following offsets and strides. [VK1.3
+/// Calls `visit` with the place of each word of a value in a block, following offsets and strides. [VK1.3
 /// #interfaces-resources-layout]
-void Lowering::load_block(Values& out, const Pointer& p, const spirv::Instruction& i) {
+void Lowering::visit_words(const Pointer& p, const spirv::Instruction& i, const WordVisitor& visit) const {
   const spirv::Type& type = module_.type(p.type);
-  if (type.kind == Kind::kBool) throw unsupported(i, "a bool in a uniform block");
-  if (type.kind == Kind::kInt || type.kind == Kind::kFloat) {
-    out.push_back(block_word(p, i));
-    return;
-  }
+  if (type.kind == Kind::kBool) throw unsupported(i, "a bool in a block");
+  if (type.kind == Kind::kInt || type.kind == Kind::kFloat) return visit(p);
   const bool is_struct = type.kind == Kind::kStruct;
   if (!is_struct && type.kind != Kind::kArray && type.kind != Kind::kMatrix && type.kind != Kind::kVector)
     throw unsupported(i, "a load of this type");
   const std::uint32_t parts = is_struct ? static_cast<std::uint32_t>(type.members.size()) : type.count;
+  if (parts == 0) throw unsupported(i, "a value of unknown length");
   for (std::uint32_t k = 0; k < parts; ++k) {
     Pointer part = p;
     if (is_struct) {
@@ -240,7 +248,7 @@ void Lowering::load_block(Values& out, const Pointer& p, const spirv::Instructio
       part.offset += stride * k;
       part.type = type.element;
     }
-    load_block(out, part, i);
+    visit_words(part, i, visit);
   }
 }
 
@@ -310,6 +318,7 @@ Values Lowering::load_scalars(const Pointer& p, const spirv::Instruction& i) {
 
 void Lowering::store(const spirv::Instruction& i) {
   const Pointer& p = pointer(i.operands[0], i);
+  if (p.storage == spv::StorageClassStorageBuffer) return store_words(p, value(i.operands[1]), i);
   if (!tables_.contains(p.variable)) store_values(p, value(i.operands[1]), i);
 }
 

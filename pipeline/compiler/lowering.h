@@ -1,5 +1,5 @@
-/// The state of one lowering. Its parts are in lower_*.cpp: control flow, memory, interface variables,
-/// arithmetic, matrices, images and GLSL.std.450.
+/// The state of one lowering. Its parts are in lower_*.cpp: control flow, memory, storage buffers, interface
+/// variables, arithmetic, matrices, images and GLSL.std.450.
 #pragma once
 
 #include "models/base/error.h"
@@ -7,6 +7,7 @@
 #include "pipeline/compiler/ir.h"
 #include "pipeline/compiler/spirv_module.h"
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -52,7 +53,7 @@ class Lowering {
   };
   /// Where a scalar of an input or output variable goes.
   struct Slot {
-    enum class Kind : std::uint8_t { kUsed, kIgnored, kRefused };
+    enum class Kind : std::uint8_t { kUsed, kRefused };
     Kind kind = Kind::kRefused;
     bool system = false;
     std::uint16_t imm = 0;
@@ -132,7 +133,8 @@ class Lowering {
   void store(const spirv::Instruction& i);
   void store_values(const Pointer& p, const Values& values, const spirv::Instruction& i);
   const Pointer& pointer(Id id, const spirv::Instruction& i) const;
-  void load_block(Values& out, const Pointer& p, const spirv::Instruction& i);
+  using WordVisitor = std::function<void(const Pointer&)>;
+  void visit_words(const Pointer& p, const spirv::Instruction& i, const WordVisitor& visit) const;
   Value block_word(const Pointer& p, const spirv::Instruction& i);
   Values load_scalars(const Pointer& p, const spirv::Instruction& i);
   Value load_scalar(const Pointer& p, std::uint32_t place, const spirv::Instruction& i);
@@ -140,6 +142,16 @@ class Lowering {
   void find_tables();
   [[nodiscard]] std::vector<std::uint32_t> places(const Pointer& p, const spirv::Instruction& i) const;
   Value dynamic_offset(const Pointer& p, std::uint32_t unit);
+
+  // lower_storage.cpp
+  void declare_buffer(const spirv::Variable& variable);
+  [[nodiscard]] std::uint16_t buffer_of(const Pointer& p, const spirv::Instruction& i) const;
+  Value byte_offset(const Pointer& p, const spirv::Instruction& i);
+  Value load_word(const Pointer& p, const spirv::Instruction& i);
+  void store_words(const Pointer& p, const Values& values, const spirv::Instruction& i);
+  bool storage(const spirv::Instruction& i);
+  void atomic(const spirv::Instruction& i, models::Op op, Value operand, Value comparator = {});
+  void array_length(const spirv::Instruction& i);
 
   // lower_interface.cpp
   void declare_interface(const spirv::Variable& variable);
@@ -189,6 +201,7 @@ class Lowering {
   std::unordered_map<Id, std::uint32_t> tables_;  ///< function variables that hold one constant: its block
   std::unordered_map<Id, std::vector<Slot>> slots_;
   std::unordered_set<Id> read_outputs_;
+  std::unordered_map<Id, std::uint16_t> buffers_;   ///< variable -> storage buffer
   std::unordered_map<Id, std::uint16_t> textures_;  ///< variable or loaded value -> binding
   /// matrices that came as rows: loaded row-major, or a result of OpTranspose
   std::unordered_set<Id> transposed_;

@@ -45,8 +45,8 @@ class Search {
 
   /// The two texture orders; only the source's order where that saves many registers.
   [[nodiscard]] std::vector<OrderedCode> orders_of_few_registers() const {
-    std::vector<OrderedCode> orders{allocated(schedule(shader_, Order::kTextures)),
-                                    allocated(schedule(shader_, Order::kTexturesDemand))};
+    std::vector<OrderedCode> orders{allocated(schedule(shader_, Order::kRequests)),
+                                    allocated(schedule(shader_, Order::kRequestsDemand))};
     const int fewest = std::min(registers(orders[0]), registers(orders[1]));
     if (fewest <= kFewRegisters) return orders;
     OrderedCode source = allocated(schedule(shader_, Order::kSource));

@@ -191,8 +191,12 @@ void fold_saturate(ScalarShader& shader) {
 }  // namespace
 
 bool is_control(Op op) { return op >= Op::kIf && op <= Op::kEndLoop; }
-bool has_effect(Op op) { return is_control(op) || op == Op::kKillIf || op == Op::kOutput || op == Op::kEnd; }
+bool has_effect(Op op) {
+  return is_control(op) || op == Op::kKillIf || op == Op::kOutput || op == Op::kEnd ||
+         models::writes_buffer(op);
+}
 bool is_texture(Op op) { return op == Op::kTexImplicit || op == Op::kTexBias || op == Op::kTexLod; }
+bool is_request(Op op) { return is_texture(op) || op == Op::kLoadBuffer; }
 
 void clean_up(ScalarShader& shader) {
   do { remove_dead(shader); } while (simplify_control(shader));

@@ -1,5 +1,5 @@
 /// Clean-up of scalar code: dead code, needless control flow, multiply-add fusion, saturation, and the order
-/// that groups texture instructions.
+/// that groups requests.
 #pragma once
 
 #include "pipeline/compiler/ir.h"
@@ -12,11 +12,11 @@ void clean_up(ScalarShader& shader);
 
 enum class Order : std::uint8_t {
   kSource,         ///< as lowered
-  kTextures,       ///< texture instructions of a block in groups, the rest as lowered
-  kTexturesDemand  ///< texture instructions in groups, the rest when something needs it
+  kRequests,       ///< requests of a block in groups, the rest as lowered
+  kRequestsDemand  ///< requests in groups, the rest when something needs it
 };
-/// Reorders within straight-line stretches. A group holds independent texture instructions, at most
-/// `kMaxClauseTextures`, issued back to back before the first of their results is needed. Discards and
+/// Reorders within straight-line stretches. A group holds independent requests, at most
+/// `kMaxClauseRequests`, issued back to back before the first of their results is needed. Discards and
 /// control flow are not crossed.
 [[nodiscard]] std::vector<ScalarInstruction> schedule(const ScalarShader& shader, Order order);
 
@@ -25,5 +25,8 @@ enum class Order : std::uint8_t {
 /// Whether the operation must be kept though nothing reads a result.
 [[nodiscard]] bool has_effect(models::Op op);
 [[nodiscard]] bool is_texture(models::Op op);
+/// Whether the operation asks memory for values, so that the warp waits before it reads them: textures and
+/// loads from storage buffers. Those that are independent stand together.
+[[nodiscard]] bool is_request(models::Op op);
 
 }  // namespace quadrille::pipeline

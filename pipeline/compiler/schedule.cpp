@@ -1,5 +1,5 @@
-/// Texture grouping: within a straight-line stretch, texture instructions that do not depend on each other
-/// are issued together.
+/// Grouping of requests: within a straight-line stretch, texture instructions and buffer loads that do not
+/// depend on each other are issued together.
 #include "models/shader/warp.h"
 #include "pipeline/compiler/dependences.h"
 #include "pipeline/compiler/passes.h"
@@ -23,13 +23,13 @@ class Stretch {
     done_.assign(size_, false);
     for (std::size_t at = 0; at < size_; ++at)
       for (const std::size_t before : needs_[at])
-        level_[at] = std::max(level_[at], level_[before] + (is_texture(code(before).op) ? 1 : 0));
+        level_[at] = std::max(level_[at], level_[before] + (is_request(code(before).op) ? 1 : 0));
   }
 
   void append(std::vector<ScalarInstruction>& out, Order order) {
     out_ = &out;
-    emit_textures();
-    if (order == Order::kTexturesDemand)
+    emit_requests();
+    if (order == Order::kRequestsDemand)
       for (std::size_t at = 0; at < size_; ++at)
         if (has_effect(code(at).op) || writes_variable(at)) emit(at);
     for (std::size_t at = 0; at < size_; ++at) emit(at);
@@ -60,20 +60,20 @@ class Stretch {
     }
   }
 
-  void emit_textures() {
-    std::vector<std::size_t> textures;
+  void emit_requests() {
+    std::vector<std::size_t> requests;
     for (std::size_t at = 0; at < size_; ++at)
-      if (is_texture(code(at).op)) textures.push_back(at);
-    std::stable_sort(textures.begin(), textures.end(),
+      if (is_request(code(at).op)) requests.push_back(at);
+    std::stable_sort(requests.begin(), requests.end(),
                      [&](std::size_t a, std::size_t b) { return level_[a] < level_[b]; });
-    for (std::size_t from = 0; from < textures.size();) {
+    for (std::size_t from = 0; from < requests.size();) {
       std::size_t to = from;
-      while (to < textures.size() && level_[textures[to]] == level_[textures[from]] &&
-             to - from < models::kMaxClauseTextures)
+      while (to < requests.size() && level_[requests[to]] == level_[requests[from]] &&
+             to - from < models::kMaxClauseRequests)
         ++to;
       for (std::size_t k = from; k < to; ++k)
-        for (const std::size_t before : needs_[textures[k]]) emit(before);
-      for (std::size_t k = from; k < to; ++k) emit(textures[k]);
+        for (const std::size_t before : needs_[requests[k]]) emit(before);
+      for (std::size_t k = from; k < to; ++k) emit(requests[k]);
       from = to;
     }
   }

@@ -212,6 +212,7 @@ void Module::add_decoration(Decorations& target, spv::Decoration decoration,
     case spv::DecorationArrayStride: target.array_stride = value; break;
     case spv::DecorationMatrixStride: target.matrix_stride = value; break;
     case spv::DecorationIndex: target.index = value; break;
+    case spv::DecorationBufferBlock: target.buffer_block = true; break;
     case spv::DecorationRowMajor: target.row_major = true; break;
     case spv::DecorationFlat: target.flat = true; break;
     case spv::DecorationNoPerspective: target.no_perspective = true; break;
@@ -261,6 +262,10 @@ void Module::add_type(const Instruction& instruction) {
       type.scalars = saturating_product(this->type(type.element).scalars, type.count);
       break;
     }
+    case spv::OpTypeRuntimeArray:
+      type.kind = Type::Kind::kArray;
+      type.element = operands[0];
+      break;
     case spv::OpTypeStruct: {
       type.kind = Type::Kind::kStruct;
       type.members.assign(operands.begin(), operands.end());

@@ -12,7 +12,7 @@ namespace quadrille::pipeline {
 struct ShaderTarget {
   int warp_slots = 32;
   int register_rows = 1024;
-  models::IssueTiming timing{{{{4, 8}, {16, 20}, {4, 12}, {4, 12}, {4, 8}, {1, 4}, {4, 8}}}};
+  models::IssueTiming timing{{{{4, 8}, {16, 20}, {4, 12}, {4, 12}, {4, 8}, {1, 4}, {4, 8}, {4, 8}}}};
 
   /// Warps of a program with that many registers that a core holds.
   [[nodiscard]] int warps(int registers) const {

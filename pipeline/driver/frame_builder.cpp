@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstring>
 #include <map>
+#include <tuple>
 
 namespace quadrille::pipeline {
 
@@ -24,14 +25,17 @@ class FrameBuilder {
         target_(target),
         out_(out),
         resources_(stream, out.memory, out.fills),
+        storage_(stream, resources_),
         lives_(stream) {
     out.frame.precision = precision;
+    out.frame.storage = &out.storage;
   }
 
   void build(bool leave_out) {
     for (const traces::Command& command : stream_.commands) {
       std::visit([this](const auto& c) { apply(c); }, command);
     }
+    out_.written_buffers = storage_.finish(out_.frame, out_.storage);
     if (!leave_out) resources_.place_rest();
     out_.buffer_bytes = resources_.buffer_bytes();
     out_.texture_bytes = resources_.texture_bytes();
@@ -101,35 +105,41 @@ class FrameBuilder {
     hw::DrawState draw;
     draw.label = c.label;
     draw.pass = hw::PassId(out_.frame.passes.size() - 1);
-    draw.vertex_program = &programs.vertex;
-    draw.fragment_program = &programs.fragment;
+    draw.vertex.program = &programs.vertex;
+    draw.fragment.program = &programs.fragment;
     const auto bits = static_cast<unsigned>(4 * out_.frame.passes.back().colors);
     draw.color_outputs = models::color_outputs(programs.fragment) & (bits < 32 ? (1u << bits) - 1 : ~0u);
     geometry(c, pipeline, draw);
     attributes(pipeline, programs.integer_inputs, draw);
     fixed_function(pipeline, draw);
-    draw.vertex_constants = constants(programs.vertex);
-    draw.fragment_constants = constants(programs.fragment);
-    textures(programs.vertex, draw.vertex_textures, draw.vertex_texture_sizes);
-    textures(programs.fragment, draw.fragment_textures, draw.fragment_texture_sizes);
+    draw.vertex.constants = constants(programs.vertex);
+    draw.fragment.constants = constants(programs.fragment);
+    textures(programs.vertex, draw.vertex.textures, draw.vertex.texture_sizes);
+    textures(programs.fragment, draw.fragment.textures, draw.fragment.texture_sizes);
+    storage_.bind(draw.vertex, sets_);
+    storage_.bind(draw.fragment, sets_);
     out_.frame.draws.push_back(std::move(draw));
   }
 
   const CompiledPipeline& compiled(Index index) {
     const traces::Pipeline& pipeline = stream_.pipelines[index];
-    const auto key = std::pair{pipeline.vertex_shader, pipeline.fragment_shader};
+    const bool points =
+        models::PrimitiveState{models::assembled_kind(pipeline.topology), pipeline.polygon_mode}.pieces() ==
+        models::PieceKind::kPoint;
+    const auto key = std::tuple{pipeline.vertex_shader, pipeline.fragment_shader, points};
     const auto found = programs_.find(key);
     if (found != programs_.end()) return *found->second;
-    const traces::Shader& vertex = stream_.shaders[key.first];
-    const traces::Shader& fragment = stream_.shaders[key.second];
+    const traces::Shader& vertex = stream_.shaders[pipeline.vertex_shader];
+    const traces::Shader& fragment = stream_.shaders[pipeline.fragment_shader];
     out_.programs.push_back(
-        compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name, target_));
+        compile_pipeline(vertex.spirv, vertex.name, fragment.spirv, fragment.name, target_, points));
     programs_[key] = &out_.programs.back();
     return out_.programs.back();
   }
 
   void geometry(const traces::Draw& c, const traces::Pipeline& pipeline, hw::DrawState& draw) {
     draw.topology = pipeline.topology;
+    draw.restarts = pipeline.primitive_restart && c.indexed;
     draw.indexed = c.indexed;
     draw.count = c.count;
     draw.instances = c.instances;
@@ -140,11 +150,12 @@ class FrameBuilder {
       draw.index_bytes = 1u << static_cast<int>(index_buffer_.type);
       draw.index_address = resources_.buffer(index_buffer_.buffer) + index_buffer_.offset +
                            std::uint64_t{c.first} * draw.index_bytes;
+      storage_.note_read(index_buffer_.buffer, "an index buffer");
     }
   }
 
   void attributes(const traces::Pipeline& pipeline, std::uint32_t integer_inputs, hw::DrawState& draw) {
-    const auto& uses = draw.vertex_program->vertex_inputs;
+    const auto& uses = draw.vertex.program->vertex_inputs;
     for (const traces::VertexAttribute& attribute : pipeline.attributes) {
       hw::AttributeFetch fetch;
       bool used = false;
@@ -160,13 +171,14 @@ class FrameBuilder {
       const bool integers = (integer_inputs >> attribute.location & 1u) != 0;
       if (integers != traces::is_integer_format(attribute.format)) {
         throw user_error("{}: reads vertex input location {} as {}, which pipeline '{}' supplies as {}",
-                         draw.vertex_program->name, attribute.location, integers ? "integers" : "floats",
+                         draw.vertex.program->name, attribute.location, integers ? "integers" : "floats",
                          pipeline.name, integers ? "floats" : "integers");
       }
       const auto binding =
           std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
       const traces::BindVertexBuffer& bound = vertex_buffers_.at(attribute.binding);
       fetch.address = resources_.buffer(bound.buffer) + bound.offset + attribute.offset;
+      storage_.note_read(bound.buffer, "a vertex buffer");
       fetch.stride = binding->stride;
       fetch.per_instance = binding->per_instance;
       fetch.format = attribute.format;
@@ -177,25 +189,35 @@ class FrameBuilder {
           std::ranges::any_of(pipeline.attributes, [&](const auto& a) { return a.location == use.location; });
       if (!given) {
         throw user_error("{}: reads vertex input location {}, which pipeline '{}' does not supply",
-                         draw.vertex_program->name, use.location, pipeline.name);
+                         draw.vertex.program->name, use.location, pipeline.name);
       }
     }
   }
 
+  static models::PrimitiveState primitives(const traces::Pipeline& pipeline, const models::Program& vertex) {
+    return {models::assembled_kind(pipeline.topology), pipeline.polygon_mode, vertex.extras.clip_distances,
+            vertex.extras.cull_distances, vertex.extras.point_size};
+  }
+
   void fixed_function(const traces::Pipeline& pipeline, hw::DrawState& draw) {
+    draw.primitives = primitives(pipeline, *draw.vertex.program);
+    // A point whose centre is in the view volume is drawn whole.
+    const bool points = draw.primitives.pieces() == models::PieceKind::kPoint;
     const models::PixelRect rect = models::drawable_rect(viewport_, scissor_, out_.frame.passes.back().width,
                                                          out_.frame.passes.back().height);
     const int bits = out_.frame.precision.subpixel_bits;
     draw.viewport = viewport_;
     draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
-    draw.setup = {pipeline.cull, pipeline.front, rect, bits, viewport_.min_depth, viewport_.max_depth};
+    draw.setup = {pipeline.cull,       pipeline.front,      points ? scissor_ : rect, bits,
+                  viewport_.min_depth, viewport_.max_depth, pipeline.line_mode,       pipeline.line_width};
     draw.depth_test = pipeline.depth.test && begun_->depth.image != kNone;
     draw.depth_write = draw.depth_test && pipeline.depth.write;
     draw.depth_compare = pipeline.depth.compare;
     draw.blend = pipeline.blend;
-    const models::Program& program = *draw.fragment_program;
-    draw.late_depth =
-        draw.depth_test && (program.uses_discard || program.writes_depth) && !program.early_fragment_tests;
+    const models::Program& program = *draw.fragment.program;
+    draw.writes_memory = models::writes_buffers(program);
+    draw.late_depth = draw.depth_test && !program.early_fragment_tests &&
+                      (program.uses_discard || program.writes_depth || draw.writes_memory);
   }
 
   std::vector<std::uint32_t> constants(const models::Program& program) {
@@ -211,6 +233,7 @@ class FrameBuilder {
           break;
         case models::ConstantLayout::Source::kUniformBlock: {
           const traces::UniformBinding& bound = uniform(program, range.set, range.binding);
+          storage_.note_read(bound.buffer, "a uniform block");
           const auto& data = stream_.buffers[bound.buffer].data;
           const std::span<const std::byte> view = std::span(data).subspan(bound.offset, bound.range);
           copy_words(view, range, to, program, [&] {
@@ -281,7 +304,8 @@ class FrameBuilder {
   const ShaderTarget& target_;
   DeviceFrame& out_;
   DeviceResources resources_;
-  std::map<std::pair<Index, Index>, const CompiledPipeline*> programs_;
+  StorageBinder storage_;
+  std::map<std::tuple<Index, Index, bool>, const CompiledPipeline*> programs_;  ///< true: for points
   std::map<std::uint32_t, Index> sets_;
   std::map<std::uint32_t, traces::BindVertexBuffer> vertex_buffers_;
   traces::BindIndexBuffer index_buffer_;
@@ -298,8 +322,21 @@ class FrameBuilder {
 
 bool DeviceFrame::reads_textures() const {
   return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) {
-    return !d.vertex_textures.empty() || !d.fragment_textures.empty();
+    return !d.vertex.textures.empty() || !d.fragment.textures.empty();
   });
+}
+bool DeviceFrame::uses_storage() const {
+  return std::ranges::any_of(frame.draws, [](const hw::DrawState& d) {
+    return !d.vertex.buffers.empty() || !d.fragment.buffers.empty();
+  });
+}
+std::vector<std::string> DeviceFrame::order_dependent() const {
+  std::vector<std::string> names;
+  for (const CompiledPipeline& pipeline : programs)
+    for (const models::Program* program : {&pipeline.vertex, &pipeline.fragment})
+      if (program->outputs_follow_atomics && std::ranges::find(names, program->name) == names.end())
+        names.push_back(program->name);
+  return names;
 }
 bool DeviceFrame::keeps_depth() const {
   return std::ranges::any_of(frame.passes, [](const hw::PassState& p) { return p.has_depth; });

@@ -7,6 +7,7 @@
 
 #include "hw/frame/frame.h"
 #include "pipeline/compiler/compile.h"
+#include "pipeline/driver/storage_binder.h"
 #include "pipeline/driver/texture_fills.h"
 #include "traces/command_stream.h"
 
@@ -23,11 +24,13 @@ struct LeftOut {
 
 /// A frame with the memory and programs it refers to. Not movable: the frame points into it.
 struct DeviceFrame {
-  explicit DeviceFrame(std::uint64_t memory_limit) : memory(memory_limit), fills(memory) {}
+  explicit DeviceFrame(std::uint64_t memory_limit) : memory(memory_limit), fills(memory), storage(memory) {}
   DeviceFrame(const DeviceFrame&) = delete;
   DeviceFrame& operator=(const DeviceFrame&) = delete;
   models::DeviceMemory memory;
   TextureFills fills;
+  models::StorageMemory storage;
+  std::vector<WrittenBuffer> written_buffers;  ///< in order of the stream's buffers
   std::deque<CompiledPipeline> programs;
   hw::Frame frame;
   std::vector<LeftOut> left_out;
@@ -35,6 +38,10 @@ struct DeviceFrame {
   bool shown_has_depth = false;
   std::uint64_t buffer_bytes = 0, texture_bytes = 0, surface_bytes = 0;
   [[nodiscard]] bool reads_textures() const;
+  /// Some draw's program has a storage buffer.
+  [[nodiscard]] bool uses_storage() const;
+  /// Names of programs whose outputs depend on the order of warps, each once.
+  [[nodiscard]] std::vector<std::string> order_dependent() const;
   /// A pass of it has depths: some draw tests them, or a later pass reads them.
   [[nodiscard]] bool keeps_depth() const;
   [[nodiscard]] bool blends() const;

@@ -1,9 +1,11 @@
 #include "pipeline/functional/functional.h"
 
 #include "hw/frame/fragment_output.h"
+#include "hw/frame/invocations.h"
 #include "hw/frame/varyings.h"
 #include "models/base/error.h"
 #include "models/geometry/post_transform.h"
+#include "models/geometry/primitive_walk.h"
 #include "models/raster/coarse.h"
 #include "models/raster/fine.h"
 #include "models/raster/interpolate.h"
@@ -24,7 +26,7 @@ void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures,
               const models::Precision& precision, const models::DeviceMemory& memory,
               models::TexturePlan& plan) {
   std::array<models::LaneFloats, 4> rgba;
-  while (models::run_clause(warp).end == models::ClauseEnd::kTextures) {
+  while (models::run_clause(warp).end == models::ClauseEnd::kRequests) {
     for (int i = 0; i < warp.texture_count; ++i) {
       const models::TextureRequest& request = warp.textures[static_cast<std::size_t>(i)];
       const hw::TextureState& texture = textures[request.binding];
@@ -38,7 +40,7 @@ void run_warp(models::Warp& warp, const std::vector<hw::TextureState>& textures,
 
 class FunctionalRenderer {
  public:
-  FunctionalRenderer(const hw::Frame& frame, models::DeviceMemory& memory, const TriangleObserver& observer)
+  FunctionalRenderer(const hw::Frame& frame, models::DeviceMemory& memory, const PieceObserver& observer)
       : frame_(frame), memory_(memory), observer_(observer), triangles_(kTriangles) {}
 
   FunctionalCounts run() {
@@ -63,45 +65,62 @@ class FunctionalRenderer {
     pass_ = &frame_.pass_of(id);
     warp_.draw = id;
     for (instance_ = 0; instance_ < draw_->instances; ++instance_) {
-      for (std::uint32_t t = 0; t < draw_->triangles();) t = batch(t);
+      walk_.start(draw_->topology, draw_->count, draw_->restarts);
+      while (primitive_left()) batch();
     }
     shade();
   }
 
-  std::uint32_t vertex_number(std::uint32_t position) const {
-    if (!draw_->indexed) return draw_->first_vertex + position;
+  std::uint32_t index_at(std::uint32_t position) const {
     std::uint32_t index = 0;
     std::memcpy(
         &index,
         memory_.read(draw_->index_address + std::uint64_t{position} * draw_->index_bytes, draw_->index_bytes)
             .data(),
         draw_->index_bytes);
-    return index + static_cast<std::uint32_t>(draw_->vertex_offset);
+    return index;
   }
 
-  /// Forms, shades and rasterises the batch that begins with triangle `first`; returns the first triangle
-  /// after it.
-  std::uint32_t batch(std::uint32_t first) {
+  std::uint32_t vertex_number(std::uint32_t position) const {
+    if (!draw_->indexed) return draw_->first_vertex + position;
+    return index_at(position) + static_cast<std::uint32_t>(draw_->vertex_offset);
+  }
+
+  bool primitive_left() {
+    return walk_.look(
+        [&](std::uint32_t p) { return index_at(p) == models::restart_index(draw_->index_bytes); },
+        [](std::uint32_t) {});
+  }
+
+  /// Forms, shades and rasterises the batch that begins with the primitive at which the walk is.
+  void batch() {
     const std::unique_ptr<models::VertexReuse> made = models::kBatchReuse.make({});
     models::VertexReuse& reuse = *made;
     batch_.triangles.clear();
-    std::uint32_t t = first;
-    for (; t < draw_->triangles(); ++t) {
-      const auto corner = models::triangle_vertices(draw_->topology, t);
-      const std::array<std::uint32_t, 3> vertex{vertex_number(corner[0]), vertex_number(corner[1]),
-                                                vertex_number(corner[2])};
-      if (!reuse.fits(vertex)) break;
-      BatchSlot::Triangle triangle{{}, t};
-      for (std::size_t i = 0; i < 3; ++i) triangle.corner[i] = reuse.place(vertex[i]);
-      batch_.triangles.push_back(triangle);
-    }
+    while (primitive_left() && add_primitive(reuse)) walk_.advance();
     batch_.lanes = reuse.size();
-    batch_.attributes.resize(draw_->vertex_program->vertex_inputs.size());
-    batch_.outputs.resize(static_cast<std::size_t>(models::kFirstVaryingOutput + draw_->varyings()));
+    batch_.attributes.resize(draw_->vertex.program->vertex_inputs.size());
+    batch_.outputs.resize(static_cast<std::size_t>(models::vertex_outputs(*draw_->vertex.program)));
+    for (auto row = static_cast<std::size_t>(models::first_extra_output(*draw_->vertex.program));
+         row < batch_.outputs.size(); ++row)
+      batch_.outputs[row].fill(0);
     fetch(reuse);
     shade_vertices();
     for (const BatchSlot::Triangle& triangle : batch_.triangles) clip(triangle);
-    return t;
+  }
+
+  /// Does the primitive at which the walk is fit into the batch?
+  bool add_primitive(models::VertexReuse& reuse) {
+    const std::size_t corners = draw_->primitives.corners();
+    const auto position = walk_.positions();
+    std::array<std::uint32_t, 3> vertex{};
+    for (std::size_t i = 0; i < corners; ++i) vertex[i] = vertex_number(position[i]);
+    if (!reuse.fits(std::span(vertex).first(corners))) return false;
+    BatchSlot::Triangle primitive{{}, walk_.primitive()};
+    for (std::size_t i = 0; i < 3; ++i)
+      primitive.corner[i] = i < corners ? reuse.place(vertex[i]) : primitive.corner[corners - 1];
+    batch_.triangles.push_back(primitive);
+    return true;
   }
 
   void fetch(const models::VertexReuse& reuse) {
@@ -130,55 +149,50 @@ class FunctionalRenderer {
     engine_.vertex = &batch_.inputs;
     engine_.fragment = nullptr;
     engine_.outputs = batch_.outputs.data();
-    engine_.texture_sizes = draw_->vertex_texture_sizes.data();
+    hw::bind_storage(frame_, warp_.draw, batch_, storage_, engine_);
+    engine_.texture_sizes = draw_->vertex.texture_sizes.data();
     const models::LaneMask lanes =
         batch_.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch_.lanes) - 1;
-    engine_.launch(*draw_->vertex_program, draw_->vertex_constants.data(), lanes);
-    run_warp(engine_, draw_->vertex_textures, frame_.precision, memory_, plan_);
+    engine_.launch(*draw_->vertex.program, draw_->vertex.constants.data(), lanes);
+    run_warp(engine_, draw_->vertex.textures, frame_.precision, memory_, plan_);
   }
 
   void clip(const BatchSlot::Triangle& triangle) {
     ++counts_.triangles;
-    std::array<glm::vec4, 3> position;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (int c = 0; c < 4; ++c)
-        position[i][c] =
-            std::bit_cast<float>(batch_.outputs[static_cast<std::size_t>(c)][triangle.corner[i].lane]);
-    }
-    models::ClippedPolygon polygon;
-    const models::ClipOutcome outcome = models::clip_triangle(position, draw_->clip, polygon);
-    switch (outcome) {
+    const auto output = [&](std::size_t corner, int slot) {
+      return std::bit_cast<float>(
+          batch_.outputs[static_cast<std::size_t>(slot)][triangle.corner[corner].lane]);
+    };
+    models::read_vertices(draw_->primitives, models::first_extra_output(*draw_->vertex.program), output,
+                          vertices_);
+    models::clip_primitive(vertices_, draw_->primitives, draw_->clip, draw_->setup, draw_->viewport,
+                           clipped_);
+    switch (clipped_.outcome) {
       case models::ClipOutcome::kRejected: ++counts_.fates.off_screen; return;
       case models::ClipOutcome::kNotFinite: ++counts_.fates.not_finite; return;
+      case models::ClipOutcome::kCulled: ++counts_.fates.culled; return;
       case models::ClipOutcome::kInside:
       case models::ClipOutcome::kClipped: break;
     }
-    for (int i = 1; i + 1 < polygon.count; ++i) piece(triangle, polygon, i);
+    for (int i = 0; i < clipped_.count; ++i) piece(triangle, clipped_.pieces[static_cast<std::size_t>(i)]);
   }
 
-  void piece(const BatchSlot::Triangle& triangle, const models::ClippedPolygon& polygon, int i) {
-    RasterizedTriangle window{warp_.draw, instance_, triangle.primitive, {}, {}};
-    const std::array<int, 3> corner{0, i, i + 1};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const models::ClipVertex& v = polygon.vertices[static_cast<std::size_t>(corner[k])];
-      const bool valid =
-          models::to_window(v.position, draw_->viewport, frame_.precision.subpixel_bits, window.vertices[k]);
-      QUADRILLE_CHECK(valid, "a clipped vertex of draw {} has no window position", warp_.draw.index());
-      window.weights[k] = {v.b1, v.b2};
-    }
+  void piece(const BatchSlot::Triangle& triangle, const models::ClippedPiece& piece) {
     // Quads that wait in the warp still need their triangles' slots.
     if (warp_.quads > 0 && sequence_ - warp_.quad[0].triangle >= kTriangles) shade();
     hw::TriangleSlot& slot = triangles_[sequence_];
-    switch (models::setup_triangle(window.vertices, window.weights, draw_->setup, slot.setup)) {
+    switch (models::setup_piece(piece, draw_->primitives, draw_->setup, slot.setup)) {
       case models::SetupOutcome::kCulledFace: ++counts_.fates.culled; return;
       case models::SetupOutcome::kZeroArea: ++counts_.fates.no_area; return;
       case models::SetupOutcome::kOffscreen: ++counts_.fates.off_screen; return;
       case models::SetupOutcome::kNoSample: ++counts_.fates.no_sample; return;
       case models::SetupOutcome::kKept: ++counts_.fates.rasterised; break;
     }
-    if (observer_) observer_(window);
+    if (observer_) observer_({warp_.draw, instance_, triangle.primitive, piece});
+    if (draw_->smooth_lines()) slot.line = models::piece_coverage(piece, draw_->setup);
     slot.draw = warp_.draw;
     slot.primitive = triangle.primitive;
+    slot.instance = draw_->first_instance + instance_;
     std::array<hw::CornerOutputs, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = {&batch_.outputs, triangle.corner[k].lane};
     hw::gather_varyings(corners, draw_->varyings(), slot.varyings);
@@ -230,19 +244,20 @@ class FunctionalRenderer {
     const auto live = static_cast<std::uint64_t>(std::popcount(warp_.covered));
     counts_.fragments_shaded += live;
     counts_.helper_lanes += 4 * static_cast<std::uint64_t>(warp_.quads) - live;
-    hw::fill_fragment_inputs(warp_, triangles_, inputs_);
+    hw::fill_fragment_inputs(warp_, triangles_, draw_->smooth_lines(), inputs_);
     const models::LaneMask lanes = warp_.quads == models::kWarpQuads
                                        ? ~models::LaneMask{0}
                                        : (models::LaneMask{1} << (4 * warp_.quads)) - 1;
     engine_.vertex = nullptr;
     engine_.fragment = &inputs_;
     engine_.outputs = outputs_.data();
-    engine_.texture_sizes = draw_->fragment_texture_sizes.data();
-    engine_.launch(*draw_->fragment_program, draw_->fragment_constants.data(), lanes);
-    run_warp(engine_, draw_->fragment_textures, frame_.precision, memory_, plan_);
+    hw::bind_storage(frame_, warp_, triangles_, storage_, engine_);
+    engine_.texture_sizes = draw_->fragment.texture_sizes.data();
+    engine_.launch(*draw_->fragment.program, draw_->fragment.constants.data(), lanes);
+    run_warp(engine_, draw_->fragment.textures, frame_.precision, memory_, plan_);
     warp_.alive = warp_.covered & ~engine_.killed;
     counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & engine_.killed));
-    hw::take_outputs(*draw_, outputs_, inputs_.z, warp_);
+    hw::take_outputs(*draw_, outputs_, inputs_, warp_);
     for (int q = 0; q < warp_.quads; ++q) write_quad(q);
     warp_.quads = 0;
     warp_.covered = 0;
@@ -267,25 +282,29 @@ class FunctionalRenderer {
 
   const hw::Frame& frame_;
   models::DeviceMemory& memory_;
-  const TriangleObserver& observer_;
+  const PieceObserver& observer_;
   const DrawState* draw_ = nullptr;
   const hw::PassState* pass_ = nullptr;
   std::uint32_t instance_ = 0;
   FunctionalCounts counts_;
+  models::PrimitiveWalk walk_;
   BatchSlot batch_;
+  models::PrimitiveVertices vertices_;
+  models::ClippedPrimitive clipped_;
   hw::TriangleStore triangles_;
   std::uint64_t sequence_ = 0;
   WarpSlot warp_;
   models::FragmentInputs inputs_;
   std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs_{};
   models::Warp engine_;
+  models::WarpStorage storage_;
   models::TexturePlan plan_;
 };
 
 }  // namespace
 
 FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory,
-                                   const TriangleObserver& observer) {
+                                   const PieceObserver& observer) {
   return FunctionalRenderer(frame, memory, observer).run();
 }
 

@@ -17,17 +17,16 @@ struct FunctionalCounts {
   Fates fates;
 };
 
-/// A window-space triangle as it was rasterised, for the reference renderer.
-struct RasterizedTriangle {
+/// A primitive or a piece of one, in window space, as it was rasterised: for the reference renderer.
+struct RasterizedPiece {
   hw::DrawId draw;
   std::uint32_t instance = 0, primitive = 0;
-  std::array<models::WindowVertex, 3> vertices;
-  std::array<glm::vec2, 3> weights;
+  models::ClippedPiece piece;
 };
-using TriangleObserver = std::function<void(const RasterizedTriangle&)>;
+using PieceObserver = std::function<void(const RasterizedPiece&)>;
 
 /// Renders all passes of the frame into its surfaces in `memory`.
 FunctionalCounts render_functional(const hw::Frame& frame, models::DeviceMemory& memory,
-                                   const TriangleObserver& observer = {});
+                                   const PieceObserver& observer = {});
 
 }  // namespace quadrille::pipeline

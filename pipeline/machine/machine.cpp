@@ -78,8 +78,8 @@ Machine::Stores::Stores(const MachineConfig& config)
 void Machine::check_registers() const {
   int vertex = 0, fragment = 0;
   for (const hw::DrawState& draw : frame_.frame.draws) {
-    vertex = std::max(vertex, draw.vertex_program->num_regs);
-    fragment = std::max(fragment, draw.fragment_program->num_regs);
+    vertex = std::max(vertex, draw.vertex.program->num_regs);
+    fragment = std::max(fragment, draw.fragment.program->num_regs);
   }
   if (vertex + fragment > config_.core.register_rows) {
     throw user_error(
@@ -94,6 +94,10 @@ void Machine::leave_out(bool wanted) {
   textured_ = frame_.reads_textures() || !wanted;
   if (!textured_)
     left_out_.push_back({"texture units", "no program of a draw reads a texture",
+                         fmt::format("{} units and their caches", cores)});
+  stored_ = frame_.uses_storage() || !wanted;
+  if (!stored_)
+    left_out_.push_back({"load-store units", "no program of a draw has a storage buffer",
                          fmt::format("{} units and their caches", cores)});
   depth_memory_ = frame_.keeps_depth() || !wanted;
   if (!depth_memory_) {
@@ -145,6 +149,7 @@ bool Machine::builds(Needed needed) const {
   switch (needed) {
     case Needed::kByAllFrames: return true;
     case Needed::kByFramesThatReadTextures: return textured_;
+    case Needed::kByFramesWithStorage: return stored_;
     case Needed::kByFramesThatKeepDepths: return depth_memory_;
   }
   return true;

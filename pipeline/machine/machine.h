@@ -91,7 +91,8 @@ class Machine {
   hw::Clock clock_, memory_clock_;
   hw::QuietLog quiet_;
   std::vector<LeftOut> left_out_;
-  bool textured_ = true, depth_memory_ = true;  ///< texture units are built; depth units are linked to memory
+  /// texture and load-store units are built; depth units are linked to memory
+  bool textured_ = true, stored_ = true, depth_memory_ = true;
   /// of the L2 slices: names of units, in the order of their ports
   std::vector<hw::L2Slice::Client> clients_;
   std::unique_ptr<hw::Driver> own_driver_;

@@ -18,6 +18,7 @@
 #include "hw/raster/warp_packer.h"
 #include "hw/rop/depth_unit.h"
 #include "hw/rop/rop.h"
+#include "hw/shader/load_store_unit.h"
 #include "hw/shader/shader_core.h"
 #include "hw/shader/work_distributor.h"
 #include "hw/texture/texture_unit.h"
@@ -43,16 +44,18 @@
   unit(work_distributor,   hw::WorkDistributor,   kOnce,      kByAllFrames)              \
   unit(core,               hw::ShaderCore,        kCore,      kByAllFrames)              \
   unit(texture,            hw::TextureUnit,       kCore,      kByFramesThatReadTextures) \
+  unit(load_store,         hw::LoadStoreUnit,     kCore,      kByFramesWithStorage)      \
   unit(rop,                hw::Rop,               kPartition, kByAllFrames)              \
   unit(l2,                 hw::L2Slice,           kChannel,   kByAllFrames)              \
   unit(memory,             hw::MemoryChannel,     kChannel,   kByAllFrames)              \
   unit(scan_out,           hw::ScanOut,           kOnce,      kByAllFrames)
 
-// Who asks the L2 slices, in the order of their ports, and in which frames. Neighbours that stand equally
-// often take turns: the first of each, then the second of each.
+// Who asks the L2 slices, in the order of their ports, and in which frames. Neighbours that stand equally often
+// take turns: the first of each, then the second of each.
 #define QUADRILLE_CLIENTS(client)                    \
   client(VertexFetch, kByAllFrames)                  \
   client(TextureUnit, kByFramesThatReadTextures)     \
+  client(LoadStoreUnit, kByFramesWithStorage)        \
   client(DepthUnit,   kByFramesThatKeepDepths)       \
   client(Rop,         kByAllFrames)                  \
   client(ScanOut,     kByAllFrames)
@@ -117,6 +120,10 @@
        QUADRILLE_WIRE(ShaderCore, texture_out, TextureUnit, request_in))                           \
   link(texture_to_core,          8, 1, 2, kOneACycle,     kBack,                                   \
        QUADRILLE_WIRE(TextureUnit, response_out, ShaderCore, texture_in))                          \
+  link(core_to_load_store,       8, 1, 2, kOneACycle,     kOnward,                                 \
+       QUADRILLE_WIRE(ShaderCore, storage_out, LoadStoreUnit, request_in))                         \
+  link(load_store_to_core,       8, 1, 2, kOneACycle,     kBack,                                   \
+       QUADRILLE_WIRE(LoadStoreUnit, response_out, ShaderCore, storage_in))                        \
   link(client_to_l2,            16, 1, 8, kSeveralACycle, kOnward,                                 \
        QUADRILLE_WIRE(MemoryPort, request_out, L2Slice, request_in))                               \
   link(l2_to_client,            16, 1, 8, kSeveralACycle, kBack,                                   \
@@ -134,8 +141,14 @@ namespace quadrille::pipeline {
 /// How often a kind of unit stands in a machine: once, or once a raster engine, partition, core or channel.
 /// Of several, each carries its number in its name.
 enum class Stands : std::uint8_t { kOnce, kEngine, kPartition, kCore, kChannel };
-/// Which frames need a kind of unit, or its links to memory; a machine leaves out what no draw needs.
-enum class Needed : std::uint8_t { kByAllFrames, kByFramesThatReadTextures, kByFramesThatKeepDepths };
+/// Which frames need a kind of unit, or its links to memory; a machine leaves out what its frame does not
+/// need.
+enum class Needed : std::uint8_t {
+  kByAllFrames,
+  kByFramesThatReadTextures,
+  kByFramesWithStorage,
+  kByFramesThatKeepDepths
+};
 /// What the tokens of a link do: carry work onward, tell of work that comes another way, or bring answers,
 /// releases and reports back.
 enum class LinkWay : std::uint8_t { kOnward, kAhead, kBack };
@@ -160,7 +173,7 @@ void visit_unit_kinds(const Visit& visit) {
 #undef QUADRILLE_VISIT
 }
 
-/// Calls `visit.operator()<Unit>(needed)` for each kind of client of the L2 slices, in their ports' order.
+/// Calls `visit.operator()<Unit>(needed)` for each kind of client of the L2 slices, in the order of their ports.
 template <class Visit>
 void visit_client_kinds(const Visit& visit) {
 #define QUADRILLE_VISIT(type, frames) visit.template operator()<hw::type>(Needed::frames);

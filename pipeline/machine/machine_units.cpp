@@ -70,12 +70,18 @@ Machine::Maker::Made<hw::ShaderCore> Machine::Maker::make(Kind<hw::ShaderCore> /
   std::vector<const hw::TriangleStore*> triangles;
   for (const auto& of_engine : s_.triangles) triangles.push_back(of_engine.get());
   const hw::ShaderCore::Stores stores{*s_.cores[at(i)], s_.batches, std::move(warps), std::move(triangles)};
-  return std::make_unique<hw::ShaderCore>(name, context(i), c_.core, stores, m_.textured_);
+  return std::make_unique<hw::ShaderCore>(name, context(i), c_.core, stores,
+                                          hw::ShaderCore::Neighbours{m_.textured_, m_.stored_});
 }
 
 Machine::Maker::Made<hw::TextureUnit> Machine::Maker::make(Kind<hw::TextureUnit> /*kind*/, const char* name,
                                                            int i) const {
   return std::make_unique<hw::TextureUnit>(name, context(i), c_.texture, *s_.cores[at(i)]);
+}
+
+Machine::Maker::Made<hw::LoadStoreUnit> Machine::Maker::make(Kind<hw::LoadStoreUnit> /*kind*/,
+                                                             const char* name, int i) const {
+  return std::make_unique<hw::LoadStoreUnit>(name, context(i), c_.load_store, *s_.cores[at(i)]);
 }
 
 Machine::Maker::Made<hw::Rop> Machine::Maker::make(Kind<hw::Rop> /*kind*/, const char* name, int i) const {

@@ -42,7 +42,7 @@ struct DetailCount {
 /// What one draw did, or what belonged to no draw.
 struct DrawFigures {
   std::string label;
-  models::PassId pass;
+  models::PassId pass = {};
   /// cycles of the GPU clock: the command processor issues it; every partition has retired it
   std::int64_t issued = 0, retired = 0;
   std::array<std::uint64_t, kDrawCounts> counts{};

@@ -142,7 +142,7 @@ Fates fates_of(const Machine& m) {
   using Depth = hw::DepthUnit::Stats;
   return {.off_screen = clipper.rejected.value() + sum<SetUp>(m, &SetUp::Stats::offscreen),
           .not_finite = clipper.not_finite.value(),
-          .culled = sum<SetUp>(m, &SetUp::Stats::culled),
+          .culled = clipper.culled.value() + sum<SetUp>(m, &SetUp::Stats::culled),
           .no_area = sum<SetUp>(m, &SetUp::Stats::zero_area),
           .no_sample = sum<SetUp>(m, &SetUp::Stats::no_sample),
           .rasterised = sum<SetUp>(m, &SetUp::Stats::kept),

@@ -120,6 +120,8 @@ struct Figures {
   std::vector<ClientFigures> bandwidth;
   std::vector<Check> checks;
   std::vector<LeftOut> left_out;
+  /// Programs whose outputs follow values that atomic operations returned: timing may change what they draw.
+  std::vector<std::string> order_dependent;
   std::optional<Detail> detail;  ///< only where it was asked for
   HostFigures host;
   [[nodiscard]] bool checks_hold() const;

@@ -37,8 +37,15 @@ std::string why_nothing(const FrameFigures& f) {
 }  // namespace
 
 std::vector<std::string> notes_on(const Figures& figures) {
-  if (figures.frame.fragments_written > 0) return {};
-  return {"nothing was drawn: " + why_nothing(figures.frame)};
+  std::vector<std::string> notes;
+  if (figures.frame.fragments_written == 0)
+    notes.push_back("nothing was drawn: " + why_nothing(figures.frame));
+  for (const std::string& program : figures.order_dependent)
+    notes.push_back(
+        fmt::format("program {}: its outputs depend on what atomic operations returned, so on the "
+                    "order of warps; timing may change what it draws",
+                    program));
+  return notes;
 }
 
 }  // namespace quadrille::pipeline

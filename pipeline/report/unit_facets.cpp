@@ -81,6 +81,7 @@ std::vector<std::string> unit_facets(const UnitGroup& group) {
     }
   }
   std::vector<std::string> texts;
+  texts.reserve(row.size());
   for (const hw::Facet& facet : row) texts.push_back(facet_text(facet, group.cycles()));
   return texts;
 }

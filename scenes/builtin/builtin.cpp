@@ -24,7 +24,7 @@ struct Entry {
   double length = 0;  ///< seconds
 };
 
-constexpr std::array<Entry, 9> kEntries{{
+constexpr std::array<Entry, 10> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
@@ -48,6 +48,11 @@ constexpr std::array<Entry, 9> kEntries{{
     {{"materials",
       "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"},
      [](double) { return build_materials(); }},
+    {{"primitives",
+      "a card of points, lines and triangles: sizes, widths, three ways to draw a line, strips, fans, and a "
+      "ball "
+      "by its edges and corners"},
+     [](double) { return build_primitives(); }},
     {{"flag",
       "a flag in the wind, two seconds that repeat: a skin of 25 joints and two morph targets, posed by the "
       "vertex shader"},
@@ -223,6 +228,7 @@ SceneData build_fill() {
 
 std::string meant_builtin(std::string_view name) {
   std::vector<std::string> names;
+  names.reserve(std::size(kEntries));
   for (const Entry& entry : kEntries) names.emplace_back(entry.scene.name);
   std::vector<std::string> near = near_names(name, names);
   for (std::string& one : near) one.insert(0, "builtin:");
@@ -245,6 +251,7 @@ const Entry& entry_of(const std::string& name) {
   const auto found = std::ranges::find(kEntries, name, [](const Entry& entry) { return entry.scene.name; });
   if (found != kEntries.end()) return *found;
   std::vector<std::string> names;
+  names.reserve(std::size(kEntries));
   for (const Entry& entry : kEntries) names.push_back(fmt::format("builtin:{}", entry.scene.name));
   throw user_error("builtin:{}: no such built-in scene; there are {}{}", name.substr(0, 60),
                    fmt::join(names, ", "), meant_builtin(name));

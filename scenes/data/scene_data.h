@@ -66,13 +66,23 @@ struct JointSet {
   int joints = -1, weights = -1;
 };
 
+/// How a primitive's points, lines or triangles become pixels. glTF's are one pixel wide.
+struct RasterStyle {
+  traces::PolygonMode polygon_mode = traces::PolygonMode::kFill;
+  traces::LineMode line_mode = traces::LineMode::kBresenham;
+  float line_width = 1, point_size = 1;  ///< pixels
+};
+
 struct Primitive {
   std::string name;
   traces::Topology topology = traces::Topology::kTriangleList;
+  RasterStyle style;
   std::array<int, kSemantics> attributes{-1, -1, -1, -1, -1, -1};  ///< into `SceneData::arrays`; -1: absent
   int indices = -1;                                                ///< into `SceneData::arrays`; -1: none
   traces::IndexType index_type = traces::IndexType::kUint16;
   std::uint32_t count = 0;  ///< indices, or vertices without them
+  /// an index of all ones ends a strip or fan
+  bool restarts = false;
   /// some of its normals are zero: the faces of those vertices are drawn with their own
   bool partial_normals = false;
   int material = 0;

@@ -95,7 +95,8 @@ std::size_t mend_weights(std::span<JointElements> sets) {
 }
 
 std::pair<Array, Array> to_joint_arrays(JointElements set) {
-  auto& [joints, weights] = set;
+  Elements& joints = set.joints;
+  Elements& weights = set.weights;
   const std::size_t size = component_bytes(joints.component);
   for (std::size_t i = 0; i < std::size_t{4} * weights.count; ++i) {
     if (weight_at(set, i / 4, i % 4) == 0) std::memset(&joints.data[i * size], 0, size);

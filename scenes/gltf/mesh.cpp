@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -19,21 +20,17 @@ constexpr std::uint64_t kFreeGeometryBytes = std::uint64_t{1} << 28;
 constexpr std::array<const char*, kSemantics> kAttributeNames{"POSITION",   "NORMAL",     "TANGENT",
                                                               "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
 
-/// [glTF2.0 #meshes: mode]
+/// [glTF2.0 #meshes: mode] A loop is a strip that comes back to its first vertex (`close_loop`).
 traces::Topology topology(const GltfFile& file, int mode, const std::string& place) {
-  constexpr std::array<const char*, 4> kUnsupported{"POINTS", "LINES", "LINE_LOOP", "LINE_STRIP"};
   switch (mode) {
     case -1:
     case TINYGLTF_MODE_TRIANGLES: return traces::Topology::kTriangleList;
     case TINYGLTF_MODE_TRIANGLE_STRIP: return traces::Topology::kTriangleStrip;
     case TINYGLTF_MODE_TRIANGLE_FAN: return traces::Topology::kTriangleFan;
-    case TINYGLTF_MODE_POINTS:
-    case TINYGLTF_MODE_LINE:
+    case TINYGLTF_MODE_POINTS: return traces::Topology::kPointList;
+    case TINYGLTF_MODE_LINE: return traces::Topology::kLineList;
     case TINYGLTF_MODE_LINE_LOOP:
-    case TINYGLTF_MODE_LINE_STRIP:
-      throw user_error(
-          "{}: {}: primitive mode {} is not supported (TRIANGLES, TRIANGLE_STRIP and TRIANGLE_FAN are)",
-          file.path, place, kUnsupported[static_cast<std::size_t>(mode)]);
+    case TINYGLTF_MODE_LINE_STRIP: return traces::Topology::kLineStrip;
     default: throw user_error("{}: {}: primitive mode {} is not one of glTF's", file.path, place, mode);
   }
 }
@@ -68,6 +65,7 @@ bool MeshReader::read_primitive(const tinygltf::Primitive& source, const std::st
   const int positions = primitive.attributes[0];
   primitive.count = scene_.arrays[static_cast<std::size_t>(positions)].count;
   if (source.indices >= 0) read_indices(source, place, primitive);
+  if (source.mode == TINYGLTF_MODE_LINE_LOOP) close_loop(place, primitive);
   primitive.material = material(source.material, place);
   const auto [box, added] = bounds_.try_emplace(positions);
   if (added) box->second = position_bounds(scene_.arrays[static_cast<std::size_t>(positions)]);
@@ -146,6 +144,34 @@ void MeshReader::read_indices(const tinygltf::Primitive& source, const std::stri
     throw user_error("{}: {}: accessor {}: index {} is beyond {} vertices", file_.path, at, source.indices,
                      largest, primitive.count);
   primitive.count = scene_.arrays[static_cast<std::size_t>(primitive.indices)].count;
+}
+
+namespace {
+
+/// 0, 1, 2, ... of 32 bits.
+Array counted_indices(std::uint32_t count) {
+  Array array{{}, traces::Format::kUndefined, count, std::vector<std::byte>(std::size_t{count} * 4)};
+  for (std::uint32_t i = 0; i < count; ++i) std::memcpy(&array.data[std::size_t{i} * 4], &i, 4);
+  return array;
+}
+
+}  // namespace
+
+/// The indices of a loop (or its vertices, counted), and the first once more.
+void MeshReader::close_loop(const std::string& place, Primitive& primitive) {
+  if (primitive.count < 2) return;
+  if (primitive.indices < 0) {
+    require_room(std::uint64_t{primitive.count} * 4, place);
+    primitive.index_type = traces::IndexType::kUint32;
+  }
+  Array closed = primitive.indices < 0 ? counted_indices(primitive.count)
+                                       : scene_.arrays[static_cast<std::size_t>(primitive.indices)];
+  const std::size_t bytes = closed.data.size() / closed.count;
+  closed.data.reserve(closed.data.size() + bytes);
+  std::copy_n(closed.data.begin(), bytes, std::back_inserter(closed.data));
+  ++closed.count;
+  primitive.count = closed.count;
+  primitive.indices = add_array(std::move(closed), place + ".indices");
 }
 
 int MeshReader::add_array(Array array, const std::string& place) {

@@ -49,6 +49,7 @@ class MeshReader {
                                                        const std::string& place);
   [[nodiscard]] int delta_array(int accessor, std::size_t components, const std::string& place);
   void read_indices(const tinygltf::Primitive& source, const std::string& place, Primitive& primitive);
+  void close_loop(const std::string& place, Primitive& primitive);
   [[nodiscard]] int vertex_array(int accessor, Semantic semantic, const std::string& place);
   [[nodiscard]] int index_array(int accessor, const std::string& place);
   [[nodiscard]] int material(int index, const std::string& place);

@@ -132,10 +132,36 @@ void choose_modes(Variant& v, const Material& m, ShaderSet set) {
   }
 }
 
+bool draws_triangles(traces::Topology topology) {
+  switch (topology) {
+    case traces::Topology::kPointList:
+    case traces::Topology::kLineList:
+    case traces::Topology::kLineStrip: return false;
+    case traces::Topology::kTriangleList:
+    case traces::Topology::kTriangleStrip:
+    case traces::Topology::kTriangleFan: break;
+  }
+  return true;
+}
+
+/// A point or line has no face whose normal could stand for one that is missing.
+bool lacks_normals(const Primitive& primitive) {
+  return !draws_triangles(primitive.topology) &&
+         (primitive.attributes[at(Semantic::kNormal)] < 0 || primitive.partial_normals);
+}
+
 }  // namespace
 
 Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set) {
+  if (!material.unlit && lacks_normals(primitive)) {
+    Material plain = material;
+    plain.unlit = true;
+    return choose_variant(plain, primitive, set);
+  }
   Variant v;
+  if (primitive.topology == traces::Topology::kPointList ||
+      primitive.style.polygon_mode == traces::PolygonMode::kPoint)
+    v.point_size = primitive.style.point_size;
   choose_textures(v, material, primitive, set);
   choose_attributes(v, material, primitive, set);
   choose_modes(v, material, set);
@@ -170,6 +196,7 @@ std::vector<std::string> material_shader_defines(traces::ShaderStage stage, cons
     return define.starts_with("HAS_") || define == "NEEDS_POSITION";
   });
   if (variant.instanced) defines.emplace_back("INSTANCED");
+  if (variant.point_size > 0) defines.push_back(fmt::format("POINT_SIZE {:.3f}", variant.point_size));
   defines.insert(defines.end(), variant.pose_defines.begin(), variant.pose_defines.end());
   return defines;
 }

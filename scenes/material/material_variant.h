@@ -21,6 +21,7 @@ struct Variant {
   std::vector<std::string> defines;            ///< of both stages
   /// the vertex shader takes its matrices from streams that advance by instance
   bool instanced = false;
+  float point_size = 0;  ///< that the vertex shader writes; 0: none
   /// of the materials' vertex shader (scenes/record/pose_streams.h)
   std::vector<std::string> pose_defines;
   friend bool operator==(const Variant&, const Variant&) = default;
@@ -29,7 +30,8 @@ struct Variant {
 /// Which shaders a frame uses: the materials' own, the triangle-id shader, or the user's.
 enum class ShaderSet : std::uint8_t { kMaterial, kVisibility, kUser };
 
-/// The variant for a material on a primitive. For `kUser` everything that the two offer is read.
+/// The variant for a material on a primitive. Points and lines without normals are drawn without light.
+/// [glTF2.0 #point-and-line-materials] For `kUser` everything that the two offer is read.
 [[nodiscard]] Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set);
 
 /// What a stage of the materials' shaders is called in messages and in streams.

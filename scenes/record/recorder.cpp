@@ -9,6 +9,7 @@
 #include <glm/matrix.hpp>
 
 #include "models/base/error.h"
+#include "models/geometry/assembly.h"
 #include "scenes/material/frame_block.h"
 #include "scenes/record/host_pose.h"
 #include "scenes/record/post_pass.h"
@@ -61,7 +62,7 @@ Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
     : scene_(scene),
       seen_(make_view(scene, options)),
       range_(needed_range(PlacedScene(scene), seen_)),
-      moved_(range_ ? std::optional(moved(scene, *range_)) : std::nullopt),
+      moved_(range_ ? std::optional(moved(static_cast<const Placements&>(scene), *range_)) : std::nullopt),
       placed_(moved_ ? PlacedScene(scene, *moved_) : PlacedScene(scene)),
       options_(range_ ? moved(options, *range_) : options),
       view_(range_ ? make_view(placed_, options_) : seen_),
@@ -246,11 +247,16 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
   if (g.variant.instanced) add_copy_streams(p);
   const bool blended = material.see_through() && !options_.visibility;
   p.topology = primitive.topology;
+  p.primitive_restart = primitive.restarts;
+  p.polygon_mode = primitive.style.polygon_mode;
+  p.line_mode = primitive.style.line_mode;
+  p.line_width = primitive.style.line_width;
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
   p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
   p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend),
              traces::CompareOp::kLess};
   if (blended) p.blend[0] = material.layers.transmits() ? kPremultiplied : kOver;
+  else if (p.line_mode == traces::LineMode::kSmooth && !options_.visibility) p.blend[0] = kOver;
   const auto found = std::ranges::find_if(
       stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
   if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());
@@ -317,7 +323,7 @@ void Recorder::record_draw(const Instance& instance, const Geometry& g, const gl
   stream_.commands.emplace_back(
       traces::Draw{primitive.indices >= 0, primitive.count, 0, 0, copies, 0, instance.label});
   ++draws_;
-  triangles_ += traces::triangle_count(primitive.topology, primitive.count) * copies;
+  triangles_ += models::primitive_count(primitive.topology, primitive.count) * copies;
 }
 
 }  // namespace quadrille::scenes

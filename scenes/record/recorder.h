@@ -135,7 +135,8 @@ class Recorder {
   std::map<TextureKey, traces::Index> textures_;
   std::set<int> images_;  ///< of `textures_`
   /// by material, available attributes, partial normals
-  std::map<std::tuple<int, std::array<bool, kSemantics>, bool>, Variant> variants_;
+  std::map<std::tuple<int, std::array<bool, kSemantics>, bool, traces::Topology, bool, float>, Variant>
+      variants_;
   std::map<std::pair<int, std::array<bool, kTextureSlots>>, traces::Index> material_sets_;
   std::map<int, traces::Index> material_blocks_;
   /// of instances neither posed nor copied, by primitive and whether they mirror

@@ -70,8 +70,10 @@ bool is_srgb(std::size_t slot) {
 const Variant& Recorder::variant(const Primitive& primitive) {
   std::array<bool, kSemantics> available{};
   for (std::size_t i = 0; i < kSemantics; ++i) available[i] = primitive.attributes[i] >= 0;
+  const bool by_corners = primitive.style.polygon_mode == traces::PolygonMode::kPoint;
   const auto [entry, added] =
-      variants_.try_emplace({primitive.material, available, primitive.partial_normals});
+      variants_.try_emplace({primitive.material, available, primitive.partial_normals, primitive.topology,
+                             by_corners, primitive.style.point_size});
   if (added) {
     entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive,
                                    shaders_.set());

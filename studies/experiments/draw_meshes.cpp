@@ -5,6 +5,7 @@
 #include <cstring>
 #include <unordered_map>
 
+#include "models/geometry/primitive_walk.h"
 #include "pipeline/driver/frame_builder.h"
 #include "pipeline/machine/machine_config.h"
 
@@ -26,8 +27,13 @@ DrawMesh mesh_of(const hw::DrawState& draw, const models::DeviceMemory& memory) 
   DrawMesh mesh;
   mesh.instances = draw.instances;
   std::unordered_map<std::uint32_t, std::uint32_t> numbers;
-  for (std::uint32_t t = 0; t < draw.triangles(); ++t) {
-    for (const std::uint32_t position : models::triangle_vertices(draw.topology, t)) {
+  models::PrimitiveWalk walk;
+  walk.start(draw.topology, draw.count, draw.restarts);
+  const auto ends_run = [&](std::uint32_t position) {
+    return vertex_number(draw, memory, position) == models::restart_index(draw.index_bytes);
+  };
+  for (; walk.look(ends_run, [](std::uint32_t) {}); walk.advance()) {
+    for (const std::uint32_t position : walk.positions()) {
       const auto next = static_cast<std::uint32_t>(numbers.size());
       mesh.corners.push_back(numbers.emplace(vertex_number(draw, memory, position), next).first->second);
     }
@@ -44,7 +50,9 @@ std::vector<DrawMesh> draw_meshes(const traces::CommandStream& stream) {
   pipeline::build_frame(stream, machine.precision(), device);
   std::vector<DrawMesh> meshes;
   for (const hw::DrawState& draw : device.frame.draws) {
-    if (draw.triangles() > 0 && draw.instances > 0) meshes.push_back(mesh_of(draw, device.memory));
+    if (draw.primitives.assembled != models::PieceKind::kTriangle || draw.instances == 0) continue;
+    if (DrawMesh mesh = mesh_of(draw, device.memory); !mesh.corners.empty())
+      meshes.push_back(std::move(mesh));
   }
   return meshes;
 }

@@ -268,6 +268,7 @@ std::vector<std::vector<double>> frame_cycles(const std::vector<traces::CommandS
 
 std::vector<Readings> draw(const std::vector<Frame>& frames, const Setting& setting) {
   std::vector<ChildWork> works;
+  works.reserve(frames.size());
   for (const Frame& frame : frames)
     works.push_back({[&frame] { return figures_of(frame); }, {.seconds = kLongestFrameSeconds}});
   std::vector<std::string> reports(frames.size());

@@ -10,6 +10,7 @@
 #include "studies/experiments/measured_meshes.h"
 #include "studies/experiments/parameter_changes.h"
 #include "studies/experiments/triangle_mesh.h"
+#include "studies/experiments/unit_streams.h"
 
 namespace quadrille::studies::experiments {
 namespace {
@@ -43,8 +44,21 @@ std::string_view cause_of(const std::string& path) {
   return found == std::end(kAnomalies) ? std::string_view() : found->cause;
 }
 
+/// Loads of words that lie apart, stores by pixel and counts.
+traces::CommandStream storage_stream(const Setting& setting) {
+  constexpr std::uint32_t kRead = 8192, kCounts = 64;  // words
+  const std::string shader = storage_shader(fmt::format(
+      "uint at = uint(gl_FragCoord.y) * {0}u + uint(gl_FragCoord.x); uint v = b.w[at * 37u % {1}u] + at;"
+      "atomicAdd(b.w[{1}u + at % {2}u], v); b.w[{1}u + {2}u + at] = v; o = vec4(float(v % 256u) / 255.0);",
+      setting.width, kRead, kCounts));
+  return stream_of(
+      layers(setting.width, setting.height, 4, true),
+      {.fragment_shader = shader, .storage_words = kRead + kCounts + setting.width * setting.height});
+}
+
 /// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up,
-/// layers that lie behind each other, and fragments that the shader drops.
+/// layers that lie behind each other, fragments that the shader drops, lines within and beyond the guard band,
+/// points, and storage buffers.
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   constexpr std::int32_t kBeyond = 100'000;  // pixels
   constexpr int kLayers = 8;
@@ -58,6 +72,10 @@ std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   streams.push_back(stream_of(small, {.cull = traces::CullMode::kBack}));
   streams.push_back(stream_of(hiding, {.depth = true}));
   streams.push_back(stream_of(hiding, {.depth = true, .discards = true}));
+  streams.push_back(stream_of(clipped, {.topology = traces::Topology::kLineList}));
+  streams.push_back(stream_of(small, {.topology = traces::Topology::kLineList}));
+  streams.push_back(stream_of(small, {.topology = traces::Topology::kPointList}));
+  streams.push_back(storage_stream(setting));
   return streams;
 }
 

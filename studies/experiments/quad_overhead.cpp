@@ -27,6 +27,7 @@ Result quad_overhead(const Setting& setting) {
     streams.push_back(stream_of(meshes.back()));
   }
   std::vector<Frame> frames;
+  frames.reserve(streams.size());
   for (const traces::CommandStream& stream : streams) frames.push_back({&stream, {}});
   const std::vector<Readings> read = draw(frames, setting);
   Result result;

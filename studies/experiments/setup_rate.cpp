@@ -72,6 +72,7 @@ const std::vector<Rate>& rates() {
 Result setup_rate(const Setting& setting) {
   const std::vector<Kind> kinds = kinds_of(setting.width, setting.height);
   std::vector<traces::CommandStream> streams;
+  streams.reserve(std::size(kinds));
   for (const Kind& k : kinds) streams.push_back(stream_of(k.mesh, k.options));
   std::vector<Frame> frames;
   for (const Rate& rate : rates()) {

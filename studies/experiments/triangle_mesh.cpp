@@ -58,6 +58,7 @@ traces::Pipeline pipeline_of(const DrawOptions& options) {
       options.depth ? traces::Format::kR32G32B32Float : traces::Format::kR32G32Float;
   pipeline.bindings = {{0, traces::format_bytes(format), false}};
   pipeline.attributes = {{0, 0, format, 0}};
+  pipeline.topology = options.topology;
   pipeline.cull = options.cull;
   if (options.depth) pipeline.depth = {true, true, traces::CompareOp::kLess};
   if (options.blends) {
@@ -74,7 +75,7 @@ const char* fragment_shader_of(const DrawOptions& options) {
   return options.blends ? kTranslucentShader : kFragmentShader;
 }
 
-void add_texture(const DrawTexture& texture, traces::CommandStream& stream) {
+traces::TextureDescriptor add_texture(const DrawTexture& texture, traces::CommandStream& stream) {
   traces::Image image{
       "grey", traces::Format::kR8G8B8A8Unorm, texture.width, texture.height, texture.levels, {}, nullptr};
   image.texels.assign(traces::texel_bytes(image), std::byte{0x80});
@@ -82,7 +83,20 @@ void add_texture(const DrawTexture& texture, traces::CommandStream& stream) {
   traces::Sampler sampler;
   sampler.mag = sampler.min = sampler.mip = texture.filter;
   stream.samplers = {sampler};
-  stream.descriptor_sets = {{{}, {{0, static_cast<traces::Index>(stream.images.size() - 1), 0}}}};
+  return {0, static_cast<traces::Index>(stream.images.size() - 1), 0};
+}
+
+traces::StorageBinding add_storage(std::uint32_t words, traces::CommandStream& stream) {
+  stream.buffers.push_back({"words", std::vector<std::byte>(std::size_t{4} * words)});
+  return {1, static_cast<traces::Index>(stream.buffers.size() - 1), 0, 4 * words};
+}
+
+void bind_resources(const DrawOptions& options, traces::CommandStream& stream) {
+  traces::DescriptorSet set;
+  if (options.texture.width > 0) set.textures.push_back(add_texture(options.texture, stream));
+  if (options.storage_words > 0) set.buffers.push_back(add_storage(options.storage_words, stream));
+  if (set == traces::DescriptorSet{}) return;
+  stream.descriptor_sets.push_back(std::move(set));
   stream.commands.emplace_back(traces::BindDescriptorSet{0, 0});
 }
 
@@ -147,7 +161,7 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
       traces::BindIndexBuffer{1, 0, traces::IndexType::kUint32},
       traces::SetViewport{0, 0, static_cast<float>(mesh.width), static_cast<float>(mesh.height), 0, 1},
       traces::SetScissor{0, 0, mesh.width, mesh.height}};
-  if (options.texture.width > 0) add_texture(options.texture, stream);
+  bind_resources(options, stream);
   stream.commands.insert(stream.commands.end(), options.draws, draw);
   stream.commands.emplace_back(traces::EndPass{});
   traces::validate(stream);

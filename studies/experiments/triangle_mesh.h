@@ -45,13 +45,16 @@ struct DrawTexture {
 };
 
 struct DrawOptions {
+  /// what the mesh's indices are: triangles, or lines or points of the same corners
+  traces::Topology topology = traces::Topology::kTriangleList;
   traces::CullMode cull = traces::CullMode::kNone;
   bool depth = false;     ///< test "less" and write
   bool discards = false;  ///< the fragment shader drops half of its fragments
   bool blends = false;    ///< over what is there, by alpha, so that each fragment reads the colour it changes
   std::string fragment_shader{};  ///< GLSL; empty: one colour
   DrawTexture texture{};
-  std::uint32_t draws = 1;  ///< so often, each a draw of its own
+  std::uint32_t storage_words = 0;  ///< of a storage buffer at set 0, binding 1, zeros; 0: there is none
+  std::uint32_t draws = 1;          ///< so often, each a draw of its own
 };
 /// An indexed draw of the mesh; the shaders hand positions through and write one colour.
 [[nodiscard]] traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& options = {});

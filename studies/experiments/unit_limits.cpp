@@ -172,6 +172,24 @@ void add_cores(Frames& frames, std::uint32_t width, std::uint32_t height) {
              });
 }
 
+/// A tile's first half, 8 x 4 pixels, is a warp.
+void add_storage(Frames& frames, std::uint32_t width, std::uint32_t height) {
+  constexpr std::uint32_t kWordsOfLine = 32;
+  frames.add("load_store",
+             "every lane of a warp loads from a line of its own, which the first-level cache holds",
+             "warps x 32 lines / lines_per_clk / cores", covered_frame(width, height, 16),
+             {.fragment_shader = storage_shader(
+                  "o = vec4(b.w[32u * (uint(gl_FragCoord.x) % 8u + 8u * (uint(gl_FragCoord.y) % 4u))]);"),
+              .storage_words = 32 * kWordsOfLine},
+             {}, [](const Work& w, const MachineConfig& m) {
+               return w.warps * kWarpLanes / m.load_store.lines_per_clk / m.gpu.cores;
+             });
+  frames.add("l2", "every fragment adds to one word", "fragments: a slice updates a word once a cycle",
+             covered_frame(width, height, 4),
+             {.fragment_shader = storage_shader("atomicAdd(b.w[0], 1u); o = vec4(1);"), .storage_words = 4},
+             {}, [](const Work& w, const MachineConfig&) { return 4 * w.quads; });
+}
+
 void add_memory(Frames& frames, std::uint32_t width, std::uint32_t height) {
   const DrawTexture lines{8 * width, 4 * height, 1, traces::Filter::kNearest};
   frames.add("l2", "every pixel a texel in a line of its own, which only the L2 cache holds",
@@ -213,6 +231,7 @@ std::vector<LimitedFrame> limited_frames(std::uint32_t width, std::uint32_t heig
   add_raster(frames, width, height);
   add_pixels(frames, width, height);
   add_cores(frames, width, height);
+  add_storage(frames, width, height);
   add_memory(frames, width, height);
   return frames.take();
 }

@@ -28,6 +28,14 @@ traces::CommandStream blended_samples(std::uint32_t width, std::uint32_t height)
       {.blends = true, .fragment_shader = sampling_shader(texture, {.level = 0.5}), .texture = texture});
 }
 
+/// As `blended`, with a word a fragment, from one line for a warp.
+traces::CommandStream blended_loads(std::uint32_t width, std::uint32_t height) {
+  return stream_of(covered_frame(width, height, 16),
+                   {.blends = true,
+                    .fragment_shader = storage_shader("o = vec4(b.w[uint(gl_FragCoord.x) % 8u], 0, 0, 0.5);"),
+                    .storage_words = 8});
+}
+
 /// As `blended`, with a nearest sample a fragment of a texel that no other reads: all come from memory.
 traces::CommandStream blended_texels(std::uint32_t width, std::uint32_t height) {
   const DrawTexture texture{16 * width, height};
@@ -85,6 +93,9 @@ std::vector<SlackFrame> slack_frames(std::uint32_t width, std::uint32_t height) 
       {"work_distributor", by_rop, blended(width, height), slow_rop, "link.distributor_to_core.depth", 4},
       {"core", by_rop, blended(width, height), slow_rop, "core.simd_lanes", 8},
       {"texture", sampled, blended_samples(width, height), slow_rop, "texture.filter_quads_per_clk", 2},
+      {"load_store", "a word of one line a fragment, blended 16 times; limit: the ROPs, a quad in two cycles",
+       blended_loads(width, height), with(slow_rop, "load_store.lines_per_clk=2"), "load_store.lines_per_clk",
+       2},
       {"rop", by_cores, arithmetic(width, height), {}, "rop.quads_per_clk", 4},
       {"l2", sampled, blended_samples(width, height), small_l1, "l2.hit_clk", 20},
       {"memory", "texels that are read once, blended 16 times; limit: the ROPs, a quad in two cycles",

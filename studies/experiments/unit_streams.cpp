@@ -41,6 +41,14 @@ int chain_instructions(int chains, int steps) {
   return chains * (steps + 1) + kOutputs;
 }
 
+std::string storage_shader(const std::string& body) {
+  return fmt::format(R"(#version 450
+layout(location = 0) out vec4 o;
+layout(std430, set = 0, binding = 1) buffer B {{ uint w[]; }} b;
+void main() {{ {} }})",
+                     body);
+}
+
 std::string sampling_shader(const DrawTexture& texture, const TextureWalk& walk) {
   const double u = 1.0 / texture.width, v = 1.0 / texture.height;
   return fmt::format(

@@ -21,6 +21,8 @@ namespace quadrille::studies::experiments {
 /// Its warp instructions: a step of each chain, one to read the pixel's place and one to write a colour for
 /// each component that is needed.
 [[nodiscard]] int chain_instructions(int chains, int steps);
+/// A fragment shader around `body`, which reads and writes the words `b.w` and writes `o`.
+[[nodiscard]] std::string storage_shader(const std::string& body);
 /// How a fragment shader walks over its texture, in texels.
 struct TextureWalk {
   int right = 1, down = 1;  ///< farther for each pixel to the right, and down

@@ -71,6 +71,7 @@ void judge_slack(const std::vector<SlackFrame>& slack, std::span<const Readings>
 Result judged(const std::vector<LimitedFrame>& limited, const std::vector<SlackFrame>& slack,
               const Setting& setting) {
   std::vector<Frame> frames;
+  frames.reserve(limited.size());
   for (const LimitedFrame& f : limited) frames.push_back({&f.stream, f.settings});
   for (const SlackFrame& f : slack) {
     frames.push_back({&f.stream, f.settings});

@@ -245,14 +245,15 @@ double worst_jitter(const Observed& o, const glm::dmat4& matrix) {
   std::size_t n = 0;
   constexpr int kCells = FarGrid::kCount - 1;
   constexpr std::array<std::array<int, 2>, 6> kOffsets{{{0, 0}, {0, 1}, {1, 1}, {0, 0}, {1, 1}, {1, 0}}};
-  const auto measure = [&](const pipeline::RasterizedTriangle& t) {
+  const auto measure = [&](const pipeline::RasterizedPiece& t) {
     const auto cell = static_cast<int>(t.primitive) / 2;
     for (std::size_t i = 0; i < 3; ++i, ++n) {
       const auto& offset = kOffsets[3 * (t.primitive % 2) + i];
       const glm::dvec4 clip =
           matrix * glm::dvec4(FarGrid::point(cell % kCells + offset[0], cell / kCells + offset[1]));
       const double x = (clip.x / clip.w + 1) * kFarSide / 2, y = (clip.y / clip.w + 1) * kFarSide / 2;
-      worst = std::max({worst, std::abs(t.vertices[i].x / 256.0 - x), std::abs(t.vertices[i].y / 256.0 - y)});
+      worst = std::max(
+          {worst, std::abs(t.piece.vertices[i].x / 256.0 - x), std::abs(t.piece.vertices[i].y / 256.0 - y)});
     }
   };
   static_cast<void>(pipeline::render_functional_frame(o.stream, o.machine->precision(), measure));

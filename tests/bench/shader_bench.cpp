@@ -37,7 +37,7 @@ struct Machine {
 
   void run(const Program& program, LaneMask lanes) {
     warp.launch(program, constants.data(), lanes);
-    while (run_clause(warp).end == ClauseEnd::kTextures)
+    while (run_clause(warp).end == ClauseEnd::kRequests)
       for (int i = 0; i < warp.texture_count; ++i)
         write_texture_result(warp, warp.textures[static_cast<std::size_t>(i)], texels);
   }

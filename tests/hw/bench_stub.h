@@ -96,8 +96,8 @@ class StubSink final : public StubUnit {
   Tick free_ = 0;
 };
 
-/// One slice of a memory: takes a request a cycle and pushes the answer of a read or fence `latency` cycles
-/// after it took it in, in order.
+/// One slice of a memory: takes a request a cycle and pushes the answer of a read, atomic request or fence
+/// `latency` cycles after it took it in, in order.
 class StubMemory final : public StubUnit {
  public:
   StubMemory(sc_core::sc_module_name name, const Clock& clock, int latency)
@@ -116,16 +116,16 @@ class StubMemory final : public StubUnit {
     if (free_ > now || !in.ready_at(now)) return;
     const MemoryRequest request = in.pop(now);
     got.push_back({now / kCycle, request});
-    if (request.kind == MemoryRequest::Kind::kRead || request.kind == MemoryRequest::Kind::kFence)
+    if (request.kind != MemoryRequest::Kind::kWrite && request.kind != MemoryRequest::Kind::kWritePart)
       waiting_.push_back({now / kCycle + latency_, {request.line, request.tag, request.sectors}});
     free_ = after(now, 1);
   }
-  /// "cycle:kind line/sectors" of each request; kind r, w, p (in part) or f.
+  /// "cycle:kind line/sectors" of each request; kind r, w, p (in part), a (atomic) or f.
   [[nodiscard]] std::string text() const {
     std::string all;
     for (const Timed<MemoryRequest>& t : got) {
       all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle,
-                         "rwpf"[static_cast<int>(t.token.kind)], t.token.line, t.token.sectors);
+                         "rwpaf"[static_cast<int>(t.token.kind)], t.token.line, t.token.sectors);
     }
     return all;
   }

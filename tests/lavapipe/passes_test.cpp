@@ -14,7 +14,7 @@ TEST_CASE("lavapipe: five passes over attachments of six formats agree") {
     const traces::CommandStream stream = pipeline::test::passes_stream(seed, 320, 200);
     std::optional<lavapipe::Rendered> theirs;
     try {
-      theirs = lavapipe::VulkanRenderer(true).render(stream);
+      theirs = lavapipe::VulkanRenderer().render(stream);
     } catch (const UserError& error) {
       WARN("skipped: " << error.what());
       return;

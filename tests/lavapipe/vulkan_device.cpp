@@ -209,23 +209,45 @@ void VulkanDevice::choose_queue_family() {
 }
 
 void VulkanDevice::create_device() {
-  const bool has_u8_indices = device_extensions(physical_).contains(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
+  const std::set<std::string> extensions = device_extensions(physical_);
+  std::vector<const char*> enabled;
+  VkPhysicalDeviceLineRasterizationFeaturesEXT lines{};
+  lines.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_LINE_RASTERIZATION_FEATURES_EXT;
+  if (extensions.contains(VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME)) {
+    VkPhysicalDeviceFeatures2 query{};
+    query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+    query.pNext = &lines;
+    vkGetPhysicalDeviceFeatures2(physical_, &query);
+    enabled.push_back(VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME);
+    info_.line_modes = lines.bresenhamLines == VK_TRUE && lines.rectangularLines == VK_TRUE;
+  }
+  const bool has_u8_indices = extensions.contains(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
+  if (has_u8_indices) enabled.push_back(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
   VkPhysicalDeviceFeatures present{};
   vkGetPhysicalDeviceFeatures(physical_, &present);
   VkPhysicalDeviceIndexTypeUint8FeaturesEXT u8_indices{};
   u8_indices.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_INDEX_TYPE_UINT8_FEATURES_EXT;
   u8_indices.indexTypeUint8 = VK_TRUE;
+  void* const more = info_.line_modes ? &lines : nullptr;
+  u8_indices.pNext = more;
   VkPhysicalDeviceVulkan13Features features13{};
   features13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  features13.pNext = has_u8_indices ? &u8_indices : nullptr;
+  features13.pNext = has_u8_indices ? &u8_indices : more;
   features13.dynamicRendering = VK_TRUE;
   VkPhysicalDeviceFeatures2 features{};
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
   features.pNext = &features13;
   features.features.depthClamp = present.depthClamp;
+  features.features.fillModeNonSolid = present.fillModeNonSolid;
+  features.features.wideLines = present.wideLines;
+  features.features.largePoints = present.largePoints;
+  features.features.shaderClipDistance = present.shaderClipDistance;
+  features.features.shaderCullDistance = present.shaderCullDistance;
   features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
   features.features.geometryShader = present.geometryShader;      // gl_PrimitiveID in a fragment shader
   features.features.robustBufferAccess = present.robustBufferAccess;
+  features.features.fragmentStoresAndAtomics = present.fragmentStoresAndAtomics;
+  features.features.vertexPipelineStoresAndAtomics = present.vertexPipelineStoresAndAtomics;
   features.features.pipelineStatisticsQuery = present.pipelineStatisticsQuery;
   features.features.occlusionQueryPrecise = present.occlusionQueryPrecise;
 
@@ -235,14 +257,13 @@ void VulkanDevice::create_device() {
   queue.queueFamilyIndex = family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  const char* u8_extension = VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME;
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   info.pNext = &features;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = has_u8_indices ? 1 : 0;
-  info.ppEnabledExtensionNames = &u8_extension;
+  info.enabledExtensionCount = static_cast<std::uint32_t>(enabled.size());
+  info.ppEnabledExtensionNames = enabled.data();
   require(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   cleanup_.add([this] { vkDestroyDevice(device_, nullptr); });
   vkGetDeviceQueue(device_, family_, 0, &queue_);

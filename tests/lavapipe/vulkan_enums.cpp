@@ -48,11 +48,32 @@ VkSamplerAddressMode vk_wrap(traces::Wrap wrap) {
   QUADRILLE_CHECK(false, "wrap {}", static_cast<int>(wrap));
 }
 
+VkPolygonMode vk_polygon_mode(traces::PolygonMode mode) {
+  switch (mode) {
+    case traces::PolygonMode::kFill: return VK_POLYGON_MODE_FILL;
+    case traces::PolygonMode::kLine: return VK_POLYGON_MODE_LINE;
+    case traces::PolygonMode::kPoint: return VK_POLYGON_MODE_POINT;
+  }
+  QUADRILLE_CHECK(false, "polygon mode {}", static_cast<int>(mode));
+}
+
+VkLineRasterizationModeEXT vk_line_mode(traces::LineMode mode) {
+  switch (mode) {
+    case traces::LineMode::kBresenham: return VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+    case traces::LineMode::kRectangular: return VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+    case traces::LineMode::kSmooth: return VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+  }
+  QUADRILLE_CHECK(false, "line mode {}", static_cast<int>(mode));
+}
+
 VkPrimitiveTopology vk_topology(traces::Topology topology) {
   switch (topology) {
     case traces::Topology::kTriangleList: return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     case traces::Topology::kTriangleStrip: return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
     case traces::Topology::kTriangleFan: return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;
+    case traces::Topology::kPointList: return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+    case traces::Topology::kLineList: return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+    case traces::Topology::kLineStrip: return VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
   }
   QUADRILLE_CHECK(false, "topology {}", static_cast<int>(topology));
 }

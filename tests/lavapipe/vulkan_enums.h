@@ -13,6 +13,8 @@ namespace quadrille::lavapipe {
 [[nodiscard]] VkSamplerMipmapMode vk_mip_mode(traces::Filter filter);
 [[nodiscard]] VkSamplerAddressMode vk_wrap(traces::Wrap wrap);
 [[nodiscard]] VkPrimitiveTopology vk_topology(traces::Topology topology);
+[[nodiscard]] VkPolygonMode vk_polygon_mode(traces::PolygonMode mode);
+[[nodiscard]] VkLineRasterizationModeEXT vk_line_mode(traces::LineMode mode);
 [[nodiscard]] VkCullModeFlags vk_cull(traces::CullMode cull);
 [[nodiscard]] VkFrontFace vk_front(traces::FrontFace front);
 [[nodiscard]] VkCompareOp vk_compare(traces::CompareOp compare);

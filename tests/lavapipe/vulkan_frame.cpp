@@ -35,6 +35,16 @@ void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspe
                        nullptr, 0, nullptr, 1, &barrier);
 }
 
+/// Makes what programs wrote to buffers visible to everything after.
+void finish_writes(VkCommandBuffer commands) {
+  VkMemoryBarrier barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+  barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1,
+                       &barrier, 0, nullptr, 0, nullptr);
+}
+
 VkAttachmentLoadOp vk_load(traces::LoadOp op) {
   switch (op) {
     case traces::LoadOp::kClear: return VK_ATTACHMENT_LOAD_OP_CLEAR;
@@ -67,10 +77,11 @@ VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream
 
 void VulkanFrame::upload_buffers() {
   for (const traces::Buffer& source : stream_.buffers)
-    buffers_.push_back(device_.device_buffer(cleanup_, source.data,
-                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
-                                                 VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-                                                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT));
+    buffers_.push_back(
+        device_.device_buffer(cleanup_, source.data,
+                              VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                                  VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
 }
 
 void VulkanFrame::upload_images() {
@@ -218,6 +229,7 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
 
 void VulkanFrame::end_pass() {
   vkCmdEndRendering(commands_);
+  finish_writes(commands_);
   if (queries_ != nullptr) queries_->end(commands_, passes_);
   ++passes_;
   const auto make_readable = [this](traces::Index image) {
@@ -244,6 +256,24 @@ void VulkanFrame::draw(const traces::Draw& draw) {
     vkCmdDrawIndexed(commands_, draw.count, draw.instances, draw.first, draw.vertex_offset,
                      draw.first_instance);
   else vkCmdDraw(commands_, draw.count, draw.instances, draw.first, draw.first_instance);
+}
+
+void VulkanFrame::read_back_buffers(Rendered& result) const {
+  for (const traces::DescriptorSet& set : stream_.descriptor_sets) {
+    for (const traces::StorageBinding& bound : set.buffers) {
+      const std::size_t bytes = stream_.buffers[bound.buffer].data.size();
+      Cleanup scratch;
+      const HostBuffer copy = device_.buffer(scratch, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+      const VkCommandBuffer commands = device_.begin_commands(scratch);
+      const VkBufferCopy region{0, 0, bytes};
+      vkCmdCopyBuffer(commands, buffers_[bound.buffer], copy.buffer, 1, &region);
+      require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+      device_.submit(commands);
+      std::vector<std::byte>& data = result.buffers[bound.buffer];
+      data.resize(bytes);
+      std::memcpy(data.data(), copy.mapped, bytes);
+    }
+  }
 }
 
 Rendered VulkanFrame::read_back() const {
@@ -275,6 +305,7 @@ Rendered VulkanFrame::read_back() const {
   for (std::uint32_t& pixel : result.color) pixel = models::to_rgba8(source.color, pixel);
   result.depth.resize(has_depth ? pixels : 0);
   if (has_depth) std::memcpy(result.depth.data(), depth.mapped, 4 * pixels);
+  read_back_buffers(result);
   return result;
 }
 

@@ -20,7 +20,7 @@ class VulkanFrame {
               const PassQueries* queries = nullptr);
 
   void submit() const { device_.submit(commands_); }
-  /// The attachments of the last pass, as the last submission left them.
+  /// The attachments of the last pass and the storage buffers, as the last submission left them.
   [[nodiscard]] Rendered read_back() const;
 
  private:
@@ -48,6 +48,7 @@ class VulkanFrame {
   };
 
   void upload_buffers();
+  void read_back_buffers(Rendered& result) const;
   void upload_images();
   void create_samplers();
   void upload_texels(const traces::Image& source, const DeviceImage& image);

@@ -59,10 +59,10 @@ VkPipelineRasterizationStateCreateInfo raster_state(const traces::Pipeline& pipe
   VkPipelineRasterizationStateCreateInfo state{};
   state.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
   state.depthClampEnable = pipeline.depth_clamp ? VK_TRUE : VK_FALSE;
-  state.polygonMode = VK_POLYGON_MODE_FILL;
+  state.polygonMode = vk_polygon_mode(pipeline.polygon_mode);
   state.cullMode = vk_cull(pipeline.cull);
   state.frontFace = vk_front(pipeline.front);
-  state.lineWidth = 1;
+  state.lineWidth = pipeline.line_width;
   return state;
 }
 
@@ -82,6 +82,8 @@ VulkanFrame::SetShape VulkanFrame::shape_of(traces::Index set) const {
   if (set == traces::kNone) return shape;
   for (const auto& uniform : stream_.descriptor_sets[set].uniforms)
     shape[uniform.binding] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+  for (const auto& buffer : stream_.descriptor_sets[set].buffers)
+    shape[buffer.binding] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   for (const auto& texture : stream_.descriptor_sets[set].textures)
     shape[texture.binding] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   return shape;
@@ -104,12 +106,14 @@ VkDescriptorSetLayout VulkanFrame::set_layout(const SetShape& shape) {
 }
 
 void VulkanFrame::create_descriptor_sets() {
-  std::uint32_t uniforms = 1, textures = 1;
+  std::uint32_t uniforms = 1, textures = 1, buffers = 1;
   for (const auto& set : stream_.descriptor_sets) {
     uniforms += static_cast<std::uint32_t>(set.uniforms.size());
+    buffers += static_cast<std::uint32_t>(set.buffers.size());
     textures += static_cast<std::uint32_t>(set.textures.size());
   }
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms},
+                                        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, buffers},
                                         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures}};
   VkDescriptorPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
@@ -135,13 +139,15 @@ void VulkanFrame::create_descriptor_sets() {
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstSet = set;
     write.descriptorCount = 1;
-    for (const auto& uniform : source.uniforms) {
-      const VkDescriptorBufferInfo buffer{buffers_[uniform.buffer], uniform.offset, uniform.range};
-      write.dstBinding = uniform.binding;
-      write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    const auto write_block = [&](const auto& block, VkDescriptorType type) {
+      const VkDescriptorBufferInfo buffer{buffers_[block.buffer], block.offset, block.range};
+      write.dstBinding = block.binding;
+      write.descriptorType = type;
       write.pBufferInfo = &buffer;
       vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
-    }
+    };
+    for (const auto& uniform : source.uniforms) write_block(uniform, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
+    for (const auto& buffer : source.buffers) write_block(buffer, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     for (const auto& texture : source.textures) {
       const VkDescriptorImageInfo image{samplers_[texture.sampler], images_[texture.image].device.view,
                                         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
@@ -222,10 +228,15 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
   assembly.topology = vk_topology(pipeline.topology);
+  assembly.primitiveRestartEnable = pipeline.primitive_restart ? VK_TRUE : VK_FALSE;
   VkPipelineViewportStateCreateInfo viewport{};
   viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
   viewport.viewportCount = viewport.scissorCount = 1;
-  const VkPipelineRasterizationStateCreateInfo raster = raster_state(pipeline);
+  VkPipelineRasterizationStateCreateInfo raster = raster_state(pipeline);
+  VkPipelineRasterizationLineStateCreateInfoEXT lines{};
+  lines.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT;
+  lines.lineRasterizationMode = vk_line_mode(pipeline.line_mode);
+  if (device_.info().line_modes) raster.pNext = &lines;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,15 +30,18 @@ struct DeviceInfo {
   std::string api_version{};             ///< for example "1.3.230"
   bool pipeline_statistics = false;      ///< counts its stages' work (feature pipelineStatisticsQuery)
   bool precise_occlusion = false;        ///< counts samples exactly (feature occlusionQueryPrecise)
+  bool line_modes = false;               ///< chooses how lines become pixels (VK_EXT_line_rasterization)
   std::uint32_t timestamp_bits = 0;      ///< valid bits of a timestamp of the queue used; 0: it has none
   double timestamp_ns = 0;               ///< nanoseconds a tick
 };
 
-/// The attachments of the last pass, rows top to bottom.
+/// The attachments of the last pass, rows top to bottom, and what programs may have written.
 struct Rendered {
   std::uint32_t width = 0, height = 0;  ///< pixels
   std::vector<std::uint32_t> color;     ///< RGBA8 as stored (sRGB targets: encoded), red in the low byte
   std::vector<float> depth;             ///< empty when the target has none
+  /// What the buffers that a descriptor set holds as storage held at the end, by index in the stream.
+  std::map<traces::Index, std::vector<std::byte>> buffers{};
 };
 
 /// Time of one submission of the whole stream, uploads and read-back excluded.

@@ -55,6 +55,9 @@ std::uint64_t image_digest(const DeviceFrame& frame) {
     for (const std::uint32_t depth : models::detile(frame.memory, pass.depth.surface))
       hash = mix(hash, depth);
   }
+  for (const WrittenBuffer& written : frame.written_buffers)
+    for (const std::byte byte : frame.memory.read(written.address, written.bytes))
+      hash = mix(hash, static_cast<std::uint64_t>(byte));
   return hash;
 }
 

@@ -15,7 +15,20 @@ layout(location = 0) in vec4 position; layout(location = 1) in vec4 color; layou
 layout(location = 0) out vec4 v_color; layout(location = 1) out vec2 v_uv; layout(location = 2) flat out float v_index;
 void main() { gl_Position = position; v_color = color; v_uv = uv; v_index = float(gl_VertexIndex % 5) * 0.2; })";
 
-constexpr std::array<const char*, 5> kFragments{// Plain.
+/// The same with sizes of points, clip and cull distances.
+constexpr const char* kDistancesVertex = R"(#version 450
+layout(location = 0) in vec4 position; layout(location = 1) in vec4 color; layout(location = 2) in vec2 uv;
+layout(location = 0) out vec4 v_color; layout(location = 1) out vec2 v_uv; layout(location = 2) flat out float v_index;
+out gl_PerVertex { vec4 gl_Position; float gl_PointSize; float gl_ClipDistance[2]; float gl_CullDistance[1]; };
+void main() {
+  gl_Position = position; v_color = color; v_uv = uv; v_index = float(gl_VertexIndex % 5) * 0.2;
+  gl_PointSize = 12.0 * color.r - 1.0;
+  gl_ClipDistance[0] = position.x + 0.7 * position.w;
+  gl_ClipDistance[1] = color.g - 0.2;
+  gl_CullDistance[0] = 1.5 - uv.x;
+})";
+
+constexpr std::array<const char*, 6> kFragments{// Plain.
                                                 R"(#version 450
 layout(location = 0) in vec4 v_color; layout(location = 2) flat in float v_index; layout(location = 0) out vec4 o;
 void main() { o = vec4(v_color.rgb * 0.8 + 0.2 * v_index, v_color.a); })",
@@ -29,6 +42,10 @@ void main() { o = texture(t, v_uv) * v_color; })",
 layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
 layout(set = 0, binding = 0) uniform sampler2D t;
 void main() { vec4 c = texture(t, v_uv * 2.0); if (c.g < 0.5) discard; o = vec4(c.rgb, v_color.a); })",
+                                                // Of points.
+                                                R"(#version 450
+layout(location = 0) in vec4 v_color; layout(location = 1) noperspective in vec2 v_uv; layout(location = 0) out vec4 o;
+void main() { o = vec4(gl_PointCoord, fract(v_uv.x), v_color.a); })",
                                                 // Writes depth.
                                                 R"(#version 450
 layout(location = 0) in vec4 v_color; layout(location = 1) in vec2 v_uv; layout(location = 0) out vec4 o;
@@ -64,6 +81,17 @@ void add_triangle(RandomSource& random, std::vector<Vertex>& out) {
                    {random.real(0, 1), random.real(0, 1), random.real(0, 1), random.real(0, 1)},
                    {random.real(-2, 2), random.real(-2, 2)}});
   }
+}
+
+/// What is assembled, and how it is drawn: half of all pipelines draw plain lists of triangles.
+void choose_primitives(RandomSource& random, traces::Pipeline& p) {
+  if (random.integer(0, 1) == 0) return;
+  p.vertex_shader = static_cast<traces::Index>(random.integer(0, 1));
+  p.topology = static_cast<traces::Topology>(random.integer(0, 5));
+  p.polygon_mode = static_cast<traces::PolygonMode>(std::max(0, random.integer(-2, 2)));
+  p.line_mode = static_cast<traces::LineMode>(random.integer(0, 2));
+  p.line_width = random.integer(0, 2) == 0 ? random.real(1, 12) : 1.0f;
+  p.primitive_restart = !models::is_list(p.topology) && random.integer(0, 1) == 0;
 }
 
 traces::Pipeline random_pipeline(RandomSource& random, traces::Index fragment) {
@@ -108,8 +136,10 @@ void add_texture(RandomSource& random, traces::CommandStream& stream) {
 const std::vector<traces::Shader>& shaders() {
   static const std::vector<traces::Shader> all = [] {
     std::vector<traces::Shader> s;
-    s.push_back({"random.vert", traces::ShaderStage::kVertex,
-                 scenes::compile_glsl(kVertex, traces::ShaderStage::kVertex, "random.vert")});
+    for (const char* text : {kVertex, kDistancesVertex}) {
+      s.push_back({"random.vert", traces::ShaderStage::kVertex,
+                   scenes::compile_glsl(text, traces::ShaderStage::kVertex, "random.vert")});
+    }
     for (const char* text : kFragments) {
       s.push_back({"random.frag", traces::ShaderStage::kFragment,
                    scenes::compile_glsl(text, traces::ShaderStage::kFragment, "random.frag")});
@@ -122,7 +152,7 @@ const std::vector<traces::Shader>& shaders() {
 }  // namespace
 
 traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape) {
-  RandomSource random(seed);
+  RandomSource random(seed), primitives(seed + 1);
   traces::CommandStream stream;
   stream.name = "random";
   stream.shaders = shaders();
@@ -133,7 +163,8 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
   stream.commands.push_back(traces::SetScissor{0, 0, shape.width, shape.height});
   for (int d = 0; d < shape.draws; ++d) {
     stream.pipelines.push_back(random_pipeline(
-        random, static_cast<traces::Index>(1 + random.integer(0, static_cast<int>(kFragments.size()) - 1))));
+        random, static_cast<traces::Index>(2 + random.integer(0, static_cast<int>(kFragments.size()) - 1))));
+    choose_primitives(primitives, stream.pipelines.back());
     stream.commands.push_back(traces::BindPipeline{static_cast<traces::Index>(stream.pipelines.size() - 1)});
     stream.commands.push_back(traces::BindDescriptorSet{0, 0});
     std::vector<Vertex> vertices;
@@ -150,6 +181,10 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
         const int index = random.integer(0, 4) == 0 ? random.integer(0, static_cast<int>(draw.count) - 1) : i;
         indices.push_back(static_cast<std::uint16_t>(index));
       }
+      if (stream.pipelines.back().primitive_restart) {
+        for (std::uint16_t& index : indices)
+          index = primitives.integer(0, 6) == 0 ? std::uint16_t{0xffff} : index;
+      }
       stream.buffers.push_back({"indices", bytes_of(indices.data(), indices.size() * 2)});
       stream.commands.push_back(traces::BindIndexBuffer{static_cast<traces::Index>(stream.buffers.size() - 1),
                                                         0, traces::IndexType::kUint16});
@@ -158,6 +193,18 @@ traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape
     stream.commands.push_back(draw);
   }
   stream.commands.push_back(traces::EndPass{});
+  traces::validate(stream);
+  return stream;
+}
+
+traces::CommandStream random_primitives(std::uint64_t seed) {
+  traces::CommandStream stream =
+      random_stream(seed, {.width = 160, .height = 96, .draws = 10, .triangles = 5});
+  for (traces::Pipeline& p : stream.pipelines) {
+    p.fragment_shader = 2;  // the plain one
+    p.depth = {};
+    p.blend[0] = {};
+  }
   traces::validate(stream);
   return stream;
 }

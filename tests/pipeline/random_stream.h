@@ -16,5 +16,8 @@ struct StreamShape {
 
 /// The same seed gives the same stream. It is validated.
 [[nodiscard]] traces::CommandStream random_stream(std::uint64_t seed, const StreamShape& shape = {});
+/// Draws of every topology, polygon mode and mode and width of lines, with sizes of points, clip and cull
+/// distances and restart, one behind the other without depth test.
+[[nodiscard]] traces::CommandStream random_primitives(std::uint64_t seed);
 
 }  // namespace quadrille::pipeline::test

@@ -3,10 +3,12 @@
 #include "models/reference/compare.h"
 #include "scenes/scene.h"
 #include "studies/given_reference.h"
+#include "tests/pipeline/random_stream.h"
 #include "tests/scenes/scene_folder.h"
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <filesystem>
 
 using namespace quadrille;
@@ -44,8 +46,24 @@ void check_scene(const std::string& scene) {
 TEST_CASE("machine: built-in scenes equal the reference in given mode") {
   for (const char* scene :
        {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines", "builtin:overdraw",
-        "builtin:fill", "builtin:flag", "builtin:courtyard", "builtin:materials"})
+        "builtin:fill", "builtin:flag", "builtin:courtyard", "builtin:materials", "builtin:primitives"})
     check_scene(scene);
+}
+
+TEST_CASE("machine: random points, lines and triangles equal the reference in given mode") {
+  std::size_t pixels = 0, other = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    const auto both = studies::render_with_reference(pipeline::test::random_primitives(seed), {});
+    const auto& ours = both.machine;
+    const auto difference = ref::compare_images({ours.width, ours.height, ours.color},
+                                                {ours.width, ours.height, both.reference.color});
+    pixels += ours.color.size();
+    other += ours.color.size() - static_cast<std::size_t>(std::lround(
+                                     difference.fraction_within(2) * static_cast<double>(ours.color.size())));
+    INFO("seed " << seed << ": within 2: " << difference.fraction_within(2));
+    CHECK(difference.bad_blocks == 0);
+  }
+  CHECK(static_cast<double>(other) <= 0.001 * static_cast<double>(pixels));
 }
 
 TEST_CASE("machine: real scenes equal the reference in given mode") {

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstring>
+
 #include "models/base/error.h"
 #include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
@@ -54,12 +56,30 @@ TEST_CASE("gltf: indices of one byte stay bytes, and one that is too large is na
                Contains("meshes[0].primitives[0].indices: accessor 1: index 3 is beyond 3 vertices"));
 }
 
-TEST_CASE("gltf: points and lines are refused by name") {
-  REQUIRE_THAT(load_result(triangle_gltf(R"(,"mode":0)")),
-               Contains("meshes[0].primitives[0]: primitive mode POINTS is not supported"));
-  REQUIRE_THAT(load_result(triangle_gltf(R"(,"mode":3)")), Contains("LINE_STRIP is not supported"));
+TEST_CASE("gltf: all modes are read, and others refused") {
+  using traces::Topology;
+  const auto read = [](int mode) {
+    return load(triangle_gltf(fmt::format(R"(,"mode":{})", mode))).primitives[0];
+  };
+  REQUIRE(read(0).topology == Topology::kPointList);
+  REQUIRE(read(1).topology == Topology::kLineList);
+  REQUIRE(read(2).topology == Topology::kLineStrip);
+  REQUIRE(read(3).topology == Topology::kLineStrip);
+  REQUIRE(read(4).topology == Topology::kTriangleList);
+  REQUIRE(read(5).topology == Topology::kTriangleStrip);
+  REQUIRE(read(6).topology == Topology::kTriangleFan);
+  REQUIRE(read(3).count == 3);
   REQUIRE_THAT(load_result(triangle_gltf(R"(,"mode":9)")), Contains("mode 9 is not one of glTF's"));
-  REQUIRE(load(triangle_gltf(R"(,"mode":6)")).primitives[0].topology == traces::Topology::kTriangleFan);
+}
+
+TEST_CASE("gltf: a loop is a strip that comes back to its first vertex") {
+  const SceneData plain = load(triangle_gltf(R"(,"mode":2)"));
+  REQUIRE(plain.primitives[0].count == 4);
+  REQUIRE(plain.primitives[0].index_type == traces::IndexType::kUint32);
+  const Array& counted = plain.arrays[static_cast<std::size_t>(plain.primitives[0].indices)];
+  std::vector<std::uint32_t> indices(counted.count);
+  std::memcpy(indices.data(), counted.data.data(), counted.data.size());
+  REQUIRE(indices == std::vector<std::uint32_t>{0, 1, 2, 0});
 }
 
 TEST_CASE("gltf: a required extension that is lacking is named") {

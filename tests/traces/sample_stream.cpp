@@ -48,18 +48,17 @@ Image random_image(Dice& dice) {
 }
 
 Pipeline random_pipeline(Dice& dice) {
-  Pipeline p{dice.name(),
-             0,
-             1,
-             {{0, 12, false}, {3, 8, true}},
-             {{0, 0, Format::kR32G32B32Float, 0}, {7, 3, Format::kR16G16B16A16Unorm, 0}},
-             {},
-             {},
-             {},
-             {},
-             {},
-             {}};
-  p.topology = dice.choice(Topology::kTriangleFan);
+  Pipeline p;
+  p.name = dice.name();
+  p.vertex_shader = 0;
+  p.fragment_shader = 1;
+  p.bindings = {{0, 12, false}, {3, 8, true}};
+  p.attributes = {{0, 0, Format::kR32G32B32Float, 0}, {7, 3, Format::kR16G16B16A16Unorm, 0}};
+  p.topology = dice.choice(Topology::kLineStrip);
+  p.primitive_restart = !models::is_list(p.topology) && dice.coin();
+  p.polygon_mode = dice.choice(PolygonMode::kPoint);
+  p.line_mode = dice.choice(LineMode::kSmooth);
+  p.line_width = 1.0f + static_cast<float>(dice.below(63));
   p.cull = dice.choice(CullMode::kBack);
   p.front = dice.choice(FrontFace::kClockwise);
   p.depth_clamp = dice.coin();
@@ -116,17 +115,14 @@ CommandStream small_stream() {
   s.samplers = {Sampler{}};
   s.shaders = {{"v", ShaderStage::kVertex, {kSpirvMagic, 0, 0, 0, 0}},
                {"f", ShaderStage::kFragment, {kSpirvMagic, 0, 0, 0, 0}}};
-  s.pipelines = {{"p",
-                  0,
-                  1,
-                  {{0, 12, false}},
-                  {{0, 0, Format::kR32G32B32Float, 0}},
-                  {},
-                  {},
-                  {},
-                  {},
-                  {true, true, CompareOp::kLess},
-                  {}}};
+  Pipeline p;
+  p.name = "p";
+  p.vertex_shader = 0;
+  p.fragment_shader = 1;
+  p.bindings = {{0, 12, false}};
+  p.attributes = {{0, 0, Format::kR32G32B32Float, 0}};
+  p.depth = {true, true, CompareOp::kLess};
+  s.pipelines = {p};
   s.descriptor_sets = {{{{0, 2, 16, 48}}, {{1, 0, 0}}}};
   const BeginPass pass = make_pass(s, {64, 32});
   s.commands = {pass,

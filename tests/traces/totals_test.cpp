@@ -5,12 +5,19 @@
 
 using namespace quadrille::traces;
 
-TEST_CASE("totals: triangles by topology") {
-  REQUIRE(triangle_count(Topology::kTriangleList, 8) == 2);
-  REQUIRE(triangle_count(Topology::kTriangleStrip, 8) == 6);
-  REQUIRE(triangle_count(Topology::kTriangleFan, 3) == 1);
-  REQUIRE(triangle_count(Topology::kTriangleStrip, 2) == 0);
-  REQUIRE(triangle_count(Topology::kTriangleList, 0) == 0);
+TEST_CASE("totals: triangles, lines and points by topology") {
+  CommandStream stream = small_stream();
+  const auto totals = [&](Topology topology) {
+    for (Pipeline& pipeline : stream.pipelines) pipeline.topology = topology;
+    return stream_totals(stream);
+  };
+  REQUIRE(totals(Topology::kTriangleList).triangles == 2);
+  REQUIRE(totals(Topology::kTriangleStrip).triangles == 2);
+  REQUIRE(totals(Topology::kPointList).points == 6);
+  REQUIRE(totals(Topology::kLineList).lines == 2);
+  REQUIRE(totals(Topology::kLineStrip).lines == 4);
+  REQUIRE(totals(Topology::kLineStrip).triangles == 0);
+  REQUIRE(trace_info(stream).find("lines           4") != std::string::npos);
 }
 
 TEST_CASE("totals: draws, instances and bytes are counted") {

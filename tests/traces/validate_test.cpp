@@ -46,6 +46,31 @@ TEST_CASE("validate: the samples are valid") {
   for (std::uint32_t seed = 0; seed < 300; ++seed) REQUIRE(refusal(random_stream(seed)) == "accepted");
 }
 
+TEST_CASE("validate: primitives") {
+  expect({
+      {"pipeline 0 '", [](auto& s) { s.pipelines[0].line_width = kNan; }},
+      {"line width 0.5 is outside 1..64", [](auto& s) { s.pipelines[0].line_width = 0.5f; }},
+      {"line width 65 is outside 1..64", [](auto& s) { s.pipelines[0].line_width = 65; }},
+      {"primitive restart in a list", [](auto& s) { s.pipelines[0].primitive_restart = true; }},
+      {"primitive restart in a list",
+       [](auto& s) {
+         s.pipelines[0].topology = Topology::kPointList;
+         s.pipelines[0].primitive_restart = true;
+       }},
+  });
+}
+
+TEST_CASE("validate: an index that ends a strip fetches nothing") {
+  CommandStream stream = small_stream();
+  stream.pipelines[0].topology = Topology::kLineStrip;
+  for (Buffer& buffer : stream.buffers) {
+    if (buffer.data.size() == 3) buffer.data[1] = std::byte{0xff};  // the indices, of 8 bits
+  }
+  CHECK(refusal(stream) != "accepted");
+  stream.pipelines[0].primitive_restart = true;
+  CHECK(refusal(stream) == "accepted");
+}
+
 TEST_CASE("validate: objects") {
   expect({
       {"image 0 'white': 12 bytes of texels where 2x2", [](auto& s) { s.images[0].height = 2; }},

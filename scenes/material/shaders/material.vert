@@ -50,6 +50,9 @@ void main() {
 #endif
   vec4 world = MODEL * vec4(at, 1.0);
   gl_Position = frame.view_projection * world;
+#ifdef POINT_SIZE
+  gl_PointSize = POINT_SIZE;
+#endif
 #ifdef NEEDS_POSITION
   v_position = world.xyz - frame.eye.xyz;
 #endif

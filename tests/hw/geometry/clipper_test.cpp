@@ -1,4 +1,4 @@
-/// Clipper: one triangle a cycle, the time of a cut, and what becomes of each triangle.
+/// Clipper: one triangle, line or point a cycle, the time of a cut, and what becomes of each primitive.
 #include "hw/geometry/clipper.h"
 #include "tests/hw/bench_stub.h"
 
@@ -19,7 +19,9 @@ enum Shape : std::uint8_t { kInside, kOneOut, kTwoOut, kBeside, kNan, kSmall };
 struct ClipBench final : Bench {
   struct Setup {
     std::vector<Timed<PrimitiveToken>> primitives;
-    int clip_clk = 12, triangles_per_clk = 1;
+    int clip_clk = 12, triangles_per_clk = 1, line_clip_clk = 4;
+    models::PrimitiveState state{};
+    models::CullMode cull = models::CullMode::kNone;
     Pace pace{};
     LinkSpec out{.depth = 64};
     int engines = 1;
@@ -35,6 +37,9 @@ struct ClipBench final : Bench {
     DrawState draw;
     draw.viewport = {0, 0, 64, 64, 0, 1};
     draw.clip = models::make_clip_state(draw.viewport, false, 8);
+    draw.primitives = s.state;
+    draw.setup.cull = s.cull;
+    draw.vertex.program = &program;
     frame.draws = {draw};
     batches[0].outputs.resize(4);
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -53,6 +58,7 @@ struct ClipBench final : Bench {
     }
     params.clip_clk.set(s.clip_clk);
     params.triangles_per_clk.set(s.triangles_per_clk);
+    params.line_clip_clk.set(s.line_clip_clk);
     unit = std::make_unique<Clipper>(
         "unit", context({.partitions = s.engines, .engines = s.engines}), params, batches,
         s.engines == 1 ? std::vector{&pieces} : std::vector{&pieces, &second_pieces});
@@ -72,6 +78,7 @@ struct ClipBench final : Bench {
         batches[0].outputs[c][3 * shape + i] = std::bit_cast<std::uint32_t>(position[c]);
     }
   }
+  models::Program program;
   Clipper::Params params;
   Store<BatchSlot> batches;
   Store<ClippedPiece> pieces, second_pieces;
@@ -144,6 +151,56 @@ TEST_CASE("clipper: dropped triangles cost a cycle each, and every triangle is a
                            counter(u, "pieces"));
       });
   CHECK(text == "4:0 17:1 18:1 31:2 of 6: 1 passed 2 clipped 2 rejected 1 not finite; 3 pieces");
+}
+
+TEST_CASE("clipper: a cut line takes line_clip_clk cycles and leaves as one") {
+  // Lines between the first two corners: of these, none, one and both lie before the near plane.
+  for (const int clk : {1, 4, 40}) {
+    auto s = shapes({kInside, kOneOut, kTwoOut, kInside});
+    s.state.assembled = models::PieceKind::kLine;
+    s.line_clip_clk = clk;
+    CHECK(cycles(s) == fmt::format("2:0 {}:1 {}:0", 3 + clk, 5 + clk));
+  }
+}
+
+TEST_CASE("clipper: n lines and n points take n over triangles_per_clk, cut lines line_clip_clk and one") {
+  constexpr int kCount = 600;
+  for (const auto kind : {models::PieceKind::kLine, models::PieceKind::kPoint}) {
+    for (const Shape shape : {kInside, kBeside, kNan, kOneOut}) {
+      auto s = shapes(std::vector<Shape>(kCount, shape));
+      s.state.assembled = kind;
+      s.pace = {.from = 0, .period = 0};
+      s.primitives.push_back({0, {TokenKind::kDrawEnd, DrawId(0), 0, 0, {}}});
+      const auto text = run<ClipBench>(s, [&](const ClipBench& b) {
+        return fmt::format("{} {} {}", b.sink->got.back().cycle, counter(*b.unit, "lines"),
+                           counter(*b.unit, "points"));
+      });
+      const bool line = kind == models::PieceKind::kLine;
+      CHECK(std::stod(text) == Approx(kCount * (line && shape == kOneOut ? 4 + 1 : 1)).epsilon(0.02));
+      CHECK(text.ends_with(line ? " 600 0" : " 0 600"));
+    }
+  }
+}
+
+TEST_CASE("clipper: a triangle's edges and corners leave one a cycle, in the place of the triangle") {
+  const auto text = [](models::PolygonMode mode, models::CullMode cull) {
+    auto s = shapes({kInside, kOneOut, kBeside, kInside});
+    s.state.polygon_mode = mode;
+    s.cull = cull;
+    return run<ClipBench>(s, [](const ClipBench& b) {
+      const Unit& u = *b.unit;
+      return fmt::format("{} | {} outlined {} clipped {} culled {} rejected {} pieces", b.sink->text(),
+                         counter(u, "outlined"), counter(u, "clipped"), counter(u, "culled"),
+                         counter(u, "rejected"), counter(u, "pieces"));
+    });
+  };
+  // Two of the second triangle's edges are cut, 4 cycles each; of its corners one is before the near plane.
+  CHECK(text(models::PolygonMode::kLine, models::CullMode::kNone) ==
+        "2:0 3:0 4:0 13:1 14:1 15:1 17:0 18:0 19:0 | 2 outlined 1 clipped 0 culled 1 rejected 9 pieces");
+  CHECK(text(models::PolygonMode::kPoint, models::CullMode::kNone) ==
+        "2:0 3:0 4:0 5:1 6:1 8:0 9:0 10:0 | 3 outlined 0 clipped 0 culled 1 rejected 8 pieces");
+  CHECK(text(models::PolygonMode::kLine, models::CullMode::kFront) ==
+        " | 0 outlined 0 clipped 3 culled 1 rejected 0 pieces");
 }
 
 TEST_CASE("clipper: each engine gets the triangles that touch its part of the screen, and all boundaries") {

@@ -16,7 +16,8 @@ struct SetupBench final : Bench {
   struct Setup {
     std::vector<Timed<ClippedToken>> pieces;
     std::vector<Timed<ReleaseToken>> sync_0{}, sync_1{};
-    double drawn_per_clk = 1, culled_per_clk = 1;
+    double drawn_per_clk = 1, culled_per_clk = 1, lines_per_clk = 0.5, points_per_clk = 1;
+    models::PrimitiveState primitives{};
     std::size_t slots = 16;
     Pace pace{};
     LinkSpec out{.depth = 64};
@@ -26,8 +27,9 @@ struct SetupBench final : Bench {
       : Bench(driver, v), batches(1), pieces(5), triangles(s.slots) {
     DrawState draw;
     program.varyings.resize(1);
-    draw.vertex_program = &program;
+    draw.vertex.program = &program;
     draw.setup.cull = models::CullMode::kBack;
+    draw.primitives = s.primitives;
     draw.setup.scissor = {0, 0, 64, 64};
     frame.draws = {draw};
     batches[0].outputs.resize(5);
@@ -40,6 +42,8 @@ struct SetupBench final : Bench {
     piece(4, {0, 0}, {0, 64}, {64, 0});
     params.drawn_per_clk.set(s.drawn_per_clk);
     params.culled_per_clk.set(s.culled_per_clk);
+    params.lines_per_clk.set(s.lines_per_clk);
+    params.points_per_clk.set(s.points_per_clk);
     unit = std::make_unique<TriangleSetupUnit>("unit", context({.partitions = 2}), params,
                                                TriangleSetupUnit::Stores{batches, pieces, triangles});
     add(*unit);
@@ -113,6 +117,30 @@ TEST_CASE(
     CHECK(last_of(0, kCount, rate, other) == Approx(kCount / rate).epsilon(0.02));
     for (const std::uint32_t kind : {1u, 2u, 3u, 4u})
       CHECK(last_of(kind, kCount, other, rate) == Approx(kCount / rate).epsilon(0.02));
+  }
+}
+
+TEST_CASE("triangle_setup: n lines or points take n over their rate, and are counted") {
+  constexpr int kCount = 600;
+  for (const auto kind : {models::PieceKind::kLine, models::PieceKind::kPoint}) {
+    for (const double rate : {0.25, 0.5, 1.0, 2.0}) {
+      const bool lines = kind == models::PieceKind::kLine;
+      SetupBench::Setup s{.pieces = {},
+                          .lines_per_clk = lines ? rate : 0.125,
+                          .points_per_clk = lines ? 0.125 : rate,
+                          .primitives = {.assembled = kind},
+                          .slots = 1024,
+                          .pace = {.period = 0},
+                          .out = {.depth = 64, .width = 8}};
+      for (int i = 0; i < kCount; ++i) s.pieces.push_back({0, piece(0)});
+      s.pieces.push_back({0, boundary(TokenKind::kDrawEnd)});
+      const auto text = run<SetupBench>(s, [](const SetupBench& b) {
+        return fmt::format("{} {} {}", b.kept->got.back().cycle, counter(*b.unit, "lines"),
+                           counter(*b.unit, "points"));
+      });
+      CHECK(std::stod(text) == Approx(kCount / rate).epsilon(0.02));
+      CHECK(text.ends_with(lines ? " 600 0" : " 0 600"));
+    }
   }
 }
 

@@ -19,6 +19,8 @@ struct FetchBench final : Bench {
   struct Setup {
     std::uint32_t triangles = 2;
     std::vector<std::uint16_t> indices{};  ///< empty: a draw without an index buffer
+    models::Topology topology = models::Topology::kTriangleList;
+    bool restarts = false;
     int indices_per_clk = 4, attributes_per_clk = 8;
     std::uint32_t slots = 8;
     std::vector<Timed<ReleaseToken>> releases{};
@@ -30,8 +32,11 @@ struct FetchBench final : Bench {
     program.vertex_inputs.resize(3);
     const std::uint32_t vertices = 3 * s.triangles;
     DrawState draw;
-    draw.vertex_program = &program;
-    draw.count = 3 * s.triangles;
+    draw.vertex.program = &program;
+    draw.count = s.indices.empty() ? 3 * s.triangles : static_cast<std::uint32_t>(s.indices.size());
+    draw.topology = s.topology;
+    draw.restarts = s.restarts;
+    draw.primitives.assembled = models::assembled_kind(s.topology);
     AttributeFetch position;
     position.stride = 12;
     position.input_row = {0, 1, 2, -1};
@@ -130,6 +135,55 @@ TEST_CASE("vertex_fetch: counters of a draw that shares corners") {
     return all;
   });
   CHECK(text == "indices 6 vertices 4 attribute_fetches 4 batches 1 triangles 2 ");
+}
+
+TEST_CASE("vertex_fetch: points and lines fill a batch with 32 vertices of their own") {
+  // 3000 vertices: of points and of lines that share none, 32 vertices a batch, but no more than 32 primitives.
+  for (const auto& [topology, each, batches] :
+       {std::tuple{models::Topology::kPointList, 1u, 94}, {models::Topology::kLineList, 2u, 94}}) {
+    for (const auto& [indices, attributes, cycles] : {std::tuple{4, 8, 8}, {32, 8, 4}, {2, 64, 16}}) {
+      const FetchBench::Setup s{.triangles = 1000,
+                                .topology = topology,
+                                .indices_per_clk = indices,
+                                .attributes_per_clk = attributes,
+                                .slots = 128,
+                                .pace = {.period = 0}};
+      const auto text = run<FetchBench>(s, [](const FetchBench& b) {
+        return fmt::format("{} {} batches {} primitives {} indices {} vertices", b.batch_cycles(),
+                           counter(*b.unit, "batches"), counter(*b.unit, "triangles"),
+                           counter(*b.unit, "indices"), counter(*b.unit, "vertices"));
+      });
+      CHECK(std::stod(text) == Approx((batches - 1) * cycles).epsilon(0.02));
+      CHECK(text.ends_with(
+          fmt::format(" {} batches {} primitives 3000 indices 3000 vertices", batches, 3000 / each)));
+    }
+  }
+}
+
+TEST_CASE("vertex_fetch: a line strip names each inner vertex twice and shades it once") {
+  const FetchBench::Setup s{
+      .triangles = 4, .indices = {5, 1, 3, 0}, .topology = models::Topology::kLineStrip};
+  const auto text = run<FetchBench>(s, [](const FetchBench& b) {
+    std::string all = fmt::format("{} lanes, {} indices:", b.batches[0].lanes, counter(*b.unit, "indices"));
+    for (const BatchSlot::Triangle& t : b.batches[0].triangles)
+      all += fmt::format(" [{} {} {}]", t.corner[0].lane, t.corner[1].lane, t.corner[2].lane);
+    return all;
+  });
+  CHECK(text == "4 lanes, 6 indices: [0 1 1] [1 2 2] [2 3 3]");
+}
+
+TEST_CASE("vertex_fetch: a special index ends a strip and costs a look-up") {
+  const FetchBench::Setup s{.triangles = 4,
+                            .indices = {0xffff, 0, 1, 2, 0xffff, 3, 4, 5, 6, 0xffff},
+                            .topology = models::Topology::kTriangleStrip,
+                            .restarts = true};
+  const auto text = run<FetchBench>(s, [](const FetchBench& b) {
+    std::string all = fmt::format("{} lanes, {} indices:", b.batches[0].lanes, counter(*b.unit, "indices"));
+    for (const BatchSlot::Triangle& t : b.batches[0].triangles)
+      all += fmt::format(" {}[{} {} {}]", t.primitive, t.corner[0].lane, t.corner[1].lane, t.corner[2].lane);
+    return all;
+  });
+  CHECK(text == "7 lanes, 12 indices: 0[0 1 2] 1[3 4 5] 2[4 6 5]");
 }
 
 TEST_CASE("vertex_fetch: a batch of 30 vertices takes the slower of its indices and its attributes") {

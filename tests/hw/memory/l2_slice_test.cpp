@@ -51,6 +51,9 @@ MemoryRequest write(std::uint32_t line, std::uint8_t sectors = 0xf) {
 MemoryRequest write_part(std::uint32_t line, std::uint8_t sectors) {
   return {line, 0, sectors, Kind::kWritePart};
 }
+MemoryRequest atomic(std::uint32_t line, std::uint32_t tag, std::uint8_t sectors = 0x1) {
+  return {line, tag, sectors, Kind::kAtomic};
+}
 MemoryRequest fence(std::uint32_t tag) { return {0, tag, 0, Kind::kFence}; }
 std::string both(const L2Bench& b) { return b.sinks[0]->text() + " | " + b.sinks[1]->text(); }
 
@@ -123,6 +126,23 @@ TEST_CASE("l2_slice: a read of a sector that is being completed waits for it") {
   const L2Bench::Setup s{.client_0 = {{0, write_part(3, 0x1)}, {1, read(3, 1, 0x1)}}};
   CHECK(run<L2Bench>(s, [](const L2Bench& b) { return b.sinks[0]->text() + " " + b.memory->text(); }) ==
         "74:1 22:r3/1");
+}
+
+TEST_CASE("l2_slice: atomic requests are answered as reads are, one a cycle, and leave the sector dirty") {
+  // One line: the read of another evicts it.
+  const L2Bench::Setup s{.client_0 = {{0, atomic(3, 1)},
+                                      {200, atomic(3, 2)},
+                                      {200, atomic(3, 3)},
+                                      {200, atomic(3, 4)},
+                                      {400, read(5, 5)}},
+                         .lines = 1,
+                         .ways = 1};
+  const auto text = run<L2Bench>(s, [](const L2Bench& b) {
+    return fmt::format("{} | {} read {} written {} back {}", b.sinks[0]->text(), b.memory->text(),
+                       counter(*b.unit, "read_bytes"), counter(*b.unit, "write_bytes"),
+                       counter(*b.unit, "writeback_bytes"));
+  });
+  CHECK(text == "74:1 222:2 223:3 224:4 475:5 | 22:r3/1 422:w3/1 423:r5/f read 256 written 128 back 32");
 }
 
 TEST_CASE("l2_slice: clients take turns, one look-up a cycle") {

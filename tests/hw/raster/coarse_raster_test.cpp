@@ -59,7 +59,7 @@ struct CoarseBench final : Bench {
     for (const models::CompareOp op : {models::CompareOp::kLess, models::CompareOp::kGreater,
                                        models::CompareOp::kLess, models::CompareOp::kGreater}) {
       DrawState draw;
-      draw.fragment_program = &program;
+      draw.fragment.program = &program;
       draw.depth_test = true;
       draw.depth_write = frame.draws.size() != 3;
       draw.depth_compare = op;

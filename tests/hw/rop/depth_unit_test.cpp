@@ -37,7 +37,7 @@ struct DepthBench final : Bench {
     frame.passes = {pass};
     frame.draws.resize(4);
     for (DrawState& draw : frame.draws) {
-      draw.fragment_program = &program;
+      draw.fragment.program = &program;
       draw.depth_test = draw.depth_write = true;
     }
     frame.draws[1].late_depth = true;

@@ -34,9 +34,9 @@ struct CoreBench final : Bench {
     fragment_program =
         models::assemble(".stage fragment\n.texture set=0 binding=0\n" + s.code + "end\n", "fragment");
     DrawState draw;
-    draw.vertex_program = &vertex_program;
-    draw.fragment_program = &fragment_program;
-    draw.fragment_constants.assign(fragment_program.constants.words, 0);
+    draw.vertex.program = &vertex_program;
+    draw.fragment.program = &fragment_program;
+    draw.fragment.constants.assign(fragment_program.constants.words, 0);
     frame.draws = {draw};
     triangles[0] = flat_triangle({glm::ivec2{0, 0}, {0, 40}, {40, 0}});
     triangles[0].varyings.assign(3, 0);
@@ -57,8 +57,9 @@ struct CoreBench final : Bench {
     params.scheduler.set(*s.scheduler);
     params.warp_slots.set(s.warp_slots);
     params.register_rows.set(s.rows);
-    unit = std::make_unique<ShaderCore>(
-        "unit", context(), params, ShaderCore::Stores{slots, batches, {&warps}, {&triangles}}, s.textured);
+    unit = std::make_unique<ShaderCore>("unit", context(), params,
+                                        ShaderCore::Stores{slots, batches, {&warps}, {&triangles}},
+                                        ShaderCore::Neighbours{s.textured, false});
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in, s.fragment);
@@ -291,7 +292,7 @@ TEST_CASE(
   // (five).
   const CoreBench::Setup s{.code = "tex r0, t0, r8, r9\noutput out0, r0\n",
                            .fragment = fragments(5, 2),
-                           .texels = {{50, {1, DrawId(0), false}}, {100, {0, DrawId(0), false}}},
+                           .texels = {{50, {1, DrawId(0)}}, {100, {0, DrawId(0)}}},
                            .simds = 1,
                            .textured = true};
   CHECK(run<CoreBench>(s, [](const CoreBench& b) {

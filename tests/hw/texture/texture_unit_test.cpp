@@ -28,7 +28,7 @@ struct TextureBench final : Bench {
     models::tile_texture(device, texture.view, texels);
     texture.sampler.mag = texture.sampler.min = texture.sampler.mip = models::Filter::kNearest;
     DrawState draw;
-    draw.fragment_textures = {texture};
+    draw.fragment.textures = {texture};
     frame.draws = {draw};
     for (std::uint32_t i = 0; i < 4; ++i) {
       models::TextureRequest& request = slots[i].warp.textures[0];
@@ -56,7 +56,7 @@ struct TextureBench final : Bench {
   StubMemory* memory = nullptr;
 };
 
-TextureToken slot(std::uint32_t i) { return {i, DrawId(0), false}; }
+TextureToken slot(std::uint32_t i) { return {i, DrawId(0), models::ShaderStage::kFragment}; }
 std::string answers(const TextureBench& b) { return b.sink->text(); }
 
 }  // namespace

@@ -159,11 +159,11 @@ TEST_CASE("post_transform: a full batch refuses another vertex, and a new one na
   const std::unique_ptr<VertexReuse> made = kBatchReuse.make({});
   VertexReuse& reuse = *made;
   for (std::uint32_t i = 0; i < 31; ++i) CHECK(reuse.place(i * 7).lane == i);
-  CHECK(reuse.fits({0, 7, 1}));
-  CHECK_FALSE(reuse.fits({0, 1, 1}));
+  CHECK(reuse.fits(Triangle{0, 7, 1}));
+  CHECK_FALSE(reuse.fits(Triangle{0, 1, 1}));
   (void)reuse.place(1);
-  CHECK(reuse.fits({0, 7, 1}));
-  CHECK_FALSE(reuse.fits({0, 7, 2}));
+  CHECK(reuse.fits(Triangle{0, 7, 1}));
+  CHECK_FALSE(reuse.fits(Triangle{0, 7, 2}));
   CHECK(aborts([&] { (void)reuse.place(2); }));
 }
 

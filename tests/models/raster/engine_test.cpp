@@ -35,7 +35,7 @@ TEST_CASE("engine: a triangle goes to every engine that owns a tile of it") {
     for (int i = 0; i < 4000; ++i) {
       const std::array<WindowVertex, 3> triangle = random_triangle(random, i % 3 == 0 ? 12 : 90);
       const std::uint32_t touched =
-          engines_touched(triangle, kBits, kWidth, kHeight, share, static_cast<std::uint32_t>(i));
+          engines_touched(triangle, 0, kBits, kWidth, kHeight, share, static_cast<std::uint32_t>(i));
       REQUIRE(touched != 0);
       REQUIRE((touched >> engines) == 0);
       SetupState state{CullMode::kNone, FrontFace::kCounterClockwise, {0, 0, kWidth, kHeight}, kBits, 0, 1};
@@ -60,7 +60,7 @@ TEST_CASE("engine: what touches no tile of the screen goes to the engines in tur
   const std::array<WindowVertex, 3> outside{
       WindowVertex{-900 << kBits, 0, 0, 1}, {-800 << kBits, 0, 0, 1}, {-800 << kBits, 50 << kBits, 0, 1}};
   for (std::uint32_t turn = 0; turn < 8; ++turn)
-    CHECK(engines_touched(outside, kBits, kWidth, kHeight, {4, 4}, turn) == 1u << turn % 4);
+    CHECK(engines_touched(outside, 0, kBits, kWidth, kHeight, {4, 4}, turn) == 1u << turn % 4);
 }
 
 TEST_CASE("engine: each engine has an equal part of the screen") {
@@ -72,4 +72,15 @@ TEST_CASE("engine: each engine has an equal part of the screen") {
     }
     for (std::uint32_t e = 0; e < engines; ++e) CHECK(tiles[e] == static_cast<int>(64 * 64 / engines));
   }
+}
+
+TEST_CASE("engine: pixels beyond the box count by how far they reach") {
+  // A point in the middle of its tile, whose square reaches into the next one.
+  const WindowVertex at{4 << kBits, 4 << kBits, 0, 1};
+  const ScreenShare share{2, 2};
+  const auto engines = [&](std::int32_t pixels) {
+    return engines_touched({at, at, at}, pixels << kBits, kBits, kWidth, kHeight, share, 0);
+  };
+  CHECK(engines(2) == 1u << share.engine_of_tile(0, 0));
+  CHECK(engines(40) == 3u);
 }

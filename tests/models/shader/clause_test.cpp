@@ -58,7 +58,7 @@ TEST_CASE("shader clauses: control flow, the end and the limit end the clause") 
   CHECK(requests_by_clause(textured("tex r0, t0, r8, r9\nif 1\ntex r4, t0, r8, r9\nendif\n")) ==
         Counts{1, 1, 0});
   std::string many;
-  for (int i = 0; i < 2 * kMaxClauseTextures + 1; ++i)
+  for (int i = 0; i < 2 * kMaxClauseRequests + 1; ++i)
     many += "tex r" + std::to_string(4 * i) + ", t0, r200, r201\n";
   CHECK(requests_by_clause(textured(many)) == Counts{8, 8, 1, 0});
   CHECK(requests_by_clause(textured("if 0\ntex r0, t0, r8, r9\nendif\n")) == Counts{0});
@@ -74,7 +74,7 @@ TEST_CASE("shader clauses: a request holds coordinates of all lanes and the lane
   f.bind_constants(p);
   f.warp.launch(p, f.constants.data(), ~0u);
   const ClauseResult result = run_clause(f.warp);
-  REQUIRE(result.end == ClauseEnd::kTextures);
+  REQUIRE(result.end == ClauseEnd::kRequests);
   REQUIRE(f.warp.texture_count == 1);
   const TextureRequest& request = f.warp.textures[0];
   CHECK(request.active == 0x3fu);

@@ -117,6 +117,42 @@ TEST_CASE("linking: a varying that is read but not written is an error with its 
                     Catch::Contains("b.frag") && Catch::Contains("location 7") && Catch::Contains("a.vert"));
 }
 
+TEST_CASE("built-ins: extra outputs follow the varyings, and the size only where points are drawn") {
+  const auto vertex = vertex_spirv(R"(#version 450
+layout(location = 0) out float v;
+out gl_PerVertex { vec4 gl_Position; float gl_PointSize; float gl_ClipDistance[3]; float gl_CullDistance[2]; };
+void main() {
+  gl_Position = vec4(0); v = 9.0; gl_PointSize = 5.0;
+  gl_ClipDistance[0] = 1.0; gl_ClipDistance[1] = 2.0; gl_CullDistance[0] = 3.0;
+})");
+  const auto fragment = fragment_spirv(
+      "#version 450\nlayout(location=0) in float v; layout(location=0) out vec4 c; void main() { c = "
+      "vec4(v, gl_PointCoord, 1); }");
+  for (const bool points : {false, true}) {
+    const CompiledPipeline p = compile_pipeline(vertex, "v", fragment, "f", {}, points);
+    CHECK(p.vertex.extras == models::VertexExtras{points, 2, 1});
+    CHECK(p.fragment.extras == models::VertexExtras{});
+    CHECK(models::vertex_outputs(p.vertex) == 4 + 1 + (points ? 1 : 0) + 3);
+    const auto out = run_vertex(p.vertex, [](int, int, int) { return 0.0f; });
+    std::vector<float> written;
+    for (std::size_t slot = 4;
+         slot < out.size() && slot < static_cast<std::size_t>(models::vertex_outputs(p.vertex)); ++slot)
+      written.push_back(std::bit_cast<float>(out[slot][3]));
+    CHECK(written == (points ? std::vector<float>{9, 5, 1, 2, 3} : std::vector<float>{9, 1, 2, 3}));
+    CHECK(models::assemble(models::disassemble(p.vertex), "v").extras == p.vertex.extras);
+  }
+}
+
+TEST_CASE("built-ins: more than eight clip and cull distances are refused") {
+  const auto vertex = vertex_spirv(R"(#version 450
+out gl_PerVertex { vec4 gl_Position; float gl_ClipDistance[6]; float gl_CullDistance[3]; };
+void main() { gl_Position = vec4(0); gl_ClipDistance[5] = 1.0; gl_CullDistance[2] = 1.0; })");
+  const auto fragment =
+      fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
+  CHECK_THROWS_WITH(compile_pipeline(vertex, "far.vert", fragment, "f"),
+                    Catch::Contains("far.vert") && Catch::Contains("6 clip and 3 cull distances"));
+}
+
 TEST_CASE("built-ins: vertex and instance index, fragment coordinates, facing, depth") {
   const auto vertex = vertex_spirv(
       "#version 450\nvoid main() { gl_PointSize = 1.0; gl_Position = vec4(gl_VertexIndex, gl_InstanceIndex, "

@@ -70,7 +70,7 @@ void answer_textures(models::Warp& warp, const RunInput& input) {
 
 }  // namespace
 
-RunOutput run_fragment(const models::Program& program, const RunInput& input) {
+RunOutput run_fragment(const models::Program& program, const RunInput& input, models::WarpStorage* storage) {
   const std::vector<std::uint32_t> constants = constant_file(program.constants, input);
   models::FragmentInputs in{};
   std::array<std::vector<float>, models::kWarpQuads> planes;
@@ -100,6 +100,7 @@ RunOutput run_fragment(const models::Program& program, const RunInput& input) {
   warp.fragment = &in;
   warp.outputs = outputs.data();
   warp.texture_sizes = sizes.data();
+  warp.storage = storage;
   warp.launch(program, constants.data(), 0xffffffffu);
   RunOutput out;
   for (;;) {

@@ -66,7 +66,9 @@ struct RunOutput {
 /// The words of a draw's constant file.
 [[nodiscard]] std::vector<std::uint32_t> constant_file(const models::ConstantLayout& layout,
                                                        const RunInput& input);
-[[nodiscard]] RunOutput run_fragment(const models::Program& program, const RunInput& input);
+/// `storage`: of a program with storage buffers.
+[[nodiscard]] RunOutput run_fragment(const models::Program& program, const RunInput& input,
+                                     models::WarpStorage* storage = nullptr);
 /// Both steps for a snippet.
 [[nodiscard]] RunOutput run_snippet(const std::string& body, const RunInput& input,
                                     const std::string& declarations = {});

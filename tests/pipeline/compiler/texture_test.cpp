@@ -76,7 +76,7 @@ TEST_CASE("textures: a group never exceeds the clause limit and every result is 
   for (int k = 0; k < 20; ++k)
     body += " color += textureLod(t0, a.xy * " + std::to_string(k + 1) + ".0, " + std::to_string(k) + ".0);";
   const models::Program p = compile_fragment(fragment_source(body, samplers(1)));
-  CHECK(longest_texture_run(p) <= models::kMaxClauseTextures);
+  CHECK(longest_texture_run(p) <= models::kMaxClauseRequests);
   const RunOutput out = run_snippet(body, input, samplers(1));
   for (int k = 0; k < models::kWarpQuads; ++k) {
     const Vec4& a = input.points[static_cast<std::size_t>(k)].a;
