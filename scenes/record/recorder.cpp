@@ -250,13 +250,16 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
   p.primitive_restart = primitive.restarts;
   p.polygon_mode = primitive.style.polygon_mode;
   p.line_mode = primitive.style.line_mode;
+  // A number that a pixel shows is not to be blended.
+  if (options_.visibility && p.line_mode == traces::LineMode::kSmooth)
+    p.line_mode = traces::LineMode::kRectangular;
   p.line_width = primitive.style.line_width;
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
   p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
   p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend),
              traces::CompareOp::kLess};
   if (blended) p.blend[0] = material.layers.transmits() ? kPremultiplied : kOver;
-  else if (p.line_mode == traces::LineMode::kSmooth && !options_.visibility) p.blend[0] = kOver;
+  else if (p.line_mode == traces::LineMode::kSmooth) p.blend[0] = kOver;
   const auto found = std::ranges::find_if(
       stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
   if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());

@@ -147,7 +147,8 @@ TEST_CASE("primitives: lines are lavapipe's") {
   }
   INFO("mode " << static_cast<int>(mode) << ", width " << width << ", reach " << reach << ": " << drawn
                << " pixels, coverage differs on " << coverage << ", colours on " << colors);
-  const double limit = mode == LineMode::kBresenham ? kBresenhamLimit : kRectangleLimit;
+  // A cut end is snapped to the grid, which turns the line a little.
+  const double limit = mode == LineMode::kBresenham || reach > 1 ? kBresenhamLimit : kRectangleLimit;
   CHECK(static_cast<double>(coverage) <= limit * static_cast<double>(drawn));
   CHECK(static_cast<double>(colors) <= limit * static_cast<double>(drawn));
 }
@@ -224,17 +225,22 @@ void main() {
 TEST_CASE("primitives: a special index ends strips and fans as lavapipe has it") {
   if (renderer() == nullptr) return;
   const auto topology = GENERATE(Topology::kTriangleStrip, Topology::kTriangleFan, Topology::kLineStrip);
-  const std::vector<Corner> corners = Corners(3).some(20, 0.95F);
   const std::vector<std::uint8_t> indices{255, 0, 1, 2,  3,   4,  255, 5,  6,  255, 255,
                                           7,   8, 9, 10, 255, 11, 12,  13, 14, 15,  255};
-  HandMadeStream stream(kSide, kSide, Format::kR8G8B8A8Unorm, Format::kUndefined);
-  stream.shaders(kVertex, kFragment).corners(corners).draw_indexed(indices);
-  stream.pipeline().topology = topology;
-  stream.pipeline().primitive_restart = true;
-  const Differences d = compare(stream.finish());
-  CHECK(d.drawn > 100);
-  CHECK(static_cast<double>(d.coverage) <= kBresenhamLimit * static_cast<double>(d.drawn));
-  CHECK(static_cast<double>(d.colors) <= kBresenhamLimit * static_cast<double>(d.drawn));
+  std::size_t drawn = 0, coverage = 0, colors = 0;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    HandMadeStream stream(kSide, kSide, Format::kR8G8B8A8Unorm, Format::kUndefined);
+    stream.shaders(kVertex, kFragment).corners(Corners(seed).some(20, 0.95F)).draw_indexed(indices);
+    stream.pipeline().topology = topology;
+    stream.pipeline().primitive_restart = true;
+    const Differences d = compare(stream.finish());
+    drawn += d.drawn, coverage += d.coverage, colors += d.colors;
+  }
+  INFO("topology " << static_cast<int>(topology) << ": " << drawn << " pixels, coverage differs on "
+                   << coverage << ", colours on " << colors);
+  CHECK(drawn > 5000);
+  CHECK(static_cast<double>(coverage) <= kBresenhamLimit * static_cast<double>(drawn));
+  CHECK(static_cast<double>(colors) <= kBresenhamLimit * static_cast<double>(drawn));
 }
 
 }  // namespace quadrille::lavapipe

@@ -199,7 +199,7 @@ TEST_CASE("clipper: a triangle's edges and corners leave one a cycle, in the pla
         "2:0 3:0 4:0 13:1 14:1 15:1 17:0 18:0 19:0 | 2 outlined 1 clipped 0 culled 1 rejected 9 pieces");
   CHECK(text(models::PolygonMode::kPoint, models::CullMode::kNone) ==
         "2:0 3:0 4:0 5:1 6:1 8:0 9:0 10:0 | 3 outlined 0 clipped 0 culled 1 rejected 8 pieces");
-  CHECK(text(models::PolygonMode::kLine, models::CullMode::kFront) ==
+  CHECK(text(models::PolygonMode::kLine, models::CullMode::kBack) ==
         " | 0 outlined 0 clipped 3 culled 1 rejected 0 pieces");
 }
 

@@ -22,9 +22,10 @@ struct SetupBench final : Bench {
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
-  /// Piece 0 is kept, 1 faces away, 2 has no area, 3 lies outside the scissor, 4 between pixel centres.
+  /// Piece 0 is kept, 1 faces away, 2 has no area, 3 lies outside the scissor, 4 between pixel centres;
+  /// 5 is kept as a line or a point too.
   SetupBench(Driver& driver, const contract::Variation& v, const Setup& s)
-      : Bench(driver, v), batches(1), pieces(5), triangles(s.slots) {
+      : Bench(driver, v), batches(1), pieces(6), triangles(s.slots) {
     DrawState draw;
     program.varyings.resize(1);
     draw.vertex.program = &program;
@@ -40,6 +41,7 @@ struct SetupBench final : Bench {
     piece(2, {0, 0}, {512, 512}, {1024, 1024});
     piece(3, {100 * 256, 0}, {100 * 256, 2560}, {110 * 256, 0});
     piece(4, {0, 0}, {0, 64}, {64, 0});
+    piece(5, {8 * 256, 8 * 256}, {8 * 256, 24 * 256}, {24 * 256, 8 * 256});
     params.drawn_per_clk.set(s.drawn_per_clk);
     params.culled_per_clk.set(s.culled_per_clk);
     params.lines_per_clk.set(s.lines_per_clk);
@@ -132,7 +134,7 @@ TEST_CASE("triangle_setup: n lines or points take n over their rate, and are cou
                           .slots = 1024,
                           .pace = {.period = 0},
                           .out = {.depth = 64, .width = 8}};
-      for (int i = 0; i < kCount; ++i) s.pieces.push_back({0, piece(0)});
+      for (int i = 0; i < kCount; ++i) s.pieces.push_back({0, piece(5)});
       s.pieces.push_back({0, boundary(TokenKind::kDrawEnd)});
       const auto text = run<SetupBench>(s, [](const SetupBench& b) {
         return fmt::format("{} {} {}", b.kept->got.back().cycle, counter(*b.unit, "lines"),
