@@ -48,7 +48,7 @@ TEST_CASE(
     CHECK_FALSE(p.at("legal").get<std::string>().empty());
     CHECK_FALSE(p.at("reason").get<std::string>().empty());
   }
-  REQUIRE(d.at("counters").size() == 16);
+  REQUIRE(d.at("counters").size() == 17);
   for (const auto& [kind, counters] : d.at("counters").items()) {
     for (const auto& [name, c] : counters.items()) {
       CAPTURE(kind, name);
@@ -85,7 +85,7 @@ TEST_CASE("describe takes a group, a machine and a form") {
   CHECK_THAT(one, Catch::StartsWith("texture\n  cache_lines "));
   CHECK_THAT(output({"describe", "texture.cache_hits"}), Catch::StartsWith("texture counts\n  cache_hits "));
   const std::string everywhere = output({"describe", "cache_lines"});
-  CHECK(std::ranges::count(everywhere, '\n') == 10);
+  CHECK(std::ranges::count(everywhere, '\n') == 12);
   CHECK_THAT(everywhere, Catch::Contains("l2\n  cache_lines ") && !Catch::Contains("cache_ways"));
   const std::string links = output({"describe", "link.core"});
   CHECK_THAT(links, Catch::Contains("link.core_to_rop\n") && Catch::Contains("link.core_to_texture\n") &&

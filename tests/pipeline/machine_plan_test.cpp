@@ -95,10 +95,11 @@ Figures full(Figures figures, const std::set<std::string_view>& places) {
 }  // namespace
 
 TEST_CASE("machine_plan: kinds of units from up- to downstream, as work comes to them") {
-  CHECK(kinds_downstream() == std::vector<std::string_view>{
-                                  "command_processor", "vertex_fetch", "primitive_assembly", "clipper",
-                                  "triangle_setup", "coarse_raster", "fine_raster", "depth", "warp_packer",
-                                  "work_distributor", "core", "rop", "texture", "scan_out", "l2", "memory"});
+  CHECK(kinds_downstream() ==
+        std::vector<std::string_view>{"command_processor", "vertex_fetch", "primitive_assembly", "clipper",
+                                      "triangle_setup", "coarse_raster", "fine_raster", "depth",
+                                      "warp_packer", "work_distributor", "core", "rop", "texture",
+                                      "load_store", "scan_out", "l2", "memory"});
 }
 
 TEST_CASE("machine_plan: all onward links but the one that closes the loop of the cores lead downstream") {

@@ -7,6 +7,7 @@
 #include "tests/hw/contract.h"
 #include "tests/pipeline/machine_specimen.h"
 #include "tests/pipeline/random_stream.h"
+#include "tests/pipeline/storage_stream.h"
 
 #include <optional>
 #include <sstream>
@@ -60,7 +61,11 @@ void read_line(const std::string& line, PlanRun& run) {
 }  // namespace
 
 const traces::CommandStream& plan_frame() {
-  static const traces::CommandStream stream = random_stream(5, {48, 40, 8, 5});
+  static const traces::CommandStream stream = [] {
+    traces::CommandStream made = random_stream(5, {48, 40, 8, 5});
+    add_storage_draw(made);
+    return made;
+  }();
   return stream;
 }
 

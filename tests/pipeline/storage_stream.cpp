@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace quadrille::pipeline::test {
@@ -120,6 +121,34 @@ class Maker {
 
 traces::CommandStream storage_stream(std::uint64_t seed, const StorageShape& shape) {
   return Maker(seed, shape).make();
+}
+
+void add_storage_draw(traces::CommandStream& stream) {
+  constexpr std::uint32_t kWords = 4096;
+  constexpr const char* kFragment = R"(#version 450
+layout(location = 0) out vec4 o;
+layout(std430, set = 0, binding = 9) buffer B { uint count; uint read[1023]; uint written[]; } b;
+void main() {
+  uint at = uint(gl_FragCoord.y) * 40u + uint(gl_FragCoord.x);
+  atomicAdd(b.count, 1u);
+  b.written[at] = b.read[at % 1023u] + at;
+  o = vec4(0.5);
+})";
+  const auto draw =
+      std::find_if(stream.commands.rbegin(), stream.commands.rend(),
+                   [](const traces::Command& c) { return std::holds_alternative<traces::Draw>(c); });
+  const auto set = static_cast<Index>(stream.descriptor_sets.size());
+  stream.descriptor_sets.push_back(stream.descriptor_sets.at(0));
+  stream.descriptor_sets.back().buffers = {{9, static_cast<Index>(stream.buffers.size()), 0, 4 * kWords}};
+  stream.buffers.push_back({"words", std::vector<std::byte>(std::size_t{4} * kWords)});
+  stream.pipelines.push_back(stream.pipelines.back());
+  stream.pipelines.back().fragment_shader = static_cast<Index>(stream.shaders.size());
+  stream.shaders.push_back({"storage", traces::ShaderStage::kFragment,
+                            scenes::compile_glsl(kFragment, traces::ShaderStage::kFragment, "storage")});
+  const traces::Command again = *draw;
+  stream.commands.insert(draw.base(), {traces::BindPipeline{static_cast<Index>(stream.pipelines.size() - 1)},
+                                       traces::BindDescriptorSet{0, set}, again});
+  traces::validate(stream);
 }
 
 StorageShape kept_by_pixel() {

@@ -22,6 +22,10 @@ struct StorageShape {
 /// set 0, binding 0, and zero.
 [[nodiscard]] traces::CommandStream storage_stream(std::uint64_t seed, const StorageShape& shape);
 
+/// Adds a draw to the last pass of a stream that draws: its last one again, with a fragment program that
+/// reads, writes and counts in a storage buffer of its own.
+void add_storage_draw(traces::CommandStream& stream);
+
 /// A pass that keeps for each pixel which triangle was drawn there last, counts fragments by triangle, and
 /// gathers bounds of what was covered; and a pass that draws these.
 [[nodiscard]] StorageShape kept_by_pixel();

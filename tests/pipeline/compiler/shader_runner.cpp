@@ -150,7 +150,7 @@ std::vector<models::LaneWords> run_vertex(const models::Program& program,
     in.instance_index[lane] = 7;
   }
   in.attributes = rows.data();
-  std::vector<models::LaneWords> outputs(4 + program.varyings.size());
+  std::vector<models::LaneWords> outputs(static_cast<std::size_t>(models::vertex_outputs(program)));
   models::Warp warp;
   warp.vertex = &in;
   warp.outputs = outputs.data();
