@@ -77,7 +77,7 @@ std::string seen(const FlushBench::Setup& setup) {
   return run<FlushBench>(setup, [](const FlushBench& b) {
     std::string text;
     for (const StubMemory* slice : b.memory) {
-      for (const auto& [cycle, r] : slice->got) text += "rwpf"[static_cast<int>(r.kind)];
+      for (const auto& [cycle, r] : slice->got) text += "rwpaf"[static_cast<int>(r.kind)];
       text += ' ';
     }
     return fmt::format("{}| fenced {} done {} others {}", text, b.unit->fenced_at, b.unit->done_at,
@@ -88,9 +88,12 @@ std::string seen(const FlushBench::Setup& setup) {
 }  // namespace
 
 TEST_CASE("flush: a fence follows the writes to every slice, and the slowest answer ends it") {
-  CHECK(seen({}) == "");
+  // A slice takes one request a cycle from cycle 1 on: the fence of the first is its fourth, that of the
+  // other its third. An answer is seen a cycle after its latency.
+  CHECK(seen({.near = 10, .far = 30}) == "rwwf wwf | fenced 0 done 34 others 1");
+  CHECK(seen({.near = 30, .far = 10}) == "rwwf wwf | fenced 0 done 35 others 1");
 }
 
 TEST_CASE("flush: without fences it is done as soon as the queue is empty") {
-  CHECK(seen({.fences = false}) == "");
+  CHECK(seen({.fences = false}) == "rww ww | fenced 0 done 0 others 1");
 }
