@@ -19,8 +19,8 @@ bool bind(const Frame& frame, DrawId draw, models::ShaderStage stage, models::Wa
 
 }  // namespace
 
-void bind_storage(const Frame& frame, DrawId draw, const BatchSlot& batch,
-                  models::WarpStorage& storage, models::Warp& warp) {
+void bind_storage(const Frame& frame, DrawId draw, const BatchSlot& batch, models::WarpStorage& storage,
+                  models::Warp& warp) {
   if (!bind(frame, draw, models::ShaderStage::kVertex, storage, warp)) return;
   storage.live = ~models::LaneMask{0};
   storage.may_repeat = true;
@@ -38,9 +38,10 @@ void bind_storage(const Frame& frame, const WarpSlot& work, const TriangleStore&
     const WarpSlot::Quad& quad = work.quad[q];
     const TriangleSlot& triangle = triangles[quad.triangle];
     for (std::size_t pixel = 0; pixel < 4; ++pixel)
-      storage.invocations[4 * q + pixel] = models::invocation_of_fragment(
-          work.draw.index(), triangle.instance, triangle.primitive, static_cast<std::uint16_t>(quad.x + (pixel & 1)),
-          static_cast<std::uint16_t>(quad.y + (pixel >> 1)));
+      storage.invocations[4 * q + pixel] =
+          models::invocation_of_fragment(work.draw.index(), triangle.instance, triangle.primitive,
+                                         static_cast<std::uint16_t>(quad.x + (pixel & 1)),
+                                         static_cast<std::uint16_t>(quad.y + (pixel >> 1)));
   }
 }
 

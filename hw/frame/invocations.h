@@ -8,8 +8,8 @@
 namespace quadrille::hw {
 
 /// For the vertices of a batch, lanes 0 to before `batch.lanes`.
-void bind_storage(const Frame& frame, DrawId draw, const BatchSlot& batch,
-                  models::WarpStorage& storage, models::Warp& warp);
+void bind_storage(const Frame& frame, DrawId draw, const BatchSlot& batch, models::WarpStorage& storage,
+                  models::Warp& warp);
 /// For the fragments of a warp.
 void bind_storage(const Frame& frame, const WarpSlot& work, const TriangleStore& triangles,
                   models::WarpStorage& storage, models::Warp& warp);

@@ -113,8 +113,8 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
   }
   std::uint32_t& in_flight = late_in_flight_[tile_number(token.tile_x, token.tile_y)];
   token.late = draw.late_depth || in_flight > 0;
-  const bool decidable =
-      !token.late || (lowering_ && asks_for_less(draw) && !draw.fragment.program->writes_depth && !draw.shades_hidden());
+  const bool decidable = !token.late || (lowering_ && asks_for_less(draw) &&
+                                         !draw.fragment.program->writes_depth && !draw.shades_hidden());
   float* const stored = depths(token.tile_x, token.tile_y);
   const std::uint64_t covered = token.coverage;
   alignas(32) float incoming[models::kTilePixels];

@@ -64,7 +64,9 @@ struct StorageBench final : Bench {
   StubMemory* memory = nullptr;
 };
 
-StorageToken slot(std::uint32_t i, std::uint32_t draw = 0) { return {i, DrawId(draw), models::ShaderStage::kFragment}; }
+StorageToken slot(std::uint32_t i, std::uint32_t draw = 0) {
+  return {i, DrawId(draw), models::ShaderStage::kFragment};
+}
 std::string answers(const StorageBench& b) { return b.sink->text(); }
 
 }  // namespace

@@ -57,9 +57,9 @@ struct CoreBench final : Bench {
     params.scheduler.set(*s.scheduler);
     params.warp_slots.set(s.warp_slots);
     params.register_rows.set(s.rows);
-    unit = std::make_unique<ShaderCore>(
-        "unit", context(), params, ShaderCore::Stores{slots, batches, {&warps}, {&triangles}},
-        ShaderCore::Neighbours{s.textured, false});
+    unit = std::make_unique<ShaderCore>("unit", context(), params,
+                                        ShaderCore::Stores{slots, batches, {&warps}, {&triangles}},
+                                        ShaderCore::Neighbours{s.textured, false});
     add(*unit);
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in, s.fragment);
