@@ -31,6 +31,7 @@ const char* frames_text(pipeline::Needed needed) {
     case pipeline::Needed::kByAllFrames: return "all";
     case pipeline::Needed::kByFramesThatReadTextures: return "those that read textures";
     case pipeline::Needed::kByFramesWithStorage: return "those with storage buffers";
+    case pipeline::Needed::kByFramesThatKeepDepths: return "those that keep depths";
   }
   return "";
 }

@@ -1,5 +1,5 @@
-/// How a unit that writes through a cache ends a pass: what the cache has queued is sent, then a fence goes to
-/// every slice of the L2 cache. When all fences are answered, every reader sees what was written.
+/// How a unit that writes through a cache ends a pass: what the cache has queued is sent, then a fence goes
+/// to every slice of the L2 cache. When all fences are answered, every reader sees what was written.
 #pragma once
 
 #include "hw/memory/memory_port.h"

@@ -1,8 +1,8 @@
 /// The first-level caches (vertex fetch, texture, depth, colour): tags, misses under way, and who waits for
 /// them.
 ///
-/// A miss table (models/cache/miss_table.h) serves all who want sectors of a line that is under way.
-/// Functional data live in `DeviceMemory`; only presence is kept. A cache that writes names itself as the owner of its dirty lines
+/// A miss table (models/cache/miss_table.h) serves all who want sectors of a line that is under way. Data lie
+/// in `DeviceMemory`; only presence is kept. A cache that writes names itself as the owner of its dirty lines
 /// there, so that a read from below it is noticed.
 ///
 /// A sector that is written in part is not read first: a mask keeps which of its words (of 4 bytes) were

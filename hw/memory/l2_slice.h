@@ -107,7 +107,7 @@ class L2Slice final : public Unit {
   bool write(Tick now, const MemoryRequest& request);
   bool write_part(Tick now, std::uint32_t client, const MemoryRequest& request);
   [[nodiscard]] bool all_there(const MemoryRequest& request) const;
-  /// Marks what is written dirty once the rest is there, which is fetched; returns the tag of the line's miss,
+  /// Marks what is written dirty once the rest is there, which is fetched; the tag of the line's miss,
   /// none when the line has no place now.
   std::optional<std::uint32_t> write_when_fetched(Tick now, std::uint32_t client,
                                                   const MemoryRequest& request);

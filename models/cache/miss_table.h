@@ -36,8 +36,8 @@ class MissTable {
   [[nodiscard]] bool full() const { return free_.empty(); }
   [[nodiscard]] bool idle() const { return under_way() == 0; }
 
-  /// The line's entry, and which of its sectors are to be asked for now: the others are there, or on their
-  /// way already.
+  /// The line's entry, and which of its sectors nobody has asked for: the others are there, or on their way
+  /// already.
   struct Asked {
     std::uint32_t tag = 0;
     SectorMask missing = 0;

@@ -50,8 +50,8 @@
   unit(memory,             hw::MemoryChannel,     kChannel,   kByAllFrames)              \
   unit(scan_out,           hw::ScanOut,           kOnce,      kByAllFrames)
 
-// Who asks the L2 slices, in the order of their ports, and in which frames. Neighbours that stand equally often
-// take turns: the first of each, then the second of each.
+// Who asks the L2 slices, in the order of their ports, and in which frames. Neighbours that stand equally
+// often take turns: the first of each, then the second of each.
 #define QUADRILLE_CLIENTS(client)                    \
   client(VertexFetch, kByAllFrames)                  \
   client(TextureUnit, kByFramesThatReadTextures)     \
@@ -173,7 +173,7 @@ void visit_unit_kinds(const Visit& visit) {
 #undef QUADRILLE_VISIT
 }
 
-/// Calls `visit.operator()<Unit>(needed)` for each kind of client of the L2 slices, in the order of their ports.
+/// Calls `visit.operator()<Unit>(needed)` for each kind of client of the L2 slices, in their ports' order.
 template <class Visit>
 void visit_client_kinds(const Visit& visit) {
 #define QUADRILLE_VISIT(type, frames) visit.template operator()<hw::type>(Needed::frames);

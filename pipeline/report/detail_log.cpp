@@ -119,7 +119,7 @@ Detail DetailLog::collect() {
                              .issued = machine_.clock().edges_before(commands.issued_at()[i]),
                              .retired = machine_.clock().edges_before(commands.retired_at()[i])}));
   }
-  d.outside_draws = blank({.label = "outside_draws"});
+  d.outside_draws = blank({.label = "outside_draws", .pass = {}});
   d.tiles.width = screen_.columns;
   d.tiles.height = screen_.rows;
   d.tiles.pixels = screen_.tiles * models::kTileSize;

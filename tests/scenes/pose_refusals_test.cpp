@@ -1,5 +1,5 @@
-/// Skins, morph targets and animations that are wrong, or more than memory is meant for, are refused with their
-/// place.
+/// Skins, morph targets and animations that are wrong, or more than memory is meant for, are refused with
+/// their place.
 #include <catch2/catch.hpp>
 #include <cmath>
 
