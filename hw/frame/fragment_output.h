@@ -11,8 +11,8 @@
 namespace quadrille::hw {
 
 /// Hands the colours and depths that a fragment warp's program wrote to its slot; `outputs` by output slot.
-/// A program that writes no depth keeps the interpolated ones. Alpha of a smooth line is multiplied by what it
-/// covers of the pixel.
+/// A program that writes no depth keeps the interpolated ones. Alpha of a smooth line is multiplied by what
+/// it covers of the pixel.
 void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outputs,
                   const models::FragmentInputs& inputs, WarpSlot& warp);
 

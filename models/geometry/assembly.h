@@ -1,4 +1,5 @@
-/// Primitive assembly: which vertices of a draw form its i-th triangle, line or point. [VK1.3 #drawing-primitive-topologies]
+/// Primitive assembly: which vertices of a draw form its i-th triangle, line or point. [VK1.3
+/// #drawing-primitive-topologies]
 #pragma once
 
 #include "models/base/pipeline_state.h"

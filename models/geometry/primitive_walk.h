@@ -25,8 +25,8 @@ class PrimitiveWalk {
     begun_ = false;
   }
   /// Is there a primitive? Then `positions()` has the positions of its vertices within the draw.
-  /// `ends_run(position)`: is the index there the special one? It is asked once for each position, and only of
-  /// draws that restart; `passed(position)` is told of the special ones.
+  /// `ends_run(position)`: is the index there the special one? It is asked once for each position, and only
+  /// of draws that restart; `passed(position)` is told of the special ones.
   template <class EndsRun, class Passed>
   [[nodiscard]] bool look(const EndsRun& ends_run, const Passed& passed) {
     while (in_run_ == in_run_count_) {

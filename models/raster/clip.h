@@ -55,7 +55,8 @@ struct ClipState {
 [[nodiscard]] ClipState make_clip_state(const Viewport& viewport, bool depth_clamp, int subpixel_bits);
 
 /// What a primitive's vertices wrote to gl_ClipDistance (the first `clips` planes) and gl_CullDistance (the
-/// `culls` after them). An infinite distance is kept as a very large one; what is not a number is far outside.
+/// `culls` after them). An infinite distance is kept as a very large one; what is not a number is far
+/// outside.
 class UserDistances {
  public:
   UserDistances(int clips, int culls);
@@ -79,8 +80,8 @@ class UserDistances {
 struct ClippedLine {
   std::array<ClipVertex, 2> ends;
 };
-/// Clips the line between two vertices of a primitive, with these weights of its second and third vertex; `out`
-/// likewise. A line is cut where it leaves the guard band, not the view volume, as a triangle is.
+/// Clips the line between two vertices of a primitive, with these weights of its second and third vertex;
+/// `out` likewise. A line is cut where it leaves the guard band, not the view volume, as a triangle is.
 [[nodiscard]] ClipOutcome clip_line(const std::array<ClipVertex, 2>& ends, const ClipState& state,
                                     ClippedLine& out, const UserDistances* user = nullptr);
 

@@ -39,8 +39,8 @@ class Outcodes {
   const UserDistances* user_;
 };
 
-/// Cuts by every plane in `planes` that an end is still outside of; false: nothing is left. One round a plane,
-/// so that rounding cannot make it go on for ever.
+/// Cuts by every plane in `planes` that an end is still outside of; false: nothing is left. One round a
+/// plane, so that rounding cannot make it go on for ever.
 bool cut_line(std::array<WorkVertex, 2>& v, unsigned planes, const Outcodes& codes) {
   for (; planes != 0; planes &= planes - 1) {
     const auto plane = static_cast<std::size_t>(std::countr_zero(planes));

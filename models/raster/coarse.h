@@ -1,4 +1,5 @@
-/// Coarse rasterisation: the 8x8-pixel tiles that a triangle, line or point touches, row by row, left to right.
+/// Coarse rasterisation: the 8x8-pixel tiles that a triangle, line or point touches, row by row, left to
+/// right.
 ///
 /// A tile is kept unless all its pixels are outside one edge (exact for each edge, at the pixel of the tile
 /// that is deepest inside). Along a row the kept tiles are one interval, found by a division an edge; so the

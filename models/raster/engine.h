@@ -27,8 +27,8 @@ struct ScreenShare {
 
 /// Engines whose tiles a triangle may touch, a bit each: by the tiles of its bounding box where they are few,
 /// else all. At least one: a triangle that touches no tile of the screen goes to engine `turn` of them.
-/// `width` and `height` of the screen in pixels. `reach`: how far pixels may lie beyond the box, in units of the
-/// grid.
+/// `width` and `height` of the screen in pixels. `reach`: how far pixels may lie beyond the box, in units of
+/// the grid.
 [[nodiscard]] std::uint32_t engines_touched(const std::array<WindowVertex, 3>& triangle, std::int32_t reach,
                                             int subpixel_bits, std::uint32_t width, std::uint32_t height,
                                             const ScreenShare& share, std::uint32_t turn);

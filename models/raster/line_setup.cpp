@@ -17,7 +17,8 @@ struct Grid {
   /// The pixel of a coordinate; a boundary belongs to the pixel before it.
   [[nodiscard]] std::int64_t pixel(std::int64_t at) const { return ((at + one - 1) >> bits) - 1; }
   [[nodiscard]] std::int64_t centre(std::int64_t pixel) const { return pixel * one + half; }
-  /// Is it inside the diamond of its pixel? On the boundary: as moved up by a little, and to the left by more.
+  /// Is it inside the diamond of its pixel? On the boundary: as moved up by a little, and to the left by
+  /// more.
   [[nodiscard]] bool in_diamond(const GridPoint& p) const {
     const std::int64_t x = p.x - centre(pixel(p.x)), y = p.y - centre(pixel(p.y));
     const std::int64_t distance = std::abs(x) + std::abs(y);
@@ -34,8 +35,8 @@ Steps steps_of(const Grid& grid, const GridPoint& a, const GridPoint& b, std::in
   const std::int64_t pixel_a = grid.pixel(a_at), pixel_b = grid.pixel(b_at);
   const bool a_beyond = a_at > grid.centre(pixel_a), b_beyond = b_at > grid.centre(pixel_b);
   const bool forward = b_at > a_at;
-  // The line leaves the first diamond if it begins in it, or before its middle; the last if it ends behind its
-  // middle, and not in it.
+  // The line leaves the first diamond if it begins in it, or before its middle; the last if it ends behind
+  // its middle, and not in it.
   const bool first_left = grid.in_diamond(a) || a_beyond != forward;
   const bool last_left = !grid.in_diamond(b) && b_beyond == forward;
   const std::int64_t step = forward ? 1 : -1;

@@ -5,8 +5,8 @@
 /// it is steep): so it needs two edge functions, and its bounds do the rest. The band gives each column one
 /// pixel. Which column is the first and which the last follows from the diamond-exit rule: a pixel is drawn
 /// if the line leaves the diamond |x - xc| + |y - yc| < 1/2 around its centre. Ends on a boundary count as
-/// moved up by a little and to the left by a little more, which is what the top-left rule says too. So a strip
-/// draws each joint once. All of it is integer arithmetic. [VK1.3 #primsrast-lines-bresenham]
+/// moved up by a little and to the left by a little more, which is what the top-left rule says too. So a
+/// strip draws each joint once. All of it is integer arithmetic. [VK1.3 #primsrast-lines-bresenham]
 ///
 /// A rectangular line is the rectangle of its width along the line: four edge functions.
 #pragma once

@@ -1,8 +1,8 @@
 /// Point set-up: a square of the point's size around its window position, which covers the pixels whose
 /// centre is inside. [VK1.3 #primsrast-points]
 ///
-/// A square with level sides needs no edge functions: its bounds are the pixels that it covers. Samples on the
-/// left and upper side belong to it.
+/// A square with level sides needs no edge functions: its bounds are the pixels that it covers. Samples on
+/// the left and upper side belong to it.
 #pragma once
 
 #include "models/raster/triangle_setup.h"

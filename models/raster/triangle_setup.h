@@ -21,8 +21,8 @@
 
 namespace quadrille::models {
 
-/// What the rasteriser asks about a primitive. A triangle has three edges; a line has two or four, and a point
-/// none: its bounds are its pixels (line_setup.h, point_setup.h).
+/// What the rasteriser asks about a primitive. A triangle has three edges; a line has two or four, and a
+/// point none: its bounds are its pixels (line_setup.h, point_setup.h).
 struct TriangleSetup {
   std::array<EdgeFunction, 4> edges;
   int edge_count = 3;

@@ -50,8 +50,8 @@ struct SamplePlace {
   double part = 1;                ///< of the pixel, that a smooth line covers
   std::array<double, 2> point{};  ///< coordinates within a point, 0 to 1
 };
-[[nodiscard]] SamplePlace locate_on_line(const WindowTriangle& line, int x, int y);
-[[nodiscard]] SamplePlace locate_in_point(const WindowTriangle& point, int x, int y);
+[[nodiscard]] SamplePlace locate_on_line(const WindowTriangle& t, int x, int y);
+[[nodiscard]] SamplePlace locate_in_point(const WindowTriangle& t, int x, int y);
 [[nodiscard]] SamplePlace locate_sample(const WindowTriangle& triangle, int x, int y);
 
 }  // namespace quadrille::models::reference

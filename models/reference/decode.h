@@ -83,7 +83,6 @@ class Decoder {
   void access_chain(Frame& frame, const SpirvInstruction& in);
   void step_into(Frame& frame, Value& pointer, Id index);
   void dynamic_step(Value& pointer, Slot index, std::uint32_t count, std::uint32_t stride);
-  void reject_clip_distance(Id struct_type, std::uint32_t member) const;
   [[nodiscard]] Value load(const Value& pointer);
   void store(const Value& pointer, const Value& stored);
   [[nodiscard]] bool composite_instruction(Frame& frame, const SpirvInstruction& in);

@@ -43,7 +43,6 @@ void Decoder::step_into(Frame& frame, Value& pointer, Id index) {
   const SpirvType& t = module_.type(pointer.type);
   if (t.kind == TypeKind::kStruct) {
     const std::uint32_t member = constant_word(index, "a struct member index that is not a constant");
-    reject_clip_distance(pointer.type, member);
     for (std::uint32_t i = 0; i < member; ++i) pointer.slot += cells(t.members[i]);
     pointer.type = t.members[member];
     return;
@@ -61,12 +60,6 @@ void Decoder::dynamic_step(Value& pointer, Slot index, std::uint32_t count, std:
   const Slot offset = allocate(1);
   emit(scale_index, 1, offset, {index, pointer.offset}).imm = {count, stride};
   pointer.offset = offset;
-}
-
-void Decoder::reject_clip_distance(Id struct_type, std::uint32_t member) const {
-  const std::uint32_t which = module_.member(struct_type, member).builtin;
-  if (which == spv::BuiltInClipDistance || which == spv::BuiltInCullDistance)
-    unsupported("clip and cull distances");
 }
 
 Value Decoder::load(const Value& pointer) {

@@ -40,7 +40,8 @@ struct ThinLine {
   [[nodiscard]] bool spans(int x, int y) const {
     return steep() ? (ay > centre(y)) != (by > centre(y)) : (ax > centre(x)) != (bx > centre(x));
   }
-  /// Does it cross the middle between `before` and `after` the centre of the pixel? Extrapolated where it ends.
+  /// Does it cross the middle between `before` and `after` the centre of the pixel? Extrapolated where it
+  /// ends.
   [[nodiscard]] bool crosses(int x, int y, Number before, Number after) const {
     const Number cx = centre(x), cy = centre(y);
     return steep() ? passes_before(cx + after, cy) && !passes_before(cx - before, cy)
@@ -82,7 +83,7 @@ bool covers_band(const Line& line, const WindowTriangle& t, int x, int y, Number
   const auto width = static_cast<Number>(line_width(t));
   // the band reaches from `before` above the line to `after` below it, so the line from `after` above a pixel
   // that it covers
-  const Number before = t.exact ? static_cast<Number>(static_cast<std::int64_t>(width) / 2) : width / 2;
+  const Number before = width / 2;
   const Number after = width - before;
   if (width == one) return line.draws(x, y);
   return line.crosses(x, y, after, before) && line.steps_on(x, y);

@@ -31,10 +31,10 @@ struct Precision {
   int lod_bits = 8;       ///< of the level of detail, so of the weight between two mip levels
 };
 
-/// A triangle, line or point in window space as the machine rasterised it (after clipping and snapping; culled
-/// triangles may be left in, they are culled again here). A line has two corners, a point one; the others are
-/// not looked at. The list holds them in draw order: all triangles of draw 0 first,
-/// each draw's in the order in which they are to be drawn.
+/// A triangle, line or point in window space as the machine rasterised it (after clipping and snapping;
+/// culled triangles may be left in, they are culled again here). A line has two corners, a point one; the
+/// others are not looked at. The list holds them in draw order: all triangles of draw 0 first, each draw's in
+/// the order in which they are to be drawn.
 struct GivenTriangle {
   std::uint32_t draw = 0;       ///< number of the Draw command in the stream, from 0
   std::uint32_t instance = 0;   ///< from 0, without `first_instance`
@@ -46,8 +46,8 @@ struct GivenTriangle {
   std::array<double, 3> z{};      ///< depth after the viewport transform
   std::array<double, 3> inv_w{};  ///< 1 / clip w
   /// (b1, b2) of each corner within the original triangle, in clip space: corner = (1 - b1 - b2) v0 + b1 v1 +
-  /// b2 v2. An unclipped triangle has (0,0) (1,0) (0,1), a line (0,0) (1,0). v0, v1, v2 are in Vulkan's order: strip i, i + 1 + i
-  /// % 2, i + 2 - i % 2; fan i + 1, i + 2, 0. [VK1.3 #drawing-primitive-topologies]
+  /// b2 v2. An unclipped triangle has (0,0) (1,0) (0,1), a line (0,0) (1,0). v0, v1, v2 are in Vulkan's
+  /// order: strip i, i + 1 + i % 2, i + 2 - i % 2; fan i + 1, i + 2, 0. [VK1.3 #drawing-primitive-topologies]
   std::array<std::array<double, 2>, 3> barycentric{};
   double point_size = 1;  ///< pixels
   bool front = true;      ///< of the triangle whose edge or corner it is

@@ -42,8 +42,8 @@ Linkage link(const ScalarShader& fragment) {
   return linkage;
 }
 
-/// What the vertex shader writes for the fixed functions; of gl_ClipDistance and gl_CullDistance, up to the last
-/// element that is written.
+/// What the vertex shader writes for the fixed functions; of gl_ClipDistance and gl_CullDistance, up to the
+/// last element that is written.
 models::VertexExtras extras_of(const ScalarShader& vertex) {
   models::VertexExtras extras;
   const auto up_to = [](std::uint8_t& count, std::uint16_t index) {

@@ -25,11 +25,11 @@ struct CompiledPipeline {
 };
 
 /// Compiles and links two SPIR-V modules (entry point "main"; Vulkan 1.1 environment; specialisation
-/// constants take their defaults). Only where `points` are drawn does the vertex program write their size. The
-/// names are used in listings and errors. Deterministic, and programs for
-/// another `target` compute the same. Throws `UserError` (one line: shader name, place if known, what is not
-/// legal or not supported) for any module, however damaged, that cannot be compiled, for mismatched stages,
-/// and for programs beyond a limit of the ISA (registers, nesting, varyings, constants).
+/// constants take their defaults). Only where `points` are drawn does the vertex program write their size.
+/// The names are used in listings and errors. Deterministic, and programs for another `target` compute the
+/// same. Throws `UserError` (one line: shader name, place if known, what is not legal or not supported) for
+/// any module, however damaged, that cannot be compiled, for mismatched stages, and for programs beyond a
+/// limit of the ISA (registers, nesting, varyings, constants).
 [[nodiscard]] CompiledPipeline compile_pipeline(std::span<const std::uint32_t> vertex_spirv,
                                                 std::string_view vertex_name,
                                                 std::span<const std::uint32_t> fragment_spirv,

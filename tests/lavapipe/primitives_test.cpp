@@ -126,8 +126,8 @@ void main() { color = vec4(gl_PointCoord, v_value.y, 1.0); })";
   }
 }
 
-/// The parts of pixels that may differ: rectangles are equal, and Bresenham lines but for ends that lavapipe's
-/// floats place on the other side of a diamond's edge.
+/// The parts of pixels that may differ: rectangles are equal, and Bresenham lines but for ends that
+/// lavapipe's floats place on the other side of a diamond's edge.
 constexpr double kRectangleLimit = 1e-4, kBresenhamLimit = 2e-3;
 
 // Lavapipe cuts lines at the view volume, where the cut is as wide as the line; so pixels near the target's

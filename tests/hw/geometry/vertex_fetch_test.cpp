@@ -138,7 +138,8 @@ TEST_CASE("vertex_fetch: counters of a draw that shares corners") {
 }
 
 TEST_CASE("vertex_fetch: points and lines fill a batch with 32 vertices of their own") {
-  // 3000 vertices: of points and of lines that share none, 32 vertices a batch, but no more than 32 primitives.
+  // 3000 vertices: of points and of lines that share none, 32 vertices a batch, but no more than 32
+  // primitives.
   for (const auto& [topology, each, batches] :
        {std::tuple{models::Topology::kPointList, 1u, 94}, {models::Topology::kLineList, 2u, 94}}) {
     for (const auto& [indices, attributes, cycles] : {std::tuple{4, 8, 8}, {32, 8, 4}, {2, 64, 16}}) {

@@ -52,7 +52,8 @@ Pixels drawn(const std::array<LineEnd, 2>& ends, const SetupState& state) {
   return setup_line(ends, state, setup) == SetupOutcome::kKept ? drawn(setup) : Pixels{};
 }
 
-/// The rule word for word, in exact numbers: positions in 2^-40 of a grid unit, moved up by 1 and left by 2^20.
+/// The rule word for word, in exact numbers: positions in 2^-40 of a grid unit, moved up by 1 and left by
+/// 2^20.
 class DiamondExit {
  public:
   DiamondExit(const std::array<LineEnd, 2>& ends, int bits)
