@@ -126,6 +126,9 @@ TEST_CASE("storage: a written buffer is not read in another way, and a binding m
     if (auto* const bind = std::get_if<traces::BindVertexBuffer>(&c)) bind->buffer = 0;
   CHECK_THAT(refusal(stream), Catch::Contains("buffer 'words'") && Catch::Contains("a vertex buffer"));
   stream = storage_stream(1, kept_by_pixel());
+  stream.pipelines[0].polygon_mode = traces::PolygonMode::kLine;
+  CHECK_THAT(refusal(stream), Catch::Contains("by their edges or corners"));
+  stream = storage_stream(1, kept_by_pixel());
   stream.descriptor_sets[0].buffers[0].binding = 1;
   CHECK_THAT(refusal(stream), Catch::Contains("no storage buffer is bound at set 0, binding 0"));
   stream.descriptor_sets[0].buffers[0].range = 1 << 20;
