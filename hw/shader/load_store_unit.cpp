@@ -25,8 +25,8 @@ LoadStoreUnit::LoadStoreUnit(sc_core::sc_module_name name, const UnitContext& co
   add_initiation_rate("lines");
   add_places("groups_in_flight",
              [this] { return groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()); });
-  add_memory_places("cache_misses", [this] { return cache_.full(); });
   add_memory_places("requests_queued", [this] { return queue_full(); });
+  add_memory_places("cache_misses", [this] { return cache_.full(); });
 }
 
 std::string LoadStoreUnit::state_text() const {

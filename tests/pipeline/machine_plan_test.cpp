@@ -60,7 +60,7 @@ std::string differences(const Machine& machine) {
 }
 
 /// All kinds of places of a machine, from up- to downstream.
-constexpr std::array<std::string_view, 17> kPlaces{"command_processor.draws_in_flight",
+constexpr std::array<std::string_view, 20> kPlaces{"command_processor.draws_in_flight",
                                                    "vertex_fetch.batch_slots",
                                                    "triangle_setup.triangle_slots",
                                                    "depth.tiles_in_flight",
@@ -69,10 +69,13 @@ constexpr std::array<std::string_view, 17> kPlaces{"command_processor.draws_in_f
                                                    "core.warp_slots",
                                                    "rop.warps_in_flight",
                                                    "texture.groups_in_flight",
+                                                   "load_store.groups_in_flight",
                                                    "vertex_fetch.cache_misses",
                                                    "depth.cache_misses",
                                                    "rop.cache_misses",
                                                    "texture.cache_misses",
+                                                   "load_store.cache_misses",
+                                                   "load_store.requests_queued",
                                                    "scan_out.lines_in_flight",
                                                    "l2.cache_misses",
                                                    "memory.write_queue",
