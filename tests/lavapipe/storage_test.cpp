@@ -1,6 +1,8 @@
 /// Storage buffers: what programs leave in them, and what later passes draw from them, beside the driver's.
 #include <catch2/catch.hpp>
 
+#include <cstring>
+
 #include "models/base/error.h"
 #include "models/reference/compare.h"
 #include "pipeline/render.h"
@@ -24,8 +26,7 @@ std::optional<lavapipe::Rendered> by_driver(const traces::CommandStream& stream)
 std::size_t differing(const std::vector<std::byte>& a, const std::vector<std::byte>& b) {
   REQUIRE(a.size() == b.size());
   std::size_t n = 0;
-  for (std::size_t i = 0; i < a.size(); i += 4)
-    n += !std::equal(a.begin() + i, a.begin() + i + 4, b.begin() + i);
+  for (std::size_t i = 0; i < a.size(); i += 4) n += std::memcmp(a.data() + i, b.data() + i, 4) != 0;
   return n;
 }
 

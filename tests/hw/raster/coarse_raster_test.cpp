@@ -52,7 +52,7 @@ struct CoarseBench final : Bench {
   void make_frame() {
     PassState pass;
     pass.has_depth = true;
-    pass.depth = {0, 64, 64, 8, 8};
+    pass.depth.surface = {0, 64, 64, 8, 8};
     pass.draws = 4;
     frame.passes = {pass};
     // Draws 0 and 2 write with "less", 1 writes with "greater", 3 only tests with "greater".

@@ -14,7 +14,6 @@ using Primitive = std::array<std::uint32_t, 3>;
 struct Walked {
   std::vector<Primitive> primitives;
   std::vector<std::uint32_t> passed;
-  friend bool operator==(const Walked&, const Walked&) = default;
 };
 
 Walked walk(Topology topology, const std::vector<std::uint32_t>& indices, bool restarts) {

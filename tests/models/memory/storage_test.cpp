@@ -114,16 +114,16 @@ TEST_CASE("storage: a race is an error that names buffer and byte, in either ord
   const Act update = [](Buffer& b, std::uint32_t p) {
     (void)b.storage.update(b.view, 12, {.value = 1}, fragment(p, 0));
   };
-  for (const auto& [one, other] :
+  for (const std::pair<Act, Act>& acts :
        {std::pair{load, store}, std::pair{load, update}, std::pair{store, update}}) {
     for (const bool swapped : {false, true}) {
+      const Act first = swapped ? acts.second : acts.first, second = swapped ? acts.first : acts.second;
       Buffer b;
-      (swapped ? other : one)(b, 1);
-      CHECK_THAT(error_of([&] { (swapped ? one : other)(b, 2); }),
-                 Catch::Contains("buffer 'scores', byte 28"));
+      first(b, 1);
+      CHECK_THAT(error_of([&] { second(b, 2); }), Catch::Contains("buffer 'scores', byte 28"));
       Buffer same;
-      (swapped ? other : one)(same, 1);
-      CHECK(error_of([&] { (swapped ? one : other)(same, 1); }).empty());
+      first(same, 1);
+      CHECK(error_of([&] { second(same, 1); }).empty());
     }
   }
 }
