@@ -94,7 +94,7 @@ class LoadStoreUnit final : public Unit {
   void gather(const CoreSlot& slot, const StorageToken& token);
   void move_lines(Tick now);
   /// False when there is no place for it now.
-  [[nodiscard]] bool move(const Line& line);
+  [[nodiscard]] bool move(const Line& moved);
   void answer_one(Tick now, std::uint32_t number);
 
   const Params& params_;

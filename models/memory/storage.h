@@ -29,7 +29,8 @@ namespace quadrille::models {
 struct Invocation {
   std::uint64_t draw = 0;  ///< draw, stage, instance: `invocation_of_vertex`, `invocation_of_fragment`
   std::uint64_t work = 0;  ///< vertex, or primitive and pixel
-  friend auto operator<=>(const Invocation&, const Invocation&) = default;
+  // The check takes what the compiler makes of this for a null pointer.
+  friend auto operator<=>(const Invocation&, const Invocation&) = default;  // NOLINT(modernize-use-nullptr)
 };
 [[nodiscard]] constexpr Invocation invocation_of_vertex(std::uint32_t draw, std::uint32_t instance,
                                                         std::uint32_t vertex) {
