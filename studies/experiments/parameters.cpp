@@ -73,6 +73,8 @@ std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   streams.push_back(stream_of(hiding, {.depth = true}));
   streams.push_back(stream_of(hiding, {.depth = true, .discards = true}));
   streams.push_back(stream_of(clipped, {.topology = traces::Topology::kLineList}));
+  streams.push_back(stream_of(through_near_plane(setting.width, setting.height, 1),
+                              {.topology = traces::Topology::kLineList, .depth = true}));
   streams.push_back(stream_of(small, {.topology = traces::Topology::kLineList}));
   streams.push_back(stream_of(small, {.topology = traces::Topology::kPointList}));
   streams.push_back(storage_stream(setting));
