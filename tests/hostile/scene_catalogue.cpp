@@ -131,8 +131,10 @@ void add_members(std::vector<Case>& cases) {
   add("a skin that is none", node, node + R"(,"skin":5)");
   add("a light that is none", node, node + R"(,"extensions":{"KHR_lights_punctual":{"light":3}})");
   add("a light that is a word", node, node + R"(,"extensions":{"KHR_lights_punctual":"sun"})");
-  for (const std::string mode : {"-5", "7", "99", "\"4\"", "0", "1"})
+  for (const std::string mode : {"-5", "7", "99", "\"4\""})
     add("mode " + mode, R"("material":0)", R"("material":0,"mode":)" + mode);
+  for (const std::string mode : {"0", "1", "2", "3"})  // points and lines
+    add("mode " + mode, R"("material":0)", R"("material":0,"mode":)" + mode, Expect::kRendered);
   add("indices that are floats", R"("material":0)", R"("material":0,"indices":0)");
   add("baseColorFactor -1", material, R"("baseColorFactor":[-1,1,1,1]})", Expect::kEither);
   for (const std::string factor : {"1e308", "null", "\"a\""})
