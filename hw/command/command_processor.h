@@ -6,8 +6,8 @@
 /// Out   draw_out      draws and pass boundaries, in order
 ///       scan_out      show a pass's target
 /// Time  `draw_clk` cycles a draw; waits while `draws_in_flight` draws are not retired everywhere; a pass
-/// ends when all partitions have flushed Not modelled: fetching and parsing the command buffer itself
-/// (docs/deviations.md#D1)
+///       ends when all partitions have flushed
+/// Not modelled: fetching and parsing the command buffer itself (docs/deviations.md#D1)
 #pragma once
 
 #include "hw/base/fifo_group.h"

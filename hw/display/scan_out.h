@@ -1,7 +1,8 @@
 /// Scan-out: reads the finished colour surface through the L2 cache, as a display would, after the colour
 /// caches were flushed.
 ///
-/// In    scan_in    show the target of this pass       Out   done_out  all of it was read
+/// In    scan_in    show the target of this pass
+/// Out   done_out   all of it was read
 /// Mem   every line of the surface, in order
 /// Time  one line a cycle, up to `lines_in_flight` under way
 #pragma once

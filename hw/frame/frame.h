@@ -95,8 +95,9 @@ struct DrawState {
   /// Depth is tested after shading: the program discards, writes depth or writes memory, and does not force
   /// early tests.
   bool late_depth = false;
-  /// The fragment program writes memory.
-  bool writes_memory = false;
+  /// The fragment program accesses a buffer that programs of the frame write. Which of its fragments are
+  /// shaded must then not depend on the machine: what they read or write could meet another access.
+  bool meets_written_memory = false;
 
   [[nodiscard]] const ProgramState& stage(models::ShaderStage stage) const {
     return stage == models::ShaderStage::kVertex ? vertex : fragment;
@@ -106,11 +107,12 @@ struct DrawState {
     return setup.line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
   }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
-  /// Hidden fragments are shaded all the same: their program writes memory before their depth is tested.
-  /// [VK1.3 #fragops-early]
-  [[nodiscard]] bool shades_hidden() const { return writes_memory && late_depth; }
-  /// No fragment may be shaded before it is known to be visible: its program writes memory after the test.
-  [[nodiscard]] bool shades_visible_only() const { return writes_memory && depth_test && !late_depth; }
+  /// Hidden fragments are shaded all the same: their program accesses written memory before their depth is
+  /// tested. [VK1.3 #fragops-early]
+  [[nodiscard]] bool shades_hidden() const { return meets_written_memory && late_depth; }
+  /// No fragment may be shaded before it is known to be visible: its program accesses written memory after
+  /// the test.
+  [[nodiscard]] bool shades_visible_only() const { return meets_written_memory && depth_test && !late_depth; }
   /// Calls `visit(attachment)` for each colour attachment that the program writes.
   template <class Visit>
   void visit_colors(const Visit& visit) const {

@@ -17,8 +17,8 @@
       "vertex_fetch.triangles", "primitive_assembly.triangles") \
   law(kTrianglesAssembled, "triangles assembled = triangles to clip", \
       "primitive_assembly.triangles", "clipper.triangles") \
-  law(kTrianglesClipped, "triangles to clip = passed + cut + dropped", \
-      "clipper.triangles", "clipper.passed + clipped + rejected + not_finite") \
+  law(kTrianglesClipped, "triangles to clip = passed + cut + outlined + dropped", \
+      "clipper.triangles", "clipper.passed + clipped + outlined + culled + rejected + not_finite") \
   law(kPieces, "triangles and pieces passed, to each engine = triangles set up", \
       "clipper.passed + pieces + copies", "triangle_setup.triangles") \
   law(kTrianglesSetUp, "triangles set up = kept + dropped", \

@@ -2,11 +2,11 @@
 /// or guard-band planes or planes of the user's, and applies the viewport transform. Of a triangle that is
 /// not filled it hands the edges or the corners on (polygon mode).
 ///
-/// In    primitive_in  triangles, lines and points as lanes of a shaded batch; boundaries
-/// Out   clipped_out[e] primitives and pieces with window positions, to each raster engine whose part of the
-/// screen they touch; boundaries, to all
+/// In    primitive_in    triangles, lines and points as lanes of a shaded batch; boundaries
+/// Out   clipped_out[e]  primitives and pieces with window positions, to each raster engine whose part of the
+///                       screen they touch; boundaries, to all
 /// Time  `triangles_per_clk` primitives a cycle; a cut triangle `clip_clk` cycles and a cut line
-/// `line_clip_clk`, and then pieces as many a cycle; a boundary takes the place of a triangle
+///       `line_clip_clk`, and then pieces as many a cycle; a boundary takes the place of a triangle
 #pragma once
 
 #include "hw/base/param.h"

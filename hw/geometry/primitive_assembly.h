@@ -1,9 +1,10 @@
-/// Primitive assembly: waits for a batch to be shaded and hands its triangles on in draw order.
+/// Primitive assembly: waits for a batch to be shaded and hands its primitives on in draw order.
 ///
-/// In    batch_in       batches and boundaries, in order       done_in[core]  a batch was shaded
+/// In    batch_in       batches and boundaries, in order
+///       done_in[c]     core c has shaded a batch
 /// Out   load_out       a core has done a batch (`slot` is the core)
-///       primitive_out  triangles as lanes of their batch, then a batch end; draw and pass boundaries
-/// Time  `triangles_per_clk` triangles a cycle; a boundary takes the place of one
+///       primitive_out  primitives as lanes of their batch, then a batch end; draw and pass boundaries
+/// Time  `triangles_per_clk` primitives a cycle; a boundary takes the place of one
 #pragma once
 
 #include "hw/base/fifo_group.h"

@@ -3,7 +3,8 @@
 ///
 /// In    clipped_in    primitives with window positions; boundaries
 ///       sync_in[p]    triangles before a sequence number are retired in partition p
-/// Out   triangle_out  kept primitives and boundaries         release_out  a vertex batch may be reused
+/// Out   triangle_out  kept primitives and boundaries
+///       release_out   a vertex batch may be reused
 /// Time  `drawn_per_clk` triangles, `lines_per_clk` lines and `points_per_clk` points a cycle that are kept,
 ///       `culled_per_clk` that are not; a boundary takes the place of a culled one, a cycle at most; waits
 ///       while the triangle store is full

@@ -1,19 +1,12 @@
 #include "hw/geometry/vertex_fetch.h"
 
 #include "hw/frame/detail_counts.h"
+#include "hw/frame/indices.h"
 #include "hw/frame/laws.h"
 
 #include <algorithm>
 
 namespace quadrille::hw {
-
-namespace {
-
-std::uint64_t index_address(const DrawState& draw, std::uint32_t position) {
-  return draw.index_address + std::uint64_t{position} * draw.index_bytes;
-}
-
-}  // namespace
 
 VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
                          Store<BatchSlot>& batches)
@@ -72,11 +65,7 @@ void VertexFetch::act(Tick now) {
   take_releases(now);
   port_.receive(now, [&](const MemoryResponse& answer) {
     stalled_ = false;
-    cache_.fill(answer, [&](std::uint32_t number) {
-      Pending& p = pending_[number - first_pending_];
-      --p.missing;
-      p.ready = std::max(p.ready, now);
-    });
+    cache_.fill(answer, [&](std::uint32_t number) { pending_.answer(number, now); });
   });
   if (build_wake().at() <= now) build(now);
   if (leave_wake().at() <= now) leave(now);
@@ -121,27 +110,13 @@ void VertexFetch::start_instance() {
 
 bool VertexFetch::primitive_left() {
   const DrawState& draw = frame_.draw(draw_);
-  return walk_.look(
-      [&](std::uint32_t position) { return index_at(position) == models::restart_index(draw.index_bytes); },
-      [&](std::uint32_t position) { passed_.push_back(position); });
+  return walk_.look([&](std::uint32_t position) { return is_restart(draw, device_, position); },
+                    [&](std::uint32_t position) { passed_.push_back(position); });
 }
 
 void VertexFetch::fetch_passed() {
   for (const std::uint32_t position : passed_) fetch_index(position);
   passed_.clear();
-}
-
-std::uint32_t VertexFetch::index_at(std::uint32_t position) const {
-  const DrawState& draw = frame_.draw(draw_);
-  std::uint32_t index = 0;
-  std::memcpy(&index, device_.read(index_address(draw, position), draw.index_bytes).data(), draw.index_bytes);
-  return index;
-}
-
-std::uint32_t VertexFetch::vertex_number(std::uint32_t position) const {
-  const DrawState& draw = frame_.draw(draw_);
-  if (!draw.indexed) return draw.first_vertex + position;
-  return index_at(position) + static_cast<std::uint32_t>(draw.vertex_offset);
 }
 
 void VertexFetch::fetch_index(std::uint32_t position) {
@@ -192,19 +167,14 @@ void VertexFetch::fetch_attributes(BatchSlot& batch) {
   }
 }
 
-void VertexFetch::clear_extras(const DrawState& draw, BatchSlot& batch) {
-  for (auto row = static_cast<std::size_t>(models::first_extra_output(*draw.vertex.program));
-       row < batch.outputs.size(); ++row)
-    batch.outputs[row].fill(0);
-}
-
 void VertexFetch::take_primitives(BatchSlot& batch) {
-  const std::size_t corners = frame_.draw(draw_).primitives.corners();
+  const DrawState& draw = frame_.draw(draw_);
+  const std::size_t corners = draw.primitives.corners();
   while (batch.triangles.size() < static_cast<std::size_t>(params_.batch_triangles.value()) &&
          primitive_left()) {
     const auto position = walk_.positions();
     std::array<std::uint32_t, 3> vertex{};
-    for (std::size_t i = 0; i < corners; ++i) vertex[i] = vertex_number(position[i]);
+    for (std::size_t i = 0; i < corners; ++i) vertex[i] = vertex_number(draw, device_, position[i]);
     // If it does not fit it is the first of the next batch, which pays for its indices.
     if (!reuse_->fits(std::span(vertex).first(corners))) break;
     BatchSlot::Triangle primitive{{}, walk_.primitive()};
@@ -227,7 +197,6 @@ void VertexFetch::form_batch(Tick now) {
   batch.triangles.clear();
   batch.attributes.resize(draw.vertex.program->vertex_inputs.size());
   batch.outputs.resize(static_cast<std::size_t>(models::vertex_outputs(*draw.vertex.program)));
-  clear_extras(draw, batch);
   lines_.clear();
   next_line_ = last_touched_ = 0;
   fetches_ = 0;
@@ -266,9 +235,8 @@ void VertexFetch::form_batch(Tick now) {
 }
 
 void VertexFetch::look_up(Tick now) {
-  const auto number = first_pending_ + static_cast<std::uint32_t>(pending_.size()) - 1;
   for (; next_line_ < lines_.size(); ++next_line_) {
-    switch (cache_.access(lines_[next_line_].line, lines_[next_line_].sectors, number, port_)) {
+    switch (cache_.access(lines_[next_line_].line, lines_[next_line_].sectors, pending_.newest(), port_)) {
       case L1Cache::Result::kHit: break;
       case L1Cache::Result::kPending: ++pending_.back().missing; break;
       case L1Cache::Result::kStall: stalled_ = true; return;
@@ -284,7 +252,6 @@ bool VertexFetch::shades(const Pending& head) const {
 void VertexFetch::leave(Tick now) {
   const Pending head = pending_.front();
   pending_.pop_front();
-  ++first_pending_;
   if (shades(head)) warp_out.push(now, {head.part.draw(), head.slot});
   batch_out.push(now, {head.kind, head.part, head.slot});
 }

@@ -1,22 +1,27 @@
 /// Vertex fetch: reads indices and attributes through its cache, finds reused vertices, and forms batches of
 /// up to 32 vertices to shade.
 ///
-/// In    draw_in      draws and pass boundaries     release_in[e] engine e is done with the oldest batch
-/// Out   warp_out     a batch to shade              batch_out   its triangles, in draw order; pass and draw
-/// boundaries Mem   indices and attributes, 128-byte lines in 32-byte sectors
+/// In    draw_in        draws and pass boundaries
+///       release_in[e]  engine e is done with the oldest batch
+/// Out   warp_out       a batch to shade
+///       batch_out      its primitives, and boundaries, in draw order
+/// Mem   indices and attributes, 128-byte lines in 32-byte sectors
 /// Time  `indices_per_clk` indices and `attributes_per_clk` attribute fetches a cycle, whichever takes
-/// longer; a batch leaves when its lines have arrived Reuse  by batch, through a FIFO of vertices, or not at
-/// all (models/geometry/post_transform.h). Under the FIFO the outputs of a batch stay in its slot while
-///       a vertex of it is remembered or a triangle on its way names one; the oldest are forgotten rather
-///       than that they hold the last slot.
-/// Primitives  points, lines and triangles: a primitive's indices are looked up one by one, shared ones of a
-///       strip or fan again. A special index (primitive restart) costs a look-up like any other.
+///       longer; a batch leaves when its lines have arrived
+///
+/// Vertices are reused by batch, through a FIFO of vertices, or not at all
+/// (models/geometry/post_transform.h). Under the FIFO the outputs of a batch stay in its slot while a vertex
+/// of it is remembered or a primitive on its way names one; the oldest are forgotten rather than that they
+/// hold the last slot.
+///
+/// A primitive's indices are looked up one by one, shared ones of a strip or fan again. A special index
+/// (primitive restart) costs a look-up like any other.
 /// Not modelled: a post-transform store apart from the batches' slots (docs/deviations.md#D2)
 #pragma once
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/queue.h"
+#include "hw/base/waiting_queue.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
 #include "hw/geometry/batch_slots.h"
@@ -132,11 +137,6 @@ class VertexFetch final : public Unit {
   void form_batch(Tick now);
   /// Takes primitives into the batch while they fit.
   void take_primitives(BatchSlot& batch);
-  /// Begins with zeros what programs write for the fixed functions: none of it may depend on older batches.
-  static void clear_extras(const DrawState& draw, BatchSlot& batch);
-  /// The index at a position of the draw's list, and the vertex.
-  [[nodiscard]] std::uint32_t index_at(std::uint32_t position) const;
-  [[nodiscard]] std::uint32_t vertex_number(std::uint32_t position) const;
   /// Counts the index at a position, and its bytes among the look-ups of this batch.
   void fetch_index(std::uint32_t position);
   /// Does so for the special indices that the walk has passed.
@@ -163,12 +163,11 @@ class VertexFetch final : public Unit {
   models::PrimitiveWalk walk_;         ///< at the next primitive to take
   std::vector<std::uint32_t> passed_;  ///< positions of special indices that no batch has paid for
   BatchSlots slots_;
-  Queue<Pending> pending_;
-  std::uint32_t first_pending_ = 0;  ///< number of pending_.front(); waiters are named by number
-  std::vector<Line> lines_;          ///< look-ups of the newest batch
-  std::size_t next_line_ = 0;        ///< the first of them not done
-  std::size_t last_touched_ = 0;     ///< the one of them that was needed last
-  bool stalled_ = false;             ///< the cache had no place for it
+  WaitingQueue<Pending> pending_;
+  std::vector<Line> lines_;       ///< look-ups of the newest batch
+  std::size_t next_line_ = 0;     ///< the first of them not done
+  std::size_t last_touched_ = 0;  ///< the one of them that was needed last
+  bool stalled_ = false;          ///< the cache had no place for it
   std::uint32_t fetches_ = 0, indices_ = 0;
   Tick free_ = 0;
 };

@@ -1,13 +1,15 @@
 /// L2 slice: one bank of the shared cache in front of one memory channel. Write-back, write-allocate,
 /// sectored.
 ///
-/// In    request_in[c]   sectors of a line, from client c      fill_in   a line's sectors from the channel
-/// Out   response_out[c] answers to reads and fences           memory_out  misses and write-backs
-///       Ports are named for their client: those of texture_3 are texture_in_3 and texture_out_3.
+/// In    request_in[c]    sectors of a line, from client c
+///       fill_in          a line's sectors from the channel
+/// Out   response_out[c]  answers to reads and fences
+///       memory_out       misses and write-backs
 /// Time  one request a cycle, clients take turns; updates of one word by atomic requests follow each other at
-/// that rate; `hit_clk` after its look-up a hit is answered and a miss
-/// goes to the channel, whose fill is answered when it
-///       comes; a line that is under way serves all who ask for it.
+///       that rate. `hit_clk` after its look-up a hit is answered and a miss goes to the channel; its fill is
+///       answered when it comes. A line that is under way serves all who ask for it.
+///
+/// Ports are named for their client: those of texture_3 are texture_in_3 and texture_out_3.
 #pragma once
 
 #include "hw/base/fifo_group.h"

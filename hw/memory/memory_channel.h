@@ -1,9 +1,9 @@
 /// Memory channel: the DRAM behind one L2 slice and its controller (models/memory/dram/).
 ///
-/// In    request_in    reads and writes of sectors of a line       Out   response_out  the sectors of a read
+/// In    request_in    reads and writes of sectors of a line
+/// Out   response_out  the sectors of a read
 /// Time  a request waits in the controller's queue until its last burst was commanded; an answer leaves when
-/// its data have moved. The way to and from the L2
-///       cache is that of the links and takes no place here.
+///       its data have moved. The way to and from the L2 cache is that of the links and takes no place here.
 #pragma once
 
 #include "hw/base/param.h"

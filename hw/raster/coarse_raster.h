@@ -1,13 +1,15 @@
 /// Coarse rasteriser with Hi-Z: finds the 8x8-pixel tiles a triangle touches and drops those that are wholly
 /// behind what is there.
 ///
-/// In    triangle_in   set-up triangles; boundaries         hiz_in[p]  a tile's greatest depth became
-/// smaller, from the depth unit of its partition p Out   tile_out      tiles of one triangle, row by row;
-/// boundaries; now and then a sync for the triangle store Time  `tests_per_clk` tile tests a cycle and at
-/// most one tile out a cycle; waits while tile_out is full Hi-Z holds, for each tile of the pass, a depth
-/// that no stored depth exceeds. It may be late (updates travel by FIFO), which only keeps more. It is
-/// trusted only while every depth write of the pass can but lower depths: a draw that writes with another
-/// comparison switches it off until the next clear.
+/// In    triangle_in  set-up primitives; boundaries
+///       hiz_in[p]    a tile's greatest depth became smaller, from the depth unit of its partition p
+/// Out   tile_out     tiles of one primitive, row by row; boundaries; now and then a sync for the triangle
+///                    store
+/// Time  `tests_per_clk` tile tests a cycle and at most one tile out a cycle; waits while tile_out is full
+///
+/// Hi-Z holds, for each tile of the pass, a depth that no stored depth exceeds. It may be late (updates
+/// travel by FIFO), which only keeps more. It is trusted only while every depth write of the pass can but
+/// lower depths: a draw that writes with another comparison switches it off until the next clear.
 #pragma once
 
 #include "hw/base/fifo_group.h"

@@ -1,10 +1,12 @@
 /// Fragment warp packer: fills warps of 8 quads from the tiles of one draw, whatever triangles and tiles they
 /// come from, and reserves their place in the reorder buffer of the partition.
 ///
-/// In    coverage_in  covered samples of a tile after the early depth test; boundaries     release_in  a warp
-/// has retired Out   warp_out     a warp to shade        order_out  what retires next: warps and boundaries,
-/// in order Time  `quads_per_clk` quads a cycle; a partial warp leaves at a boundary, when another draw's
-/// tile arrives, or after `patience_clk` cycles without input
+/// In    coverage_in  covered samples of a tile after the early depth test; boundaries
+///       release_in   a warp has retired
+/// Out   warp_out     a warp to shade
+///       order_out    what retires next: warps and boundaries, in order
+/// Time  `quads_per_clk` quads a cycle; a partial warp leaves at a boundary, when another draw's tile
+///       arrives, or after `patience_clk` cycles without input
 #pragma once
 
 #include "hw/base/param.h"

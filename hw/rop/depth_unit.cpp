@@ -99,15 +99,8 @@ void DepthUnit::take_answers(Tick now) {
     if (flush_.take(answer)) return;
     stalled_ = false;
     cache_.fill(answer, [&](std::uint32_t waiter) {
-      if ((waiter & kLateBit) != 0) {
-        LateEntry& entry = late_[(waiter & ~kLateBit) - first_late_];
-        --entry.missing;
-        entry.ready = std::max(entry.ready, now);
-      } else {
-        EarlyEntry& entry = early_[waiter - first_early_];
-        --entry.missing;
-        entry.ready = std::max(entry.ready, now);
-      }
+      if ((waiter & kLateBit) != 0) late_.answer(waiter & ~kLateBit, now);
+      else early_.answer(waiter, now);
     });
   });
 }
@@ -115,7 +108,7 @@ void DepthUnit::take_answers(Tick now) {
 void DepthUnit::acquire_waiting(Tick now) {
   for (std::size_t i = 0; i < late_.size(); ++i) {
     if (late_[i].acquired) continue;
-    if (!acquire_late(late_[i], first_late_ + static_cast<std::uint32_t>(i))) {
+    if (!acquire_late(late_[i], late_.number(i))) {
       stalled_ = !cache_.idle();
       return;
     }
@@ -125,7 +118,7 @@ void DepthUnit::acquire_waiting(Tick now) {
   for (std::size_t i = 0; i < early_.size(); ++i) {
     if (early_[i].acquired) continue;
     if (i > 0 && early_[i - 1].token.kind == TokenKind::kPassBegin) return;
-    if (!acquire_early(early_[i], first_early_ + static_cast<std::uint32_t>(i))) {
+    if (!acquire_early(early_[i], early_.number(i))) {
       stalled_ = !cache_.idle();
       return;
     }

@@ -1,11 +1,14 @@
 /// Depth unit of one screen partition: owns the partition's depth tiles and their cache, and tests fragments
 /// before (early) or after (late) shading.
 ///
-/// In    coverage_in  covered samples of a triangle in a tile; boundaries      late_in  shaded warps to test,
-/// in order; flush Out   coverage_out what survives, marked early (tested and written) or late       late_out
-/// tested warps; flushed      hiz_out  a tile's greatest depth fell Mem   depth tiles; a frame without depth
-/// tests needs no links to memory (`slices` = 0) Time  `quads_per_clk` quads a cycle through either port, one
-/// port a cycle, the late one first; waits for the tile's lines
+/// In    coverage_in   covered samples of a primitive in a tile; boundaries
+///       late_in       shaded warps to test, in order; flush
+/// Out   coverage_out  what survives, marked early (tested and written) or late
+///       late_out      tested warps; flushed
+///       hiz_out       a tile's greatest depth fell
+/// Mem   depth tiles; a frame without depth tests needs no links to memory
+/// Time  `quads_per_clk` quads a cycle through either port, one port a cycle, the late one first; waits for
+///       the tile's lines
 ///
 /// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of
 /// the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
@@ -14,7 +17,7 @@
 #pragma once
 
 #include "hw/base/param.h"
-#include "hw/base/queue.h"
+#include "hw/base/waiting_queue.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
 #include "hw/memory/flush.h"
@@ -133,10 +136,8 @@ class DepthUnit final : public Unit {
   MemoryPort port_;
   SurfaceCache cache_;
   PassId pass_;
-  Queue<EarlyEntry> early_;
-  Queue<LateEntry> late_;
-  /// numbers of the fronts; waiters are named by number and port
-  std::uint32_t first_early_ = 0, first_late_ = 0;
+  WaitingQueue<EarlyEntry> early_;
+  WaitingQueue<LateEntry> late_;
   bool stalled_ = false;                       ///< the cache had no place; a fill will make one
   bool lowering_ = true;                       ///< no draw of the pass so far can raise a depth
   std::vector<std::uint32_t> late_in_flight_;  ///< quads by tile

@@ -68,8 +68,8 @@ bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   stats_.working_for(entry.token.part.draw());
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
-    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y}, {.read = sectors}, number & ~kLateBit,
-                        entry.missing, entry.done, port_))
+    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y}, {.read = sectors}, number, entry.missing,
+                        entry.done, port_))
       return false;
   }
   entry.acquired = true;
@@ -100,7 +100,6 @@ void DepthUnit::test_early(Tick now) {
   }
   if (token.kind != TokenKind::kWork || token.coverage != 0) coverage_out.push(now, token);
   early_.pop_front();
-  ++first_early_;
   free_ = after(now, cycles);
   occupy(now, cycles);
 }

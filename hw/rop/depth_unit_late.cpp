@@ -39,8 +39,8 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
       const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
       const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
       const std::uint8_t sector = sectors_of_quads(1u << place.quad);
-      if (!cache_.acquire({0, place.tile_x, place.tile_y}, {.read = sector}, (number & ~kLateBit) | kLateBit,
-                          entry.missing, entry.done[static_cast<std::size_t>(q)], port_)) {
+      if (!cache_.acquire({0, place.tile_x, place.tile_y}, {.read = sector}, number | kLateBit, entry.missing,
+                          entry.done[static_cast<std::size_t>(q)], port_)) {
         return false;
       }
     }
@@ -56,7 +56,6 @@ bool DepthUnit::test_late(Tick now) {
     cache_.flush(port_);
     flush_.begin();
     late_.pop_front();
-    ++first_late_;
     return true;
   }
   WarpSlot& warp = warps_[token.slot];
@@ -82,7 +81,6 @@ bool DepthUnit::test_late(Tick now) {
   warp.alive = survivors;
   late_out.push(now, token);
   late_.pop_front();
-  ++first_late_;
   const int cycles = std::max(1, (warp.quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
   free_ = after(now, cycles);
   occupy(now, cycles);

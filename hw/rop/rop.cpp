@@ -145,11 +145,7 @@ void Rop::take_inputs(Tick now) {
     if (flush_.take(answer)) return;
     stalled_ = false;
     claim_stalled_ = false;
-    cache_.fill(answer, [&](std::uint32_t number) {
-      Entry& entry = entries_[number - first_entry_];
-      --entry.missing;
-      entry.ready = std::max(entry.ready, now);
-    });
+    cache_.fill(answer, [&](std::uint32_t number) { entries_.answer(number, now); });
   });
   done_in.visit_holding(0, [&](std::size_t core, FifoIn<FragmentDoneToken>& in) {
     for (; in.ready_at(now) && load_out.room_at(now);
@@ -190,8 +186,7 @@ void Rop::test(Tick now) {
 
 void Rop::acquire(Tick now) {
   Entry& entry = entries_[acquired_];
-  if (entry.token.kind == TokenKind::kWork &&
-      !acquire_colors(entry, first_entry_ + static_cast<std::uint32_t>(acquired_))) {
+  if (entry.token.kind == TokenKind::kWork && !acquire_colors(entry, entries_.number(acquired_))) {
     stalled_ = true;
     return;
   }
@@ -247,7 +242,6 @@ void Rop::retire(Tick now) {
     retire_boundary(now, entry);
   }
   entries_.pop_front();
-  ++first_entry_;
   --tested_;
   --awaiting_;
   --acquired_;

@@ -1,18 +1,22 @@
 /// ROP of one screen partition: retires fragment warps in order, has late ones tested, blends, and writes
 /// colours through its cache.
 ///
-/// In    order_in   what retires next: warps and boundaries      done_in[core]  a warp was shaded     late_in
-/// a warp was tested late; depth is flushed Out   late_out   test this warp; flush      release_out  a warp
-/// slot is free      sync_out  triangles before a sequence number are retired
-///       retire_out draw retired; pass flushed      load_out  a core has done a warp
+/// In    order_in     what retires next: warps and boundaries
+///       done_in[c]   core c has shaded a warp
+///       late_in      a warp was tested late; depth is flushed
+/// Out   late_out     test this warp; flush
+///       release_out  a warp slot is free
+///       sync_out     triangles before a sequence number are retired
+///       retire_out   draw retired; pass flushed
+///       load_out     a core has done a warp
 /// Mem   colour tiles
 /// Time  `quads_per_clk` quads a cycle and colour attachment (half of that where blending reads the old
-/// colour); up to `warps_in_flight` warps wait for their lines
+///       colour); up to `warps_in_flight` warps wait for their lines
 #pragma once
 
 #include "hw/base/fifo_group.h"
 #include "hw/base/param.h"
-#include "hw/base/queue.h"
+#include "hw/base/waiting_queue.h"
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
 #include "hw/memory/flush.h"
@@ -111,8 +115,7 @@ class Rop final : public Unit {
   MemoryPort port_;
   SurfaceCache cache_;
   PassId pass_;
-  Queue<Entry> entries_;
-  std::uint32_t first_entry_ = 0;  ///< number of entries_.front()
+  WaitingQueue<Entry> entries_;
   /// entries from the front that are past these stages (tested: test sent or not needed)
   std::size_t tested_ = 0, acquired_ = 0;
   std::size_t awaiting_ = 0;  ///< entries from the front whose late answer is in or not needed

@@ -65,14 +65,13 @@ Wake LoadStoreUnit::next() const {
 
 void LoadStoreUnit::act(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
-    if ((answer.tag & kAtomicTag) != 0) return answer_one(now, answer.tag & ~kAtomicTag);
+    if ((answer.tag & kAtomicTag) != 0) return groups_.answer(answer.tag & ~kAtomicTag, now);
     stalled_ = false;
-    cache_.fill(answer, [&](std::uint32_t number) { answer_one(now, number); });
+    cache_.fill(answer, [&](std::uint32_t number) { groups_.answer(number, now); });
   });
   if (answer_wake().at() <= now) {
     response_out.push(now, groups_.front().token);
     groups_.pop_front();
-    ++first_group_;
     ++stats_.groups_answered;
   }
   if (line_wake().at() <= now) {
@@ -80,12 +79,6 @@ void LoadStoreUnit::act(Tick now) {
     else take(now);
   }
   port_.send(now);
-}
-
-void LoadStoreUnit::answer_one(Tick now, std::uint32_t number) {
-  Group& group = groups_[(number - first_group_) & ~kAtomicTag];
-  --group.missing;
-  group.ready = std::max(group.ready, now);
 }
 
 void LoadStoreUnit::gather(const CoreSlot& slot, const StorageToken& token) {
@@ -131,10 +124,9 @@ void LoadStoreUnit::move_lines(Tick now) {
 }
 
 bool LoadStoreUnit::move(const Line& moved) {
-  const auto number = first_group_ + static_cast<std::uint32_t>(groups_.size()) - 1;
   const models::StorageLine& line = moved.line;
   if (models::is_atomic(moved.op)) {
-    port_.atomic(line.line, line.sectors, number | kAtomicTag);
+    port_.atomic(line.line, line.sectors, groups_.newest() | kAtomicTag);
     ++groups_.back().missing;
     return true;
   }
@@ -144,7 +136,7 @@ bool LoadStoreUnit::move(const Line& moved) {
     if (parts != 0) port_.write_part(line.line, parts);
     return true;
   }
-  switch (cache_.access(line.line, line.sectors, number & ~kAtomicTag, port_)) {
+  switch (cache_.access(line.line, line.sectors, groups_.newest(), port_)) {
     case L1Cache::Result::kHit: return true;
     case L1Cache::Result::kPending: ++groups_.back().missing; return true;
     case L1Cache::Result::kStall: stalled_ = true; return false;

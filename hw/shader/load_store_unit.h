@@ -13,7 +13,7 @@
 #pragma once
 
 #include "hw/base/param.h"
-#include "hw/base/queue.h"
+#include "hw/base/waiting_queue.h"
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
 #include "hw/memory/l1_cache.h"
@@ -95,7 +95,6 @@ class LoadStoreUnit final : public Unit {
   void move_lines(Tick now);
   /// False when there is no place for it now.
   [[nodiscard]] bool move(const Line& moved);
-  void answer_one(Tick now, std::uint32_t number);
 
   const Params& params_;
   const Frame& frame_;
@@ -104,9 +103,8 @@ class LoadStoreUnit final : public Unit {
   MemoryPort port_;
   L1Cache cache_;
   PassId pass_;  ///< of the latest request
-  Queue<Group> groups_;
-  std::uint32_t first_group_ = 0;  ///< number of groups_.front(); waiters are named by number
-  std::vector<Line> lines_;        ///< of the newest group
+  WaitingQueue<Group> groups_;
+  std::vector<Line> lines_;  ///< of the newest group
   std::vector<models::StorageLine> gathered_;
   std::size_t next_line_ = 0;
   bool stalled_ = false;  ///< the cache had no place; a fill will make one

@@ -1,17 +1,16 @@
 /// Unified shader core: runs vertex and fragment warps of 32 lanes, a clause at a time, on several SIMD
 /// units.
 ///
-/// In    vertex_in, fragment_in  warps to run
-///       texture_in, storage_in  the requests of a warp have been answered
-/// Out   vertex_out              batch shaded
-///       fragment_out[p]         fragment warp shaded
+/// In    vertex_in, fragment_in    warps to run
+///       texture_in, storage_in    the requests of a warp have been answered
+/// Out   vertex_out                batch shaded
+///       fragment_out[p]           fragment warp shaded
 ///       texture_out, storage_out  a clause's texture and storage requests
-/// Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes
-/// for special functions), and one that reads its result waits for the latency of
-///       its class (models/shader/timing.h); other warps of the SIMD issue meanwhile, as `scheduler` says
-///       (hw/shader/simd.h). A warp stays on the SIMD that it was given, the one with the fewest warps. It
-///       needs a slot and its registers; a slot and registers for one fragment warp are never given to vertex
-///       warps.
+/// Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes for special functions), and
+///       one that reads its result waits for the latency of its class (models/shader/timing.h); other warps
+///       of the SIMD issue meanwhile, as `scheduler` says (hw/shader/simd.h). A warp stays on the SIMD that
+///       it was given, the one with the fewest warps. It needs a slot and its registers; a slot and registers
+///       for one fragment warp are never given to vertex warps.
 /// Not modelled: instruction and constant caches (docs/deviations.md#D4), register bank conflicts (#D5)
 #pragma once
 

@@ -1,14 +1,17 @@
 /// Work distributor: hands vertex batches and fragment warps to the cores.
 ///
-/// In    vertex_in       batches to shade             fragment_in[p]  warps from the packer of partition p
-///       load_in[p]      a warp of a core is done: from the ROP of partition p; the last from primitive
-///       assembly
-/// Out   vertex_out[c]   to core c                    fragment_out[c]
+/// In    vertex_in        batches to shade
+///       fragment_in[p]   warps from the packer of partition p
+///       load_in[p]       a warp of a core is done: from the ROP of partition p; the last from primitive
+///                        assembly
+/// Out   vertex_out[c]    to core c
+///       fragment_out[c]  to core c
 /// Time  one vertex and one fragment warp a cycle; partitions take turns
-/// Who   `policy`: in turn; fragments by where they are on the screen; or to the core with the fewest warps,
-/// sent and not reported done, which is what is known
-///       here of its load. A core is skipped while it has no room, but under `tile` its warps wait. Batches
-///       have no place on the screen and go by load then.
+///
+/// `policy` says who gets a warp: cores in turn; fragments by where they are on the screen; or the core with
+/// the fewest warps, sent and not reported done, which is what is known here of its load. A core is skipped
+/// while it has no room, but under `tile` its warps wait. Batches have no place on the screen and go by load
+/// then.
 #pragma once
 
 #include "hw/base/fifo_group.h"

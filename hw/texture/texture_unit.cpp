@@ -56,17 +56,12 @@ Wake TextureUnit::next() const {
 void TextureUnit::act(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
     stalled_ = false;
-    cache_.fill(answer, [&](std::uint32_t number) {
-      Group& group = groups_[number - first_group_];
-      --group.missing;
-      group.ready = std::max(group.ready, now);
-    });
+    cache_.fill(answer, [&](std::uint32_t number) { groups_.answer(number, now); });
   });
   if (answer_wake().at() <= now) {
     response_out.push(now, groups_.front().token);
     filter_free_ = after(std::max(groups_.front().ready, filter_free_), groups_.front().filter_cycles);
     groups_.pop_front();
-    ++first_group_;
     ++stats_.groups_answered;
   }
   if (address_wake().at() <= now) {
@@ -131,10 +126,9 @@ void TextureUnit::take(Tick now) {
 }
 
 void TextureUnit::look_up(Tick now) {
-  const auto number = first_group_ + static_cast<std::uint32_t>(groups_.size()) - 1;
   for (; next_line_ < lines_.size(); ++next_line_) {
     const models::TextureLine& line = lines_[next_line_];
-    switch (cache_.access(line.line, static_cast<std::uint8_t>(line.sectors), number, port_)) {
+    switch (cache_.access(line.line, static_cast<std::uint8_t>(line.sectors), groups_.newest(), port_)) {
       case L1Cache::Result::kHit: break;
       case L1Cache::Result::kPending: ++groups_.back().missing; break;
       case L1Cache::Result::kStall: stalled_ = true; return;

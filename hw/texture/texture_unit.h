@@ -1,17 +1,16 @@
 /// Texture unit of one core: level of detail and addresses, a first-level cache that fetches ahead of the
 /// filter, and the filter.
 ///
-/// In    request_in   the texture requests of one clause (up to 8 warp instructions)
-/// Out   response_out their texels are filtered, in order
+/// In    request_in    the texture requests of one clause (up to 8 warp instructions)
+/// Out   response_out  their texels are filtered, in order
 /// Mem   misses of the first-level cache, 128-byte lines in 32-byte sectors
 /// Time  addresses: `address_quads_per_clk` quads and level a cycle, `tags_per_clk` distinct lines a cycle;
-/// filter: `filter_quads_per_clk` bilinear quads a
-///       cycle. Requests wait in between for their lines, so a miss delays but does not stop the look-ups
-///       behind it. [P: Igehy 1998, prefetching texture cache]
+///       filter: `filter_quads_per_clk` bilinear quads a cycle. Requests wait in between for their lines, so
+///       a miss delays but does not stop the look-ups behind it. [P: Igehy 1998, prefetching texture cache]
 #pragma once
 
 #include "hw/base/param.h"
-#include "hw/base/queue.h"
+#include "hw/base/waiting_queue.h"
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
 #include "hw/memory/l1_cache.h"
@@ -105,8 +104,7 @@ class TextureUnit final : public Unit {
   L1Cache cache_;
   PassId pass_;  ///< of the latest request
   models::TexturePlan plan_;
-  Queue<Group> groups_;
-  std::uint32_t first_group_ = 0;           ///< number of groups_.front(); waiters are named by number
+  WaitingQueue<Group> groups_;
   std::vector<models::TextureLine> lines_;  ///< look-ups of the newest group
   std::size_t next_line_ = 0;
   bool stalled_ = false;

@@ -5,6 +5,7 @@
 #include "models/shader/op_table.h"
 
 #include <array>
+#include <map>
 #include <memory>
 
 namespace quadrille::models {
@@ -69,6 +70,23 @@ void count(IssueCounts& counts, IssueClass issue) {
   }
 }
 
+/// Slots that are written outside of all control flow are always written.
+std::vector<std::uint16_t> partial_outputs(const Program& program) {
+  std::map<std::uint16_t, bool> always;
+  if (program.stage == ShaderStage::kVertex)
+    for (int slot = 0; slot < vertex_outputs(program); ++slot) always[static_cast<std::uint16_t>(slot)];
+  int depth = 0;
+  for (const Instruction& in : program.code) {
+    if (in.op == Op::kIf || in.op == Op::kLoop) ++depth;
+    if (in.op == Op::kEndIf || in.op == Op::kEndLoop) --depth;
+    if (in.op == Op::kOutput) always[in.imm] |= depth == 0;
+  }
+  std::vector<std::uint16_t> partial;
+  for (const auto& [slot, written] : always)
+    if (!written) partial.push_back(slot);
+  return partial;
+}
+
 }  // namespace
 
 void prepare(const Program& program) {
@@ -76,6 +94,7 @@ void prepare(const Program& program) {
     throw user_error("shader '{}', instruction {}: {}", program.name, fault->instruction, fault->what);
   auto decoded = std::make_shared<DecodedProgram>();
   decoded->flow = analyse_flow(program);
+  decoded->partial_outputs = partial_outputs(program);
   decoded->code.reserve(program.code.size());
   decoded->counts.resize(program.code.size() + 1);
   for (std::size_t i = 0; i < program.code.size(); ++i) {

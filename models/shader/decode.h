@@ -70,6 +70,9 @@ struct DecodedProgram {
   std::vector<DecodedInstruction> code;
   std::vector<Flow> flow;
   std::vector<IssueCounts> counts;  ///< code.size() + 1
+  /// Output slots that some path through the program leaves unwritten, of those that are read behind it: all
+  /// of a vertex program, and those of a fragment program that it writes at all. They begin with zeros.
+  std::vector<std::uint16_t> partial_outputs;
 };
 
 /// Functions for one operation with given operand kinds.

@@ -1,6 +1,6 @@
 #include "models/shader/storage_lines.h"
 
-#include <algorithm>
+#include <array>
 #include <bit>
 
 namespace quadrille::models {
@@ -27,7 +27,8 @@ StorageLine line_of(const Touched& touched) {
 }  // namespace
 
 void add_lines(const StorageRequest& request, const StorageView& view, std::vector<StorageLine>& lines) {
-  std::vector<Touched> touched;
+  std::array<Touched, kWarpLanes> touched;
+  std::size_t count = 0;
   const bool in_turn = is_atomic(request.op);
   for (LaneMask lanes = request.active; lanes != 0; lanes &= lanes - 1) {
     const std::uint32_t offset = request.offset[static_cast<std::size_t>(std::countr_zero(lanes))];
@@ -35,12 +36,12 @@ void add_lines(const StorageRequest& request, const StorageView& view, std::vect
     const std::uint64_t word = (view.address + offset) / 4;
     const auto line = static_cast<std::uint32_t>(word / kWordsOfLine);
     const std::uint32_t bit = 1u << word % kWordsOfLine;
-    const auto found = std::ranges::find_if(
-        touched, [&](const Touched& t) { return t.line == line && (!in_turn || (t.words & bit) == 0); });
-    if (found != touched.end()) found->words |= bit;
-    else touched.push_back({line, bit});
+    std::size_t i = 0;
+    while (i < count && (touched[i].line != line || (in_turn && (touched[i].words & bit) != 0))) ++i;
+    if (i == count) touched[count++] = {line, 0};
+    touched[i].words |= bit;
   }
-  for (const Touched& t : touched) lines.push_back(line_of(t));
+  for (std::size_t i = 0; i < count; ++i) lines.push_back(line_of(touched[i]));
 }
 
 }  // namespace quadrille::models

@@ -17,6 +17,7 @@ void Warp::launch(const Program& p, const std::uint32_t* constant_file, LaneMask
   QUADRILLE_CHECK(p.constants.words == 0 || constant_file != nullptr, "program '{}' has no constant file",
                   p.name);
   QUADRILLE_CHECK(p.buffers.empty() || storage != nullptr, "program '{}' has no storage", p.name);
+  QUADRILLE_CHECK(code->partial_outputs.empty() || outputs != nullptr, "program '{}' has no outputs", p.name);
   constants = constant_file;
   launched = exec = lanes;
   killed = 0;
@@ -27,6 +28,7 @@ void Warp::launch(const Program& p, const std::uint32_t* constant_file, LaneMask
   instructions = 0;
   regs.resize(static_cast<std::size_t>(p.num_regs));
   std::fill(regs.begin(), regs.end(), RegisterRow{});
+  for (const std::uint16_t slot : code->partial_outputs) outputs[slot].fill(0);
 }
 
 void write_texture_result(Warp& warp, const TextureRequest& request, const std::array<LaneFloats, 4>& rgba) {

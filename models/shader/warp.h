@@ -107,7 +107,7 @@ struct Warp {
   /// by texture binding of the program; needed only by programs with kTexSize
   const TextureSize* texture_sizes = nullptr;
   WarpStorage* storage = nullptr;  ///< needed only by programs with storage buffers
-  /// rows by output slot; owned by the caller; only executing lanes are written
+  /// rows by output slot; owned by the caller, who sets it before `launch`; only executing lanes are written
   LaneWords* outputs = nullptr;
   LaneMask launched = 0;  ///< lanes that exist (helpers included)
   LaneMask exec = 0;      ///< lanes executing now
@@ -130,7 +130,8 @@ struct Warp {
 
   [[nodiscard]] int requests() const { return texture_count + access_count; }
 
-  /// Prepares a launch: lanes in `lanes` run `p` from its start. Registers are zeroed. The program must
+  /// Prepares a launch: lanes in `lanes` run `p` from its start. Registers are zeroed, and so are outputs
+  /// that some path of the program does not write: nothing depends on what ran here before. The program must
   /// outlive the run and stay unchanged. A lane that is not launched has no defined register values. Throws
   /// what `prepare` throws.
   void launch(const Program& p, const std::uint32_t* constant_file, LaneMask lanes);

@@ -215,14 +215,14 @@ class FrameBuilder {
     draw.depth_compare = pipeline.depth.compare;
     draw.blend = pipeline.blend;
     const models::Program& program = *draw.fragment.program;
-    draw.writes_memory = models::writes_buffers(program);
-    if (draw.writes_memory && pipeline.polygon_mode != models::PolygonMode::kFill)
+    const bool writes_memory = models::writes_buffers(program);
+    if (writes_memory && draw.primitives.pieces() != draw.primitives.assembled)
       throw user_error(
           "{}: writes memory where pipeline '{}' draws triangles by their edges or corners, which is not "
           "supported: two edges of a triangle may cover one pixel; draw lines or points",
           program.name, pipeline.name);
     draw.late_depth = draw.depth_test && !program.early_fragment_tests &&
-                      (program.uses_discard || program.writes_depth || draw.writes_memory);
+                      (program.uses_discard || program.writes_depth || writes_memory);
   }
 
   std::vector<std::uint32_t> constants(const models::Program& program) {

@@ -41,9 +41,13 @@ std::vector<WrittenBuffer> StorageBinder::finish(hw::Frame& frame, models::Stora
     written.push_back({b, resources_.buffer(b), buffer.data.size()});
     watched[b] = storage.watch(buffer.name, written.back().address, written.back().bytes);
   }
-  for (hw::DrawState& draw : frame.draws)
+  for (hw::DrawState& draw : frame.draws) {
     for (hw::ProgramState* state : {&draw.vertex, &draw.fragment})
       for (models::StorageView& view : state->buffers) view.buffer = watched[view.buffer];
+    draw.meets_written_memory = std::ranges::any_of(
+        draw.fragment.buffers,
+        [](const models::StorageView& view) { return view.buffer != models::StorageView::kReadOnly; });
+  }
   return written;
 }
 

@@ -1,6 +1,7 @@
 #include "pipeline/functional/functional.h"
 
 #include "hw/frame/fragment_output.h"
+#include "hw/frame/indices.h"
 #include "hw/frame/invocations.h"
 #include "hw/frame/varyings.h"
 #include "models/base/error.h"
@@ -11,7 +12,6 @@
 #include "models/raster/interpolate.h"
 
 #include <bit>
-#include <cstring>
 
 namespace quadrille::pipeline {
 
@@ -71,25 +71,9 @@ class FunctionalRenderer {
     shade();
   }
 
-  std::uint32_t index_at(std::uint32_t position) const {
-    std::uint32_t index = 0;
-    std::memcpy(
-        &index,
-        memory_.read(draw_->index_address + std::uint64_t{position} * draw_->index_bytes, draw_->index_bytes)
-            .data(),
-        draw_->index_bytes);
-    return index;
-  }
-
-  std::uint32_t vertex_number(std::uint32_t position) const {
-    if (!draw_->indexed) return draw_->first_vertex + position;
-    return index_at(position) + static_cast<std::uint32_t>(draw_->vertex_offset);
-  }
-
   bool primitive_left() {
-    return walk_.look(
-        [&](std::uint32_t p) { return index_at(p) == models::restart_index(draw_->index_bytes); },
-        [](std::uint32_t) {});
+    return walk_.look([&](std::uint32_t p) { return hw::is_restart(*draw_, memory_, p); },
+                      [](std::uint32_t) {});
   }
 
   /// Forms, shades and rasterises the batch that begins with the primitive at which the walk is.
@@ -101,9 +85,6 @@ class FunctionalRenderer {
     batch_.lanes = reuse.size();
     batch_.attributes.resize(draw_->vertex.program->vertex_inputs.size());
     batch_.outputs.resize(static_cast<std::size_t>(models::vertex_outputs(*draw_->vertex.program)));
-    for (auto row = static_cast<std::size_t>(models::first_extra_output(*draw_->vertex.program));
-         row < batch_.outputs.size(); ++row)
-      batch_.outputs[row].fill(0);
     fetch(reuse);
     shade_vertices();
     for (const BatchSlot::Triangle& triangle : batch_.triangles) clip(triangle);
@@ -114,7 +95,7 @@ class FunctionalRenderer {
     const std::size_t corners = draw_->primitives.corners();
     const auto position = walk_.positions();
     std::array<std::uint32_t, 3> vertex{};
-    for (std::size_t i = 0; i < corners; ++i) vertex[i] = vertex_number(position[i]);
+    for (std::size_t i = 0; i < corners; ++i) vertex[i] = hw::vertex_number(*draw_, memory_, position[i]);
     if (!reuse.fits(std::span(vertex).first(corners))) return false;
     BatchSlot::Triangle primitive{{}, walk_.primitive()};
     for (std::size_t i = 0; i < 3; ++i)

@@ -96,6 +96,9 @@ class StubSink final : public StubUnit {
   Tick free_ = 0;
 };
 
+/// Names a kind of requests: r, w, p (a write in part), a (atomic) or f (fence).
+[[nodiscard]] constexpr char letter_of(MemoryRequest::Kind kind) { return "rwpaf"[static_cast<int>(kind)]; }
+
 /// One slice of a memory: takes a request a cycle and pushes the answer of a read, atomic request or fence
 /// `latency` cycles after it took it in, in order.
 class StubMemory final : public StubUnit {
@@ -120,12 +123,12 @@ class StubMemory final : public StubUnit {
       waiting_.push_back({now / kCycle + latency_, {request.line, request.tag, request.sectors}});
     free_ = after(now, 1);
   }
-  /// "cycle:kind line/sectors" of each request; kind r, w, p (in part), a (atomic) or f.
+  /// "cycle:kind line/sectors" of each request.
   [[nodiscard]] std::string text() const {
     std::string all;
     for (const Timed<MemoryRequest>& t : got) {
-      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle,
-                         "rwpaf"[static_cast<int>(t.token.kind)], t.token.line, t.token.sectors);
+      all += fmt::format("{}{}:{}{}/{:x}", all.empty() ? "" : " ", t.cycle, letter_of(t.token.kind),
+                         t.token.line, t.token.sectors);
     }
     return all;
   }

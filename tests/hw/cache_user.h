@@ -56,7 +56,7 @@ class CacheUser final : public StubUnit {
 [[nodiscard]] inline std::string requests_seen(const StubMemory& memory, std::uint32_t first = 0) {
   std::string text;
   for (const auto& [cycle, r] : memory.got)
-    text += fmt::format(" {}{}/{:x}", "rwpaf"[static_cast<int>(r.kind)], r.line - first, r.sectors);
+    text += fmt::format(" {}{}/{:x}", letter_of(r.kind), r.line - first, r.sectors);
   return text;
 }
 

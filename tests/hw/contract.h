@@ -2,10 +2,11 @@
 /// machine, and it runs that machine in forked processes (SystemC allows one simulation a process) in many
 /// variations that must not change anything, and says in words what did change.
 ///
-///   attribution   busy + starved + blocked + idle = cycles, for every unit, in every variation
-///   same cycles   both drivers, any host order: equal digest, end, actions, charges of every unit and port,
-///   traffic of every link, own counters depth one     every link one token deep: the machine still finishes,
-///   with an equal digest (its cycles may differ)
+///   attribution  busy + starved + blocked + idle = cycles, for every unit, in every variation
+///   same cycles  both drivers, any host order: equal digest, end, actions, charges of every unit and port,
+///                traffic of every link, own counters
+///   depth one    every link one token deep: the machine still finishes, with an equal digest (its cycles may
+///                differ)
 #pragma once
 
 #include "hw/base/driver.h"

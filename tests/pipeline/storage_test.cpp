@@ -45,6 +45,24 @@ StorageShape counting(const std::string& qualifier) {
   return shape;
 }
 
+/// The first draw stores where it is seen. The second one is the same again, so it is hidden everywhere; its
+/// program reads what the first one stored: `early` after its test, else before it.
+traces::CommandStream hidden_reads(bool early) {
+  const std::string word = "b.shaded[uint(gl_FragCoord.y) * 88u + uint(gl_FragCoord.x)]";
+  StorageShape storing = counting("layout(early_fragment_tests) in;");
+  storing.fragment_body = word + " = 1u;";
+  StorageShape reading = counting(early ? "layout(early_fragment_tests) in;" : "");
+  reading.fragment_body = "o.r += float(" + word + ");" + (early ? "" : " if (o.r > 5.0) discard;");
+  traces::CommandStream stream = storage_stream(5, storing);
+  stream.pipelines.push_back(stream.pipelines[0]);
+  stream.pipelines[1].fragment_shader = static_cast<traces::Index>(stream.shaders.size());
+  stream.shaders.push_back(storage_stream(5, reading).shaders[1]);
+  const traces::Command again = stream.commands[stream.commands.size() - 2];
+  stream.commands.insert(stream.commands.end() - 1, {traces::BindPipeline{1}, again});
+  traces::validate(stream);
+  return stream;
+}
+
 void check_machines(const StorageShape& shape, std::uint64_t machines) {
   for (std::uint64_t seed = 1; seed <= machines; ++seed) {
     const traces::CommandStream stream = storage_stream(1 + seed / 3, shape);
@@ -106,6 +124,19 @@ TEST_CASE("storage: early tests wait for earlier fragments that are still to be 
     INFO("machine " << seed << ": " << outcome.failure);
     REQUIRE(outcome.failure.empty());
     CHECK(outcome.digest == functional_digest(stream));
+  }
+}
+
+TEST_CASE("storage: whether a hidden fragment's read meets a store does not depend on the machine") {
+  for (const bool early : {true, false}) {
+    const traces::CommandStream stream = hidden_reads(early);
+    CHECK(refusal(stream).empty() == early);
+    for (std::uint64_t seed = 0; seed <= 20; ++seed) {
+      const hw::contract::Outcome outcome = hw::contract::run_forked(machine_builder(stream, seed), {});
+      INFO("machine " << seed << ": " << outcome.failure);
+      REQUIRE(outcome.failure.empty() == early);
+      if (early) CHECK(outcome.digest == functional_digest(stream));
+    }
   }
 }
 

@@ -3,12 +3,13 @@
 ///
 /// A caller asks for the earliest cycle of a command, picks one at or after it and issues it; commands come
 /// in order of time. Rules between commands (their names are those of the parameters in timing.h):
-///   same bank     ACT -> RD/WR t_rcd, t_rcd_wr; ACT -> PRE t_ras; ACT -> ACT t_rc; PRE -> ACT t_rp; RD ->
-///   PRE t_rtp; end of write data -> PRE t_wr same rank     ACT -> ACT t_rrd_l (same group) or t_rrd_s, four
-///   within t_faw; RD -> RD, WR -> WR t_ccd_l or t_ccd_s; end of write data -> RD t_wtr_l or t_wtr_s the data
-///   bus  one burst at a time; t_rtw idle from read to write data, t_rtrs between ranks refresh       all
-///   banks of the rank (or the bank) closed and t_rp past; then t_rfc (t_rfc_pb) until the next ACT there,
-///   t_rrefd until one elsewhere
+///   same bank  ACT -> RD/WR t_rcd, t_rcd_wr; ACT -> PRE t_ras; ACT -> ACT t_rc; PRE -> ACT t_rp;
+///              RD -> PRE t_rtp; end of write data -> PRE t_wr
+///   same rank  ACT -> ACT t_rrd_l (same group) or t_rrd_s, four within t_faw; RD -> RD, WR -> WR t_ccd_l or
+///              t_ccd_s; end of write data -> RD t_wtr_l or t_wtr_s
+///   data bus   one burst at a time; t_rtw idle from read to write data, t_rtrs between ranks
+///   refresh    all banks of the rank (or the bank) closed and t_rp past; then t_rfc (t_rfc_pb) until the
+///              next ACT there, t_rrefd until one elsewhere
 /// As public simulators, examples and data sheets have them: [Ramulator 2, DRAMsim3, gem5 LPDDR5, gem5 HBM2,
 /// AMD LPDDR5, DRAMSys, Micron GDDR6].
 #pragma once

@@ -77,7 +77,7 @@ std::string seen(const FlushBench::Setup& setup) {
   return run<FlushBench>(setup, [](const FlushBench& b) {
     std::string text;
     for (const StubMemory* slice : b.memory) {
-      for (const auto& [cycle, r] : slice->got) text += "rwpaf"[static_cast<int>(r.kind)];
+      for (const auto& [cycle, r] : slice->got) text += letter_of(r.kind);
       text += ' ';
     }
     return fmt::format("{}| fenced {} done {} others {}", text, b.unit->fenced_at, b.unit->done_at,
