@@ -11,6 +11,7 @@ void add_render(CLI::App& app, Command& chosen) {
       "render", "Renders a frame, or several: the picture, its cycles, and where every unit's time went.");
   const auto job = std::make_shared<RenderJob>();
   job->scene.add_to(*command);
+  job->scene.add_samples_to(*command);
   job->add_to(*command);
   job->frames.add_to(*command);
   command->footer(R"(Examples:

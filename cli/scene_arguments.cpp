@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "models/base/error.h"
+#include "models/raster/samples.h"
 #include "scenes/builtin/builtin.h"
 #include "scenes/image/image_io.h"
 #include "scenes/scene.h"
@@ -135,6 +136,25 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
   command.add_option("--frag", frag, "fragment shader for all materials, as for --vert")->type_name("F");
 }
 
+void SceneArguments::add_samples_to(CLI::App& command) {
+  command
+      .add_option("--samples", samples,
+                  "samples a pixel, 1, 2, 4 or 8: passes draw to attachments of so many and resolve them "
+                  "(default: 1, "
+                  "or as the trace has them)")
+      ->type_name("N");
+}
+
+void SceneArguments::use_samples(traces::CommandStream& stream) const {
+  if (!samples) return;
+  std::uint32_t count = 0;
+  if (!read_number(*samples, count) || !models::is_sample_count(count))
+    throw user_error("--samples: '{}' is not 1, 2, 4 or 8", *samples);
+  try {
+    traces::use_samples(stream, count);
+  } catch (const UserError& error) { throw user_error("--samples: {}: {}", scene, error.what()); }
+}
+
 void SceneArguments::add_trace_to(CLI::App& command) {
   command.add_option("TRACE", scene, "a .qtrace file")->required();
 }
@@ -200,6 +220,7 @@ traces::CommandStream SceneArguments::load_visibility() const {
 
 SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes::Moment& moment) const {
   Loaded loaded{file.record(moment), {}};
+  use_samples(loaded.stream);
   if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
   if (const std::size_t packed = file.unused_images(); packed > 0)
     loaded.left_out.push_back({"images", "no shader of the frame samples them",
@@ -212,7 +233,11 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
 }
 
 SceneArguments::Loaded SceneArguments::load() const {
-  if (is_trace()) return {traces::read_trace(scene), {}};
+  if (is_trace()) {
+    Loaded loaded{traces::read_trace(scene), {}};
+    use_samples(loaded.stream);
+    return loaded;
+  }
   const scenes::SceneOptions wanted = options();
   scenes::Scene file(scene, wanted);
   return record(file, {wanted.time.value_or(0), wanted.orbit});

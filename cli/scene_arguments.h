@@ -18,6 +18,7 @@ namespace quadrille::cli {
 struct SceneArguments {
   std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, vert, frag;
+  std::optional<std::string> samples;  ///< a pixel, of a scene or trace
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
   bool leave_out = true;
@@ -30,6 +31,8 @@ struct SceneArguments {
   /// Adds those options alone, for a command that takes several scenes. `default_size` is what its help
   /// names.
   void add_view_to(CLI::App& command, const std::string& default_size);
+  /// Adds --samples, for a command that draws or records.
+  void add_samples_to(CLI::App& command);
   /// Adds SCENE alone, for a trace, which has its view and shaders in it.
   void add_trace_to(CLI::App& command);
   /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
@@ -45,6 +48,8 @@ struct SceneArguments {
   [[nodiscard]] Loaded record(scenes::Scene& file, const scenes::Moment& moment) const;
   /// Loads the scene or trace. Throws `UserError`.
   [[nodiscard]] Loaded load() const;
+  /// Lets the passes of a stream have the wished samples. Throws `UserError`.
+  void use_samples(traces::CommandStream& stream) const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;
   [[nodiscard]] bool is_trace() const;

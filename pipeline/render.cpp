@@ -20,7 +20,7 @@ FrameImage read_image(const DeviceFrame& frame) {
   FrameImage image;
   if (frame.frame.passes.empty()) return image;
   const hw::PassState& pass = frame.frame.passes.back();
-  const hw::AttachmentState& shown = pass.color[0];
+  const hw::AttachmentState& shown = pass.picture();
   frame.memory.check_readable(shown.surface.base, shown.surface.bytes(), models::DeviceMemory::kClean);
   image.width = pass.width;
   image.height = pass.height;

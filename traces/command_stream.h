@@ -77,6 +77,7 @@ struct Image {
   /// instead of `texels`, for a machine that asks for what it samples; null: they are there
   std::shared_ptr<const UnpackTexels> packed{};
   std::uint8_t usage = kSampled;  ///< of `ImageUsage`
+  std::uint32_t samples = 1;      ///< a pixel: 1, 2, 4 or 8; of an attachment that is not sampled
   [[nodiscard]] bool is_attachment() const { return (usage & (kColorAttachment | kDepthAttachment)) != 0; }
   friend bool operator==(const Image&, const Image&) = default;
 };
@@ -163,14 +164,16 @@ struct AttachmentUse {
 };
 struct ColorAttachmentUse : AttachmentUse {
   std::array<float, 4> clear{0, 0, 0, 1};  ///< linear values
+  /// An image of one sample and the same format: holds the means of the samples when the pass ends.
+  Index resolve = kNone;
   friend bool operator==(const ColorAttachmentUse&, const ColorAttachmentUse&) = default;
 };
 struct DepthAttachmentUse : AttachmentUse {
   float clear = 1;
   friend bool operator==(const DepthAttachmentUse&, const DepthAttachmentUse&) = default;
 };
-/// All attachments have one extent, and there is at least one. The last pass of a stream is shown: it has a
-/// colour attachment, and number 0 is the picture.
+/// All attachments have one extent and one number of samples, and there is at least one. The last pass of a
+/// stream is shown: it has a colour attachment, and number 0, or what it is resolved to, is the picture.
 struct BeginPass {
   std::vector<ColorAttachmentUse> colors;
   DepthAttachmentUse depth;  ///< without image: the pass has no depth attachment
@@ -244,7 +247,8 @@ struct CommandStream {
 /// Images that bring texels.
 [[nodiscard]] std::size_t texture_count(const CommandStream& stream);
 
-/// Width and height of a pass's attachments, of formats `color` and `depth` (kUndefined: none).
+/// Width and height of a pass's attachments, of formats `color` and `depth` (kUndefined: none) and of one
+/// sample a pixel.
 struct PassTarget {
   std::uint32_t width = 0, height = 0;
   Format color = Format::kR8G8B8A8Srgb;
@@ -259,6 +263,12 @@ struct PassTarget {
 [[nodiscard]] PassTarget shown_target(const CommandStream& stream);
 /// What a pass draws to.
 [[nodiscard]] PassTarget target_of(const CommandStream& stream, const BeginPass& pass);
+
+/// Lets every pass draw to attachments of `samples` samples a pixel, and resolve them to its own. A pass
+/// stays as it is where that would change what others see: one that loads an attachment, or whose attachment
+/// another loads, or whose depth is sampled. Throws `UserError` if that is the last one, or if the stream has
+/// several samples already.
+void use_samples(CommandStream& stream, std::uint32_t samples);
 
 inline constexpr std::uint32_t kMaxPushConstantBytes = 256;
 

@@ -161,6 +161,7 @@ void transfer(A& a, Image& v) {
   numbers(a, v.width, v.height, v.levels);
   a.array(v.texels);
   if (a.version() >= 2) numbers(a, v.usage);
+  if (a.version() >= 3) numbers(a, v.samples);
 }
 
 template <class A>
@@ -249,6 +250,7 @@ void fields(A& a, BeginPass& v) {
   a.table(v.colors, [&](ColorAttachmentUse& color) {
     transfer(a, static_cast<AttachmentUse&>(color));
     numbers(a, color.clear);
+    if (a.version() >= 3) numbers(a, color.resolve);
   });
   transfer(a, static_cast<AttachmentUse&>(v.depth));
   numbers(a, v.depth.clear);

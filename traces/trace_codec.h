@@ -37,13 +37,13 @@ struct ChunkInfo {
 };
 inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"BUFS", 1},
-                                                   {"IMGS", 2},
+                                                   {"IMGS", 3},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
                                                    {"PIPE", 3},
                                                    {"DESC", 2},
                                                    {"TARG", 0},
-                                                   {"CMDS", 2}}};
+                                                   {"CMDS", 3}}};
 
 [[nodiscard]] std::vector<std::byte> encode_chunk(const CommandStream& stream, Chunk chunk);
 

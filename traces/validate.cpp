@@ -47,6 +47,15 @@ void check_usage(const Image& image, std::size_t index) {
   if (!image.is_attachment() && !format.may(models::kFileUse)) refuse("texture (R8G8B8A8 UNORM or SRGB)");
 }
 
+void check_samples(const Image& image, std::size_t index) {
+  if (image.samples != 1 && image.samples != 2 && image.samples != 4 && image.samples != 8)
+    throw user_error("image {} '{}': {} samples a pixel; 1, 2, 4 and 8 are possible", index, image.name,
+                     image.samples);
+  if (image.samples > 1 && (!image.is_attachment() || (image.usage & kSampled) != 0))
+    throw user_error("image {} '{}': only an attachment that is not sampled has {} samples a pixel", index,
+                     image.name, image.samples);
+}
+
 void check_texels(const Image& image, std::size_t index) {
   const std::uint64_t bytes = image.packed || image.is_attachment() ? 0 : texel_bytes(image);
   if (image.is_attachment() && (image.levels != 1 || image.packed || !image.texels.empty()))
@@ -60,6 +69,7 @@ void check_texels(const Image& image, std::size_t index) {
 void check_image(const Image& image, std::size_t index) {
   check_side("image", index, image.width, image.height);
   check_usage(image, index);
+  check_samples(image, index);
   const auto full_chain = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
   if (image.levels == 0 || image.levels > full_chain) {
     throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels,

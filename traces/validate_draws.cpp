@@ -48,6 +48,9 @@ void CommandWalk::run() {
   }
   if (pass_ != nullptr) throw user_error("commands: the last render pass is not ended");
   if (passes_ == 0) throw user_error("commands: there is no render pass");
+  if (!last_->colors.empty() && last_->colors[0].resolve == kNone &&
+      stream_.images[last_->colors[0].image].samples > 1)
+    throw user_error("commands: the last render pass resolves the samples of its first colours nowhere");
   if (last_->colors.empty()) throw user_error("commands: the last render pass has no colours to show");
 }
 
@@ -60,11 +63,32 @@ void CommandWalk::check_attachment(const AttachmentUse& use, ImageUsage usage, c
   if (image.width != target_.width || image.height != target_.height)
     throw user_error("command {}: {}: image {} of {}x{} beside one of {}x{}", at_, what, use.image,
                      image.width, image.height, target_.width, target_.height);
+  if (image.samples != samples_)
+    throw user_error("command {}: {}: image {} of {} samples a pixel beside one of {}", at_, what, use.image,
+                     image.samples, samples_);
   if (attached_[use.image])
     throw user_error("command {}: {}: image {} is attached twice", at_, what, use.image);
   if (use.load == LoadOp::kLoad && !stored_[use.image])
     throw user_error("command {}: {}: image {} is loaded before a pass has stored it", at_, what, use.image);
   attached_[use.image] = true;
+}
+
+void CommandWalk::check_resolve(const ColorAttachmentUse& color) {
+  constexpr const char* kWhat = "resolve attachment";
+  if (color.resolve >= stream_.images.size())
+    throw user_error("command {}: {}: image {} does not exist", at_, kWhat, color.resolve);
+  const Image &from = stream_.images[color.image], &to = stream_.images[color.resolve];
+  if ((to.usage & kColorAttachment) == 0 || to.samples != 1 || from.samples == 1)
+    throw user_error(
+        "command {}: {}: several samples a pixel are resolved to a colour attachment of one; "
+        "images {} and {} have {} and {}",
+        at_, kWhat, color.image, color.resolve, from.samples, to.samples);
+  if (to.width != from.width || to.height != from.height || to.format != from.format)
+    throw user_error("command {}: {}: images {} and {} differ in size or format", at_, kWhat, color.image,
+                     color.resolve);
+  if (attached_[color.resolve])
+    throw user_error("command {}: {}: image {} is attached twice", at_, kWhat, color.resolve);
+  attached_[color.resolve] = true;
 }
 
 void CommandWalk::visit(const BeginPass& c) {
@@ -78,12 +102,15 @@ void CommandWalk::visit(const BeginPass& c) {
   const Image& first = stream_.images[c.first_image()];
   target_.width = first.width;
   target_.height = first.height;
+  samples_ = first.samples;
   attached_.assign(stream_.images.size(), false);
   for (const ColorAttachmentUse& color : c.colors) {
     check_attachment(color, kColorAttachment, "colour attachment");
     if (!std::ranges::all_of(color.clear, [](float v) { return std::isfinite(v); }))
       throw user_error("command {}: the clear colour is not finite", at_);
   }
+  for (const ColorAttachmentUse& color : c.colors)
+    if (color.resolve != kNone) check_resolve(color);
   if (c.depth.image != kNone) check_attachment(c.depth, kDepthAttachment, "depth attachment");
   if (!within(c.depth.clear, 0, 1))
     throw user_error("command {}: clear depth {} is outside 0..1", at_, c.depth.clear);
@@ -93,7 +120,10 @@ void CommandWalk::visit(const BeginPass& c) {
 
 void CommandWalk::visit(const EndPass&) {
   if (pass_ == nullptr) throw user_error("command {}: a render pass ends that has not begun", at_);
-  for (const ColorAttachmentUse& color : pass_->colors) stored_[color.image] = color.store == StoreOp::kStore;
+  for (const ColorAttachmentUse& color : pass_->colors) {
+    stored_[color.image] = color.store == StoreOp::kStore;
+    if (color.resolve != kNone) stored_[color.resolve] = true;
+  }
   if (pass_->depth.image != kNone) stored_[pass_->depth.image] = pass_->depth.store == StoreOp::kStore;
   pass_ = nullptr;
 }

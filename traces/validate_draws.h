@@ -44,6 +44,7 @@ class CommandWalk {
   void visit(const SetScissor& c);
   void visit(const Draw& c);
 
+  void check_resolve(const ColorAttachmentUse& color);
   void check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what);
   void check_draw_state() const;
   void check_scissor() const;
@@ -61,6 +62,7 @@ class CommandWalk {
   const BeginPass* pass_ = nullptr;  ///< that has begun and not ended
   const BeginPass* last_ = nullptr;
   PassTarget target_;
+  std::uint32_t samples_ = 1;            ///< a pixel, of the pass
   std::vector<bool> attached_, stored_;  ///< by image: in this pass; by an earlier one
   Index pipeline_ = kNone;
   std::array<VertexStream, kMaxVertexBindings> vertex_streams_;

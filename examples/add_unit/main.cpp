@@ -48,7 +48,7 @@ class Sink final : public hw::Unit {
 int sc_main(int /*count*/, char** /*arguments*/) {
   hw::Dispatcher driver("driver");
   const hw::Clock clock(1'000'000'000);
-  const hw::Frame frame;
+  const hw::Frame frame{.draws = std::vector<hw::DrawState>(1)};
   models::DeviceMemory memory;
   const hw::UnitContext context{clock, frame, memory, {}};
   const hw::TriangleStore triangles(1);

@@ -35,7 +35,7 @@ void ScanOut::act(Tick now) {
   port_.receive(now, [&](const MemoryResponse&) { --in_flight_; });
   if (ask_wake().at() <= now) {
     if (!scanning_) {
-      const models::SurfaceLayout& surface = frame_.pass(scan_in.pop(now).pass).color[0].surface;
+      const models::SurfaceLayout& surface = frame_.pass(scan_in.pop(now).pass).picture().surface;
       next_line_ = static_cast<std::uint32_t>(surface.base / models::kLineBytes);
       end_line_ = next_line_ + static_cast<std::uint32_t>(surface.bytes() / models::kLineBytes);
       scanning_ = true;

@@ -33,6 +33,7 @@ enum class DrawCount : std::uint8_t {
   kTrianglesFetched,
   kTrianglesClipped,
   kTrianglesWalked,
+  kSamplesPacked,
   kPacked,
   kAtRop,
   kTextureSent,

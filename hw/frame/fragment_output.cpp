@@ -1,5 +1,8 @@
 #include "hw/frame/fragment_output.h"
 
+#include "models/raster/interpolate.h"
+#include "models/rop/depth.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -23,11 +26,16 @@ void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outp
   });
 }
 
-models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp, const QuadOfWarp& quad,
+models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
+                            const models::TriangleSetup& triangle, const QuadOfWarp& quad,
                             float* tile_depths) {
   alignas(32) float incoming[models::kTilePixels] = {};
   const int first = quad.place.first_pixel();
-  std::copy_n(warp.depth.begin() + 4 * quad.number, 4, incoming + first);
+  if (draw.samples().count == 1 || draw.fragment.program->writes_depth)
+    std::copy_n(warp.depth.begin() + 4 * quad.number, 4, incoming + first);
+  else
+    models::sample_depths(triangle, static_cast<int>(quad.place.tile_x), static_cast<int>(quad.place.tile_y),
+                          draw.samples(), quad.sample, incoming);
   const std::uint64_t passed =
       models::depth_test(draw.depth_compare, tile_depths, incoming, std::uint64_t{quad.lanes} << first);
   if (draw.depth_write) models::depth_write(tile_depths, incoming, passed);
@@ -40,7 +48,8 @@ void write_color(const DrawState& draw, const PassState& pass, std::size_t attac
   for (std::size_t c = 0; c < 4; ++c)
     std::copy_n(warp.color[attachment][c].begin() + 4 * quad.number, 4, rgba[c]);
   const AttachmentState& target = pass.color[attachment];
-  const std::uint64_t address = target.surface.tile_address(quad.place.tile_x, quad.place.tile_y);
+  const std::uint64_t address = target.surface.tile_address(quad.place.tile_x, quad.place.tile_y,
+                                                            static_cast<std::uint32_t>(quad.sample));
   auto* const tile = reinterpret_cast<std::uint32_t*>(memory.write(address, models::kTileBytes).data());
   models::blend_quad(draw.blend[attachment], target.format, rgba, tile + quad.place.first_pixel(),
                      quad.lanes);

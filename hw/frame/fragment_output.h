@@ -21,10 +21,33 @@ struct QuadOfWarp {
   int number = 0;  ///< in the warp
   models::QuadPlace place;
   models::LaneMask lanes = 0;  ///< to write, bits 0..3
+  int sample = 0;              ///< of these pixels
 };
-/// Tests a quad's depths against those stored in its tile, and writes where it shall; lanes that pass.
-[[nodiscard]] models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp, const QuadOfWarp& quad,
+/// Tests a quad's depths against those stored in its tile, and writes where it shall; lanes that pass. Depths
+/// are the program's, or else those of the triangle at the sample.
+[[nodiscard]] models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
+                                          const models::TriangleSetup& triangle, const QuadOfWarp& quad,
                                           float* tile_depths);
+/// Tests all samples of a quad that are alive, and takes those from `warp` that fail; lanes of which one
+/// passes. `depths_of(sample)` is the tile's plane.
+template <class DepthsOf>
+models::LaneMask test_samples(const DrawState& draw, WarpSlot& warp, const models::TriangleSetup& triangle,
+                              QuadOfWarp quad, const DepthsOf& depths_of) {
+  const int count = draw.samples().count;
+  models::LaneMask survivors = 0;
+  for (quad.sample = 0; quad.sample < count; ++quad.sample) {
+    quad.lanes = warp.lanes_of(quad.number, count, quad.sample);
+    if (quad.lanes == 0) continue;
+    const models::LaneMask passed = test_depth(draw, warp, triangle, quad, depths_of(quad.sample));
+    survivors |= passed;
+    for (unsigned i = 0; i < 4; ++i) {
+      std::uint8_t& samples = warp.samples[4 * static_cast<std::size_t>(quad.number) + i];
+      if ((quad.lanes & ~passed & 1u << i) != 0)
+        samples = static_cast<std::uint8_t>(samples & ~(1u << quad.sample));
+    }
+  }
+  return survivors;
+}
 /// Blends a quad's colours into one attachment of its pass.
 void write_color(const DrawState& draw, const PassState& pass, std::size_t attachment, const WarpSlot& warp,
                  const QuadOfWarp& quad, models::DeviceMemory& memory);

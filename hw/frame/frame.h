@@ -107,6 +107,7 @@ struct DrawState {
     return setup.line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
   }
   [[nodiscard]] bool uses_depth() const { return depth_test; }
+  [[nodiscard]] const models::SampleGrid& samples() const { return setup.samples; }
   /// Hidden fragments are shaded all the same: their program accesses written memory before their depth is
   /// tested. [VK1.3 #fragops-early]
   [[nodiscard]] bool shades_hidden() const { return meets_written_memory && late_depth; }
@@ -145,10 +146,18 @@ struct PassState {
   std::uint32_t width = 0, height = 0;  ///< pixels of each attachment
   std::size_t colors = 0;
   std::array<AttachmentState, models::kMaxColorAttachments> color;
+  int samples = 1;  ///< a pixel, of each attachment
+  /// Where colour attachments of several samples are resolved to when the pass ends.
+  std::array<AttachmentState, models::kMaxColorAttachments> resolve;
+  std::uint32_t resolved = 0;  ///< bit i: attachment i is
   AttachmentState depth;
   bool has_depth = false;            ///< a draw tests depth, or someone reads it later
   float clear_depth = 1;             ///< of a depth attachment that is not loaded
   bool samples_attachments = false;  ///< that earlier passes drew
+  /// What is shown of it.
+  [[nodiscard]] const AttachmentState& picture() const {
+    return (resolved & 1u) != 0 ? resolve[0] : color[0];
+  }
   /// No depth of the pass is known when it begins.
   [[nodiscard]] bool loads_depth() const { return has_depth && depth.loads(); }
   DrawId first_draw;

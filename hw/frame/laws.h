@@ -34,8 +34,8 @@
       "fine_raster.fragments", "depth.early_tested + deferred + untested") \
   law(kFragmentsDeferred, "fragments deferred = tested late + discarded before that", \
       "depth.deferred", "depth.late_tested + rop.late_discarded") \
-  law(kFragmentsPassed, "fragments passed = fragments packed", \
-      "depth.fragments_out", "warp_packer.fragments") \
+  law(kFragmentsPassed, "fragments passed = samples packed", \
+      "depth.fragments_out", "warp_packer.samples") \
   law(kFragmentsPacked, "fragments packed = fragments shaded", "warp_packer.fragments", "core.fragments") \
   law(kWarpsPacked, "warps packed = warps distributed", \
       "warp_packer.warps", "work_distributor.fragment_warps") \

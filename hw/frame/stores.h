@@ -49,9 +49,24 @@ struct WarpSlot {
   models::LaneMask covered = 0;  ///< live lanes at launch
   std::array<Quad, models::kWarpQuads> quad;
   models::LaneMask alive = 0;  ///< lanes to write: covered, not discarded, not failed late
+  /// Of several samples a pixel: by lane, those that are covered, a bit each; the late depth test takes some.
+  std::array<std::uint8_t, models::kWarpLanes> samples{};
   /// by colour attachment; those that the draw's program writes
   std::array<std::array<models::LaneFloats, 4>, models::kMaxColorAttachments> color;
   models::LaneFloats depth;
+  /// Live lanes (bits 0..3) of a quad of which a sample is to be written; `count` samples a pixel.
+  [[nodiscard]] models::LaneMask lanes_of(int q, int count = 1, int sample = 0) const {
+    models::LaneMask lanes = (alive >> (4 * q)) & 0xf;
+    if (count == 1) return lanes;
+    for (unsigned i = 0; i < 4; ++i)
+      if ((samples[4 * static_cast<std::size_t>(q) + i] >> sample & 1) == 0) lanes &= ~(1u << i);
+    return lanes;
+  }
+  /// Samples of which the quad covers a pixel, a bit each.
+  [[nodiscard]] std::uint8_t samples_of(int q) const {
+    const std::size_t i = 4 * static_cast<std::size_t>(q);
+    return static_cast<std::uint8_t>(samples[i] | samples[i + 1] | samples[i + 2] | samples[i + 3]);
+  }
 };
 
 /// `Slot` names a place: a number, or an id where one could be taken for another.

@@ -110,7 +110,8 @@ struct TileToken {
   std::uint64_t triangle = 0;  ///< kSync: every triangle before this one
 };
 
-/// Fine rasteriser -> depth unit -> warp packer: the covered samples of one triangle in one tile.
+/// Fine rasteriser -> depth unit -> warp packer: the covered pixels of one triangle in one tile. Of several
+/// samples a pixel: those of which one sample is covered; a token for each sample, one after the other.
 struct CoverageToken {
   TokenKind kind = TokenKind::kWork;
   bool late = false;  ///< set by the depth unit: test and write after shading
@@ -118,6 +119,8 @@ struct CoverageToken {
   FramePart part;
   std::uint64_t triangle = 0;
   std::uint64_t coverage = 0;  ///< quad-major
+  std::uint8_t sample = 0;
+  bool first = true, last = true;  ///< of the tokens of its triangle in its tile
 };
 
 /// Warp packer -> ROP: what retires next, in order. kWork: the warp in `slot`; `sync` (if not 0) may be

@@ -84,7 +84,7 @@ void CoarseRaster::take_token(Tick now) {
       note_direction(frame_.draw(token.part.draw()));
     draw_ = token.part.draw();
     triangle_ = token.triangle;
-    walk_ = models::TileWalk(triangles_[triangle_].setup);
+    walk_ = models::TileWalk(triangles_[triangle_].setup, frame_.draw(draw_).samples());
     charged_tests_ = touched_ = owned_ = 0;
     look_ahead();
     walking_ = true;
@@ -125,8 +125,10 @@ bool CoarseRaster::hidden(const models::TileHit& tile) const {
   if (!hiz_usable_) return false;
   const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.pass(pass_).depth.surface.tiles_x +
                           static_cast<std::size_t>(tile.tile_x)];
-  const float nearest = models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y).min;
-  return frame_.draw(draw_).depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
+  const DrawState& draw = frame_.draw(draw_);
+  const float nearest =
+      models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y, draw.samples()).min;
+  return draw.depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
 }
 
 void CoarseRaster::look_ahead() {

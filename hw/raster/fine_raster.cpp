@@ -14,6 +14,7 @@ FineRaster::FineRaster(sc_core::sc_module_name name, const UnitContext& context,
                        const TriangleStore& triangles)
     : Unit(name, Kind::kFixedOrder, context.clock),
       params_(params),
+      frame_(context.frame),
       triangles_(triangles),
       screen_(context.machine.screen()),
       rate_(context.clock) {
@@ -25,20 +26,28 @@ FineRaster::FineRaster(sc_core::sc_module_name name, const UnitContext& context,
 }
 
 Wake FineRaster::next() const {
+  if (next_plane_ < plane_count_) {
+    const CoverageToken& plane = planes_[static_cast<std::size_t>(next_plane_)];
+    return Wake(free_).output(output_of(plane.tile_x, plane.tile_y));
+  }
   Wake wake = Wake(free_).input(tile_in);
   if (tile_in.ready() == kNever) return wake;
   const TileToken& tile = tile_in.front();
-  if (tile.kind == TokenKind::kWork) { return wake.output(output_of(tile)); }
+  if (tile.kind == TokenKind::kWork) { return wake.output(output_of(tile.tile_x, tile.tile_y)); }
   for (const auto& out : coverage_out) wake.output(*out);
   return wake;
 }
 
-FifoOut<CoverageToken>& FineRaster::output_of(const TileToken& tile) const {
-  return *coverage_out[models::partition_of(tile.tile_x, tile.tile_y, screen_.partitions).index() /
-                       screen_.engines];
+FifoOut<CoverageToken>& FineRaster::output_of(std::uint32_t tile_x, std::uint32_t tile_y) const {
+  return *coverage_out[models::partition_of(tile_x, tile_y, screen_.partitions).index() / screen_.engines];
 }
 
 void FineRaster::act(Tick now) {
+  if (next_plane_ < plane_count_) {
+    const CoverageToken& plane = planes_[static_cast<std::size_t>(next_plane_)];
+    stats_.working_for(plane.part.draw());
+    return hand_on(now);
+  }
   const TileToken tile = tile_in.pop(now);
   stats_.working_for(tile.part.draw());
   if (tile.kind == TokenKind::kWork) return rasterize(now, tile);
@@ -47,22 +56,50 @@ void FineRaster::act(Tick now) {
   occupy(now, rate_.cycles());
 }
 
+int FineRaster::cover(const TileToken& tile) {
+  const models::SampleGrid& samples = frame_.draw(tile.part.draw()).samples();
+  next_plane_ = plane_count_ = 0;
+  std::uint64_t any = 0, all = ~std::uint64_t{0};
+  for (int s = 0; s < samples.count; ++s) {
+    const std::uint64_t coverage =
+        tile.fully_covered
+            ? ~std::uint64_t{0}
+            : models::sample_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y, samples, s);
+    any |= coverage;
+    all &= coverage;
+    stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));
+    if (coverage == 0) continue;
+    planes_[static_cast<std::size_t>(plane_count_)] = {
+        TokenKind::kWork,  false,         tile.tile_x, tile.tile_y,
+        tile.part,         tile.triangle, coverage,    static_cast<std::uint8_t>(s),
+        plane_count_ == 0, false};
+    ++plane_count_;
+  }
+  if (plane_count_ > 0) planes_[static_cast<std::size_t>(plane_count_ - 1)].last = true;
+  if (any == 0) ++stats_.tiles_empty;
+  if (~all == 0) ++stats_.tiles_full;
+  return std::popcount(models::quads_of(any));
+}
+
 void FineRaster::rasterize(Tick now, const TileToken& tile) {
-  const std::uint64_t coverage =
-      tile.fully_covered ? ~std::uint64_t{0}
-                         : models::tile_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y);
-  const int quads = std::popcount(models::quads_of(coverage));
+  const int quads = cover(tile);
   ++stats_.tiles;
-  if (coverage == 0) ++stats_.tiles_empty;
-  if (~coverage == 0) ++stats_.tiles_full;
   stats_.quads += static_cast<std::uint64_t>(quads);
-  stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));
-  free_ = rate_.charge(
-      now, std::max(WorkRate::cost(params_.tiles_per_clk), WorkRate::cost_of(quads, params_.quads_per_clk)));
+  quad_cost_ = WorkRate::cost_of(quads, params_.quads_per_clk);
+  if (plane_count_ > 0) return hand_on(now);
+  free_ = rate_.charge(now, WorkRate::cost(params_.tiles_per_clk));
   occupy(now, rate_.cycles());
-  if (coverage == 0) return;
-  output_of(tile).push(
-      now, {TokenKind::kWork, false, tile.tile_x, tile.tile_y, tile.part, tile.triangle, coverage});
+}
+
+/// Planes leave one by one while the quads are worked on: the last one pays for what is left of that.
+void FineRaster::hand_on(Tick now) {
+  const CoverageToken& plane = planes_[static_cast<std::size_t>(next_plane_++)];
+  const std::int64_t least = WorkRate::cost(params_.tiles_per_clk);
+  const std::int64_t cost = plane.last ? std::max(least, quad_cost_) : least;
+  quad_cost_ -= cost;
+  output_of(plane.tile_x, plane.tile_y).push(now, plane);
+  free_ = rate_.charge(now, cost);
+  occupy(now, rate_.cycles());
 }
 
 void FineRaster::audit(Audit& audit) const {

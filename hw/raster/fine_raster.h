@@ -3,7 +3,8 @@
 ///
 /// In    tile_in          tiles of one triangle; boundaries
 /// Out   coverage_out[p]  covered tiles of partition p; every boundary to every partition
-/// Time  `quads_per_clk` covered quads a cycle, at least one cycle a tile
+/// Time  `quads_per_clk` covered quads a cycle, whatever their samples; at least one cycle a tile and covered
+///       sample
 #pragma once
 
 #include "hw/base/param.h"
@@ -32,9 +33,10 @@ class FineRaster final : public Unit {
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in"};
     Counter tiles_empty{*this, "tiles_empty", "tile", "Tiles without a covered pixel"};
-    Counter tiles_full{*this, "tiles_full", "tile", "Tiles with all 64 pixels covered"};
+    Counter tiles_full{*this, "tiles_full", "tile", "Tiles with all samples of their 64 pixels covered"};
     Counter quads{*this, "quads", "quad", "Quads with a covered pixel"};
-    Counter fragments{*this, "fragments", "fragment", "Covered pixels"};
+    Counter fragments{*this, "fragments", "fragment",
+                      "Covered pixels; of several samples a pixel, covered samples"};
   };
   FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
              const TriangleStore& triangles);
@@ -51,14 +53,21 @@ class FineRaster final : public Unit {
 
  private:
   void rasterize(Tick now, const TileToken& tile);
+  /// Finds what is covered of each sample, and the quads of which one is.
+  [[nodiscard]] int cover(const TileToken& tile);
+  void hand_on(Tick now);
   /// To the depth unit of the tile's partition.
-  [[nodiscard]] FifoOut<CoverageToken>& output_of(const TileToken& tile) const;
+  [[nodiscard]] FifoOut<CoverageToken>& output_of(std::uint32_t tile_x, std::uint32_t tile_y) const;
 
   const Params& params_;
+  const Frame& frame_;
   const TriangleStore& triangles_;
   const models::ScreenShare screen_;
   Stats stats_;
   WorkRate rate_;
+  std::array<CoverageToken, models::kMaxSamples> planes_;  ///< of the tile in work, by covered sample
+  int next_plane_ = 0, plane_count_ = 0;
+  std::int64_t quad_cost_ = 0;  ///< of its quads; the planes that are gone have paid some of it
   Tick free_ = 0;
 };
 

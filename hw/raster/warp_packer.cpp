@@ -13,6 +13,7 @@ WarpPacker::WarpPacker(sc_core::sc_module_name name, const UnitContext& context,
                        WarpStore& warps)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
+      frame_(context.frame),
       warps_(warps),
       partition_(context.partition()) {
   add_initiation_rate("quads_per_clk");
@@ -69,6 +70,8 @@ void WarpPacker::work(Tick now) {
     return launch(now);
   }
   if (must_launch_first()) return launch(now);
+  while (more_samples(now)) take_sample(now);
+  if (!coverage_in.ready_at(now)) return;
   if (coverage_in.front().kind == TokenKind::kWork) take_quads(now);
   else take_boundary(now);
 }
@@ -85,38 +88,75 @@ void WarpPacker::take_boundary(Tick now) {
   occupy(now, 1);
 }
 
+bool WarpPacker::more_samples(Tick now) const {
+  return coverage_in.ready_at(now) && coverage_in.front().kind == TokenKind::kWork &&
+         !coverage_in.front().last;
+}
+
+void WarpPacker::take_sample(Tick now) {
+  const CoverageToken token = coverage_in.pop(now);
+  stats_.working_for(token.part.draw(), token.tile_x, token.tile_y);
+  planes_[token.sample] = token.coverage;
+  covered_ |= token.coverage;
+  last_input_ = now;
+}
+
+void WarpPacker::open_warp(const CoverageToken& token) {
+  WarpSlot& warp = warps_[slot_of(opened_++)];
+  open_ = true;
+  sync_ = 0;
+  warp.draw = token.part.draw();
+  warp.late = token.late;
+  warp.quads = 0;
+  warp.covered = 0;
+}
+
+void WarpPacker::add_quad(WarpSlot& warp, const CoverageToken& token, int q) {
+  const auto lanes = static_cast<std::uint32_t>((covered_ | token.coverage) >> (4 * q)) & 0xfu;
+  const auto first = 4 * static_cast<std::size_t>(warp.quads);
+  warp.covered |= lanes << first;
+  warp.quad[static_cast<std::size_t>(warp.quads++)] = {
+      token.triangle, static_cast<std::uint16_t>(8 * token.tile_x + 2 * (q & 3)),
+      static_cast<std::uint16_t>(8 * token.tile_y + 2 * (q >> 2))};
+  stats_.fragments += static_cast<std::uint64_t>(std::popcount(lanes));
+  const int samples = frame_.draw(warp.draw).samples().count;
+  if (samples == 1) {
+    stats_.samples += static_cast<std::uint64_t>(std::popcount(lanes));
+    return;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::uint8_t& of_pixel = warp.samples[first + i];
+    of_pixel = 0;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(samples); ++s) {
+      const std::uint64_t plane = s == token.sample ? token.coverage : planes_[s];
+      of_pixel =
+          static_cast<std::uint8_t>(of_pixel | (plane >> (4 * static_cast<std::size_t>(q) + i) & 1u) << s);
+    }
+    stats_.samples += static_cast<std::uint64_t>(std::popcount(of_pixel));
+  }
+}
+
 void WarpPacker::take_quads(Tick now) {
   const CoverageToken& token = coverage_in.front();
   stats_.working_for(token.part.draw(), token.tile_x, token.tile_y);
-  WarpSlot& warp = warps_[slot_of(open_ ? opened_ - 1 : opened_)];
-  if (!open_) {
-    ++opened_;
-    open_ = true;
-    sync_ = 0;
-    warp.draw = token.part.draw();
-    warp.late = token.late;
-    warp.quads = 0;
-    warp.covered = 0;
-  }
+  if (!open_) open_warp(token);
+  WarpSlot& warp = warps_[slot_of(opened_ - 1)];
   if (taken_quads_ == 0) ++stats_.tiles;
-  std::uint32_t left = models::quads_of(token.coverage) & ~taken_quads_;
+  std::uint32_t left = models::quads_of(covered_ | token.coverage) & ~taken_quads_;
   int packed = 0;
-  while (left != 0 && warp.quads < models::kWarpQuads) {
+  for (; left != 0 && warp.quads < models::kWarpQuads; ++packed) {
     const int q = std::countr_zero(left);
     left &= left - 1;
     taken_quads_ |= 1u << q;
-    const auto lanes = static_cast<std::uint32_t>(token.coverage >> (4 * q)) & 0xfu;
-    warp.covered |= lanes << (4 * warp.quads);
-    warp.quad[static_cast<std::size_t>(warp.quads)] = {
-        token.triangle, static_cast<std::uint16_t>(8 * token.tile_x + 2 * (q & 3)),
-        static_cast<std::uint16_t>(8 * token.tile_y + 2 * (q >> 2))};
-    stats_.fragments += static_cast<std::uint64_t>(std::popcount(lanes));
-    ++warp.quads;
-    ++packed;
+    add_quad(warp, token, q);
   }
   stats_.quads += static_cast<std::uint64_t>(packed);
   if (left == 0) {
     taken_quads_ = 0;
+    if (!token.first) {
+      planes_.fill(0);
+      covered_ = 0;
+    }
     (void)coverage_in.pop(now);
   }
   last_input_ = now;
@@ -140,12 +180,13 @@ void WarpPacker::launch(Tick now) {
 }
 
 void WarpPacker::audit(Audit& audit) const {
-  audit.right(laws::kFragmentsPassed, stats_.fragments.value());
+  audit.right(laws::kFragmentsPassed, stats_.samples.value());
   audit.left(laws::kFragmentsPacked, stats_.fragments.value());
   audit.left(laws::kWarpsPacked, stats_.warps.value());
 }
 
 void WarpPacker::details(Details& details) const {
+  details.by_draw(DrawCount::kSamplesPacked, stats_.samples);
   details.by_draw(DrawCount::kPacked, stats_.fragments);
   details.by_tile(TileCount::kShaded, stats_.fragments);
 }

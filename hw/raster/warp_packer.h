@@ -45,6 +45,8 @@ class WarpPacker final : public Unit {
     Counter warps{*this, "warps", "warp", "Warps launched"};
     Counter partial_warps{*this, "partial_warps", "warp", "Warps launched with fewer than 8 quads"};
     Counter timeouts{*this, "timeouts", "warp", "Warps launched because no input came"};
+    Counter samples{*this, "samples", "sample",
+                    "Live samples of those fragments, which are the same where a pixel has one"};
   };
   WarpPacker(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
              WarpStore& warps);
@@ -70,20 +72,30 @@ class WarpPacker final : public Unit {
   /// The token at the head may not join the open warp.
   [[nodiscard]] bool must_launch_first() const;
   void work(Tick now);
+  /// The tile at the head has more tokens, of other samples.
+  [[nodiscard]] bool more_samples(Tick now) const;
+  /// Takes the pixels of one sample; the quads are packed when the last one of the tile is here.
+  void take_sample(Tick now);
   void take_quads(Tick now);
+  void open_warp(const CoverageToken& token);
+  void add_quad(WarpSlot& warp, const CoverageToken& token, int q);
   void take_boundary(Tick now);
   void launch(Tick now);
   /// Of the warp that was opened as this one, counted from 0.
   [[nodiscard]] WarpSlotId slot_of(std::uint64_t warp) const { return WarpSlotId(warp % warps_.size()); }
 
   const Params& params_;
+  const Frame& frame_;
   WarpStore& warps_;
   const PartitionId partition_;
   Stats stats_;
   std::uint64_t opened_ = 0;  ///< warps opened so far; the open one is opened_ - 1
   std::uint64_t retired_ = 0;
-  bool open_ = false;              ///< a partial warp is being filled
-  std::uint64_t sync_ = 0;         ///< to be reported when the open warp retires
+  bool open_ = false;       ///< a partial warp is being filled
+  std::uint64_t sync_ = 0;  ///< to be reported when the open warp retires
+  /// Of the tile that is being taken, by sample: what the tokens before the head cover.
+  std::array<std::uint64_t, models::kMaxSamples> planes_{};
+  std::uint64_t covered_ = 0;      ///< pixels of which one of these is
   std::uint32_t taken_quads_ = 0;  ///< quads of the tile at the head that are packed already
   Tick last_input_ = 0;
   Tick free_ = 0;

@@ -15,8 +15,8 @@ namespace {
 
 /// Of the tile's pixels in the frame. Those outside keep the clear depth for ever; with them no tile that the
 /// frame cuts would be hidden.
-float greatest_depth(const float* depths, const models::SurfaceLayout& surface, std::uint32_t tile_x,
-                     std::uint32_t tile_y) {
+float greatest_of(const float* depths, const models::SurfaceLayout& surface, std::uint32_t tile_x,
+                  std::uint32_t tile_y) {
   const auto left = [](std::uint32_t size, std::uint32_t tile) {
     return static_cast<int>(size) - static_cast<int>(tile) * models::kTileSize;
   };
@@ -56,10 +56,18 @@ std::size_t DepthUnit::tile_number(std::uint32_t tile_x, std::uint32_t tile_y) c
   return std::size_t{tile_y} * frame_.pass(pass_).depth.surface.tiles_x + tile_x;
 }
 
-float* DepthUnit::depths(std::uint32_t tile_x, std::uint32_t tile_y) {
+float* DepthUnit::depths(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample) {
   return reinterpret_cast<float*>(
-      device_.write(frame_.pass(pass_).depth.surface.tile_address(tile_x, tile_y), models::kTileBytes)
+      device_.write(frame_.pass(pass_).depth.surface.tile_address(tile_x, tile_y, sample), models::kTileBytes)
           .data());
+}
+
+float DepthUnit::greatest_depth(std::uint32_t tile_x, std::uint32_t tile_y) {
+  const models::SurfaceLayout& surface = frame_.pass(pass_).depth.surface;
+  float greatest = greatest_of(depths(tile_x, tile_y, 0), surface, tile_x, tile_y);
+  for (std::uint32_t s = 1; s < surface.samples; ++s)
+    greatest = std::max(greatest, greatest_of(depths(tile_x, tile_y, s), surface, tile_x, tile_y));
+  return greatest;
 }
 
 // --- When ---
@@ -140,8 +148,7 @@ void DepthUnit::begin_pass(PassId pass) {
 void DepthUnit::send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y) {
   if (!lowering_) return;
   float& known = known_max_[tile_number(tile_x, tile_y)];
-  const float greatest =
-      greatest_depth(depths(tile_x, tile_y), frame_.pass(pass_).depth.surface, tile_x, tile_y);
+  const float greatest = greatest_depth(tile_x, tile_y);
   if (!(greatest < known)) return;
   if (!hiz_out.room_at(now)) {
     ++stats_.hiz_dropped;

@@ -7,8 +7,8 @@
 ///       late_out      tested warps; flushed
 ///       hiz_out       a tile's greatest depth fell
 /// Mem   depth tiles; a frame without depth tests needs no links to memory
-/// Time  `quads_per_clk` quads a cycle through either port, one port a cycle, the late one first; waits for
-///       the tile's lines
+/// Time  `quads_per_clk` quads of one sample a cycle through either port, one port a cycle, the late one
+///       first; waits for the tile's lines
 ///
 /// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of
 /// the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
@@ -28,8 +28,9 @@ namespace quadrille::hw {
 class DepthUnit final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> quads_per_clk{
-        *this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads tested a cycle. [G: as the fine rasteriser]"};
+    Param<int> quads_per_clk{*this,   "quads_per_clk",
+                             4,       "quad/clk",
+                             {1, 16}, "Quads of one sample tested a cycle. [G: as the fine rasteriser]"};
     Param<int> tiles_in_flight{*this,     "tiles_in_flight",
                                16,        "tile",
                                {1, 4096}, "Tiles waiting for their depths. [G: latency to hide]"};
@@ -41,8 +42,10 @@ class DepthUnit final : public Unit {
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
   };
   struct Stats : StatGroup {
-    Counter tiles{*this, "tiles", "tile", "Tiles taken in by the early port"};
-    Counter fragments_in{*this, "fragments_in", "fragment", "Fragments taken in by the early port"};
+    Counter tiles{*this, "tiles", "tile", "Tiles taken in by the early port, once for each covered sample"};
+    Counter fragments_in{
+        *this, "fragments_in", "fragment",
+        "Fragments taken in by the early port; here and below, of several samples a pixel, samples"};
     Counter early_tested{
         *this, "early_tested", "fragment",
         "Fragments whose depth test was settled before shading: killed, or passed and written"};
@@ -55,7 +58,8 @@ class DepthUnit final : public Unit {
         *this, "deferred", "fragment",
         "Fragments handed on to be tested late. What is taken in is tested early, deferred or untested"};
     Counter late_tested{*this, "late_tested", "fragment", "Fragments tested after shading"};
-    Counter late_killed{*this, "late_killed", "fragment", "Fragments killed after shading"};
+    Counter late_killed{*this, "late_killed", "fragment",
+                        "Pixels of which all samples were killed after shading"};
     Counter hiz_sent{*this, "hiz_sent", "update", "Hi-Z updates sent"};
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
   };
@@ -94,7 +98,8 @@ class DepthUnit final : public Unit {
     int missing = 0;
     Tick ready = 0;
     bool acquired = false;
-    std::array<std::uint8_t, models::kWarpQuads> done{};  ///< of `SurfaceCache::acquire`, by quad
+    int parts = 0;          ///< quads, of each sample, whose tiles are acquired
+    std::uint8_t done = 0;  ///< of `SurfaceCache::acquire`, of the next one
   };
 
   // Early port.
@@ -102,6 +107,7 @@ class DepthUnit final : public Unit {
   [[nodiscard]] Wake early_test_wake() const;
   void take_early(Tick now);
   void test_early(Tick now);
+  [[nodiscard]] bool hands_on(const CoverageToken& token);
   [[nodiscard]] bool early_ready(Tick now) const;
   [[nodiscard]] bool late_ready(Tick now) const;
   /// Thins the token's coverage and decides whether it goes late. False, with nothing changed, when the cache
@@ -112,7 +118,20 @@ class DepthUnit final : public Unit {
   [[nodiscard]] Wake late_test_wake() const;
   void take_late(Tick now);
   bool test_late(Tick now);
-  models::LaneMask test_quad(const DrawState& draw, const WarpSlot& warp, int quad, Tick now);
+  models::LaneMask test_quad(const DrawState& draw, WarpSlot& warp, int quad, Tick now);
+  /// Calls `visit(quad, lanes, sample)` for the live samples of a warp until it answers false, which is then
+  /// the answer.
+  template <class Visit>
+  bool visit_samples(const WarpSlot& warp, const Visit& visit) const {
+    const int samples = frame_.draw(warp.draw).samples().count;
+    for (int q = 0; q < warp.quads; ++q) {
+      for (int s = 0; s < samples; ++s) {
+        const models::LaneMask lanes = warp.lanes_of(q, samples, s);
+        if (lanes != 0 && !visit(warp.quad[static_cast<std::size_t>(q)], lanes, s)) return false;
+      }
+    }
+    return true;
+  }
   // Both.
   void acquire_waiting(Tick now);
   bool acquire_early(EarlyEntry& entry, std::uint32_t number);
@@ -122,7 +141,9 @@ class DepthUnit final : public Unit {
   [[nodiscard]] bool waits_for_late(const CoverageToken& token) const;
   void begin_pass(PassId pass);
   void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
-  [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y);
+  [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample);
+  /// Of all its samples.
+  [[nodiscard]] float greatest_depth(std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] std::size_t tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const;
 
   const Params& params_;
@@ -142,6 +163,8 @@ class DepthUnit final : public Unit {
   bool lowering_ = true;                       ///< no draw of the pass so far can raise a depth
   std::vector<std::uint32_t> late_in_flight_;  ///< quads by tile
   bool some_wait_for_late_ = false;            ///< draws of the frame: `waits_for_late`
+  bool tile_late_ = false;                     ///< of the tile whose samples come now: it goes late
+  bool tile_passed_on_ = false;                ///< a sample of it was
   std::vector<float> known_max_;               ///< by tile: what Hi-Z was told
   Flush flush_{port_};
   Tick free_ = 0, take_free_ = 0;

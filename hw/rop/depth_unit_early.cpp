@@ -68,8 +68,8 @@ bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   stats_.working_for(entry.token.part.draw());
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).depth_test) {
     const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
-    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y}, {.read = sectors}, number, entry.missing,
-                        entry.done, port_))
+    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y, entry.token.sample}, {.read = sectors},
+                        number, entry.missing, entry.done, port_))
       return false;
   }
   entry.acquired = true;
@@ -98,10 +98,19 @@ void DepthUnit::test_early(Tick now) {
     }
     stats_.fragments_out += static_cast<std::uint64_t>(std::popcount(token.coverage));
   }
-  if (token.kind != TokenKind::kWork || token.coverage != 0) coverage_out.push(now, token);
+  if (hands_on(token)) coverage_out.push(now, token);
   early_.pop_front();
   free_ = after(now, cycles);
   occupy(now, cycles);
+}
+
+/// A tile's last token goes with those before it, whatever it covers: it says that there are no more.
+bool DepthUnit::hands_on(const CoverageToken& token) {
+  if (token.kind != TokenKind::kWork) return true;
+  if (token.first) tile_passed_on_ = false;
+  const bool hand_on = token.coverage != 0 || (token.last && tile_passed_on_);
+  tile_passed_on_ |= hand_on;
+  return hand_on;
 }
 
 bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now) {
@@ -111,18 +120,21 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
     return true;
   }
   std::uint32_t& in_flight = late_in_flight_[tile_number(token.tile_x, token.tile_y)];
-  token.late = draw.late_depth || in_flight > 0;
+  if (token.first) tile_late_ = draw.late_depth || in_flight > 0;
+  token.late = tile_late_;
   const bool decidable = !token.late || (lowering_ && asks_for_less(draw) &&
                                          !draw.fragment.program->writes_depth && !draw.shades_hidden());
-  float* const stored = depths(token.tile_x, token.tile_y);
+  float* const stored = depths(token.tile_x, token.tile_y, token.sample);
   const std::uint64_t covered = token.coverage;
   alignas(32) float incoming[models::kTilePixels];
   if (decidable) {
-    models::tile_depths(triangles_[token.triangle].setup, token.tile_x, token.tile_y, incoming);
+    models::sample_depths(triangles_[token.triangle].setup, token.tile_x, token.tile_y, draw.samples(),
+                          token.sample, incoming);
     token.coverage = models::depth_test(draw.depth_compare, stored, incoming, covered);
   }
   if (!token.late && draw.depth_write && token.coverage != 0) {
-    if (!cache_.write({0, token.tile_x, token.tile_y}, std::bit_cast<SectorPixels>(token.coverage), port_))
+    if (!cache_.write({0, token.tile_x, token.tile_y, token.sample},
+                      std::bit_cast<SectorPixels>(token.coverage), port_))
       return false;
     models::depth_write(stored, incoming, token.coverage);
     send_hiz(now, token.tile_x, token.tile_y);

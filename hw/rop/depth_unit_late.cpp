@@ -34,16 +34,19 @@ bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
   if (entry.token.kind == TokenKind::kWork) {
     const WarpSlot& warp = warps_[entry.token.slot];
     stats_.working_for(warp.draw);
-    for (int q = 0; q < warp.quads; ++q) {
-      if (((warp.alive >> (4 * q)) & 0xf) == 0) continue;
-      const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+    int part = 0;
+    const bool placed = visit_samples(warp, [&](const WarpSlot::Quad& quad, models::LaneMask, int sample) {
+      if (part++ < entry.parts) return true;
       const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
       const std::uint8_t sector = sectors_of_quads(1u << place.quad);
-      if (!cache_.acquire({0, place.tile_x, place.tile_y}, {.read = sector}, number | kLateBit, entry.missing,
-                          entry.done[static_cast<std::size_t>(q)], port_)) {
+      if (!cache_.acquire({0, place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample)},
+                          {.read = sector}, number | kLateBit, entry.missing, entry.done, port_))
         return false;
-      }
-    }
+      ++entry.parts;
+      entry.done = 0;
+      return true;
+    });
+    if (!placed) return false;
   }
   entry.acquired = true;
   return true;
@@ -61,39 +64,51 @@ bool DepthUnit::test_late(Tick now) {
   WarpSlot& warp = warps_[token.slot];
   stats_.working_for(warp.draw);
   const DrawState& draw = frame_.draw(warp.draw);
-  for (int q = 0; q < warp.quads && draw.depth_write; ++q) {
-    const std::uint64_t lanes = (warp.alive >> (4 * q)) & 0xf;
-    if (lanes == 0) continue;
-    const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+  const bool placed = !draw.depth_write || visit_samples(warp, [&](const WarpSlot::Quad& quad,
+                                                                   std::uint64_t lanes, int sample) {
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-    if (!cache_.write({0, place.tile_x, place.tile_y},
-                      std::bit_cast<SectorPixels>(lanes << place.first_pixel()), port_)) {
-      late_.front().acquired = false;
-      stalled_ = !cache_.idle();
-      return false;
-    }
+    return cache_.write({0, place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample)},
+                        std::bit_cast<SectorPixels>(lanes << place.first_pixel()), port_);
+  });
+  if (!placed) {
+    late_.front().acquired = false;
+    stalled_ = !cache_.idle();
+    return false;
   }
+  int quads = 0;
+  visit_samples(warp, [&](const WarpSlot::Quad&, models::LaneMask lanes, int) {
+    ++quads;
+    stats_.late_tested += static_cast<std::uint64_t>(std::popcount(lanes));
+    return true;
+  });
   const models::LaneMask tested = warp.alive;
   models::LaneMask survivors = 0;
   for (int q = 0; q < warp.quads; ++q) survivors |= test_quad(draw, warp, q, now) << (4 * q);
-  stats_.late_tested += static_cast<std::uint64_t>(std::popcount(tested));
   stats_.late_killed += static_cast<std::uint64_t>(std::popcount(tested & ~survivors));
   warp.alive = survivors;
   late_out.push(now, token);
   late_.pop_front();
-  const int cycles = std::max(1, (warp.quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
+  if (draw.samples().count == 1) quads = warp.quads;
+  const int cycles = std::max(1, (quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
   free_ = after(now, cycles);
   occupy(now, cycles);
   return true;
 }
 
-models::LaneMask DepthUnit::test_quad(const DrawState& draw, const WarpSlot& warp, int q, Tick now) {
+models::LaneMask DepthUnit::test_quad(const DrawState& draw, WarpSlot& warp, int q, Tick now) {
   const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-  const QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), (warp.alive >> (4 * q)) & 0xf};
+  const QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), warp.lanes_of(q)};
   const std::uint32_t tx = part.place.tile_x, ty = part.place.tile_y;
-  --late_in_flight_[tile_number(tx, ty)];
+  const int samples = draw.samples().count;
+  late_in_flight_[tile_number(tx, ty)] -=
+      samples == 1 ? 1u : static_cast<std::uint32_t>(std::popcount(warp.samples_of(q)));
   if (part.lanes == 0) return 0;
-  const models::LaneMask passed = test_depth(draw, warp, part, depths(tx, ty));
+  const models::TriangleSetup& triangle = triangles_[quad.triangle].setup;
+  models::LaneMask passed = 0;
+  if (samples == 1) passed = test_depth(draw, warp, triangle, part, depths(tx, ty, 0));
+  else
+    passed = test_samples(draw, warp, triangle, part,
+                          [&](int s) { return depths(tx, ty, static_cast<std::uint32_t>(s)); });
   if (draw.depth_write && passed != 0) send_hiz(now, tx, ty);
   return passed;
 }

@@ -6,37 +6,54 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 namespace quadrille::hw {
 
 namespace {
 
-/// The part of a tile that one quad of a warp covers.
-models::LaneMask lanes_of(const WarpSlot& warp, int q) { return (warp.alive >> (4 * q)) & 0xf; }
-
-/// Live pixels of a warp in one tile.
+/// Live pixels of a warp in one tile, of one sample.
 struct TileTouch {
-  std::uint32_t tile_x = 0, tile_y = 0;
+  std::uint32_t tile_x = 0, tile_y = 0, sample = 0;
   SectorPixels pixels{};
+  [[nodiscard]] SurfaceTile tile_of(std::size_t surface) const { return {surface, tile_x, tile_y, sample}; }
 };
 
-/// Gathers a warp's live quads by tile; at most one entry a quad.
-int touched_tiles(const WarpSlot& warp, std::array<TileTouch, models::kWarpQuads>& tiles) {
-  int count = 0;
-  for (int q = 0; q < warp.quads; ++q) {
-    const models::LaneMask lanes = lanes_of(warp, q);
-    if (lanes == 0) continue;
-    const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
+/// A warp's live quads by tile and sample; at most one entry a quad and sample.
+class TouchedTiles {
+ public:
+  TouchedTiles(const WarpSlot& warp, int samples) {
+    for (int s = 0; s < samples; ++s) {
+      const std::size_t first = count_;
+      for (int q = 0; q < warp.quads; ++q)
+        add(warp.quad[static_cast<std::size_t>(q)], warp.lanes_of(q, samples, s), s, first);
+    }
+  }
+  [[nodiscard]] std::span<const TileTouch> all() const { return std::span(tiles_).first(count_); }
+
+ private:
+  /// `first`: of the entries of this sample.
+  void add(const WarpSlot::Quad& quad, models::LaneMask lanes, int sample, std::size_t first) {
+    if (lanes == 0) return;
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-    int i = 0;
-    while (i < count && (tiles[static_cast<std::size_t>(i)].tile_x != place.tile_x ||
-                         tiles[static_cast<std::size_t>(i)].tile_y != place.tile_y))
-      ++i;
-    if (i == count) tiles[static_cast<std::size_t>(count++)] = {place.tile_x, place.tile_y, {}};
-    auto& pixels = tiles[static_cast<std::size_t>(i)].pixels[static_cast<std::size_t>(place.quad / 2)];
+    std::size_t i = first;
+    while (i < count_ && (tiles_[i].tile_x != place.tile_x || tiles_[i].tile_y != place.tile_y)) ++i;
+    if (i == count_) tiles_[count_++] = {place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample), {}};
+    std::uint8_t& pixels = tiles_[i].pixels[static_cast<std::size_t>(place.quad / 2)];
     pixels = static_cast<std::uint8_t>(pixels | lanes << (4 * (place.quad & 1)));
   }
-  return count;
+
+  std::array<TileTouch, std::size_t{models::kWarpQuads} * models::kMaxSamples> tiles_;
+  std::size_t count_ = 0;
+};
+
+/// Samples of some lanes of a warp; `count` a pixel.
+int samples_in(const WarpSlot& warp, models::LaneMask lanes, int count) {
+  if (count == 1) return std::popcount(lanes);
+  int samples = 0;
+  for (; lanes != 0; lanes &= lanes - 1)
+    samples += std::popcount(warp.samples[static_cast<std::size_t>(std::countr_zero(lanes))]);
+  return samples;
 }
 
 /// What a write of these pixels asks of their sectors.
@@ -64,7 +81,8 @@ Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params&
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
              surface_writer(SurfaceKind::kColor, context.partition())),
-      shaded_(static_cast<std::size_t>(warps.size()), false) {
+      shaded_(static_cast<std::size_t>(warps.size()), false),
+      resolve_(context.memory, cache_, port_) {
   add_initiation_rate("quads_per_clk");
   add_places("warps_in_flight",
              [this] { return acquired_ >= static_cast<std::size_t>(params_.warps_in_flight.value()); });
@@ -111,11 +129,17 @@ Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
 
 Wake Rop::retire_wake() const {
   if (flush_.done()) return Wake(free_).output(retire_out);
+  if (resolve_.running()) return resolve_wake();
   if (depth_flushes_ || flush_.running()) return Wake(kNever);
   if (entries_.empty() || acquired_ == 0) return Wake(kNever);
   const Entry& head = entries_.front();
   if (head.missing > 0 || claim_stalled_) return Wake::never(port_.response_in[0]);
   return outputs_of(head, Wake(std::max(free_, head.ready)));
+}
+
+Wake Rop::resolve_wake() const {
+  const Tick at = resolve_.next(free_);
+  return at == kNever ? Wake::never(port_.response_in[0]) : Wake(at);
 }
 
 Wake Rop::next() const {
@@ -145,7 +169,9 @@ void Rop::take_inputs(Tick now) {
     if (flush_.take(answer)) return;
     stalled_ = false;
     claim_stalled_ = false;
-    cache_.fill(answer, [&](std::uint32_t number) { entries_.answer(number, now); });
+    cache_.fill(answer, [&](std::uint32_t number) {
+      if (!resolve_.answer(number, now)) entries_.answer(number, now);
+    });
   });
   done_in.visit_holding(0, [&](std::size_t core, FifoIn<FragmentDoneToken>& in) {
     for (; in.ready_at(now) && load_out.room_at(now);
@@ -159,14 +185,31 @@ void Rop::take_inputs(Tick now) {
 
 void Rop::take_late(Tick now) {
   if (late_in.pop(now).kind == TokenKind::kPassEnd) {
-    stats_.working_for(kNoDraw);
-    cache_.flush(port_);
     depth_flushes_ = false;
-    flush_.begin();
+    const PassState& pass = frame_.pass(pass_);
+    if (pass.resolved != 0) resolve_.begin(pass, partition_, partitions_, params_.warps_in_flight);
+    else begin_flush();
     return;
   }
   entries_[awaiting_].stage = Stage::kTested;
   while (awaiting_ < tested_ && entries_[awaiting_].stage == Stage::kTested) ++awaiting_;
+}
+
+void Rop::begin_flush() {
+  stats_.working_for(kNoDraw);
+  cache_.flush(port_);
+  flush_.begin();
+}
+
+void Rop::resolve(Tick now) {
+  stats_.working_for(kNoDraw);
+  const Resolve::Done done = resolve_.step(now);
+  stats_.resolved += static_cast<std::uint64_t>(done.tiles);
+  stats_.resolved_clear += static_cast<std::uint64_t>(done.cleared);
+  if (!resolve_.running()) return begin_flush();
+  const int cycles = std::max(1, (done.quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
+  free_ = after(now, cycles);
+  occupy(now, cycles);
 }
 
 void Rop::test(Tick now) {
@@ -175,6 +218,8 @@ void Rop::test(Tick now) {
   if (entry.token.kind == TokenKind::kWork) {
     const WarpSlot& warp = warps_[entry.token.slot];
     entry.shaded = std::popcount(warp.alive);
+    entry.discarded_samples =
+        samples_in(warp, warp.covered & ~warp.alive, frame_.draw(warp.draw).samples().count);
     if (warp.late) {
       entry.stage = Stage::kTesting;
       late_out.push(now, {TokenKind::kWork, entry.token.slot});
@@ -200,19 +245,25 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
   const WarpSlot& warp = warps_[entry.token.slot];
   stats_.working_for(warp.draw);
   const DrawState& draw = frame_.draw(warp.draw);
-  std::array<TileTouch, models::kWarpQuads> tiles;
-  const int count = touched_tiles(warp, tiles);
+  const TouchedTiles touched(warp, draw.samples().count);
   bool placed = true;
+  int part = 0;
   draw.visit_colors([&](std::size_t color) {
     const bool reads = draw.reads_color(color);
-    for (std::size_t i = 0; placed && i < static_cast<std::size_t>(count); ++i)
-      placed = cache_.acquire({color, tiles[i].tile_x, tiles[i].tile_y}, wishes_of(tiles[i].pixels, reads),
-                              number, entry.missing, entry.done[color][i], port_);
+    for (const TileTouch& touch : touched.all()) {
+      if (!placed || part++ < entry.parts) continue;
+      placed = cache_.acquire(touch.tile_of(color), wishes_of(touch.pixels, reads), number, entry.missing,
+                              entry.done, port_);
+      if (!placed) continue;
+      ++entry.parts;
+      entry.done = 0;
+    }
   });
   return placed;
 }
 
 void Rop::retire(Tick now) {
+  if (resolve_.running()) return resolve(now);
   if (flush_.done()) {
     retire_out.push(now, {TokenKind::kPassEnd, pass_});
     flush_.end();
@@ -232,7 +283,7 @@ void Rop::retire(Tick now) {
     stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(warp.covered));
     const auto discarded = static_cast<std::uint64_t>(std::popcount(warp.covered) - entry.shaded);
     stats_.discarded += discarded;
-    if (warp.late) stats_.late_discarded += discarded;
+    if (warp.late) stats_.late_discarded += static_cast<std::uint64_t>(entry.discarded_samples);
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
     cycles = write_colors(warp);
     shaded_[entry.token.slot.index()] = false;
@@ -274,33 +325,36 @@ void Rop::retire_boundary(Tick now, const Entry& entry) {
 
 bool Rop::claim_colors(const WarpSlot& warp) {
   const DrawState& draw = frame_.draw(warp.draw);
-  std::array<TileTouch, models::kWarpQuads> tiles;
-  const int count = touched_tiles(warp, tiles);
+  const TouchedTiles touched(warp, draw.samples().count);
   bool placed = true;
   draw.visit_colors([&](std::size_t color) {
-    for (std::size_t i = 0; placed && i < static_cast<std::size_t>(count); ++i)
-      placed = cache_.write({color, tiles[i].tile_x, tiles[i].tile_y}, tiles[i].pixels, port_);
+    for (const TileTouch& touch : touched.all())
+      placed = placed && cache_.write(touch.tile_of(color), touch.pixels, port_);
   });
   return placed;
 }
 
 int Rop::write_colors(const WarpSlot& warp) {
   const DrawState& draw = frame_.draw(warp.draw);
+  const int samples = draw.samples().count;
   int quads = 0;
   for (int q = 0; q < warp.quads; ++q) {
-    const models::LaneMask lanes = lanes_of(warp, q);
-    if (lanes == 0) continue;
-    ++quads;
+    if (warp.lanes_of(q) == 0) continue;
     const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-    const QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), lanes};
+    QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y)};
     stats_.working_at(part.place.tile_x, part.place.tile_y);
-    const auto pixels = static_cast<std::uint64_t>(std::popcount(lanes));
-    stats_.written += pixels;
-    draw.visit_colors([&](std::size_t color) {
-      stats_.pixels_written += pixels;
-      if (draw.reads_color(color)) stats_.blended += pixels;
-      write_color(draw, frame_.pass(pass_), color, warp, part, device_);
-    });
+    stats_.written += static_cast<std::uint64_t>(std::popcount(warp.lanes_of(q)));
+    for (part.sample = 0; part.sample < samples; ++part.sample) {
+      part.lanes = warp.lanes_of(q, samples, part.sample);
+      if (part.lanes == 0) continue;
+      ++quads;
+      const auto pixels = static_cast<std::uint64_t>(std::popcount(part.lanes));
+      draw.visit_colors([&](std::size_t color) {
+        stats_.pixels_written += pixels;
+        if (draw.reads_color(color)) stats_.blended += pixels;
+        write_color(draw, frame_.pass(pass_), color, warp, part, device_);
+      });
+    }
   }
   int quad_cycles = 0;
   draw.visit_colors([&](std::size_t color) { quad_cycles += draw.reads_color(color) ? 2 * quads : quads; });

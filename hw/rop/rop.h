@@ -10,8 +10,9 @@
 ///       retire_out   draw retired; pass flushed
 ///       load_out     a core has done a warp
 /// Mem   colour tiles
-/// Time  `quads_per_clk` quads a cycle and colour attachment (half of that where blending reads the old
-///       colour); up to `warps_in_flight` warps wait for their lines
+/// Time  `quads_per_clk` quads of one sample a cycle and colour attachment (half of that where blending reads
+///       the old colour); up to `warps_in_flight` warps wait for their lines. At the end of a pass of several
+///       samples a pixel it resolves them (hw/rop/resolve.h).
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -20,6 +21,7 @@
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
 #include "hw/memory/flush.h"
+#include "hw/rop/resolve.h"
 #include "hw/rop/surface_cache.h"
 
 namespace quadrille::hw {
@@ -27,8 +29,9 @@ namespace quadrille::hw {
 class Rop final : public Unit {
  public:
   struct Params : ParamGroup {
-    Param<int> quads_per_clk{
-        *this, "quads_per_clk", 4, "quad/clk", {1, 16}, "Quads written a cycle. [G: as the fine rasteriser]"};
+    Param<int> quads_per_clk{*this,   "quads_per_clk",
+                             4,       "quad/clk",
+                             {1, 16}, "Quads of one sample written a cycle. [G: as the fine rasteriser]"};
     Param<int> warps_in_flight{*this,     "warps_in_flight",
                                16,        "warp",
                                {1, 4096}, "Warps waiting for their colours. [G: latency to hide]"};
@@ -51,9 +54,13 @@ class Rop final : public Unit {
     Counter pixels_written{
         *this, "pixels_written", "pixel",
         "Pixels of colour attachments written: one for each attachment that the fragment's "
-        "program has an output for"};
+        "program has an output for, and of several samples for each of them"};
     Counter blended{*this, "blended", "pixel", "Pixels of those that were combined with the old colour"};
     Counter draws{*this, "draws", "draw", "Draws retired"};
+    Counter resolved{*this, "resolved_tiles", "tile",
+                     "Tiles of colour attachments resolved from their samples"};
+    Counter resolved_clear{*this, "resolved_clear", "tile",
+                           "Tiles of those that nothing was drawn to, which move nothing"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps);
@@ -86,17 +93,21 @@ class Rop final : public Unit {
     Stage stage = Stage::kShading;
     int missing = 0;
     Tick ready = 0;
-    int shaded = 0;  ///< live lanes after discard
-    /// of `SurfaceCache::acquire`, by colour attachment and touched tile
-    std::array<std::array<std::uint8_t, models::kWarpQuads>, models::kMaxColorAttachments> done{};
+    int shaded = 0;             ///< live lanes after discard
+    int discarded_samples = 0;  ///< of the others
+    int parts = 0;              ///< touched tiles, of each attachment, that are acquired
+    std::uint8_t done = 0;      ///< of `SurfaceCache::acquire`, of the next one
   };
 
   [[nodiscard]] Wake test_wake() const;
   [[nodiscard]] Wake acquire_wake() const;
   [[nodiscard]] Wake retire_wake() const;
+  [[nodiscard]] Wake resolve_wake() const;
   [[nodiscard]] Wake outputs_of(const Entry& entry, Wake wake) const;
   void take_inputs(Tick now);
   void take_late(Tick now);
+  void begin_flush();
+  void resolve(Tick now);
   void test(Tick now);
   void acquire(Tick now);
   bool acquire_colors(Entry& entry, std::uint32_t number);
@@ -124,6 +135,7 @@ class Rop final : public Unit {
   bool stalled_ = false;
   bool claim_stalled_ = false;  ///< the same for the head, whose lines were evicted
   bool depth_flushes_ = false;  ///< the pass is over, and the depth unit flushes before this one
+  Resolve resolve_;
   Flush flush_{port_};
   Tick free_ = 0, test_free_ = 0, acquire_free_ = 0;
 };

@@ -23,9 +23,15 @@ void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, Partiti
   for (std::size_t i = 0; i < count_; ++i) {
     surfaces_[i].state = &surfaces[i];
     const models::SurfaceLayout& layout = surfaces[i].surface;
-    surfaces_[i].cleared.assign(std::size_t{layout.tiles_x} * layout.tiles_y, false);
+    surfaces_[i].cleared.assign(layout.planes(), false);
     if (!surfaces[i].loads()) mark_cleared(surfaces_[i], partition, partitions);
   }
+}
+
+std::size_t SurfaceCache::add_surface(const AttachmentState& surface) {
+  surfaces_[count_].state = &surface;
+  surfaces_[count_].cleared.assign(surface.surface.planes(), false);
+  return count_++;
 }
 
 void SurfaceCache::mark_cleared(Surface& surface, PartitionId partition, std::uint32_t partitions) {
@@ -34,10 +40,11 @@ void SurfaceCache::mark_cleared(Surface& surface, PartitionId partition, std::ui
     for (std::uint32_t x = 0; x < layout.tiles_x; ++x) {
       if (models::partition_of(x, y, partitions) != partition) continue;
       auto* const pixels = reinterpret_cast<std::uint32_t*>(
-          memory_.write(layout.tile_address(x, y), models::kTileBytes).data());
-      std::fill_n(pixels, models::kTilePixels, surface.state->clear);
-      surface.cleared[std::size_t{y} * layout.tiles_x + x] = true;
-      ++stats_.cleared_tiles;
+          memory_.write(layout.tile_address(x, y), std::uint64_t{layout.samples} * models::kTileBytes)
+              .data());
+      std::fill_n(pixels, std::size_t{layout.samples} * models::kTilePixels, surface.state->clear);
+      for (std::uint32_t s = 0; s < layout.samples; ++s) surface.cleared[layout.plane_number(x, y, s)] = true;
+      stats_.cleared_tiles += layout.samples;
     }
   }
 }

@@ -26,10 +26,11 @@ namespace quadrille::hw {
   return static_cast<std::uint8_t>((pairs | pairs >> 4) & 0xffu);
 }
 
-/// A tile of one of the pass's surfaces.
+/// A tile of one of the pass's surfaces; of several samples a pixel, its plane of one.
 struct SurfaceTile {
   std::size_t surface = 0;
   std::uint32_t x = 0, y = 0;
+  std::uint32_t sample = 0;
   friend bool operator==(const SurfaceTile&, const SurfaceTile&) = default;
 };
 
@@ -67,6 +68,16 @@ class SurfaceCache {
   /// Begins a pass on these surfaces, of which this partition draws its tiles: what is not loaded is filled
   /// and marked. The attachments must outlive the pass.
   void begin_pass(std::span<const AttachmentState> surfaces, PartitionId partition, std::uint32_t partitions);
+  /// A further surface of the pass, which begins as it is; returns its number.
+  [[nodiscard]] std::size_t add_surface(const AttachmentState& surface);
+  /// Nothing was drawn to the tile since the pass cleared it.
+  [[nodiscard]] bool is_cleared(const SurfaceTile& tile) { return mark_of(tile); }
+  /// The tile is cleared now, as far as memory is concerned: the caller writes the pixels. Nothing of it may
+  /// be in the cache.
+  void clear(const SurfaceTile& tile) {
+    mark_of(tile) = true;
+    ++stats_.cleared_tiles;
+  }
   /// Asks for sectors of a tile: those in `read` with their contents, and a place for those in `write`, which
   /// will be overwritten whole, and in `part`. Adds what is not there yet to `missing` and tells `waiter` of
   /// each. False when there is no place now: try again after a fill, with the same `done`, which starts at 0
@@ -90,15 +101,15 @@ class SurfaceCache {
  private:
   struct Surface {
     const AttachmentState* state = nullptr;
-    std::vector<bool> cleared;  ///< by tile
+    std::vector<bool> cleared;  ///< by plane of a tile
   };
   [[nodiscard]] std::uint32_t line_of(const SurfaceTile& tile) const {
-    return static_cast<std::uint32_t>(surfaces_[tile.surface].state->surface.tile_address(tile.x, tile.y) /
-                                      models::kLineBytes);
+    const models::SurfaceLayout& layout = surfaces_[tile.surface].state->surface;
+    return static_cast<std::uint32_t>(layout.tile_address(tile.x, tile.y, tile.sample) / models::kLineBytes);
   }
   [[nodiscard]] std::vector<bool>::reference mark_of(const SurfaceTile& tile) {
     Surface& surface = surfaces_[tile.surface];
-    return surface.cleared[std::size_t{tile.y} * surface.state->surface.tiles_x + tile.x];
+    return surface.cleared[surface.state->surface.plane_number(tile.x, tile.y, tile.sample)];
   }
   void mark_cleared(Surface& surface, PartitionId partition, std::uint32_t partitions);
   void write_marked(Surface& surface, MemoryPort& port);
@@ -108,7 +119,8 @@ class SurfaceCache {
   models::DeviceMemory& memory_;
   StatGroup& group_;
   SurfaceCacheStats stats_;
-  std::array<Surface, models::kMaxColorAttachments> surfaces_;
+  /// attachments, and what they are resolved to
+  std::array<Surface, std::size_t{2} * models::kMaxColorAttachments> surfaces_;
   std::size_t count_ = 0;
 };
 

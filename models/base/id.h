@@ -20,7 +20,8 @@ class Id {
   template <std::integral Number>
   constexpr explicit Id(Number number) : number_(static_cast<std::uint32_t>(number)) {}
   [[nodiscard]] constexpr std::uint32_t index() const { return number_; }
-  friend constexpr auto operator<=>(const Id&, const Id&) = default;
+  // The check takes what the compiler makes of this for a null pointer.
+  friend constexpr auto operator<=>(const Id&, const Id&) = default;  // NOLINT(modernize-use-nullptr)
 
  private:
   std::uint32_t number_ = 0;

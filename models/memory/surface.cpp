@@ -24,9 +24,10 @@ void for_each_pixel(const SurfaceLayout& s, Visit visit) {
 
 }  // namespace
 
-SurfaceLayout allocate_surface(DeviceMemory& memory, std::uint32_t width, std::uint32_t height) {
+SurfaceLayout allocate_surface(DeviceMemory& memory, std::uint32_t width, std::uint32_t height,
+                               std::uint32_t samples) {
   QUADRILLE_CHECK(width > 0 && height > 0, "surface of {} x {} pixels", width, height);
-  SurfaceLayout surface{0, width, height, (width - 1) / 8 + 1, (height - 1) / 8 + 1};
+  SurfaceLayout surface{0, width, height, (width - 1) / 8 + 1, (height - 1) / 8 + 1, samples};
   surface.base = memory.allocate(surface.bytes(), kTileBytes);
   return surface;
 }

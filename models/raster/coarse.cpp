@@ -1,6 +1,7 @@
 #include "models/raster/coarse.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace quadrille::models {
 namespace {
@@ -9,15 +10,31 @@ constexpr std::int64_t floor_div(std::int64_t a, std::int64_t positive) {
   return a >= 0 ? a / positive : -((-a + positive - 1) / positive);
 }
 
+/// What the best and the worst sample of a pixel add to its centre.
+void add_samples(const EdgeFunction& edge, const SampleGrid& samples, std::int64_t& best,
+                 std::int64_t& worst) {
+  std::int64_t most = INT64_MIN, least = INT64_MAX;
+  for (int s = 0; s < samples.count; ++s) {
+    const std::int64_t more =
+        at_sample(edge, samples.offset[static_cast<std::size_t>(s)], samples.subpixel_bits).origin -
+        edge.origin;
+    most = std::max(most, more);
+    least = std::min(least, more);
+  }
+  best += most;
+  worst += least;
+}
+
 }  // namespace
 
-TileWalk::TileWalk(const TriangleSetup& triangle)
+TileWalk::TileWalk(const TriangleSetup& triangle, const SampleGrid& samples)
     : edge_count_(static_cast<std::size_t>(triangle.edge_count)) {
   for (std::size_t i = 0; i < edge_count_; ++i) {
     const EdgeFunction& e = triangle.edges[i];
-    edges_[i] = {e.origin, e.a * kTileSize, e.b * kTileSize};
+    edges_[i] = {e.origin, e.a * kTileSize, e.b * kTileSize, 0};
     best_[i] = (kTileSize - 1) * (std::max<std::int64_t>(e.a, 0) + std::max<std::int64_t>(e.b, 0));
     worst_[i] = (kTileSize - 1) * (std::min<std::int64_t>(e.a, 0) + std::min<std::int64_t>(e.b, 0));
+    if (samples.count > 1 && !triangle.whole_pixels) add_samples(e, samples, best_[i], worst_[i]);
   }
   const PixelRect& r = triangle.bounds;
   if (r.empty()) return;

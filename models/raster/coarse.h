@@ -1,7 +1,7 @@
 /// Coarse rasterisation: the 8x8-pixel tiles that a triangle, line or point touches, row by row, left to
 /// right.
 ///
-/// A tile is kept unless all its pixels are outside one edge (exact for each edge, at the pixel of the tile
+/// A tile is kept unless all its samples are outside one edge (exact for each edge, at the sample of the tile
 /// that is deepest inside). Along a row the kept tiles are one interval, found by a division an edge; so the
 /// walk costs what it keeps, however large the triangle. What the hardware is charged (`tests`) is the same
 /// walk done by testing: every kept tile, and one failing tile where a row's interval ends short of the
@@ -17,14 +17,14 @@ namespace quadrille::models {
 
 struct TileHit {
   std::int32_t tile_x = 0, tile_y = 0;  ///< pixel position / 8
-  bool fully_covered = false;           ///< all 64 pixels are inside the triangle and its bounds
+  bool fully_covered = false;  ///< all samples of its 64 pixels are inside the triangle and its bounds
 };
 
 class TileWalk {
  public:
   TileWalk() = default;
   /// Copies what it needs; the set-up need not outlive the walk.
-  explicit TileWalk(const TriangleSetup& triangle);
+  explicit TileWalk(const TriangleSetup& triangle, const SampleGrid& samples = {});
   /// The next tile; false at the end.
   bool next(TileHit& hit);
   /// Tile tests so far, the failing ones included.

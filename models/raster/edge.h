@@ -9,12 +9,14 @@ namespace quadrille::models {
 /// bits for pixels within the window grid.
 struct EdgeFunction {
   std::int64_t origin = 0, a = 0, b = 0;
+  std::int64_t fraction = 0;  ///< what was rounded off `origin`, for samples away from the centre
   [[nodiscard]] std::int64_t at(std::int64_t px, std::int64_t py) const { return origin + a * px + b * py; }
 };
 
-/// A window position on the sub-pixel grid.
+/// A window position, or a way, on the sub-pixel grid.
 struct GridPoint {
   std::int64_t x = 0, y = 0;
+  friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
 /// The edge from a to b of a shape whose inside is where the value is positive (its corners run clockwise on
@@ -27,6 +29,7 @@ struct GridPoint {
   const std::int64_t half = std::int64_t{1} << (subpixel_bits - 1);
   const std::int64_t at_first_centre = edge.a * (half - a.x) + edge.b * (half - a.y) - (top_left ? 0 : 1);
   edge.origin = at_first_centre >> subpixel_bits;  // rounds down: keeps the sign at every centre
+  edge.fraction = at_first_centre & ((std::int64_t{1} << subpixel_bits) - 1);
   return edge;
 }
 

@@ -59,14 +59,14 @@ std::uint64_t outside_edge_64(std::int64_t corner, std::int64_t a, std::int64_t 
   return outside;
 }
 
-}  // namespace
-
-std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_y) {
+/// `edge_at(i)` is edge i, as it decides the samples in question.
+template <class EdgeAt>
+std::uint64_t coverage(const TriangleSetup& triangle, int tile_x, int tile_y, const EdgeAt& edge_at) {
   constexpr std::int64_t kReach = kTileSize - 1;
   const int px = tile_x * kTileSize, py = tile_y * kTileSize;
   std::uint64_t covered = pixels_within(triangle.bounds, px, py);
   for (int i = 0; i < triangle.edge_count; ++i) {
-    const EdgeFunction& edge = triangle.edges[static_cast<std::size_t>(i)];
+    const EdgeFunction& edge = edge_at(static_cast<std::size_t>(i));
     const std::int64_t corner = edge.at(px, py);
     const std::int64_t lowest =
         corner + kReach * (std::min<std::int64_t>(edge.a, 0) + std::min<std::int64_t>(edge.b, 0));
@@ -83,6 +83,22 @@ std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_
                  : outside_edge_64(corner, edge.a, edge.b));
   }
   return covered;
+}
+
+}  // namespace
+
+std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_y) {
+  return coverage(triangle, tile_x, tile_y,
+                  [&](std::size_t i) -> const EdgeFunction& { return triangle.edges[i]; });
+}
+
+std::uint64_t sample_coverage(const TriangleSetup& triangle, int tile_x, int tile_y,
+                              const SampleGrid& samples, int sample) {
+  if (samples.count == 1 || triangle.whole_pixels) return tile_coverage(triangle, tile_x, tile_y);
+  return coverage(triangle, tile_x, tile_y, [&](std::size_t i) {
+    return at_sample(triangle.edges[i], samples.offset[static_cast<std::size_t>(sample)],
+                     samples.subpixel_bits);
+  });
 }
 
 }  // namespace quadrille::models

@@ -11,7 +11,7 @@ namespace {
 inline __m256d quad_x_offsets() { return _mm256_setr_pd(0.0, 1.0, 0.0, 1.0); }
 inline __m256d quad_y_offsets() { return _mm256_setr_pd(0.0, 0.0, 1.0, 1.0); }
 
-/// (value + dx * X) + dy * Y: the one order of operations, which `corner_depth` repeats.
+/// (value + dx * X) + dy * Y: the one order of operations, which `depth_at` repeats.
 inline __m256d evaluate(const Plane& plane, __m256d x, __m256d y) {
   const __m256d along_x =
       _mm256_add_pd(_mm256_set1_pd(plane.value), _mm256_mul_pd(_mm256_set1_pd(plane.dx), x));
@@ -22,18 +22,16 @@ inline __m128 limit_depth(__m256d z, __m128 low, __m128 high) {
   return _mm_min_ps(_mm_max_ps(_mm256_cvtpd_ps(z), low), high);
 }
 
-float corner_depth(const TriangleSetup& t, double px, double py) {
-  const double x = px + 0.5 - t.ref_x, y = py + 0.5 - t.ref_y;
+/// At a position in the window, in pixels.
+float depth_at(const TriangleSetup& t, double px, double py) {
+  const double x = px - t.ref_x, y = py - t.ref_y;
   return std::clamp(static_cast<float>((t.z.value + t.z.dx * x) + t.z.dy * y), t.z_min, t.z_max);
 }
 
-}  // namespace
-
-void tile_depths(const TriangleSetup& triangle, int tile_x, int tile_y, float out[64]) {
-  const __m256d x0 =
-      _mm256_add_pd(_mm256_set1_pd(tile_x * kTileSize + 0.5 - triangle.ref_x), quad_x_offsets());
-  const __m256d y0 =
-      _mm256_add_pd(_mm256_set1_pd(tile_y * kTileSize + 0.5 - triangle.ref_y), quad_y_offsets());
+/// `x` and `y`: where in each pixel, from its upper left corner.
+void depths_at(const TriangleSetup& triangle, int tile_x, int tile_y, double x, double y, float out[64]) {
+  const __m256d x0 = _mm256_add_pd(_mm256_set1_pd(tile_x * kTileSize + x - triangle.ref_x), quad_x_offsets());
+  const __m256d y0 = _mm256_add_pd(_mm256_set1_pd(tile_y * kTileSize + y - triangle.ref_y), quad_y_offsets());
   const __m256d value = _mm256_set1_pd(triangle.z.value), dx = _mm256_set1_pd(triangle.z.dx),
                 dy = _mm256_set1_pd(triangle.z.dy);
   const __m128 low = _mm_set1_ps(triangle.z_min), high = _mm_set1_ps(triangle.z_max);
@@ -51,14 +49,30 @@ void tile_depths(const TriangleSetup& triangle, int tile_x, int tile_y, float ou
   }
 }
 
-DepthBounds tile_depth_bounds(const TriangleSetup& triangle, int tile_x, int tile_y) {
+}  // namespace
+
+void tile_depths(const TriangleSetup& triangle, int tile_x, int tile_y, float out[64]) {
+  depths_at(triangle, tile_x, tile_y, 0.5, 0.5, out);
+}
+
+void sample_depths(const TriangleSetup& triangle, int tile_x, int tile_y, const SampleGrid& samples,
+                   int sample, float out[64]) {
+  const GridPoint& offset = samples.offset[static_cast<std::size_t>(sample)];
+  depths_at(triangle, tile_x, tile_y, 0.5 + samples.pixels(offset.x), 0.5 + samples.pixels(offset.y), out);
+}
+
+DepthBounds tile_depth_bounds(const TriangleSetup& triangle, int tile_x, int tile_y,
+                              const SampleGrid& samples) {
   const PixelRect tile{tile_x * kTileSize, tile_y * kTileSize, (tile_x + 1) * kTileSize,
                        (tile_y + 1) * kTileSize};
   const PixelRect r = intersect(tile, triangle.bounds);
-  const double left = r.x0, right = r.x1 - 1, top = r.y0, bottom = r.y1 - 1;
+  const double left = r.x0 + 0.5 + samples.pixels(samples.low.x),
+               right = r.x1 - 0.5 + samples.pixels(samples.high.x);
+  const double top = r.y0 + 0.5 + samples.pixels(samples.low.y),
+               bottom = r.y1 - 0.5 + samples.pixels(samples.high.y);
   const bool grows_right = triangle.z.dx >= 0.0, grows_down = triangle.z.dy >= 0.0;
-  return {corner_depth(triangle, grows_right ? left : right, grows_down ? top : bottom),
-          corner_depth(triangle, grows_right ? right : left, grows_down ? bottom : top)};
+  return {depth_at(triangle, grows_right ? left : right, grows_down ? top : bottom),
+          depth_at(triangle, grows_right ? right : left, grows_down ? bottom : top)};
 }
 
 void interpolate_quad(const TriangleSetup& triangle, int quad_x, int quad_y, int slot, FragmentInputs& out) {

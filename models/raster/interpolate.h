@@ -13,14 +13,18 @@ namespace quadrille::models {
 
 /// Depths at the 64 pixels of a tile, quad-major, whether covered or not.
 void tile_depths(const TriangleSetup& triangle, int tile_x, int tile_y, float out[64]);
+/// The same at one sample of each pixel.
+void sample_depths(const TriangleSetup& triangle, int tile_x, int tile_y, const SampleGrid& samples,
+                   int sample, float out[64]);
 
 struct DepthBounds {
   float min = 0, max = 0;
 };
-/// Smallest and greatest depth at the pixels of a tile that are within the triangle's bounds: contains every
-/// covered pixel's depth. Not only close: every rounding in the depth function is monotonic, so the corner
-/// pixels bound all others.
-[[nodiscard]] DepthBounds tile_depth_bounds(const TriangleSetup& triangle, int tile_x, int tile_y);
+/// Smallest and greatest depth at the samples of a tile whose pixels are within the triangle's bounds:
+/// contains every covered sample's depth. Not only close: every rounding in the depth function is monotonic,
+/// so the outermost samples bound all others.
+[[nodiscard]] DepthBounds tile_depth_bounds(const TriangleSetup& triangle, int tile_x, int tile_y,
+                                            const SampleGrid& samples = {});
 
 /// Fills lanes 4 * slot .. 4 * slot + 3 of a fragment warp with the quad whose top-left pixel is (quad_x,
 /// quad_y): x, y, z, inv_w, persp_1/2, linear_1/2 and front_facing.

@@ -88,6 +88,7 @@ void cover_bresenham(Segment s, const SetupState& state, TriangleSetup& out) {
   const bool steep = s.steep();
   const Steps steps = steep ? steps_of(grid, s.a, s.b, s.a.y, s.b.y) : steps_of(grid, s.a, s.b, s.a.x, s.b.x);
   if ((steep ? s.dy() : s.dx()) < 0) std::swap(s.a, s.b);
+  out.whole_pixels = true;
   set_band(s, steps, state, out);
 }
 
@@ -125,8 +126,10 @@ void cover_rectangle(const Segment& s, const SetupState& state, TriangleSetup& o
   const auto [left, right] = std::minmax({corner[0].x, corner[1].x, corner[2].x, corner[3].x});
   const auto [top, bottom] = std::minmax({corner[0].y, corner[1].y, corner[2].y, corner[3].y});
   const int bits = state.subpixel_bits;
-  out.bounds = {first_pixel_from(left, bits), first_pixel_from(top, bits), first_pixel_from(right + 1, bits),
-                first_pixel_from(bottom + 1, bits)};
+  const GridPoint &least = state.samples.low, &greatest = state.samples.high;
+  out.bounds = {first_pixel_from(left - greatest.x, bits), first_pixel_from(top - greatest.y, bits),
+                first_pixel_from(right + 1 - least.x, bits), first_pixel_from(bottom + 1 - least.y, bits)};
+  out.whole_pixels = false;
 }
 
 /// Planes that grow from the first end to the second. [VK1.3 #line_noclip, #primsrast-lines-bresenham]

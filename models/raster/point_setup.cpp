@@ -1,6 +1,7 @@
 #include "models/raster/point_setup.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace quadrille::models {
@@ -25,6 +26,14 @@ void fit_planes(const WindowPoint& p, const SetupState& state, TriangleSetup& ou
   limit_depths(p.vertex.z, p.vertex.z, state, out);
 }
 
+/// The square's sides, which decide its samples. With one sample a pixel its bounds do.
+void set_sides(std::int64_t left, std::int64_t top, std::int64_t size, int bits, TriangleSetup& out) {
+  const std::int64_t right = left + size, bottom = top + size;
+  const std::array<GridPoint, 4> corner{GridPoint{left, top}, {right, top}, {right, bottom}, {left, bottom}};
+  out.edge_count = 4;
+  for (std::size_t i = 0; i < 4; ++i) out.edges[i] = make_edge(corner[i], corner[(i + 1) % 4], bits);
+}
+
 }  // namespace
 
 float point_size(float wished) {
@@ -40,12 +49,15 @@ SetupOutcome setup_point(const WindowPoint& point, const SetupState& state, Tria
   const int bits = state.subpixel_bits;
   const std::int64_t size = size_on_grid(point.size, bits);
   const std::int64_t left = point.vertex.x - size / 2, top = point.vertex.y - size / 2;
-  out.bounds = {first_pixel_from(left, bits), first_pixel_from(top, bits),
-                first_pixel_from(left + size, bits), first_pixel_from(top + size, bits)};
+  const GridPoint &least = state.samples.low, &greatest = state.samples.high;
+  out.bounds = {first_pixel_from(left - greatest.x, bits), first_pixel_from(top - greatest.y, bits),
+                first_pixel_from(left + size - least.x, bits), first_pixel_from(top + size - least.y, bits)};
   if (out.bounds.empty()) return SetupOutcome::kNoSample;
   out.bounds = intersect(out.bounds, state.scissor);
   if (out.bounds.empty()) return SetupOutcome::kOffscreen;
   out.edge_count = 0;
+  out.whole_pixels = false;
+  if (state.samples.count > 1) set_sides(left, top, size, bits, out);
   out.front_facing = true;
   fit_planes(point, state, out);
   return SetupOutcome::kKept;

@@ -42,15 +42,21 @@ void fit_planes(const std::array<WindowVertex, 3>& v, const std::array<glm::vec2
   limit_depths(low, high, state, out);
 }
 
-/// Pixels whose centre lies within the bounding box.
-PixelRect centres_within(const std::array<WindowVertex, 3>& v, int subpixel_bits) {
+/// Pixels of which a sample may lie within the bounding box.
+PixelRect samples_within(const std::array<WindowVertex, 3>& v, const SetupState& state) {
+  const int subpixel_bits = state.subpixel_bits;
   const auto [x_low, x_high] = std::minmax({v[0].x, v[1].x, v[2].x});
   const auto [y_low, y_high] = std::minmax({v[0].y, v[1].y, v[2].y});
   const std::int32_t half = 1 << (subpixel_bits - 1);
   // ceil((low - half) / 2^s)
-  const auto first = [&](std::int32_t low) { return (low - half + 2 * half - 1) >> subpixel_bits; };
-  const auto end = [&](std::int32_t high) { return ((high - half) >> subpixel_bits) + 1; };
-  return {first(x_low), first(y_low), end(x_high), end(y_high)};
+  const auto first = [&](std::int32_t low, std::int64_t greatest) {
+    return (low - static_cast<std::int32_t>(greatest) - half + 2 * half - 1) >> subpixel_bits;
+  };
+  const auto end = [&](std::int32_t high, std::int64_t least) {
+    return ((high - static_cast<std::int32_t>(least) - half) >> subpixel_bits) + 1;
+  };
+  const GridPoint &least = state.samples.low, &greatest = state.samples.high;
+  return {first(x_low, greatest.x), first(y_low, greatest.y), end(x_high, least.x), end(y_high, least.y)};
 }
 
 }  // namespace
@@ -77,12 +83,13 @@ SetupOutcome setup_triangle(const std::array<WindowVertex, 3>& vertices,
   if (area2 == 0) return SetupOutcome::kZeroArea;
   const bool front = is_front(area2, state);
   if (culls(front, state)) return SetupOutcome::kCulledFace;
-  const PixelRect box = centres_within(vertices, state.subpixel_bits);
+  const PixelRect box = samples_within(vertices, state);
   if (box.empty()) return SetupOutcome::kNoSample;
   out.bounds = intersect(box, state.scissor);
   if (out.bounds.empty()) return SetupOutcome::kOffscreen;
 
   out.front_facing = front;
+  out.whole_pixels = false;
   fit_planes(vertices, weights, area2, state, out);
   if (area2 < 0) std::swap(p[1], p[2]);
   out.edge_count = 3;

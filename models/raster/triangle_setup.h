@@ -11,6 +11,7 @@
 
 #include "models/base/pipeline_state.h"
 #include "models/raster/edge.h"
+#include "models/raster/samples.h"
 #include "models/raster/tile.h"
 #include "models/raster/viewport.h"
 
@@ -26,7 +27,7 @@ namespace quadrille::models {
 struct TriangleSetup {
   std::array<EdgeFunction, 4> edges;
   int edge_count = 3;
-  /// pixels that may be covered: bounding box of the triangle within the scissor
+  /// pixels that may be covered: those with a sample in the bounding box, within the scissor
   PixelRect bounds;
   double ref_x = 0, ref_y = 0;  ///< reference point, pixels
   Plane z, inv_w;               ///< window depth, 1 / w
@@ -35,6 +36,8 @@ struct TriangleSetup {
   /// depths are limited to this: range of the vertices' depths within the viewport's
   float z_min = 0, z_max = 0;
   bool front_facing = false;
+  /// what is covered is decided at the centre, for all samples of a pixel (Bresenham lines)
+  bool whole_pixels = false;
 };
 
 /// State that set-up needs; `scissor` is a draw's `drawable_rect`, depths are the viewport's.
@@ -46,6 +49,7 @@ struct SetupState {
   float min_depth = 0, max_depth = 1;
   LineMode line_mode = LineMode::kBresenham;
   float line_width = 1;  ///< pixels
+  SampleGrid samples{};
 };
 
 enum class SetupOutcome : std::uint8_t {
@@ -53,7 +57,7 @@ enum class SetupOutcome : std::uint8_t {
   kCulledFace,  ///< faces the way that is culled
   kZeroArea,    ///< no area, or no length, after snapping
   kOffscreen,   ///< its pixels are outside the scissor
-  kNoSample     ///< its bounding box holds no pixel centre
+  kNoSample     ///< its bounding box holds no sample
 };
 
 /// Sets up one triangle. `weights` holds (b1, b2) of each vertex: (0,0) (1,0) (0,1) for a triangle that was

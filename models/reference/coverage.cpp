@@ -58,15 +58,27 @@ double doubled_area(const WindowTriangle& t) {
   return edge_value(t.x[0], t.y[0], t.x[1], t.y[1], t.x[2], t.y[2]);
 }
 
-SamplePlace locate_sample(const WindowTriangle& t, int x, int y) {
-  if (t.shape == Shape::kLine) return locate_on_line(t, x, y);
-  if (t.shape == Shape::kPoint) return locate_in_point(t, x, y);
+SampleAt sample_at(int x, int y, std::uint32_t samples, std::uint32_t sample) {
+  // x and y of each sample in sixteenths of a pixel, from its upper left corner
+  static constexpr std::array<double, 4> kTwo{12, 12, 4, 4};
+  static constexpr std::array<double, 8> kFour{6, 2, 14, 6, 2, 10, 10, 14};
+  static constexpr std::array<double, 16> kEight{9, 5, 7, 11, 13, 9, 5, 3, 3, 13, 1, 7, 11, 15, 15, 1};
+  if (samples == 1) return {x, y};
+  const double* const at = (samples == 2   ? kTwo.data()
+                            : samples == 4 ? kFour.data()
+                                           : kEight.data()) +
+                           std::size_t{2} * sample;
+  return {x, y, (at[0] - 8) / 16, (at[1] - 8) / 16};
+}
+
+SamplePlace locate_sample(const WindowTriangle& t, const SampleAt& at) {
+  if (t.shape == Shape::kLine) return locate_on_line(t, at);
+  if (t.shape == Shape::kPoint) return locate_in_point(t, at);
   if (t.exact) {
     const std::int64_t one = std::int64_t{1} << t.subpixel_bits;
-    return locate<std::int64_t, Wide>(t.fixed_x, t.fixed_y, x * one + one / 2, y * one + one / 2,
-                                      t.clockwise);
+    return locate<std::int64_t, Wide>(t.fixed_x, t.fixed_y, at.grid_x(one), at.grid_y(one), t.clockwise);
   }
-  return locate<double, double>(t.x, t.y, x + 0.5, y + 0.5, t.clockwise);
+  return locate<double, double>(t.x, t.y, at.px(), at.py(), t.clockwise);
 }
 
 }  // namespace quadrille::models::reference

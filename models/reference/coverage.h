@@ -50,8 +50,24 @@ struct SamplePlace {
   double part = 1;                ///< of the pixel, that a smooth line covers
   std::array<double, 2> point{};  ///< coordinates within a point, 0 to 1
 };
-[[nodiscard]] SamplePlace locate_on_line(const WindowTriangle& t, int x, int y);
-[[nodiscard]] SamplePlace locate_in_point(const WindowTriangle& t, int x, int y);
-[[nodiscard]] SamplePlace locate_sample(const WindowTriangle& triangle, int x, int y);
+/// A place in a pixel: its centre, or a sample away from it.
+struct SampleAt {
+  int x = 0, y = 0;                             ///< the pixel
+  double from_centre_x = 0, from_centre_y = 0;  ///< pixels, sixteenths
+  [[nodiscard]] double px() const { return x + 0.5 + from_centre_x; }
+  [[nodiscard]] double py() const { return y + 0.5 + from_centre_y; }
+  /// On a grid of `one` steps a pixel.
+  [[nodiscard]] std::int64_t grid_x(std::int64_t one) const {
+    return x * one + one / 2 + static_cast<std::int64_t>(from_centre_x * static_cast<double>(one));
+  }
+  [[nodiscard]] std::int64_t grid_y(std::int64_t one) const {
+    return y * one + one / 2 + static_cast<std::int64_t>(from_centre_y * static_cast<double>(one));
+  }
+};
+/// The samples of pixel (x, y): 1, 2, 4 or 8. [VK1.3 #primsrast-multisampling, standard sample locations]
+[[nodiscard]] SampleAt sample_at(int x, int y, std::uint32_t samples, std::uint32_t sample);
+[[nodiscard]] SamplePlace locate_on_line(const WindowTriangle& t, const SampleAt& at);
+[[nodiscard]] SamplePlace locate_in_point(const WindowTriangle& t, const SampleAt& at);
+[[nodiscard]] SamplePlace locate_sample(const WindowTriangle& triangle, const SampleAt& at);
 
 }  // namespace quadrille::models::reference

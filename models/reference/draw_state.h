@@ -16,7 +16,8 @@ struct VertexBuffer {
   std::uint64_t offset = 0;
 };
 
-/// A colour attachment, row by row: pixels as stored, and 4 linear values for each, before they were rounded.
+/// A colour attachment, row by row: pixels as stored, and 4 linear values for each, before they were rounded;
+/// of several samples, those of a pixel one after the other.
 struct ColorTarget {
   traces::Format format = traces::Format::kR8G8B8A8Unorm;
   std::vector<std::uint32_t> code;
@@ -27,6 +28,7 @@ struct DrawState {
   const traces::CommandStream* stream = nullptr;
   std::vector<ColorTarget*> colors;      ///< of the pass, by attachment
   std::vector<double>* depth = nullptr;  ///< of the pass; null: it has no depth attachment
+  std::uint32_t samples = 1;             ///< a pixel, of the pass
   /// what earlier passes have drawn, with texels, for samplers
   const std::map<traces::Index, traces::Image>* drawn = nullptr;
   const traces::Pipeline* pipeline = nullptr;

@@ -33,10 +33,14 @@ std::vector<Link> link_varyings(const ShaderProgram& vertex, const ShaderProgram
   return links;
 }
 
+/// Samples of four pixels, a bit each.
+using Samples = std::array<unsigned, kLanes>;
+
 /// Four fragments: which are covered, and where they are in the original triangle.
 struct Quad {
   int x = 0, y = 0;
-  unsigned covered = 0;
+  Samples covered{};
+  std::array<std::array<double, 8>, kLanes> sample_z{};
   std::array<double, kLanes> z{}, inv_w{};
   std::array<std::array<double, 2>, kLanes> perspective{}, linear{};  ///< (b1, b2)
   std::array<double, kLanes> part{};                                  ///< covered by a smooth line
@@ -69,6 +73,8 @@ class BandWorker {
   }
 
  private:
+  using Depths = std::array<std::array<double, 8>, kLanes>;  ///< by pixel and sample
+
   [[nodiscard]] bool in_bounds(int x, int y) const {
     const PixelBounds& b = work_.bounds;
     return x >= b.first_x && x <= b.last_x && y >= b.first_y && y <= b.last_y;
@@ -80,15 +86,31 @@ class BandWorker {
     std::array<SamplePlace, kLanes> places;
     for (int lane = 0; lane < kLanes; ++lane) {
       const int px = x + (lane & 1), py = y + (lane >> 1);
-      places[static_cast<std::size_t>(lane)] = locate_sample(t, px, py);
-      if (places[static_cast<std::size_t>(lane)].covered && in_bounds(px, py)) quad.covered |= 1u << lane;
+      places[static_cast<std::size_t>(lane)] = locate_sample(t, {px, py});
+      if (in_bounds(px, py)) cover(t, places[static_cast<std::size_t>(lane)], quad, lane);
     }
-    if (quad.covered == 0) return;
+    if (!any(quad.covered)) return;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       place_fragment(t, places[lane].weights, quad, lane);
       quad.part[lane] = places[lane].part, quad.point[lane] = places[lane].point;
     }
     shade_and_write(t, quad);
+  }
+
+  [[nodiscard]] static bool any(const Samples& samples) {
+    return std::ranges::any_of(samples, [](unsigned s) { return s != 0; });
+  }
+
+  /// Which samples of a pixel, and their depths.
+  void cover(const WindowTriangle& t, const SamplePlace& centre, Quad& quad, int lane) {
+    const auto l = static_cast<std::size_t>(lane);
+    for (std::uint32_t s = 0; s < state_.samples; ++s) {
+      const SampleAt at = sample_at(quad.x + (lane & 1), quad.y + (lane >> 1), state_.samples, s);
+      const SamplePlace place = state_.samples == 1 ? centre : locate_sample(t, at);
+      if (!place.covered) continue;
+      quad.covered[l] |= 1u << s;
+      for (std::size_t i = 0; i < 3; ++i) quad.sample_z[l][s] += place.weights[i] * t.z[i];
+    }
   }
 
   /// [VK1.3 #primsrast-polygons-basic: interpolation of data across polygons]
@@ -108,21 +130,23 @@ class BandWorker {
   }
 
   void shade_and_write(const WindowTriangle& t, const Quad& quad) {
-    unsigned alive = quad.covered;
-    std::array<double, kLanes> depth{};
-    for (std::size_t lane = 0; lane < kLanes; ++lane) depth[lane] = final_depth(quad.z[lane]);
+    Samples alive = quad.covered;
+    Depths depth{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      for (std::uint32_t s = 0; s < state_.samples; ++s) depth[lane][s] = final_depth(quad.sample_z[lane][s]);
     const bool shader_depth = program_ != nullptr && program_->builtins.frag_depth != kNoSlot;
     const bool late = shader_depth || (program_ != nullptr && program_->discards);
     if (!late) alive = test_depth(quad, depth, alive);
-    if (alive == 0) return;
+    if (!any(alive)) return;
     if (program_ != nullptr) {
       shade(t, quad);
       if (shader_depth) {
         for (std::size_t lane = 0; lane < kLanes; ++lane)
-          depth[lane] = final_depth(lanes_.at(program_->builtins.frag_depth)->f(static_cast<int>(lane)));
+          depth[lane].fill(final_depth(lanes_.at(program_->builtins.frag_depth)->f(static_cast<int>(lane))));
       }
       note_discards(quad);
-      alive &= ~lanes_.killed;
+      for (std::size_t lane = 0; lane < kLanes; ++lane)
+        if ((lanes_.killed >> lane & 1u) != 0) alive[lane] = 0;
     }
     if (late) alive = test_depth(quad, depth, alive);
     write(t, quad, depth, alive);
@@ -141,16 +165,18 @@ class BandWorker {
            lane % 2;
   }
 
-  /// Lanes that pass; notes how near the decisions were.
-  unsigned test_depth(const Quad& quad, const std::array<double, kLanes>& depth, unsigned alive) {
+  /// Samples that pass; notes how near the decisions were.
+  Samples test_depth(const Quad& quad, const Depths& depth, Samples alive) {
     if (!has_depth()) return alive;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if ((alive >> lane & 1u) == 0) continue;
       const std::size_t at = pixel(quad, lane);
-      result_.depth_margin[at] = std::min(result_.depth_margin[at],
-                                          static_cast<float>(float_ulps(depth[lane], (*state_.depth)[at])));
-      if (!depth_passes(state_.pipeline->depth.compare, depth[lane], (*state_.depth)[at]))
-        alive &= ~(1u << lane);
+      for (std::uint32_t s = 0; s < state_.samples; ++s) {
+        if ((alive[lane] >> s & 1u) == 0) continue;
+        const double stored = (*state_.depth)[at * state_.samples + s];
+        result_.depth_margin[at] =
+            std::min(result_.depth_margin[at], static_cast<float>(float_ulps(depth[lane][s], stored)));
+        if (!depth_passes(state_.pipeline->depth.compare, depth[lane][s], stored)) alive[lane] &= ~(1u << s);
+      }
     }
     return alive;
   }
@@ -158,7 +184,7 @@ class BandWorker {
   void note_discards(const Quad& quad) {
     if (!program_->discards) return;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if ((quad.covered >> lane & 1u) == 0) continue;
+      if (quad.covered[lane] == 0) continue;
       const std::size_t at = pixel(quad, lane);
       result_.alpha_margin[at] =
           std::min(result_.alpha_margin[at], static_cast<float>(lanes_.discard_margin[lane]));
@@ -210,15 +236,16 @@ class BandWorker {
     }
   }
 
-  void write(const WindowTriangle& t, const Quad& quad, const std::array<double, kLanes>& depth,
-             unsigned alive) {
+  void write(const WindowTriangle& t, const Quad& quad, const Depths& depth, const Samples& alive) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if ((alive >> lane & 1u) == 0) continue;
-      const std::size_t at = pixel(quad, lane);
-      if (has_depth() && state_.pipeline->depth.write) (*state_.depth)[at] = depth[lane];
-      if (program_ == nullptr) continue;
-      for (std::size_t color = 0; color < state_.colors.size(); ++color)
-        write_color(t, color, at, static_cast<int>(lane), quad.part[lane]);
+      for (std::uint32_t s = 0; s < state_.samples; ++s) {
+        if ((alive[lane] >> s & 1u) == 0) continue;
+        const std::size_t at = pixel(quad, lane) * state_.samples + s;
+        if (has_depth() && state_.pipeline->depth.write) (*state_.depth)[at] = depth[lane][s];
+        if (program_ == nullptr) continue;
+        for (std::size_t color = 0; color < state_.colors.size(); ++color)
+          write_color(t, color, at, static_cast<int>(lane), quad.part[lane]);
+      }
     }
   }
 
@@ -237,7 +264,8 @@ class BandWorker {
     const StoredColor after = blend(state, target.format, source, before);
     target.code[at] = after.code;
     std::copy_n(after.linear.begin(), 4, linear);
-    if (color == 0) result_.triangle_id[at] = std::uint64_t{state_.number} << 32 | t.primitive;
+    if (color == 0)
+      result_.triangle_id[at / state_.samples] = std::uint64_t{state_.number} << 32 | t.primitive;
   }
 
   const FragmentWork& work_;

@@ -127,13 +127,13 @@ std::array<Number, 4> corners(Number a, Number b, Number ahead, Number side) {
   return {a - ahead - side, b + ahead - side, b + ahead + side, a - ahead + side};
 }
 
-bool covers_rectangle(const WindowTriangle& t, int x, int y) {
+bool covers_rectangle(const WindowTriangle& t, const SampleAt& at) {
   const Direction d = direction_of(t);
   const Rectangle r = rectangle_of(t);
   if (!t.exact) {
     return inside_all<double, double>(corners(t.x[0], t.x[1], d.x * r.longer, -d.y * r.half_width),
-                                      corners(t.y[0], t.y[1], d.y * r.longer, d.x * r.half_width), x + 0.5,
-                                      y + 0.5);
+                                      corners(t.y[0], t.y[1], d.y * r.longer, d.x * r.half_width), at.px(),
+                                      at.py());
   }
   // the machine's precision: the rectangle's corners lie on its grid
   const double one = std::ldexp(1.0, t.subpixel_bits);
@@ -142,27 +142,29 @@ bool covers_rectangle(const WindowTriangle& t, int x, int y) {
   return inside_all<std::int64_t, Wide>(
       corners(t.fixed_x[0], t.fixed_x[1], snapped(d.x * r.longer), snapped(-d.y * r.half_width)),
       corners(t.fixed_y[0], t.fixed_y[1], snapped(d.y * r.longer), snapped(d.x * r.half_width)),
-      x * unit + unit / 2, y * unit + unit / 2);
+      at.grid_x(unit), at.grid_y(unit));
 }
 
-bool covers_line(const WindowTriangle& t, int x, int y) {
-  if (t.line_mode != LineMode::kBresenham) return covers_rectangle(t, x, y);
+/// A Bresenham line covers all samples of a pixel or none.
+bool covers_line(const WindowTriangle& t, const SampleAt& at) {
+  if (t.line_mode != LineMode::kBresenham) return covers_rectangle(t, at);
+  const int x = at.x, y = at.y;
   if (!t.exact) return covers_band(thin_line<double, double>(t.x, t.y, 1.0), t, x, y, 1.0);
   const std::int64_t one = std::int64_t{1} << t.subpixel_bits;
   return covers_band(thin_line<std::int64_t, Wide>(t.fixed_x, t.fixed_y, one), t, x, y, one);
 }
 
 /// How far along the line a pixel's centre is; 1 at its second end.
-double place_along(const WindowTriangle& t, int x, int y) {
-  const double dx = t.x[1] - t.x[0], dy = t.y[1] - t.y[0], px = x + 0.5 - t.x[0], py = y + 0.5 - t.y[0];
+double place_along(const WindowTriangle& t, const SampleAt& at) {
+  const double dx = t.x[1] - t.x[0], dy = t.y[1] - t.y[0], px = at.px() - t.x[0], py = at.py() - t.y[0];
   if (t.line_mode != LineMode::kBresenham) return (px * dx + py * dy) / (dx * dx + dy * dy);
   return std::abs(dx) < std::abs(dy) ? py / dy : px / dx;
 }
 
 /// The part of a pixel, turned with the line, that a smooth line covers.
-double smooth_part(const WindowTriangle& t, int x, int y) {
+double smooth_part(const WindowTriangle& t, const SampleAt& at) {
   const Direction d = direction_of(t);
-  const double px = x + 0.5 - 0.5 * (t.x[0] + t.x[1]), py = y + 0.5 - 0.5 * (t.y[0] + t.y[1]);
+  const double px = at.px() - 0.5 * (t.x[0] + t.x[1]), py = at.py() - 0.5 * (t.y[0] + t.y[1]);
   const double half_width = 0.5 * std::clamp(t.line_width, 1.0, 64.0), half_length = 0.5 * d.length;
   const auto part = [](double half, double from) {
     return std::clamp(half + 0.5 - std::abs(from), 0.0, std::min(1.0, 2 * half));
@@ -172,29 +174,29 @@ double smooth_part(const WindowTriangle& t, int x, int y) {
 
 }  // namespace
 
-SamplePlace locate_on_line(const WindowTriangle& t, int x, int y) {
+SamplePlace locate_on_line(const WindowTriangle& t, const SampleAt& at) {
   SamplePlace place;
-  place.covered = covers_line(t, x, y);
-  const double along = place_along(t, x, y);
+  place.covered = covers_line(t, at);
+  const double along = place_along(t, at);
   place.weights = {1 - along, along, 0};
-  if (t.line_mode == LineMode::kSmooth) place.part = smooth_part(t, x, y);
+  if (t.line_mode == LineMode::kSmooth) place.part = smooth_part(t, at);
   return place;
 }
 
-SamplePlace locate_in_point(const WindowTriangle& t, int x, int y) {
+SamplePlace locate_in_point(const WindowTriangle& t, const SampleAt& at) {
   SamplePlace place;
   place.weights = {1, 0, 0};
   if (t.exact) {
     const std::int64_t one = std::int64_t{1} << t.subpixel_bits;
     const auto size = static_cast<std::int64_t>(std::nearbyint(std::ldexp(t.point_size, t.subpixel_bits)));
     const std::int64_t left = t.fixed_x[0] - size / 2, top = t.fixed_y[0] - size / 2;
-    const std::int64_t px = x * one + one / 2, py = y * one + one / 2;
+    const std::int64_t px = at.grid_x(one), py = at.grid_y(one);
     place.covered = px >= left && px < left + size && py >= top && py < top + size;
   } else {
-    const double half = 0.5 * t.point_size, px = x + 0.5 - t.x[0], py = y + 0.5 - t.y[0];
+    const double half = 0.5 * t.point_size, px = at.px() - t.x[0], py = at.py() - t.y[0];
     place.covered = px >= -half && px < half && py >= -half && py < half;
   }
-  place.point = {0.5 + (x + 0.5 - t.x[0]) / t.point_size, 0.5 + (y + 0.5 - t.y[0]) / t.point_size};
+  place.point = {0.5 + (at.px() - t.x[0]) / t.point_size, 0.5 + (at.py() - t.y[0]) / t.point_size};
   return place;
 }
 

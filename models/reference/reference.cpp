@@ -69,16 +69,17 @@ class Renderer {
     if (!seen()) return;
     begun_ = &pass;
     const traces::PassTarget target = traces::target_of(stream_, pass);
-    const std::size_t pixels = std::size_t{target.width} * target.height;
+    state_.samples = stream_.images[pass.first_image()].samples;
+    const std::size_t pixels = std::size_t{target.width} * target.height, values = pixels * state_.samples;
     result_.width = target.width, result_.height = target.height;
     state_.colors.clear();
     for (const traces::ColorAttachmentUse& use : pass.colors) {
       state_.colors.push_back(&colors_[use.image]);
-      if (use.load != traces::LoadOp::kLoad) clear(colors_[use.image], use, pixels);
+      if (use.load != traces::LoadOp::kLoad) clear(colors_[use.image], use, values);
     }
     state_.depth = pass.depth.image == traces::kNone ? nullptr : &depths_[pass.depth.image];
     if (state_.depth != nullptr && pass.depth.load != traces::LoadOp::kLoad)
-      state_.depth->assign(pixels, clear_depth(pass));
+      state_.depth->assign(values, clear_depth(pass));
     result_.triangle_id.assign(pixels, kNoTriangle);
     result_.depth_margin.assign(pixels, std::numeric_limits<float>::infinity());
     result_.alpha_margin.assign(pixels, std::numeric_limits<float>::infinity());
@@ -101,12 +102,34 @@ class Renderer {
 
   void execute(const traces::EndPass&) {
     if (!seen()) return;
-    for (const traces::ColorAttachmentUse& use : begun_->colors) keep(use.image, colors_[use.image].code);
-    if (state_.depth != nullptr) {
+    for (const traces::ColorAttachmentUse& use : begun_->colors) {
+      keep(use.image, colors_[use.image].code);
+      if (use.resolve == traces::kNone) continue;
+      resolve(colors_[use.image], colors_[use.resolve]);
+      keep(use.resolve, colors_[use.resolve].code);
+    }
+    if (state_.depth != nullptr && state_.samples == 1) {
       std::vector<std::uint32_t> codes;
       for (const double z : *state_.depth)
         codes.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(z)));
       keep(begun_->depth.image, codes);
+    }
+  }
+
+  /// The means of a pixel's samples. [VK1.3 #renderpass-resolve-operations]
+  void resolve(const ColorTarget& from, ColorTarget& to) const {
+    to.format = from.format;
+    to.code.clear();
+    to.linear.clear();
+    for (std::size_t first = 0; first < from.code.size(); first += state_.samples) {
+      std::array<double, 4> mean{};
+      for (std::uint32_t s = 0; s < state_.samples; ++s) {
+        const std::array<double, 4> color = load_color(from.format, from.code[first + s]);
+        for (std::size_t c = 0; c < 4; ++c) mean[c] += color[c] / state_.samples;
+      }
+      const StoredColor stored = store_color(from.format, mean);
+      to.code.push_back(stored.code);
+      to.linear.insert(to.linear.end(), stored.linear.begin(), stored.linear.end());
     }
   }
 
@@ -120,12 +143,16 @@ class Renderer {
 
   /// The last pass's picture.
   void show() {
-    const ColorTarget& shown = *state_.colors.at(0);
+    const traces::Index resolved = begun_->colors.at(0).resolve;
+    const ColorTarget& shown = resolved == traces::kNone ? *state_.colors[0] : colors_.at(resolved);
     result_.color.clear();
     for (const std::uint32_t code : shown.code) result_.color.push_back(to_bytes(shown.format, code));
     result_.color_linear = shown.linear;
-    if (state_.depth != nullptr) result_.depth = *state_.depth;
-    else result_.depth.assign(shown.code.size(), clear_depth(*begun_));
+    if (state_.depth != nullptr) {
+      result_.depth.clear();  // of the first samples
+      for (std::size_t i = 0; i < state_.depth->size(); i += state_.samples)
+        result_.depth.push_back((*state_.depth)[i]);
+    } else result_.depth.assign(shown.code.size(), clear_depth(*begun_));
   }
 
   void execute(const traces::BindPipeline& c) { state_.pipeline = &stream_.pipelines[c.pipeline]; }

@@ -77,7 +77,7 @@ struct Result {
   /// 4 a pixel: linear, after blending and before quantisation, of the last write; the clear colour where
   /// none
   std::vector<double> color_linear;
-  std::vector<double> depth;  ///< mode *given*: a float32's value
+  std::vector<double> depth;  ///< mode *given*: a float32's value; of several samples, the first one's
   /// draw << 32 | primitive (within its instance) of the last surviving colour write, or `kNoTriangle`
   std::vector<std::uint64_t> triangle_id;
   /// smallest |z_new - z_old| at any depth test of the pixel, in units of the last place of a float32: tells

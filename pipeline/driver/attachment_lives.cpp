@@ -17,7 +17,10 @@ AttachmentLives::AttachmentLives(const traces::CommandStream& stream)
   };
   for (const traces::Command& command : stream.commands) {
     if (const auto* begin = std::get_if<traces::BeginPass>(&command)) {
-      for (const traces::ColorAttachmentUse& color : begin->colors) attach(color);
+      for (const traces::ColorAttachmentUse& color : begin->colors) {
+        attach(color);
+        if (color.resolve != traces::kNone) uses_[color.resolve].push_back({passes, true, false, true});
+      }
       if (begin->depth.image != traces::kNone) attach(begin->depth);
     } else if (const auto* bind = std::get_if<traces::BindDescriptorSet>(&command)) {
       sets[bind->set] = bind->descriptors;

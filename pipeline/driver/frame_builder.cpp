@@ -54,7 +54,12 @@ class FrameBuilder {
       hw::AttachmentState& color = pass.color[pass.colors++];
       color = attachment(use);
       color.clear = use.load == traces::LoadOp::kClear ? models::encode_color(color.format, use.clear) : 0;
+      if (use.resolve == traces::kNone) continue;
+      hw::AttachmentState& resolve = pass.resolve[pass.colors - 1];
+      resolve = attachment({use.resolve, traces::LoadOp::kLoad, traces::StoreOp::kStore});
+      pass.resolved |= 1u << (pass.colors - 1);
     }
+    pass.samples = static_cast<int>(stream_.images[c.first_image()].samples);
     pass.clear_depth = c.depth.load == traces::LoadOp::kClear ? c.depth.clear : 0;
     pass.first_draw = hw::DrawId(out_.frame.draws.size());
     out_.frame.passes.push_back(pass);
@@ -208,8 +213,15 @@ class FrameBuilder {
     const int bits = out_.frame.precision.subpixel_bits;
     draw.viewport = viewport_;
     draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
-    draw.setup = {pipeline.cull,       pipeline.front,      points ? scissor_ : rect, bits,
-                  viewport_.min_depth, viewport_.max_depth, pipeline.line_mode,       pipeline.line_width};
+    draw.setup = {pipeline.cull,
+                  pipeline.front,
+                  points ? scissor_ : rect,
+                  bits,
+                  viewport_.min_depth,
+                  viewport_.max_depth,
+                  pipeline.line_mode,
+                  pipeline.line_width,
+                  models::sample_grid(out_.frame.passes.back().samples, bits)};
     draw.depth_test = pipeline.depth.test && begun_->depth.image != kNone;
     draw.depth_write = draw.depth_test && pipeline.depth.write;
     draw.depth_compare = pipeline.depth.compare;

@@ -10,6 +10,7 @@
 #include "models/raster/coarse.h"
 #include "models/raster/fine.h"
 #include "models/raster/interpolate.h"
+#include "models/rop/resolve.h"
 
 #include <bit>
 
@@ -48,6 +49,8 @@ class FunctionalRenderer {
       for (std::size_t c = 0; c < pass.colors; ++c) begin(pass.color[c]);
       if (pass.has_depth) begin(pass.depth);
       for (std::uint32_t d = 0; d < pass.draws; ++d) draw(hw::DrawId(pass.first_draw.index() + d));
+      for (std::size_t c = 0; c < pass.colors; ++c)
+        if ((pass.resolved >> c & 1u) != 0) resolve(pass.color[c], pass.resolve[c]);
     }
     return counts_;
   }
@@ -55,9 +58,23 @@ class FunctionalRenderer {
  private:
   /// Triangles that waiting quads may refer to, and the one being rasterised.
   static constexpr std::size_t kTriangles = 16;
+  using Planes = std::array<std::uint64_t, models::kMaxSamples>;  ///< coverage by sample
 
   void begin(const hw::AttachmentState& attachment) {
     if (!attachment.loads()) models::fill_surface(memory_, attachment.surface, attachment.clear);
+  }
+
+  void resolve(const hw::AttachmentState& from, const hw::AttachmentState& to) {
+    const std::size_t bytes = std::size_t{models::kTileBytes} * from.surface.samples;
+    for (std::uint32_t y = 0; y < to.surface.tiles_y; ++y) {
+      for (std::uint32_t x = 0; x < to.surface.tiles_x; ++x) {
+        const auto* const planes = reinterpret_cast<const std::uint32_t*>(
+            memory_.read(from.surface.tile_address(x, y), bytes).data());
+        auto* const pixels = reinterpret_cast<std::uint32_t*>(
+            memory_.write(to.surface.tile_address(x, y), models::kTileBytes).data());
+        models::resolve_tile(from.format, std::span(planes, bytes / sizeof(std::uint32_t)), pixels);
+      }
+    }
   }
 
   void draw(hw::DrawId id) {
@@ -182,38 +199,54 @@ class FunctionalRenderer {
   }
 
   void rasterize(const models::TriangleSetup& setup) {
-    models::TileWalk walk(setup);
+    const models::SampleGrid& samples = draw_->samples();
+    models::TileWalk walk(setup, samples);
     models::TileHit tile;
     while (walk.next(tile)) {
-      std::uint64_t coverage =
-          tile.fully_covered ? ~std::uint64_t{0} : models::tile_coverage(setup, tile.tile_x, tile.tile_y);
-      counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
-      if (draw_->depth_test && !draw_->late_depth) coverage = test_tile(setup, tile, coverage);
-      for (std::uint32_t quads = models::quads_of(coverage); quads != 0; quads &= quads - 1)
-        add_quad(tile, coverage, std::countr_zero(quads));
+      Planes planes{};
+      std::uint64_t any = 0;
+      for (int s = 0; s < samples.count; ++s) {
+        std::uint64_t& coverage = planes[static_cast<std::size_t>(s)];
+        coverage = tile.fully_covered ? ~std::uint64_t{0}
+                                      : models::sample_coverage(setup, tile.tile_x, tile.tile_y, samples, s);
+        counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
+        if (draw_->depth_test && !draw_->late_depth) coverage = test_tile(setup, tile, s, coverage);
+        any |= coverage;
+      }
+      for (std::uint32_t quads = models::quads_of(any); quads != 0; quads &= quads - 1)
+        add_quad(tile, planes, any, std::countr_zero(quads));
     }
   }
 
-  float* depths(std::uint32_t tile_x, std::uint32_t tile_y) {
-    const std::uint64_t address = pass_->depth.surface.tile_address(tile_x, tile_y);
+  float* depths(std::uint32_t tile_x, std::uint32_t tile_y, int sample) {
+    const std::uint64_t address =
+        pass_->depth.surface.tile_address(tile_x, tile_y, static_cast<std::uint32_t>(sample));
     return reinterpret_cast<float*>(memory_.write(address, models::kTileBytes).data());
   }
 
-  std::uint64_t test_tile(const models::TriangleSetup& setup, const models::TileHit& tile,
+  std::uint64_t test_tile(const models::TriangleSetup& setup, const models::TileHit& tile, int sample,
                           std::uint64_t coverage) {
     alignas(32) float incoming[models::kTilePixels];
-    models::tile_depths(setup, tile.tile_x, tile.tile_y, incoming);
+    models::sample_depths(setup, tile.tile_x, tile.tile_y, draw_->samples(), sample, incoming);
     float* const stored =
-        depths(static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y));
+        depths(static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y), sample);
     const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, coverage);
     if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
     counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(coverage & ~survivors));
     return survivors;
   }
 
-  void add_quad(const models::TileHit& tile, std::uint64_t coverage, int q) {
+  /// `any`: pixels of which a sample is covered.
+  void add_quad(const models::TileHit& tile, const Planes& planes, std::uint64_t any, int q) {
     if (warp_.quads == models::kWarpQuads) shade();
-    const auto lanes = static_cast<std::uint32_t>(coverage >> (4 * q)) & 0xfu;
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::uint8_t& samples = warp_.samples[4 * static_cast<std::size_t>(warp_.quads) + i];
+      samples = 0;
+      for (std::size_t s = 0; s < planes.size(); ++s)
+        samples = static_cast<std::uint8_t>(samples |
+                                            (planes[s] >> (4 * static_cast<std::size_t>(q) + i) & 1u) << s);
+    }
+    const auto lanes = static_cast<std::uint32_t>(any >> (4 * q)) & 0xfu;
     warp_.covered |= lanes << (4 * warp_.quads);
     warp_.quad[static_cast<std::size_t>(warp_.quads++)] = {
         sequence_, static_cast<std::uint16_t>(8 * tile.tile_x + 2 * (q & 3)),
@@ -246,18 +279,27 @@ class FunctionalRenderer {
 
   void write_quad(int q) {
     const WarpSlot::Quad& quad = warp_.quad[static_cast<std::size_t>(q)];
-    hw::QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), (warp_.alive >> (4 * q)) & 0xf};
+    hw::QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y), warp_.lanes_of(q)};
     if (part.lanes != 0 && draw_->late_depth) test_late(part);
-    if (part.lanes == 0) return;
     counts_.fragments_written += static_cast<std::uint64_t>(std::popcount(part.lanes));
-    draw_->visit_colors(
-        [&](std::size_t attachment) { hw::write_color(*draw_, *pass_, attachment, warp_, part, memory_); });
+    const int samples = draw_->samples().count;
+    for (part.sample = 0; part.sample < samples; ++part.sample) {
+      part.lanes = warp_.lanes_of(q, samples, part.sample);
+      if (part.lanes == 0) continue;
+      draw_->visit_colors(
+          [&](std::size_t attachment) { hw::write_color(*draw_, *pass_, attachment, warp_, part, memory_); });
+    }
   }
 
   void test_late(hw::QuadOfWarp& part) {
-    const models::LaneMask passed =
-        hw::test_depth(*draw_, warp_, part, depths(part.place.tile_x, part.place.tile_y));
-    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(part.lanes & ~passed));
+    const models::TriangleSetup& triangle =
+        triangles_[warp_.quad[static_cast<std::size_t>(part.number)].triangle].setup;
+    const models::LaneMask passed = hw::test_samples(*draw_, warp_, triangle, part, [&](int sample) {
+      return depths(part.place.tile_x, part.place.tile_y, sample);
+    });
+    const models::LaneMask killed = part.lanes & ~passed;
+    counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(killed));
+    warp_.alive &= ~(killed << (4 * part.number));
     part.lanes = passed;
   }
 

@@ -32,7 +32,7 @@ const std::vector<DrawLaw>& draw_laws() {
       {of_each_draw("each draw: triangles kept = triangles walked"), {kTrianglesDrawn}, {kTrianglesWalked}},
       {of_each_draw("each draw: fragments covered = killed early + packed"),
        {kCovered},
-       {kKilledEarly, kPacked}},
+       {kKilledEarly, kSamplesPacked}},
       {of_each_draw("each draw: fragments packed = fragments shaded"), {kPacked}, {kShaded}},
       {of_each_draw("each draw: fragments shaded = fragments at the ROP"), {kShaded}, {kAtRop}},
       {of_each_draw("each draw: fragments shaded = discarded + killed late + written"),

@@ -38,6 +38,7 @@ struct Arguments {
   bool lavapipe_only = false, validate = false;
   int time_frames = 0;
   int threads = -1;
+  std::uint32_t samples = 1;
   int subpixel_bits = 0, subtexel_bits = 0, lod_bits = 0;
 };
 
@@ -51,6 +52,9 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--frag", a.fragment_shader, "fragment shader instead of the materials'");
   app.add_option("--report", a.report, "write the figures to this JSON file");
   app.add_option("--images", a.images, "write both pictures and their difference to this folder");
+  app.add_option("--samples", a.samples,
+                 "samples a pixel of the coloured picture: 1 or 4, which lavapipe has")
+      ->check(CLI::IsMember({1, 4}));
   app.add_flag("--lavapipe-only", a.lavapipe_only, "render and time lavapipe; compare nothing");
   app.add_flag("--validate", a.validate,
                "run lavapipe under the Khronos validation layer; any message is a failure");
@@ -148,7 +152,8 @@ int report_validation(const VulkanRenderer& renderer) {
 
 int run(const Arguments& arguments, VulkanRenderer& renderer) {
   scenes::SceneOptions options = scene_options(arguments);
-  const traces::CommandStream color = scenes::load_scene(arguments.scene, options);
+  traces::CommandStream color = scenes::load_scene(arguments.scene, options);
+  traces::use_samples(color, arguments.samples);
   options.visibility = true;
   const traces::CommandStream triangles = scenes::load_scene(arguments.scene, options);
 

@@ -11,7 +11,7 @@
 #include "models/base/error.h"
 #include "pipeline/render.h"
 #include "tests/lavapipe/hand_made_stream.h"
-#include "tests/lavapipe/vulkan_renderer.h"
+#include "tests/lavapipe/shared_renderer.h"
 
 namespace quadrille::lavapipe {
 namespace {
@@ -36,19 +36,6 @@ constexpr std::string_view kFragment = R"(#version 450
 layout(location = 0) in vec2 v_value;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(v_value, gl_FragCoord.z, 1.0); })";
-
-/// The renderer, or nothing after saying why the test is skipped.
-VulkanRenderer* renderer() {
-  static const std::unique_ptr<VulkanRenderer> opened = []() -> std::unique_ptr<VulkanRenderer> {
-    try {
-      return std::make_unique<VulkanRenderer>(false);
-    } catch (const UserError& error) {
-      WARN("skipped: " << error.what());
-      return nullptr;
-    }
-  }();
-  return opened.get();
-}
 
 struct Differences {
   std::size_t drawn = 0;     ///< pixels that either draws

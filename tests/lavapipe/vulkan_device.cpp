@@ -344,7 +344,8 @@ VkBuffer VulkanDevice::device_buffer(Cleanup& owner, std::span<const std::byte> 
 }
 
 DeviceImage VulkanDevice::image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels,
-                                VkImageUsageFlags usage, VkImageAspectFlags aspect) const {
+                                VkImageUsageFlags usage, VkImageAspectFlags aspect,
+                                std::uint32_t samples) const {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -352,7 +353,7 @@ DeviceImage VulkanDevice::image(Cleanup& owner, VkFormat format, VkExtent2D size
   info.extent = {size.width, size.height, 1};
   info.mipLevels = levels;
   info.arrayLayers = 1;
-  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.samples = static_cast<VkSampleCountFlagBits>(samples);  // the bits are the counts
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = usage;
   DeviceImage result;

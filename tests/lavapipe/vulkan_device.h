@@ -67,7 +67,8 @@ class VulkanDevice {
                                        VkBufferUsageFlags usage) const;
   /// A 2D image with a view of all its levels that lives until `owner` ends.
   [[nodiscard]] DeviceImage image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels,
-                                  VkImageUsageFlags usage, VkImageAspectFlags aspect) const;
+                                  VkImageUsageFlags usage, VkImageAspectFlags aspect,
+                                  std::uint32_t samples = 1) const;
   /// A command buffer in the recording state that lives until `owner` ends.
   [[nodiscard]] VkCommandBuffer begin_commands(Cleanup& owner) const;
   /// Submits and waits. `commands` must have been ended.

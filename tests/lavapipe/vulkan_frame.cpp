@@ -54,6 +54,12 @@ VkAttachmentLoadOp vk_load(traces::LoadOp op) {
   return VK_ATTACHMENT_LOAD_OP_CLEAR;
 }
 
+/// What shows the pass: its first colours, or what they are resolved to.
+traces::Index picture_of(const traces::BeginPass& pass) {
+  const traces::ColorAttachmentUse& color = pass.colors.at(0);
+  return color.resolve == traces::kNone ? color.image : color.resolve;
+}
+
 VkImageUsageFlags usage_of(const traces::Image& image) {
   VkImageUsageFlags usage =
       image.is_attachment() ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -89,7 +95,7 @@ void VulkanFrame::upload_images() {
     Image image;
     if ((source.usage & traces::kDepthAttachment) != 0) image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
     image.device = device_.image(cleanup_, vk_format(source.format), {source.width, source.height},
-                                 source.levels, usage_of(source), image.aspect);
+                                 source.levels, usage_of(source), image.aspect, source.samples);
     if (!source.is_attachment()) upload_texels(source, image.device);
     images_.push_back(image);
   }
@@ -173,7 +179,7 @@ void VulkanFrame::record() {
       },
       [this](const traces::Draw& c) { draw(c); }};
   for (const traces::Command& command : stream_.commands) std::visit(record_one, command);
-  move(bound_.pass->colors.at(0).image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  move(picture_of(*bound_.pass), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   if (bound_.pass->depth.image != traces::kNone)
     move(bound_.pass->depth.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   require(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
@@ -209,6 +215,12 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
     VkClearValue clear{};
     std::copy(use.clear.begin(), use.clear.end(), clear.color.float32);
     colors.push_back(attach(use, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, clear));
+    if (use.resolve == traces::kNone) continue;
+    images_[use.resolve].layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    move(use.resolve, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    colors.back().resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+    colors.back().resolveImageView = images_[use.resolve].device.view;
+    colors.back().resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }
   VkRenderingAttachmentInfo depth{};
   VkRenderingInfo info{};
@@ -236,7 +248,10 @@ void VulkanFrame::end_pass() {
     if ((stream_.images[image].usage & traces::kSampled) != 0)
       move(image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   };
-  for (const traces::ColorAttachmentUse& use : bound_.pass->colors) make_readable(use.image);
+  for (const traces::ColorAttachmentUse& use : bound_.pass->colors) {
+    make_readable(use.image);
+    if (use.resolve != traces::kNone) make_readable(use.resolve);
+  }
   if (bound_.pass->depth.image != traces::kNone) make_readable(bound_.pass->depth.image);
 }
 
@@ -282,7 +297,9 @@ Rendered VulkanFrame::read_back() const {
   Cleanup scratch;
   const HostBuffer color = device_.buffer(scratch, 4 * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   const HostBuffer depth = device_.buffer(scratch, 4 * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  const bool has_depth = bound_.pass->depth.image != traces::kNone;
+  // Depths of several samples cannot be copied.
+  const bool has_depth =
+      bound_.pass->depth.image != traces::kNone && stream_.images[bound_.pass->depth.image].samples == 1;
   const VkCommandBuffer commands = device_.begin_commands(scratch);
   const auto copy_to = [&](traces::Index index, VkBuffer buffer) {
     const Image& image = images_[index];
@@ -292,7 +309,7 @@ Rendered VulkanFrame::read_back() const {
     vkCmdCopyImageToBuffer(commands, image.device.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
                            &copy);
   };
-  copy_to(bound_.pass->colors[0].image, color.buffer);
+  copy_to(picture_of(*bound_.pass), color.buffer);
   if (has_depth) copy_to(bound_.pass->depth.image, depth.buffer);
   require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   device_.submit(commands);

@@ -36,8 +36,13 @@ class VulkanFrame {
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< at this point of the recording
   };
-  /// Of the attachments of a pass: the colours, then depth.
-  using PassFormats = std::vector<traces::Format>;
+  /// Of the attachments of a pass: the colours, then depth; and their samples a pixel.
+  struct PassFormats {
+    std::vector<traces::Format> formats;
+    std::uint32_t samples = 1;
+    friend auto operator<=>(const PassFormats&,
+                            const PassFormats&) = default;  // NOLINT(modernize-use-nullptr)
+  };
   /// State that a stream sets piecemeal and Vulkan wants whole: a pipeline layout needs the shapes of all
   /// sets bound with it.
   struct Bound {
@@ -59,13 +64,13 @@ class VulkanFrame {
   [[nodiscard]] VkPipelineLayout pipeline_layout(const SetShapes& shapes);
   [[nodiscard]] VkShaderModule shader_module(traces::Index shader);
   [[nodiscard]] const PipelineObjects& pipeline_for(const Bound& bound);
-  [[nodiscard]] VkPipeline create_pipeline(const traces::Pipeline& pipeline, const PassFormats& formats,
+  [[nodiscard]] VkPipeline create_pipeline(const traces::Pipeline& pipeline, const PassFormats& pass,
                                            VkPipelineLayout layout);
   [[nodiscard]] PassFormats formats_of(const traces::BeginPass& pass) const;
 
   void record();
   void begin_pass(const traces::BeginPass& pass);
-  void move(traces::Index image, VkImageLayout layout);
+  void move(traces::Index index, VkImageLayout layout);
   [[nodiscard]] VkRenderingAttachmentInfo attach(const traces::AttachmentUse& use, VkImageLayout layout,
                                                  const VkClearValue& clear);
   void end_pass();

@@ -211,15 +211,16 @@ const VulkanFrame::PipelineObjects& VulkanFrame::pipeline_for(const Bound& bound
 }
 
 VulkanFrame::PassFormats VulkanFrame::formats_of(const traces::BeginPass& pass) const {
-  PassFormats formats;
+  PassFormats of;
   for (const traces::ColorAttachmentUse& use : pass.colors)
-    formats.push_back(stream_.images[use.image].format);
-  formats.push_back(pass.depth.image == traces::kNone ? traces::Format::kUndefined
-                                                      : stream_.images[pass.depth.image].format);
-  return formats;
+    of.formats.push_back(stream_.images[use.image].format);
+  of.formats.push_back(pass.depth.image == traces::kNone ? traces::Format::kUndefined
+                                                         : stream_.images[pass.depth.image].format);
+  of.samples = stream_.images[pass.first_image()].samples;
+  return of;
 }
 
-VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const PassFormats& formats,
+VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const PassFormats& pass,
                                         VkPipelineLayout layout) {
   const VkPipelineShaderStageCreateInfo stages[] = {
       stage_info(VK_SHADER_STAGE_VERTEX_BIT, shader_module(pipeline.vertex_shader)),
@@ -239,8 +240,9 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   if (device_.info().line_modes) raster.pNext = &lines;
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  samples.rasterizationSamples = static_cast<VkSampleCountFlagBits>(pass.samples);
   const VkPipelineDepthStencilStateCreateInfo depth = depth_state(pipeline.depth);
+  const std::vector<traces::Format>& formats = pass.formats;
   std::vector<VkPipelineColorBlendAttachmentState> attachments;
   std::vector<VkFormat> color_formats;
   for (std::size_t i = 0; i + 1 < formats.size(); ++i) {

@@ -41,7 +41,7 @@ TEST_CASE("conservation: a fragment lost between test and packing is noticed") {
       if (t.kind == hw::TokenKind::kWork && !t.late && ++n == 3) t.coverage &= t.coverage - 1;
     });
   });
-  CHECK(broken.find("fragments passed = fragments packed") != std::string::npos);
+  CHECK(broken.find("fragments passed = samples packed") != std::string::npos);
 }
 
 TEST_CASE("conservation: a lost triangle is noticed") {

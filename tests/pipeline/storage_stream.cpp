@@ -82,6 +82,7 @@ class Maker {
 
   Index triangles() {
     std::vector<Vertex> vertices;
+    vertices.reserve(static_cast<std::size_t>(3 * shape_.triangles));
     for (int i = 0; i < 3 * shape_.triangles; ++i)
       vertices.push_back(
           {{random_.real(-1.2f, 1.2f), random_.real(-1.2f, 1.2f), random_.real(0, 1), 1},

@@ -23,7 +23,7 @@ SceneData load(const std::string& text) {
 const std::string kIndices = R"(,"indices":1)";
 
 /// The triangle with an index buffer of one byte each.
-std::string indexed(std::vector<std::uint8_t> indices) {
+std::string indexed(const std::vector<std::uint8_t>& indices) {
   std::string text = triangle_gltf(kIndices);
   const std::string count = std::to_string(indices.size());
   const auto put = [&](const std::string& before, const std::string& what) {

@@ -125,7 +125,8 @@ TEST_CASE("pose: weights that sum to one but for the rounding of their floats st
   const float off = 0.26F;
   std::memcpy(&sets[0].weights.data[28], &off, 4);
   CHECK(mend_weights(sets) == 1);
-  CHECK(std::memcmp(sets[0].weights.data.data(), values.data(), 16) == 0);
+  const std::vector<std::byte> first(sets[0].weights.data.begin(), sets[0].weights.data.begin() + 16);
+  CHECK(first == std::vector<std::byte>(weights.data.begin(), weights.data.begin() + 16));
   CHECK(mend_weights(sets) == 0);
 }
 

@@ -3,8 +3,13 @@
 #include "tests/hw/bench_stub.h"
 #include "tests/hw/raster/triangles.h"
 
+#include "models/raster/fine.h"
+
 #include <catch2/catch.hpp>
 
+#include <bit>
+
+using namespace quadrille;
 using namespace quadrille::hw;
 using namespace quadrille::hw::bench;
 
@@ -18,7 +23,7 @@ TileToken tile(int x, int y, bool full = false, std::uint64_t triangle = 0) {
 struct FineBench final : Bench {
   struct Setup {
     std::vector<Timed<TileToken>> tiles;
-    int rate = 4, tiles_per_clk = 1;
+    int rate = 4, tiles_per_clk = 1, samples = 1;
     int partitions = 1;
     Pace pace{};
     LinkSpec out{.depth = 64};
@@ -28,6 +33,8 @@ struct FineBench final : Bench {
     // tile.
     store[0] = flat_triangle({glm::ivec2{0, 0}, {0, 32}, {32, 0}});
     store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 8}, {1, 0}});
+    frame.draws.resize(1);
+    frame.draws[0].setup.samples = models::sample_grid(s.samples, 8);
     params.quads_per_clk.set(s.rate);
     params.tiles_per_clk.set(s.tiles_per_clk);
     unit = std::make_unique<FineRaster>("unit", context({.partitions = s.partitions}), params, store);
@@ -90,6 +97,44 @@ TEST_CASE("fine_raster: a tile with quads on its edge costs only those that are 
                        counter(b, 4) - 64);
   });
   CHECK(text == "2:3 5:0 quads 10 fragments 28");
+}
+
+TEST_CASE("fine_raster: a tile sends a token for each sample, one a cycle, while its quads are worked on") {
+  // A full tile of sixteen quads: as many cycles as its quads take, or as it has samples, whichever is more.
+  for (const auto& [samples, rate, cycles] :
+       {std::tuple{4, 4, 4}, {4, 16, 4}, {4, 1, 16}, {2, 4, 4}, {8, 4, 8}}) {
+    auto s = tiles_of({tile(0, 0, true), tile(1, 0, true)}, rate);
+    s.samples = samples;
+    std::string expected;
+    for (int i = 0; i < samples; ++i) expected += fmt::format("{}{}:0", i == 0 ? "" : " ", 2 + i);
+    for (int i = 0; i < samples; ++i) expected += fmt::format(" {}:1", 2 + cycles + i);
+    CHECK(run<FineBench>(s, [](const FineBench& b) { return b.sinks[0]->text(); }) == expected);
+  }
+}
+
+TEST_CASE("fine_raster: samples that are not covered send nothing, and the last token says so") {
+  // Triangle 1 ends a column of pixels before it: of four samples the two on its left are under it.
+  auto s = tiles_of({tile(0, 0, false, 1)}, 16);
+  s.samples = 4;
+  const auto text = run<FineBench>(s, [](const FineBench& b) {
+    std::string all;
+    for (const auto& t : b.sinks[0]->got)
+      all += fmt::format("{}{}{} ", t.token.sample, t.token.first ? "f" : "", t.token.last ? "l" : "");
+    return all + fmt::format("{}", counter(b, 4));
+  });
+  const models::SampleGrid grid = models::sample_grid(4, 8);
+  std::uint64_t covered = 0;
+  TriangleSlot slot = flat_triangle({glm::ivec2{0, 0}, {0, 8}, {1, 0}});
+  std::string expected;
+  std::vector<int> samples;
+  for (int i = 0; i < 4; ++i) {
+    const std::uint64_t mask = models::sample_coverage(slot.setup, 0, 0, grid, i);
+    covered += static_cast<std::uint64_t>(std::popcount(mask));
+    if (mask != 0) samples.push_back(i);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    expected += fmt::format("{}{}{} ", samples[i], i == 0 ? "f" : "", i + 1 == samples.size() ? "l" : "");
+  CHECK(text == expected + fmt::format("{}", covered));
 }
 
 TEST_CASE("fine_raster: an empty tile costs a cycle and goes no further") {

@@ -13,12 +13,14 @@ struct PackerBench final : Bench {
   struct Setup {
     std::vector<Timed<CoverageToken>> coverage;
     std::vector<Timed<WarpReleaseToken>> releases{};
-    int rate = 4, slots = 16, patience = 64, launch = 1;
+    int rate = 4, slots = 16, patience = 64, launch = 1, samples = 1;
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
   PackerBench(Driver& driver, const contract::Variation& v, const Setup& s)
       : Bench(driver, v), warps(static_cast<std::size_t>(s.slots)) {
+    frame.draws.resize(16);
+    for (DrawState& draw : frame.draws) draw.setup.samples = quadrille::models::sample_grid(s.samples, 8);
     params.quads_per_clk.set(s.rate);
     params.patience_clk.set(s.patience);
     params.launch_clk.set(s.launch);
@@ -85,6 +87,24 @@ TEST_CASE("warp_packer: quads of several triangles and tiles of a draw share a w
   CHECK(text ==
         "5:0 7@8,0 7@10,0 7@12,0 8@16,0 8@18,0 8@20,0 9@24,0 9@26,0 covered ffffffff partition 3 warps 1 "
         "partial 0");
+}
+
+TEST_CASE("warp_packer: the samples of a tile are gathered, and its pixels are packed once") {
+  // Two quads of sample 0, another one of sample 2; then nothing of sample 3, which is the last token.
+  const auto plane = [](std::uint8_t sample, std::uint64_t mask) {
+    return CoverageToken{TokenKind::kWork, false, 0, 0, DrawId(0), 5, mask, sample, sample == 0, sample == 3};
+  };
+  const PackerBench::Setup s{.coverage = {{0, plane(0, 0xf1)}, {0, plane(2, 0xf01)}, {0, plane(3, 0)}},
+                             .patience = 10,
+                             .samples = 4};
+  const auto text = run<PackerBench>(s, [](const PackerBench& b) {
+    const WarpSlot& warp = b.warps[WarpSlotId(0)];
+    return fmt::format("{} quads {} covered {:x} samples {} {} {} {} fragments {} samples {}", b.work->text(),
+                       warp.quads, warp.covered, warp.samples[0], warp.samples[1], warp.samples[4],
+                       warp.samples[8], counter(b, 1), counter(b, 6));
+  });
+  // Packed in cycle 1, when the last token is there; it leaves when its patience ends.
+  CHECK(text == "12:0 quads 3 covered ff1 samples 5 0 1 4 fragments 9 samples 10");
 }
 
 TEST_CASE("warp_packer: a partial warp leaves exactly when its patience ends") {

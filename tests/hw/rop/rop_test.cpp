@@ -19,6 +19,7 @@ struct RopBench final : Bench {
     models::LaneMask alive = ~0u;
     int lines = 256, ways = 8, misses = 32, memory_latency = 10;
     std::size_t colors = 1;
+    int samples = 1;
     models::LoadOp load = models::LoadOp::kClear;
     models::StoreOp store = models::StoreOp::kStore;
   };
@@ -28,7 +29,12 @@ struct RopBench final : Bench {
     PassState pass;
     DrawState draw;
     for (std::size_t i = 0; i < s.colors; ++i) {
-      pass.color[i].surface = models::allocate_surface(device, 16, 8);
+      pass.color[i].surface = models::allocate_surface(device, 16, 8, static_cast<std::uint32_t>(s.samples));
+      if (s.samples > 1) {
+        pass.resolve[i].surface = models::allocate_surface(device, 16, 8);
+        pass.resolve[i].load = models::LoadOp::kLoad;
+        pass.resolved |= 1u << i;
+      }
       pass.color[i].clear = 0x80402010;
       pass.color[i].load = s.load;
       pass.color[i].store = s.store;
@@ -37,6 +43,8 @@ struct RopBench final : Bench {
       draw.blend[i].dst_color = models::BlendFactor::kOneMinusSrcAlpha;
     }
     pass.colors = s.colors;
+    pass.samples = s.samples;
+    draw.setup.samples = models::sample_grid(s.samples, 8);
     frame.passes = {pass};
     frame.draws = {draw};
     for (std::uint32_t i = 0; i < 4; ++i) fill(warps[WarpSlotId(i)], i, s);
@@ -64,6 +72,7 @@ struct RopBench final : Bench {
     warp.covered = ~0u;
     warp.alive = s.alive;
     warp.late = s.late_warps;
+    warp.samples.fill(static_cast<std::uint8_t>((1 << s.samples) - 1));
     for (std::size_t q = 0; q < 8; ++q) {
       const auto i = static_cast<std::uint16_t>(q);
       if (number % 2 == 0)
@@ -81,7 +90,7 @@ struct RopBench final : Bench {
   [[nodiscard]] std::uint64_t image() const {
     std::string bytes;
     if (frame.passes[0].colors == 0) return 0;
-    for (const std::uint8_t byte : models::detile_rgba8(device, frame.passes[0].color[0].surface))
+    for (const std::uint8_t byte : models::detile_rgba8(device, frame.passes[0].picture().surface))
       bytes += static_cast<char>(byte);
     return std::hash<std::string>{}(bytes);
   }
@@ -241,6 +250,58 @@ TEST_CASE("rop: each colour attachment that the program writes takes its own cyc
   };
   // Eight quads of three attachments at four a cycle: six cycles a warp. Three times the four lines.
   CHECK(run<RopBench>(s, text) == "22:0 28:1 34:2 40:3 pixels 384 fragments 128 cleared 6 writes 12");
+}
+
+TEST_CASE("rop: a warp takes its quads once for each of their samples") {
+  for (const auto& [samples, cycles] : {std::pair{1, 2}, {2, 4}, {4, 8}, {8, 16}}) {
+    RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}}, .done = {done(30, 0), done(30, 2)}};
+    s.samples = samples;
+    CHECK(run<RopBench>(s, released) == fmt::format("32:0 {}:2", 32 + cycles));
+  }
+}
+
+TEST_CASE("rop: a pass of several samples is resolved from its cache, and only means reach memory") {
+  RopBench::Setup s = whole_pass();
+  s.samples = 4;
+  s.store = models::StoreOp::kDiscard;
+  const auto text = run<RopBench>(s, [](const RopBench& b) {
+    return fmt::format("{} reads {} writes {} fences {} tiles {}", b.retired->text(),
+                       b.memory->count(MemoryRequest::Kind::kRead),
+                       b.memory->count(MemoryRequest::Kind::kWrite),
+                       b.memory->count(MemoryRequest::Kind::kFence), counter(*b.unit, "resolved_tiles"));
+  });
+  // Depth is flushed at 300; a tile takes sixteen quads of four samples and of their mean at four a cycle, 20
+  // cycles, two of them 40; then four lines leave, a fence, and its answer ten cycles later.
+  CHECK(text.ends_with("reads 0 writes 4 fences 1 tiles 2"));
+  const std::string plain = run<RopBench>(whole_pass(), [](const RopBench& b) { return b.retired->text(); });
+  const auto end_of = [](const std::string& all) {
+    const std::size_t end = all.find(':', all.rfind(' ', all.find("reads") - 2) + 1);
+    return std::stoi(all.substr(all.rfind(' ', end) + 1));
+  };
+  CHECK(end_of(text) - end_of(plain) == Approx(41).margin(1));
+}
+
+TEST_CASE("rop: what nothing was drawn to is resolved without a look at its samples") {
+  RopBench::Setup s{
+      .order = {{0, kBegin}, {0, kPassEnd}}, .done = {}, .late = {{20, {TokenKind::kPassEnd, {}}}}};
+  s.samples = 4;
+  s.store = models::StoreOp::kDiscard;
+  CHECK(run<RopBench>(s, [](const RopBench& b) {
+          return fmt::format("reads {} writes {} clear {} pixel {:x}",
+                             b.memory->count(MemoryRequest::Kind::kRead),
+                             b.memory->count(MemoryRequest::Kind::kWrite), counter(*b.unit, "resolved_clear"),
+                             models::detile(b.device, b.frame.passes[0].picture().surface)[0]);
+        }) == "reads 0 writes 4 clear 2 pixel 80402010");
+}
+
+TEST_CASE("rop: a cache of one line resolves to the same picture") {
+  RopBench::Setup s = whole_pass();
+  s.samples = 4;
+  s.store = models::StoreOp::kDiscard;
+  const auto picture = [](const RopBench& b) { return fmt::format("{:x}", b.image()); };
+  const std::string expected = run<RopBench>(s, picture);
+  s.lines = s.ways = s.misses = 1;
+  CHECK(run<RopBench>(s, picture) == expected);
 }
 
 TEST_CASE("rop: a surface that is loaded is read where it is blended, and has no cleared tiles") {

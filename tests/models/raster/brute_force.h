@@ -18,11 +18,9 @@ inline Wide doubled_area(const WindowVertex& a, const WindowVertex& b, std::int6
   return Wide(b.x - std::int64_t{a.x}) * Wide(py - a.y) - Wide(b.y - std::int64_t{a.y}) * Wide(px - a.x);
 }
 
-/// Is the centre of pixel (x, y) in the triangle? A sample on an edge belongs to it if the edge is a top one
-/// (horizontal, inside below) or a left one.
-inline bool covers(std::array<WindowVertex, 3> v, std::int64_t x, std::int64_t y, int subpixel_bits) {
-  const std::int64_t half = std::int64_t{1} << (subpixel_bits - 1);
-  const std::int64_t px = (x << subpixel_bits) + half, py = (y << subpixel_bits) + half;
+/// Is a place of the grid in the triangle? One on an edge belongs to it if the edge is a top one (horizontal,
+/// inside below) or a left one.
+inline bool covers_point(std::array<WindowVertex, 3> v, std::int64_t px, std::int64_t py) {
   const Wide area = doubled_area(v[0], v[1], v[2].x, v[2].y);
   if (area == 0) return false;
   if (area < 0) std::swap(v[0], v[2]);
@@ -34,14 +32,22 @@ inline bool covers(std::array<WindowVertex, 3> v, std::int64_t x, std::int64_t y
   }
   return true;
 }
+/// Is a place of pixel (x, y), away from its centre, in the triangle?
+inline bool covers(const std::array<WindowVertex, 3>& v, std::int64_t x, std::int64_t y, int subpixel_bits,
+                   const GridPoint& from_centre = {}) {
+  const std::int64_t half = std::int64_t{1} << (subpixel_bits - 1);
+  return covers_point(v, (x << subpixel_bits) + half + from_centre.x,
+                      (y << subpixel_bits) + half + from_centre.y);
+}
 
 /// Set-up without culling of a whole triangle in a square of `size` pixels. Its depths and 1 / w are whatever
 /// the vertices hold.
 inline SetupOutcome setup_in_square(const std::array<WindowVertex, 3>& v, int size, int subpixel_bits,
-                                    TriangleSetup& out) {
+                                    TriangleSetup& out, int samples = 1) {
   SetupState state;
   state.scissor = {0, 0, size, size};
   state.subpixel_bits = subpixel_bits;
+  state.samples = sample_grid(samples, subpixel_bits);
   return setup_triangle(v, whole_triangle_weights(), state, out);
 }
 

@@ -23,7 +23,7 @@ WindowTriangle triangle(std::array<double, 3> x, std::array<double, 3> y, bool e
 int covered_pixels(const WindowTriangle& t, int side) {
   int count = 0;
   for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) count += locate_sample(t, x, y).covered ? 1 : 0;
+    for (int x = 0; x < side; ++x) count += locate_sample(t, {x, y}).covered ? 1 : 0;
   }
   return count;
 }
@@ -50,10 +50,10 @@ TEST_CASE("coverage: samples on top and left edges belong to the triangle, on bo
   for (const bool exact : {true, false}) {
     const WindowTriangle a = triangle({1.5, 5.5, 1.5}, {1.5, 1.5, 5.5}, exact),
                          b = triangle({5.5, 5.5, 1.5}, {1.5, 5.5, 5.5}, exact);
-    CHECK(locate_sample(a, 3, 1).covered);        // top edge
-    CHECK(locate_sample(a, 1, 3).covered);        // left edge
-    CHECK_FALSE(locate_sample(b, 5, 3).covered);  // right edge
-    CHECK_FALSE(locate_sample(b, 3, 5).covered);  // bottom edge
+    CHECK(locate_sample(a, {3, 1}).covered);        // top edge
+    CHECK(locate_sample(a, {1, 3}).covered);        // left edge
+    CHECK_FALSE(locate_sample(b, {5, 3}).covered);  // right edge
+    CHECK_FALSE(locate_sample(b, {3, 5}).covered);  // bottom edge
     CHECK(covered_pixels(a, 8) + covered_pixels(b, 8) == 16);
   }
 }
@@ -73,7 +73,7 @@ TEST_CASE("coverage: a fan around a point covers every sample of its outline onc
                                           {cy, outline_y[i], outline_y[(i + 1) % 4]}, exact);
         if (doubled_area(t) == 0) continue;
         for (int p = 0; p < 256; ++p)
-          hits.at(static_cast<std::size_t>(p)) += locate_sample(t, p % 16, p / 16).covered ? 1 : 0;
+          hits.at(static_cast<std::size_t>(p)) += locate_sample(t, {p % 16, p / 16}).covered ? 1 : 0;
       }
       CHECK(std::all_of(hits.begin(), hits.end(), [](int n) { return n == 1; }));
     }
@@ -90,7 +90,7 @@ TEST_CASE("coverage: unsnapped neighbours share an edge without gap or overlap")
                          b = triangle({x[1], x[0], x[3]}, {y[1], y[0], y[3]}, false);
     if (a.clockwise != b.clockwise) continue;  // they lie on the same side of the edge
     for (int p = 0; p < 256; ++p)
-      CHECK_FALSE((locate_sample(a, p % 16, p / 16).covered && locate_sample(b, p % 16, p / 16).covered));
+      CHECK_FALSE((locate_sample(a, {p % 16, p / 16}).covered && locate_sample(b, {p % 16, p / 16}).covered));
   }
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("coverage: exact integers and doubles agree on snapped positions, huge
     }
     const WindowTriangle exact = triangle(x, y, true), ideal = triangle(x, y, false);
     for (int p = 0; p < 64; ++p) {
-      const SamplePlace a = locate_sample(exact, p % 8, p / 8), b = locate_sample(ideal, p % 8, p / 8);
+      const SamplePlace a = locate_sample(exact, {p % 8, p / 8}), b = locate_sample(ideal, {p % 8, p / 8});
       CHECK(a.covered == b.covered);
       for (std::size_t i = 0; i < 3; ++i) CHECK(a.weights[i] == Approx(b.weights[i]).margin(1e-9));
     }

@@ -87,7 +87,7 @@ RunOutput run_fragment(const models::Program& program, const RunInput& input, mo
     for (std::size_t pixel = 0; pixel < 4; ++pixel) {
       const std::size_t lane = 4 * q + pixel;
       in.x[lane] = 10.5f + 2.0f * static_cast<float>(q) + static_cast<float>(pixel % 2);
-      in.y[lane] = 20.5f + static_cast<float>(pixel / 2);
+      in.y[lane] = 20.5f + static_cast<float>(pixel >> 1);
       in.z[lane] = 0.25f;
       in.inv_w[lane] = 0.5f;
       in.front_facing[lane] = q % 2 == 0 ? 0xffffffffu : 0u;
