@@ -104,5 +104,6 @@ class Readings {
 [[nodiscard]] Result hidden_surfaces(const Setting& setting);
 [[nodiscard]] Result units(const Setting& setting);
 [[nodiscard]] Result engines(const Setting& setting);
+[[nodiscard]] Result samples(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments
