@@ -29,6 +29,8 @@ void add_render(CLI::App& app, Command& chosen) {
       another machine, two of its parameters changed
   quadrille render city.gltf -q --stats - | jq .frame.cycles
       figures to another program
+  quadrille render teapot.gltf --shading gouraud --out teapot.png
+      as a lecture draws it: lit at the vertices
   quadrille render cube.gltf --frag toon.frag --out toon.png
       with a fragment shader of your own
 Files are checked before the simulation starts, and appear whole or not at all.)");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -30,6 +31,18 @@ template <class T>
 bool read_number(std::string_view text, T& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size();
+}
+
+template <std::size_t n>
+CLI::IsMember one_of(const std::array<std::string_view, n>& names) {
+  return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
+}
+
+std::uint32_t parse_samples(std::string_view text) {
+  std::uint32_t count = 0;
+  if (!read_number(text, count) || !models::is_sample_count(count))
+    throw user_error("--samples: '{}' is not 1, 2, 4 or 8", text);
+  return count;
 }
 
 /// None: chosen by the scene.
@@ -134,6 +147,21 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
                   "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")
       ->type_name("F");
   command.add_option("--frag", frag, "fragment shader for all materials, as for --vert")->type_name("F");
+  command
+      .add_option("--shading", shading,
+                  "minimal: one colour; flat, gouraud, phong: lit by face, vertex or fragment; pbr: the "
+                  "materials' own (default; docs/lectures.md)")
+      ->check(one_of(scenes::kShadingNames));
+  command
+      .add_option("--order", order,
+                  "file: as the scene has it, with a depth test (default); painter: every triangle from back "
+                  "to front, without one")
+      ->check(one_of(scenes::kDrawOrderNames));
+  command
+      .add_option("--view", view,
+                  "shows instead of colours: window depths, how many fragments were written to each pixel, "
+                  "texture coordinates, world normals, or each triangle by a colour of its own")
+      ->check(one_of(scenes::kShowingNames));
 }
 
 void SceneArguments::add_samples_to(CLI::App& command) {
@@ -147,11 +175,8 @@ void SceneArguments::add_samples_to(CLI::App& command) {
 
 void SceneArguments::use_samples(traces::CommandStream& stream) const {
   if (!samples) return;
-  std::uint32_t count = 0;
-  if (!read_number(*samples, count) || !models::is_sample_count(count))
-    throw user_error("--samples: '{}' is not 1, 2, 4 or 8", *samples);
   try {
-    traces::use_samples(stream, count);
+    traces::use_samples(stream, parse_samples(*samples));
   } catch (const UserError& error) { throw user_error("--samples: {}: {}", scene, error.what()); }
 }
 
@@ -179,20 +204,30 @@ scenes::SceneOptions SceneArguments::options() const {
   if (eye) options.eye = parse_point(*eye, "--eye");
   if (at) options.at = parse_point(*at, "--at");
   if (camera && (eye || at)) throw user_error("--camera: not together with --eye or --at");
+  for (const auto& [flag, given] : {std::pair{"--view", &view}, {"--shading", &shading}}) {
+    if (*given && (vert || frag))
+      throw user_error("{}: not together with --vert or --frag, which are shaders of their own", flag);
+  }
+  if (view && shading) throw user_error("--view: not together with --shading; it shows no shading");
   options.leave_out = leave_out;
   options.keep_packed = keep_packed;
+  if (shading) options.shading = scenes::named(scenes::kShadingNames, *shading, scenes::Shading::kMinimal);
+  if (order) options.order = scenes::named(scenes::kDrawOrderNames, *order, scenes::DrawOrder::kFile);
+  if (view) options.shown = scenes::named(scenes::kShowingNames, *view, scenes::Showing::kDepth);
   options.vertex_shader = vert.value_or("");
   options.fragment_shader = frag.value_or("");
   return options;
 }
 
 void SceneArguments::check() const {
+  if (samples) (void)parse_samples(*samples);
   if (is_trace()) {
-    if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag) {
+    if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag ||
+        shading || order || view) {
       throw user_error(
           "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, "
           "--eye, --at, --time, --animation, "
-          "--exposure, --vert and --frag are for scenes",
+          "--exposure, --vert, --frag, --shading, --order and --view are for scenes",
           scene);
     }
     return;
@@ -225,6 +260,8 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
   if (const std::size_t packed = file.unused_images(); packed > 0)
     loaded.left_out.push_back({"images", "no shader of the frame samples them",
                                fmt::format("{} images of the file stay packed", packed)});
+  if (const auto depths = file.depth_range())
+    fmt::print(stderr, "{}: depth {:.9g} is white, {:.9g} black\n", scene, depths->first, depths->second);
   const std::size_t shaders = loaded.stream.shaders.size();
   if (leave_out && shaders > 0 && file.compiled_shaders() == 0)
     loaded.left_out.push_back({"GLSL compiler", "all shaders of the frame are at hand as SPIR-V",

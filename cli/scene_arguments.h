@@ -17,7 +17,8 @@ namespace quadrille::cli {
 
 struct SceneArguments {
   std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
-  std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, vert, frag;
+  std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, shading, order,
+      view, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it

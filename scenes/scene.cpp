@@ -51,6 +51,7 @@ struct Scene::Parts {
   std::size_t compiled_shaders = 0;
   std::set<int> images;  ///< of the file's scene, that shaders of recorded frames can sample
   float exposure = 1;
+  std::optional<std::pair<float, float>> depth_range;
 };
 
 Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options)
@@ -95,6 +96,8 @@ void Scene::unpack_images() {
   parallel_for(used.size(), [&](std::size_t i) { (void)images[static_cast<std::size_t>(used[i])].pixels(); });
 }
 
+std::optional<std::pair<float, float>> Scene::depth_range() const { return parts_->depth_range; }
+
 float Scene::exposure() const { return parts_->exposure; }
 
 std::size_t Scene::compiled_shaders() const { return parts_->compiled_shaders; }
@@ -115,6 +118,9 @@ traces::CommandStream Scene::record(const Moment& moment) {
   parts_->compiled_shaders += recorder.compiled_shaders();
   parts_->images.insert(recorder.images().begin(), recorder.images().end());
   parts_->exposure = recorder.exposure();
+  parts_->depth_range.reset();
+  if (recorder.depth_range())
+    parts_->depth_range = {recorder.depth_range()->nearest, recorder.depth_range()->farthest};
   traces::validate(stream);
   if (parts_->file) parts_->file->print_notes();
   return stream;

@@ -3,12 +3,15 @@
 /// A scene is read into a `SceneData` (scenes/data/scene_data.h), a camera is chosen and `record_scene` turns
 /// both into Vulkan-level commands: one pass, opaque and masked draws in scene order, then blended ones back
 /// to front; and a second pass over its picture where the scene asks for one. docs/scenes.md says what of
-/// glTF is covered and which defaults apply, docs/shaders.md what a shader of the user's own gets to see.
+/// glTF is covered and which defaults apply, docs/shaders.md what a shader of the user's own gets to see, and
+/// docs/lectures.md by which other pipelines a scene can be drawn.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/data/scene_options.h"
@@ -35,6 +38,8 @@ class Scene {
   [[nodiscard]] bool repeats() const;
   /// One frame, validated. Throws `UserError`.
   [[nodiscard]] traces::CommandStream record(const Moment& moment);
+  /// The window depths that the last frame shows white and black, if it is a picture of depths.
+  [[nodiscard]] std::optional<std::pair<float, float>> depth_range() const;
   /// The exposure of the last frame.
   [[nodiscard]] float exposure() const;
   /// Images of the file that no shader of a frame recorded so far can sample.

@@ -24,7 +24,7 @@ struct Entry {
   double length = 0;  ///< seconds
 };
 
-constexpr std::array<Entry, 10> kEntries{{
+constexpr std::array<Entry, 11> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
@@ -45,6 +45,8 @@ constexpr std::array<Entry, 10> kEntries{{
       "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most "
       "units left out"},
      [](double) { return build_fill(); }},
+    {{"cycle", "three triangles, each in front of the next: no order of drawing is right, a depth buffer is"},
+     [](double) { return build_cycle(); }},
     {{"materials",
       "a wall of 49 spheres: each row one extension of glTF's materials, from clear coat to coloured glass"},
      [](double) { return build_materials(); }},
@@ -223,6 +225,31 @@ SceneData build_fill() {
     scene.materials.push_back(unlit(fmt::format("layer {}", i), {t, 0.35F, 1 - t, 1}));
     place(scene, screen_quad(scene, fmt::format("layer {}", i), i, 50 - static_cast<float>(i)));
   }
+  return scene;
+}
+
+SceneData build_cycle() {
+  SceneData scene;
+  scene.cameras.push_back(flat_camera());
+  constexpr std::array<glm::vec3, 3> kColors{
+      {{0.85F, 0.2F, 0.15F}, {0.2F, 0.65F, 0.25F}, {0.2F, 0.35F, 0.85F}}};
+  // A wedge from its blunt end, which is near, to its tip, which is far. The others are the same wedge turned
+  // by a third, so that the blunt end of each lies over the tip of the one before.
+  constexpr std::array<glm::vec3, 3> kWedge{{{-0.72F, -0.66F, -1}, {0.72F, -0.38F, -3}, {-0.72F, -0.1F, -1}}};
+  for (int i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    scene.materials.push_back(unlit(fmt::format("wedge {}", i), glm::vec4(kColors[k], 1)));
+    MeshBuilder mesh;
+    for (const glm::vec3& corner : kWedge) {
+      MeshBuilder::Vertex v;
+      v.position = glm::vec3(rotation(2.0943951F * static_cast<float>(i), {0, 0, 1}) * glm::vec4(corner, 1));
+      mesh.vertex(v);
+    }
+    mesh.triangle(0, 1, 2);
+    place(scene, mesh.finish(scene, fmt::format("wedge {}", i), i,
+                             {.normal = false, .tangent = false, .uv = false, .color = false}));
+  }
+  scene.background = {0.02F, 0.02F, 0.03F};
   return scene;
 }
 

@@ -31,6 +31,7 @@ struct BuiltinScene {
 [[nodiscard]] SceneData build_outlines();
 [[nodiscard]] SceneData build_overdraw();
 [[nodiscard]] SceneData build_fill();
+[[nodiscard]] SceneData build_cycle();
 [[nodiscard]] SceneData build_materials();
 [[nodiscard]] SceneData build_primitives();
 [[nodiscard]] SceneData build_courtyard();

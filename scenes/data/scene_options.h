@@ -1,15 +1,48 @@
-/// What a user says of how a scene is shown: size, camera, time, exposure, shaders of their own.
+/// What a user says of how a scene is shown: size, camera, time, exposure, shaders of their own, or one of
+/// the pipelines that lectures teach.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <glm/vec3.hpp>
 
 namespace quadrille::scenes {
 
 inline constexpr double kLeastExposure = 1e-12, kMostExposure = 1e12;
+
+/// How a surface gets its colour: by one of the lectures' pipelines, or by the materials' own shaders.
+enum class Shading : std::uint8_t {
+  kMinimal,  ///< one colour for everything
+  kFlat,     ///< lit once a face
+  kGouraud,  ///< lit at the vertices
+  kPhong,    ///< lit at the fragments
+  kPbr       ///< the materials' own
+};
+inline constexpr std::array<std::string_view, 5> kShadingNames{"minimal", "flat", "gouraud", "phong", "pbr"};
+
+/// How hidden surfaces go away: by the depth test, or by drawing from back to front.
+enum class DrawOrder : std::uint8_t { kFile, kPainter };
+inline constexpr std::array<std::string_view, 2> kDrawOrderNames{"file", "painter"};
+
+/// What of a frame the picture shows. The names are those of all but the first.
+enum class Showing : std::uint8_t { kColors, kDepth, kOverdraw, kUv, kNormal, kTriangle };
+inline constexpr std::array<std::string_view, 5> kShowingNames{"depth", "overdraw", "uv", "normal",
+                                                               "triangle"};
+
+/// The enumerator that `name` stands for in one of these lists, of which `first` is the first one's; `first`
+/// too for a name that is not in it.
+template <class Enum, std::size_t n>
+[[nodiscard]] constexpr Enum named(const std::array<std::string_view, n>& names, std::string_view name,
+                                   Enum first) {
+  for (std::size_t i = 0; i < n; ++i)
+    if (names[i] == name) return static_cast<Enum>(static_cast<std::size_t>(first) + i);
+  return first;
+}
 
 struct SceneOptions {
   std::uint32_t width = 1920, height = 1080;  ///< pixels, 1..16384
@@ -28,7 +61,10 @@ struct SceneOptions {
   std::optional<double> orbit;
   /// times the scene's light (scenes/view/exposure.h); none: chosen by it
   std::optional<double> exposure = 1;
-  bool visibility = false;  ///< draw triangle ids instead of colours (see `triangle_id_color`)
+  Shading shading = Shading::kPbr;
+  DrawOrder order = DrawOrder::kFile;
+  Showing shown = Showing::kColors;  ///< all but colours have shaders of their own, and no shading
+  bool visibility = false;           ///< draw triangle ids instead of all that (see `triangle_id_color`)
   /// false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
   bool leave_out = true;
   /// record textures packed, for a machine that unpacks those that it samples (`traces::Image::packed`)

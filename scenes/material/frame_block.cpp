@@ -73,10 +73,12 @@ std::vector<Light> frame_lights(const PlacedScene& scene, const View& view, floa
 }
 
 std::vector<std::byte> frame_block(const SceneData& scene, const View& view, const std::vector<Light>& lights,
-                                   float exposure) {
+                                   float exposure, const std::optional<DepthRange>& depths) {
+  const float black =
+      depths && depths->farthest > depths->nearest ? 1 / (depths->farthest - depths->nearest) : 0;
   const float share = scene.lights.empty() ? exposure : kSkyBesideLights;
-  const FrameHead head{view.view_projection, glm::vec4(view.eye, 0), glm::vec4(view.toward_viewer, 0),
-                       glm::vec4(scene.environment.sky * share, 0),
+  const FrameHead head{view.view_projection, glm::vec4(view.eye, depths ? depths->nearest : 0.0F),
+                       glm::vec4(view.toward_viewer, black), glm::vec4(scene.environment.sky * share, 0),
                        glm::vec4(scene.environment.ground * share, 0)};
   std::vector<LightBlock> blocks;
   blocks.reserve(lights.size());

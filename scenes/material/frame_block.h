@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,14 @@ namespace quadrille::scenes {
 /// The lights of the scene in the shader's order (directional, point, spot), or the default key light when
 /// there are none, times the exposure (scenes/view/exposure.h). At most 256. Throws `UserError` beyond that.
 [[nodiscard]] std::vector<Light> frame_lights(const PlacedScene& scene, const View& view, float exposure);
-/// The block's bytes, std140.
+/// What a picture of depths makes white and what black, window depths.
+struct DepthRange {
+  float nearest = 0, farthest = 1;
+};
+/// The block's bytes, std140. `depths` is for pictures of depths.
 [[nodiscard]] std::vector<std::byte> frame_block(const SceneData& scene, const View& view,
-                                                 const std::vector<Light>& lights, float exposure);
+                                                 const std::vector<Light>& lights, float exposure,
+                                                 const std::optional<DepthRange>& depths = std::nullopt);
 /// What the fragment shader is compiled for: numbers of lights by kind, loop unrolling, projection.
 [[nodiscard]] std::vector<std::string> frame_defines(const View& view, const std::vector<Light>& lights);
 

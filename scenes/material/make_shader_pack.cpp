@@ -18,8 +18,8 @@ std::map<std::string, std::vector<std::uint32_t>> compiled() {
   for (const TypicalShader& shader : typical_shaders()) {
     std::vector<std::uint32_t>& words = shaders[shader_key(shader.stage, shader.defines)];
     if (words.empty())
-      words = compile_glsl(material_shader_glsl(shader.stage), shader.stage,
-                           material_shader_name(shader.stage), shader.defines);
+      words = compile_glsl(material_shader_glsl(shader.stage, shader.set), shader.stage,
+                           material_shader_name(shader.stage, shader.set), shader.defines);
   }
   return shaders;
 }

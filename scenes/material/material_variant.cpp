@@ -56,14 +56,16 @@ bool has_layer(const MaterialLayers& layers, TextureSlot slot) {
   return false;
 }
 
+/// Does the set show nothing of the material but where its alpha test lets something stand?
+bool shows_shape(ShaderSet set) { return set == ShaderSet::kVisibility || shows_values(set); }
+
 bool wants_texture(const Material& m, std::size_t slot, ShaderSet set) {
   const bool base_color = slot == at(TextureSlot::kBaseColor);
   if (!has_layer(m.layers, static_cast<TextureSlot>(slot))) return false;
-  switch (set) {
-    case ShaderSet::kUser: return true;
-    case ShaderSet::kVisibility: return base_color && m.alpha == AlphaMode::kMask;
-    case ShaderSet::kMaterial: break;
-  }
+  if (set == ShaderSet::kUser) return true;
+  if (set == ShaderSet::kMinimal) return false;
+  if (shows_shape(set)) return base_color && m.alpha == AlphaMode::kMask;
+  if (lights_by_phong(set)) return base_color;
   if (m.unlit) return base_color;
   if (slot == at(TextureSlot::kEmissive)) return emits(m);
   return slot != at(TextureSlot::kOcclusion) || !shares_occlusion(m);
@@ -89,9 +91,12 @@ void choose_textures(Variant& v, const Material& m, const Primitive& p, ShaderSe
 void choose_attributes(Variant& v, const Material& m, const Primitive& p, ShaderSet set) {
   const auto use = [&](Semantic s) { v.attributes[at(s)] = p.attributes[at(s)] >= 0; };
   use(Semantic::kPosition);
-  const bool reads_color = set != ShaderSet::kVisibility || m.alpha == AlphaMode::kMask;
+  if (set == ShaderSet::kMinimal) return;
+  const bool reads_color = !shows_shape(set) || m.alpha == AlphaMode::kMask;
   if (reads_color) use(Semantic::kColor);
-  const bool lit = set == ShaderSet::kMaterial && !m.unlit;
+  if (set == ShaderSet::kUv) use(Semantic::kUv0);
+  if (set == ShaderSet::kNormal) use(Semantic::kNormal);
+  const bool lit = (set == ShaderSet::kMaterial || lights_by_phong(set)) && !m.unlit;
   if (lit || set == ShaderSet::kUser) {
     v.defines.emplace_back("NEEDS_POSITION");
     use(Semantic::kNormal);
@@ -117,7 +122,37 @@ void choose_layers(Variant& v, const MaterialLayers& layers) {
   if (layers.transmits()) v.defines.emplace_back("TRANSMISSION");
 }
 
+/// What a set of shaders is told apart by: from the materials' and from each other's.
+std::string_view set_define(ShaderSet set) {
+  switch (set) {
+    case ShaderSet::kMaterial:
+    case ShaderSet::kVisibility:
+    case ShaderSet::kUser: break;
+    case ShaderSet::kMinimal: return "MINIMAL";
+    case ShaderSet::kFlat: return "SHADED_FLAT";
+    case ShaderSet::kGouraud: return "SHADED_BY_GOURAUD";
+    case ShaderSet::kPhong: return "SHADED_BY_PHONG";
+    case ShaderSet::kDepth: return "SHOW_DEPTH";
+    case ShaderSet::kOverdraw: return "SHOW_OVERDRAW";
+    case ShaderSet::kUv: return "SHOW_UV";
+    case ShaderSet::kNormal: return "SHOW_NORMAL";
+    case ShaderSet::kTriangle: return "SHOW_TRIANGLE";
+  }
+  return {};
+}
+
+/// Modes of the sets that know of no reflectance but a colour.
+void choose_plain_modes(Variant& v, const Material& m) {
+  const ShaderSet set = v.set;
+  v.defines.emplace_back(set_define(set));
+  if (m.alpha == AlphaMode::kMask && set != ShaderSet::kMinimal) v.defines.emplace_back("ALPHA_MASK");
+  const bool lit = lights_by_phong(set) && !m.unlit;
+  if (lit) v.defines.emplace_back(set == ShaderSet::kPhong ? "LIT_AT_FRAGMENTS" : "LIT_AT_VERTICES");
+  if ((lit || set == ShaderSet::kNormal) && m.double_sided) v.defines.emplace_back("DOUBLE_SIDED");
+}
+
 void choose_modes(Variant& v, const Material& m, ShaderSet set) {
+  if (!set_define(set).empty()) return choose_plain_modes(v, m);
   if (m.alpha == AlphaMode::kMask) v.defines.emplace_back("ALPHA_MASK");
   if (set == ShaderSet::kVisibility) return;
   if (m.alpha == AlphaMode::kBlend) v.defines.emplace_back("ALPHA_BLEND");
@@ -132,6 +167,31 @@ void choose_modes(Variant& v, const Material& m, ShaderSet set) {
   }
 }
 
+/// A point or line has no face whose normal could stand for one that is missing. For the lectures' light the
+/// recorder gives faces their normals (scenes/record/facets.h), so it is the same there.
+bool lacks_normals(const Primitive& primitive, ShaderSet set) {
+  if (lights_by_phong(set) && primitive.attributes[at(Semantic::kNormal)] < 0) return true;
+  return !draws_triangles(primitive.topology) &&
+         (primitive.attributes[at(Semantic::kNormal)] < 0 || primitive.partial_normals);
+}
+
+/// Does a stage of this variant read the frame's lights and view?
+bool reads_lights(traces::ShaderStage stage, const Variant& v) {
+  const std::string_view lit = stage == traces::ShaderStage::kVertex ? "LIT_AT_VERTICES" : "LIT_AT_FRAGMENTS";
+  return (stage == traces::ShaderStage::kFragment && set_define(v.set).empty()) ||
+         std::ranges::count(v.defines, lit) > 0;
+}
+
+/// Does the vertex shader look at this define?
+bool is_of_vertices(const std::string& define) {
+  return define.starts_with("HAS_") || define == "NEEDS_POSITION";
+}
+bool is_of_lit_vertices(const std::string& define) {
+  return define == "LIT_AT_VERTICES" || define == "SHADED_FLAT" || define == "DOUBLE_SIDED";
+}
+
+}  // namespace
+
 bool draws_triangles(traces::Topology topology) {
   switch (topology) {
     case traces::Topology::kPointList:
@@ -144,21 +204,36 @@ bool draws_triangles(traces::Topology topology) {
   return true;
 }
 
-/// A point or line has no face whose normal could stand for one that is missing.
-bool lacks_normals(const Primitive& primitive) {
-  return !draws_triangles(primitive.topology) &&
-         (primitive.attributes[at(Semantic::kNormal)] < 0 || primitive.partial_normals);
+ShaderSet shader_set(const SceneOptions& options) {
+  if (!options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility))
+    return ShaderSet::kUser;
+  if (options.visibility) return ShaderSet::kVisibility;
+  switch (options.shown) {
+    case Showing::kColors: break;
+    case Showing::kDepth: return ShaderSet::kDepth;
+    case Showing::kOverdraw: return ShaderSet::kOverdraw;
+    case Showing::kUv: return ShaderSet::kUv;
+    case Showing::kNormal: return ShaderSet::kNormal;
+    case Showing::kTriangle: return ShaderSet::kTriangle;
+  }
+  switch (options.shading) {
+    case Shading::kMinimal: return ShaderSet::kMinimal;
+    case Shading::kFlat: return ShaderSet::kFlat;
+    case Shading::kGouraud: return ShaderSet::kGouraud;
+    case Shading::kPhong: return ShaderSet::kPhong;
+    case Shading::kPbr: break;
+  }
+  return ShaderSet::kMaterial;
 }
 
-}  // namespace
-
 Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set) {
-  if (!material.unlit && lacks_normals(primitive)) {
+  if (!material.unlit && lacks_normals(primitive, set)) {
     Material plain = material;
     plain.unlit = true;
     return choose_variant(plain, primitive, set);
   }
   Variant v;
+  v.set = set;
   if (primitive.topology == traces::Topology::kPointList ||
       primitive.style.polygon_mode == traces::PolygonMode::kPoint)
     v.point_size = primitive.style.point_size;
@@ -173,27 +248,33 @@ Variant choose_variant(const Material& material, const Primitive& primitive, Sha
   return v;
 }
 
-std::string_view material_shader_name(traces::ShaderStage stage) {
-  return stage == traces::ShaderStage::kVertex ? "material.vert" : "material.frag";
+std::string_view material_shader_name(traces::ShaderStage stage, ShaderSet set) {
+  if (stage == traces::ShaderStage::kVertex) return "material.vert";
+  if (shows_values(set)) return "values.frag";
+  return set_define(set).empty() ? "material.frag" : "lecture.frag";
 }
 
-std::string material_shader_glsl(traces::ShaderStage stage) {
-  const std::string interface(kInterfaceGlsl);
-  if (stage == traces::ShaderStage::kVertex)
-    return interface + std::string(kPoseGlsl) + std::string(kMaterialVert);
-  return interface + std::string(kMaterialGlsl) + std::string(kLayersGlsl) + std::string(kMaterialFrag);
+std::string material_shader_glsl(traces::ShaderStage stage, ShaderSet set) {
+  const auto joined = [](auto... texts) { return (std::string(kInterfaceGlsl) + ... + std::string(texts)); };
+  if (stage == traces::ShaderStage::kVertex) {
+    const bool lights = set == ShaderSet::kFlat || set == ShaderSet::kGouraud;
+    return lights ? joined(kPoseGlsl, kLightGlsl, kMaterialVert) : joined(kPoseGlsl, kMaterialVert);
+  }
+  if (shows_values(set)) return joined(kMaterialGlsl, kValuesFrag);
+  if (set_define(set).empty()) return joined(kMaterialGlsl, kLayersGlsl, kMaterialFrag);
+  return joined(kMaterialGlsl, kLightGlsl, kLectureFrag);
 }
 
 std::vector<std::string> material_shader_defines(traces::ShaderStage stage, const Variant& variant,
                                                  const std::vector<std::string>& frame_defines) {
+  const bool lit = reads_lights(stage, variant);
+  std::vector<std::string> defines = lit ? frame_defines : std::vector<std::string>{frame_defines.front()};
   if (stage == traces::ShaderStage::kFragment) {
-    std::vector<std::string> defines = frame_defines;
     defines.insert(defines.end(), variant.defines.begin(), variant.defines.end());
     return defines;
   }
-  std::vector<std::string> defines{frame_defines.front()};
-  std::ranges::copy_if(variant.defines, std::back_inserter(defines), [](const std::string& define) {
-    return define.starts_with("HAS_") || define == "NEEDS_POSITION";
+  std::ranges::copy_if(variant.defines, std::back_inserter(defines), [&](const std::string& define) {
+    return is_of_vertices(define) || (lit && is_of_lit_vertices(define));
   });
   if (variant.instanced) defines.emplace_back("INSTANCED");
   if (variant.point_size > 0) defines.push_back(fmt::format("POINT_SIZE {:.3f}", variant.point_size));

@@ -11,11 +11,39 @@
 #include <vector>
 
 #include "scenes/data/scene_data.h"
+#include "scenes/data/scene_options.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::scenes {
 
+/// Which shaders a frame uses: the materials' own, the triangle-id shader, the user's, those of a lecture's
+/// pipeline (`Shading`), or those that show something else than colours (`Showing`).
+enum class ShaderSet : std::uint8_t {
+  kMaterial,
+  kVisibility,
+  kUser,
+  kMinimal,
+  kFlat,
+  kGouraud,
+  kPhong,
+  kDepth,
+  kOverdraw,
+  kUv,
+  kNormal,
+  kTriangle
+};
+
+/// Is the surface lit by Blinn's and Phong's model?
+[[nodiscard]] constexpr bool lights_by_phong(ShaderSet set) {
+  return set == ShaderSet::kFlat || set == ShaderSet::kGouraud || set == ShaderSet::kPhong;
+}
+/// Is something else shown than colours?
+[[nodiscard]] constexpr bool shows_values(ShaderSet set) { return set >= ShaderSet::kDepth; }
+/// The set that the options ask for.
+[[nodiscard]] ShaderSet shader_set(const SceneOptions& options);
+
 struct Variant {
+  ShaderSet set = ShaderSet::kMaterial;
   std::array<bool, kSemantics> attributes{};   ///< vertex streams that the shaders read
   std::array<bool, kTextureSlots> textures{};  ///< texture slots that the fragment shader samples
   std::vector<std::string> defines;            ///< of both stages
@@ -27,20 +55,21 @@ struct Variant {
   friend bool operator==(const Variant&, const Variant&) = default;
 };
 
-/// Which shaders a frame uses: the materials' own, the triangle-id shader, or the user's.
-enum class ShaderSet : std::uint8_t { kMaterial, kVisibility, kUser };
+/// Are the primitives triangles?
+[[nodiscard]] bool draws_triangles(traces::Topology topology);
 
 /// The variant for a material on a primitive. Points and lines without normals are drawn without light.
 /// [glTF2.0 #point-and-line-materials] For `kUser` everything that the two offer is read.
 [[nodiscard]] Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set);
 
-/// What a stage of the materials' shaders is called in messages and in streams.
-[[nodiscard]] std::string_view material_shader_name(traces::ShaderStage stage);
+/// What a stage of the project's shaders is called in messages and in streams. For `kUser`, as for
+/// `kMaterial`.
+[[nodiscard]] std::string_view material_shader_name(traces::ShaderStage stage, ShaderSet set);
 /// Its GLSL, the same for all variants.
-[[nodiscard]] std::string material_shader_glsl(traces::ShaderStage stage);
-/// The defines that make a variant of it, in order. The vertex shader looks at streams only, and of the frame
-/// (`frame_defines` of scenes/material/frame_block.h) at the size of the array of lights, so that it is
-/// shared among more materials.
+[[nodiscard]] std::string material_shader_glsl(traces::ShaderStage stage, ShaderSet set);
+/// The defines that make a variant of it, in order. A vertex shader that lights nothing looks at streams
+/// only, and of the frame (`frame_defines` of scenes/material/frame_block.h) at the size of the array of
+/// lights, so that it is shared among more materials.
 [[nodiscard]] std::vector<std::string> material_shader_defines(traces::ShaderStage stage,
                                                                const Variant& variant,
                                                                const std::vector<std::string>& frame_defines);

@@ -45,13 +45,11 @@ ShaderLibrary::Source ShaderLibrary::read_source(traces::ShaderStage stage, cons
 ShaderLibrary::ShaderLibrary(const SceneOptions& options, std::vector<std::string> frame_defines,
                              std::vector<traces::Shader>& shaders)
     : leave_out_(options.leave_out), frame_defines_(std::move(frame_defines)), shaders_(shaders) {
-  const auto source = [](traces::ShaderStage stage, const std::string& path) {
-    return path.empty() ? Source{std::string(material_shader_name(stage)), {}, {}, true}
+  set_ = shader_set(options);
+  const auto source = [this](traces::ShaderStage stage, const std::string& path) {
+    return path.empty() ? Source{std::string(material_shader_name(stage, set_)), {}, {}, true}
                         : read_source(stage, path);
   };
-  const bool user =
-      !options.vertex_shader.empty() || (!options.fragment_shader.empty() && !options.visibility);
-  set_ = user ? ShaderSet::kUser : options.visibility ? ShaderSet::kVisibility : ShaderSet::kMaterial;
   vertex_ = source(traces::ShaderStage::kVertex, options.vertex_shader);
   if (options.visibility)
     fragment_ = {"visibility.frag",
@@ -78,7 +76,7 @@ std::vector<std::uint32_t> ShaderLibrary::spirv(traces::ShaderStage stage, const
     if (!ready.empty()) return {ready.begin(), ready.end()};
   }
   ++compiled_;
-  return compile_glsl(source.material ? material_shader_glsl(stage) : source.glsl, stage, source.name,
+  return compile_glsl(source.material ? material_shader_glsl(stage, set_) : source.glsl, stage, source.name,
                       defines);
 }
 

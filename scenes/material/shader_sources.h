@@ -5,7 +5,7 @@
 
 namespace quadrille::scenes {
 
-extern const std::string_view kInterfaceGlsl, kPoseGlsl, kMaterialGlsl, kLayersGlsl, kMaterialVert,
-    kMaterialFrag, kVisibilityFrag;
+extern const std::string_view kInterfaceGlsl, kPoseGlsl, kMaterialGlsl, kLayersGlsl, kLightGlsl,
+    kMaterialVert, kMaterialFrag, kVisibilityFrag, kLectureFrag, kValuesFrag, kOverdrawFrag;
 
 }  // namespace quadrille::scenes

@@ -31,7 +31,8 @@ constexpr std::array kTextureSets{kBase,
 
 class Collector {
  public:
-  Collector(const View& view, Light::Kind light) : frame_defines_(frame_defines(view, {one_light(light)})) {}
+  Collector(const View& view, Light::Kind light, std::vector<ShaderSet> sets)
+      : frame_defines_(frame_defines(view, {one_light(light)})), sets_(std::move(sets)) {}
 
   /// All sides and alpha modes of a material with these textures, on a mesh with these attributes.
   void add(unsigned textures, bool shared_occlusion, bool emissive, bool unlit,
@@ -50,15 +51,18 @@ class Collector {
       for (const bool double_sided : {false, true}) {
         m.alpha = alpha;
         m.double_sided = double_sided;
-        const Variant v = choose_variant(m, primitive, ShaderSet::kMaterial);
-        for (const traces::ShaderStage stage : {traces::ShaderStage::kVertex, traces::ShaderStage::kFragment})
-          shaders_.push_back({stage, material_shader_defines(stage, v, frame_defines_)});
+        for (const ShaderSet set : sets_) add(m, primitive, set);
       }
     }
   }
   [[nodiscard]] std::vector<TypicalShader> take() { return std::exchange(shaders_, {}); }
 
  private:
+  void add(const Material& material, const Primitive& primitive, ShaderSet set) {
+    const Variant v = choose_variant(material, primitive, set);
+    for (const traces::ShaderStage stage : {traces::ShaderStage::kVertex, traces::ShaderStage::kFragment})
+      shaders_.push_back({set, stage, material_shader_defines(stage, v, frame_defines_)});
+  }
   static std::size_t at(TextureSlot slot) { return static_cast<std::size_t>(slot); }
   static Light one_light(Light::Kind kind) {
     Light light;
@@ -67,6 +71,7 @@ class Collector {
   }
 
   std::vector<std::string> frame_defines_;
+  std::vector<ShaderSet> sets_;
   std::vector<TypicalShader> shaders_;
 };
 
@@ -112,13 +117,20 @@ void add_textured(Collector& c) {
 std::vector<TypicalShader> typical_shaders() {
   View orthographic;
   orthographic.orthographic = true;
-  Collector lit(View{}, Light::Kind::kDirectional), by_a_lamp(View{}, Light::Kind::kPoint),
-      flat(orthographic, Light::Kind::kDirectional);
+  const std::vector<ShaderSet> materials{ShaderSet::kMaterial},
+      plain{ShaderSet::kMinimal, ShaderSet::kFlat,   ShaderSet::kGouraud,
+            ShaderSet::kPhong,   ShaderSet::kDepth,  ShaderSet::kOverdraw,
+            ShaderSet::kUv,      ShaderSet::kNormal, ShaderSet::kTriangle};
+  Collector lit(View{}, Light::Kind::kDirectional, materials);
   add_textured(lit);
   std::vector<TypicalShader> all = lit.take();
-  for (Collector* const c : {&lit, &by_a_lamp, &flat}) {
-    add_plain(*c);
-    std::ranges::move(c->take(), std::back_inserter(all));
+  for (const std::vector<ShaderSet>& sets : {materials, plain}) {
+    for (Collector c :
+         {Collector(View{}, Light::Kind::kDirectional, sets), Collector(View{}, Light::Kind::kPoint, sets),
+          Collector(orthographic, Light::Kind::kDirectional, sets)}) {
+      add_plain(c);
+      std::ranges::move(c.take(), std::back_inserter(all));
+    }
   }
   return all;
 }

@@ -1,7 +1,6 @@
 #include "scenes/record/host_pose.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -10,27 +9,12 @@
 #include <glm/ext/vector_double4.hpp>
 #include <glm/geometric.hpp>
 
-#include "models/geometry/attribute_format.h"
+#include "scenes/record/vertex_values.h"
 
 namespace quadrille::scenes {
 namespace {
 
-using models::Format;
 using Vector = std::array<double, 4>;
-
-std::array<std::uint32_t, 4> words_at(const Array& array, std::size_t vertex) {
-  std::array<std::uint32_t, 4> words{};
-  models::decode_attribute(static_cast<Format>(array.format),
-                           &array.data[vertex * traces::format_bytes(array.format)], words.data());
-  return words;
-}
-
-Vector values_at(const Array& array, std::size_t vertex) {
-  Vector values{};
-  const auto words = words_at(array, vertex);
-  for (std::size_t c = 0; c < 4; ++c) values[c] = static_cast<double>(std::bit_cast<float>(words[c]));
-  return values;
-}
 
 glm::dvec3 xyz(const Vector& v) { return {v[0], v[1], v[2]}; }
 void set_xyz(Vector& v, const glm::dvec3& value) { v = {value.x, value.y, value.z, v[3]}; }

@@ -10,7 +10,8 @@
 
 #include "models/base/error.h"
 #include "models/geometry/assembly.h"
-#include "scenes/material/frame_block.h"
+#include "scenes/material/shader_sources.h"
+#include "scenes/record/facets.h"
 #include "scenes/record/host_pose.h"
 #include "scenes/record/post_pass.h"
 #include "scenes/view/exposure.h"
@@ -42,6 +43,31 @@ const traces::BlendState kPremultiplied{true,
                                         traces::BlendOp::kAdd,
                                         0xf};
 
+/// Colours are sums.
+const traces::BlendState kSum{true,
+                              traces::BlendFactor::kOne,
+                              traces::BlendFactor::kOne,
+                              traces::BlendFactor::kOne,
+                              traces::BlendFactor::kZero,
+                              traces::BlendOp::kAdd,
+                              traces::BlendOp::kAdd,
+                              0xf};
+
+/// Are see-through materials drawn like others? A number that a pixel shows is not to be blended. Overdraw is
+/// that of the frame with its colours.
+bool draws_solid(const SceneOptions& options, ShaderSet set) {
+  return options.visibility || set == ShaderSet::kMinimal ||
+         (shows_values(set) && set != ShaderSet::kOverdraw);
+}
+
+/// How a material's fragments meet what the target holds.
+traces::BlendState blend_of(const Material& material, ShaderSet set) {
+  if (set == ShaderSet::kOverdraw) return kSum;
+  if (lights_by_phong(set)) return material.alpha == AlphaMode::kBlend ? kOver : traces::BlendState{};
+  if (!material.see_through()) return {};
+  return material.layers.transmits() ? kPremultiplied : kOver;
+}
+
 }  // namespace
 
 bool mirrors(const glm::mat4& world) { return glm::determinant(glm::dmat3(glm::mat3(world))) < 0; }
@@ -58,14 +84,18 @@ std::array<glm::vec4, 3> normal_matrix(const glm::mat4& world, bool mirrored) {
           glm::vec4(columns[2] * scale, 0)};
 }
 
+// The camera frames the scene as it came, so that shadings are seen from one place.
 Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
-    : scene_(scene),
+    : faceted_(with_facets(scene, shader_set(options))),
+      scene_(faceted_ ? *faceted_ : scene),
       seen_(make_view(scene, options)),
       range_(needed_range(PlacedScene(scene), seen_)),
-      moved_(range_ ? std::optional(moved(static_cast<const Placements&>(scene), *range_)) : std::nullopt),
-      placed_(moved_ ? PlacedScene(scene, *moved_) : PlacedScene(scene)),
+      moved_(range_ ? std::optional(moved(static_cast<const Placements&>(scene_), *range_)) : std::nullopt),
+      placed_(moved_ ? PlacedScene(scene_, *moved_) : PlacedScene(scene_)),
       options_(range_ ? moved(options, *range_) : options),
-      view_(range_ ? make_view(placed_, options_) : seen_),
+      view_(range_ ? make_view(PlacedScene(scene, moved(static_cast<const Placements&>(scene), *range_)),
+                               options_)
+                   : seen_),
       exposure_(scenes::exposure(placed_, options_)),
       lights_(frame_lights(placed_, view_, exposure_)),
       shaders_(options, frame_defines(view_, lights_), stream_.shaders),
@@ -76,25 +106,36 @@ traces::CommandStream Recorder::record() {
   record_arrays();
   record_textures();
   const glm::vec3& back = scene_.background;
-  const std::array<float, 4> clear = options_.visibility ? std::array<float, 4>{0, 0, 0, 0}
-                                                         : std::array<float, 4>{back.r, back.g, back.b, 1};
+  const bool values = options_.visibility || shows_values(shaders_.set());
+  const std::array<float, 4> clear = values ? std::array<float, 4>{0, 0, 0, options_.visibility ? 0.0F : 1.0F}
+                                            : std::array<float, 4>{back.r, back.g, back.b, 1};
   stream_.commands.emplace_back(
       traces::make_pass(stream_,
                         {options_.width, options_.height,
-                         options_.visibility ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
-                         scene_.depth ? traces::Format::kD32Float : traces::Format::kUndefined},
+                         values ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
+                         has_depth() ? traces::Format::kD32Float : traces::Format::kUndefined},
                         clear));
   stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width),
                                                     static_cast<float>(options_.height), 0, 1});
   stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
+  if (shaders_.set() == ShaderSet::kDepth) depth_range_ = find_depth_range();
   record_frame_set();
-  for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
+  if (options_.order == DrawOrder::kPainter) record_as_painter();
+  else
+    for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
   stream_.commands.emplace_back(traces::EndPass{});
-  if (!scene_.post_shader.empty() && !options_.visibility) {
-    add_post_pass(stream_, scene_.post_shader);
-    post_shaders_ = 2;
-  }
+  add_second_pass();
   return std::move(stream_);
+}
+
+/// A scene's own needs the depths, and colours to work with.
+void Recorder::add_second_pass() {
+  const bool overdraw = shaders_.set() == ShaderSet::kOverdraw;
+  const bool own = !options_.visibility && !shows_values(shaders_.set()) && has_depth() == scene_.depth;
+  const std::string shader(overdraw ? std::string(kOverdrawFrag) : own ? scene_.post_shader : "");
+  if (shader.empty()) return;
+  add_post_pass(stream_, shader);
+  post_shaders_ = 2;
 }
 
 std::vector<std::size_t> Recorder::draw_order() const {
@@ -215,7 +256,7 @@ const Recorder::PosedStreams& Recorder::posed_streams(const Instance& instance, 
 
 void Recorder::record_frame_set() {
   const auto block = static_cast<traces::Index>(stream_.buffers.size());
-  stream_.buffers.push_back({"frame", frame_block(scene_, view_, lights_, exposure_)});
+  stream_.buffers.push_back({"frame", frame_block(scene_, view_, lights_, exposure_, depth_range_)});
   const auto set = static_cast<traces::Index>(stream_.descriptor_sets.size());
   stream_.descriptor_sets.push_back(
       {{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
@@ -245,21 +286,20 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
     p.attributes.push_back({g.streams[i].first, g.streams[i].first, g.formats[i], 0});
   }
   if (g.variant.instanced) add_copy_streams(p);
-  const bool blended = material.see_through() && !options_.visibility;
-  p.topology = primitive.topology;
-  p.primitive_restart = primitive.restarts;
+  const bool solid = draws_solid(options_, shaders_.set()), blended = material.see_through() && !solid;
+  p.topology = g.listed ? list_of(primitive.topology) : primitive.topology;
+  p.primitive_restart = primitive.restarts && !g.listed;
   p.polygon_mode = primitive.style.polygon_mode;
   p.line_mode = primitive.style.line_mode;
-  // A number that a pixel shows is not to be blended.
-  if (options_.visibility && p.line_mode == traces::LineMode::kSmooth)
-    p.line_mode = traces::LineMode::kRectangular;
+  const bool whole_pixels = solid || shaders_.set() == ShaderSet::kOverdraw;
+  if (whole_pixels && p.line_mode == traces::LineMode::kSmooth) p.line_mode = traces::LineMode::kRectangular;
   p.line_width = primitive.style.line_width;
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
   p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
-  p.depth = {scene_.depth, scene_.depth && (!blended || material.alpha != AlphaMode::kBlend),
+  p.depth = {has_depth(), has_depth() && (!blended || material.alpha != AlphaMode::kBlend),
              traces::CompareOp::kLess};
-  if (blended) p.blend[0] = material.layers.transmits() ? kPremultiplied : kOver;
-  else if (p.line_mode == traces::LineMode::kSmooth) p.blend[0] = kOver;
+  if (!solid) p.blend[0] = blend_of(material, shaders_.set());
+  if (!p.blend[0].enable && p.line_mode == traces::LineMode::kSmooth) p.blend[0] = kOver;
   const auto found = std::ranges::find_if(
       stream_.pipelines, [&](traces::Pipeline other) { return other.name = p.name, other == p; });
   if (found != stream_.pipelines.end()) return static_cast<traces::Index>(found - stream_.pipelines.begin());
@@ -278,7 +318,9 @@ void Recorder::bind_geometry(const Primitive& primitive, const Geometry& g) {
   if (g.pose_set != traces::kNone) bind_once(traces::BindDescriptorSet{kPoseSet, g.pose_set}, kPoseSlot);
   for (const auto& [location, buffer] : g.streams)
     bind_once(traces::BindVertexBuffer{location, buffer, 0}, kVertexSlot + location);
-  if (primitive.indices >= 0)
+  if (g.listed)
+    bind_once(traces::BindIndexBuffer{painter_indices_, 0, traces::IndexType::kUint32}, kIndexSlot);
+  else if (primitive.indices >= 0)
     bind_once(traces::BindIndexBuffer{array_buffer(primitive.indices), 0, primitive.index_type}, kIndexSlot);
 }
 

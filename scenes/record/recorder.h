@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,8 +12,10 @@
 
 #include "scenes/data/scene_data.h"
 #include "scenes/data/scene_options.h"
+#include "scenes/material/frame_block.h"
 #include "scenes/material/shader_library.h"
 #include "scenes/record/pose_streams.h"
+#include "scenes/record/vertex_values.h"
 #include "scenes/view/camera.h"
 #include "scenes/view/world_range.h"
 #include "traces/command_stream.h"
@@ -51,6 +54,8 @@ class Recorder {
   [[nodiscard]] traces::CommandStream record();
   [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled() + post_shaders_; }
   [[nodiscard]] float exposure() const { return exposure_; }
+  /// Of the recorded frame, if it is a picture of depths.
+  [[nodiscard]] const std::optional<DepthRange>& depth_range() const { return depth_range_; }
   /// Images of the scene that a shader of the recorded frame can sample.
   [[nodiscard]] const std::set<int>& images() const { return images_; }
 
@@ -69,12 +74,28 @@ class Recorder {
     std::vector<traces::Format> formats;                           ///< of the streams
     traces::Index pose_set = traces::kNone;
     bool mirrored = false;
+    /// drawn by indices of the painter's, as a list of points, lines or triangles
+    bool listed = false;
   };
 
   /// What a draw binds.
   struct States {
     Geometry geometry;
     traces::Index pipeline = traces::kNone, material_set = traces::kNone;
+  };
+
+  /// Something that the painter draws piece by piece: an instance, or one of its copies.
+  struct Canvas {
+    const Instance* instance = nullptr;
+    glm::mat4 world{1};
+    const Corners* corners = nullptr;
+    const Array* positions = nullptr;
+    std::shared_ptr<const States> states;  ///< copies share them
+  };
+  /// A point, line or triangle, where its corners begin, and how far away it is.
+  struct Piece {
+    double distance = 0;
+    std::uint32_t canvas = 0, first_corner = 0;
   };
 
   /// What the host has posed: format and buffer by semantic; kNone: the mesh's own.
@@ -91,6 +112,7 @@ class Recorder {
   void unpack_images(const std::vector<TextureKey>& keys);
   void leave_out_unread(Variant& variant);
   void record_frame_set();
+  void add_second_pass();
   void record_instance(const Instance& instance);
   /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their
   /// triangles apart or is not ours.
@@ -99,6 +121,24 @@ class Recorder {
                    std::uint32_t copies);
   /// The matrices of its copies, from back to front where `sorted`.
   [[nodiscard]] std::vector<glm::mat4> ordered_copies(const Instance& instance, bool sorted) const;
+  /// All primitives of all draws, from back to front by their centres. Ties are drawn in the scene's order.
+  void record_as_painter();
+  [[nodiscard]] std::vector<Canvas> canvases();
+  [[nodiscard]] std::vector<Piece> pieces_from_back(const std::vector<Canvas>& canvases) const;
+  void record_run(const Canvas& canvas, std::uint32_t first, std::uint32_t count);
+  /// Calls `visit(world matrix)` for an instance, or for each of its copies.
+  template <class Visit>
+  void for_each_copy(const Instance& instance, const Visit& visit) const {
+    if (instance.copies < 0) return visit(glm::mat4(instance.world));
+    for (const glm::dmat4& copy : placed_.at.copies[static_cast<std::size_t>(instance.copies)])
+      visit(glm::mat4(copy));
+  }
+  [[nodiscard]] const Corners& corners(std::uint32_t primitive);
+  /// Where the vertices of an instance are, model space, after its pose.
+  [[nodiscard]] const Array& host_positions(const Instance& instance);
+  [[nodiscard]] DepthRange find_depth_range();
+  /// Is there a depth attachment?
+  [[nodiscard]] bool has_depth() const { return scene_.depth && options_.order == DrawOrder::kFile; }
   [[nodiscard]] traces::Index copies_buffer(const Instance& instance, bool sorted, bool mirrored);
   [[nodiscard]] Geometry geometry(const Instance& instance);
   void pose(const Instance& instance, Geometry& geometry);
@@ -121,6 +161,8 @@ class Recorder {
   [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
   [[nodiscard]] const Variant& variant(const Primitive& primitive);
 
+  /// the scene with vertices of their own for its faces, where the shaders ask for that
+  std::optional<SceneData> faceted_;
   const SceneData& scene_;
   View seen_;                        ///< of the world as it is
   std::optional<WorldRange> range_;  ///< how the world was moved, if it had to be
@@ -151,6 +193,10 @@ class Recorder {
   std::vector<traces::Command> bound_;
   std::size_t post_shaders_ = 0;  ///< of a second pass
   std::size_t posed_bytes_ = 0;   ///< by the host
+  std::optional<DepthRange> depth_range_;
+  std::map<std::uint32_t, Corners> corners_;                       ///< by primitive
+  std::map<std::pair<std::uint32_t, int>, Array> host_positions_;  ///< by primitive and pose
+  traces::Index painter_indices_ = traces::kNone;
   std::uint32_t draws_ = 0, triangles_ = 0;
 };
 

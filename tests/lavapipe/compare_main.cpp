@@ -35,6 +35,7 @@ struct Arguments {
   std::vector<float> eye, at;
   int camera = -1;
   std::string vertex_shader, fragment_shader, report, images;
+  std::string shading = "pbr", order = "file", view;
   bool lavapipe_only = false, validate = false;
   int time_frames = 0;
   int threads = -1;
@@ -50,6 +51,12 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--at", a.at, "X,Y,Z it looks at")->delimiter(',')->expected(3);
   app.add_option("--vert", a.vertex_shader, "vertex shader (GLSL or SPIR-V) instead of the materials'");
   app.add_option("--frag", a.fragment_shader, "fragment shader instead of the materials'");
+  const auto one_of = [](const auto& names) {
+    return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
+  };
+  app.add_option("--shading", a.shading, "as of quadrille render")->check(one_of(scenes::kShadingNames));
+  app.add_option("--order", a.order, "as of quadrille render")->check(one_of(scenes::kDrawOrderNames));
+  app.add_option("--view", a.view, "as of quadrille render")->check(one_of(scenes::kShowingNames));
   app.add_option("--report", a.report, "write the figures to this JSON file");
   app.add_option("--images", a.images, "write both pictures and their difference to this folder");
   app.add_option("--samples", a.samples,
@@ -80,6 +87,9 @@ scenes::SceneOptions scene_options(const Arguments& a) {
   options.at = point(a.at);
   options.vertex_shader = a.vertex_shader;
   options.fragment_shader = a.fragment_shader;
+  options.shading = scenes::named(scenes::kShadingNames, a.shading, scenes::Shading::kMinimal);
+  options.order = scenes::named(scenes::kDrawOrderNames, a.order, scenes::DrawOrder::kFile);
+  if (!a.view.empty()) options.shown = scenes::named(scenes::kShowingNames, a.view, scenes::Showing::kDepth);
   return options;
 }
 

@@ -18,9 +18,8 @@ namespace {
 
 constexpr std::uint32_t kWidth = 400, kHeight = 225;
 
-void check_scene(const std::string& scene) {
+void check_scene(const std::string& scene, scenes::SceneOptions options = {}) {
   INFO(scene);
-  scenes::SceneOptions options;
   options.width = kWidth;
   options.height = kHeight;
   const auto color = studies::render_with_reference(scenes::load_scene(scene, options), {});
@@ -44,10 +43,30 @@ void check_scene(const std::string& scene) {
 }  // namespace
 
 TEST_CASE("machine: built-in scenes equal the reference in given mode") {
-  for (const char* scene :
-       {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines", "builtin:overdraw",
-        "builtin:fill", "builtin:flag", "builtin:courtyard", "builtin:materials", "builtin:primitives"})
+  for (const char* scene : {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines",
+                            "builtin:overdraw", "builtin:fill", "builtin:cycle", "builtin:flag",
+                            "builtin:courtyard", "builtin:materials", "builtin:primitives"})
     check_scene(scene);
+}
+
+TEST_CASE("machine: the lectures' pipelines equal the reference in given mode") {
+  using namespace scenes;
+  for (const char* scene : {"builtin:cubes", "builtin:flag", "builtin:cycle"}) {
+    for (const Shading shading : {Shading::kMinimal, Shading::kFlat, Shading::kGouraud, Shading::kPhong}) {
+      SceneOptions options;
+      options.shading = shading;
+      check_scene(scene, options);
+    }
+    SceneOptions painter;
+    painter.order = DrawOrder::kPainter;
+    check_scene(scene, painter);
+    for (const Showing shown :
+         {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal, Showing::kTriangle}) {
+      SceneOptions options;
+      options.shown = shown;
+      check_scene(scene, options);
+    }
+  }
 }
 
 TEST_CASE("machine: random points, lines and triangles equal the reference in given mode") {

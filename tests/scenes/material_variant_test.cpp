@@ -106,6 +106,35 @@ TEST_CASE("material variants: the visibility shader compiles, and knows only wha
           std::array<bool, kTextureSlots>{true});
 }
 
+TEST_CASE("material variants: the lectures' pipelines, and pictures of values, compile to valid SPIR-V") {
+  for (const Shading shading : {Shading::kMinimal, Shading::kFlat, Shading::kGouraud, Shading::kPhong}) {
+    SceneOptions options;
+    options.shading = shading;
+    compile_all(options, defines_for(1, 0, 0, false), 37);
+    compile_all(options, defines_for(1, 2, 1, true), 311);
+    compile_all(options, defines_for(0, 5, 2, false), 311);
+  }
+  for (const Showing shown :
+       {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal, Showing::kTriangle}) {
+    SceneOptions options;
+    options.shown = shown;
+    compile_all(options, defines_for(1, 0, 0, false), 101);
+  }
+}
+
+TEST_CASE("material variants: the lectures' pipelines know of a material its colour and its alpha") {
+  const Material m = material_with(0x1f);
+  using Textures = std::array<bool, kTextureSlots>;
+  for (const ShaderSet set : {ShaderSet::kFlat, ShaderSet::kGouraud, ShaderSet::kPhong})
+    REQUIRE(choose_variant(m, primitive_with(0xff), set).textures == Textures{true});
+  const Variant minimal = choose_variant(m, primitive_with(0xff), ShaderSet::kMinimal);
+  REQUIRE(minimal.textures == Textures{});
+  REQUIRE(minimal.attributes == std::array<bool, kSemantics>{true});
+  // Position, normal, texture coordinates and colour: no tangents.
+  REQUIRE(choose_variant(m, primitive_with(0xff), ShaderSet::kPhong).attributes ==
+          std::array<bool, kSemantics>{true, true, false, true, false, true});
+}
+
 TEST_CASE("material variants: the same features share shaders, a texture without coordinates is left out") {
   std::vector<traces::Shader> shaders;
   ShaderLibrary library({}, defines_for(1, 0, 0, false), shaders);

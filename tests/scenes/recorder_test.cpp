@@ -8,6 +8,7 @@
 
 #include "models/base/error.h"
 #include "scenes/builtin/mesh_builder.h"
+#include "tests/scenes/gltf_text.h"
 
 using namespace quadrille;
 using namespace quadrille::scenes;
@@ -96,6 +97,17 @@ TEST_CASE(
   const std::vector<Drawn> drawn = draws(stream);
   REQUIRE(drawn[3].label == "clear");
   for (const Drawn& d : drawn) REQUIRE((!d.pipeline.blend[0].enable && d.pipeline.depth.write));
+}
+
+TEST_CASE("recorder: visibility is not blended under a vertex shader of the user's") {
+  const TempGltf vert(
+      "#version 450\nlayout(location = 0) in vec3 p;\nvoid main() { gl_Position = vec4(p, 1.0); }\n",
+      "p.vert");
+  SceneOptions options;
+  options.visibility = true;
+  options.vertex_shader = vert.path();
+  for (const Drawn& d : draws(Recorder(row_of_boxes(), options).record()))
+    REQUIRE((!d.pipeline.blend[0].enable && d.pipeline.depth.write));
 }
 
 TEST_CASE("recorder: instances share buffers, and a mirrored one turns the front face and the handedness") {

@@ -72,6 +72,27 @@ TEST_CASE("shader pack: a scene of ordinary materials needs no compiler") {
   }
 }
 
+TEST_CASE("shader pack: the lectures' pipelines need no compiler for a scene of ordinary materials") {
+  for (const char* name : {"builtin:triangle", "builtin:cubes", "builtin:courtyard"}) {
+    SceneOptions options;
+    options.width = options.height = 16;
+    const auto compiled = [&] {
+      Scene scene(name, options);
+      REQUIRE_FALSE(scene.record({}).shaders.empty());
+      return scene.compiled_shaders();
+    };
+    for (const Shading shading : {Shading::kMinimal, Shading::kFlat, Shading::kGouraud, Shading::kPhong}) {
+      options.shading = shading;
+      REQUIRE(compiled() == 0);
+    }
+    options.shading = Shading::kPbr;
+    for (const Showing shown : {Showing::kDepth, Showing::kUv, Showing::kNormal, Showing::kTriangle}) {
+      options.shown = shown;
+      REQUIRE(compiled() == 0);
+    }
+  }
+}
+
 TEST_CASE("shader pack: the typical shaders are many, of both stages, and compile") {
   const std::vector<TypicalShader> typical = typical_shaders();
   std::map<std::string, const TypicalShader*> distinct;
@@ -80,7 +101,8 @@ TEST_CASE("shader pack: the typical shaders are many, of both stages, and compil
   std::size_t number = 0;
   for (const auto& [key, shader] : distinct) {
     if (number++ % 23 != 0) continue;
-    REQUIRE(compile_glsl(material_shader_glsl(shader->stage), shader->stage, "t", shader->defines).size() >
-            100);
+    REQUIRE(
+        compile_glsl(material_shader_glsl(shader->stage, shader->set), shader->stage, "t", shader->defines)
+            .size() > 100);
   }
 }

@@ -11,8 +11,8 @@ struct Light {
 
 layout(set = 0, binding = 0, std140) uniform Frame {
   mat4 view_projection;
-  vec4 eye;            // xyz: world position of the camera
-  vec4 toward_viewer;  // xyz: unit vector against the view direction
+  vec4 eye;            // xyz: world position of the camera; w: in a picture of depths, the depth that is white
+  vec4 toward_viewer;  // xyz: unit vector against the view direction; w: there, 1 / the range of depths
   vec4 sky;            // rgb: radiance from straight above
   vec4 ground;         // rgb: radiance from straight below
   Light lights[LIGHTS];

@@ -13,10 +13,10 @@ layout(set = 1, binding = 0, std140) uniform Material {
 #endif
 } material;
 
-#ifdef NEEDS_POSITION
+#if defined(NEEDS_POSITION) && !defined(LIT_AT_VERTICES)
 layout(location = 0) in vec3 v_position;
 #endif
-#ifdef HAS_NORMAL
+#if defined(HAS_NORMAL) && !defined(LIT_AT_VERTICES)
 layout(location = 1) in vec3 v_normal;
 #endif
 #ifdef HAS_TANGENT

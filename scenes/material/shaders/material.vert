@@ -2,7 +2,11 @@
 layout(location = 0) in vec3 position;
 #ifdef HAS_NORMAL
 layout(location = 1) in vec3 normal;
+#ifdef LIT_AT_VERTICES
+vec3 v_normal;
+#else
 layout(location = 1) out vec3 v_normal;
+#endif
 #endif
 #ifdef HAS_TANGENT
 layout(location = 2) in vec4 tangent;
@@ -20,8 +24,18 @@ layout(location = 4) out vec2 v_uv1;
 layout(location = 5) in vec4 color;
 layout(location = 5) out vec4 v_color;
 #endif
-#ifdef NEEDS_POSITION
+#ifdef LIT_AT_VERTICES
+vec3 v_position;
+#elif defined(NEEDS_POSITION)
 layout(location = 0) out vec3 v_position;  // world axes, relative to the eye: differences stay exact far from the origin
+#endif
+#ifdef LIT_AT_VERTICES
+layout(location = 6) ACROSS out vec3 v_diffuse;
+layout(location = 7) ACROSS out vec3 v_specular;
+#ifdef DOUBLE_SIDED
+layout(location = 8) ACROSS out vec3 v_back_diffuse;
+layout(location = 9) ACROSS out vec3 v_back_specular;
+#endif
 #endif
 
 // Model and normal matrix: of the draw, or of each of its instances.
@@ -85,5 +99,15 @@ void main() {
 #endif
 #ifdef HAS_COLOR
   v_color = color;
+#endif
+#ifdef LIT_AT_VERTICES
+  Reflected front = reflect_lights(unit(v_normal), v_position);
+  v_diffuse = front.diffuse;
+  v_specular = front.specular;
+#ifdef DOUBLE_SIDED
+  Reflected back = reflect_lights(-unit(v_normal), v_position);
+  v_back_diffuse = back.diffuse;
+  v_back_specular = back.specular;
+#endif
 #endif
 }

@@ -1,0 +1,38 @@
+// Fragment shader of the pictures that show something else than colours (docs/lectures.md). The target is UNORM, so what is written here is what can be read
+// off the picture, in 255ths. The alpha test is the material's.
+void main() {
+#ifdef ALPHA_MASK
+  alpha_test(read_base_color().a);
+#endif
+  vec3 value = vec3(0.0);
+#ifdef SHOW_DEPTH
+  value = vec3(1.0 - (gl_FragCoord.z - frame.eye.w) * frame.toward_viewer.w);
+#endif
+#ifdef SHOW_OVERDRAW
+  value = vec3(1.0 / 255.0);  // added up by blending; overdraw.frag makes colours of the sums
+#endif
+#ifdef SHOW_UV
+#ifdef HAS_UV0
+  value = vec3(fract(v_uv0), 0.0);
+#else
+  value.b = 0.25;
+#endif
+#endif
+#ifdef SHOW_NORMAL
+#ifdef HAS_NORMAL
+  vec3 n = v_normal * inversesqrt(max(dot(v_normal, v_normal), 1e-30));
+#ifdef DOUBLE_SIDED
+  n = gl_FrontFacing ? n : -n;
+#endif
+  value = n * 0.5 + 0.5;
+#else
+  value.b = 0.25;
+#endif
+#endif
+#ifdef SHOW_TRIANGLE
+  // The factor is odd, so that each of 2^24 numbers has its own colour, and that of the background is nobody's.
+  uint code = (draw.first_triangle + uint(gl_PrimitiveID) + 1u) * 2654435761u;
+  value = vec3(uvec3(code, code >> 8, code >> 16) & 255u) / 255.0;
+#endif
+  out_color = vec4(value, 1.0);
+}
