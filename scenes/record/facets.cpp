@@ -47,7 +47,7 @@ class Facets {
 
   SceneData run() {
     SceneData out;
-    static_cast<Placements&>(out) = scene_;
+    static_cast<Placements&>(out) = static_cast<const Placements&>(scene_);
     out.name = scene_.name;
     out.images = scene_.images;
     out.materials = scene_.materials;

@@ -42,7 +42,8 @@ const Array& Recorder::host_positions(const Instance& instance) {
   if (added) {
     const Pose& pose = scene_.poses[static_cast<std::size_t>(instance.pose)];
     auto posed = pose_on_host(scene_, primitive, pose, !pose.joints.empty());
-    entry->second = posed[0] ? std::move(*posed[0]) : still;
+    if (posed[0]) entry->second = std::move(*posed[0]);
+    else entry->second = still;
   }
   return entry->second;
 }
