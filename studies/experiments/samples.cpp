@@ -1,5 +1,5 @@
-/// Samples a pixel: what 2, 4 and 8 of them cost in cycles and bytes, and how much nearer the picture comes to
-/// one of 64 samples.
+/// Samples a pixel: what 2, 4 and 8 of them cost in cycles and bytes, and how much nearer the picture comes
+/// to one of 64 samples.
 #include <fmt/format.h>
 
 #include <algorithm>
