@@ -26,6 +26,7 @@ CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& cont
       engine_(static_cast<std::uint32_t>(context.number)),
       sync_interval_(
           std::max<std::uint64_t>(1, triangles.size() / static_cast<std::uint64_t>(params.reports.value()))),
+      order_(params.order.value().make()),
       rate_(context.clock) {
   add_initiation_rate("tests_per_clk");
   for (int i = 0; i < context.machine.partitions_of_engine(); ++i) {
@@ -86,6 +87,7 @@ void CoarseRaster::take_token(Tick now) {
     triangle_ = token.triangle;
     walk_ = models::TileWalk(triangles_[triangle_].setup, frame_.draw(draw_).samples());
     charged_tests_ = touched_ = owned_ = 0;
+    if (!order_->as_walked()) sort_tiles();
     look_ahead();
     walking_ = true;
     ++stats_.triangles;
@@ -134,7 +136,7 @@ bool CoarseRaster::hidden(const models::TileHit& tile) const {
 void CoarseRaster::look_ahead() {
   models::TileHit tile;
   ahead_.reset();
-  while (!ahead_ && walk_.next(tile)) {
+  while (!ahead_ && next_tile(tile)) {
     ++touched_;
     if (!owns(tile)) continue;
     ++owned_;
@@ -142,12 +144,33 @@ void CoarseRaster::look_ahead() {
   }
 }
 
+void CoarseRaster::sort_tiles() {
+  sorted_.clear();
+  next_sorted_ = 0;
+  models::TileHit tile;
+  while (walk_.next(tile))
+    sorted_.emplace_back(
+        order_->place(static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y)),
+        tile);
+  std::ranges::sort(sorted_, {}, [](const auto& entry) { return entry.first; });
+}
+
+bool CoarseRaster::next_tile(models::TileHit& tile) {
+  if (order_->as_walked()) return walk_.next(tile);
+  if (next_sorted_ == sorted_.size()) return false;
+  tile = sorted_[next_sorted_++].second;
+  return true;
+}
+
 bool CoarseRaster::owns(const models::TileHit& tile) const {
   return screen_.engines == 1 || screen_.engine_of_tile(static_cast<std::uint32_t>(tile.tile_x),
                                                         static_cast<std::uint32_t>(tile.tile_y)) == engine_;
 }
 
-std::uint64_t CoarseRaster::tests() const { return owned_ + (walk_.tests() - touched_) / screen_.engines; }
+std::uint64_t CoarseRaster::tests() const {
+  const std::uint64_t kept = order_->as_walked() ? touched_ : sorted_.size();
+  return owned_ + (walk_.tests() - kept) / screen_.engines;
+}
 
 void CoarseRaster::drop(const models::TileHit& tile) {
   stats_.working_for(draw_, static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y));

@@ -3,8 +3,8 @@
 ///
 /// In    triangle_in  set-up primitives; boundaries
 ///       hiz_in[p]    a tile's greatest depth became smaller, from the depth unit of its partition p
-/// Out   tile_out     tiles of one primitive, row by row; boundaries; now and then a sync for the triangle
-///                    store
+/// Out   tile_out     tiles of one primitive, as `order` says; boundaries; now and then a sync for the
+///                    triangle store
 /// Time  `tests_per_clk` tile tests a cycle and at most one tile out a cycle; waits while tile_out is full
 ///
 /// Hi-Z holds, for each tile of the pass, a depth that no stored depth exceeds. It may be late (updates
@@ -19,6 +19,7 @@
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
 #include "models/raster/coarse.h"
+#include "models/raster/tile_order.h"
 
 #include <optional>
 
@@ -47,6 +48,10 @@ class CoarseRaster final : public Unit {
                        "the store waits]",
                        Effect::kTradeOff};
     Param<bool> hiz{*this, "hiz", true, "", "Drop tiles that Hi-Z proves hidden."};
+    PolicyParam<models::TileOrderPolicy> order{*this, "order", models::tile_order_policies(),
+                                               models::kScanTileOrder,
+                                               "In which order the tiles of a triangle go on. Their tests "
+                                               "cost the same. [G: as the walk finds them]"};
   };
   struct Stats : StatGroup {
     Counter triangles{*this, "triangles", "triangle", "Triangles walked"};
@@ -78,6 +83,9 @@ class CoarseRaster final : public Unit {
   void take_updates(Tick now);
   /// Finds the next tile of the walk, so that the last one is known as such when it leaves.
   void look_ahead();
+  /// The next tile of the walk, in the machine's order; false at its end.
+  [[nodiscard]] bool next_tile(models::TileHit& tile);
+  void sort_tiles();
   [[nodiscard]] bool owns(const models::TileHit& tile) const;
   /// Of this walk so far: those of its own tiles, and its share of those that failed.
   [[nodiscard]] std::uint64_t tests() const;
@@ -96,6 +104,10 @@ class CoarseRaster final : public Unit {
   Stats stats_;
   bool walking_ = false;
   models::TileWalk walk_;
+  std::unique_ptr<models::TileOrder> order_;
+  /// of the walk, where they do not go on as they are found; with their places
+  std::vector<std::pair<std::uint64_t, models::TileHit>> sorted_;
+  std::size_t next_sorted_ = 0;
   std::optional<models::TileHit> ahead_;   ///< the next tile of the walk; none at its end
   std::uint64_t charged_tests_ = 0;        ///< of this walk
   std::uint64_t touched_ = 0, owned_ = 0;  ///< tiles of this walk, and those of them that are the engine's

@@ -40,6 +40,8 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.core.register_rows.set(random.pick({256, 1024}));
   config.core.simds.set(random.pick({1, 2, 4}));
   config.vertex_fetch.batch_slots.set(random.pick({2, 3, 16}));
+  // Named by the seed alone, so that the machines of before stay what they were.
+  config.coarse_raster.order.set(*models::tile_order_policies().all()[seed % 3]);
   config.vertex_fetch.reuse.set(
       *models::vertex_reuse_policies().all()[static_cast<std::size_t>(random.integer(0, 2))]);
   config.primitive_assembly.triangles_per_clk.set(random.pick({1, 2, 64}));
