@@ -2,6 +2,7 @@
 /// without an effect on the picture.
 #include "models/memory/dram/scheduler.h"
 #include "pipeline/machine/machine_config.h"
+#include "scenes/record/post_pass.h"
 #include "scenes/scene.h"
 #include "tests/pipeline/machine_specimen.h"
 #include "tests/pipeline/plan_run.h"
@@ -54,13 +55,20 @@ Settings narrow() {
           {"work_distributor.block_tiles", "1"}};
 }
 
-/// A mesh whose triangles share vertices, lit and textured.
+/// A mesh whose triangles share vertices, lit and textured, and one triangle over all of that picture.
 const traces::CommandStream& frame() {
   static const traces::CommandStream stream = [] {
     scenes::SceneOptions options;
     options.width = 64;
     options.height = 48;
-    return scenes::load_scene("builtin:flag", options);
+    traces::CommandStream flag = scenes::load_scene("builtin:flag", options);
+    scenes::add_post_pass(flag, R"(#version 450
+layout(location = 0) in vec2 uv;
+layout(set = 0, binding = 0) uniform sampler2D picture;
+layout(location = 0) out vec4 color;
+void main() { color = texture(picture, uv.yx); })");
+    traces::validate(flag);
+    return flag;
   }();
   return stream;
 }
