@@ -13,7 +13,7 @@ namespace quadrille::models {
 class TileOrder {
  public:
   virtual ~TileOrder() = default;
-  /// The order is that in which a walk over the triangle finds the tiles (models/raster/coarse.h): row by row.
+  /// The order is that in which a walk over the triangle finds the tiles (models/raster/coarse.h), by rows.
   [[nodiscard]] virtual bool as_walked() const { return false; }
   /// Of two tiles the one with the smaller place comes first; no two tiles have one place. Tiles are below
   /// 65536 in both directions.
