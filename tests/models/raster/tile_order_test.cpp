@@ -20,6 +20,7 @@ std::vector<std::pair<int, int>> walked(const TileOrderPolicy& policy, int side)
     for (int x = 0; x < side; ++x)
       by_place[order->place(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))] = {x, y};
   std::vector<std::pair<int, int>> all;
+  all.reserve(by_place.size());
   for (const auto& [place, tile] : by_place) all.push_back(tile);
   return all;
 }
