@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -178,6 +179,16 @@ void SceneArguments::use_samples(traces::CommandStream& stream) const {
   try {
     traces::use_samples(stream, parse_samples(*samples));
   } catch (const UserError& error) { throw user_error("--samples: {}: {}", scene, error.what()); }
+  const auto keeps_one = [&](const traces::Command& command) {
+    const auto* const pass = std::get_if<traces::BeginPass>(&command);
+    return pass != nullptr && stream.images[pass->first_image()].samples == 1;
+  };
+  const auto kept = std::ranges::count_if(stream.commands, keeps_one);
+  if (kept > 0 && parse_samples(*samples) > 1)
+    fmt::print(stderr,
+               "{}: {} of its passes keep one sample a pixel: they load an attachment, or others read "
+               "their depth\n",
+               scene, kept);
 }
 
 void SceneArguments::add_trace_to(CLI::App& command) {

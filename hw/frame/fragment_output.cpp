@@ -2,6 +2,7 @@
 
 #include "models/raster/interpolate.h"
 #include "models/rop/depth.h"
+#include "models/rop/resolve.h"
 
 #include <algorithm>
 #include <bit>
@@ -53,6 +54,18 @@ void write_color(const DrawState& draw, const PassState& pass, std::size_t attac
   auto* const tile = reinterpret_cast<std::uint32_t*>(memory.write(address, models::kTileBytes).data());
   models::blend_quad(draw.blend[attachment], target.format, rgba, tile + quad.place.first_pixel(),
                      quad.lanes);
+}
+
+void resolve_tile(const PassState& pass, std::size_t attachment, std::uint32_t tile_x, std::uint32_t tile_y,
+                  models::DeviceMemory& memory) {
+  const models::SurfaceLayout &from = pass.color[attachment].surface, &to = pass.resolve[attachment].surface;
+  const std::size_t bytes = std::size_t{models::kTileBytes} * from.samples;
+  const auto* const planes =
+      reinterpret_cast<const std::uint32_t*>(memory.read(from.tile_address(tile_x, tile_y), bytes).data());
+  auto* const pixels = reinterpret_cast<std::uint32_t*>(
+      memory.write(to.tile_address(tile_x, tile_y), models::kTileBytes).data());
+  models::resolve_tile(pass.color[attachment].format, std::span(planes, bytes / sizeof(std::uint32_t)),
+                       pixels);
 }
 
 }  // namespace quadrille::hw

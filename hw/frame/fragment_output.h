@@ -51,5 +51,8 @@ models::LaneMask test_samples(const DrawState& draw, WarpSlot& warp, const model
 /// Blends a quad's colours into one attachment of its pass.
 void write_color(const DrawState& draw, const PassState& pass, std::size_t attachment, const WarpSlot& warp,
                  const QuadOfWarp& quad, models::DeviceMemory& memory);
+/// Writes the means of the samples in one tile of a colour attachment to what it is resolved to.
+void resolve_tile(const PassState& pass, std::size_t attachment, std::uint32_t tile_x, std::uint32_t tile_y,
+                  models::DeviceMemory& memory);
 
 }  // namespace quadrille::hw

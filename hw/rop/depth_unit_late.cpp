@@ -88,7 +88,8 @@ bool DepthUnit::test_late(Tick now) {
   warp.alive = survivors;
   late_out.push(now, token);
   late_.pop_front();
-  if (draw.samples().count == 1) quads = warp.quads;
+  // A quad whose lanes are all dead takes its place all the same.
+  quads = std::max(quads, warp.quads);
   const int cycles = std::max(1, (quads + params_.quads_per_clk - 1) / params_.quads_per_clk);
   free_ = after(now, cycles);
   occupy(now, cycles);
@@ -104,11 +105,9 @@ models::LaneMask DepthUnit::test_quad(const DrawState& draw, WarpSlot& warp, int
       samples == 1 ? 1u : static_cast<std::uint32_t>(std::popcount(warp.samples_of(q)));
   if (part.lanes == 0) return 0;
   const models::TriangleSetup& triangle = triangles_[quad.triangle].setup;
-  models::LaneMask passed = 0;
-  if (samples == 1) passed = test_depth(draw, warp, triangle, part, depths(tx, ty, 0));
-  else
-    passed = test_samples(draw, warp, triangle, part,
-                          [&](int s) { return depths(tx, ty, static_cast<std::uint32_t>(s)); });
+  const models::LaneMask passed = test_samples(draw, warp, triangle, part, [&](int sample) {
+    return depths(tx, ty, static_cast<std::uint32_t>(sample));
+  });
   if (draw.depth_write && passed != 0) send_hiz(now, tx, ty);
   return passed;
 }

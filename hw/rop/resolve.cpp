@@ -1,10 +1,9 @@
 #include "hw/rop/resolve.h"
 
+#include "hw/frame/fragment_output.h"
 #include "models/memory/interleave.h"
-#include "models/rop/resolve.h"
 
 #include <algorithm>
-#include <span>
 
 namespace quadrille::hw {
 
@@ -34,7 +33,7 @@ void Resolve::find_next() {
 
 bool Resolve::can_ask() const {
   if (stalled_) return false;
-  if (!tiles_.empty() && !acquired(tiles_[tiles_.size() - 1])) return true;
+  if (!newest_acquired()) return true;
   return next_.color < pass_->colors && tiles_.size() < in_flight_;
 }
 
@@ -43,21 +42,26 @@ bool Resolve::head_ready() const {
 }
 
 Tick Resolve::next(Tick free) const {
-  if (can_ask() || (tiles_.empty() && next_.color == pass_->colors)) return free;
+  if (can_ask() || next_is_cleared() || (tiles_.empty() && next_.color == pass_->colors)) return free;
   return head_ready() && !stalled_ ? std::max(free, tiles_.front().ready) : kNever;
 }
 
-bool Resolve::is_cleared(const Tile& tile) const {
+bool Resolve::next_is_cleared() const {
+  if (next_.color == pass_->colors || !newest_acquired()) return false;
   for (std::uint32_t s = 0; s < static_cast<std::uint32_t>(pass_->samples); ++s)
-    if (!cache_.is_cleared({tile.color, tile.x, tile.y, s})) return false;
+    if (!cache_.is_cleared({next_.color, next_.x, next_.y, s})) return false;
   return true;
 }
 
+void Resolve::advance() {
+  ++next_.x;
+  find_next();
+}
+
 void Resolve::ask(Tick now) {
-  if (tiles_.empty() || acquired(tiles_.back())) {
+  if (newest_acquired()) {
     tiles_.push_back(next_);
-    ++next_.x;
-    find_next();
+    advance();
   }
   Tile& tile = tiles_.back();
   const auto samples = static_cast<std::uint32_t>(pass_->samples);
@@ -79,18 +83,19 @@ Resolve::Done Resolve::step(Tick now) {
     running_ = false;
     return done;
   }
-  if (can_ask() && tiles_.empty() && is_cleared(next_)) {
-    compute(next_);
+  if (next_is_cleared()) {
+    resolve_tile(*pass_, next_.color, next_.x, next_.y, memory_);
     cache_.clear(target_of(next_));
-    done = {1, 1, 0};
-    ++next_.x;
-    find_next();
-  } else {
-    if (can_ask()) ask(now);
-    if (head_ready() && tiles_.front().ready <= now && resolve(tiles_.front())) {
-      tiles_.pop_front();
-      done = {1, 0, models::kTileQuads * (pass_->samples + 1)};
-    }
+    ++done.tiles;
+    ++done.cleared;
+    advance();
+  } else if (can_ask()) {
+    ask(now);
+  }
+  if (head_ready() && tiles_.front().ready <= now && resolve(tiles_.front())) {
+    tiles_.pop_front();
+    ++done.tiles;
+    done.quads = models::kTileQuads * (pass_->samples + 1);
   }
   return done;
 }
@@ -102,20 +107,8 @@ bool Resolve::resolve(const Tile& tile) {
     stalled_ = !cache_.idle();
     return false;
   }
-  compute(tile);
+  resolve_tile(*pass_, tile.color, tile.x, tile.y, memory_);
   return true;
-}
-
-void Resolve::compute(const Tile& tile) {
-  const models::SurfaceLayout& from = pass_->color[tile.color].surface;
-  const models::SurfaceLayout& to = pass_->resolve[tile.color].surface;
-  const std::size_t bytes = std::size_t{models::kTileBytes} * from.samples;
-  const auto* const planes =
-      reinterpret_cast<const std::uint32_t*>(memory_.read(from.tile_address(tile.x, tile.y), bytes).data());
-  auto* const pixels = reinterpret_cast<std::uint32_t*>(
-      memory_.write(to.tile_address(tile.x, tile.y), models::kTileBytes).data());
-  models::resolve_tile(pass_->color[tile.color].format, std::span(planes, bytes / sizeof(std::uint32_t)),
-                       pixels);
 }
 
 }  // namespace quadrille::hw

@@ -24,7 +24,7 @@ class Resolve {
   [[nodiscard]] bool running() const { return running_; }
   /// When the next step can be done, `free` or later; kNever while it waits for memory.
   [[nodiscard]] Tick next(Tick free) const;
-  /// What a step did: at most one tile was resolved, at the cost of these quads.
+  /// What a step did: tiles resolved, those of them that nothing was drawn to, and the cost of the others.
   struct Done {
     int tiles = 0, cleared = 0, quads = 0;
   };
@@ -55,11 +55,13 @@ class Resolve {
   /// The newest tile lacks something, or there is another one and room for it.
   [[nodiscard]] bool can_ask() const;
   [[nodiscard]] bool head_ready() const;
-  [[nodiscard]] bool is_cleared(const Tile& tile) const;
+  [[nodiscard]] bool newest_acquired() const { return tiles_.empty() || acquired(tiles_[tiles_.size() - 1]); }
+  /// Nothing was drawn to the next tile, and its turn has come.
+  [[nodiscard]] bool next_is_cleared() const;
   void find_next();
+  void advance();
   void ask(Tick now);
   [[nodiscard]] bool resolve(const Tile& tile);
-  void compute(const Tile& tile);
   [[nodiscard]] SurfaceTile target_of(const Tile& tile) const {
     return {surface_[tile.color], tile.x, tile.y, 0};
   }

@@ -10,7 +10,6 @@
 #include "models/raster/coarse.h"
 #include "models/raster/fine.h"
 #include "models/raster/interpolate.h"
-#include "models/rop/resolve.h"
 
 #include <bit>
 
@@ -50,7 +49,7 @@ class FunctionalRenderer {
       if (pass.has_depth) begin(pass.depth);
       for (std::uint32_t d = 0; d < pass.draws; ++d) draw(hw::DrawId(pass.first_draw.index() + d));
       for (std::size_t c = 0; c < pass.colors; ++c)
-        if ((pass.resolved >> c & 1u) != 0) resolve(pass.color[c], pass.resolve[c]);
+        if ((pass.resolved >> c & 1u) != 0) resolve(pass, c);
     }
     return counts_;
   }
@@ -64,17 +63,10 @@ class FunctionalRenderer {
     if (!attachment.loads()) models::fill_surface(memory_, attachment.surface, attachment.clear);
   }
 
-  void resolve(const hw::AttachmentState& from, const hw::AttachmentState& to) {
-    const std::size_t bytes = std::size_t{models::kTileBytes} * from.surface.samples;
-    for (std::uint32_t y = 0; y < to.surface.tiles_y; ++y) {
-      for (std::uint32_t x = 0; x < to.surface.tiles_x; ++x) {
-        const auto* const planes = reinterpret_cast<const std::uint32_t*>(
-            memory_.read(from.surface.tile_address(x, y), bytes).data());
-        auto* const pixels = reinterpret_cast<std::uint32_t*>(
-            memory_.write(to.surface.tile_address(x, y), models::kTileBytes).data());
-        models::resolve_tile(from.format, std::span(planes, bytes / sizeof(std::uint32_t)), pixels);
-      }
-    }
+  void resolve(const hw::PassState& pass, std::size_t attachment) {
+    const models::SurfaceLayout& surface = pass.color[attachment].surface;
+    for (std::uint32_t y = 0; y < surface.tiles_y; ++y)
+      for (std::uint32_t x = 0; x < surface.tiles_x; ++x) hw::resolve_tile(pass, attachment, x, y, memory_);
   }
 
   void draw(hw::DrawId id) {

@@ -33,14 +33,15 @@ std::vector<double> drawn(const traces::CommandStream& stream) {
 /// The mean of pictures whose viewports are moved by parts of a pixel: each is shaded for itself.
 std::vector<double> ideal(const traces::CommandStream& stream) {
   std::vector<double> sum;
+  traces::CommandStream shifted = stream;
   for (int place = 0; place < kIdealSide * kIdealSide; ++place) {
     const auto moved = [](int step) { return (static_cast<float>(step) + 0.5f) / kIdealSide - 0.5f; };
-    traces::CommandStream shifted = stream;
-    for (traces::Command& command : shifted.commands) {
-      auto* const viewport = std::get_if<traces::SetViewport>(&command);
+    for (std::size_t i = 0; i < stream.commands.size(); ++i) {
+      const auto* const viewport = std::get_if<traces::SetViewport>(&stream.commands[i]);
       if (viewport == nullptr) continue;
-      viewport->x += moved(place % kIdealSide);
-      viewport->y += moved(place / kIdealSide);
+      auto& to = std::get<traces::SetViewport>(shifted.commands[i]);
+      to.x = viewport->x + moved(place % kIdealSide);
+      to.y = viewport->y + moved(place / kIdealSide);
     }
     const std::vector<double> picture = drawn(shifted);
     sum.resize(picture.size());

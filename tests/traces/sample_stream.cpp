@@ -74,6 +74,20 @@ Pipeline random_pipeline(Dice& dice) {
   return p;
 }
 
+/// The pass draws to other images, of several samples a pixel, and resolves the colours to its own.
+void add_samples(CommandStream& s, BeginPass& pass, std::uint32_t samples) {
+  const auto add = [&](Index like, ImageUsage usage) {
+    Image image = s.images[like];
+    image.usage = usage;
+    image.samples = samples;
+    s.images.push_back(std::move(image));
+    return static_cast<Index>(s.images.size() - 1);
+  };
+  pass.colors[0].resolve = pass.colors[0].image;
+  pass.colors[0].image = add(pass.colors[0].image, kColorAttachment);
+  pass.depth.image = add(pass.depth.image, kDepthAttachment);
+}
+
 void random_commands(Dice& dice, CommandStream& s) {
   auto& c = s.commands;
   BeginPass pass = make_pass(s,
@@ -83,6 +97,7 @@ void random_commands(Dice& dice, CommandStream& s) {
   pass.colors[0].load = dice.coin() ? LoadOp::kClear : LoadOp::kDontCare;
   pass.depth.store = dice.choice(StoreOp::kDiscard);
   s.images[pass.colors[0].image].usage |= kSampled;
+  if (dice.coin()) add_samples(s, pass, 2u << dice.below(3));
   c.emplace_back(pass);
   c.emplace_back(
       SetViewport{-dice.unit(), dice.unit(), 1 + dice.unit(), -1 - dice.unit(), dice.unit(), dice.unit()});

@@ -130,6 +130,41 @@ TEST_CASE("validate: objects") {
   });
 }
 
+TEST_CASE("validate: samples a pixel, and what they are resolved to") {
+  const auto four = [](auto& s) { use_samples(s, 4); };
+  CommandStream good = small_stream();
+  four(good);
+  validate(good);
+  const auto begin = [](auto& s) -> BeginPass& { return command<BeginPass>(s, 0); };
+  expect({
+      {"3 samples a pixel; 1, 2, 4 and 8 are possible", [](auto& s) { s.images[1].samples = 3; }},
+      {"image 0 'white': only an attachment that is not sampled has 4 samples",
+       [](auto& s) { s.images[0].samples = 4; }},
+      {"depth attachment: image 2 of 1 samples a pixel beside one of 4",
+       [](auto& s) {
+         s.images[1].usage = kColorAttachment;
+         s.images[1].samples = 4;
+       }},
+      {"resolve attachment: image 99 does not exist",
+       [=](auto& s) {
+         four(s);
+         begin(s).colors[0].resolve = 99;
+       }},
+      {"several samples a pixel are resolved to a colour attachment of one",
+       [=](auto& s) { begin(s).colors[0].resolve = 1; }},
+      {"differ in size or format",
+       [=](auto& s) {
+         four(s);
+         s.images[begin(s).colors[0].resolve].height += 1;
+       }},
+      {"resolves the samples of its first colours nowhere",
+       [=](auto& s) {
+         four(s);
+         begin(s).colors[0].resolve = kNone;
+       }},
+  });
+}
+
 TEST_CASE("validate: passes and bound state") {
   expect({
       {"command 1: a render pass begins inside another", [](auto& s) { s.commands[1] = BeginPass{}; }},

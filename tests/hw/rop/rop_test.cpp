@@ -294,6 +294,20 @@ TEST_CASE("rop: what nothing was drawn to is resolved without a look at its samp
         }) == "reads 0 writes 4 clear 2 pixel 80402010");
 }
 
+TEST_CASE("rop: a tile that nothing was drawn to moves nothing, also while others wait for their samples") {
+  // The left tile is drawn by warps 0 and 2, the right one by none.
+  RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}, {0, kPassEnd}},
+                    .done = {done(10, 0), done(10, 2)},
+                    .late = {{100, {TokenKind::kPassEnd, {}}}}};
+  s.samples = 4;
+  s.store = models::StoreOp::kDiscard;
+  s.lines = s.ways = 8;  // all of the left tile and no more: what is resolved drives samples out
+  CHECK(run<RopBench>(s, [](const RopBench& b) {
+          return fmt::format("tiles {} clear {} clears met {}", counter(*b.unit, "resolved_tiles"),
+                             counter(*b.unit, "resolved_clear"), counter(*b.unit, "clear_hits"));
+        }) == "tiles 2 clear 1 clears met 4");
+}
+
 TEST_CASE("rop: a cache of one line resolves to the same picture") {
   RopBench::Setup s = whole_pass();
   s.samples = 4;
