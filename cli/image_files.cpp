@@ -44,6 +44,9 @@ scenes::FloatImage linear_values(const pipeline::FrameImage& image, bool srgb, b
   const std::uint32_t channels = keep_alpha ? 4 : 3;
   scenes::FloatImage out{image.width, image.height, channels, {}};
   out.pixels.reserve(image.color.size() * channels);
+  for (const std::array<float, 4>& pixel : image.linear)
+    out.pixels.insert(out.pixels.end(), pixel.begin(), pixel.begin() + channels);
+  if (!image.linear.empty()) return out;
   for (const std::uint32_t pixel : image.color) {
     for (std::uint32_t c = 0; c < channels; ++c) {
       const auto code = static_cast<std::uint8_t>(pixel >> (8 * c));

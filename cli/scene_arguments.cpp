@@ -46,6 +46,26 @@ std::uint32_t parse_samples(std::string_view text) {
   return count;
 }
 
+/// Formats that a picture can be drawn in, by Vulkan's names.
+std::vector<std::string> color_format_names() {
+  std::vector<std::string> names;
+  for (int f = 0; f <= static_cast<int>(models::kLastFormat); ++f) {
+    const models::FormatInfo& info = models::format_info(static_cast<models::Format>(f));
+    if (info.may(models::kColorUse)) names.emplace_back(info.name);
+  }
+  return names;
+}
+
+models::Format color_format_named(std::string_view name) {
+  int f = 0;
+  while (f < static_cast<int>(models::kLastFormat)) {
+    const models::FormatInfo& info = models::format_info(static_cast<models::Format>(f));
+    if (info.name == name && info.may(models::kColorUse)) break;
+    ++f;
+  }
+  return static_cast<models::Format>(f);
+}
+
 /// None: chosen by the scene.
 std::optional<double> parse_exposure(std::string_view text) {
   double factor = 0;
@@ -165,6 +185,13 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
       ->check(one_of(scenes::kShowingNames));
 }
 
+void SceneArguments::add_color_format_to(CLI::App& command) {
+  command
+      .add_option("--color-format", color_format,
+                  "what a pixel of the scene's colour attachments is stored as (default: R8G8B8A8_SRGB)")
+      ->check(CLI::IsMember(color_format_names()));
+}
+
 void SceneArguments::add_samples_to(CLI::App& command) {
   command
       .add_option("--samples", samples,
@@ -220,6 +247,9 @@ scenes::SceneOptions SceneArguments::options() const {
       throw user_error("{}: not together with --vert or --frag, which are shaders of their own", flag);
   }
   if (view && shading) throw user_error("--view: not together with --shading; it shows no shading");
+  if (view && color_format)
+    throw user_error("--color-format: not together with --view, whose values have a format of their own");
+  if (color_format) options.color_format = color_format_named(*color_format);
   options.leave_out = leave_out;
   options.keep_packed = keep_packed;
   if (shading) options.shading = scenes::named(scenes::kShadingNames, *shading, scenes::Shading::kMinimal);
@@ -234,11 +264,11 @@ void SceneArguments::check() const {
   if (samples) (void)parse_samples(*samples);
   if (is_trace()) {
     if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag ||
-        shading || order || view) {
+        shading || order || view || color_format) {
       throw user_error(
           "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, "
           "--eye, --at, --time, --animation, "
-          "--exposure, --vert, --frag, --shading, --order and --view are for scenes",
+          "--exposure, --vert, --frag, --shading, --order, --view and --color-format are for scenes",
           scene);
     }
     return;

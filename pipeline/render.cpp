@@ -24,8 +24,14 @@ FrameImage read_image(const DeviceFrame& frame) {
   frame.memory.check_readable(shown.surface.base, shown.surface.bytes(), models::DeviceMemory::kClean);
   image.width = pass.width;
   image.height = pass.height;
-  image.color = models::detile(frame.memory, shown.surface);
-  for (std::uint32_t& pixel : image.color) pixel = models::to_rgba8(shown.format, pixel);
+  const std::vector<models::PixelCode> codes = models::detile_codes(frame.memory, shown.surface);
+  image.color.reserve(codes.size());
+  for (const models::PixelCode& code : codes) image.color.push_back(models::to_rgba8(shown.format, code));
+  if (models::is_float_format(shown.format)) {
+    image.linear.reserve(codes.size());
+    for (const models::PixelCode& code : codes)
+      image.linear.push_back(models::decode_color(shown.format, code));
+  }
   if (pass.has_depth) {
     const std::vector<std::uint32_t> bits = models::detile(frame.memory, pass.depth.surface);
     image.depth.reserve(bits.size());

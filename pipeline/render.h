@@ -14,8 +14,10 @@ namespace quadrille::pipeline {
 
 struct FrameImage {
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint32_t> color;  ///< RGBA8 as stored, red in the low byte; rows top to bottom
-  std::vector<float> depth;          ///< rows top to bottom; empty when the target has no depth
+  std::vector<std::uint32_t> color;  ///< RGBA8, red in the low byte; rows top to bottom
+  /// the numbers as stored, of a target of floats; else empty
+  std::vector<std::array<float, 4>> linear{};
+  std::vector<float> depth;  ///< rows top to bottom; empty when the target has no depth
 };
 
 /// What a buffer that programs wrote held at the end of the frame.

@@ -37,12 +37,13 @@ void ScanOut::act(Tick now) {
     if (!scanning_) {
       const models::SurfaceLayout& surface = frame_.pass(scan_in.pop(now).pass).picture().surface;
       next_line_ = static_cast<std::uint32_t>(surface.base / models::kLineBytes);
+      sectors_ = surface.line_sectors();
       end_line_ = next_line_ + static_cast<std::uint32_t>(surface.bytes() / models::kLineBytes);
       scanning_ = true;
     } else if (next_line_ < end_line_) {
       device_.check_readable(std::uint64_t{next_line_} * models::kLineBytes, models::kLineBytes,
                              models::DeviceMemory::kClean);
-      port_.read(next_line_++, 0xf, 0);
+      port_.read(next_line_++, sectors_, 0);
       ++in_flight_;
       ++stats_.lines;
     } else {

@@ -49,6 +49,7 @@ class ScanOut final : public Unit {
   MemoryPort port_;
   bool scanning_ = false;
   std::uint32_t next_line_ = 0, end_line_ = 0;
+  std::uint8_t sectors_ = 0xf;  ///< of each line, that hold pixels
   int in_flight_ = 0;
   Tick free_ = 0;
 };

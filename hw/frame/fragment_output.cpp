@@ -51,21 +51,18 @@ void write_color(const DrawState& draw, const PassState& pass, std::size_t attac
   const AttachmentState& target = pass.color[attachment];
   const std::uint64_t address = target.surface.tile_address(quad.place.tile_x, quad.place.tile_y,
                                                             static_cast<std::uint32_t>(quad.sample));
-  auto* const tile = reinterpret_cast<std::uint32_t*>(memory.write(address, models::kTileBytes).data());
-  models::blend_quad(draw.blend[attachment], target.format, rgba, tile + quad.place.first_pixel(),
-                     quad.lanes);
+  std::byte* const tile = memory.write(address, target.surface.plane_bytes()).data();
+  const std::size_t first = static_cast<std::size_t>(quad.place.first_pixel()) * target.surface.pixel_bytes;
+  models::blend_quad(draw.blend[attachment], target.format, rgba, tile + first, quad.lanes);
 }
 
 void resolve_tile(const PassState& pass, std::size_t attachment, std::uint32_t tile_x, std::uint32_t tile_y,
                   models::DeviceMemory& memory) {
   const models::SurfaceLayout &from = pass.color[attachment].surface, &to = pass.resolve[attachment].surface;
-  const std::size_t bytes = std::size_t{models::kTileBytes} * from.samples;
-  const auto* const planes =
-      reinterpret_cast<const std::uint32_t*>(memory.read(from.tile_address(tile_x, tile_y), bytes).data());
-  auto* const pixels = reinterpret_cast<std::uint32_t*>(
-      memory.write(to.tile_address(tile_x, tile_y), models::kTileBytes).data());
-  models::resolve_tile(pass.color[attachment].format, std::span(planes, bytes / sizeof(std::uint32_t)),
-                       pixels);
+  const std::byte* const planes =
+      memory.read(from.tile_address(tile_x, tile_y), std::size_t{from.plane_stride()} * from.samples).data();
+  std::byte* const pixels = memory.write(to.tile_address(tile_x, tile_y), to.plane_bytes()).data();
+  models::resolve_tile(pass.color[attachment].format, planes, from.plane_stride(), from.samples, pixels);
 }
 
 }  // namespace quadrille::hw

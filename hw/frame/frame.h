@@ -136,7 +136,7 @@ struct AttachmentState {
   models::Format format = models::Format::kR8G8B8A8Srgb;
   models::LoadOp load = models::LoadOp::kClear;
   models::StoreOp store = models::StoreOp::kStore;
-  std::uint32_t clear = 0;  ///< encoded: what every pixel begins with, unless it is loaded
+  models::PixelCode clear;  ///< encoded: what every pixel begins with, unless it is loaded
   /// Someone reads it after the pass, so tiles that nothing drew to must be written out too.
   bool read_later = true;
   [[nodiscard]] bool loads() const { return load == models::LoadOp::kLoad; }

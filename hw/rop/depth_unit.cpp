@@ -58,7 +58,9 @@ std::size_t DepthUnit::tile_number(std::uint32_t tile_x, std::uint32_t tile_y) c
 
 float* DepthUnit::depths(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample) {
   return reinterpret_cast<float*>(
-      device_.write(frame_.pass(pass_).depth.surface.tile_address(tile_x, tile_y, sample), models::kTileBytes)
+      device_
+          .write(frame_.pass(pass_).depth.surface.tile_address(tile_x, tile_y, sample),
+                 frame_.pass(pass_).depth.surface.plane_bytes())
           .data());
 }
 

@@ -91,15 +91,15 @@ class DepthUnit final : public Unit {
     int missing = 0;
     Tick ready = 0;
     bool acquired = false;
-    std::uint8_t done = 0;  ///< of `SurfaceCache::acquire`
+    AcquiredLines done{};  ///< of `SurfaceCache::acquire`
   };
   struct LateEntry {
     LateToken token;
     int missing = 0;
     Tick ready = 0;
     bool acquired = false;
-    int parts = 0;          ///< quads, of each sample, whose tiles are acquired
-    std::uint8_t done = 0;  ///< of `SurfaceCache::acquire`, of the next one
+    int parts = 0;         ///< quads, of each sample, whose tiles are acquired
+    AcquiredLines done{};  ///< of `SurfaceCache::acquire`, of the next one
   };
 
   // Early port.

@@ -60,14 +60,15 @@ void DepthUnit::take_early(Tick now) {
     ++stats_.tiles;
     stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(token.coverage));
   }
-  early_.push_back({token, 0, after(now, 1), false});
+  early_.push_back({token, 0, after(now, 1), false, {}});
   take_free_ = after(now, 1);
 }
 
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   stats_.working_for(entry.token.part.draw());
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).depth_test) {
-    const std::uint8_t sectors = sectors_of_quads(models::quads_of(entry.token.coverage));
+    const std::uint32_t sectors =
+        sectors_of(entry.token.coverage, frame_.pass(pass_).depth.surface.pixel_bytes);
     if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y, entry.token.sample}, {.read = sectors},
                         number, entry.missing, entry.done, port_))
       return false;
@@ -133,9 +134,7 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
     token.coverage = models::depth_test(draw.depth_compare, stored, incoming, covered);
   }
   if (!token.late && draw.depth_write && token.coverage != 0) {
-    if (!cache_.write({0, token.tile_x, token.tile_y, token.sample},
-                      std::bit_cast<SectorPixels>(token.coverage), port_))
-      return false;
+    if (!cache_.write({0, token.tile_x, token.tile_y, token.sample}, token.coverage, port_)) return false;
     models::depth_write(stored, incoming, token.coverage);
     send_hiz(now, token.tile_x, token.tile_y);
   }

@@ -28,22 +28,23 @@ bool DepthUnit::late_ready(Tick now) const {
   return !late_.empty() && late_.front().acquired && late_test_wake().at() <= now;
 }
 
-void DepthUnit::take_late(Tick now) { late_.push_back({late_in.pop(now), 0, now, false}); }
+void DepthUnit::take_late(Tick now) { late_.push_back({late_in.pop(now), 0, now, false, 0, {}}); }
 
 bool DepthUnit::acquire_late(LateEntry& entry, std::uint32_t number) {
   if (entry.token.kind == TokenKind::kWork) {
     const WarpSlot& warp = warps_[entry.token.slot];
     stats_.working_for(warp.draw);
+    const std::uint32_t bytes = frame_.pass(pass_).depth.surface.pixel_bytes;
     int part = 0;
     const bool placed = visit_samples(warp, [&](const WarpSlot::Quad& quad, models::LaneMask, int sample) {
       if (part++ < entry.parts) return true;
       const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-      const std::uint8_t sector = sectors_of_quads(1u << place.quad);
+      const std::uint32_t sectors = sectors_of(std::uint64_t{0xf} << place.first_pixel(), bytes);
       if (!cache_.acquire({0, place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample)},
-                          {.read = sector}, number | kLateBit, entry.missing, entry.done, port_))
+                          {.read = sectors}, number | kLateBit, entry.missing, entry.done, port_))
         return false;
       ++entry.parts;
-      entry.done = 0;
+      entry.done = {};
       return true;
     });
     if (!placed) return false;
@@ -68,7 +69,7 @@ bool DepthUnit::test_late(Tick now) {
                                                                    std::uint64_t lanes, int sample) {
     const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
     return cache_.write({0, place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample)},
-                        std::bit_cast<SectorPixels>(lanes << place.first_pixel()), port_);
+                        lanes << place.first_pixel(), port_);
   });
   if (!placed) {
     late_.front().acquired = false;

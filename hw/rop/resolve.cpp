@@ -65,10 +65,11 @@ void Resolve::ask(Tick now) {
   }
   Tile& tile = tiles_.back();
   const auto samples = static_cast<std::uint32_t>(pass_->samples);
-  for (; !acquired(tile); ++tile.parts, tile.done = 0) {
+  for (; !acquired(tile); ++tile.parts, tile.done = {}) {
     const bool reads = tile.parts < samples;
     const SurfaceTile part = reads ? SurfaceTile{tile.color, tile.x, tile.y, tile.parts} : target_of(tile);
-    const SectorWishes wishes = reads ? SectorWishes{.read = 0xff} : SectorWishes{.write = 0xff};
+    const std::uint32_t all = sectors_of(~std::uint64_t{0}, pass_->color[tile.color].surface.pixel_bytes);
+    const SectorWishes wishes = reads ? SectorWishes{.read = all} : SectorWishes{.write = all};
     if (!cache_.acquire(part, wishes, tiles_.newest() | kOwn, tile.missing, tile.done, port_)) {
       stalled_ = !cache_.idle();
       return;
@@ -92,18 +93,20 @@ Resolve::Done Resolve::step(Tick now) {
   } else if (can_ask()) {
     ask(now);
   }
-  if (head_ready() && tiles_.front().ready <= now && resolve(tiles_.front())) {
+  if (!head_ready() || tiles_.front().ready > now) return done;
+  const std::size_t color = tiles_.front().color;
+  if (resolve(tiles_.front())) {
+    const int words = std::max(1, static_cast<int>(pass_->color[color].surface.pixel_bytes) / 4);
     tiles_.pop_front();
     ++done.tiles;
-    done.quads = models::kTileQuads * (pass_->samples + 1);
+    done.quads = models::kTileQuads * (pass_->samples + 1) * words;
   }
   return done;
 }
 
 bool Resolve::resolve(const Tile& tile) {
-  SectorPixels all;
-  all.fill(0xff);
-  if (!cache_.write(target_of(tile), all, port_)) {  // its lines were evicted since, and there is no place
+  if (!cache_.write(target_of(tile), ~std::uint64_t{0},
+                    port_)) {  // its lines were evicted since, and there is no place
     stalled_ = !cache_.idle();
     return false;
   }

@@ -47,7 +47,7 @@ class Resolve {
     int missing = 0;
     Tick ready = 0;
     std::uint32_t parts = 0;  ///< samples, and then the tile itself, that are acquired
-    std::uint8_t done = 0;    ///< of `SurfaceCache::acquire`, of the next one
+    AcquiredLines done{};     ///< of `SurfaceCache::acquire`, of the next one
   };
   [[nodiscard]] bool acquired(const Tile& tile) const {
     return tile.parts > static_cast<std::uint32_t>(pass_->samples);

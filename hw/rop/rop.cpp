@@ -15,7 +15,7 @@ namespace {
 /// Live pixels of a warp in one tile, of one sample.
 struct TileTouch {
   std::uint32_t tile_x = 0, tile_y = 0, sample = 0;
-  SectorPixels pixels{};
+  std::uint64_t pixels = 0;
   [[nodiscard]] SurfaceTile tile_of(std::size_t surface) const { return {surface, tile_x, tile_y, sample}; }
 };
 
@@ -39,8 +39,7 @@ class TouchedTiles {
     std::size_t i = first;
     while (i < count_ && (tiles_[i].tile_x != place.tile_x || tiles_[i].tile_y != place.tile_y)) ++i;
     if (i == count_) tiles_[count_++] = {place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample), {}};
-    std::uint8_t& pixels = tiles_[i].pixels[static_cast<std::size_t>(place.quad / 2)];
-    pixels = static_cast<std::uint8_t>(pixels | lanes << (4 * (place.quad & 1)));
+    tiles_[i].pixels |= std::uint64_t{lanes} << place.first_pixel();
   }
 
   std::array<TileTouch, std::size_t{models::kWarpQuads} * models::kMaxSamples> tiles_;
@@ -56,16 +55,9 @@ int samples_in(const WarpSlot& warp, models::LaneMask lanes, int count) {
   return samples;
 }
 
-/// What a write of these pixels asks of their sectors.
-SectorWishes wishes_of(const SectorPixels& pixels, bool reads_old) {
-  SectorWishes wishes;
-  for (std::size_t s = 0; s < pixels.size(); ++s) {
-    if (pixels[s] == 0) continue;
-    const bool whole = pixels[s] == 0xff;
-    std::uint8_t& wish = reads_old ? wishes.read : whole ? wishes.write : wishes.part;
-    wish = static_cast<std::uint8_t>(wish | 1u << s);
-  }
-  return wishes;
+/// Of a quad of these pixels, which the unit's path to its cache takes at once up to 4 bytes each.
+int quad_cost(const AttachmentState& color) {
+  return std::max(1, static_cast<int>(color.surface.pixel_bytes) / 4);
 }
 
 }  // namespace
@@ -250,13 +242,14 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
   int part = 0;
   draw.visit_colors([&](std::size_t color) {
     const bool reads = draw.reads_color(color);
+    const std::uint32_t bytes = frame_.pass(draw.pass).color[color].surface.pixel_bytes;
     for (const TileTouch& touch : touched.all()) {
       if (!placed || part++ < entry.parts) continue;
-      placed = cache_.acquire(touch.tile_of(color), wishes_of(touch.pixels, reads), number, entry.missing,
-                              entry.done, port_);
+      placed = cache_.acquire(touch.tile_of(color), wishes_of_write(touch.pixels, bytes, reads), number,
+                              entry.missing, entry.done, port_);
       if (!placed) continue;
       ++entry.parts;
-      entry.done = 0;
+      entry.done = {};
     }
   });
   return placed;
@@ -357,7 +350,10 @@ int Rop::write_colors(const WarpSlot& warp) {
     }
   }
   int quad_cycles = 0;
-  draw.visit_colors([&](std::size_t color) { quad_cycles += draw.reads_color(color) ? 2 * quads : quads; });
+  draw.visit_colors([&](std::size_t color) {
+    const int cost = quad_cost(frame_.pass(pass_).color[color]);
+    quad_cycles += (draw.reads_color(color) ? 2 * quads : quads) * cost;
+  });
   return std::max(1, (quad_cycles + params_.quads_per_clk - 1) / params_.quads_per_clk);
 }
 

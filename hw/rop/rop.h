@@ -11,8 +11,9 @@
 ///       load_out     a core has done a warp
 /// Mem   colour tiles
 /// Time  `quads_per_clk` quads of one sample a cycle and colour attachment (half of that where blending reads
-///       the old colour); up to `warps_in_flight` warps wait for their lines. At the end of a pass of several
-///       samples a pixel it resolves them (hw/rop/resolve.h).
+///       the old colour; half of it again for pixels of 8 bytes, a quarter for 16); up to `warps_in_flight`
+///       warps wait for their lines. At the end of a pass of several samples a pixel it resolves them
+///       (hw/rop/resolve.h).
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -96,7 +97,7 @@ class Rop final : public Unit {
     int shaded = 0;             ///< live lanes after discard
     int discarded_samples = 0;  ///< of the others
     int parts = 0;              ///< touched tiles, of each attachment, that are acquired
-    std::uint8_t done = 0;      ///< of `SurfaceCache::acquire`, of the next one
+    AcquiredLines done{};       ///< of `SurfaceCache::acquire`, of the next one
   };
 
   [[nodiscard]] Wake test_wake() const;

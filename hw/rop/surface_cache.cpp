@@ -2,14 +2,59 @@
 
 #include "models/memory/interleave.h"
 
-#include <algorithm>
+#include <bit>
 
 namespace quadrille::hw {
 
 namespace {
-// Bits of `done`, for the upper half of the tile; the lower half's are one to the left.
-constexpr unsigned kMaterialized = 1, kAcquired = 4;
+
+/// Bits 0 to count - 1.
+constexpr std::uint64_t low_bits(std::uint32_t count) {
+  return count >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+}
+
+/// Words of a line that hold some of these pixels, of which bit 0 is the line's first.
+std::uint32_t words_of(std::uint64_t pixels, std::uint32_t pixel_bytes) {
+  if (pixel_bytes == 4) return static_cast<std::uint32_t>(pixels);
+  std::uint32_t words = 0;
+  for (; pixels != 0; pixels &= pixels - 1) {
+    const auto first = static_cast<std::uint32_t>(std::countr_zero(pixels)) * pixel_bytes;
+    const std::uint32_t count = (first + pixel_bytes - 1) / 4 - first / 4 + 1;
+    words |= static_cast<std::uint32_t>(low_bits(count)) << first / 4;
+  }
+  return words;
+}
+
+std::uint8_t line_part(std::uint32_t sectors, std::uint32_t line) {
+  return static_cast<std::uint8_t>(sectors >> 4 * line & 0xf);
+}
+
 }  // namespace
+
+std::uint32_t sectors_of(std::uint64_t pixels, std::uint32_t pixel_bytes) {
+  const SectorWishes wishes = wishes_of_write(pixels, pixel_bytes, true);
+  return wishes.read;
+}
+
+SectorWishes wishes_of_write(std::uint64_t pixels, std::uint32_t pixel_bytes, bool reads_old) {
+  const std::uint32_t per_sector = models::kSectorBytes / pixel_bytes, per_word = 4 / pixel_bytes;
+  const std::uint64_t sector_mask = low_bits(per_sector);
+  SectorWishes wishes;
+  for (std::uint32_t s = 0; pixels != 0; ++s, pixels = per_sector < 64 ? pixels >> per_sector : 0) {
+    const std::uint64_t in_sector = pixels & sector_mask;
+    if (in_sector == 0) continue;
+    bool splits_word = false;
+    for (std::uint32_t p = 0; per_word > 1 && p < per_sector; p += per_word) {
+      const std::uint64_t in_word = in_sector >> p & low_bits(per_word);
+      splits_word |= in_word != 0 && in_word != low_bits(per_word);
+    }
+    std::uint32_t& wish = reads_old || splits_word   ? wishes.read
+                          : in_sector == sector_mask ? wishes.write
+                                                     : wishes.part;
+    wish |= 1u << s;
+  }
+  return wishes;
+}
 
 SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory,
                            models::DeviceMemory::Owner owner)
@@ -39,23 +84,24 @@ void SurfaceCache::mark_cleared(Surface& surface, PartitionId partition, std::ui
   for (std::uint32_t y = 0; y < layout.tiles_y; ++y) {
     for (std::uint32_t x = 0; x < layout.tiles_x; ++x) {
       if (models::partition_of(x, y, partitions) != partition) continue;
-      auto* const pixels = reinterpret_cast<std::uint32_t*>(
-          memory_.write(layout.tile_address(x, y), std::uint64_t{layout.samples} * models::kTileBytes)
-              .data());
-      std::fill_n(pixels, std::size_t{layout.samples} * models::kTilePixels, surface.state->clear);
+      models::fill_pixels(
+          memory_.write(layout.tile_address(x, y), std::uint64_t{layout.samples} * layout.plane_stride()),
+          layout.pixel_bytes, surface.state->clear);
       for (std::uint32_t s = 0; s < layout.samples; ++s) surface.cleared[layout.plane_number(x, y, s)] = true;
       stats_.cleared_tiles += layout.samples;
     }
   }
 }
 
-bool SurfaceCache::materialize(const SurfaceTile& tile, std::uint8_t& done, MemoryPort& port) {
-  for (int half = 0; half < 2; ++half) {
-    const std::uint32_t line = line_of(tile) + static_cast<std::uint32_t>(half);
-    if ((done & (kMaterialized << half)) != 0) continue;
-    if (!cache_.claim(line, 0xf, port)) return false;
-    cache_.write(line, 0xffffffffu);
-    done = static_cast<std::uint8_t>(done | kMaterialized << half);
+bool SurfaceCache::materialize(const SurfaceTile& tile, AcquiredLines& done, MemoryPort& port) {
+  const models::SurfaceLayout& layout = layout_of(tile);
+  const auto words = static_cast<std::uint32_t>(low_bits(layout.plane_bytes() / 4));
+  for (std::uint32_t i = 0; i < layout.plane_lines(); ++i) {
+    if ((done.materialized >> i & 1u) != 0) continue;
+    const std::uint32_t line = first_line_of(tile) + i;
+    if (!cache_.claim(line, layout.line_sectors(), port)) return false;
+    cache_.write(line, words);
+    done.materialized = static_cast<std::uint8_t>(done.materialized | 1u << i);
   }
   mark_of(tile) = false;
   ++stats_.clear_hits;
@@ -63,32 +109,33 @@ bool SurfaceCache::materialize(const SurfaceTile& tile, std::uint8_t& done, Memo
 }
 
 bool SurfaceCache::acquire(const SurfaceTile& tile, const SectorWishes& wishes, std::uint32_t waiter,
-                           int& missing, std::uint8_t& done, MemoryPort& port) {
+                           int& missing, AcquiredLines& done, MemoryPort& port) {
   group_.working_at(tile.x, tile.y);
   if (mark_of(tile) && !materialize(tile, done, port)) return false;
-  for (int half = 0; half < 2; ++half) {
-    if ((done & (kAcquired << half)) != 0) continue;
-    const std::uint32_t line = line_of(tile) + static_cast<std::uint32_t>(half);
-    const auto wanted = static_cast<std::uint8_t>((wishes.read >> (4 * half)) & 0xf);
-    const auto written = static_cast<std::uint8_t>((wishes.write >> (4 * half)) & 0xf & ~wanted);
-    const bool in_part = ((wishes.part >> (4 * half)) & 0xf) != 0;
+  for (std::uint32_t i = 0; i < layout_of(tile).plane_lines(); ++i) {
+    if ((done.acquired >> i & 1u) != 0) continue;
+    const std::uint32_t line = first_line_of(tile) + i;
+    const std::uint8_t wanted = line_part(wishes.read, i);
+    const auto written = static_cast<std::uint8_t>(line_part(wishes.write, i) & ~wanted);
+    const bool in_part = line_part(wishes.part, i) != 0;
     if ((written != 0 || in_part) && !cache_.claim(line, written, port)) return false;
     if (wanted != 0) {
       const L1Cache::Result result = cache_.access(line, wanted, waiter, port);
       if (result == L1Cache::Result::kStall) return false;
       if (result == L1Cache::Result::kPending) ++missing;
     }
-    done = static_cast<std::uint8_t>(done | kAcquired << half);
+    done.acquired = static_cast<std::uint8_t>(done.acquired | 1u << i);
   }
   return true;
 }
 
-bool SurfaceCache::write(const SurfaceTile& tile, const SectorPixels& pixels, MemoryPort& port) {
+bool SurfaceCache::write(const SurfaceTile& tile, std::uint64_t pixels, MemoryPort& port) {
   group_.working_at(tile.x, tile.y);
-  for (std::size_t half = 0; half < 2; ++half) {
-    const std::uint32_t line = line_of(tile) + static_cast<std::uint32_t>(half);
-    std::uint32_t words = 0;  // a pixel is one
-    for (std::size_t s = 0; s < 4; ++s) words |= std::uint32_t{pixels[4 * half + s]} << 8 * s;
+  const models::SurfaceLayout& layout = layout_of(tile);
+  const std::uint32_t per_line = models::kLineBytes / layout.pixel_bytes;
+  for (std::uint32_t i = 0; i < layout.plane_lines(); ++i) {
+    const std::uint32_t line = first_line_of(tile) + i;
+    const std::uint32_t words = words_of(pixels >> i * per_line & low_bits(per_line), layout.pixel_bytes);
     if (words == 0) continue;
     if (!cache_.has_place(line) && !cache_.claim(line, 0, port)) return false;
     cache_.write(line, words);
@@ -100,9 +147,9 @@ void SurfaceCache::write_marked(Surface& surface, MemoryPort& port) {
   const models::SurfaceLayout& layout = surface.state->surface;
   for (std::size_t i = 0; i < surface.cleared.size(); ++i) {
     if (!surface.cleared[i]) continue;
-    const auto line = static_cast<std::uint32_t>((layout.base + i * models::kTileBytes) / models::kLineBytes);
-    port.write(line, 0xf);
-    port.write(line + 1, 0xf);
+    const auto line =
+        static_cast<std::uint32_t>((layout.base + i * layout.plane_stride()) / models::kLineBytes);
+    for (std::uint32_t l = 0; l < layout.plane_lines(); ++l) port.write(line + l, layout.line_sectors());
     ++stats_.clear_writes;
   }
 }

@@ -3,8 +3,8 @@
 ///
 /// A clear writes no memory: it marks tiles, and the first access to a marked tile finds all of it present.
 /// What is still marked at a flush is written then, if anyone reads the surface after the pass. A surface
-/// that is loaded begins without marks; one that is discarded leaves nothing to write. A tile is two lines of
-/// 128 bytes, eight sectors of two quads each.
+/// that is loaded begins without marks; one that is discarded leaves nothing to write. A tile is one line of
+/// 128 bytes or up to eight, by the bytes of its pixels (models/memory/surface.h).
 #pragma once
 
 #include "hw/frame/frame.h"
@@ -18,14 +18,6 @@
 
 namespace quadrille::hw {
 
-/// Sectors (bits 0..7 of a tile) that a set of quads (bits 0..15) lies in.
-[[nodiscard]] constexpr std::uint8_t sectors_of_quads(std::uint32_t quads) {
-  std::uint32_t pairs = (quads | quads >> 1) & 0x5555u;
-  pairs = (pairs | pairs >> 1) & 0x3333u;
-  pairs = (pairs | pairs >> 2) & 0x0f0fu;
-  return static_cast<std::uint8_t>((pairs | pairs >> 4) & 0xffu);
-}
-
 /// A tile of one of the pass's surfaces; of several samples a pixel, its plane of one.
 struct SurfaceTile {
   std::size_t surface = 0;
@@ -34,13 +26,15 @@ struct SurfaceTile {
   friend bool operator==(const SurfaceTile&, const SurfaceTile&) = default;
 };
 
-/// Pixels of a tile by sector: bit 0 to 3 those of its first quad, 4 to 7 of its second.
-using SectorPixels = std::array<std::uint8_t, 8>;
-
-/// Sectors of a tile, a bit each, by what will be done with them.
+/// Sectors of a tile, a bit each, by what will be done with them: read, written whole, or written in part.
 struct SectorWishes {
-  std::uint8_t read = 0, write = 0, part = 0;
+  std::uint32_t read = 0, write = 0, part = 0;
 };
+/// Sectors that these pixels of a tile (a bit each, quad by quad) lie in.
+[[nodiscard]] std::uint32_t sectors_of(std::uint64_t pixels, std::uint32_t pixel_bytes);
+/// What a write of these pixels asks of their sectors. Caches know of words of 4 bytes who wrote them: where
+/// smaller pixels fill some word in part, the rest of its sector is read first.
+[[nodiscard]] SectorWishes wishes_of_write(std::uint64_t pixels, std::uint32_t pixel_bytes, bool reads_old);
 
 struct SurfaceCacheStats {
   explicit SurfaceCacheStats(StatGroup& group)
@@ -59,6 +53,11 @@ enum class SurfaceKind : std::uint8_t { kDepth, kColor };
   return static_cast<models::DeviceMemory::Owner>(1 + 2 * partition.index() +
                                                   (surface == SurfaceKind::kColor ? 1 : 0));
 }
+
+/// Lines of a tile, a bit each, that an access has got through with.
+struct AcquiredLines {
+  std::uint8_t materialized = 0, acquired = 0;
+};
 
 class SurfaceCache {
  public:
@@ -83,10 +82,10 @@ class SurfaceCache {
   /// each. False when there is no place now: try again after a fill, with the same `done`, which starts at 0
   /// and remembers what was asked for already, so that even a cache of one line gets through.
   bool acquire(const SurfaceTile& tile, const SectorWishes& wishes, std::uint32_t waiter, int& missing,
-               std::uint8_t& done, MemoryPort& port);
+               AcquiredLines& done, MemoryPort& port);
   /// Pixels of a tile were written. Takes back a line that was evicted since it was acquired; false when
   /// there is no place for it now.
-  bool write(const SurfaceTile& tile, const SectorPixels& pixels, MemoryPort& port);
+  bool write(const SurfaceTile& tile, std::uint64_t pixels, MemoryPort& port);
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {
     cache_.fill(response, std::forward<F>(ready));
@@ -103,9 +102,12 @@ class SurfaceCache {
     const AttachmentState* state = nullptr;
     std::vector<bool> cleared;  ///< by plane of a tile
   };
-  [[nodiscard]] std::uint32_t line_of(const SurfaceTile& tile) const {
-    const models::SurfaceLayout& layout = surfaces_[tile.surface].state->surface;
-    return static_cast<std::uint32_t>(layout.tile_address(tile.x, tile.y, tile.sample) / models::kLineBytes);
+  [[nodiscard]] const models::SurfaceLayout& layout_of(const SurfaceTile& tile) const {
+    return surfaces_[tile.surface].state->surface;
+  }
+  [[nodiscard]] std::uint32_t first_line_of(const SurfaceTile& tile) const {
+    return static_cast<std::uint32_t>(layout_of(tile).tile_address(tile.x, tile.y, tile.sample) /
+                                      models::kLineBytes);
   }
   [[nodiscard]] std::vector<bool>::reference mark_of(const SurfaceTile& tile) {
     Surface& surface = surfaces_[tile.surface];
@@ -113,7 +115,7 @@ class SurfaceCache {
   }
   void mark_cleared(Surface& surface, PartitionId partition, std::uint32_t partitions);
   void write_marked(Surface& surface, MemoryPort& port);
-  bool materialize(const SurfaceTile& tile, std::uint8_t& done, MemoryPort& port);
+  bool materialize(const SurfaceTile& tile, AcquiredLines& done, MemoryPort& port);
 
   L1Cache cache_;
   models::DeviceMemory& memory_;

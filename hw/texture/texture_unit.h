@@ -56,8 +56,10 @@ class TextureUnit final : public Unit {
     Counter groups{*this, "groups", "group", "Clauses' request groups taken in"};
     Counter requests{*this, "requests", "request", "Warp texture instructions"};
     Counter lanes{*this, "lanes", "lane", "Lanes that sampled"};
-    Counter bilinear_quads{*this, "bilinear_quads", "quad",
-                           "Bilinear quad operations, two a quad for a trilinear one"};
+    Counter bilinear_quads{
+        *this, "bilinear_quads", "quad",
+        "Bilinear quad operations, two a quad for a trilinear one; twice as many for texels "
+        "of 8 bytes, four times for 16"};
     Counter texels{*this, "texels", "texel", "Texels read from the cache"};
     Counter cache_emptied{
         *this, "cache_emptied", "time",

@@ -16,7 +16,17 @@ constexpr std::array<ComponentBits, 4> kTenTenTenTwo{{{0, 10, Numeric::kUnorm},
                                                       {10, 10, Numeric::kUnorm},
                                                       {20, 10, Numeric::kUnorm},
                                                       {30, 2, Numeric::kUnorm}}};
+constexpr std::array<ComponentBits, 4> kElevenElevenTen{
+    {{0, 11, Numeric::kUfloat}, {11, 11, Numeric::kUfloat}, {22, 10, Numeric::kUfloat}, {}}};
 constexpr std::array<ComponentBits, 4> kOneFloat{{{0, 32, Numeric::kFloat}, {}, {}, {}}};
+
+/// So many components of the same size, the first in the low bits.
+constexpr std::array<ComponentBits, 4> in_a_row(int count, std::uint8_t bits, Numeric numeric) {
+  std::array<ComponentBits, 4> components{};
+  for (int c = 0; c < count; ++c)
+    components[static_cast<std::size_t>(c)] = {static_cast<std::uint8_t>(c * bits), bits, numeric};
+  return components;
+}
 
 /// By the value of `Format`.
 constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFormats{{
@@ -24,11 +34,12 @@ constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFor
     {"R8G8B8A8_UNORM", 4, 4, kTexture | kTarget, Numeric::kUnorm, bytes_at(0, 8, 16, Numeric::kUnorm)},
     {"R8G8B8A8_SRGB", 4, 4, kTexture | kTarget, Numeric::kSrgb, bytes_at(0, 8, 16, Numeric::kSrgb)},
     {"D32_SFLOAT", 4, 1, kDepthUse | kSampleUse, Numeric::kFloat, kOneFloat},
-    {"R32_SFLOAT", 4, 1, kAttributeUse, Numeric::kFloat},
-    {"R32G32_SFLOAT", 8, 2, kAttributeUse, Numeric::kFloat},
+    {"R32_SFLOAT", 4, 1, kAttributeUse | kTarget, Numeric::kFloat, kOneFloat},
+    {"R32G32_SFLOAT", 8, 2, kAttributeUse | kTarget, Numeric::kFloat, in_a_row(2, 32, Numeric::kFloat)},
     {"R32G32B32_SFLOAT", 12, 3, kAttributeUse, Numeric::kFloat},
-    {"R32G32B32A32_SFLOAT", 16, 4, kAttributeUse, Numeric::kFloat},
-    {"R8G8_UNORM", 2, 2, kAttributeUse, Numeric::kUnorm},
+    {"R32G32B32A32_SFLOAT", 16, 4, kAttributeUse | kTarget, Numeric::kFloat,
+     in_a_row(4, 32, Numeric::kFloat)},
+    {"R8G8_UNORM", 2, 2, kAttributeUse | kTarget, Numeric::kUnorm, in_a_row(2, 8, Numeric::kUnorm)},
     {"R8G8B8A8_UNORM", 4, 4, kAttributeUse, Numeric::kUnorm},
     {"R16G16_UNORM", 4, 2, kAttributeUse, Numeric::kUnorm},
     {"R16G16B16A16_UNORM", 8, 4, kAttributeUse, Numeric::kUnorm},
@@ -39,6 +50,11 @@ constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFor
     {"B8G8R8A8_UNORM", 4, 4, kTarget, Numeric::kUnorm, bytes_at(16, 8, 0, Numeric::kUnorm)},
     {"B8G8R8A8_SRGB", 4, 4, kTarget, Numeric::kSrgb, bytes_at(16, 8, 0, Numeric::kSrgb)},
     {"A2B10G10R10_UNORM_PACK32", 4, 4, kTarget, Numeric::kUnorm, kTenTenTenTwo},
+    {"R8_UNORM", 1, 1, kTarget, Numeric::kUnorm, in_a_row(1, 8, Numeric::kUnorm)},
+    {"R16_SFLOAT", 2, 1, kTarget, Numeric::kFloat, in_a_row(1, 16, Numeric::kFloat)},
+    {"R16G16_SFLOAT", 4, 2, kTarget, Numeric::kFloat, in_a_row(2, 16, Numeric::kFloat)},
+    {"R16G16B16A16_SFLOAT", 8, 4, kTarget, Numeric::kFloat, in_a_row(4, 16, Numeric::kFloat)},
+    {"B10G11R11_UFLOAT_PACK32", 4, 3, kTarget, Numeric::kUfloat, kElevenElevenTen},
 }};
 
 }  // namespace

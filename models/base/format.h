@@ -35,9 +35,15 @@ enum class Format : std::uint8_t {
   // More images.
   kB8G8R8A8Unorm,
   kB8G8R8A8Srgb,
-  kA2B10G10R10Unorm
+  kA2B10G10R10Unorm,
+  // Images of other sizes.
+  kR8Unorm,
+  kR16Float,
+  kR16G16Float,
+  kR16G16B16A16Float,
+  kB10G11R11Ufloat
 };
-inline constexpr Format kLastFormat = Format::kA2B10G10R10Unorm;
+inline constexpr Format kLastFormat = Format::kB10G11R11Ufloat;
 // clang-format on
 
 /// How the bits of a component stand for a number.
@@ -46,8 +52,9 @@ enum class Numeric : std::uint8_t {
   kUnorm,  ///< c / (2^bits - 1)
   kSnorm,  ///< max(c / (2^(bits - 1) - 1), -1)
   kSrgb,   ///< as kUnorm, and encoded by the sRGB transfer function
-  kFloat,
-  kUint
+  kFloat,  ///< of 16 or 32 bits
+  kUint,
+  kUfloat  ///< of 10 or 11 bits: no sign, five bits of exponent [VK1.3 #fundamentals-fp11]
 };
 
 /// Uses of a format, as bits.
@@ -59,10 +66,17 @@ enum FormatUse : std::uint8_t {
   kSampleUse = 16     ///< of an image that shaders sample, with linear filtering too
 };
 
-/// A component of a pixel or texel of 32 bits.
+/// A component of a pixel or texel, which never lies in two words of 32 bits.
 struct ComponentBits {
   std::uint8_t shift = 0, bits = 0;
   Numeric numeric = Numeric::kNone;
+};
+
+/// A pixel as an image stores it, from its first byte on; one of less than four bytes is in the low bits of
+/// the first word. What the format does not fill is 0.
+struct PixelCode {
+  std::array<std::uint32_t, 4> word{};
+  friend bool operator==(const PixelCode&, const PixelCode&) = default;
 };
 
 struct FormatInfo {
@@ -78,13 +92,18 @@ struct FormatInfo {
 
 [[nodiscard]] const FormatInfo& format_info(Format format);
 
-/// Bytes of a texel or of a vertex attribute.
+/// Bytes of a texel or of a vertex attribute; images have 1, 2, 4, 8 or 16.
 [[nodiscard]] inline std::uint32_t format_bytes(Format format) { return format_info(format).bytes; }
 /// Components that an attribute of this format supplies (1..4).
 [[nodiscard]] inline int format_components(Format format) { return format_info(format).channels; }
 /// Does a shader read attributes of this format as unsigned integers? All others arrive as floats.
 [[nodiscard]] inline bool is_integer_format(Format format) {
   return format_info(format).numeric == Numeric::kUint;
+}
+/// Does an image of this format hold numbers outside 0..1 too?
+[[nodiscard]] inline bool is_float_format(Format format) {
+  const Numeric numeric = format_info(format).numeric;
+  return numeric == Numeric::kFloat || numeric == Numeric::kUfloat;
 }
 [[nodiscard]] inline bool is_srgb_format(Format format) {
   return format_info(format).numeric == Numeric::kSrgb;

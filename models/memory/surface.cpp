@@ -3,6 +3,8 @@
 #include "models/base/error.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 
 namespace quadrille::models {
 namespace {
@@ -16,7 +18,8 @@ void for_each_pixel(const SurfaceLayout& s, Visit visit) {
       for (std::uint32_t entry = 0; entry < kTilePixels; ++entry) {
         const std::uint32_t x = 8 * tx + static_cast<std::uint32_t>(entry_x(static_cast<int>(entry)));
         const std::uint32_t y = 8 * ty + static_cast<std::uint32_t>(entry_y(static_cast<int>(entry)));
-        if (x < s.width && y < s.height) visit(std::size_t{y} * s.width + x, tile + 4 * std::uint64_t{entry});
+        if (x < s.width && y < s.height)
+          visit(std::size_t{y} * s.width + x, tile + std::uint64_t{s.pixel_bytes} * entry);
       }
     }
   }
@@ -24,25 +27,53 @@ void for_each_pixel(const SurfaceLayout& s, Visit visit) {
 
 }  // namespace
 
-SurfaceLayout allocate_surface(DeviceMemory& memory, std::uint32_t width, std::uint32_t height,
-                               std::uint32_t samples) {
+SurfaceLayout surface_layout(std::uint32_t width, std::uint32_t height, std::uint32_t samples,
+                             std::uint32_t pixel_bytes) {
   QUADRILLE_CHECK(width > 0 && height > 0, "surface of {} x {} pixels", width, height);
-  SurfaceLayout surface{0, width, height, (width - 1) / 8 + 1, (height - 1) / 8 + 1, samples};
-  surface.base = memory.allocate(surface.bytes(), kTileBytes);
+  return {0, width, height, (width - 1) / 8 + 1, (height - 1) / 8 + 1, samples, pixel_bytes};
+}
+
+SurfaceLayout allocate_surface(DeviceMemory& memory, std::uint32_t width, std::uint32_t height,
+                               std::uint32_t samples, std::uint32_t pixel_bytes) {
+  constexpr std::uint64_t kAlignment = 256;
+  SurfaceLayout surface = surface_layout(width, height, samples, pixel_bytes);
+  surface.base = memory.allocate(surface.bytes(), kAlignment);
   return surface;
 }
 
-void fill_surface(DeviceMemory& memory, const SurfaceLayout& surface, std::uint32_t value) {
-  const std::span<std::byte> bytes = memory.write(surface.base, surface.bytes());
-  for (std::size_t i = 0; i < bytes.size(); i += sizeof value)
-    std::memcpy(bytes.data() + i, &value, sizeof value);
+void fill_pixels(std::span<std::byte> pixels, std::uint32_t pixel_bytes, const PixelCode& value) {
+  const auto fill = [&]<class T>(T code) {
+    auto* const first = reinterpret_cast<T*>(pixels.data());
+    std::fill_n(first, pixels.size() / sizeof(T), code);
+  };
+  switch (pixel_bytes) {
+    case 1: return fill(static_cast<std::uint8_t>(value.word[0]));
+    case 2: return fill(static_cast<std::uint16_t>(value.word[0]));
+    case 4: return fill(value.word[0]);
+    case 8: return fill(std::array{value.word[0], value.word[1]});
+    default: return fill(value.word);
+  }
+}
+
+void fill_surface(DeviceMemory& memory, const SurfaceLayout& surface, const PixelCode& value) {
+  fill_pixels(memory.write(surface.base, surface.bytes()), surface.pixel_bytes, value);
+}
+
+std::vector<PixelCode> detile_codes(const DeviceMemory& memory, const SurfaceLayout& surface) {
+  const std::span<const std::byte> bytes = memory.read(surface.base, surface.bytes());
+  std::vector<PixelCode> pixels(std::size_t{surface.width} * surface.height);
+  for_each_pixel(surface, [&](std::size_t i, std::uint64_t address) {
+    std::memcpy(&pixels[i], bytes.data() + (address - surface.base), surface.pixel_bytes);
+  });
+  return pixels;
 }
 
 std::vector<std::uint32_t> detile(const DeviceMemory& memory, const SurfaceLayout& surface) {
   const std::span<const std::byte> bytes = memory.read(surface.base, surface.bytes());
+  QUADRILLE_CHECK(surface.pixel_bytes <= 4, "pixels of {} bytes", surface.pixel_bytes);
   std::vector<std::uint32_t> pixels(std::size_t{surface.width} * surface.height);
   for_each_pixel(surface, [&](std::size_t i, std::uint64_t address) {
-    std::memcpy(&pixels[i], bytes.data() + (address - surface.base), 4);
+    std::memcpy(&pixels[i], bytes.data() + (address - surface.base), surface.pixel_bytes);
   });
   return pixels;
 }
@@ -60,7 +91,7 @@ void entile(DeviceMemory& memory, const SurfaceLayout& surface, std::span<const 
                   "{} pixels for a surface of {} x {}", pixels.size(), surface.width, surface.height);
   const std::span<std::byte> bytes = memory.write(surface.base, surface.bytes());
   for_each_pixel(surface, [&](std::size_t i, std::uint64_t address) {
-    std::memcpy(bytes.data() + (address - surface.base), &pixels[i], 4);
+    std::memcpy(bytes.data() + (address - surface.base), &pixels[i], surface.pixel_bytes);
   });
 }
 

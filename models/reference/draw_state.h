@@ -20,7 +20,7 @@ struct VertexBuffer {
 /// of several samples, those of a pixel one after the other.
 struct ColorTarget {
   traces::Format format = traces::Format::kR8G8B8A8Unorm;
-  std::vector<std::uint32_t> code;
+  std::vector<PixelCode> code;
   std::vector<double> linear;
 };
 

@@ -16,20 +16,20 @@ namespace quadrille::models::reference {
 
 /// A pixel as its format stores it and the linear values it was rounded from.
 struct StoredColor {
-  std::uint32_t code = 0;
+  PixelCode code;
   std::array<double, 4> linear{};
 };
 
 /// Blends a shader's output into a stored pixel: source and destination in linear values, clamped to 0..1
-/// (NaN: 0), as is the result, which is then encoded and rounded to nearest, ties to even. Channels that the
-/// mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
+/// (NaN: 0) where the format holds no others, as is the result, which is then encoded and rounded to nearest,
+/// ties to even. Channels that the mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
 [[nodiscard]] StoredColor blend(const traces::BlendState& state, traces::Format format,
                                 const std::array<double, 4>& source, const StoredColor& before);
 
-/// The linear values of a pixel or texel of 32 bits. Components that the format lacks are (0, 0, 0, 1).
-[[nodiscard]] std::array<double, 4> load_color(traces::Format format, std::uint32_t code);
-/// A pixel as 8 bits a component, red in bits 0..7, an sRGB encoding kept.
-[[nodiscard]] std::uint32_t to_bytes(traces::Format format, std::uint32_t code);
+/// The linear values of a pixel or texel. Components that the format lacks are (0, 0, 0, 1).
+[[nodiscard]] std::array<double, 4> load_color(traces::Format format, const PixelCode& code);
+/// A pixel as 8 bits a component, red in bits 0..7, an sRGB encoding kept, floats sRGB-encoded.
+[[nodiscard]] std::uint32_t to_bytes(traces::Format format, const PixelCode& code);
 
 /// The stored form of linear values.
 [[nodiscard]] StoredColor store_color(traces::Format format, const std::array<double, 4>& linear);

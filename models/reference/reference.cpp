@@ -109,9 +109,9 @@ class Renderer {
       keep(use.resolve, colors_[use.resolve].code);
     }
     if (state_.depth != nullptr && state_.samples == 1) {
-      std::vector<std::uint32_t> codes;
+      std::vector<PixelCode> codes;
       for (const double z : *state_.depth)
-        codes.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(z)));
+        codes.push_back({{std::bit_cast<std::uint32_t>(static_cast<float>(z))}});
       keep(begun_->depth.image, codes);
     }
   }
@@ -134,11 +134,13 @@ class Renderer {
   }
 
   /// Makes what a pass drew a texture.
-  void keep(traces::Index index, const std::vector<std::uint32_t>& codes) {
+  void keep(traces::Index index, const std::vector<PixelCode>& codes) {
     if ((stream_.images[index].usage & traces::kSampled) == 0) return;
     traces::Image& image = drawn_[index] = stream_.images[index];
-    image.texels.resize(4 * codes.size());
-    std::memcpy(image.texels.data(), codes.data(), image.texels.size());
+    const std::size_t bytes = traces::format_bytes(image.format);
+    image.texels.resize(bytes * codes.size());
+    for (std::size_t i = 0; i < codes.size(); ++i)
+      std::memcpy(image.texels.data() + bytes * i, codes[i].word.data(), bytes);
   }
 
   /// The last pass's picture.
@@ -146,7 +148,7 @@ class Renderer {
     const traces::Index resolved = begun_->colors.at(0).resolve;
     const ColorTarget& shown = resolved == traces::kNone ? *state_.colors[0] : colors_.at(resolved);
     result_.color.clear();
-    for (const std::uint32_t code : shown.code) result_.color.push_back(to_bytes(shown.format, code));
+    for (const PixelCode& code : shown.code) result_.color.push_back(to_bytes(shown.format, code));
     result_.color_linear = shown.linear;
     if (state_.depth != nullptr) {
       result_.depth.clear();  // of the first samples

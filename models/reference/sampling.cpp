@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "models/reference/output.h"
 
@@ -82,10 +83,10 @@ Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t
   std::size_t first = 0;
   for (std::uint32_t l = 0; l < level; ++l)
     first += std::size_t{level_extent(image, l)[0]} * level_extent(image, l)[1];
-  const std::size_t at = 4 * (first + std::size_t{y} * level_extent(image, level)[0] + x);
-  std::uint32_t code = 0;
-  for (std::size_t byte = 0; byte < 4; ++byte)
-    code |= std::to_integer<std::uint32_t>(image.texels[at + byte]) << (8 * byte);
+  const std::size_t bytes = traces::format_bytes(image.format);
+  const std::size_t at = bytes * (first + std::size_t{y} * level_extent(image, level)[0] + x);
+  PixelCode code;
+  std::memcpy(code.word.data(), image.texels.data() + at, bytes);
   return load_color(image.format, code);
 }
 

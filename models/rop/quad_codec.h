@@ -1,4 +1,5 @@
-/// Four pixels of a colour attachment, decoded to linear values and encoded again.
+/// Four pixels of a colour attachment or texture, decoded to numbers and encoded again: linear values, and
+/// floats as they are.
 #pragma once
 
 #include "models/base/format.h"
@@ -8,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace quadrille::models {
 
@@ -18,24 +20,94 @@ struct QuadColor {
   const __m128& operator[](std::size_t c) const { return component[c]; }
 };
 
+/// Four pixels as they are stored, word-major: lane i of word w is word w of pixel i. Pixels of less than
+/// four bytes are the low bits of word 0.
+struct QuadWords {
+  __m128i word[4];
+};
+
 /// 0..1; NaN becomes 0 because max returns its second operand when one is NaN.
 inline __m128 saturate(__m128 v) { return _mm_min_ps(_mm_max_ps(v, _mm_setzero_ps()), _mm_set1_ps(1.0f)); }
 
 [[nodiscard]] constexpr std::uint32_t most_of(const ComponentBits& component) {
-  return (1u << component.bits) - 1;
+  return static_cast<std::uint32_t>((std::uint64_t{1} << component.bits) - 1);
 }
 
-inline __m128 decode_component(__m128i pixels, const ComponentBits& component) {
-  const auto most = static_cast<int>(most_of(component));
-  const __m128i code =
-      _mm_and_si128(_mm_srl_epi32(pixels, _mm_cvtsi32_si128(component.shift)), _mm_set1_epi32(most));
+/// Swaps words and pixels.
+inline void transpose(QuadWords& quad) {
+  const __m128i a = _mm_unpacklo_epi32(quad.word[0], quad.word[1]),
+                b = _mm_unpackhi_epi32(quad.word[0], quad.word[1]),
+                c = _mm_unpacklo_epi32(quad.word[2], quad.word[3]),
+                d = _mm_unpackhi_epi32(quad.word[2], quad.word[3]);
+  quad = {{_mm_unpacklo_epi64(a, c), _mm_unpackhi_epi64(a, c), _mm_unpacklo_epi64(b, d),
+           _mm_unpackhi_epi64(b, d)}};
+}
+
+/// Four neighbours of `bytes` each (1, 2, 4, 8 or 16). Words that they lack are 0.
+inline QuadWords load_quad(const std::byte* at, int bytes) {
+  const __m128i zero = _mm_setzero_si128();
+  const auto load = [at](int i) { return _mm_loadu_si128(reinterpret_cast<const __m128i*>(at) + i); };
+  if (bytes == 4) return {{load(0), zero, zero, zero}};
+  if (bytes == 8) {
+    const __m128i low = _mm_shuffle_epi32(load(0), 0xd8), high = _mm_shuffle_epi32(load(1), 0xd8);
+    return {{_mm_unpacklo_epi64(low, high), _mm_unpackhi_epi64(low, high), zero, zero}};
+  }
+  if (bytes == 16) {
+    QuadWords quad{{load(0), load(1), load(2), load(3)}};
+    transpose(quad);
+    return quad;
+  }
+  if (bytes == 2)
+    return {{_mm_cvtepu16_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(at))), zero, zero, zero}};
+  std::int32_t four = 0;
+  std::memcpy(&four, at, sizeof four);
+  return {{_mm_cvtepu8_epi32(_mm_cvtsi32_si128(four)), zero, zero, zero}};
+}
+
+inline void store_quad(std::byte* at, int bytes, QuadWords quad) {
+  const auto store = [at](int i, __m128i v) { _mm_storeu_si128(reinterpret_cast<__m128i*>(at) + i, v); };
+  if (bytes == 4) {
+    store(0, quad.word[0]);
+  } else if (bytes == 8) {
+    store(0, _mm_unpacklo_epi32(quad.word[0], quad.word[1]));
+    store(1, _mm_unpackhi_epi32(quad.word[0], quad.word[1]));
+  } else if (bytes == 16) {
+    transpose(quad);
+    for (int i = 0; i < 4; ++i) store(i, quad.word[i]);
+  } else {
+    const __m128i halves = _mm_packus_epi32(quad.word[0], quad.word[0]);
+    const std::int64_t packed = _mm_cvtsi128_si64(bytes == 2 ? halves : _mm_packus_epi16(halves, halves));
+    std::memcpy(at, &packed, 4 * static_cast<std::size_t>(bytes));
+  }
+}
+
+/// Halves in the low 16 bits of each lane.
+inline __m128 from_half(__m128i codes) { return _mm_cvtph_ps(_mm_packus_epi32(codes, codes)); }
+inline __m128i to_half(__m128 v) {
+  return _mm_cvtepu16_epi32(_mm_cvtps_ph(v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC));
+}
+
+/// An unsigned float of five bits of exponent and so many of mantissa, rounded to nearest, ties to even. What
+/// is negative is 0, what is finite and too large the greatest finite value. [VK1.3 #fundamentals-fp11]
+[[nodiscard]] std::uint32_t encode_ufloat(float value, int mantissa_bits);
+
+inline __m128 decode_component(const QuadWords& quad, const ComponentBits& component) {
+  const __m128i word = quad.word[component.shift / 32];
+  if (component.numeric == Numeric::kFloat && component.bits == 32) return _mm_castsi128_ps(word);
+  const __m128i code = _mm_and_si128(_mm_srl_epi32(word, _mm_cvtsi32_si128(component.shift % 32)),
+                                     _mm_set1_epi32(static_cast<int>(most_of(component))));
   if (component.numeric == Numeric::kSrgb) return _mm_i32gather_ps(kSrgbToLinear.data(), code, 4);
-  return _mm_div_ps(_mm_cvtepi32_ps(code), _mm_set1_ps(static_cast<float>(most)));
+  if (component.numeric == Numeric::kFloat) return from_half(code);
+  // As a half without a sign: the same exponent, and zeros behind the mantissa.
+  if (component.numeric == Numeric::kUfloat)
+    return from_half(_mm_sll_epi32(code, _mm_cvtsi32_si128(15 - component.bits)));
+  return _mm_div_ps(_mm_cvtepi32_ps(code), _mm_set1_ps(static_cast<float>(most_of(component))));
 }
 
-inline QuadColor decode_quad(const FormatInfo& format, __m128i pixels) {
-  QuadColor color;
-  for (std::size_t c = 0; c < 4; ++c) color[c] = decode_component(pixels, format.component[c]);
+/// Components that the format lacks are (0, 0, 0, 1).
+inline QuadColor decode_quad(const FormatInfo& format, const QuadWords& quad) {
+  QuadColor color{{_mm_setzero_ps(), _mm_setzero_ps(), _mm_setzero_ps(), _mm_set1_ps(1.0f)}};
+  for (std::size_t c = 0; c < format.channels; ++c) color[c] = decode_component(quad, format.component[c]);
   return color;
 }
 
@@ -50,19 +122,30 @@ inline __m128i encode_srgb(__m128 v) {
   return _mm_sub_epi32(code, _mm_castps_si128(_mm_cmpge_ps(v, threshold)));
 }
 
+/// A number as its component's code; what fits into 0..1 alone must be there.
 inline __m128i encode_component(__m128 v, const ComponentBits& component) {
   if (component.numeric == Numeric::kSrgb) return encode_srgb(v);
+  if (component.numeric == Numeric::kFloat) return component.bits == 32 ? _mm_castps_si128(v) : to_half(v);
+  if (component.numeric == Numeric::kUfloat) {
+    alignas(16) float value[4];
+    alignas(16) std::uint32_t code[4];
+    _mm_store_ps(value, v);
+    for (int i = 0; i < 4; ++i) code[i] = encode_ufloat(value[i], component.bits - 5);
+    return _mm_load_si128(reinterpret_cast<const __m128i*>(code));
+  }
   return _mm_cvtps_epi32(_mm_mul_ps(v, _mm_set1_ps(static_cast<float>(most_of(component)))));
 }
 
-inline __m128i encode_quad(const FormatInfo& format, const QuadColor& color) {
-  __m128i pixels = _mm_setzero_si128();
-  for (std::size_t c = 0; c < 4; ++c) {
+inline QuadWords encode_quad(const FormatInfo& format, const QuadColor& color) {
+  const __m128i zero = _mm_setzero_si128();
+  QuadWords quad{{zero, zero, zero, zero}};
+  for (std::size_t c = 0; c < format.channels; ++c) {
     const ComponentBits& component = format.component[c];
-    pixels = _mm_or_si128(
-        pixels, _mm_sll_epi32(encode_component(color[c], component), _mm_cvtsi32_si128(component.shift)));
+    __m128i& word = quad.word[component.shift / 32];
+    word = _mm_or_si128(
+        word, _mm_sll_epi32(encode_component(color[c], component), _mm_cvtsi32_si128(component.shift % 32)));
   }
-  return pixels;
+  return quad;
 }
 
 }  // namespace quadrille::models

@@ -23,17 +23,15 @@ QuadColor mean(std::array<QuadColor, kMaxSamples>& samples, std::size_t count) {
 
 }  // namespace
 
-void resolve_tile(Format format, std::span<const std::uint32_t> planes, std::uint32_t pixels[64]) {
+void resolve_tile(Format format, const std::byte* planes, std::size_t stride, std::uint32_t samples,
+                  std::byte* pixels) {
   const FormatInfo& info = format_info(format);
-  const std::size_t count = planes.size() / kTilePixels;
-  for (std::size_t quad = 0; quad < kTilePixels; quad += 4) {
-    std::array<QuadColor, kMaxSamples> samples;
-    for (std::size_t s = 0; s < count; ++s) {
-      const std::uint32_t* const at = planes.data() + s * kTilePixels + quad;
-      samples[s] = decode_quad(info, _mm_loadu_si128(reinterpret_cast<const __m128i*>(at)));
-    }
-    const QuadColor color = mean(samples, count);
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(pixels + quad), encode_quad(info, color));
+  const std::size_t quad_bytes = std::size_t{4} * info.bytes;
+  for (std::size_t at = 0; at < std::size_t{kTilePixels} * info.bytes; at += quad_bytes) {
+    std::array<QuadColor, kMaxSamples> colors;
+    for (std::size_t s = 0; s < samples; ++s)
+      colors[s] = decode_quad(info, load_quad(planes + s * stride + at, info.bytes));
+    store_quad(pixels + at, info.bytes, encode_quad(info, mean(colors, samples)));
   }
 }
 

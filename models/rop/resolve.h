@@ -3,13 +3,14 @@
 
 #include "models/base/format.h"
 
+#include <cstddef>
 #include <cstdint>
-#include <span>
 
 namespace quadrille::models {
 
-/// Means of the samples of 64 pixels in linear values, encoded. `planes` holds the pixels of one sample after
-/// the other; their number is a power of two.
-void resolve_tile(Format format, std::span<const std::uint32_t> planes, std::uint32_t pixels[64]);
+/// Means of the samples of 64 pixels in linear values, encoded. A sample's pixels begin `stride` bytes behind
+/// those of the one before; `samples` is a power of two.
+void resolve_tile(Format format, const std::byte* planes, std::size_t stride, std::uint32_t samples,
+                  std::byte* pixels);
 
 }  // namespace quadrille::models

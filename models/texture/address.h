@@ -71,11 +71,11 @@ inline AxisTexels select(const AxisTexels& a, const AxisTexels& b, __m256i mask)
 }
 
 /// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
-inline __m256i x_index(__m256i x, Tiling tiling) {
+inline __m256i x_index(__m256i x, Tiling tiling, int tile_shift) {
   const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
   if (tiling == Tiling::kSurface) {
     const __m256i low = _mm256_or_si256(field(1), _mm256_slli_epi32(field(6), 1));
-    return _mm256_or_si256(low, _mm256_slli_epi32(_mm256_srli_epi32(x, 3), 6));
+    return _mm256_or_si256(low, _mm256_slli_epi32(_mm256_srli_epi32(x, 3), tile_shift));
   }
   const __m256i low = _mm256_or_si256(field(3), _mm256_slli_epi32(field(4), 1));
   return _mm256_or_si256(_mm256_or_si256(low, _mm256_slli_epi32(field(24), 2)),

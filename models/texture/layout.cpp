@@ -47,7 +47,9 @@ TextureView view_of_surface(const SurfaceLayout& surface, Format format) {
   view.layout.tiling = Tiling::kSurface;
   view.layout.width[0] = static_cast<std::int32_t>(surface.width);
   view.layout.height[0] = static_cast<std::int32_t>(surface.height);
-  view.layout.pitch[0] = static_cast<std::int32_t>(surface.tiles_x * kTilePixels);
+  const std::uint32_t tile_texels = surface.plane_stride() / surface.pixel_bytes;
+  view.layout.tile_shift = std::countr_zero(tile_texels);
+  view.layout.pitch[0] = static_cast<std::int32_t>(surface.tiles_x * tile_texels);
   view.layout.bytes = surface.bytes();
   return view;
 }

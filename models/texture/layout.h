@@ -1,7 +1,8 @@
-/// Textures in device memory: mip chains of 4 bytes a texel, tiled so that neighbours in both directions
-/// share cache lines and DRAM rows.
+/// Textures in device memory: mip chains tiled so that neighbours in both directions share cache lines and
+/// DRAM rows.
 ///
-/// A sector of 32 bytes is 4x2 texels and a line of 128 bytes 8x4 texels (2x2 sectors), in both tilings.
+/// Of 4 bytes a texel, a sector of 32 bytes is 4x2 texels and a line of 128 bytes 8x4 texels (2x2 sectors),
+/// in both tilings; larger and smaller texels lie in the same order.
 /// A texture's tile of 4 KiB is 32x32 texels (4x8 lines, row by row). The bits of a texel's index within it
 /// are, from the least: x0 x1 y0 x2 y1 x3 x4 y2 y3 y4. An attachment that is sampled lies as it was drawn, in
 /// tiles of 8x8 pixels that are quad-major (memory/surface.h): x0 y0 x1 x2 y1 y2. Tiles are row by row. So an
@@ -24,7 +25,7 @@ inline constexpr std::uint32_t kMaxTextureSize = 16384;
 
 enum class Tiling : std::uint8_t { kTexture, kSurface };
 
-/// Where the texels of a mip chain lie, in texels (4 bytes) from its base. Arrays by level, padded for vector
+/// Where the texels of a mip chain lie, in texels from its base. Arrays by level, padded for vector
 /// loads.
 struct TextureLayout {
   Tiling tiling = Tiling::kTexture;
@@ -33,6 +34,8 @@ struct TextureLayout {
   std::array<std::int32_t, 16> pitch{};            ///< texels of one row of tiles
   std::array<std::int32_t, 16> first{};            ///< index of the level's first texel
   std::uint64_t bytes = 0;                         ///< whole chain; a multiple of a line
+  /// log2 of the texels from a tile of a surface to the next
+  int tile_shift = 6;
 
   [[nodiscard]] static constexpr std::uint32_t x_part(std::uint32_t x) {
     return (x & 3) | (x & 4) << 1 | (x & 24) << 2 | (x >> 5) << 10;
@@ -40,8 +43,8 @@ struct TextureLayout {
   [[nodiscard]] static constexpr std::uint32_t y_part_in_tile(std::uint32_t y) {
     return (y & 1) << 2 | (y & 2) << 3 | (y & 28) << 5;
   }
-  [[nodiscard]] static constexpr std::uint32_t surface_x_part(std::uint32_t x) {
-    return (x & 1) | (x & 6) << 1 | (x >> 3) << 6;
+  [[nodiscard]] constexpr std::uint32_t surface_x_part(std::uint32_t x) const {
+    return (x & 1) | (x & 6) << 1 | (x >> 3) << tile_shift;
   }
   [[nodiscard]] static constexpr std::uint32_t surface_y_part_in_tile(std::uint32_t y) {
     return (y & 1) << 1 | (y & 6) << 3;
@@ -65,14 +68,14 @@ struct TextureView {
   Format format = Format::kR8G8B8A8Unorm;
   TextureLayout layout;
   [[nodiscard]] std::uint64_t texel_address(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
-    return base + 4 * std::uint64_t{layout.texel_index(level, x, y)};
+    return base + std::uint64_t{format_bytes(format)} * layout.texel_index(level, x, y);
   }
 };
 
 /// An attachment as a sampler sees it: one level, where it was drawn.
 [[nodiscard]] TextureView view_of_surface(const SurfaceLayout& surface, Format format);
 
-/// Allocates a texture of zeros; `tile_level` and `tile_texture` bring its texels.
+/// Allocates a texture of zeros, of 4 bytes a texel; `tile_level` and `tile_texture` bring its texels.
 [[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width,
                                            std::uint32_t height, std::uint32_t levels);
 /// Tiles one level: rows top to bottom, tightly packed. Another number of texels than the level has is an

@@ -53,8 +53,9 @@ struct TexturePlan {
   int line_count = 0;
   std::array<TextureLine, kMaxLines> lines;  ///< distinct, in order of first touch
   // Work, for the unit's timing and counters.
-  std::uint32_t bilinear_quads = 0;  ///< quad x level filter operations
-  std::uint32_t texels = 0;          ///< texels read by active lanes: 4 (linear) or 1 (nearest) a level
+  /// quad x level filter operations: two for each of 8 bytes a texel, four for 16
+  std::uint32_t bilinear_quads = 0;
+  std::uint32_t texels = 0;  ///< texels read by active lanes: 4 (linear) or 1 (nearest) a level
   std::uint32_t magnified_lanes = 0, minified_lanes = 0;
 };
 

@@ -1,7 +1,10 @@
 /// The filter half of the texture unit: fetches the texels of a plan, decodes, weighs (sample.h).
+#include "models/rop/quad_codec.h"
 #include "models/rop/srgb.h"
 #include "models/texture/lanes.h"
 #include "models/texture/sample.h"
+
+#include <cstring>
 
 namespace quadrille::models {
 namespace {
@@ -89,29 +92,43 @@ LaneColor filter_srgb(const Texels& t) {
            filter_srgb_channel<16>(t, wx, wy), filter_unorm_alpha(t)}};
 }
 
-/// A component of eight texels as numbers.
-__m256 decode_component(__m256i texels, const ComponentBits& component) {
-  if (component.numeric == Numeric::kFloat) return _mm256_castsi256_ps(texels);
-  const int most = (1 << component.bits) - 1;
-  const __m256i code =
-      _mm256_and_si256(_mm256_srl_epi32(texels, _mm_cvtsi32_si128(component.shift)), _mm256_set1_epi32(most));
-  if (component.numeric == Numeric::kSrgb) return _mm256_i32gather_ps(kSrgbToLinear.data(), code, 4);
-  return _mm256_div_ps(_mm256_cvtepi32_ps(code), _mm256_set1_ps(static_cast<float>(most)));
+/// Components of eight texels, decoded: those of lanes 0 to 3, and of the others.
+struct TexelColors {
+  QuadColor half[2];
+  [[nodiscard]] __m256 operator[](std::size_t c) const { return _mm256_set_m128(half[1][c], half[0][c]); }
+};
+
+/// One of a footprint's corners, of any format.
+TexelColors fetch_colors(const std::array<std::int32_t, 8>& texel, const std::byte* base,
+                         const FormatInfo& format) {
+  TexelColors colors;
+  for (std::size_t half = 0; half < 2; ++half) {
+    alignas(16) std::array<std::byte, 64> quad{};
+    for (std::size_t i = 0; i < 4; ++i)
+      std::memcpy(quad.data() + i * format.bytes,
+                  base + static_cast<std::size_t>(texel[4 * half + i]) * format.bytes, format.bytes);
+    colors.half[half] = decode_quad(format, load_quad(quad.data(), format.bytes));
+  }
+  return colors;
 }
 
 /// Any format, by its row of the table: all channels are numbers. Channels that it lacks are 0, alpha is 1.
-LaneColor filter_any(const Texels& t, const FormatInfo& format) {
+LaneColor filter_any(const TexturePlan::Footprint& f, const std::byte* base, const FormatInfo& format) {
   const __m256 scale = _mm256_set1_ps(1.0f / 256.0f);
-  const __m256 wx = _mm256_mul_ps(_mm256_cvtepi32_ps(t.frac_x), scale), wy = _mm256_mul_ps(t.weight_y, scale);
-  const auto lerp = [](__m256 a, __m256 b, __m256 w) {
-    return _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w));
+  const auto weight = [scale](const std::array<std::int32_t, 8>& frac) {
+    return _mm256_mul_ps(_mm256_cvtepi32_ps(load_lanes(frac.data())), scale);
   };
-  LaneColor color{{_mm256_setzero_ps(), _mm256_setzero_ps(), _mm256_setzero_ps(), _mm256_set1_ps(1.0f)}};
-  for (std::size_t c = 0; c < format.channels; ++c) {
-    __m256 value[4];
-    for (int i = 0; i < 4; ++i) value[i] = decode_component(t.corner[i], format.component[c]);
-    color.channel[c] = lerp(lerp(value[0], value[1], wx), lerp(value[2], value[3], wx), wy);
-  }
+  const __m256 wx = weight(f.frac_x), wy = weight(f.frac_y);
+  // A texel without weight counts for nothing, also where it is infinite.
+  const auto lerp = [](__m256 a, __m256 b, __m256 w) {
+    const __m256 mixed = _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w));
+    return _mm256_blendv_ps(mixed, a, _mm256_cmp_ps(w, _mm256_setzero_ps(), _CMP_EQ_OQ));
+  };
+  TexelColors corner[4];
+  for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(f.texel[i], base, format);
+  LaneColor color;
+  for (std::size_t c = 0; c < 4; ++c)
+    color.channel[c] = lerp(lerp(corner[0][c], corner[1][c], wx), lerp(corner[2][c], corner[3][c], wx), wy);
   return color;
 }
 
@@ -122,13 +139,13 @@ template <Way way>
 void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* base,
                   std::array<LaneFloats, 4>& rgba) {
   const auto filter = [&](std::size_t level) {
-    const Texels texels = fetch(plan.footprint[group][level], base);
+    const TexturePlan::Footprint& footprint = plan.footprint[group][level];
     if constexpr (way == Way::kSrgb) {
-      return filter_srgb(texels);
+      return filter_srgb(fetch(footprint, base));
     } else if constexpr (way == Way::kUnorm) {
-      return filter_unorm(texels);
+      return filter_unorm(fetch(footprint, base));
     } else {
-      return filter_any(texels, format_info(plan.format));
+      return filter_any(footprint, base, format_info(plan.format));
     }
   };
   LaneColor color = filter(0);

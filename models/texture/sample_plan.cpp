@@ -4,6 +4,7 @@
 #include "models/texture/level_of_detail.h"
 #include "models/texture/sample.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace quadrille::models {
@@ -33,7 +34,10 @@ LevelVectors level_vectors(const TextureLayout& layout, __m256i level, std::uint
 /// Collects the distinct lines of a request.
 class LineCollector {
  public:
-  explicit LineCollector(TexturePlan& plan) : plan_(plan) { plan_.line_count = 0; }
+  explicit LineCollector(TexturePlan& plan)
+      : plan_(plan), texel_shift_(std::countr_zero(format_bytes(plan.format))) {
+    plan_.line_count = 0;
+  }
 
   /// Adds the lines of one footprint, in order of corner and lane; lanes outside `used` touch nothing.
   void add(const __m256i (&texel)[4], std::uint32_t used) {
@@ -42,8 +46,9 @@ class LineCollector {
     __m256i line[4], sector[4];
     alignas(32) std::array<std::uint32_t, 32> numbers;
     for (std::size_t corner = 0; corner < 4; ++corner) {
-      line[corner] = _mm256_add_epi32(base_line, _mm256_srli_epi32(texel[corner], 5));
-      const __m256i which = _mm256_and_si256(_mm256_srli_epi32(texel[corner], 3), _mm256_set1_epi32(3));
+      line[corner] = _mm256_add_epi32(base_line, _mm256_srli_epi32(texel[corner], 7 - texel_shift_));
+      const __m256i which =
+          _mm256_and_si256(_mm256_srli_epi32(texel[corner], 5 - texel_shift_), _mm256_set1_epi32(3));
       sector[corner] = _mm256_and_si256(_mm256_sllv_epi32(_mm256_set1_epi32(1), which), mask);
       _mm256_store_si256(reinterpret_cast<__m256i*>(numbers.data() + 8 * corner), line[corner]);
     }
@@ -95,6 +100,7 @@ class LineCollector {
   }
 
   TexturePlan& plan_;
+  int texel_shift_;                      // log2 of a texel's bytes
   std::uint64_t seen_ = 0;               // buckets of which `latest_` is set
   std::array<std::uint8_t, 64> latest_;  // index of the line that a hash met last
 };
@@ -124,8 +130,9 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
   const AxisTexels y =
       axis_texels(folded_v, at.height, context.sampler.wrap_v, context.subtexel_bits, nearest);
   const Tiling tiling = context.view.layout.tiling;
-  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, tiling)),
-                right = _mm256_add_epi32(at.first, x_index(x.second, tiling));
+  const int shift = context.view.layout.tile_shift;
+  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, tiling, shift)),
+                right = _mm256_add_epi32(at.first, x_index(x.second, tiling, shift));
   const __m256i top = y_index(y.first, at.pitch, tiling), bottom = y_index(y.second, at.pitch, tiling);
   const __m256i texel[4] = {_mm256_add_epi32(left, top), _mm256_add_epi32(right, top),
                             _mm256_add_epi32(left, bottom), _mm256_add_epi32(right, bottom)};
@@ -136,7 +143,8 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
 }
 
 void count_work(TexturePlan& plan, std::uint32_t used, std::uint32_t nearest) {
-  plan.bilinear_quads += ((used & 0x0f) != 0 ? 1u : 0u) + ((used & 0xf0) != 0 ? 1u : 0u);
+  const std::uint32_t passes = std::max(1u, format_bytes(plan.format) / 4);
+  plan.bilinear_quads += passes * (((used & 0x0f) != 0 ? 1u : 0u) + ((used & 0xf0) != 0 ? 1u : 0u));
   plan.texels +=
       static_cast<std::uint32_t>(4 * std::popcount(used & ~nearest) + std::popcount(used & nearest));
 }

@@ -22,7 +22,7 @@ DeviceResources::DeviceResources(const traces::CommandStream& stream, models::De
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
   for (const traces::Image& i : stream.images)
     add(i.is_attachment()
-            ? std::uint64_t{models::kTileBytes} * ((i.width + 7) / 8) * ((i.height + 7) / 8) * i.samples
+            ? models::surface_layout(i.width, i.height, i.samples, models::format_bytes(i.format)).bytes()
             : models::make_texture_layout(i.width, i.height, i.levels).bytes);
   memory.reserve(bytes);
 }
@@ -55,7 +55,7 @@ const models::SurfaceLayout& DeviceResources::attachment(traces::Index image) {
   std::optional<models::SurfaceLayout>& surface = surfaces_[image];
   if (!surface) {
     const traces::Image& i = stream_.images[image];
-    surface = models::allocate_surface(memory_, i.width, i.height, i.samples);
+    surface = models::allocate_surface(memory_, i.width, i.height, i.samples, models::format_bytes(i.format));
     surface_bytes_ += surface->bytes();
   }
   return *surface;

@@ -53,7 +53,8 @@ class FrameBuilder {
     for (const traces::ColorAttachmentUse& use : c.colors) {
       hw::AttachmentState& color = pass.color[pass.colors++];
       color = attachment(use);
-      color.clear = use.load == traces::LoadOp::kClear ? models::encode_color(color.format, use.clear) : 0;
+      color.clear = use.load == traces::LoadOp::kClear ? models::encode_color(color.format, use.clear)
+                                                       : models::PixelCode{};
       if (use.resolve == traces::kNone) continue;
       hw::AttachmentState& resolve = pass.resolve[pass.colors - 1];
       resolve = attachment({use.resolve, traces::LoadOp::kLoad, traces::StoreOp::kStore});
@@ -79,7 +80,7 @@ class FrameBuilder {
       pass.has_depth = true;
       pass.depth = attachment(begun_->depth);
       pass.depth.read_later = kept;
-      pass.depth.clear = std::bit_cast<std::uint32_t>(pass.clear_depth);
+      pass.depth.clear = {{std::bit_cast<std::uint32_t>(pass.clear_depth)}};
     } else {
       out_.left_out.push_back({"depth surface", "no draw of the pass tests depth",
                                fmt::format("{} bytes of device memory",
@@ -87,7 +88,8 @@ class FrameBuilder {
     }
   }
   hw::AttachmentState attachment(const traces::AttachmentUse& use) {
-    return {resources_.attachment(use.image), stream_.images[use.image].format, use.load, use.store, 0, true};
+    return {
+        resources_.attachment(use.image), stream_.images[use.image].format, use.load, use.store, {}, true};
   }
   void apply(const traces::BindPipeline& c) { pipeline_ = c.pipeline; }
   void apply(const traces::BindDescriptorSet& c) { sets_[c.set] = c.descriptors; }

@@ -213,7 +213,7 @@ class FunctionalRenderer {
   float* depths(std::uint32_t tile_x, std::uint32_t tile_y, int sample) {
     const std::uint64_t address =
         pass_->depth.surface.tile_address(tile_x, tile_y, static_cast<std::uint32_t>(sample));
-    return reinterpret_cast<float*>(memory_.write(address, models::kTileBytes).data());
+    return reinterpret_cast<float*>(memory_.write(address, pass_->depth.surface.plane_bytes()).data());
   }
 
   std::uint64_t test_tile(const models::TriangleSetup& setup, const models::TileHit& tile, int sample,

@@ -104,7 +104,7 @@ std::vector<Check> checks_of(const Machine& m, const DeviceFrame& frame,
   for (const hw::Unit* unit : m.units()) unit->audit(audit);
   audit.right(hw::laws::kDrawsOfFrame, frame.frame.draws.size());
   if (!frame.frame.passes.empty())
-    audit.right(hw::laws::kScanOut, frame.frame.passes.back().picture().surface.bytes());
+    audit.right(hw::laws::kScanOut, frame.frame.passes.back().picture().surface.pixel_bytes_of_all());
   audit.left(hw::laws::kDirtyLines, frame.memory.dirty_lines());
   if (detail) detail->audit(audit);
   const auto place = [](const hw::Audit::Sides& sides) {

@@ -11,6 +11,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "models/base/format.h"
+
 namespace quadrille::scenes {
 
 inline constexpr double kLeastExposure = 1e-12, kMostExposure = 1e12;
@@ -63,6 +65,8 @@ struct SceneOptions {
   std::optional<double> exposure = 1;
   Shading shading = Shading::kPbr;
   DrawOrder order = DrawOrder::kFile;
+  /// of the picture and what is drawn before it; what `shown` and `visibility` show has its own
+  models::Format color_format = models::Format::kR8G8B8A8Srgb;
   Showing shown = Showing::kColors;  ///< all but colours have shaders of their own, and no shading
   bool visibility = false;           ///< draw triangle ids instead of all that (see `triangle_id_color`)
   /// false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL

@@ -109,12 +109,11 @@ traces::CommandStream Recorder::record() {
   const bool values = options_.visibility || shows_values(shaders_.set());
   const std::array<float, 4> clear = values ? std::array<float, 4>{0, 0, 0, options_.visibility ? 0.0F : 1.0F}
                                             : std::array<float, 4>{back.r, back.g, back.b, 1};
-  stream_.commands.emplace_back(
-      traces::make_pass(stream_,
-                        {options_.width, options_.height,
-                         values ? traces::Format::kR8G8B8A8Unorm : traces::Format::kR8G8B8A8Srgb,
-                         has_depth() ? traces::Format::kD32Float : traces::Format::kUndefined},
-                        clear));
+  stream_.commands.emplace_back(traces::make_pass(
+      stream_,
+      {options_.width, options_.height, values ? traces::Format::kR8G8B8A8Unorm : options_.color_format,
+       has_depth() ? traces::Format::kD32Float : traces::Format::kUndefined},
+      clear));
   stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width),
                                                     static_cast<float>(options_.height), 0, 1});
   stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});

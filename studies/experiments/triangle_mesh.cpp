@@ -148,7 +148,7 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
       mesh.triangles.empty() ? nullptr : mesh.triangles.front().data(), 3 * mesh.triangles.size());
   stream.buffers = {buffer_of<float>("positions", positions), buffer_of("indices", indices)};
   const traces::BeginPass pass =
-      traces::make_pass(stream, {mesh.width, mesh.height, traces::Format::kR8G8B8A8Unorm,
+      traces::make_pass(stream, {mesh.width, mesh.height, options.format,
                                  options.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
   stream.pipelines = {pipeline_of(options)};
   traces::Draw draw;

@@ -51,7 +51,8 @@ struct DrawOptions {
   bool depth = false;     ///< test "less" and write
   bool discards = false;  ///< the fragment shader drops half of its fragments
   bool blends = false;    ///< over what is there, by alpha, so that each fragment reads the colour it changes
-  std::string fragment_shader{};  ///< GLSL; empty: one colour
+  std::string fragment_shader{};                           ///< GLSL; empty: one colour
+  traces::Format format = traces::Format::kR8G8B8A8Unorm;  ///< of the colour attachment
   DrawTexture texture{};
   std::uint32_t storage_words = 0;  ///< of a storage buffer at set 0, binding 1, zeros; 0: there is none
   std::uint32_t draws = 1;          ///< so often, each a draw of its own

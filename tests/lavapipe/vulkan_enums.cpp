@@ -27,6 +27,11 @@ VkFormat vk_format(traces::Format format) {
     case F::kB8G8R8A8Unorm: return VK_FORMAT_B8G8R8A8_UNORM;
     case F::kB8G8R8A8Srgb: return VK_FORMAT_B8G8R8A8_SRGB;
     case F::kA2B10G10R10Unorm: return VK_FORMAT_A2B10G10R10_UNORM_PACK32;
+    case F::kR8Unorm: return VK_FORMAT_R8_UNORM;
+    case F::kR16Float: return VK_FORMAT_R16_SFLOAT;
+    case F::kR16G16Float: return VK_FORMAT_R16G16_SFLOAT;
+    case F::kR16G16B16A16Float: return VK_FORMAT_R16G16B16A16_SFLOAT;
+    case F::kB10G11R11Ufloat: return VK_FORMAT_B10G11R11_UFLOAT_PACK32;
   }
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }

@@ -295,7 +295,8 @@ Rendered VulkanFrame::read_back() const {
   const traces::PassTarget source = traces::target_of(stream_, *bound_.pass);
   const std::size_t pixels = std::size_t{source.width} * source.height;
   Cleanup scratch;
-  const HostBuffer color = device_.buffer(scratch, 4 * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  const std::size_t pixel_bytes = models::format_bytes(source.color);
+  const HostBuffer color = device_.buffer(scratch, pixel_bytes * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   const HostBuffer depth = device_.buffer(scratch, 4 * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   // Depths of several samples cannot be copied.
   const bool has_depth =
@@ -317,9 +318,12 @@ Rendered VulkanFrame::read_back() const {
   Rendered result;
   result.width = source.width;
   result.height = source.height;
-  result.color.resize(pixels);
-  std::memcpy(result.color.data(), color.mapped, 4 * pixels);
-  for (std::uint32_t& pixel : result.color) pixel = models::to_rgba8(source.color, pixel);
+  result.color.reserve(pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    models::PixelCode code;
+    std::memcpy(code.word.data(), static_cast<const std::byte*>(color.mapped) + pixel_bytes * i, pixel_bytes);
+    result.color.push_back(models::to_rgba8(source.color, code));
+  }
   result.depth.resize(has_depth ? pixels : 0);
   if (has_depth) std::memcpy(result.depth.data(), depth.mapped, 4 * pixels);
   read_back_buffers(result);

@@ -48,8 +48,8 @@ std::uint64_t image_digest(const DeviceFrame& frame) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const hw::PassState& pass : frame.frame.passes) {
     for (std::size_t c = 0; c < pass.colors; ++c) {
-      for (const std::uint32_t pixel : models::detile(frame.memory, pass.color[c].surface))
-        hash = mix(hash, pixel);
+      for (const models::PixelCode& pixel : models::detile_codes(frame.memory, pass.color[c].surface))
+        for (const std::uint32_t word : pixel.word) hash = mix(hash, word);
     }
     if (!pass.has_depth) continue;
     for (const std::uint32_t depth : models::detile(frame.memory, pass.depth.surface))

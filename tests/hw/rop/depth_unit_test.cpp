@@ -29,7 +29,7 @@ struct DepthBench final : Bench {
     PassState pass;
     pass.has_depth = true;
     pass.depth.surface = models::allocate_surface(device, s.width, s.height);
-    pass.depth.clear = std::bit_cast<std::uint32_t>(pass.clear_depth);
+    pass.depth.clear = {{std::bit_cast<std::uint32_t>(pass.clear_depth)}};
     pass.depth.load = s.load;
     pass.depth.store = s.store;
     pass.depth.read_later = s.read_later;

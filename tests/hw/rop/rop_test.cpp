@@ -35,7 +35,7 @@ struct RopBench final : Bench {
         pass.resolve[i].load = models::LoadOp::kLoad;
         pass.resolved |= 1u << i;
       }
-      pass.color[i].clear = 0x80402010;
+      pass.color[i].clear = {{0x80402010}};
       pass.color[i].load = s.load;
       pass.color[i].store = s.store;
       draw.color_outputs |= 0xfu << 4 * i;

@@ -18,7 +18,7 @@ constexpr int kLatency = 20;  ///< of the memory behind the cache, cycles
 /// With what `acquire` remembers of the tile that is being acquired.
 struct RememberingCache : SurfaceCache {
   using SurfaceCache::SurfaceCache;
-  std::uint8_t done = 0;
+  AcquiredLines done{};
 };
 using User = CacheUser<RememberingCache>;
 using Use = User::Use;
@@ -34,10 +34,11 @@ struct SurfaceBench final : Bench {
     models::LoadOp load = models::LoadOp::kClear;
     models::StoreOp store = models::StoreOp::kStore;
     bool read_later = false;
+    models::Format format = models::Format::kR8G8B8A8Unorm;
   };
   SurfaceBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
-    surface = models::allocate_surface(device, 8, 32);
-    attachment = {surface, models::Format::kR8G8B8A8Unorm, s.load, s.store, 7, s.read_later};
+    surface = models::allocate_surface(device, 8, 32, 1, models::format_bytes(s.format));
+    attachment = {surface, s.format, s.load, s.store, {{7}}, s.read_later};
     unit = std::make_unique<User>("unit", clock, s.script, s.shape.lines, s.shape.ways, s.shape.misses,
                                   device, surface_writer(SurfaceKind::kColor, PartitionId(0)));
     unit->cache.begin_pass({&attachment, 1}, PartitionId(0), s.partitions);
@@ -57,16 +58,19 @@ Use acquire(std::uint32_t y, const SectorWishes& wishes, std::uint32_t waiter) {
     int missing = 0;
     const bool placed = u.cache.acquire({0, 0, y}, wishes, waiter, missing, u.cache.done, u.port);
     u.log += placed ? fmt::format("missing {}; ", missing) : fmt::format("no place, missing {}; ", missing);
-    if (placed) u.cache.done = 0;
+    if (placed) u.cache.done = {};
   };
 }
-/// Pixels of tile (0, y) are written: the same of each of these sectors.
+/// Pixels of tile (0, y) are written.
+Use write_pixels(std::uint32_t y, std::uint64_t pixels) {
+  return [=](User& u) { u.log += u.cache.write({0, 0, y}, pixels, u.port) ? "" : "not written; "; };
+}
+/// The same eight of each of these sectors.
 Use write(std::uint32_t y, std::uint8_t sectors, std::uint8_t pixels) {
-  return [=](User& u) {
-    SectorPixels written{};
-    for (unsigned s = 0; s < 8; ++s) written[s] = (sectors >> s & 1) != 0 ? pixels : std::uint8_t{0};
-    u.log += u.cache.write({0, 0, y}, written, u.port) ? "" : "not written; ";
-  };
+  std::uint64_t written = 0;
+  for (unsigned s = 0; s < 8; ++s)
+    if ((sectors >> s & 1) != 0) written |= std::uint64_t{pixels} << 8 * s;
+  return write_pixels(y, written);
 }
 const Use kFlush = [](User& u) { u.cache.flush(u.port); };
 
@@ -156,12 +160,67 @@ TEST_CASE("surface_cache: a cache of one line gets a marked tile through, and it
         "missing 0; | w0/f w1/f w0/1 w1/1 | marked 4 found 1 written 0 dirty 0");
 }
 
-TEST_CASE("surface_cache: quads of a tile lie two a sector") {
-  CHECK(sectors_of_quads(0x0001) == 0x01);
-  CHECK(sectors_of_quads(0x0003) == 0x01);
-  CHECK(sectors_of_quads(0x000c) == 0x02);
-  CHECK(sectors_of_quads(0x8000) == 0x80);
-  CHECK(sectors_of_quads(0xffff) == 0xff);
+namespace {
+
+/// Sectors that a write of these pixels reads, writes whole and writes in part.
+std::string wished(std::uint64_t pixels, std::uint32_t pixel_bytes) {
+  const SectorWishes wishes = wishes_of_write(pixels, pixel_bytes, false);
+  CHECK(sectors_of(pixels, pixel_bytes) == (wishes.read | wishes.write | wishes.part));
+  CHECK(wishes_of_write(pixels, pixel_bytes, true).read == sectors_of(pixels, pixel_bytes));
+  return fmt::format("r{:x} w{:x} p{:x}", wishes.read, wishes.write, wishes.part);
+}
+
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+}  // namespace
+
+TEST_CASE("surface_cache: sectors of a tile by the bytes of its pixels") {
+  CHECK(wished(kAll, 1) == "r0 w3 p0");
+  CHECK(wished(kAll, 2) == "r0 wf p0");
+  CHECK(wished(kAll, 4) == "r0 wff p0");
+  CHECK(wished(kAll, 8) == "r0 wffff p0");
+  CHECK(wished(kAll, 16) == "r0 wffffffff p0");
+  CHECK(wished(0xf, 4) == "r0 w0 p1");     // the first quad: half a sector
+  CHECK(wished(0xf, 8) == "r0 w1 p0");     // a sector
+  CHECK(wished(0xf, 16) == "r0 w3 p0");    // two
+  CHECK(wished(0x1, 16) == "r0 w0 p1");    // half of one
+  CHECK(wished(0x1000, 8) == "r0 w0 p8");  // a pixel of the fourth quad
+  CHECK(wished(0xffff0000ull, 2) == "r0 w2 p0");
+}
+
+TEST_CASE("surface_cache: pixels that fill a word in part have their sector read first") {
+  CHECK(wished(0xf, 1) == "r0 w0 p1");  // a quad is a word
+  CHECK(wished(0x7, 1) == "r1 w0 p0");
+  CHECK(wished(0x3, 2) == "r0 w0 p1");  // two pixels are a word
+  CHECK(wished(0x1, 2) == "r1 w0 p0");
+  CHECK(wished(0x10003ull, 2) == "r2 w0 p1");
+}
+
+TEST_CASE("surface_cache: a tile of one-byte pixels moves half a line, of 16-byte pixels eight lines") {
+  const auto whole_tile = [](models::Format format) {
+    return seen({.script = {{1, acquire(1, {.write = sectors_of(kAll, models::format_bytes(format))}, 1)},
+                            {2, write_pixels(1, kAll)},
+                            {3, kFlush}},
+                 .load = models::LoadOp::kLoad,
+                 .format = format});
+  };
+  CHECK(whole_tile(models::Format::kR8Unorm) == "missing 0; | w1/3 | marked 0 found 0 written 0 dirty 0");
+  CHECK(whole_tile(models::Format::kR16Float) == "missing 0; | w1/f | marked 0 found 0 written 0 dirty 0");
+  CHECK(whole_tile(models::Format::kR16G16B16A16Float) ==
+        "missing 0; | w4/f w5/f w6/f w7/f | marked 0 found 0 written 0 dirty 0");
+  CHECK(whole_tile(models::Format::kR32G32B32A32Float) ==
+        "missing 0; | w8/f w9/f w10/f w11/f w12/f w13/f w14/f w15/f | marked 0 found 0 written 0 dirty 0");
+}
+
+TEST_CASE("surface_cache: tiles that are still marked are written whole, whatever their pixels") {
+  const auto flushed = [](models::Format format) {
+    return seen(
+        {.script = {{0, acquire(0, {.read = 0x1}, 1)}, {1, kFlush}}, .read_later = true, .format = format});
+  };
+  CHECK(flushed(models::Format::kR8Unorm) ==
+        "missing 0; | w0/3 w1/3 w2/3 w3/3 | marked 4 found 1 written 3 dirty 0");
+  CHECK(flushed(models::Format::kR16Float) ==
+        "missing 0; | w0/f w1/f w2/f w3/f | marked 4 found 1 written 3 dirty 0");
 }
 
 TEST_CASE("surface_cache: the caches of depth and colour of all partitions are writers of their own") {
