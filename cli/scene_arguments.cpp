@@ -46,21 +46,21 @@ std::uint32_t parse_samples(std::string_view text) {
   return count;
 }
 
-/// Formats that a picture can be drawn in, by Vulkan's names.
-std::vector<std::string> color_format_names() {
+/// Formats of that use, by Vulkan's names.
+std::vector<std::string> format_names(models::FormatUse use) {
   std::vector<std::string> names;
   for (int f = 0; f <= static_cast<int>(models::kLastFormat); ++f) {
     const models::FormatInfo& info = models::format_info(static_cast<models::Format>(f));
-    if (info.may(models::kColorUse)) names.emplace_back(info.name);
+    if (info.may(use)) names.emplace_back(info.name);
   }
   return names;
 }
 
-models::Format color_format_named(std::string_view name) {
+models::Format format_named(std::string_view name, models::FormatUse use) {
   int f = 0;
   while (f < static_cast<int>(models::kLastFormat)) {
     const models::FormatInfo& info = models::format_info(static_cast<models::Format>(f));
-    if (info.name == name && info.may(models::kColorUse)) break;
+    if (info.name == name && info.may(use)) break;
     ++f;
   }
   return static_cast<models::Format>(f);
@@ -185,11 +185,13 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
       ->check(one_of(scenes::kShowingNames));
 }
 
-void SceneArguments::add_color_format_to(CLI::App& command) {
+void SceneArguments::add_formats_to(CLI::App& command) {
   command
       .add_option("--color-format", color_format,
                   "what a pixel of the scene's colour attachments is stored as (default: R8G8B8A8_SRGB)")
-      ->check(CLI::IsMember(color_format_names()));
+      ->check(CLI::IsMember(format_names(models::kColorUse)));
+  command.add_option("--depth-format", depth_format, "what its depths are stored as (default: D32_SFLOAT)")
+      ->check(CLI::IsMember(format_names(models::kDepthUse)));
 }
 
 void SceneArguments::add_samples_to(CLI::App& command) {
@@ -249,7 +251,8 @@ scenes::SceneOptions SceneArguments::options() const {
   if (view && shading) throw user_error("--view: not together with --shading; it shows no shading");
   if (view && color_format)
     throw user_error("--color-format: not together with --view, whose values have a format of their own");
-  if (color_format) options.color_format = color_format_named(*color_format);
+  if (color_format) options.color_format = format_named(*color_format, models::kColorUse);
+  if (depth_format) options.depth_format = format_named(*depth_format, models::kDepthUse);
   options.leave_out = leave_out;
   options.keep_packed = keep_packed;
   if (shading) options.shading = scenes::named(scenes::kShadingNames, *shading, scenes::Shading::kMinimal);
@@ -264,11 +267,12 @@ void SceneArguments::check() const {
   if (samples) (void)parse_samples(*samples);
   if (is_trace()) {
     if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag ||
-        shading || order || view || color_format) {
+        shading || order || view || color_format || depth_format) {
       throw user_error(
           "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, "
           "--eye, --at, --time, --animation, "
-          "--exposure, --vert, --frag, --shading, --order, --view and --color-format are for scenes",
+          "--exposure, --vert, --frag, --shading, --order, --view, --color-format and --depth-format are for "
+          "scenes",
           scene);
     }
     return;

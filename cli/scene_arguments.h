@@ -18,7 +18,7 @@ namespace quadrille::cli {
 struct SceneArguments {
   std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, shading, order,
-      view, color_format, vert, frag;
+      view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
@@ -32,8 +32,8 @@ struct SceneArguments {
   /// Adds those options alone, for a command that takes several scenes. `default_size` is what its help
   /// names.
   void add_view_to(CLI::App& command, const std::string& default_size);
-  /// Adds --color-format, for a command that draws or records.
-  void add_color_format_to(CLI::App& command);
+  /// Adds --color-format and --depth-format, for a command that draws or records.
+  void add_formats_to(CLI::App& command);
   /// Adds --samples, for a command that draws or records.
   void add_samples_to(CLI::App& command);
   /// Adds SCENE alone, for a trace, which has its view and shaders in it.

@@ -33,9 +33,10 @@ FrameImage read_image(const DeviceFrame& frame) {
       image.linear.push_back(models::decode_color(shown.format, code));
   }
   if (pass.has_depth) {
-    const std::vector<std::uint32_t> bits = models::detile(frame.memory, pass.depth.surface);
-    image.depth.reserve(bits.size());
-    for (const std::uint32_t b : bits) image.depth.push_back(std::bit_cast<float>(b));
+    const std::vector<models::PixelCode> depths = models::detile_codes(frame.memory, pass.depth.surface);
+    image.depth.reserve(depths.size());
+    for (const models::PixelCode& code : depths)
+      image.depth.push_back(models::decode_depth(pass.depth.format, code));
   } else if (frame.shown_has_depth) {
     image.depth.assign(image.color.size(), pass.clear_depth);  // nothing tested or wrote it
   }

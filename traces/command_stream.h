@@ -30,9 +30,12 @@ inline constexpr Index kNone = 0xffffffffu;  ///< an index that names nothing
 
 using models::BlendFactor;
 using models::BlendOp;
+using models::BlendShared;
 using models::BlendState;
 using models::CompareOp;
 using models::CullMode;
+using models::DepthBias;
+using models::DepthBoundsTest;
 using models::Filter;
 using models::Format;
 using models::format_bytes;
@@ -43,8 +46,12 @@ using models::kLastFormat;
 using models::kMaxColorAttachments;
 using models::LineMode;
 using models::LoadOp;
+using models::LogicOp;
 using models::PolygonMode;
 using models::ShaderStage;
+using models::StencilFace;
+using models::StencilOp;
+using models::StencilState;
 using models::StoreOp;
 using models::Topology;
 using models::Wrap;
@@ -125,6 +132,10 @@ struct Pipeline {
   FrontFace front = FrontFace::kCounterClockwise;
   bool depth_clamp = false;
   DepthState depth;
+  DepthBias depth_bias{};  ///< of triangles
+  DepthBoundsTest depth_bounds{};
+  StencilState stencil{};  ///< of a depth attachment that has stencil values
+  BlendShared blend_shared{};
   std::array<BlendState, kMaxColorAttachments> blend;  ///< by colour attachment of the pass
   friend bool operator==(const Pipeline&, const Pipeline&) = default;
 };
@@ -170,6 +181,7 @@ struct ColorAttachmentUse : AttachmentUse {
 };
 struct DepthAttachmentUse : AttachmentUse {
   float clear = 1;
+  std::uint8_t clear_stencil = 0;
   friend bool operator==(const DepthAttachmentUse&, const DepthAttachmentUse&) = default;
 };
 /// All attachments have one extent and one number of samples, and there is at least one. The last pass of a

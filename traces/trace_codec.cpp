@@ -182,9 +182,27 @@ template <class A>
 void transfer(A& a, BlendState& v) {
   numbers(a, v.enable);
   for (BlendFactor* factor : {&v.src_color, &v.dst_color, &v.src_alpha, &v.dst_alpha})
-    a.choice(*factor, BlendFactor::kOneMinusDstAlpha);
+    a.choice(*factor, a.version() >= 4 ? models::kLastBlendFactor : BlendFactor::kOneMinusDstAlpha);
   for (BlendOp* op : {&v.color, &v.alpha}) a.choice(*op, BlendOp::kMax);
   numbers(a, v.write_mask);
+}
+
+template <class A>
+void transfer(A& a, StencilFace& v) {
+  a.choice(v.compare, CompareOp::kAlways);
+  for (StencilOp* op : {&v.fail, &v.pass, &v.depth_fail}) a.choice(*op, StencilOp::kDecrementWrap);
+  numbers(a, v.compare_mask, v.write_mask, v.reference);
+}
+
+/// What pipelines have since version 4.
+template <class A>
+void transfer_tests(A& a, Pipeline& v) {
+  numbers(a, v.depth_bias.enable, v.depth_bias.constant, v.depth_bias.slope, v.depth_bias.clamp);
+  numbers(a, v.depth_bounds.test, v.depth_bounds.least, v.depth_bounds.most, v.stencil.test);
+  transfer(a, v.stencil.front);
+  transfer(a, v.stencil.back);
+  numbers(a, v.blend_shared.constants, v.blend_shared.logic);
+  a.choice(v.blend_shared.logic_op, LogicOp::kSet);
 }
 
 template <class A>
@@ -210,6 +228,7 @@ void transfer(A& a, Pipeline& v) {
   a.choice(v.depth.compare, CompareOp::kAlways);
   const std::size_t blends = a.version() >= 2 ? v.blend.size() : 1;
   for (std::size_t i = 0; i < blends; ++i) transfer(a, v.blend[i]);
+  if (a.version() >= 4) transfer_tests(a, v);
 }
 
 template <class A>
@@ -254,6 +273,7 @@ void fields(A& a, BeginPass& v) {
   });
   transfer(a, static_cast<AttachmentUse&>(v.depth));
   numbers(a, v.depth.clear);
+  if (a.version() >= 4) numbers(a, v.depth.clear_stencil);
 }
 template <class A>
 void fields(A&, EndPass&) {}

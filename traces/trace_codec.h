@@ -40,10 +40,10 @@ inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"IMGS", 3},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
-                                                   {"PIPE", 3},
+                                                   {"PIPE", 4},
                                                    {"DESC", 2},
                                                    {"TARG", 0},
-                                                   {"CMDS", 3}}};
+                                                   {"CMDS", 4}}};
 
 [[nodiscard]] std::vector<std::byte> encode_chunk(const CommandStream& stream, Chunk chunk);
 

@@ -142,11 +142,34 @@ void check_primitives(const Pipeline& pipeline, std::size_t index) {
                      pipeline.line_width, models::kMinLineWidth, models::kMaxLineWidth);
 }
 
+void check_finite(const Pipeline& pipeline, std::size_t index, const char* what,
+                  std::initializer_list<float> values) {
+  if (!std::ranges::all_of(values, [](float v) { return std::isfinite(v); }))
+    throw user_error("pipeline {} '{}': its {} are not all finite", index, pipeline.name, what);
+}
+
+void check_tests(const Pipeline& pipeline, std::size_t index) {
+  const DepthBias& bias = pipeline.depth_bias;
+  check_finite(pipeline, index, "numbers of depth bias", {bias.constant, bias.slope, bias.clamp});
+  const DepthBoundsTest& bounds = pipeline.depth_bounds;
+  if (!(bounds.least >= 0 && bounds.most <= 1 && bounds.least <= bounds.most))
+    throw user_error("pipeline {} '{}': depth bounds {}..{} are not an interval within 0..1", index,
+                     pipeline.name, bounds.least, bounds.most);
+  const auto& c = pipeline.blend_shared.constants;
+  check_finite(pipeline, index, "blend constants", {c[0], c[1], c[2], c[3]});
+  for (std::size_t i = 1; i < pipeline.blend.size(); ++i) {
+    if (pipeline.blend[i].uses_second_source())
+      throw user_error("pipeline {} '{}': attachment {} is blended by a second colour; only 0 can be", index,
+                       pipeline.name, i);
+  }
+}
+
 void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::size_t index) {
   check_stage(stream, pipeline, index, pipeline.vertex_shader, ShaderStage::kVertex, "vertex");
   check_stage(stream, pipeline, index, pipeline.fragment_shader, ShaderStage::kFragment, "fragment");
   check_vertex_input(pipeline, index);
   check_primitives(pipeline, index);
+  check_tests(pipeline, index);
   for (const BlendState& blend : pipeline.blend) {
     if (blend.write_mask > 0xf)
       throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,

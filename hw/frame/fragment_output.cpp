@@ -1,7 +1,6 @@
 #include "hw/frame/fragment_output.h"
 
 #include "models/raster/interpolate.h"
-#include "models/rop/depth.h"
 #include "models/rop/resolve.h"
 
 #include <algorithm>
@@ -25,11 +24,14 @@ void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outp
     models::LaneFloats& alpha = warp.color[attachment][3];
     for (std::size_t lane = 0; lane < alpha.size(); ++lane) alpha[lane] *= inputs.line_coverage[lane];
   });
+  if (!draw.second_source) return;
+  for (std::size_t c = 0; c < 4; ++c)
+    warp.color[1][c] = std::bit_cast<models::LaneFloats>(outputs[models::kSecondSourceOutput + c]);
 }
 
 models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
                             const models::TriangleSetup& triangle, const QuadOfWarp& quad,
-                            float* tile_depths) {
+                            models::DepthPlane stored) {
   alignas(32) float incoming[models::kTilePixels] = {};
   const int first = quad.place.first_pixel();
   if (draw.samples().count == 1 || draw.fragment.program->writes_depth)
@@ -37,23 +39,35 @@ models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
   else
     models::sample_depths(triangle, static_cast<int>(quad.place.tile_x), static_cast<int>(quad.place.tile_y),
                           draw.samples(), quad.sample, incoming);
-  const std::uint64_t passed =
-      models::depth_test(draw.depth_compare, tile_depths, incoming, std::uint64_t{quad.lanes} << first);
-  if (draw.depth_write) models::depth_write(tile_depths, incoming, passed);
-  return static_cast<models::LaneMask>(passed >> first) & 0xf;
+  models::round_depths(stored.format(), incoming);
+  const models::DepthStencilOutcome outcome = models::test_depth_stencil(
+      draw.depth_stencil, triangle.front_facing, stored, incoming, std::uint64_t{quad.lanes} << first);
+  models::write_depth_stencil(outcome, incoming, stored);
+  return static_cast<models::LaneMask>(outcome.passed >> first) & 0xf;
+}
+
+models::DepthPlane depth_plane(const AttachmentState& depth, models::DeviceMemory& memory,
+                               std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample) {
+  const std::uint64_t address = depth.surface.tile_address(tile_x, tile_y, sample);
+  return {depth.format, memory.write(address, depth.surface.plane_bytes()).data()};
 }
 
 void write_color(const DrawState& draw, const PassState& pass, std::size_t attachment, const WarpSlot& warp,
                  const QuadOfWarp& quad, models::DeviceMemory& memory) {
-  float rgba[4][4];
-  for (std::size_t c = 0; c < 4; ++c)
-    std::copy_n(warp.color[attachment][c].begin() + 4 * quad.number, 4, rgba[c]);
+  const auto gather = [&](std::size_t output, float(&rgba)[4][4]) {
+    for (std::size_t c = 0; c < 4; ++c)
+      std::copy_n(warp.color[output][c].begin() + 4 * quad.number, 4, rgba[c]);
+  };
+  float rgba[4][4], second[4][4];
+  gather(attachment, rgba);
+  if (draw.second_source) gather(1, second);
   const AttachmentState& target = pass.color[attachment];
   const std::uint64_t address = target.surface.tile_address(quad.place.tile_x, quad.place.tile_y,
                                                             static_cast<std::uint32_t>(quad.sample));
   std::byte* const tile = memory.write(address, target.surface.plane_bytes()).data();
   const std::size_t first = static_cast<std::size_t>(quad.place.first_pixel()) * target.surface.pixel_bytes;
-  models::blend_quad(draw.blend[attachment], target.format, rgba, tile + first, quad.lanes);
+  models::blend_quad(draw.blend[attachment], draw.blend_shared, target.format, rgba,
+                     draw.second_source ? second : nullptr, tile + first, quad.lanes);
 }
 
 void resolve_tile(const PassState& pass, std::size_t attachment, std::uint32_t tile_x, std::uint32_t tile_y,

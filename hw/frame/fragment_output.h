@@ -23,22 +23,26 @@ struct QuadOfWarp {
   models::LaneMask lanes = 0;  ///< to write, bits 0..3
   int sample = 0;              ///< of these pixels
 };
-/// Tests a quad's depths against those stored in its tile, and writes where it shall; lanes that pass. Depths
-/// are the program's, or else those of the triangle at the sample.
+/// Tests a quad against the depths and stencil values stored in its tile, and writes where it shall; lanes
+/// that pass. Depths are the program's, or else those of the triangle at the sample.
 [[nodiscard]] models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
                                           const models::TriangleSetup& triangle, const QuadOfWarp& quad,
-                                          float* tile_depths);
+                                          models::DepthPlane stored);
+/// The plane of one sample in a tile of a depth attachment.
+[[nodiscard]] models::DepthPlane depth_plane(const AttachmentState& depth, models::DeviceMemory& memory,
+                                             std::uint32_t tile_x, std::uint32_t tile_y,
+                                             std::uint32_t sample);
 /// Tests all samples of a quad that are alive, and takes those from `warp` that fail; lanes of which one
-/// passes. `depths_of(sample)` is the tile's plane.
-template <class DepthsOf>
+/// passes. `plane_of(sample)` is the tile's `DepthPlane`.
+template <class PlaneOf>
 models::LaneMask test_samples(const DrawState& draw, WarpSlot& warp, const models::TriangleSetup& triangle,
-                              QuadOfWarp quad, const DepthsOf& depths_of) {
+                              QuadOfWarp quad, const PlaneOf& plane_of) {
   const int count = draw.samples().count;
   models::LaneMask survivors = 0;
   for (quad.sample = 0; quad.sample < count; ++quad.sample) {
     quad.lanes = warp.lanes_of(quad.number, count, quad.sample);
     if (quad.lanes == 0) continue;
-    const models::LaneMask passed = test_depth(draw, warp, triangle, quad, depths_of(quad.sample));
+    const models::LaneMask passed = test_depth(draw, warp, triangle, quad, plane_of(quad.sample));
     survivors |= passed;
     for (unsigned i = 0; i < 4; ++i) {
       std::uint8_t& samples = warp.samples[4 * static_cast<std::size_t>(quad.number) + i];

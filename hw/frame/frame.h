@@ -18,7 +18,7 @@
 #include "models/raster/triangle_setup.h"
 #include "models/raster/viewport.h"
 #include "models/rop/blend.h"
-#include "models/rop/depth.h"
+#include "models/rop/depth_stencil.h"
 #include "models/shader/warp.h"
 #include "models/texture/sample.h"
 #include "models/texture/texture_fill.h"
@@ -85,9 +85,11 @@ struct DrawState {
   models::Viewport viewport;
   models::ClipState clip;
   models::SetupState setup;
-  bool depth_test = false, depth_write = false;
-  models::CompareOp depth_compare = models::CompareOp::kLess;
+  models::DepthStencilState depth_stencil;
   std::array<models::BlendState, models::kMaxColorAttachments> blend;  ///< by colour attachment
+  models::BlendShared blend_shared;
+  /// Attachment 0 is blended by two colours; the second is where a second attachment's would be.
+  bool second_source = false;
   /// Components of the pass's colour attachments that the fragment program writes, as
   /// `models::color_outputs`. Attachments without any keep what they hold; the other components of the rest
   /// are written as 0.
@@ -106,14 +108,17 @@ struct DrawState {
   [[nodiscard]] bool smooth_lines() const {
     return setup.line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
   }
-  [[nodiscard]] bool uses_depth() const { return depth_test; }
+  /// Its fragments have to meet stored depths or stencil values.
+  [[nodiscard]] bool uses_depth() const { return depth_stencil.tests(); }
   [[nodiscard]] const models::SampleGrid& samples() const { return setup.samples; }
   /// Hidden fragments are shaded all the same: their program accesses written memory before their depth is
   /// tested. [VK1.3 #fragops-early]
   [[nodiscard]] bool shades_hidden() const { return meets_written_memory && late_depth; }
   /// No fragment may be shaded before it is known to be visible: its program accesses written memory after
   /// the test.
-  [[nodiscard]] bool shades_visible_only() const { return meets_written_memory && depth_test && !late_depth; }
+  [[nodiscard]] bool shades_visible_only() const {
+    return meets_written_memory && uses_depth() && !late_depth;
+  }
   /// Calls `visit(attachment)` for each colour attachment that the program writes.
   template <class Visit>
   void visit_colors(const Visit& visit) const {
@@ -126,7 +131,8 @@ struct DrawState {
   }
   /// Does a write to this attachment need the old pixel?
   [[nodiscard]] bool reads_color(std::size_t attachment) const {
-    return (color_outputs >> 4 * attachment & 0xfu) != 0 && models::reads_destination(blend[attachment]);
+    return (color_outputs >> 4 * attachment & 0xfu) != 0 &&
+           models::reads_destination(blend[attachment], blend_shared);
   }
 };
 
@@ -152,7 +158,7 @@ struct PassState {
   std::uint32_t resolved = 0;  ///< bit i: attachment i is
   AttachmentState depth;
   bool has_depth = false;            ///< a draw tests depth, or someone reads it later
-  float clear_depth = 1;             ///< of a depth attachment that is not loaded
+  float clear_depth = 1;             ///< of a depth attachment that is not loaded, as it holds it
   bool samples_attachments = false;  ///< that earlier passes drew
   /// What is shown of it.
   [[nodiscard]] const AttachmentState& picture() const {

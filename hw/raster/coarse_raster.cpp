@@ -113,14 +113,15 @@ void CoarseRaster::begin_pass(PassId pass) {
 }
 
 void CoarseRaster::note_direction(const DrawState& draw) {
-  if (draw.depth_test && draw.depth_write && !lowers_depth(draw.depth_compare) &&
-      draw.depth_compare != models::CompareOp::kNever && draw.depth_compare != models::CompareOp::kEqual) {
+  const models::DepthStencilState& state = draw.depth_stencil;
+  if (state.depth_test && state.depth_write && !lowers_depth(state.depth_compare) &&
+      state.depth_compare != models::CompareOp::kNever && state.depth_compare != models::CompareOp::kEqual) {
     hiz_trusted_ = false;
   }
   // A program that writes depth moves fragments away from the triangle's plane; its tiles cannot be judged by
-  // it. One that writes memory does so for hidden fragments too.
-  hiz_usable_ = hiz_trusted_ && !hiz_.empty() && draw.depth_test && lowers_depth(draw.depth_compare) &&
-                !draw.fragment.program->writes_depth && !draw.shades_hidden();
+  // it. One that writes memory does so for hidden fragments too, and so may a stencil test.
+  hiz_usable_ = hiz_trusted_ && !hiz_.empty() && state.depth_test && lowers_depth(state.depth_compare) &&
+                state.keeps_when_hidden() && !draw.fragment.program->writes_depth && !draw.shades_hidden();
 }
 
 bool CoarseRaster::hidden(const models::TileHit& tile) const {
@@ -128,9 +129,10 @@ bool CoarseRaster::hidden(const models::TileHit& tile) const {
   const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.pass(pass_).depth.surface.tiles_x +
                           static_cast<std::size_t>(tile.tile_x)];
   const DrawState& draw = frame_.draw(draw_);
-  const float nearest =
-      models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y, draw.samples()).min;
-  return draw.depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
+  const float nearest = models::round_depth(
+      frame_.pass(pass_).depth.format,
+      models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y, draw.samples()).min);
+  return draw.depth_stencil.depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
 }
 
 void CoarseRaster::look_ahead() {

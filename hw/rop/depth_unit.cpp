@@ -1,6 +1,7 @@
 #include "hw/rop/depth_unit.h"
 
 #include "hw/frame/detail_counts.h"
+#include "hw/frame/fragment_output.h"
 #include "hw/frame/laws.h"
 
 #include "models/rop/depth.h"
@@ -56,19 +57,15 @@ std::size_t DepthUnit::tile_number(std::uint32_t tile_x, std::uint32_t tile_y) c
   return std::size_t{tile_y} * frame_.pass(pass_).depth.surface.tiles_x + tile_x;
 }
 
-float* DepthUnit::depths(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample) {
-  return reinterpret_cast<float*>(
-      device_
-          .write(frame_.pass(pass_).depth.surface.tile_address(tile_x, tile_y, sample),
-                 frame_.pass(pass_).depth.surface.plane_bytes())
-          .data());
+models::DepthPlane DepthUnit::plane(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample) {
+  return depth_plane(frame_.pass(pass_).depth, device_, tile_x, tile_y, sample);
 }
 
 float DepthUnit::greatest_depth(std::uint32_t tile_x, std::uint32_t tile_y) {
   const models::SurfaceLayout& surface = frame_.pass(pass_).depth.surface;
-  float greatest = greatest_of(depths(tile_x, tile_y, 0), surface, tile_x, tile_y);
+  float greatest = greatest_of(plane(tile_x, tile_y, 0).depths(), surface, tile_x, tile_y);
   for (std::uint32_t s = 1; s < surface.samples; ++s)
-    greatest = std::max(greatest, greatest_of(depths(tile_x, tile_y, s), surface, tile_x, tile_y));
+    greatest = std::max(greatest, greatest_of(plane(tile_x, tile_y, s).depths(), surface, tile_x, tile_y));
   return greatest;
 }
 

@@ -10,10 +10,10 @@
 /// Time  `quads_per_clk` quads of one sample a cycle through either port, one port a cycle, the late one
 ///       first; waits for the tile's lines
 ///
-/// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of
-/// the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
+/// Stencil values lie beside the depths and are tested with them. Early test-and-write needs a program
+/// without discard or depth output, and no older late-tested fragment of the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
 /// now would fail at its turn too: all depth writes of the pass so far can but lower depths, and the test is
-/// "less". Late tests arrive in API order, so every pixel sees its tests and writes in that order.
+/// "less" and the only one. Late tests arrive in API order, so every pixel sees its tests and writes in that order.
 #pragma once
 
 #include "hw/base/param.h"
@@ -62,6 +62,8 @@ class DepthUnit final : public Unit {
                         "Pixels of which all samples were killed after shading"};
     Counter hiz_sent{*this, "hiz_sent", "update", "Hi-Z updates sent"};
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
+    Counter stencil_written{*this, "stencil_written", "fragment",
+                            "Fragments that an operation other than keep was done for"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
@@ -141,7 +143,7 @@ class DepthUnit final : public Unit {
   [[nodiscard]] bool waits_for_late(const CoverageToken& token) const;
   void begin_pass(PassId pass);
   void send_hiz(Tick now, std::uint32_t tile_x, std::uint32_t tile_y);
-  [[nodiscard]] float* depths(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample);
+  [[nodiscard]] models::DepthPlane plane(std::uint32_t tile_x, std::uint32_t tile_y, std::uint32_t sample);
   /// Of all its samples.
   [[nodiscard]] float greatest_depth(std::uint32_t tile_x, std::uint32_t tile_y);
   [[nodiscard]] std::size_t tile_number(std::uint32_t tile_x, std::uint32_t tile_y) const;

@@ -2,7 +2,7 @@
 #include "hw/rop/depth_unit.h"
 
 #include "models/raster/interpolate.h"
-#include "models/rop/depth.h"
+#include "models/rop/depth_stencil.h"
 
 #include <algorithm>
 #include <bit>
@@ -12,8 +12,9 @@ namespace quadrille::hw {
 namespace {
 
 bool can_raise(const DrawState& draw) {
-  if (!draw.depth_test || !draw.depth_write) return false;
-  switch (draw.depth_compare) {
+  const models::DepthStencilState& state = draw.depth_stencil;
+  if (!state.depth_test || !state.depth_write) return false;
+  switch (state.depth_compare) {
     case models::CompareOp::kNever:
     case models::CompareOp::kLess:
     case models::CompareOp::kEqual:
@@ -26,9 +27,12 @@ bool can_raise(const DrawState& draw) {
   return true;
 }
 
+/// The depth test alone decides, and asks for less.
 bool asks_for_less(const DrawState& draw) {
-  return draw.depth_compare == models::CompareOp::kLess ||
-         draw.depth_compare == models::CompareOp::kLessOrEqual;
+  const models::DepthStencilState& state = draw.depth_stencil;
+  return state.depth_test && !state.bounds.test && !state.stencil.test &&
+         (state.depth_compare == models::CompareOp::kLess ||
+          state.depth_compare == models::CompareOp::kLessOrEqual);
 }
 
 int quads_in(std::uint64_t coverage) { return std::popcount(models::quads_of(coverage)); }
@@ -66,7 +70,7 @@ void DepthUnit::take_early(Tick now) {
 
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   stats_.working_for(entry.token.part.draw());
-  if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).depth_test) {
+  if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).uses_depth()) {
     const std::uint32_t sectors =
         sectors_of(entry.token.coverage, frame_.pass(pass_).depth.surface.pixel_bytes);
     if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y, entry.token.sample}, {.read = sectors},
@@ -116,7 +120,7 @@ bool DepthUnit::hands_on(const CoverageToken& token) {
 
 bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now) {
   if (can_raise(draw)) lowering_ = false;
-  if (!draw.depth_test) {
+  if (!draw.uses_depth()) {
     stats_.untested += static_cast<std::uint64_t>(std::popcount(token.coverage));
     return true;
   }
@@ -125,18 +129,23 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
   token.late = tile_late_;
   const bool decidable = !token.late || (lowering_ && asks_for_less(draw) &&
                                          !draw.fragment.program->writes_depth && !draw.shades_hidden());
-  float* const stored = depths(token.tile_x, token.tile_y, token.sample);
+  models::DepthPlane stored = plane(token.tile_x, token.tile_y, token.sample);
   const std::uint64_t covered = token.coverage;
   alignas(32) float incoming[models::kTilePixels];
   if (decidable) {
-    models::sample_depths(triangles_[token.triangle].setup, token.tile_x, token.tile_y, draw.samples(),
-                          token.sample, incoming);
-    token.coverage = models::depth_test(draw.depth_compare, stored, incoming, covered);
-  }
-  if (!token.late && draw.depth_write && token.coverage != 0) {
-    if (!cache_.write({0, token.tile_x, token.tile_y, token.sample}, token.coverage, port_)) return false;
-    models::depth_write(stored, incoming, token.coverage);
-    send_hiz(now, token.tile_x, token.tile_y);
+    const models::TriangleSetup& triangle = triangles_[token.triangle].setup;
+    models::sample_depths(triangle, token.tile_x, token.tile_y, draw.samples(), token.sample, incoming);
+    models::round_depths(stored.format(), incoming);
+    const models::DepthStencilOutcome outcome =
+        models::test_depth_stencil(draw.depth_stencil, triangle.front_facing, stored, incoming, covered);
+    if (!token.late && outcome.written() != 0) {
+      if (!cache_.write({0, token.tile_x, token.tile_y, token.sample}, outcome.written(), port_))
+        return false;
+      models::write_depth_stencil(outcome, incoming, stored);
+      stats_.stencil_written += static_cast<std::uint64_t>(std::popcount(outcome.stencil_written));
+      if (outcome.depth_written != 0) send_hiz(now, token.tile_x, token.tile_y);
+    }
+    token.coverage = outcome.passed;
   }
   const auto killed = static_cast<std::uint64_t>(std::popcount(covered & ~token.coverage));
   stats_.early_killed += killed;

@@ -65,12 +65,13 @@ bool DepthUnit::test_late(Tick now) {
   WarpSlot& warp = warps_[token.slot];
   stats_.working_for(warp.draw);
   const DrawState& draw = frame_.draw(warp.draw);
-  const bool placed = !draw.depth_write || visit_samples(warp, [&](const WarpSlot::Quad& quad,
-                                                                   std::uint64_t lanes, int sample) {
-    const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-    return cache_.write({0, place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample)},
-                        lanes << place.first_pixel(), port_);
-  });
+  const bool placed =
+      !draw.depth_stencil.writes() ||
+      visit_samples(warp, [&](const WarpSlot::Quad& quad, std::uint64_t lanes, int sample) {
+        const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
+        return cache_.write({0, place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample)},
+                            lanes << place.first_pixel(), port_);
+      });
   if (!placed) {
     late_.front().acquired = false;
     stalled_ = !cache_.idle();
@@ -107,9 +108,9 @@ models::LaneMask DepthUnit::test_quad(const DrawState& draw, WarpSlot& warp, int
   if (part.lanes == 0) return 0;
   const models::TriangleSetup& triangle = triangles_[quad.triangle].setup;
   const models::LaneMask passed = test_samples(draw, warp, triangle, part, [&](int sample) {
-    return depths(tx, ty, static_cast<std::uint32_t>(sample));
+    return plane(tx, ty, static_cast<std::uint32_t>(sample));
   });
-  if (draw.depth_write && passed != 0) send_hiz(now, tx, ty);
+  if (draw.depth_stencil.depth_write && passed != 0) send_hiz(now, tx, ty);
   return passed;
 }
 

@@ -55,6 +55,15 @@ constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFor
     {"R16G16_SFLOAT", 4, 2, kTarget, Numeric::kFloat, in_a_row(2, 16, Numeric::kFloat)},
     {"R16G16B16A16_SFLOAT", 8, 4, kTarget, Numeric::kFloat, in_a_row(4, 16, Numeric::kFloat)},
     {"B10G11R11_UFLOAT_PACK32", 4, 3, kTarget, Numeric::kUfloat, kElevenElevenTen},
+    {"D16_UNORM", 2, 1, kDepthUse | kSampleUse, Numeric::kUnorm, in_a_row(1, 16, Numeric::kUnorm)},
+    {"D24_UNORM_S8_UINT",
+     4,
+     1,
+     kDepthUse | kSampleUse,
+     Numeric::kUnorm,
+     in_a_row(1, 24, Numeric::kUnorm),
+     {24, 8, Numeric::kUint}},
+    {"D32_SFLOAT_S8_UINT", 8, 1, kDepthUse | kSampleUse, Numeric::kFloat, kOneFloat, {32, 8, Numeric::kUint}},
 }};
 
 }  // namespace

@@ -41,9 +41,13 @@ enum class Format : std::uint8_t {
   kR16Float,
   kR16G16Float,
   kR16G16B16A16Float,
-  kB10G11R11Ufloat
+  kB10G11R11Ufloat,
+  // Depth and stencil.
+  kD16Unorm,
+  kD24UnormS8Uint,
+  kD32FloatS8Uint
 };
-inline constexpr Format kLastFormat = Format::kB10G11R11Ufloat;
+inline constexpr Format kLastFormat = Format::kD32FloatS8Uint;
 // clang-format on
 
 /// How the bits of a component stand for a number.
@@ -87,11 +91,13 @@ struct FormatInfo {
   Numeric numeric = Numeric::kNone;
   /// Images: red, green, blue and alpha. Depth is red.
   std::array<ComponentBits, 4> component{};
+  ComponentBits stencil{};
   [[nodiscard]] constexpr bool may(FormatUse use) const { return (uses & use) != 0; }
 };
 
 [[nodiscard]] const FormatInfo& format_info(Format format);
 
+[[nodiscard]] inline bool has_stencil(Format format) { return format_info(format).stencil.bits != 0; }
 /// Bytes of a texel or of a vertex attribute; images have 1, 2, 4, 8 or 16.
 [[nodiscard]] inline std::uint32_t format_bytes(Format format) { return format_info(format).bytes; }
 /// Components that an attribute of this format supplies (1..4).

@@ -5,6 +5,7 @@
 /// those of trace files and never change; a new one goes to the end of its enumeration.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace quadrille::models {
@@ -55,6 +56,55 @@ enum class CompareOp : std::uint8_t {
   kAlways
 };
 
+/// What becomes of a stored stencil value. [VK1.3 #fragops-stencil]
+enum class StencilOp : std::uint8_t {
+  kKeep,
+  kZero,
+  kReplace,
+  kIncrementClamp,
+  kDecrementClamp,
+  kInvert,
+  kIncrementWrap,
+  kDecrementWrap
+};
+
+/// The stencil test of fragments of front-facing or of back-facing triangles. Passes where (reference &
+/// compare_mask) `compare` (stored & compare_mask).
+struct StencilFace {
+  CompareOp compare = CompareOp::kAlways;
+  StencilOp fail = StencilOp::kKeep;        ///< the stencil test fails
+  StencilOp pass = StencilOp::kKeep;        ///< both tests pass
+  StencilOp depth_fail = StencilOp::kKeep;  ///< the stencil test passes and the depth test fails
+  std::uint8_t compare_mask = 0xff, write_mask = 0xff, reference = 0;
+  [[nodiscard]] constexpr bool keeps_when_hidden() const {
+    return write_mask == 0 || (fail == StencilOp::kKeep && depth_fail == StencilOp::kKeep);
+  }
+  [[nodiscard]] constexpr bool writes() const {
+    return write_mask != 0 && (!keeps_when_hidden() || pass != StencilOp::kKeep);
+  }
+  friend bool operator==(const StencilFace&, const StencilFace&) = default;
+};
+struct StencilState {
+  bool test = false;
+  StencilFace front{}, back{};
+  friend bool operator==(const StencilState&, const StencilState&) = default;
+};
+
+/// Passes where the stored depth is within [least, most]. [VK1.3 #fragops-dbt]
+struct DepthBoundsTest {
+  bool test = false;
+  float least = 0, most = 1;
+  friend bool operator==(const DepthBoundsTest&, const DepthBoundsTest&) = default;
+};
+
+/// Moves the depths of a triangle by constant * r + slope * (its greatest depth slope), limited to `clamp`
+/// where that is not 0; r is what depths of the attachment's format are apart. [VK1.3 #primsrast-depthbias]
+struct DepthBias {
+  bool enable = false;
+  float constant = 0, slope = 0, clamp = 0;
+  friend bool operator==(const DepthBias&, const DepthBias&) = default;
+};
+
 /// [VK1.3 #framebuffer-blending]
 enum class BlendFactor : std::uint8_t {
   kZero,
@@ -66,8 +116,21 @@ enum class BlendFactor : std::uint8_t {
   kSrcAlpha,
   kOneMinusSrcAlpha,
   kDstAlpha,
-  kOneMinusDstAlpha
+  kOneMinusDstAlpha,
+  kConstantColor,
+  kOneMinusConstantColor,
+  kConstantAlpha,
+  kOneMinusConstantAlpha,
+  kSrcAlphaSaturate,
+  kSrc1Color,  ///< of the second output at location 0, which only attachment 0 can be blended by
+  kOneMinusSrc1Color,
+  kSrc1Alpha,
+  kOneMinusSrc1Alpha
 };
+inline constexpr BlendFactor kLastBlendFactor = BlendFactor::kOneMinusSrc1Alpha;
+[[nodiscard]] constexpr bool is_second_source(BlendFactor factor) {
+  return factor >= BlendFactor::kSrc1Color;
+}
 enum class BlendOp : std::uint8_t { kAdd, kSubtract, kReverseSubtract, kMin, kMax };
 
 /// Of one colour attachment.
@@ -77,7 +140,40 @@ struct BlendState {
               dst_alpha = BlendFactor::kZero;
   BlendOp color = BlendOp::kAdd, alpha = BlendOp::kAdd;
   std::uint8_t write_mask = 0xf;  ///< bit 0 red .. bit 3 alpha
+  [[nodiscard]] constexpr bool uses_second_source() const {
+    return enable && (is_second_source(src_color) || is_second_source(dst_color) ||
+                      is_second_source(src_alpha) || is_second_source(dst_alpha));
+  }
   friend bool operator==(const BlendState&, const BlendState&) = default;
+};
+
+/// Bits of the colour (s) and of what is stored (d). [VK1.3 #framebuffer-logicop]
+enum class LogicOp : std::uint8_t {
+  kClear,
+  kAnd,
+  kAndReverse,  ///< s & ~d
+  kCopy,
+  kAndInverted,  ///< ~s & d
+  kNoOp,
+  kXor,
+  kOr,
+  kNor,
+  kEquivalent,
+  kInvert,
+  kOrReverse,  ///< s | ~d
+  kCopyInverted,
+  kOrInverted,  ///< ~s | d
+  kNand,
+  kSet
+};
+
+/// What the blending of all attachments shares. A logic operation takes the place of blending; attachments of
+/// floats and sRGB have none.
+struct BlendShared {
+  std::array<float, 4> constants{};
+  bool logic = false;
+  LogicOp logic_op = LogicOp::kCopy;
+  friend bool operator==(const BlendShared&, const BlendShared&) = default;
 };
 
 }  // namespace quadrille::models

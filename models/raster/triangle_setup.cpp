@@ -1,6 +1,7 @@
 #include "models/raster/triangle_setup.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace quadrille::models {
@@ -15,6 +16,17 @@ struct PlaneFitter {
     return {f0, (d1 * y2 - d2 * y1) * inv_area, (d2 * x1 - d1 * x2) * inv_area};
   }
 };
+
+/// Moves all depths by the bias. They end at 0 and 1.
+void move_depths(float greatest, const SetupState& state, TriangleSetup& out) {
+  const double offset = depth_offset(out.z, greatest, state);
+  out.z.value += offset;
+  const auto moved = [offset](float z) {
+    return static_cast<float>(std::clamp(static_cast<double>(z) + offset, 0.0, 1.0));
+  };
+  out.z_min = moved(out.z_min);
+  out.z_max = moved(out.z_max);
+}
 
 void fit_planes(const std::array<WindowVertex, 3>& v, const std::array<glm::vec2, 3>& weights,
                 std::int64_t area2, const SetupState& state, TriangleSetup& out) {
@@ -40,6 +52,7 @@ void fit_planes(const std::array<WindowVertex, 3>& v, const std::array<glm::vec2
 
   const auto [low, high] = std::minmax({v[0].z, v[1].z, v[2].z});
   limit_depths(low, high, state, out);
+  if (state.bias.enable) move_depths(std::max(std::abs(low), std::abs(high)), state, out);
 }
 
 /// Pixels of which a sample may lie within the bounding box.
@@ -65,6 +78,18 @@ std::int64_t doubled_area(const std::array<WindowVertex, 3>& v) {
   const std::int64_t x1 = std::int64_t{v[1].x} - v[0].x, y1 = std::int64_t{v[1].y} - v[0].y;
   const std::int64_t x2 = std::int64_t{v[2].x} - v[0].x, y2 = std::int64_t{v[2].y} - v[0].y;
   return x1 * y2 - x2 * y1;
+}
+
+double depth_offset(const Plane& z, float greatest, const SetupState& state) {
+  constexpr int kMantissaBits = 23;
+  const double step = state.depth_step > 0 ? state.depth_step
+                      : greatest > 0       ? std::ldexp(1.0, std::ilogb(greatest) - kMantissaBits)
+                                           : 0.0;
+  const double offset = static_cast<double>(state.bias.slope) * std::max(std::abs(z.dx), std::abs(z.dy)) +
+                        static_cast<double>(state.bias.constant) * step;
+  const double clamp = static_cast<double>(state.bias.clamp);
+  if (clamp > 0) return std::min(offset, clamp);
+  return clamp < 0 ? std::max(offset, clamp) : offset;
 }
 
 void limit_depths(float low, float high, const SetupState& state, TriangleSetup& out) {

@@ -50,6 +50,9 @@ struct SetupState {
   LineMode line_mode = LineMode::kBresenham;
   float line_width = 1;  ///< pixels
   SampleGrid samples{};
+  DepthBias bias{};
+  /// what depths of the attachment's format are apart; 0: its floats are apart by their size
+  double depth_step = 0;
 };
 
 enum class SetupOutcome : std::uint8_t {
@@ -77,6 +80,10 @@ enum class SetupOutcome : std::uint8_t {
 [[nodiscard]] inline bool culls(bool front, const SetupState& state) {
   return state.cull == (front ? CullMode::kFront : CullMode::kBack);
 }
+
+/// How far a triangle's depths are moved; `greatest` is the greatest of its corners. [VK1.3
+/// #primsrast-depthbias]
+[[nodiscard]] double depth_offset(const Plane& z, float greatest, const SetupState& state);
 
 /// Limits depths to the range of a primitive's vertices (from `low` to `high`) within the viewport's.
 void limit_depths(float low, float high, const SetupState& state, TriangleSetup& out);

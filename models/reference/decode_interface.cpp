@@ -17,6 +17,7 @@ Decorations inherit(Decorations member, const Decorations& whole) {
   if (member.component == kNoNumber) member.component = whole.component;
   member.flat = member.flat || whole.flat;
   member.no_perspective = member.no_perspective || whole.no_perspective;
+  member.index = std::max(member.index, whole.index);
   return member;
 }
 
@@ -99,7 +100,7 @@ void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& dec
                                                             : Interpolation::kPerspective;
     const std::uint32_t component = decorations.component == kNoNumber ? 0 : decorations.component;
     for (std::uint32_t i = 0; i < t.cells; ++i)
-      ports.push_back({location, component + i, slot + i, kind, interpolation});
+      ports.push_back({location, component + i, slot + i, kind, interpolation, decorations.index});
   }
 }
 

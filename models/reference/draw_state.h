@@ -26,9 +26,11 @@ struct ColorTarget {
 
 struct DrawState {
   const traces::CommandStream* stream = nullptr;
-  std::vector<ColorTarget*> colors;      ///< of the pass, by attachment
-  std::vector<double>* depth = nullptr;  ///< of the pass; null: it has no depth attachment
-  std::uint32_t samples = 1;             ///< a pixel, of the pass
+  std::vector<ColorTarget*> colors;              ///< of the pass, by attachment
+  std::vector<double>* depth = nullptr;          ///< of the pass; null: it has no depth attachment
+  std::vector<std::uint8_t>* stencil = nullptr;  ///< beside `depth`
+  traces::Format depth_format = traces::Format::kD32Float;
+  std::uint32_t samples = 1;  ///< a pixel, of the pass
   /// what earlier passes have drawn, with texels, for samplers
   const std::map<traces::Index, traces::Image>* drawn = nullptr;
   const traces::Pipeline* pipeline = nullptr;

@@ -100,21 +100,49 @@ double decode(const ComponentBits& component, const PixelCode& code) {
   return component.numeric == Numeric::kSrgb ? srgb_code_to_linear(bits) : bits / most_of(component);
 }
 
-double factor(BlendFactor which, std::size_t channel, const std::array<double, 4>& source,
-              const std::array<double, 4>& destination) {
+/// What blend factors are made of.
+struct Sources {
+  std::array<double, 4> source{}, destination{}, second{}, constant{};
+};
+
+double factor(BlendFactor which, std::size_t channel, const Sources& of) {
   switch (which) {
     case BlendFactor::kZero: return 0.0;
     case BlendFactor::kOne: return 1.0;
-    case BlendFactor::kSrcColor: return source[channel];
-    case BlendFactor::kOneMinusSrcColor: return 1.0 - source[channel];
-    case BlendFactor::kDstColor: return destination[channel];
-    case BlendFactor::kOneMinusDstColor: return 1.0 - destination[channel];
-    case BlendFactor::kSrcAlpha: return source[3];
-    case BlendFactor::kOneMinusSrcAlpha: return 1.0 - source[3];
-    case BlendFactor::kDstAlpha: return destination[3];
-    case BlendFactor::kOneMinusDstAlpha: return 1.0 - destination[3];
+    case BlendFactor::kSrcColor: return of.source[channel];
+    case BlendFactor::kOneMinusSrcColor: return 1.0 - of.source[channel];
+    case BlendFactor::kDstColor: return of.destination[channel];
+    case BlendFactor::kOneMinusDstColor: return 1.0 - of.destination[channel];
+    case BlendFactor::kSrcAlpha: return of.source[3];
+    case BlendFactor::kOneMinusSrcAlpha: return 1.0 - of.source[3];
+    case BlendFactor::kDstAlpha: return of.destination[3];
+    case BlendFactor::kOneMinusDstAlpha: return 1.0 - of.destination[3];
+    case BlendFactor::kConstantColor: return of.constant[channel];
+    case BlendFactor::kOneMinusConstantColor: return 1.0 - of.constant[channel];
+    case BlendFactor::kConstantAlpha: return of.constant[3];
+    case BlendFactor::kOneMinusConstantAlpha: return 1.0 - of.constant[3];
+    case BlendFactor::kSrcAlphaSaturate:
+      return channel == 3 ? 1.0 : std::min(of.source[3], 1.0 - of.destination[3]);
+    case BlendFactor::kSrc1Color: return of.second[channel];
+    case BlendFactor::kOneMinusSrc1Color: return 1.0 - of.second[channel];
+    case BlendFactor::kSrc1Alpha: return of.second[3];
+    case BlendFactor::kOneMinusSrc1Alpha: return 1.0 - of.second[3];
   }
   return 0.0;
+}
+
+/// Of one bit: those of a truth table of four, by 2 s + d.
+std::uint32_t logic(traces::LogicOp op, std::uint32_t s, std::uint32_t d) {
+  constexpr std::array<std::uint8_t, 16> kTruth{0b0000, 0b1000, 0b0100, 0b1100, 0b0010, 0b1010,
+                                                0b0110, 0b1110, 0b0001, 0b1001, 0b0101, 0b1101,
+                                                0b0011, 0b1011, 0b0111, 0b1111};
+  const unsigned truth = kTruth[static_cast<std::size_t>(op)];
+  std::uint32_t result = 0;
+  for (unsigned pair = 0; pair < 4; ++pair) {
+    if ((truth >> pair & 1u) == 0) continue;
+    result |= ((pair & 2u) != 0 ? s : ~s) & ((pair & 1u) != 0 ? d : ~d);
+  }
+  return result;
 }
 
 double combine(BlendOp op, double source, double source_factor, double destination,
@@ -153,25 +181,70 @@ double float_ulps(double a, double b) {
           static_cast<double>(larger));
 }
 
-StoredColor blend(const traces::BlendState& state, traces::Format format, const std::array<double, 4>& source,
+double held_depth(traces::Format format, double depth) {
+  const FormatInfo& info = format_info(format);
+  if (info.numeric == Numeric::kFloat) return depth;
+  const double most = most_of(info.component[0]);
+  return std::nearbyint(clamp_unit(depth) * most) / most;
+}
+
+PixelCode store_depth(traces::Format format, double depth) {
+  const FormatInfo& info = format_info(format);
+  PixelCode code;
+  put(info.component[0], encode(info.component[0], depth), code);
+  return code;
+}
+
+bool stencil_passes(const traces::StencilFace& face, std::uint8_t stored) {
+  return depth_passes(face.compare, face.reference & face.compare_mask, stored & face.compare_mask);
+}
+
+std::uint8_t stencil_after(const traces::StencilFace& face, traces::StencilOp op, std::uint8_t stored) {
+  int value = stored;
+  switch (op) {
+    case traces::StencilOp::kKeep: return stored;
+    case traces::StencilOp::kZero: value = 0; break;
+    case traces::StencilOp::kReplace: value = face.reference; break;
+    case traces::StencilOp::kIncrementClamp: value = std::min(value + 1, 255); break;
+    case traces::StencilOp::kDecrementClamp: value = std::max(value - 1, 0); break;
+    case traces::StencilOp::kInvert: value = 255 - value; break;
+    case traces::StencilOp::kIncrementWrap: value = (value + 1) % 256; break;
+    case traces::StencilOp::kDecrementWrap: value = (value + 255) % 256; break;
+  }
+  return static_cast<std::uint8_t>((stored & ~face.write_mask) | (value & face.write_mask));
+}
+
+StoredColor blend(const traces::BlendState& state, const traces::BlendShared& shared, traces::Format format,
+                  const std::array<double, 4>& source, const std::array<double, 4>& second,
                   const StoredColor& before) {
   const FormatInfo& info = format_info(format);
-  const std::array<double, 4> dst = load_color(format, before.code);
-  std::array<double, 4> src{};
-  for (std::size_t c = 0; c < 4; ++c) src[c] = held(info, source[c]);
+  Sources of;
+  of.destination = load_color(format, before.code);
+  for (std::size_t c = 0; c < 4; ++c) {
+    of.source[c] = held(info, source[c]);
+    of.second[c] = held(info, second[c]);
+    of.constant[c] = held(info, static_cast<double>(shared.constants[c]));
+  }
+  const bool operates = shared.logic && info.numeric == Numeric::kUnorm;
   StoredColor after = before;
   for (std::size_t c = 0; c < info.channels; ++c) {
     if ((state.write_mask >> c & 1u) == 0) continue;
-    double value = src[c];
-    if (state.enable) {
+    double value = of.source[c];
+    if (state.enable && !shared.logic) {
       const bool alpha = c == 3;
-      const double source_factor = factor(alpha ? state.src_alpha : state.src_color, c, src, dst);
-      const double destination_factor = factor(alpha ? state.dst_alpha : state.dst_color, c, src, dst);
-      value = held(info, combine(alpha ? state.alpha : state.color, src[c], source_factor, dst[c],
-                                 destination_factor));
+      const double source_factor = factor(alpha ? state.src_alpha : state.src_color, c, of);
+      const double destination_factor = factor(alpha ? state.dst_alpha : state.dst_color, c, of);
+      value = held(info, combine(alpha ? state.alpha : state.color, of.source[c], source_factor,
+                                 of.destination[c], destination_factor));
+    }
+    std::uint32_t bits = encode(info.component[c], value);
+    if (operates) {
+      bits = logic(shared.logic_op, bits, bits_of(info.component[c], before.code)) &
+             static_cast<std::uint32_t>(most_of(info.component[c]));
+      value = bits / most_of(info.component[c]);
     }
     after.linear[c] = value;
-    put(info.component[c], encode(info.component[c], value), after.code);
+    put(info.component[c], bits, after.code);
   }
   return after;
 }

@@ -11,6 +11,18 @@ namespace quadrille::models::reference {
 /// incoming `op` stored; a NaN passes only kNotEqual and kAlways. [VK1.3 #fragops-depth]
 [[nodiscard]] bool depth_passes(traces::CompareOp op, double incoming, double stored);
 
+/// The nearest depth that a format holds, ties to even; a format of floats holds all here.
+[[nodiscard]] double held_depth(traces::Format format, double depth);
+
+/// A pixel of a depth attachment, as shaders sample it: without stencil values.
+[[nodiscard]] PixelCode store_depth(traces::Format format, double depth);
+
+/// May a fragment stay whose stencil values compare so? `stored` is what the pixel holds.
+[[nodiscard]] bool stencil_passes(const traces::StencilFace& face, std::uint8_t stored);
+/// What the pixel holds after an operation.
+[[nodiscard]] std::uint8_t stencil_after(const traces::StencilFace& face, traces::StencilOp op,
+                                         std::uint8_t stored);
+
 /// |a - b| in units of the last place of the float32 nearest to the larger of the two.
 [[nodiscard]] double float_ulps(double a, double b);
 
@@ -23,8 +35,10 @@ struct StoredColor {
 /// Blends a shader's output into a stored pixel: source and destination in linear values, clamped to 0..1
 /// (NaN: 0) where the format holds no others, as is the result, which is then encoded and rounded to nearest,
 /// ties to even. Channels that the mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
-[[nodiscard]] StoredColor blend(const traces::BlendState& state, traces::Format format,
-                                const std::array<double, 4>& source, const StoredColor& before);
+/// `second` is the second source.
+[[nodiscard]] StoredColor blend(const traces::BlendState& state, const traces::BlendShared& shared,
+                                traces::Format format, const std::array<double, 4>& source,
+                                const std::array<double, 4>& second, const StoredColor& before);
 
 /// The linear values of a pixel or texel. Components that the format lacks are (0, 0, 0, 1).
 [[nodiscard]] std::array<double, 4> load_color(traces::Format format, const PixelCode& code);

@@ -79,10 +79,22 @@ class Renderer {
     }
     state_.depth = pass.depth.image == traces::kNone ? nullptr : &depths_[pass.depth.image];
     if (state_.depth != nullptr && pass.depth.load != traces::LoadOp::kLoad)
-      state_.depth->assign(values, clear_depth(pass));
+      state_.depth->assign(values, held_depth(stream_.images[pass.depth.image].format, clear_depth(pass)));
+    note_stencil(pass, values);
     result_.triangle_id.assign(pixels, kNoTriangle);
     result_.depth_margin.assign(pixels, std::numeric_limits<float>::infinity());
     result_.alpha_margin.assign(pixels, std::numeric_limits<float>::infinity());
+  }
+
+  /// Stencil values lie beside the depths, cleared and loaded with them.
+  void note_stencil(const traces::BeginPass& pass, std::size_t values) {
+    state_.stencil = nullptr;
+    if (state_.depth == nullptr) return;
+    state_.depth_format = stream_.images[pass.depth.image].format;
+    state_.stencil = &stencils_[pass.depth.image];
+    if (pass.depth.load == traces::LoadOp::kLoad) return;
+    const bool clears = pass.depth.load == traces::LoadOp::kClear;
+    state_.stencil->assign(values, clears ? pass.depth.clear_stencil : std::uint8_t{0});
   }
 
   /// What is not cared about is zero.
@@ -111,7 +123,7 @@ class Renderer {
     if (state_.depth != nullptr && state_.samples == 1) {
       std::vector<PixelCode> codes;
       for (const double z : *state_.depth)
-        codes.push_back({{std::bit_cast<std::uint32_t>(static_cast<float>(z))}});
+        codes.push_back(store_depth(stream_.images[begun_->depth.image].format, z));
       keep(begun_->depth.image, codes);
     }
   }
@@ -256,6 +268,7 @@ class Renderer {
   const traces::BeginPass* begun_ = nullptr;
   std::map<traces::Index, ColorTarget> colors_;
   std::map<traces::Index, std::vector<double>> depths_;
+  std::map<traces::Index, std::vector<std::uint8_t>> stencils_;
   std::map<traces::Index, traces::Image> drawn_;
   std::map<traces::Index, ShaderProgram> programs_;
   Result result_;

@@ -93,6 +93,7 @@ struct Port {
   Slot slot = kNoSlot;
   ScalarKind kind = ScalarKind::kFloat;
   Interpolation interpolation = Interpolation::kPerspective;
+  std::uint32_t index = 0;  ///< of a fragment shader's output: 1 is the second colour
 };
 
 /// A scalar of a uniform block or of the push constants (`push`), and where it goes.

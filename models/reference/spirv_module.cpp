@@ -131,6 +131,7 @@ class Reader {
     switch (words[0]) {
       case spv::DecorationBuiltIn: d.builtin = value; break;
       case spv::DecorationLocation: d.location = value; break;
+      case spv::DecorationIndex: d.index = value; break;
       case spv::DecorationComponent: d.component = value; break;
       case spv::DecorationBinding: d.binding = value; break;
       case spv::DecorationDescriptorSet: d.set = value; break;

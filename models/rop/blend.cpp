@@ -11,19 +11,34 @@
 namespace quadrille::models {
 namespace {
 
-__m128 factor(BlendFactor f, const QuadColor& src, const QuadColor& dst, std::size_t c) {
+/// What blend factors are made of.
+struct Sources {
+  QuadColor src, dst, second, constant;
+};
+
+__m128 factor(BlendFactor f, const Sources& of, std::size_t c) {
   const __m128 one = _mm_set1_ps(1.0f);
+  const auto rest = [one](__m128 v) { return _mm_sub_ps(one, v); };
   switch (f) {
     case BlendFactor::kZero: return _mm_setzero_ps();
     case BlendFactor::kOne: return one;
-    case BlendFactor::kSrcColor: return src[c];
-    case BlendFactor::kOneMinusSrcColor: return _mm_sub_ps(one, src[c]);
-    case BlendFactor::kDstColor: return dst[c];
-    case BlendFactor::kOneMinusDstColor: return _mm_sub_ps(one, dst[c]);
-    case BlendFactor::kSrcAlpha: return src[3];
-    case BlendFactor::kOneMinusSrcAlpha: return _mm_sub_ps(one, src[3]);
-    case BlendFactor::kDstAlpha: return dst[3];
-    case BlendFactor::kOneMinusDstAlpha: return _mm_sub_ps(one, dst[3]);
+    case BlendFactor::kSrcColor: return of.src[c];
+    case BlendFactor::kOneMinusSrcColor: return rest(of.src[c]);
+    case BlendFactor::kDstColor: return of.dst[c];
+    case BlendFactor::kOneMinusDstColor: return rest(of.dst[c]);
+    case BlendFactor::kSrcAlpha: return of.src[3];
+    case BlendFactor::kOneMinusSrcAlpha: return rest(of.src[3]);
+    case BlendFactor::kDstAlpha: return of.dst[3];
+    case BlendFactor::kOneMinusDstAlpha: return rest(of.dst[3]);
+    case BlendFactor::kConstantColor: return of.constant[c];
+    case BlendFactor::kOneMinusConstantColor: return rest(of.constant[c]);
+    case BlendFactor::kConstantAlpha: return of.constant[3];
+    case BlendFactor::kOneMinusConstantAlpha: return rest(of.constant[3]);
+    case BlendFactor::kSrcAlphaSaturate: return c == 3 ? one : _mm_min_ps(of.src[3], rest(of.dst[3]));
+    case BlendFactor::kSrc1Color: return of.second[c];
+    case BlendFactor::kOneMinusSrc1Color: return rest(of.second[c]);
+    case BlendFactor::kSrc1Alpha: return of.second[3];
+    case BlendFactor::kOneMinusSrc1Alpha: return rest(of.second[3]);
   }
   return one;
 }
@@ -41,15 +56,43 @@ __m128 combine(BlendOp op, __m128 src, __m128 src_factor, __m128 dst, __m128 dst
 }
 
 /// Of numbers, before they are clamped.
-QuadColor blend(const BlendState& state, const QuadColor& src, const QuadColor& dst) {
+QuadColor blend(const BlendState& state, const Sources& of) {
   QuadColor out;
   for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = combine(state.color, src[c], factor(state.src_color, src, dst, c), dst[c],
-                     factor(state.dst_color, src, dst, c));
+    out[c] = combine(state.color, of.src[c], factor(state.src_color, of, c), of.dst[c],
+                     factor(state.dst_color, of, c));
   }
-  out[3] = combine(state.alpha, src[3], factor(state.src_alpha, src, dst, 3), dst[3],
-                   factor(state.dst_alpha, src, dst, 3));
+  out[3] = combine(state.alpha, of.src[3], factor(state.src_alpha, of, 3), of.dst[3],
+                   factor(state.dst_alpha, of, 3));
   return out;
+}
+
+__m128i logic(LogicOp op, __m128i s, __m128i d) {
+  const __m128i ones = _mm_set1_epi32(-1);
+  const auto inverted = [ones](__m128i v) { return _mm_xor_si128(v, ones); };
+  switch (op) {
+    case LogicOp::kClear: return _mm_setzero_si128();
+    case LogicOp::kAnd: return _mm_and_si128(s, d);
+    case LogicOp::kAndReverse: return _mm_andnot_si128(d, s);
+    case LogicOp::kCopy: return s;
+    case LogicOp::kAndInverted: return _mm_andnot_si128(s, d);
+    case LogicOp::kNoOp: return d;
+    case LogicOp::kXor: return _mm_xor_si128(s, d);
+    case LogicOp::kOr: return _mm_or_si128(s, d);
+    case LogicOp::kNor: return inverted(_mm_or_si128(s, d));
+    case LogicOp::kEquivalent: return inverted(_mm_xor_si128(s, d));
+    case LogicOp::kInvert: return inverted(d);
+    case LogicOp::kOrReverse: return _mm_or_si128(s, inverted(d));
+    case LogicOp::kCopyInverted: return inverted(s);
+    case LogicOp::kOrInverted: return _mm_or_si128(inverted(s), d);
+    case LogicOp::kNand: return inverted(_mm_and_si128(s, d));
+    case LogicOp::kSet: return ones;
+  }
+  return s;
+}
+
+bool has_logic(const FormatInfo& format) {
+  return format.numeric == Numeric::kUnorm || format.numeric == Numeric::kUint;
 }
 
 /// All ones in the bits of the components that are written.
@@ -78,18 +121,35 @@ std::uint32_t round_to_byte(float value) {
 
 }  // namespace
 
-bool reads_destination(const BlendState& state) { return state.enable || (state.write_mask & 0xf) != 0xf; }
+bool reads_destination(const BlendState& state, const BlendShared& shared) {
+  if ((state.write_mask & 0xf) != 0xf) return true;
+  if (!shared.logic) return state.enable;
+  switch (shared.logic_op) {
+    case LogicOp::kClear:
+    case LogicOp::kCopy:
+    case LogicOp::kCopyInverted:
+    case LogicOp::kSet: return false;
+    default: return true;
+  }
+}
 
-void blend_quad(const BlendState& state, Format format, const float rgba[4][4], std::byte* dst_pixels,
-                std::uint32_t lane_mask) {
+void blend_quad(const BlendState& state, const BlendShared& shared, Format format, const float rgba[4][4],
+                const float (*second)[4], std::byte* dst_pixels, std::uint32_t lane_mask) {
   const FormatInfo& info = format_info(format);
   const QuadWords old = load_quad(dst_pixels, info.bytes);
   const bool clamps = holds_unit_range(info);
-  QuadColor color;
-  for (std::size_t c = 0; c < 4; ++c) color[c] = _mm_loadu_ps(rgba[c]);
-  if (clamps) clamp(color);
-  if (state.enable) {
-    color = blend(state, color, decode_quad(info, old));
+  Sources of;
+  for (std::size_t c = 0; c < 4; ++c) of.src[c] = _mm_loadu_ps(rgba[c]);
+  if (clamps) clamp(of.src);
+  QuadColor color = of.src;
+  if (state.enable && !shared.logic) {
+    of.dst = decode_quad(info, old);
+    for (std::size_t c = 0; c < 4; ++c) {
+      of.second[c] = second != nullptr ? _mm_loadu_ps(second[c]) : _mm_setzero_ps();
+      of.constant[c] = _mm_set1_ps(shared.constants[c]);
+    }
+    if (clamps) clamp(of.second), clamp(of.constant);
+    color = blend(state, of);
     if (clamps) clamp(color);
   }
   const __m128i lane_bits = _mm_setr_epi32(1, 2, 4, 8);
@@ -97,7 +157,9 @@ void blend_quad(const BlendState& state, Format format, const float rgba[4][4], 
       _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(static_cast<int>(lane_mask)), lane_bits), lane_bits);
   const PixelCode mask = component_mask(info, state.write_mask);
   QuadWords pixels = encode_quad(info, color);
+  const bool operates = shared.logic && has_logic(info);
   for (std::size_t w = 0; w < 4; ++w) {
+    if (operates) pixels.word[w] = logic(shared.logic_op, pixels.word[w], old.word[w]);
     const __m128i written = _mm_and_si128(lanes, _mm_set1_epi32(static_cast<int>(mask.word[w])));
     pixels.word[w] =
         _mm_or_si128(_mm_andnot_si128(written, old.word[w]), _mm_and_si128(written, pixels.word[w]));

@@ -16,13 +16,13 @@
 namespace quadrille::models {
 
 /// Does a write under this state need the old pixel (blending with it, or a partial write mask)?
-[[nodiscard]] bool reads_destination(const BlendState& state);
+[[nodiscard]] bool reads_destination(const BlendState& state, const BlendShared& shared = {});
 
 /// Blends four pixels. `rgba[c][i]` is component c of pixel i as the shader wrote it; `dst_pixels` holds the
 /// attachment's four pixels in its format, one behind the other, and receives the result where `lane_mask`
-/// (bits 0..3) is set.
-void blend_quad(const BlendState& state, Format format, const float rgba[4][4], std::byte* dst_pixels,
-                std::uint32_t lane_mask);
+/// (bits 0..3) is set. `second` is the second source, as `rgba`; null: there is none.
+void blend_quad(const BlendState& state, const BlendShared& shared, Format format, const float rgba[4][4],
+                const float (*second)[4], std::byte* dst_pixels, std::uint32_t lane_mask);
 
 /// A clear colour in the attachment's encoding.
 [[nodiscard]] PixelCode encode_color(Format format, const std::array<float, 4>& rgba);

@@ -191,6 +191,8 @@ enum class SystemValue : std::uint16_t {
 /// Fragment stage: 4 to each of eight colour attachments, then depth.
 inline constexpr std::uint16_t kFirstVaryingOutput = 4;
 inline constexpr std::uint16_t kDepthOutput = kMaxColorOutputs;
+/// The second colour for attachment 0, of a program that has one: it takes the place of attachment 1's.
+inline constexpr std::uint16_t kSecondSourceOutput = 4;
 
 enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
 
@@ -285,6 +287,7 @@ struct Program {
   bool uses_discard = false;
   bool writes_depth = false;
   bool early_fragment_tests = false;
+  bool second_source = false;     ///< of attachment 0, at `kSecondSourceOutput`
   bool uses_derivatives = false;  ///< explicit or through implicit-lod texturing: helper lanes are needed
   /// What an atomic operation returned reaches its outputs or discards: they depend on the order of warps.
   bool outputs_follow_atomics = false;

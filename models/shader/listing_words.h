@@ -13,10 +13,11 @@ struct NamedFlag {
   std::string_view name;
   bool Program::*member;
 };
-inline constexpr std::array<NamedFlag, 5> kProgramFlags{
+inline constexpr std::array<NamedFlag, 6> kProgramFlags{
     {{"discard", &Program::uses_discard},
      {"depth", &Program::writes_depth},
      {"early-tests", &Program::early_fragment_tests},
+     {"second-source", &Program::second_source},
      {"derivatives", &Program::uses_derivatives},
      {"atomic-outputs", &Program::outputs_follow_atomics}}};
 

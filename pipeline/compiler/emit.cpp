@@ -149,6 +149,7 @@ class Encoder {
     for (const auto& [raw, slot] : textures_) program.textures.push_back(shader_.textures[raw]);
     for (const auto& [raw, slot] : buffers_) program.buffers.push_back(shader_.buffers[raw]);
     program.outputs_follow_atomics = outputs_follow_atomics(shader_);
+    program.second_source = shader_.second_source;
     for (const ScalarInstruction& i : chosen_.code) {
       const Instruction out = encode(i);
       const bool useless = out.op == Op::kMov && out.flags == 0 && out.a.kind == Operand::kRegister &&

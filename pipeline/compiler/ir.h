@@ -69,6 +69,7 @@ struct ScalarShader {
   /// vertex: bit i: input location i is of integers
   std::uint32_t integer_inputs = 0;
   bool early_fragment_tests = false;
+  bool second_source = false;  ///< a second colour for attachment 0
 };
 
 }  // namespace quadrille::pipeline

@@ -100,7 +100,7 @@ Lowering::Slot Lowering::built_in_slot(std::int64_t built_in, std::uint32_t comp
 }
 
 Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t component,
-                                       const spirv::Decorations& d, bool output) const {
+                                       const spirv::Decorations& d, bool output) {
   Slot slot;
   if (component > 3) return slot;
   const bool vertex = shader_.stage == ShaderStage::kVertex;
@@ -108,7 +108,12 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
   const std::uint32_t limit = color               ? models::kMaxColorAttachments
                               : vertex && !output ? kMaxAttributeLocations
                                                   : kMaxLocations;
-  if (location >= limit || (color && d.index > 0)) return slot;
+  if (location >= limit) return slot;
+  if (color && d.index > 0) {
+    if (location != 0 || d.index != 1) return slot;
+    shader_.second_source = true;
+    location = 1;
+  }
   slot.kind = Slot::Kind::kUsed;
   slot.imm = static_cast<std::uint16_t>(4 * location + component +
                                         (vertex && output ? models::kFirstVaryingOutput : 0u));

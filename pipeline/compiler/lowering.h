@@ -159,7 +159,7 @@ class Lowering {
                  std::uint32_t& location, bool output);
   Slot built_in_slot(std::int64_t built_in, std::uint32_t component, bool output) const;
   Slot location_slot(std::uint32_t location, std::uint32_t component, const spirv::Decorations& d,
-                     bool output) const;
+                     bool output);
   Value load_input(Id variable, std::uint32_t place, const spirv::Instruction& i);
   void store_output(const Pointer& p, std::uint32_t place, Value v, const spirv::Instruction& i);
 

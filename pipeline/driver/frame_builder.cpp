@@ -61,7 +61,10 @@ class FrameBuilder {
       pass.resolved |= 1u << (pass.colors - 1);
     }
     pass.samples = static_cast<int>(stream_.images[c.first_image()].samples);
-    pass.clear_depth = c.depth.load == traces::LoadOp::kClear ? c.depth.clear : 0;
+    if (c.depth.image != kNone)
+      pass.clear_depth = c.depth.load == traces::LoadOp::kClear
+                             ? models::round_depth(stream_.images[c.depth.image].format, c.depth.clear)
+                             : 0;
     pass.first_draw = hw::DrawId(out_.frame.draws.size());
     out_.frame.passes.push_back(pass);
     scissor_ = {0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)};
@@ -74,13 +77,15 @@ class FrameBuilder {
     pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw.index();
     if (!attached) return;
     const bool tests =
-        std::ranges::any_of(out_.frame.draws_of(pass), [](const hw::DrawState& d) { return d.depth_test; });
+        std::ranges::any_of(out_.frame.draws_of(pass), [](const hw::DrawState& d) { return d.uses_depth(); });
     const bool kept = lives_.read_after(begun_->depth.image, out_.frame.passes.size() - 1);
     if (tests || kept) {
       pass.has_depth = true;
       pass.depth = attachment(begun_->depth);
       pass.depth.read_later = kept;
-      pass.depth.clear = {{std::bit_cast<std::uint32_t>(pass.clear_depth)}};
+      const bool clears = begun_->depth.load == traces::LoadOp::kClear;
+      pass.depth.clear = models::encode_depth(pass.depth.format, pass.clear_depth,
+                                              clears ? begun_->depth.clear_stencil : std::uint8_t{0});
     } else {
       out_.left_out.push_back({"depth surface", "no draw of the pass tests depth",
                                fmt::format("{} bytes of device memory",
@@ -223,11 +228,19 @@ class FrameBuilder {
                   viewport_.max_depth,
                   pipeline.line_mode,
                   pipeline.line_width,
-                  models::sample_grid(out_.frame.passes.back().samples, bits)};
-    draw.depth_test = pipeline.depth.test && begun_->depth.image != kNone;
-    draw.depth_write = draw.depth_test && pipeline.depth.write;
-    draw.depth_compare = pipeline.depth.compare;
+                  models::sample_grid(out_.frame.passes.back().samples, bits),
+                  pipeline.depth_bias,
+                  depth_step()};
+    draw.depth_stencil = depth_stencil(pipeline);
     draw.blend = pipeline.blend;
+    draw.blend_shared = pipeline.blend_shared;
+    draw.second_source = pipeline.blend[0].uses_second_source();
+    if (draw.second_source && (!draw.fragment.program->second_source || out_.frame.passes.back().colors != 1))
+      throw user_error(
+          "{}: pipeline '{}' blends by a second colour: the fragment shader has to have an output at "
+          "location "
+          "0, index 1, and the pass one colour attachment",
+          draw.fragment.program->name, pipeline.name);
     const models::Program& program = *draw.fragment.program;
     const bool writes_memory = models::writes_buffers(program);
     if (writes_memory && draw.primitives.pieces() != draw.primitives.assembled)
@@ -235,8 +248,27 @@ class FrameBuilder {
           "{}: writes memory where pipeline '{}' draws triangles by their edges or corners, which is not "
           "supported: two edges of a triangle may cover one pixel; draw lines or points",
           program.name, pipeline.name);
-    draw.late_depth = draw.depth_test && !program.early_fragment_tests &&
+    draw.late_depth = draw.uses_depth() && !program.early_fragment_tests &&
                       (program.uses_discard || program.writes_depth || writes_memory);
+  }
+
+  /// Of a pass that has the attachment; else nothing is tested.
+  models::DepthStencilState depth_stencil(const traces::Pipeline& pipeline) const {
+    models::DepthStencilState state;
+    state.depth_compare = pipeline.depth.compare;
+    if (begun_->depth.image == kNone) return state;
+    state.depth_test = pipeline.depth.test;
+    state.depth_write = pipeline.depth.test && pipeline.depth.write;
+    state.bounds = pipeline.depth_bounds;
+    if (models::has_stencil(stream_.images[begun_->depth.image].format)) state.stencil = pipeline.stencil;
+    return state;
+  }
+
+  /// What depths of the pass's attachment are apart; 0 for floats, or without one.
+  [[nodiscard]] double depth_step() const {
+    if (begun_->depth.image == kNone) return 0;
+    const models::FormatInfo& format = models::format_info(stream_.images[begun_->depth.image].format);
+    return format.numeric == models::Numeric::kFloat ? 0 : std::ldexp(1.0, -format.component[0].bits);
   }
 
   std::vector<std::uint32_t> constants(const models::Program& program) {

@@ -202,7 +202,7 @@ class FunctionalRenderer {
         coverage = tile.fully_covered ? ~std::uint64_t{0}
                                       : models::sample_coverage(setup, tile.tile_x, tile.tile_y, samples, s);
         counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
-        if (draw_->depth_test && !draw_->late_depth) coverage = test_tile(setup, tile, s, coverage);
+        if (draw_->uses_depth() && !draw_->late_depth) coverage = test_tile(setup, tile, s, coverage);
         any |= coverage;
       }
       for (std::uint32_t quads = models::quads_of(any); quads != 0; quads &= quads - 1)
@@ -210,20 +210,21 @@ class FunctionalRenderer {
     }
   }
 
-  float* depths(std::uint32_t tile_x, std::uint32_t tile_y, int sample) {
-    const std::uint64_t address =
-        pass_->depth.surface.tile_address(tile_x, tile_y, static_cast<std::uint32_t>(sample));
-    return reinterpret_cast<float*>(memory_.write(address, pass_->depth.surface.plane_bytes()).data());
+  models::DepthPlane plane(std::uint32_t tile_x, std::uint32_t tile_y, int sample) {
+    return hw::depth_plane(pass_->depth, memory_, tile_x, tile_y, static_cast<std::uint32_t>(sample));
   }
 
   std::uint64_t test_tile(const models::TriangleSetup& setup, const models::TileHit& tile, int sample,
                           std::uint64_t coverage) {
     alignas(32) float incoming[models::kTilePixels];
     models::sample_depths(setup, tile.tile_x, tile.tile_y, draw_->samples(), sample, incoming);
-    float* const stored =
-        depths(static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y), sample);
-    const std::uint64_t survivors = models::depth_test(draw_->depth_compare, stored, incoming, coverage);
-    if (draw_->depth_write) models::depth_write(stored, incoming, survivors);
+    models::DepthPlane stored =
+        plane(static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y), sample);
+    models::round_depths(stored.format(), incoming);
+    const models::DepthStencilOutcome outcome =
+        models::test_depth_stencil(draw_->depth_stencil, setup.front_facing, stored, incoming, coverage);
+    models::write_depth_stencil(outcome, incoming, stored);
+    const std::uint64_t survivors = outcome.passed;
     counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(coverage & ~survivors));
     return survivors;
   }
@@ -287,7 +288,7 @@ class FunctionalRenderer {
     const models::TriangleSetup& triangle =
         triangles_[warp_.quad[static_cast<std::size_t>(part.number)].triangle].setup;
     const models::LaneMask passed = hw::test_samples(*draw_, warp_, triangle, part, [&](int sample) {
-      return depths(part.place.tile_x, part.place.tile_y, sample);
+      return plane(part.place.tile_x, part.place.tile_y, sample);
     });
     const models::LaneMask killed = part.lanes & ~passed;
     counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(killed));

@@ -67,6 +67,7 @@ struct SceneOptions {
   DrawOrder order = DrawOrder::kFile;
   /// of the picture and what is drawn before it; what `shown` and `visibility` show has its own
   models::Format color_format = models::Format::kR8G8B8A8Srgb;
+  models::Format depth_format = models::Format::kD32Float;
   Showing shown = Showing::kColors;  ///< all but colours have shaders of their own, and no shading
   bool visibility = false;           ///< draw triangle ids instead of all that (see `triangle_id_color`)
   /// false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL

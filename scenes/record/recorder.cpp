@@ -112,7 +112,7 @@ traces::CommandStream Recorder::record() {
   stream_.commands.emplace_back(traces::make_pass(
       stream_,
       {options_.width, options_.height, values ? traces::Format::kR8G8B8A8Unorm : options_.color_format,
-       has_depth() ? traces::Format::kD32Float : traces::Format::kUndefined},
+       has_depth() ? options_.depth_format : traces::Format::kUndefined},
       clear));
   stream_.commands.emplace_back(traces::SetViewport{0, 0, static_cast<float>(options_.width),
                                                     static_cast<float>(options_.height), 0, 1});

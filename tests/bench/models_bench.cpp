@@ -167,7 +167,7 @@ void blend(benchmark::State& state, bool enable, Format format) {
       {0.1f, 0.2f, 0.3f, 0.4f}, {0.5f, 0.6f, 0.7f, 0.8f}, {0.9f, 1.0f, 0.0f, 0.1f}, {0.2f, 0.4f, 0.6f, 0.8f}};
   std::uint32_t pixels[4] = {0x80402010, 0xff00ff00, 0x12345678, 0x87654321};
   for (auto _ : state) {
-    blend_quad(s, format, rgba, reinterpret_cast<std::byte*>(pixels), 0xf);
+    blend_quad(s, {}, format, rgba, nullptr, reinterpret_cast<std::byte*>(pixels), 0xf);
     benchmark::DoNotOptimize(pixels);
   }
 }

@@ -238,6 +238,10 @@ void VulkanDevice::create_device() {
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
   features.pNext = &features13;
   features.features.depthClamp = present.depthClamp;
+  features.features.depthBiasClamp = present.depthBiasClamp;
+  features.features.depthBounds = present.depthBounds;
+  features.features.dualSrcBlend = present.dualSrcBlend;
+  features.features.logicOp = present.logicOp;
   features.features.fillModeNonSolid = present.fillModeNonSolid;
   features.features.wideLines = present.wideLines;
   features.features.largePoints = present.largePoints;

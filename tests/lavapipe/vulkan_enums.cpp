@@ -32,6 +32,9 @@ VkFormat vk_format(traces::Format format) {
     case F::kR16G16Float: return VK_FORMAT_R16G16_SFLOAT;
     case F::kR16G16B16A16Float: return VK_FORMAT_R16G16B16A16_SFLOAT;
     case F::kB10G11R11Ufloat: return VK_FORMAT_B10G11R11_UFLOAT_PACK32;
+    case F::kD16Unorm: return VK_FORMAT_D16_UNORM;
+    case F::kD24UnormS8Uint: return VK_FORMAT_D24_UNORM_S8_UINT;
+    case F::kD32FloatS8Uint: return VK_FORMAT_D32_SFLOAT_S8_UINT;
   }
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }
@@ -124,8 +127,37 @@ VkBlendFactor vk_blend_factor(traces::BlendFactor factor) {
     case B::kOneMinusSrcAlpha: return VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     case B::kDstAlpha: return VK_BLEND_FACTOR_DST_ALPHA;
     case B::kOneMinusDstAlpha: return VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA;
+    case B::kConstantColor: return VK_BLEND_FACTOR_CONSTANT_COLOR;
+    case B::kOneMinusConstantColor: return VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR;
+    case B::kConstantAlpha: return VK_BLEND_FACTOR_CONSTANT_ALPHA;
+    case B::kOneMinusConstantAlpha: return VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA;
+    case B::kSrcAlphaSaturate: return VK_BLEND_FACTOR_SRC_ALPHA_SATURATE;
+    case B::kSrc1Color: return VK_BLEND_FACTOR_SRC1_COLOR;
+    case B::kOneMinusSrc1Color: return VK_BLEND_FACTOR_ONE_MINUS_SRC1_COLOR;
+    case B::kSrc1Alpha: return VK_BLEND_FACTOR_SRC1_ALPHA;
+    case B::kOneMinusSrc1Alpha: return VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA;
   }
   QUADRILLE_CHECK(false, "blend factor {}", static_cast<int>(factor));
+}
+
+VkStencilOp vk_stencil_op(traces::StencilOp op) {
+  using S = traces::StencilOp;
+  switch (op) {
+    case S::kKeep: return VK_STENCIL_OP_KEEP;
+    case S::kZero: return VK_STENCIL_OP_ZERO;
+    case S::kReplace: return VK_STENCIL_OP_REPLACE;
+    case S::kIncrementClamp: return VK_STENCIL_OP_INCREMENT_AND_CLAMP;
+    case S::kDecrementClamp: return VK_STENCIL_OP_DECREMENT_AND_CLAMP;
+    case S::kInvert: return VK_STENCIL_OP_INVERT;
+    case S::kIncrementWrap: return VK_STENCIL_OP_INCREMENT_AND_WRAP;
+    case S::kDecrementWrap: return VK_STENCIL_OP_DECREMENT_AND_WRAP;
+  }
+  QUADRILLE_CHECK(false, "stencil operation {}", static_cast<int>(op));
+}
+
+VkLogicOp vk_logic_op(traces::LogicOp op) {
+  // The order is Vulkan's.
+  return static_cast<VkLogicOp>(op);
 }
 
 VkBlendOp vk_blend_op(traces::BlendOp op) {

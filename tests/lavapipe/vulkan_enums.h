@@ -20,6 +20,8 @@ namespace quadrille::lavapipe {
 [[nodiscard]] VkCompareOp vk_compare(traces::CompareOp compare);
 [[nodiscard]] VkBlendFactor vk_blend_factor(traces::BlendFactor factor);
 [[nodiscard]] VkBlendOp vk_blend_op(traces::BlendOp op);
+[[nodiscard]] VkStencilOp vk_stencil_op(traces::StencilOp op);
+[[nodiscard]] VkLogicOp vk_logic_op(traces::LogicOp op);
 [[nodiscard]] VkIndexType vk_index_type(traces::IndexType type);
 
 }  // namespace quadrille::lavapipe

@@ -6,6 +6,7 @@
 
 #include "models/base/error.h"
 #include "models/rop/blend.h"
+#include "models/rop/depth_plane.h"
 #include "tests/lavapipe/vulkan_enums.h"
 
 namespace quadrille::lavapipe {
@@ -94,6 +95,8 @@ void VulkanFrame::upload_images() {
   for (const traces::Image& source : stream_.images) {
     Image image;
     if ((source.usage & traces::kDepthAttachment) != 0) image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    image.all_aspects = image.aspect;
+    if (models::has_stencil(source.format)) image.all_aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
     image.device = device_.image(cleanup_, vk_format(source.format), {source.width, source.height},
                                  source.levels, usage_of(source), image.aspect, source.samples);
     if (!source.is_attachment()) upload_texels(source, image.device);
@@ -187,7 +190,7 @@ void VulkanFrame::record() {
 
 void VulkanFrame::move(traces::Index index, VkImageLayout layout) {
   Image& image = images_[index];
-  transition(commands_, image.device.image, image.aspect, image.layout, layout);
+  transition(commands_, image.device.image, image.all_aspects, image.layout, layout);
   image.layout = layout;
 }
 
@@ -231,9 +234,14 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
   info.pColorAttachments = colors.data();
   if (pass.depth.image != traces::kNone) {
     VkClearValue clear{};
-    clear.depthStencil.depth = pass.depth.clear;
-    depth = attach(pass.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, clear);
+    clear.depthStencil = {pass.depth.clear, pass.depth.clear_stencil};
+    const bool stencil = models::has_stencil(stream_.images[pass.depth.image].format);
+    depth = attach(
+        pass.depth,
+        stencil ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL : VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+        clear);
     info.pDepthAttachment = &depth;
+    if (stencil) info.pStencilAttachment = &depth;
   }
   if (queries_ != nullptr) queries_->begin(commands_, passes_);
   vkCmdBeginRendering(commands_, &info);
@@ -272,6 +280,23 @@ void VulkanFrame::draw(const traces::Draw& draw) {
                      draw.first_instance);
   else vkCmdDraw(commands_, draw.count, draw.instances, draw.first, draw.first_instance);
 }
+
+namespace {
+
+/// The depth aspect as copies give it: floats, 16 bits, or 24 bits in the low part of 32. [VK1.3
+/// #copies-images]
+void read_depths(traces::Format format, const HostBuffer& copied, std::vector<float>& depths) {
+  const auto* const bytes = static_cast<const std::byte*>(copied.mapped);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    std::uint32_t code = 0;
+    if (format == traces::Format::kD16Unorm) std::memcpy(&code, bytes + 2 * i, 2);
+    else std::memcpy(&code, bytes + 4 * i, 4);
+    if (format == traces::Format::kD24UnormS8Uint) code &= 0xffffffu;
+    depths[i] = models::decode_depth(format, {{code}});
+  }
+}
+
+}  // namespace
 
 void VulkanFrame::read_back_buffers(Rendered& result) const {
   for (const traces::DescriptorSet& set : stream_.descriptor_sets) {
@@ -325,7 +350,7 @@ Rendered VulkanFrame::read_back() const {
     result.color.push_back(models::to_rgba8(source.color, code));
   }
   result.depth.resize(has_depth ? pixels : 0);
-  if (has_depth) std::memcpy(result.depth.data(), depth.mapped, 4 * pixels);
+  if (has_depth) read_depths(stream_.images[bound_.pass->depth.image].format, depth, result.depth);
   read_back_buffers(result);
   return result;
 }

@@ -33,8 +33,9 @@ class VulkanFrame {
   };
   struct Image {
     DeviceImage device;
-    VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  ///< at this point of the recording
+    VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;       ///< that shaders and copies read
+    VkImageAspectFlags all_aspects = VK_IMAGE_ASPECT_COLOR_BIT;  ///< that it has
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;            ///< at this point of the recording
   };
   /// Of the attachments of a pass: the colours, then depth; and their samples a pixel.
   struct PassFormats {

@@ -63,15 +63,36 @@ VkPipelineRasterizationStateCreateInfo raster_state(const traces::Pipeline& pipe
   state.cullMode = vk_cull(pipeline.cull);
   state.frontFace = vk_front(pipeline.front);
   state.lineWidth = pipeline.line_width;
+  state.depthBiasEnable = pipeline.depth_bias.enable ? VK_TRUE : VK_FALSE;
+  state.depthBiasConstantFactor = pipeline.depth_bias.constant;
+  state.depthBiasSlopeFactor = pipeline.depth_bias.slope;
+  state.depthBiasClamp = pipeline.depth_bias.clamp;
   return state;
 }
 
-VkPipelineDepthStencilStateCreateInfo depth_state(const traces::DepthState& depth) {
+VkStencilOpState stencil_face(const traces::StencilFace& face) {
+  return {vk_stencil_op(face.fail),
+          vk_stencil_op(face.pass),
+          vk_stencil_op(face.depth_fail),
+          vk_compare(face.compare),
+          face.compare_mask,
+          face.write_mask,
+          face.reference};
+}
+
+VkPipelineDepthStencilStateCreateInfo depth_state(const traces::Pipeline& pipeline) {
+  const traces::DepthState& depth = pipeline.depth;
   VkPipelineDepthStencilStateCreateInfo state{};
   state.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
   state.depthTestEnable = depth.test ? VK_TRUE : VK_FALSE;
   state.depthWriteEnable = depth.write ? VK_TRUE : VK_FALSE;
   state.depthCompareOp = vk_compare(depth.compare);
+  state.depthBoundsTestEnable = pipeline.depth_bounds.test ? VK_TRUE : VK_FALSE;
+  state.minDepthBounds = pipeline.depth_bounds.least;
+  state.maxDepthBounds = pipeline.depth_bounds.most;
+  state.stencilTestEnable = pipeline.stencil.test ? VK_TRUE : VK_FALSE;
+  state.front = stencil_face(pipeline.stencil.front);
+  state.back = stencil_face(pipeline.stencil.back);
   return state;
 }
 
@@ -241,7 +262,7 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = static_cast<VkSampleCountFlagBits>(pass.samples);
-  const VkPipelineDepthStencilStateCreateInfo depth = depth_state(pipeline.depth);
+  const VkPipelineDepthStencilStateCreateInfo depth = depth_state(pipeline);
   const std::vector<traces::Format>& formats = pass.formats;
   std::vector<VkPipelineColorBlendAttachmentState> attachments;
   std::vector<VkFormat> color_formats;
@@ -253,6 +274,9 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
   blend.attachmentCount = static_cast<std::uint32_t>(attachments.size());
   blend.pAttachments = attachments.data();
+  blend.logicOpEnable = pipeline.blend_shared.logic ? VK_TRUE : VK_FALSE;
+  blend.logicOp = vk_logic_op(pipeline.blend_shared.logic_op);
+  std::ranges::copy(pipeline.blend_shared.constants, blend.blendConstants);
   const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
   VkPipelineDynamicStateCreateInfo dynamic{};
   dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
@@ -263,6 +287,8 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   rendering.colorAttachmentCount = static_cast<std::uint32_t>(color_formats.size());
   rendering.pColorAttachmentFormats = color_formats.data();
   rendering.depthAttachmentFormat = vk_format(formats.back());
+  if (models::has_stencil(formats.back()))
+    rendering.stencilAttachmentFormat = rendering.depthAttachmentFormat;
 
   VkGraphicsPipelineCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;

@@ -60,9 +60,9 @@ struct CoarseBench final : Bench {
                                        models::CompareOp::kLess, models::CompareOp::kGreater}) {
       DrawState draw;
       draw.fragment.program = &program;
-      draw.depth_test = true;
-      draw.depth_write = frame.draws.size() != 3;
-      draw.depth_compare = op;
+      draw.depth_stencil.depth_test = true;
+      draw.depth_stencil.depth_write = frame.draws.size() != 3;
+      draw.depth_stencil.depth_compare = op;
       frame.draws.push_back(draw);
     }
   }

@@ -38,11 +38,11 @@ struct DepthBench final : Bench {
     frame.draws.resize(4);
     for (DrawState& draw : frame.draws) {
       draw.fragment.program = &program;
-      draw.depth_test = draw.depth_write = true;
+      draw.depth_stencil.depth_test = draw.depth_stencil.depth_write = true;
     }
     frame.draws[1].late_depth = true;
-    frame.draws[2].depth_test = false;
-    frame.draws[3].depth_compare = models::CompareOp::kGreater;
+    frame.draws[2].depth_stencil.depth_test = false;
+    frame.draws[3].depth_stencil.depth_compare = models::CompareOp::kGreater;
     for (std::uint32_t i = 0; i < 8; ++i) {
       triangles[i] = flat_triangle({glm::ivec2{0, 0}, {0, 40}, {40, 0}}, static_cast<float>(i) / 8);
       if (i < 4) fill(warps[WarpSlotId(i)], static_cast<float>(i + 1) / 8);

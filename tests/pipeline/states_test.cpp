@@ -1,0 +1,44 @@
+/// Random states of depth, stencil and blending, in random formats: the machine's pixels, its laws, the
+/// reference's picture, and the trace file.
+#include "models/reference/compare.h"
+#include "studies/given_reference.h"
+#include "tests/pipeline/machine_specimen.h"
+#include "tests/pipeline/states_stream.h"
+#include "traces/trace_file.h"
+
+#include <catch2/catch.hpp>
+
+using namespace quadrille;
+using namespace quadrille::pipeline::test;
+
+TEST_CASE("states: forty random machines give the pixels of the functional rendering, and keep all laws") {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const StatesOptions options{.samples = seed % 4 == 0 ? 4u : 1u};
+    const traces::CommandStream stream = states_stream(seed, 56, 40, options);
+    const hw::contract::Outcome outcome = hw::contract::run_forked(machine_builder(stream, seed), {});
+    INFO("machine " << seed << ": " << outcome.failure);
+    REQUIRE(outcome.failure.empty());
+    CHECK(outcome.digest == functional_digest(stream));
+    for (const auto& [name, value] : outcome.figures) {
+      INFO(name);
+      if (name.starts_with("law broken")) CHECK(value == 0);
+    }
+  }
+}
+
+TEST_CASE("states: the machine's picture is the reference's in given mode") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const auto pictures = studies::render_with_reference(states_stream(seed, 64, 48), {});
+    const auto difference = models::reference::compare_images({64, 48, pictures.machine.color},
+                                                              {64, 48, pictures.reference.color});
+    INFO("seed " << seed << ": " << difference.fraction_within(2));
+    CHECK(difference.fraction_within(2) >= 0.999);
+  }
+}
+
+TEST_CASE("states: streams survive their trace file") {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const traces::CommandStream stream = states_stream(seed, 32, 24);
+    CHECK(traces::decode_trace(traces::encode_trace(stream), "t") == stream);
+  }
+}
