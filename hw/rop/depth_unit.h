@@ -10,10 +10,10 @@
 /// Time  `quads_per_clk` quads of one sample a cycle through either port, one port a cycle, the late one
 ///       first; waits for the tile's lines
 ///
-/// Stencil values lie beside the depths and are tested with them. Early test-and-write needs a program
-/// without discard or depth output, and no older late-tested fragment of the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
-/// now would fail at its turn too: all depth writes of the pass so far can but lower depths, and the test is
-/// "less" and the only one. Late tests arrive in API order, so every pixel sees its tests and writes in that order.
+/// Stencil values are tested with the depths. Early test-and-write needs a program without discard or depth
+/// output, and no older late fragment of the tile. Else the tile goes late, thinned early where one that
+/// fails now fails at its turn too: all writes of the pass lower depths, and "less" is the only test. Late
+/// tests come in API order, so every pixel sees its tests and writes in that order.
 #pragma once
 
 #include "hw/base/param.h"

@@ -1,5 +1,5 @@
-/// Frames of random fixed-function states: depth, stencil, depth bounds, depth bias, blending by constants and
-/// by a second colour, logic operations, in random formats.
+/// Frames of random fixed-function states, in random formats: depth, stencil, depth bounds, depth bias,
+/// blending by constants and by a second colour, logic operations.
 #pragma once
 
 #include "traces/command_stream.h"

@@ -1,5 +1,5 @@
-/// Depth, stencil and depth bounds of a tile against their definitions, pixel by pixel; depths that formats of
-/// integers can hold.
+/// Depth, stencil and depth bounds of a tile against their definitions, pixel by pixel; depths that formats
+/// of integers can hold.
 #include "models/rop/depth_stencil.h"
 
 #include "models/memory/surface.h"
