@@ -105,5 +105,6 @@ class Readings {
 [[nodiscard]] Result units(const Setting& setting);
 [[nodiscard]] Result engines(const Setting& setting);
 [[nodiscard]] Result samples(const Setting& setting);
+[[nodiscard]] Result traversal(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

@@ -37,7 +37,7 @@ struct FineBench final : Bench {
     frame.draws[0].setup.samples = models::sample_grid(s.samples, 8);
     params.quads_per_clk.set(s.rate);
     params.tiles_per_clk.set(s.tiles_per_clk);
-    unit = std::make_unique<FineRaster>("unit", context({.partitions = s.partitions}), params, store);
+    unit = std::make_unique<FineRaster>("unit", context({.partitions = s.partitions}), params, store, walked);
     add(*unit);
     feed(unit->tile_in, s.tiles);
     for (auto& out : unit->coverage_out) {
@@ -51,6 +51,7 @@ struct FineBench final : Bench {
   }
   FineRaster::Params params;
   TriangleStore store;
+  WalkedStore walked{64};
   std::unique_ptr<FineRaster> unit;
   std::vector<StubSink<CoverageToken>*> sinks;
 };
