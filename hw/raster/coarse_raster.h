@@ -55,24 +55,26 @@ class CoarseRaster final : public Unit {
                                                models::kScanTileOrder,
                                                "In which order the tiles of a triangle go on. Their tests "
                                                "cost the same. [G: as the walk finds them]"};
-    PolicyParam<TraversalPolicy> traversal{
-        *this, "traversal", traversal_policies(), kEdgeFunctions,
-        "How the tiles of a triangle are found. Edge walking goes by rows, so its `order` is scan. [G: as GPUs "
-        "do]"};
-    Param<int> rows_per_clk{*this,
-                            "rows_per_clk",
-                            1,
-                            "row/clk",
-                            {1, 16},
-                            "Edge walking: rows of samples a cycle, each an addition for either edge. [G: one "
-                            "pair of adders]"};
-    Param<int> segments_per_clk{*this,
-                                "segments_per_clk",
-                                2,
-                                "tile/clk",
-                                {1, 16},
-                                "Edge walking: tiles a cycle of those that a row's span crosses. [G: 16 px/clk, "
-                                "as tests_per_clk]"};
+    PolicyParam<TraversalPolicy> traversal{*this, "traversal", traversal_policies(), kEdgeFunctions,
+                                           "How the tiles of a triangle are found. Edge walking goes by "
+                                           "rows, so its `order` is scan. [G: as GPUs "
+                                           "do]"};
+    Param<int> rows_per_clk{
+        *this,
+        "rows_per_clk",
+        1,
+        "row/clk",
+        {1, 16},
+        "Edge walking: rows of samples a cycle, each an addition for either edge. [G: one "
+        "pair of adders]"};
+    Param<int> segments_per_clk{
+        *this,
+        "segments_per_clk",
+        2,
+        "tile/clk",
+        {1, 16},
+        "Edge walking: tiles a cycle of those that a row's span crosses. [G: 16 px/clk, "
+        "as tests_per_clk]"};
     Param<int> walk_setup_clk{*this,
                               "walk_setup_clk",
                               2,
@@ -123,7 +125,7 @@ class CoarseRaster final : public Unit {
   void walk_ahead(Tick now);
   void walk(Tick now);
   void begin_pass(PassId pass);
-  /// The next tile that Hi-Z does not hide; none if the triangle, or what is walked of it by now, ends before.
+  /// The next tile that Hi-Z does not hide; none if the triangle, or what is walked of it now, ends before.
   [[nodiscard]] std::optional<Traversal::Tile> visible_tile(Tick now);
   void hand_on(Tick now, const Traversal::Tile& tile);
   void count(const Traversal::Work& work);
@@ -141,7 +143,7 @@ class CoarseRaster final : public Unit {
   std::unique_ptr<Traversal> traversal_;
   std::optional<Traversal::Tile> ahead_;  ///< the next tile of the triangle; none at its end
   Tick walked_until_ = 0;                 ///< the row of tiles that leaves next is walked by then
-  std::uint64_t triangle_ = 0;             ///< being walked
+  std::uint64_t triangle_ = 0;            ///< being walked
   DrawId draw_;
   PassId pass_;
   bool hiz_usable_ = false;  ///< this draw may be tested

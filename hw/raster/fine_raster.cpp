@@ -60,8 +60,7 @@ void FineRaster::act(Tick now) {
 std::uint64_t FineRaster::coverage_of(const TileToken& tile, const models::SampleGrid& samples,
                                       int sample) const {
   if (tile.fully_covered) return ~std::uint64_t{0};
-  if (tile.walked != TileToken::kNotWalked)
-    return walked_[tile.walked][static_cast<std::size_t>(sample)];
+  if (tile.walked != TileToken::kNotWalked) return walked_[tile.walked][static_cast<std::size_t>(sample)];
   return models::sample_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y, samples, sample);
 }
 
@@ -91,8 +90,7 @@ void FineRaster::rasterize(Tick now, const TileToken& tile) {
   const int quads = cover(tile);
   ++stats_.tiles;
   stats_.quads += static_cast<std::uint64_t>(quads);
-  quad_cost_ =
-      tile.walked == TileToken::kNotWalked ? WorkRate::cost_of(quads, params_.quads_per_clk) : 0;
+  quad_cost_ = tile.walked == TileToken::kNotWalked ? WorkRate::cost_of(quads, params_.quads_per_clk) : 0;
   if (plane_count_ > 0) return hand_on(now);
   free_ = rate_.charge(now, WorkRate::cost(params_.tiles_per_clk));
   occupy(now, rate_.cycles());

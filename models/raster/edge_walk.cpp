@@ -37,6 +37,7 @@ void SampleRowWalk::Side::shorten(std::int32_t& first, std::int32_t& end) const 
   end = std::min(end, bottom);
 }
 
+/// The one place that divides; further rows add. [P: Bresenham 1965]
 std::int32_t SampleRowWalk::Side::begin(std::int32_t y, std::int32_t end_row) {
   for (std::size_t i = 0; i < count; ++i) {
     const Edge& edge = edges[i];

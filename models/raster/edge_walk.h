@@ -52,7 +52,7 @@ class SampleRowWalk {
   struct Side {
     std::array<Edge, 3> edges;
     std::size_t count = 0;
-    std::int64_t limit = 0, remainder = 0;               ///< of the row
+    std::int64_t limit = 0, remainder = 0;                ///< of the row
     std::int64_t step = 0, step_remainder = 0, full = 0;  ///< added a row; `full` carries one
     void add(const Edge& edge) { edges[count++] = edge; }
     void shorten(std::int32_t& first, std::int32_t& end) const;

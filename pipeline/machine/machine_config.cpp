@@ -147,7 +147,8 @@ void MachineConfig::check() const {
   if (&coarse_raster.traversal.value() == &hw::kEdgeWalking &&
       &coarse_raster.order.value() != &models::kScanTileOrder)
     throw user_error(
-        "machine: coarse_raster.order is {0}, but coarse_raster.traversal={1} goes by rows: it can be {2}, or "
+        "machine: coarse_raster.order is {0}, but coarse_raster.traversal={1} goes by rows: it can be {2}, "
+        "or "
         "coarse_raster.traversal={3}",
         coarse_raster.order.value_text(), hw::kEdgeWalking.name, models::kScanTileOrder.name,
         hw::kEdgeFunctions.name);

@@ -45,7 +45,7 @@ Machine::Maker::Made<hw::CoarseRaster> Machine::Maker::make(Kind<hw::CoarseRaste
 Machine::Maker::Made<hw::FineRaster> Machine::Maker::make(Kind<hw::FineRaster> /*kind*/, const char* name,
                                                           int i) const {
   return std::make_unique<hw::FineRaster>(name, context(i), c_.fine_raster, *s_.triangles[at(i)],
-                                            *s_.walked[at(i)]);
+                                          *s_.walked[at(i)]);
 }
 
 Machine::Maker::Made<hw::DepthUnit> Machine::Maker::make(Kind<hw::DepthUnit> /*kind*/, const char* name,

@@ -108,11 +108,13 @@ Table scenes_table(const Setting& setting) {
     const Readings &tested = read[2 * i], &walked = read[2 * i + 1];
     const double a = tested["frame.render_cycles"], b = walked["frame.render_cycles"];
     table.rows.push_back(
-        {setting.scenes[i / 2].first, i % 2 == 0 ? "1" : "4", fmt::format("{:.0f}", a), fmt::format("{:.0f}", b),
-         fmt::format("{:.3f}", b / a), fmt::format("{:.0f}", tested["coarse_raster.busy"]),
+        {setting.scenes[i / 2].first, i % 2 == 0 ? "1" : "4", fmt::format("{:.0f}", a),
+         fmt::format("{:.0f}", b), fmt::format("{:.3f}", b / a),
+         fmt::format("{:.0f}", tested["coarse_raster.busy"]),
          fmt::format("{:.0f}", walked["coarse_raster.busy"]),
          fmt::format("{:.2f}", walked["coarse_raster.rows"] / walked["coarse_raster.triangles"]),
-         fmt::format("{:.2f}", walked["coarse_raster.segments"] / std::max(1.0, walked["coarse_raster.spans"]))});
+         fmt::format("{:.2f}",
+                     walked["coarse_raster.segments"] / std::max(1.0, walked["coarse_raster.spans"]))});
   }
   return table;
 }
@@ -188,8 +190,10 @@ std::string orders_plot() {
   walk.by_walk();
   return Visits::outline() +
          fmt::format(
-             "set size 0.333,0.48\nset xrange [0:{}]\nset yrange [{}:0]\nset xtics 8\nset ytics 8\nset grid front "
-             "lt 1 lc rgb '#bbbbbb'\nset palette defined (0 '#30123b', 1 '#4686fb', 2 '#1ae4b6', 3 '#a4fc3c', 4 "
+             "set size 0.333,0.48\nset xrange [0:{}]\nset yrange [{}:0]\nset xtics 8\nset ytics 8\nset grid "
+             "front "
+             "lt 1 lc rgb '#bbbbbb'\nset palette defined (0 '#30123b', 1 '#4686fb', 2 '#1ae4b6', 3 "
+             "'#a4fc3c', 4 "
              "'#fbb938', 5 '#e3440a', 6 '#7a0403')\nunset colorbox\n",
              Visits::kWidth, Visits::kHeight) +
          scan.panel(0, "edge functions: tiles, by rows") +
@@ -201,9 +205,12 @@ std::string plot_of(const Table& table) {
   std::string data = "$cycles << EOD\n";
   for (const auto& row : table.rows) data += fmt::format("{} {}\n", quoted(row[0]), row.back());
   return "set multiplot\n" + orders_plot() + data +
-         "EOD\nset origin 0,0\nset size 1,0.53\nset title 'cycles of edge walking over those of edge functions: "
-         "below 1 it wins'\nset autoscale\nset yrange [0.05:20]\nset logscale y\nset ytics (0.1, 0.2, 0.5, 1, 2, 5, "
-         "10)\nset xtics autofreq rotate by -25 font ',9'\nset grid\nset style fill solid 0.6\nset boxwidth 0.6\nset "
+         "EOD\nset origin 0,0\nset size 1,0.53\nset title 'cycles of edge walking over those of edge "
+         "functions: "
+         "below 1 it wins'\nset autoscale\nset yrange [0.05:20]\nset logscale y\nset ytics (0.1, 0.2, 0.5, "
+         "1, 2, 5, "
+         "10)\nset xtics autofreq rotate by -25 font ',9'\nset grid\nset style fill solid 0.6\nset boxwidth "
+         "0.6\nset "
          "xrange [-0.6:*]\nplot $cycles using 0:2:xtic(1) with boxes notitle, 1 with lines lc black "
          "notitle\nunset multiplot";
 }
@@ -223,8 +230,9 @@ Result traversal(const Setting& setting) {
   }
   const std::vector<Readings> read = draw(frames, setting);
   Result result;
-  result.table.head = {"triangles",       "number", "pixels each", "functions: predicted", "limit", "cycles",
-                       "walking: predicted", "limit",  "cycles",      "predicted ratio", "ratio"};
+  result.table.head = {
+      "triangles",          "number", "pixels each", "functions: predicted", "limit", "cycles",
+      "walking: predicted", "limit",  "cycles",      "predicted ratio",      "ratio"};
   for (std::size_t i = 0; i < shapes.size(); ++i) report(shapes[i], read[2 * i], read[2 * i + 1], result);
   result.further_tables = {scenes_table(setting)};
   result.plot = plot_of(result.table);

@@ -32,7 +32,7 @@ struct TriangleWork {
   /// cycles to pack the quads of each tile and launch the warps, summed over partitions
   std::uint64_t pack_clk = 0;
   std::uint64_t quads = 0, fragments = 0;
-  /// Of edge walking: parts of triangles, rows, those with a covered pixel, tiles that these cross, and tiles.
+  /// Of edge walking: parts of triangles, rows, those with a covered pixel, tiles that they cross, and tiles
   std::uint64_t walk_parts = 0, walk_rows = 0, walk_spans = 0, walk_segments = 0, walk_tiles = 0;
   /// cycles of the coarse rasteriser that walks: a row of tiles is walked while the one before leaves, a tile
   /// a cycle

@@ -27,8 +27,7 @@ TriangleSlot slot_of(const Corners& corners, int samples) {
   state.samples = models::sample_grid(samples, 8);
   TriangleSlot slot;
   slot.draw = DrawId(0);
-  const auto outcome =
-      models::setup_triangle(vertices, models::whole_triangle_weights(), state, slot.setup);
+  const auto outcome = models::setup_triangle(vertices, models::whole_triangle_weights(), state, slot.setup);
   QUADRILLE_CHECK(outcome == models::SetupOutcome::kKept, "the test's triangle is not kept");
   return slot;
 }
@@ -38,7 +37,7 @@ struct WalkBench final : Bench {
     std::vector<Corners> shapes;  ///< of which `triangles` names numbers, one after the other
     std::vector<std::uint64_t> triangles{0};
     int rows = 1, segments = 2, setup_clk = 2, tiles = 1, tests = 4, samples = 1, engines = 1, engine = 0;
-    std::int64_t from = 0;             ///< cycle of the first triangle
+    std::int64_t from = 0;  ///< cycle of the first triangle
     std::vector<Timed<HiZToken>> hiz{};
     Pace pace{.from = 0, .period = 0};
     LinkSpec out{.depth = 64, .width = 8};
@@ -65,9 +64,7 @@ struct WalkBench final : Bench {
     feed(unit->hiz_in[0], s.hiz);
     sink = &drain<TileToken>(
         unit->tile_out,
-        [](const TileToken& t) {
-          return t.kind == TokenKind::kWork ? 100u * t.tile_y + t.tile_x : 90000u;
-        },
+        [](const TileToken& t) { return t.kind == TokenKind::kWork ? 100u * t.tile_y + t.tile_x : 90000u; },
         s.pace, s.out);
   }
   void make_frame(const Setup& s) {
@@ -227,12 +224,11 @@ TEST_CASE("edge_walking: every engine walks all rows, and gathers the tiles that
   const std::string alone = counts_of({.shapes = {large}});
   std::uint64_t segments = 0, tiles = 0;
   for (int engine = 0; engine < 2; ++engine) {
-    const std::string text = run<WalkBench>({.shapes = {large}, .engines = 2, .engine = engine},
-                                            [](const WalkBench& b) {
-                                              return fmt::format("{} {} {}", counter(*b.unit, "rows"),
-                                                                 counter(*b.unit, "segments"),
-                                                                 counter(*b.unit, "tiles_kept"));
-                                            });
+    const std::string text =
+        run<WalkBench>({.shapes = {large}, .engines = 2, .engine = engine}, [](const WalkBench& b) {
+          return fmt::format("{} {} {}", counter(*b.unit, "rows"), counter(*b.unit, "segments"),
+                             counter(*b.unit, "tiles_kept"));
+        });
     CHECK(text.starts_with("256 "));
     std::size_t end = 0;
     segments += std::stoul(text.substr(4), &end);
@@ -265,10 +261,10 @@ TEST_CASE("edge_walking: rows of tiles that are hidden whole take the time of th
 }
 
 TEST_CASE("edge_walking: keeps the contract, one-deep links included") {
-  const WalkBench::Setup s{.shapes = {{{{0, 0}, {0, 40}, {40, 0}}}, {{{1, 1}, {6, 4}, {3, 7}}},
-                                      {{{0, 0}, {50, 0}, {0, 2}}}},
-                           .triangles = {0, 1, 2, 1, 0, 2},
-                           .pace = {.from = 0, .period = 3},
-                           .out = {.depth = 8}};
+  const WalkBench::Setup s{
+      .shapes = {{{{0, 0}, {0, 40}, {40, 0}}}, {{{1, 1}, {6, 4}, {3, 7}}}, {{{0, 0}, {50, 0}, {0, 2}}}},
+      .triangles = {0, 1, 2, 1, 0, 2},
+      .pace = {.from = 0, .period = 3},
+      .out = {.depth = 8}};
   CHECK(contract_text<WalkBench>(s) == "");
 }

@@ -197,7 +197,7 @@ TEST_CASE("edge_walk: triangles around a sample point cover every sample of thei
       middle.y = random.integer(1, kSize - 2) * one + one / 2 + static_cast<std::int32_t>(offset.y);
     }
     // A fan whose spokes also end on the square's sides, often at the height or the column of the middle.
-    const std::vector<WindowVertex> ring{at(0, 0),   at(middle.x, 0), at(end, 0), at(end, middle.y),
+    const std::vector<WindowVertex> ring{at(0, 0),     at(middle.x, 0),   at(end, 0), at(end, middle.y),
                                          at(end, end), at(middle.x, end), at(0, end), at(0, middle.y)};
     for (std::size_t i = 0; i < ring.size(); ++i) count.add({ring[i], ring[(i + 1) % ring.size()], middle});
     for (int y = 0; y < kSize; ++y)
@@ -274,11 +274,12 @@ TEST_CASE("edge_walk: lines of every mode and width, and points, are those of ed
 
 TEST_CASE("edge_walk: a triangle has a part on either side of its middle corner, a level side leaves one") {
   CHECK(walked({{{10, 10}, {40, 30}, {20, 50}}}) == Walked{20, 2});
-  CHECK(walked({{{10, 10}, {40, 10}, {20, 50}}}) == Walked{20, 1});   // level above
-  CHECK(walked({{{10, 10}, {40, 50}, {20, 50}}}) == Walked{20, 1});   // level below
-  CHECK(walked({{{10, 10}, {40, 11}, {20, 50}}}) == Walked{20, 1});   // no centre lies above the corner's row
-  CHECK(walked({{{10, 11}, {40, 31}, {20, 51}}}) == Walked{20, 2});   // corners at the height of centres
-  CHECK(walked({{{10, 10}, {40, 30}, {20, 50}}}, {0, 16, 64, 64}) == Walked{9, 1});  // the upper part is cut off
+  CHECK(walked({{{10, 10}, {40, 10}, {20, 50}}}) == Walked{20, 1});  // level above
+  CHECK(walked({{{10, 10}, {40, 50}, {20, 50}}}) == Walked{20, 1});  // level below
+  CHECK(walked({{{10, 10}, {40, 11}, {20, 50}}}) == Walked{20, 1});  // no centre lies above the corner's row
+  CHECK(walked({{{10, 11}, {40, 31}, {20, 51}}}) == Walked{20, 2});  // corners at the height of centres
+  CHECK(walked({{{10, 10}, {40, 30}, {20, 50}}}, {0, 16, 64, 64}) ==
+        Walked{9, 1});  // the upper part is cut off
   CHECK(walked({{{10, 10}, {40, 30}, {20, 50}}}, {0, 0, 64, 15}) == Walked{10, 1});
 }
 
