@@ -1,8 +1,8 @@
 /// Rows of samples are walked between the edges, from top to bottom, and their spans are gathered in a row of
 /// tiles. There are two such rows: while the tiles of one leave, the next one is walked.
 ///
-/// A part of the triangle costs its set-up, a row its turn, and a span each tile that it crosses. Rows with no
-/// covered sample cost as much as others. An engine walks every row, and gathers what lies in its own tiles.
+/// A part of the triangle costs its set-up, a row its turn, and a span each tile that it crosses. Rows
+/// without a covered sample cost as much as others. An engine walks every row, and gathers what is its own.
 #include "hw/base/work_rate.h"
 #include "hw/raster/traversal.h"
 
