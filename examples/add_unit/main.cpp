@@ -52,13 +52,14 @@ int sc_main(int /*count*/, char** /*arguments*/) {
   models::DeviceMemory memory;
   const hw::UnitContext context{clock, frame, memory, {}};
   const hw::TriangleStore triangles(1);
+  const hw::WalkedStore walked(1);
 
   hw::FineRaster::Params raster_params;
   raster_params.quads_per_clk.set(4);  // a whole tile has 16 quads: one tile in four cycles
   hw::TileCensus::Params census_params;
   census_params.tiles_per_clk.set(0.125);  // one tile in eight cycles: the census is the limit
   Source source("source", clock);
-  hw::FineRaster raster("fine_raster", context, raster_params, triangles);
+  hw::FineRaster raster("fine_raster", context, raster_params, triangles, walked);
   hw::TileCensus census("tile_census", context, census_params);
   Sink sink("sink", clock);
 

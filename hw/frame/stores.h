@@ -5,6 +5,7 @@
 #include "hw/frame/frame.h"
 #include "models/geometry/post_transform.h"
 #include "models/raster/primitives.h"
+#include "models/raster/span_tiles.h"
 
 #include <memory>
 
@@ -88,6 +89,24 @@ class Store {
 };
 /// The fragment warps of a partition.
 using WarpStore = Store<WarpSlot, WarpSlotId>;
+
+/// Coverage of tiles that were walked, on their way to the fine rasteriser: a place beside each that the link
+/// holds, used in turn, so none has to be handed back. Owner: the coarse rasteriser.
+class WalkedStore {
+ public:
+  explicit WalkedStore(std::size_t link_depth) : places_(link_depth) {}
+  /// Returns the place.
+  std::uint32_t put(const models::TileCoverage& coverage) {
+    next_ = next_ + 1 == places_.size() ? 0 : next_ + 1;
+    places_[next_] = coverage;
+    return next_;
+  }
+  [[nodiscard]] const models::TileCoverage& operator[](std::uint32_t place) const { return places_[place]; }
+
+ private:
+  std::vector<models::TileCoverage> places_;
+  std::uint32_t next_ = 0;
+};
 
 /// The triangle store: a ring addressed by sequence number.
 class TriangleStore {

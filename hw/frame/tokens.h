@@ -108,6 +108,9 @@ struct TileToken {
   std::uint16_t tile_x = 0, tile_y = 0;
   FramePart part;
   std::uint64_t triangle = 0;  ///< kSync: every triangle before this one
+  /// what is covered, in the store of walked tiles; or the fine rasteriser tests it
+  std::uint32_t walked = kNotWalked;
+  static constexpr std::uint32_t kNotWalked = ~std::uint32_t{0};
 };
 
 /// Fine rasteriser -> depth unit -> warp packer: the covered pixels of one triangle in one tile. Of several

@@ -17,18 +17,19 @@ bool lowers_depth(models::CompareOp op) {
 }  // namespace
 
 CoarseRaster::CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                           const TriangleStore& triangles)
+                           const TriangleStore& triangles, WalkedStore& walked)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
       triangles_(triangles),
-      screen_(context.machine.screen()),
-      engine_(static_cast<std::uint32_t>(context.number)),
+      walked_(walked),
       sync_interval_(
           std::max<std::uint64_t>(1, triangles.size() / static_cast<std::uint64_t>(params.reports.value()))),
-      order_(params.order.value().make()),
+      traversal_(params.traversal.value().make(
+          {params.order.value(), params.walk_setup_clk, params.rows_per_clk, params.segments_per_clk,
+           context.machine.screen(), static_cast<std::uint32_t>(context.number)})),
       rate_(context.clock) {
-  add_initiation_rate("tests_per_clk");
+  add_initiation_rate(traversal_->limited_by());
   for (int i = 0; i < context.machine.partitions_of_engine(); ++i) {
     hiz_in.add(*this, fmt::format("hiz_in_{}", i).c_str(), LinkRole::kReply);
   }
@@ -78,25 +79,32 @@ void CoarseRaster::spend(Tick now, std::int64_t cost) {
 }
 
 void CoarseRaster::take_token(Tick now) {
+  const Tick visible = clock().align(triangle_in.ready());
   const TriangleToken token = triangle_in.pop(now);
   stats_.working_for(token.part.draw());
   if (token.kind == TokenKind::kWork) {
     if (stats_.triangles.value() == 0 || token.part.draw() != draw_)
       note_direction(frame_.draw(token.part.draw()));
-    draw_ = token.part.draw();
-    triangle_ = token.triangle;
-    walk_ = models::TileWalk(triangles_[triangle_].setup, frame_.draw(draw_).samples());
-    charged_tests_ = touched_ = owned_ = 0;
-    if (!order_->as_walked()) sort_tiles();
-    look_ahead();
-    walking_ = true;
-    ++stats_.triangles;
-    free_ = now;  // the first tile may leave in this very cycle
-    return;
+    return begin_triangle(now, visible, token);
   }
+  walked_until_ = std::max(walked_until_, now);
   if (token.kind == TokenKind::kPassBegin) begin_pass(token.part.pass());
   tile_out.push(now, {token.kind, false, 0, 0, token.part, token.triangle});
   spend(now, WorkRate::kCycle);
+}
+
+/// The walk began when the triangle was there and the one before it was walked, be it that tiles of that one
+/// were still leaving. The first tile may leave in the very cycle in which the walk, if any, is done.
+void CoarseRaster::begin_triangle(Tick now, Tick visible, const TriangleToken& token) {
+  draw_ = token.part.draw();
+  triangle_ = token.triangle;
+  const std::int64_t clk = traversal_->begin(triangles_[triangle_].setup, frame_.draw(draw_).samples());
+  walked_until_ = after(std::max(walked_until_, visible), clk);
+  free_ = std::max(now, walked_until_);
+  occupy(now, clock().cycles(now, free_));
+  look_ahead();
+  walking_ = true;
+  ++stats_.triangles;
 }
 
 void CoarseRaster::begin_pass(PassId pass) {
@@ -136,42 +144,14 @@ bool CoarseRaster::hidden(const models::TileHit& tile) const {
 }
 
 void CoarseRaster::look_ahead() {
-  models::TileHit tile;
-  ahead_.reset();
-  while (!ahead_ && next_tile(tile)) {
-    ++touched_;
-    if (!owns(tile)) continue;
-    ++owned_;
-    ahead_ = tile;
-  }
+  if (!ahead_) ahead_.emplace();
+  if (!traversal_->next(*ahead_)) ahead_.reset();
 }
 
-void CoarseRaster::sort_tiles() {
-  sorted_.clear();
-  next_sorted_ = 0;
-  models::TileHit tile;
-  while (walk_.next(tile))
-    sorted_.emplace_back(
-        order_->place(static_cast<std::uint32_t>(tile.tile_x), static_cast<std::uint32_t>(tile.tile_y)),
-        tile);
-  std::ranges::sort(sorted_, {}, [](const auto& entry) { return entry.first; });
-}
-
-bool CoarseRaster::next_tile(models::TileHit& tile) {
-  if (order_->as_walked()) return walk_.next(tile);
-  if (next_sorted_ == sorted_.size()) return false;
-  tile = sorted_[next_sorted_++].second;
-  return true;
-}
-
-bool CoarseRaster::owns(const models::TileHit& tile) const {
-  return screen_.engines == 1 || screen_.engine_of_tile(static_cast<std::uint32_t>(tile.tile_x),
-                                                        static_cast<std::uint32_t>(tile.tile_y)) == engine_;
-}
-
-std::uint64_t CoarseRaster::tests() const {
-  const std::uint64_t kept = order_->as_walked() ? touched_ : sorted_.size();
-  return owned_ + (walk_.tests() - kept) / screen_.engines;
+void CoarseRaster::walk_ahead(Tick now) {
+  walked_until_ = after(now, ahead_->next_row_clk);
+  occupy(now, ahead_->next_row_clk);
+  ahead_->next_row_clk = Traversal::Tile::kNoRow;
 }
 
 void CoarseRaster::drop(const models::TileHit& tile) {
@@ -179,26 +159,45 @@ void CoarseRaster::drop(const models::TileHit& tile) {
   ++stats_.tiles_hidden;
 }
 
-void CoarseRaster::walk(Tick now) {
-  std::optional<models::TileHit> found;
+std::optional<Traversal::Tile> CoarseRaster::visible_tile(Tick now) {
+  std::optional<Traversal::Tile> found;
   while (ahead_ && !found) {
-    if (hidden(*ahead_)) drop(*ahead_);
+    if (ahead_->begins_row()) {
+      if (walked_until_ > now) break;
+      walk_ahead(now);
+    }
+    if (hidden(ahead_->hit)) drop(ahead_->hit);
     else found = ahead_;
     look_ahead();
   }
-  const std::uint64_t tests = this->tests() - charged_tests_;
-  charged_tests_ += tests;
-  stats_.tiles_tested += tests;
+  return found;
+}
+
+void CoarseRaster::walk(Tick now) {
+  const std::optional<Traversal::Tile> found = visible_tile(now);
+  const Traversal::Work work = traversal_->take_work();
+  count(work);
   spend(now, std::max(WorkRate::cost(params_.tiles_per_clk),
-                      WorkRate::cost_of(static_cast<std::int64_t>(tests), params_.tests_per_clk)));
-  if (found) {
-    ++stats_.tiles_kept;
-    tile_out.push(now, {TokenKind::kWork, found->fully_covered, static_cast<std::uint16_t>(found->tile_x),
-                        static_cast<std::uint16_t>(found->tile_y), draw_, triangle_});
-  }
-  if (ahead_) return;
-  walking_ = false;
-  sync_due_ = ++since_sync_ >= sync_interval_;
+                      WorkRate::cost_of(static_cast<std::int64_t>(work.tests), params_.tests_per_clk)));
+  if (found) hand_on(now, *found);
+  walking_ = ahead_.has_value();
+  if (!walking_) sync_due_ = ++since_sync_ >= sync_interval_;
+  else if (ahead_->begins_row()) free_ = std::max(free_, walked_until_);
+}
+
+void CoarseRaster::hand_on(Tick now, const Traversal::Tile& tile) {
+  ++stats_.tiles_kept;
+  tile_out.push(now, {TokenKind::kWork, tile.hit.fully_covered, static_cast<std::uint16_t>(tile.hit.tile_x),
+                      static_cast<std::uint16_t>(tile.hit.tile_y), draw_, triangle_,
+                      tile.walked ? walked_.put(tile.coverage) : TileToken::kNotWalked});
+}
+
+void CoarseRaster::count(const Traversal::Work& work) {
+  stats_.tiles_tested += work.tests;
+  stats_.walked_parts += work.parts;
+  stats_.rows += work.rows;
+  stats_.spans += work.spans;
+  stats_.segments += work.segments;
 }
 
 void CoarseRaster::audit(Audit& audit) const {

@@ -5,7 +5,11 @@
 ///       hiz_in[p]    a tile's greatest depth became smaller, from the depth unit of its partition p
 /// Out   tile_out     tiles of one primitive, as `order` says; boundaries; now and then a sync for the
 ///                    triangle store
-/// Time  `tests_per_clk` tile tests a cycle and at most one tile out a cycle; waits while tile_out is full
+/// Time  edge functions: `tests_per_clk` tile tests a cycle and `tiles_per_clk` tiles out; waits while
+///       tile_out is full
+///       edge walking: the tiles of a row of tiles leave once its rows are walked, at `rows_per_clk` rows of
+///       samples a cycle, `segments_per_clk` crossed tiles a cycle and `walk_setup_clk` cycles a part of a
+///       triangle; meanwhile the next row of tiles is walked, or the first one of the next triangle
 ///
 /// Hi-Z holds, for each tile of the pass, a depth that no stored depth exceeds. It may be late (updates
 /// travel by FIFO), which only keeps more. It is trusted only while every depth write of the pass can but
@@ -18,8 +22,7 @@
 #include "hw/frame/stores.h"
 #include "hw/frame/tokens.h"
 #include "hw/frame/unit_context.h"
-#include "models/raster/coarse.h"
-#include "models/raster/tile_order.h"
+#include "hw/raster/traversal.h"
 
 #include <optional>
 
@@ -52,16 +55,50 @@ class CoarseRaster final : public Unit {
                                                models::kScanTileOrder,
                                                "In which order the tiles of a triangle go on. Their tests "
                                                "cost the same. [G: as the walk finds them]"};
+    PolicyParam<TraversalPolicy> traversal{*this, "traversal", traversal_policies(), kEdgeFunctions,
+                                           "How the tiles of a triangle are found. Edge walking goes by "
+                                           "rows, so its `order` is scan. [G: as GPUs "
+                                           "do]"};
+    Param<int> rows_per_clk{
+        *this,
+        "rows_per_clk",
+        1,
+        "row/clk",
+        {1, 16},
+        "Edge walking: rows of samples a cycle, each an addition for either edge. [G: one "
+        "pair of adders]"};
+    Param<int> segments_per_clk{
+        *this,
+        "segments_per_clk",
+        2,
+        "tile/clk",
+        {1, 16},
+        "Edge walking: tiles a cycle of those that a row's span crosses. [G: 16 px/clk, "
+        "as tests_per_clk]"};
+    Param<int> walk_setup_clk{*this,
+                              "walk_setup_clk",
+                              2,
+                              "clk",
+                              {1, 64},
+                              "Edge walking: cycles a part of a triangle, of each sample. [G: a division for "
+                              "either edge]",
+                              Effect::kSlower};
   };
   struct Stats : StatGroup {
     Counter triangles{*this, "triangles", "triangle", "Triangles walked"};
-    Counter tiles_tested{*this, "tiles_tested", "tile", "Tiles tested against edges"};
+    Counter tiles_tested{*this, "tiles_tested", "tile",
+                         "Tiles tested, against the edges and by Hi-Z; with edge walking by Hi-Z alone"};
     Counter tiles_kept{*this, "tiles_kept", "tile", "Tiles handed to the fine rasteriser"};
     Counter tiles_hidden{*this, "tiles_hidden", "tile", "Tiles dropped by Hi-Z"};
     Counter hiz_updates{*this, "hiz_updates", "update", "Hi-Z updates taken in"};
+    Counter walked_parts{*this, "walked_parts", "part",
+                         "Edge walking: parts of triangles whose edges were set up, of each sample"};
+    Counter rows{*this, "rows", "row", "Edge walking: rows of samples walked"};
+    Counter spans{*this, "spans", "span", "Edge walking: rows with a covered sample"};
+    Counter segments{*this, "segments", "segment", "Edge walking: tiles crossed by spans"};
   };
   CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-               const TriangleStore& triangles);
+               const TriangleStore& triangles, WalkedStore& walked);
 
   FifoIn<TriangleToken> triangle_in{*this, "triangle_in"};
   FifoInGroup<HiZToken> hiz_in;
@@ -79,18 +116,19 @@ class CoarseRaster final : public Unit {
   [[nodiscard]] Wake work_wake() const;
   void work(Tick now);
   void take_token(Tick now);
+  void begin_triangle(Tick now, Tick visible, const TriangleToken& token);
   void spend(Tick now, std::int64_t cost);
   void take_updates(Tick now);
-  /// Finds the next tile of the walk, so that the last one is known as such when it leaves.
+  /// Finds the next tile of the triangle, so that the last one is known as such when it leaves.
   void look_ahead();
-  /// The next tile of the walk, in the machine's order; false at its end.
-  [[nodiscard]] bool next_tile(models::TileHit& tile);
-  void sort_tiles();
-  [[nodiscard]] bool owns(const models::TileHit& tile) const;
-  /// Of this walk so far: those of its own tiles, and its share of those that failed.
-  [[nodiscard]] std::uint64_t tests() const;
+  /// Begins to walk what follows the row of tiles that begins to leave.
+  void walk_ahead(Tick now);
   void walk(Tick now);
   void begin_pass(PassId pass);
+  /// The next tile that Hi-Z does not hide; none if the triangle, or what is walked of it now, ends before.
+  [[nodiscard]] std::optional<Traversal::Tile> visible_tile(Tick now);
+  void hand_on(Tick now, const Traversal::Tile& tile);
+  void count(const Traversal::Work& work);
   [[nodiscard]] bool hidden(const models::TileHit& tile) const;
   void drop(const models::TileHit& tile);
   void note_direction(const DrawState& draw);
@@ -98,20 +136,14 @@ class CoarseRaster final : public Unit {
   const Params& params_;
   const Frame& frame_;
   const TriangleStore& triangles_;
-  const models::ScreenShare screen_;
-  const std::uint32_t engine_;
+  WalkedStore& walked_;
   const std::uint64_t sync_interval_;  ///< triangles between syncs
   Stats stats_;
   bool walking_ = false;
-  models::TileWalk walk_;
-  std::unique_ptr<models::TileOrder> order_;
-  /// of the walk, where they do not go on as they are found; with their places
-  std::vector<std::pair<std::uint64_t, models::TileHit>> sorted_;
-  std::size_t next_sorted_ = 0;
-  std::optional<models::TileHit> ahead_;   ///< the next tile of the walk; none at its end
-  std::uint64_t charged_tests_ = 0;        ///< of this walk
-  std::uint64_t touched_ = 0, owned_ = 0;  ///< tiles of this walk, and those of them that are the engine's
-  std::uint64_t triangle_ = 0;             ///< being walked
+  std::unique_ptr<Traversal> traversal_;
+  std::optional<Traversal::Tile> ahead_;  ///< the next tile of the triangle; none at its end
+  Tick walked_until_ = 0;                 ///< the row of tiles that leaves next is walked by then
+  std::uint64_t triangle_ = 0;            ///< being walked
   DrawId draw_;
   PassId pass_;
   bool hiz_usable_ = false;  ///< this draw may be tested

@@ -11,11 +11,12 @@
 namespace quadrille::hw {
 
 FineRaster::FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-                       const TriangleStore& triangles)
+                       const TriangleStore& triangles, const WalkedStore& walked)
     : Unit(name, Kind::kFixedOrder, context.clock),
       params_(params),
       frame_(context.frame),
       triangles_(triangles),
+      walked_(walked),
       screen_(context.machine.screen()),
       rate_(context.clock) {
   add_initiation_rate("quads_per_clk");
@@ -56,15 +57,19 @@ void FineRaster::act(Tick now) {
   occupy(now, rate_.cycles());
 }
 
+std::uint64_t FineRaster::coverage_of(const TileToken& tile, const models::SampleGrid& samples,
+                                      int sample) const {
+  if (tile.fully_covered) return ~std::uint64_t{0};
+  if (tile.walked != TileToken::kNotWalked) return walked_[tile.walked][static_cast<std::size_t>(sample)];
+  return models::sample_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y, samples, sample);
+}
+
 int FineRaster::cover(const TileToken& tile) {
   const models::SampleGrid& samples = frame_.draw(tile.part.draw()).samples();
   next_plane_ = plane_count_ = 0;
   std::uint64_t any = 0, all = ~std::uint64_t{0};
   for (int s = 0; s < samples.count; ++s) {
-    const std::uint64_t coverage =
-        tile.fully_covered
-            ? ~std::uint64_t{0}
-            : models::sample_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y, samples, s);
+    const std::uint64_t coverage = coverage_of(tile, samples, s);
     any |= coverage;
     all &= coverage;
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));
@@ -85,7 +90,7 @@ void FineRaster::rasterize(Tick now, const TileToken& tile) {
   const int quads = cover(tile);
   ++stats_.tiles;
   stats_.quads += static_cast<std::uint64_t>(quads);
-  quad_cost_ = WorkRate::cost_of(quads, params_.quads_per_clk);
+  quad_cost_ = tile.walked == TileToken::kNotWalked ? WorkRate::cost_of(quads, params_.quads_per_clk) : 0;
   if (plane_count_ > 0) return hand_on(now);
   free_ = rate_.charge(now, WorkRate::cost(params_.tiles_per_clk));
   occupy(now, rate_.cycles());

@@ -4,7 +4,7 @@
 /// In    tile_in          tiles of one triangle; boundaries
 /// Out   coverage_out[p]  covered tiles of partition p; every boundary to every partition
 /// Time  `quads_per_clk` covered quads a cycle, whatever their samples; at least one cycle a tile and covered
-///       sample
+///       sample. A tile that was walked is not tested, so its quads cost nothing.
 #pragma once
 
 #include "hw/base/param.h"
@@ -39,7 +39,7 @@ class FineRaster final : public Unit {
                       "Covered pixels; of several samples a pixel, covered samples"};
   };
   FineRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
-             const TriangleStore& triangles);
+             const TriangleStore& triangles, const WalkedStore& walked);
 
   FifoIn<TileToken> tile_in{*this, "tile_in"};
   std::vector<std::unique_ptr<FifoOut<CoverageToken>>> coverage_out;
@@ -55,6 +55,8 @@ class FineRaster final : public Unit {
   void rasterize(Tick now, const TileToken& tile);
   /// Finds what is covered of each sample, and the quads of which one is.
   [[nodiscard]] int cover(const TileToken& tile);
+  [[nodiscard]] std::uint64_t coverage_of(const TileToken& tile, const models::SampleGrid& samples,
+                                          int sample) const;
   void hand_on(Tick now);
   /// To the depth unit of the tile's partition.
   [[nodiscard]] FifoOut<CoverageToken>& output_of(std::uint32_t tile_x, std::uint32_t tile_y) const;
@@ -62,6 +64,7 @@ class FineRaster final : public Unit {
   const Params& params_;
   const Frame& frame_;
   const TriangleStore& triangles_;
+  const WalkedStore& walked_;
   const models::ScreenShare screen_;
   Stats stats_;
   WorkRate rate_;

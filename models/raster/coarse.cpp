@@ -31,7 +31,7 @@ TileWalk::TileWalk(const TriangleSetup& triangle, const SampleGrid& samples)
     : edge_count_(static_cast<std::size_t>(triangle.edge_count)) {
   for (std::size_t i = 0; i < edge_count_; ++i) {
     const EdgeFunction& e = triangle.edges[i];
-    edges_[i] = {e.origin, e.a * kTileSize, e.b * kTileSize, 0};
+    edges_[i] = {e.origin, e.a * kTileSize, e.b * kTileSize};
     best_[i] = (kTileSize - 1) * (std::max<std::int64_t>(e.a, 0) + std::max<std::int64_t>(e.b, 0));
     worst_[i] = (kTileSize - 1) * (std::min<std::int64_t>(e.a, 0) + std::min<std::int64_t>(e.b, 0));
     if (samples.count > 1 && !triangle.whole_pixels) add_samples(e, samples, best_[i], worst_[i]);

@@ -10,6 +10,10 @@ namespace quadrille::models {
 struct EdgeFunction {
   std::int64_t origin = 0, a = 0, b = 0;
   std::int64_t fraction = 0;  ///< what was rounded off `origin`, for samples away from the centre
+  /// Heights on the sub-pixel grid between which it bounds the shape: from `top` on and before `bottom`. One
+  /// without ends bounds it at every height.
+  std::int64_t top = -kEndless, bottom = kEndless;
+  static constexpr std::int64_t kEndless = std::int64_t{1} << 40;
   [[nodiscard]] std::int64_t at(std::int64_t px, std::int64_t py) const { return origin + a * px + b * py; }
 };
 
@@ -30,6 +34,15 @@ struct GridPoint {
   const std::int64_t at_first_centre = edge.a * (half - a.x) + edge.b * (half - a.y) - (top_left ? 0 : 1);
   edge.origin = at_first_centre >> subpixel_bits;  // rounds down: keeps the sign at every centre
   edge.fraction = at_first_centre & ((std::int64_t{1} << subpixel_bits) - 1);
+  edge.top = a.y < b.y ? a.y : b.y;
+  edge.bottom = a.y < b.y ? b.y : a.y;
+  return edge;
+}
+
+/// The same edge without ends: of a shape that its bounds cut off.
+[[nodiscard]] constexpr EdgeFunction endless(EdgeFunction edge) {
+  edge.top = -EdgeFunction::kEndless;
+  edge.bottom = EdgeFunction::kEndless;
   return edge;
 }
 

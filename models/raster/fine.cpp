@@ -24,12 +24,6 @@ constexpr TrimMasks make_trim_masks() {
 }
 constexpr TrimMasks kTrim = make_trim_masks();
 
-std::uint64_t pixels_within(const PixelRect& bounds, int px, int py) {
-  const auto at = [](int edge) { return static_cast<std::size_t>(std::clamp(edge, 0, kTileSize)); };
-  return (kTrim.columns_from[at(bounds.x0 - px)] & ~kTrim.columns_from[at(bounds.x1 - px)]) &
-         (kTrim.rows_from[at(bounds.y0 - py)] & ~kTrim.rows_from[at(bounds.y1 - py)]);
-}
-
 /// Pixels outside one edge, when every value in the tile fits 32 bits: eight pixels (two quads) a step, the
 /// sign bit decides.
 std::uint64_t outside_edge_32(std::int32_t corner, std::int32_t a, std::int32_t b) {
@@ -64,7 +58,7 @@ template <class EdgeAt>
 std::uint64_t coverage(const TriangleSetup& triangle, int tile_x, int tile_y, const EdgeAt& edge_at) {
   constexpr std::int64_t kReach = kTileSize - 1;
   const int px = tile_x * kTileSize, py = tile_y * kTileSize;
-  std::uint64_t covered = pixels_within(triangle.bounds, px, py);
+  std::uint64_t covered = rect_coverage(triangle.bounds, tile_x, tile_y);
   for (int i = 0; i < triangle.edge_count; ++i) {
     const EdgeFunction& edge = edge_at(static_cast<std::size_t>(i));
     const std::int64_t corner = edge.at(px, py);
@@ -86,6 +80,13 @@ std::uint64_t coverage(const TriangleSetup& triangle, int tile_x, int tile_y, co
 }
 
 }  // namespace
+
+std::uint64_t rect_coverage(const PixelRect& rect, int tile_x, int tile_y) {
+  const int px = tile_x * kTileSize, py = tile_y * kTileSize;
+  const auto at = [](int edge) { return static_cast<std::size_t>(std::clamp(edge, 0, kTileSize)); };
+  return (kTrim.columns_from[at(rect.x0 - px)] & ~kTrim.columns_from[at(rect.x1 - px)]) &
+         (kTrim.rows_from[at(rect.y0 - py)] & ~kTrim.rows_from[at(rect.y1 - py)]);
+}
 
 std::uint64_t tile_coverage(const TriangleSetup& triangle, int tile_x, int tile_y) {
   return coverage(triangle, tile_x, tile_y,

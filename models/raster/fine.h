@@ -13,5 +13,7 @@ namespace quadrille::models {
 /// The same for one sample of each pixel.
 [[nodiscard]] std::uint64_t sample_coverage(const TriangleSetup& triangle, int tile_x, int tile_y,
                                             const SampleGrid& samples, int sample);
+/// Pixels of the tile within a rectangle.
+[[nodiscard]] std::uint64_t rect_coverage(const PixelRect& rect, int tile_x, int tile_y);
 
 }  // namespace quadrille::models

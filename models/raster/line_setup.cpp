@@ -69,15 +69,18 @@ void set_band(const Segment& s, const Steps& steps, const SetupState& state, Tri
                      first_pixel_from(high + after + grid.half, grid.bits)};
   };
   const auto first = static_cast<std::int32_t>(steps.first), end = static_cast<std::int32_t>(steps.last + 1);
+  const auto band_edge = [](const GridPoint& a, const GridPoint& b, int bits) {
+    return endless(make_edge(a, b, bits));
+  };
   out.edge_count = 2;
   if (s.steep()) {
-    out.edges[0] = make_edge({s.a.x + after, s.a.y}, {s.b.x + after, s.b.y}, grid.bits);
-    out.edges[1] = make_edge({s.b.x - before, s.b.y}, {s.a.x - before, s.a.y}, grid.bits);
+    out.edges[0] = band_edge({s.a.x + after, s.a.y}, {s.b.x + after, s.b.y}, grid.bits);
+    out.edges[1] = band_edge({s.b.x - before, s.b.y}, {s.a.x - before, s.a.y}, grid.bits);
     const auto [left, right] = pixels(std::min(s.a.x, s.b.x), std::max(s.a.x, s.b.x));
     out.bounds = {left, first, right, end};
   } else {
-    out.edges[0] = make_edge({s.a.x, s.a.y - before}, {s.b.x, s.b.y - before}, grid.bits);
-    out.edges[1] = make_edge({s.b.x, s.b.y + after}, {s.a.x, s.a.y + after}, grid.bits);
+    out.edges[0] = band_edge({s.a.x, s.a.y - before}, {s.b.x, s.b.y - before}, grid.bits);
+    out.edges[1] = band_edge({s.b.x, s.b.y + after}, {s.a.x, s.a.y + after}, grid.bits);
     const auto [top, bottom] = pixels(std::min(s.a.y, s.b.y), std::max(s.a.y, s.b.y));
     out.bounds = {first, top, end, bottom};
   }

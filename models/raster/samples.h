@@ -31,7 +31,7 @@ struct SampleGrid {
 /// The same edge, decided at a sample instead of the centre.
 [[nodiscard]] inline EdgeFunction at_sample(const EdgeFunction& edge, const GridPoint& offset, int bits) {
   const std::int64_t moved = edge.fraction + edge.a * offset.x + edge.b * offset.y;
-  return {edge.origin + (moved >> bits), edge.a, edge.b, 0};
+  return {edge.origin + (moved >> bits), edge.a, edge.b, 0, edge.top, edge.bottom};
 }
 
 }  // namespace quadrille::models

@@ -66,6 +66,8 @@ Machine::Stores::Stores(const MachineConfig& config)
         static_cast<std::size_t>(config.link.clipper_to_setup.depth.value()) + 2));
     triangles.push_back(std::make_unique<hw::TriangleStore>(
         static_cast<std::size_t>(config.triangle_setup.triangle_slots.value()) + 1));
+    walked.push_back(std::make_unique<hw::WalkedStore>(
+        static_cast<std::size_t>(config.link.coarse_to_fine.depth.value())));
   }
   for (int p = 0; p < config.gpu.partitions; ++p)
     warps.push_back(

@@ -68,6 +68,7 @@ class Machine {
     hw::Store<hw::BatchSlot> batches;
     std::vector<std::unique_ptr<hw::Store<hw::ClippedPiece>>> pieces;  ///< by raster engine
     std::vector<std::unique_ptr<hw::TriangleStore>> triangles;         ///< by raster engine
+    std::vector<std::unique_ptr<hw::WalkedStore>> walked;              ///< by raster engine
     std::vector<std::unique_ptr<hw::WarpStore>> warps;                 ///< by partition
     std::vector<std::unique_ptr<hw::Store<hw::CoreSlot>>> cores;       ///< by core
   };

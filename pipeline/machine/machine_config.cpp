@@ -144,6 +144,14 @@ void MachineConfig::check() const {
   if (gpu.partitions % gpu.engines != 0)
     throw user_error("machine: gpu.partitions ({}) is not a multiple of gpu.engines ({})",
                      gpu.partitions.value(), gpu.engines.value());
+  if (&coarse_raster.traversal.value() == &hw::kEdgeWalking &&
+      &coarse_raster.order.value() != &models::kScanTileOrder)
+    throw user_error(
+        "machine: coarse_raster.order is {0}, but coarse_raster.traversal={1} goes by rows: it can be {2}, "
+        "or "
+        "coarse_raster.traversal={3}",
+        coarse_raster.order.value_text(), hw::kEdgeWalking.name, models::kScanTileOrder.name,
+        hw::kEdgeFunctions.name);
   check_memory();
   const auto cache = [](std::string_view path, int lines, int ways) {
     if (lines % ways == 0) return;  // whole sets

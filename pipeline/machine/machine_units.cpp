@@ -38,12 +38,14 @@ Machine::Maker::Made<hw::TriangleSetupUnit> Machine::Maker::make(Kind<hw::Triang
 
 Machine::Maker::Made<hw::CoarseRaster> Machine::Maker::make(Kind<hw::CoarseRaster> /*kind*/, const char* name,
                                                             int i) const {
-  return std::make_unique<hw::CoarseRaster>(name, context(i), c_.coarse_raster, *s_.triangles[at(i)]);
+  return std::make_unique<hw::CoarseRaster>(name, context(i), c_.coarse_raster, *s_.triangles[at(i)],
+                                            *s_.walked[at(i)]);
 }
 
 Machine::Maker::Made<hw::FineRaster> Machine::Maker::make(Kind<hw::FineRaster> /*kind*/, const char* name,
                                                           int i) const {
-  return std::make_unique<hw::FineRaster>(name, context(i), c_.fine_raster, *s_.triangles[at(i)]);
+  return std::make_unique<hw::FineRaster>(name, context(i), c_.fine_raster, *s_.triangles[at(i)],
+                                          *s_.walked[at(i)]);
 }
 
 Machine::Maker::Made<hw::DepthUnit> Machine::Maker::make(Kind<hw::DepthUnit> /*kind*/, const char* name,

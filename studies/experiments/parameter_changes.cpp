@@ -58,6 +58,8 @@ Settings with(Settings settings, const Settings& more) {
   return settings;
 }
 
+const Settings kFastWalking = with(kFastGeometry, {"coarse_raster.traversal=edge_walking"});
+
 /// Where a parameter must show: by its path, or by the group that it ends with.
 struct Tight {
   std::string_view path;
@@ -90,6 +92,9 @@ const std::vector<Tight>& tight_grounds() {
       {"clipper.", kFastGeometry},
       {"primitive_assembly.", kFastGeometry},
       {"triangle_setup.", kFastGeometry},
+      {"coarse_raster.rows_per_clk", kFastWalking},
+      {"coarse_raster.segments_per_clk", kFastWalking},
+      {"coarse_raster.walk_setup_clk", kFastWalking},
       {"coarse_raster.", kFastGeometry},
       {"fine_raster.", kFastGeometry},
   };

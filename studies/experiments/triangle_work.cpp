@@ -1,6 +1,7 @@
 #include "studies/experiments/triangle_work.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace quadrille::studies::experiments {
@@ -27,6 +28,8 @@ struct Shape {
   }
   /// pixels whose centres lie in the bounding box: from, and up to
   std::int64_t left = 0, top = 0, right = 0, bottom = 0;
+  /// rows of centres of the parts above and below the middle corner: the lower part begins, and ends, here
+  std::int64_t middle = 0, end = 0;
 };
 
 std::int64_t first_centre(std::int64_t at) { return (at + kGrid / 2 - 1) / kGrid; }
@@ -52,6 +55,11 @@ bool shape_of(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& tria
   shape.top = std::max<std::int64_t>(0, first_centre(y0));
   shape.right = std::min<std::int64_t>(mesh.width, first_centre(x1 + 1));
   shape.bottom = std::min<std::int64_t>(mesh.height, first_centre(y1 + 1));
+  const auto row = [&](std::int64_t y) {
+    return std::clamp<std::int64_t>(first_centre(y), shape.top, mesh.height);
+  };
+  shape.middle = row(std::int64_t{c[0]->y} + c[1]->y + c[2]->y - y0 - y1);
+  shape.end = row(y1);
   return true;
 }
 
@@ -140,6 +148,68 @@ void count_triangle(const Shape& shape, const Rates& rates, TriangleWork& work) 
   work.coarse_clk += std::max({std::uint64_t{1}, kept, parts(tests, rates.tile_tests)});
 }
 
+/// When rows of tiles are walked and leave: one is walked while the one before leaves.
+class WalkTimes {
+ public:
+  void row(double walk_clk, std::uint64_t tiles) {
+    walk_clk_ += walk_clk;
+    if (tiles > 0) leave(static_cast<double>(tiles));
+  }
+  /// What has no tile takes the place of one.
+  void triangle_ends(bool had_tiles) {
+    if (!had_tiles) left_ = std::max(left_, walked()) + 1;
+    begun_ = walked();
+    walk_clk_ = 0;
+  }
+  [[nodiscard]] double end() const { return std::max(left_, walked()); }
+
+ private:
+  [[nodiscard]] double walked() const { return begun_ + std::ceil(walk_clk_); }
+  void leave(double tiles) {
+    begun_ = std::max(walked(), left_);
+    walk_clk_ = 0;
+    left_ = begun_ + tiles;
+  }
+  double begun_ = 0, walk_clk_ = 0;  ///< of the walk
+  double left_ = 0;                  ///< all tiles so far, by then
+};
+
+/// Pixels of a row that are covered: from, and up to.
+struct Span {
+  std::int64_t from = 0, to = 0;
+};
+Span span_of(const Shape& shape, std::int64_t y) {
+  Span span{shape.left, shape.right};
+  while (span.from < span.to && !shape.covers(span.from, y)) ++span.from;
+  while (span.from < span.to && !shape.covers(span.to - 1, y)) --span.to;
+  return span;
+}
+
+void count_walk(const Shape& shape, const Rates& rates, TriangleWork& work, WalkTimes& times) {
+  const std::uint64_t before = work.walk_tiles;
+  for (std::int64_t y = shape.top; y < shape.end;) {
+    double clk = 0;
+    std::vector<bool> touched(static_cast<std::size_t>((shape.right + kTile - 1) / kTile), false);
+    for (const std::int64_t ty = y / kTile; y < shape.end && y / kTile == ty; ++y) {
+      const bool begins = y == shape.top || y == shape.middle;
+      const Span span = span_of(shape, y);
+      std::uint64_t segments = 0;
+      for (std::int64_t x = span.from; x < span.to; x = (x / kTile + 1) * kTile, ++segments)
+        touched[static_cast<std::size_t>(x / kTile)] = true;
+      work.walk_parts += begins ? 1 : 0;
+      ++work.walk_rows;
+      work.walk_spans += segments > 0 ? 1 : 0;
+      work.walk_segments += segments;
+      clk += (begins ? rates.walk_setup_clk : 0) +
+             std::max(1.0 / rates.walk_rows, static_cast<double>(segments) / rates.walk_segments);
+    }
+    const auto tiles = static_cast<std::uint64_t>(std::ranges::count(touched, true));
+    work.walk_tiles += tiles;
+    times.row(clk, tiles);
+  }
+  times.triangle_ends(work.walk_tiles > before);
+}
+
 void count_batches(const TriangleMesh& mesh, const Rates& rates, TriangleWork& work) {
   std::vector<std::uint32_t> vertices;
   std::uint32_t triangles = 0;
@@ -175,14 +245,18 @@ TriangleWork work_of(const TriangleMesh& mesh, const Rates& rates) {
   work.triangles = mesh.triangles.size();
   count_batches(mesh, rates, work);
   Shape shape;
+  WalkTimes times;
   for (const auto& triangle : mesh.triangles) {
-    if (shape_of(mesh, triangle, shape) && shape.left < shape.right && shape.top < shape.bottom)
-      count_triangle(shape, rates, work);
+    if (!shape_of(mesh, triangle, shape) || shape.left >= shape.right || shape.top >= shape.bottom) continue;
+    count_triangle(shape, rates, work);
+    count_walk(shape, rates, work, times);
   }
+  work.walk_clk = times.end();
   work.pack_clk += rates.launch_clk * parts(work.quads, kWarpQuads);
   const std::uint64_t messages = work.triangles / std::max(1u, rates.triangle_slots / 8);
   work.coarse_clk += messages;
   work.fine_clk += messages;
+  work.walk_clk += static_cast<double>(messages);
   return work;
 }
 

@@ -19,6 +19,8 @@ struct Rates {
   std::uint32_t batch_vertices = 32, batch_triangles = 32;
   /// of the triangle store; for each eighth of them a message goes through the rasterisers
   std::uint32_t triangle_slots = 1024;
+  /// Of edge walking: rows and crossed tiles a cycle, and cycles a part of a triangle.
+  std::uint32_t walk_rows = 1, walk_segments = 2, walk_setup_clk = 2;
 };
 
 struct TriangleWork {
@@ -30,6 +32,11 @@ struct TriangleWork {
   /// cycles to pack the quads of each tile and launch the warps, summed over partitions
   std::uint64_t pack_clk = 0;
   std::uint64_t quads = 0, fragments = 0;
+  /// Of edge walking: parts of triangles, rows, those with a covered pixel, tiles that they cross, and tiles
+  std::uint64_t walk_parts = 0, walk_rows = 0, walk_spans = 0, walk_segments = 0, walk_tiles = 0;
+  /// cycles of the coarse rasteriser that walks: a row of tiles is walked while the one before leaves, a tile
+  /// a cycle
+  double walk_clk = 0;
 };
 
 /// A place in a pixel, in 1/256 of it.

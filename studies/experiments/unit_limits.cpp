@@ -27,18 +27,22 @@ Rates rates_of(const MachineConfig& m) {
           .launch_clk = u(m.warp_packer.launch_clk),
           .batch_vertices = u(m.vertex_fetch.batch_vertices),
           .batch_triangles = u(m.vertex_fetch.batch_triangles),
-          .triangle_slots = u(m.triangle_setup.triangle_slots)};
+          .triangle_slots = u(m.triangle_setup.triangle_slots),
+          .walk_rows = u(m.coarse_raster.rows_per_clk),
+          .walk_segments = u(m.coarse_raster.segments_per_clk),
+          .walk_setup_clk = u(m.coarse_raster.walk_setup_clk)};
 }
 
 /// What a frame asks for, as numbers of floating point.
 struct Work {
-  double triangles = 0, batches = 0, fine_clk = 0, pack_clk = 0, quads = 0, tests = 0, warps = 0;
+  double triangles = 0, batches = 0, fine_clk = 0, pack_clk = 0, quads = 0, tests = 0, warps = 0,
+         walk_clk = 0;
 };
 Work work_on(const TriangleMesh& mesh, const MachineConfig& m) {
   const TriangleWork w = work_of(mesh, rates_of(m));
   const auto d = [](std::uint64_t value) { return static_cast<double>(value); };
-  return {d(w.triangles), d(w.batches),    d(w.fine_clk),          d(w.pack_clk),
-          d(w.quads),     d(w.tile_tests), d(w.quads) / kWarpQuads};
+  return {d(w.triangles), d(w.batches),    d(w.fine_clk),           d(w.pack_clk),
+          d(w.quads),     d(w.tile_tests), d(w.quads) / kWarpQuads, w.walk_clk};
 }
 
 /// Collects frames; `cycles` computes from the mesh's work and the machine.
@@ -108,6 +112,10 @@ void add_raster(Frames& frames, std::uint32_t width, std::uint32_t height) {
                const Work first = work_on(shown, m);
                return first.fine_clk + (w.tests - first.tests) / m.coarse_raster.tests_per_clk;
              });
+  frames.add("coarse_raster", "standing triangles a pixel wide, by edge walking",
+             "rows / rows_per_clk + parts x walk_setup_clk, each triangle's tiles at its end",
+             repeated(tiled_frame(width, height, 1, height), 2), {}, {"coarse_raster.traversal=edge_walking"},
+             [](const Work& w, const MachineConfig&) { return w.walk_clk; });
   frames.add("fine_raster", "the frame covered 64 times",
              "quads of each tile / quads_per_clk, a cycle at least, + reports for the triangle store",
              covered_frame(width, height, 64), {}, {},

@@ -117,6 +117,9 @@ TEST_CASE("a machine or setting that is none is refused with what is legal") {
   render_refused({"--set", "=1"}, {"--set"});
   render_refused({"--set", "nothing.cores=1"}, {"nothing.cores", "coarse_raster"});
   render_refused({"--set", "rop.cache_lines=1", "--set", "rop.cache_ways=8"}, {"rop.cache_lines"});
+  render_refused({"--set", "coarse_raster.traversal=edges"}, {"edge_functions", "edge_walking"});
+  render_refused({"--set", "coarse_raster.traversal=edge_walking", "--set", "coarse_raster.order=morton"},
+                 {"coarse_raster.order", "scan"});
   const ScratchFolder folder;
   folder.write("m.toml", "[gpu]\ncores = 2\nclock = 3\n");
   require_refused(run_quadrille(folder, {"render", "builtin:triangle", "--machine", "m.toml"}),

@@ -109,8 +109,8 @@ TEST_CASE("policies: each kind that a machine chooses from is listed, and each p
     CHECK(names.size() > 1);
   }
   CHECK(kinds ==
-        "vertex_fetch.reuse coarse_raster.order work_distributor.policy core.scheduler l2.write_back "
-        "memory.mapping memory.scheduler memory.write_drain memory.page ");
+        "vertex_fetch.reuse coarse_raster.order coarse_raster.traversal work_distributor.policy "
+        "core.scheduler l2.write_back memory.mapping memory.scheduler memory.write_drain memory.page ");
 }
 
 TEST_CASE("policies: each differs from its neighbours in what the machine does, and in no pixel") {

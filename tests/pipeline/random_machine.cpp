@@ -42,6 +42,10 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.vertex_fetch.batch_slots.set(random.pick({2, 3, 16}));
   // Named by the seed alone, so that the machines of before stay what they were.
   config.coarse_raster.order.set(*models::tile_order_policies().all()[seed % 3]);
+  if (seed % 3 == 0 && seed % 2 == 0) config.coarse_raster.traversal.set(hw::kEdgeWalking);
+  config.coarse_raster.rows_per_clk.set(1 + static_cast<int>(seed / 6 % 5));
+  config.coarse_raster.segments_per_clk.set(1 + static_cast<int>(seed / 6 % 3));
+  config.coarse_raster.walk_setup_clk.set(1 + static_cast<int>(seed / 6 % 4));
   config.vertex_fetch.reuse.set(
       *models::vertex_reuse_policies().all()[static_cast<std::size_t>(random.integer(0, 2))]);
   config.primitive_assembly.triangles_per_clk.set(random.pick({1, 2, 64}));

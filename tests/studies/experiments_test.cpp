@@ -94,7 +94,7 @@ TEST_CASE("units: a unit of another rate than the arithmetic's fails, so each fr
       {"primitive_assembly", {"primitive_assembly.triangles_per_clk=2", "link.assembly_to_clipper.width=2"}},
       {"clipper", {"clipper.clip_clk=10"}},
       {"triangle_setup", {"triangle_setup.drawn_per_clk=0.3"}},
-      {"coarse_raster", {"coarse_raster.tests_per_clk=2"}},
+      {"coarse_raster", {"coarse_raster.tests_per_clk=2", "coarse_raster.rows_per_clk=2"}},
       {"fine_raster", {"fine_raster.quads_per_clk=8"}},
       {"depth", {"depth.quads_per_clk=2"}},
       {"warp_packer", {"warp_packer.quads_per_clk=2"}},

@@ -79,3 +79,33 @@ TEST_CASE("triangle_work: what is counted is what the machine counts") {
     CHECK(w.fragments == count("fine_raster.fragments"));
   }
 }
+
+TEST_CASE("triangle_work: rows and spans of edge walking are those that the machine counts") {
+  for (const auto& [width, height] :
+       {std::pair{1u, 1u}, {3u, 5u}, {8u, 8u}, {40u, 40u}, {256u, 1u}, {1u, 256u}, {100u, 7u}}) {
+    INFO(width << "x" << height);
+    const TriangleMesh mesh = tiled_frame(93, 57, width, height);
+    const auto stream = stream_of(mesh);
+    const Readings r = draw({{&stream, {"coarse_raster.traversal=edge_walking"}}}, {}).front();
+    const TriangleWork w = work_of(mesh, {});
+    const auto count = [&](const char* name) { return static_cast<std::uint64_t>(r[name]); };
+    CHECK(w.walk_parts == count("coarse_raster.walked_parts"));
+    CHECK(w.walk_rows == count("coarse_raster.rows"));
+    CHECK(w.walk_spans == count("coarse_raster.spans"));
+    CHECK(w.walk_segments == count("coarse_raster.segments"));
+    CHECK(w.walk_tiles == count("fine_raster.tiles"));
+    CHECK(w.quads == count("fine_raster.quads"));
+    CHECK(w.fragments == count("fine_raster.fragments"));
+    CHECK(count("fine_raster.tiles_empty") == 0);
+  }
+}
+
+TEST_CASE("triangle_work: of a right triangle of edge walking, a row of tiles is walked while one leaves") {
+  // Rows of 16 to 1 pixels: set-up and eight rows of two tiles or one, 2 + 8 cycles; then 8 more, while two
+  // tiles leave, and the last one.
+  const TriangleWork w = work_of(one_triangle({{{0, 0}, {0, 16 * 256}, {16 * 256, 0}}}), {});
+  CHECK(w.walk_parts == 1);
+  CHECK(w.walk_rows == 16);
+  CHECK(w.walk_tiles == 3);
+  CHECK(w.walk_clk == 2 + 8 + 8 + 1);
+}

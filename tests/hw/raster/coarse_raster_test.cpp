@@ -37,7 +37,7 @@ struct CoarseBench final : Bench {
     params.tiles_per_clk.set(s.tiles_per_clk);
     params.reports.set(s.reports);
     params.hiz.set(s.use_hiz);
-    unit = std::make_unique<CoarseRaster>("unit", context(), params, store);
+    unit = std::make_unique<CoarseRaster>("unit", context(), params, store, walked);
     add(*unit);
     feed(unit->triangle_in, s.triangles);
     feed(unit->hiz_in[0], s.hiz);
@@ -69,6 +69,7 @@ struct CoarseBench final : Bench {
   models::Program program;
   CoarseRaster::Params params;
   TriangleStore store;
+  WalkedStore walked{64};
   std::unique_ptr<CoarseRaster> unit;
   StubSink<TileToken>* sink = nullptr;
 };

@@ -33,11 +33,14 @@ struct FineBench final : Bench {
     // tile.
     store[0] = flat_triangle({glm::ivec2{0, 0}, {0, 32}, {32, 0}});
     store[1] = flat_triangle({glm::ivec2{0, 0}, {0, 8}, {1, 0}});
+    models::TileCoverage part{0xf00f, 0, 1}, all;
+    all.fill(~std::uint64_t{0});
+    QUADRILLE_CHECK(walked.put(part) == kFirstWalked && walked.put(all) == kFirstWalked + 1, "other places");
     frame.draws.resize(1);
     frame.draws[0].setup.samples = models::sample_grid(s.samples, 8);
     params.quads_per_clk.set(s.rate);
     params.tiles_per_clk.set(s.tiles_per_clk);
-    unit = std::make_unique<FineRaster>("unit", context({.partitions = s.partitions}), params, store);
+    unit = std::make_unique<FineRaster>("unit", context({.partitions = s.partitions}), params, store, walked);
     add(*unit);
     feed(unit->tile_in, s.tiles);
     for (auto& out : unit->coverage_out) {
@@ -49,8 +52,10 @@ struct FineBench final : Bench {
           s.pace, s.out));
     }
   }
+  static constexpr std::uint32_t kFirstWalked = 1;
   FineRaster::Params params;
   TriangleStore store;
+  WalkedStore walked{64};
   std::unique_ptr<FineRaster> unit;
   std::vector<StubSink<CoverageToken>*> sinks;
 };
@@ -135,6 +140,30 @@ TEST_CASE("fine_raster: samples that are not covered send nothing, and the last 
   for (std::size_t i = 0; i < samples.size(); ++i)
     expected += fmt::format("{}{}{} ", samples[i], i == 0 ? "f" : "", i + 1 == samples.size() ? "l" : "");
   CHECK(text == expected + fmt::format("{}", covered));
+}
+
+TEST_CASE(
+    "fine_raster: a tile that was walked takes a cycle a covered sample, and what the walk found is "
+    "covered") {
+  // Sixteen quads at one a cycle would take sixteen. The store holds masks that no test of edges would give.
+  for (const int samples : {1, 4}) {
+    TileToken first = tile(0, 0), second = tile(1, 0);
+    first.walked = FineBench::kFirstWalked;
+    second.walked = FineBench::kFirstWalked + 1;
+    auto s = tiles_of({first, second, tile(2, 0, true)}, 1);
+    s.samples = samples;
+    const auto text = run<FineBench>(s, [](const FineBench& b) {
+      std::string all = b.sinks[0]->text();
+      for (const auto& [cycle, token] : b.sinks[0]->got) all += fmt::format(" {:x}", token.coverage);
+      return all;
+    });
+    const std::string full = "ffffffffffffffff";
+    if (samples == 1) CHECK(text == fmt::format("2:0 3:1 4:2 f00f {} {}", full, full));
+    else
+      CHECK(text ==
+            fmt::format("2:0 3:0 4:1 5:1 6:1 7:1 8:2 9:2 10:2 11:2 f00f 1 {0} {0} {0} {0} {0} {0} {0} {0}",
+                        full));
+  }
 }
 
 TEST_CASE("fine_raster: an empty tile costs a cycle and goes no further") {
