@@ -210,6 +210,7 @@ void transfer(A& a, Pipeline& v) {
   a.choice(v.depth.compare, CompareOp::kAlways);
   const std::size_t blends = a.version() >= 2 ? v.blend.size() : 1;
   for (std::size_t i = 0; i < blends; ++i) transfer(a, v.blend[i]);
+  if (a.version() >= 4) numbers(a, v.sample_shading, v.alpha_to_coverage, v.sample_mask);
 }
 
 template <class A>

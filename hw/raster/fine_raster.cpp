@@ -57,12 +57,14 @@ void FineRaster::act(Tick now) {
 }
 
 int FineRaster::cover(const TileToken& tile) {
-  const models::SampleGrid& samples = frame_.draw(tile.part.draw()).samples();
+  const DrawState& draw = frame_.draw(tile.part.draw());
+  const models::SampleGrid& samples = draw.samples();
   next_plane_ = plane_count_ = 0;
   std::uint64_t any = 0, all = ~std::uint64_t{0};
   for (int s = 0; s < samples.count; ++s) {
     const std::uint64_t coverage =
-        tile.fully_covered
+        !draw.covers(s) ? 0
+        : tile.fully_covered
             ? ~std::uint64_t{0}
             : models::sample_coverage(triangles_[tile.triangle].setup, tile.tile_x, tile.tile_y, samples, s);
     any |= coverage;

@@ -10,7 +10,7 @@
 /// Time  `quads_per_clk` quads of one sample a cycle through either port, one port a cycle, the late one
 ///       first; waits for the tile's lines
 ///
-/// Early test-and-write needs a program without discard or depth output, and no older late-tested fragment of
+/// Early test-and-write needs a program that does not discard, write depth or take away samples, and no older late-tested fragment of
 /// the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
 /// now would fail at its turn too: all depth writes of the pass so far can but lower depths, and the test is
 /// "less". Late tests arrive in API order, so every pixel sees its tests and writes in that order.
@@ -62,6 +62,8 @@ class DepthUnit final : public Unit {
                         "Pixels of which all samples were killed after shading"};
     Counter hiz_sent{*this, "hiz_sent", "update", "Hi-Z updates sent"};
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
+    Counter late_killed_samples{*this, "late_killed_samples", "sample",
+                                "Samples killed after shading, which are the same where a pixel has one"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,

@@ -47,15 +47,6 @@ class TouchedTiles {
   std::size_t count_ = 0;
 };
 
-/// Samples of some lanes of a warp; `count` a pixel.
-int samples_in(const WarpSlot& warp, models::LaneMask lanes, int count) {
-  if (count == 1) return std::popcount(lanes);
-  int samples = 0;
-  for (; lanes != 0; lanes &= lanes - 1)
-    samples += std::popcount(warp.samples[static_cast<std::size_t>(std::countr_zero(lanes))]);
-  return samples;
-}
-
 /// What a write of these pixels asks of their sectors.
 SectorWishes wishes_of(const SectorPixels& pixels, bool reads_old) {
   SectorWishes wishes;
@@ -219,7 +210,7 @@ void Rop::test(Tick now) {
     const WarpSlot& warp = warps_[entry.token.slot];
     entry.shaded = std::popcount(warp.alive);
     entry.discarded_samples =
-        samples_in(warp, warp.covered & ~warp.alive, frame_.draw(warp.draw).samples().count);
+        warp.packed_samples - warp.alive_samples(frame_.draw(warp.draw).samples().count);
     if (warp.late) {
       entry.stage = Stage::kTesting;
       late_out.push(now, {TokenKind::kWork, entry.token.slot});
@@ -283,7 +274,8 @@ void Rop::retire(Tick now) {
     stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(warp.covered));
     const auto discarded = static_cast<std::uint64_t>(std::popcount(warp.covered) - entry.shaded);
     stats_.discarded += discarded;
-    if (warp.late) stats_.late_discarded += static_cast<std::uint64_t>(entry.discarded_samples);
+    stats_.samples_discarded += entry.discarded_samples;
+    if (warp.late) stats_.late_discarded += entry.discarded_samples;
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
     cycles = write_colors(warp);
     shaded_[entry.token.slot.index()] = false;
@@ -349,6 +341,7 @@ int Rop::write_colors(const WarpSlot& warp) {
       if (part.lanes == 0) continue;
       ++quads;
       const auto pixels = static_cast<std::uint64_t>(std::popcount(part.lanes));
+      stats_.samples_written += pixels;
       draw.visit_colors([&](std::size_t color) {
         stats_.pixels_written += pixels;
         if (draw.reads_color(color)) stats_.blended += pixels;
@@ -368,6 +361,7 @@ void Rop::audit(Audit& audit) const {
   audit.right(laws::kFragmentsShaded, stats_.fragments_in.value());
   audit.both(laws::kFragmentsRetired, stats_.fragments_in.value(),
              stats_.discarded.value() + stats_.late_killed.value() + stats_.written.value());
+  audit.right(laws::kSamplesRetired, stats_.samples_discarded.value() + stats_.samples_written.value());
   audit.left(laws::kKilledLate, stats_.late_killed.value());
   cache_.stats().audit(audit, laws::kColorCache);
   port_.audit(audit);

@@ -13,5 +13,8 @@ namespace quadrille::models {
 /// The same for one sample of each pixel.
 [[nodiscard]] std::uint64_t sample_coverage(const TriangleSetup& triangle, int tile_x, int tile_y,
                                             const SampleGrid& samples, int sample);
+/// Samples of pixel (x, y) that are covered, a bit each: as `sample_coverage`, the other way round.
+[[nodiscard]] std::uint32_t covered_samples(const TriangleSetup& triangle, int x, int y,
+                                            const SampleGrid& samples);
 
 }  // namespace quadrille::models

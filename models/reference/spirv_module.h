@@ -57,7 +57,7 @@ struct Decorations {
   std::uint32_t builtin = kNoNumber, location = kNoNumber, component = kNoNumber, binding = kNoNumber,
                 set = kNoNumber;
   std::uint32_t offset = kNoNumber, array_stride = kNoNumber, matrix_stride = kNoNumber;
-  bool row_major = false, flat = false, no_perspective = false;
+  bool row_major = false, flat = false, no_perspective = false, centroid = false, sample = false;
 };
 
 struct SpirvBlock {

@@ -69,6 +69,7 @@ struct ScalarShader {
   /// vertex: bit i: input location i is of integers
   std::uint32_t integer_inputs = 0;
   bool early_fragment_tests = false;
+  bool by_sample = false;  ///< fragment: as `models::Program::by_sample`
 };
 
 }  // namespace quadrille::pipeline
