@@ -179,9 +179,11 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
                   "to front, without one")
       ->check(one_of(scenes::kDrawOrderNames));
   command
-      .add_option("--view", view,
-                  "shows instead of colours: window depths, how many fragments were written to each pixel, "
-                  "texture coordinates, world normals, or each triangle by a colour of its own")
+      .add_option(
+          "--view", view,
+          "shows instead of colours: window depths, how many fragments were written to each pixel, "
+          "texture coordinates, world normals, each triangle by a colour of its own, or how many samples "
+          "of a pixel a primitive covers: blue all, else from red (one) to yellow")
       ->check(one_of(scenes::kShowingNames));
 }
 
@@ -201,9 +203,15 @@ void SceneArguments::add_samples_to(CLI::App& command) {
                   "(default: 1, "
                   "or as the trace has them)")
       ->type_name("N");
+  command.add_flag("--supersample", supersample,
+                   "shades each sample for itself, where it lies, instead of each pixel once");
+  command.add_flag("--alpha-to-coverage", alpha_to_coverage,
+                   "the alpha of materials with an alpha test says which samples stay, so that their edges "
+                   "are smoothed too");
 }
 
 void SceneArguments::use_samples(traces::CommandStream& stream) const {
+  if (supersample) traces::use_sample_shading(stream);
   if (!samples) return;
   try {
     traces::use_samples(stream, parse_samples(*samples));
@@ -257,6 +265,8 @@ scenes::SceneOptions SceneArguments::options() const {
   options.keep_packed = keep_packed;
   if (shading) options.shading = scenes::named(scenes::kShadingNames, *shading, scenes::Shading::kMinimal);
   if (order) options.order = scenes::named(scenes::kDrawOrderNames, *order, scenes::DrawOrder::kFile);
+  options.alpha_to_coverage = alpha_to_coverage;
+  if (samples) options.samples = parse_samples(*samples);
   if (view) options.shown = scenes::named(scenes::kShowingNames, *view, scenes::Showing::kDepth);
   options.vertex_shader = vert.value_or("");
   options.fragment_shader = frag.value_or("");
@@ -265,14 +275,15 @@ scenes::SceneOptions SceneArguments::options() const {
 
 void SceneArguments::check() const {
   if (samples) (void)parse_samples(*samples);
+  if (supersample && (samples ? parse_samples(*samples) == 1 : !is_trace()))
+    throw user_error("--supersample: one sample a pixel is shaded once anyway; add --samples 2, 4 or 8");
   if (is_trace()) {
     if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag ||
-        shading || order || view || color_format || depth_format) {
+        shading || order || view || color_format || depth_format || alpha_to_coverage) {
       throw user_error(
           "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, "
-          "--eye, --at, --time, --animation, "
-          "--exposure, --vert, --frag, --shading, --order, --view, --color-format and --depth-format are for "
-          "scenes",
+          "--eye, --at, --time, --animation, --exposure, --vert, --frag, --shading, --order, --view, "
+          "--color-format, --depth-format and --alpha-to-coverage are for scenes",
           scene);
     }
     return;

@@ -20,6 +20,8 @@ struct SceneArguments {
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, shading, order,
       view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
+  bool supersample = false;            ///< each sample is shaded for itself
+  bool alpha_to_coverage = false;      ///< of masked materials; not of a trace
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
   bool leave_out = true;
@@ -34,7 +36,7 @@ struct SceneArguments {
   void add_view_to(CLI::App& command, const std::string& default_size);
   /// Adds --color-format and --depth-format, for a command that draws or records.
   void add_formats_to(CLI::App& command);
-  /// Adds --samples, for a command that draws or records.
+  /// Adds --samples and what goes with it, for a command that draws or records.
   void add_samples_to(CLI::App& command);
   /// Adds SCENE alone, for a trace, which has its view and shaders in it.
   void add_trace_to(CLI::App& command);
@@ -51,7 +53,7 @@ struct SceneArguments {
   [[nodiscard]] Loaded record(scenes::Scene& file, const scenes::Moment& moment) const;
   /// Loads the scene or trace. Throws `UserError`.
   [[nodiscard]] Loaded load() const;
-  /// Lets the passes of a stream have the wished samples. Throws `UserError`.
+  /// Lets the passes of a stream have the wished samples, and shade by sample if that is wished. Throws `UserError`.
   void use_samples(traces::CommandStream& stream) const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;

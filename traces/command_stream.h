@@ -137,6 +137,12 @@ struct Pipeline {
   StencilState stencil{};  ///< of a depth attachment that has stencil values
   BlendShared blend_shared{};
   std::array<BlendState, kMaxColorAttachments> blend;  ///< by colour attachment of the pass
+  /// Each covered sample is shaded for itself, where it lies; so it is too if the fragment shader asks for its
+  /// sample.
+  bool sample_shading = false;
+  /// Alpha of the first colour says which samples a fragment keeps.
+  bool alpha_to_coverage = false;
+  std::uint32_t sample_mask = ~0u;  ///< samples that may be covered, a bit each
   friend bool operator==(const Pipeline&, const Pipeline&) = default;
 };
 
@@ -281,6 +287,8 @@ struct PassTarget {
 /// another loads, or whose depth is sampled. Throws `UserError` if that is the last one, or if the stream has
 /// several samples already.
 void use_samples(CommandStream& stream, std::uint32_t samples);
+/// Lets every pipeline shade by sample: with several samples a pixel, full supersampling.
+void use_sample_shading(CommandStream& stream);
 
 inline constexpr std::uint32_t kMaxPushConstantBytes = 256;
 

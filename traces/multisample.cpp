@@ -71,4 +71,8 @@ class SampleAdder {
 
 void use_samples(CommandStream& stream, std::uint32_t samples) { SampleAdder(stream, samples).run(); }
 
+void use_sample_shading(CommandStream& stream) {
+  for (Pipeline& pipeline : stream.pipelines) pipeline.sample_shading = true;
+}
+
 }  // namespace quadrille::traces

@@ -228,7 +228,9 @@ void transfer(A& a, Pipeline& v) {
   a.choice(v.depth.compare, CompareOp::kAlways);
   const std::size_t blends = a.version() >= 2 ? v.blend.size() : 1;
   for (std::size_t i = 0; i < blends; ++i) transfer(a, v.blend[i]);
-  if (a.version() >= 4) transfer_tests(a, v);
+  if (a.version() < 4) return;
+  numbers(a, v.sample_shading, v.alpha_to_coverage, v.sample_mask);
+  transfer_tests(a, v);
 }
 
 template <class A>

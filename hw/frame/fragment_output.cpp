@@ -1,12 +1,38 @@
 #include "hw/frame/fragment_output.h"
 
 #include "models/raster/interpolate.h"
+#include "models/rop/alpha_coverage.h"
 #include "models/rop/resolve.h"
 
 #include <algorithm>
 #include <bit>
 
 namespace quadrille::hw {
+namespace {
+
+/// Samples that the program's outputs leave to a lane.
+std::uint32_t kept_samples(const DrawState& draw, std::span<const models::LaneWords> outputs,
+                           std::size_t lane) {
+  std::uint32_t kept = ~0u;
+  if (draw.fragment.program->writes_sample_mask) kept &= outputs[models::kSampleMaskOutput][lane];
+  if (draw.alpha_to_coverage && (models::color_outputs(*draw.fragment.program) >> 3 & 1u) != 0)
+    kept &= models::alpha_coverage(std::bit_cast<float>(outputs[3][lane]), draw.samples().count);
+  return kept;
+}
+
+void limit_coverage(const DrawState& draw, std::span<const models::LaneWords> outputs, WarpSlot& warp) {
+  for (models::LaneMask lanes = warp.alive; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+    std::uint32_t left = kept_samples(draw, outputs, lane) & draw.samples().all();
+    if (draw.samples().count > 1) {
+      left &= warp.samples[lane];
+      warp.samples[lane] = static_cast<std::uint8_t>(left);
+    }
+    if (left == 0) warp.alive &= ~(1u << lane);
+  }
+}
+
+}  // namespace
 
 void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outputs,
                   const models::FragmentInputs& inputs, WarpSlot& warp) {
@@ -24,9 +50,11 @@ void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outp
     models::LaneFloats& alpha = warp.color[attachment][3];
     for (std::size_t lane = 0; lane < alpha.size(); ++lane) alpha[lane] *= inputs.line_coverage[lane];
   });
-  if (!draw.second_source) return;
-  for (std::size_t c = 0; c < 4; ++c)
-    warp.color[1][c] = std::bit_cast<models::LaneFloats>(outputs[models::kSecondSourceOutput + c]);
+  if (draw.second_source) {
+    for (std::size_t c = 0; c < 4; ++c)
+      warp.color[1][c] = std::bit_cast<models::LaneFloats>(outputs[models::kSecondSourceOutput + c]);
+  }
+  if (draw.limits_coverage()) limit_coverage(draw, outputs, warp);
 }
 
 models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,

@@ -12,7 +12,8 @@ namespace quadrille::hw {
 
 /// Hands the colours and depths that a fragment warp's program wrote to its slot; `outputs` by output slot.
 /// A program that writes no depth keeps the interpolated ones. Alpha of a smooth line is multiplied by what
-/// it covers of the pixel.
+/// it covers of the pixel. Samples that the program's mask or alpha to coverage takes away are not alive any
+/// more, nor is a lane that has none left.
 void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outputs,
                   const models::FragmentInputs& inputs, WarpSlot& warp);
 

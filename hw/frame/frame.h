@@ -94,9 +94,14 @@ struct DrawState {
   /// `models::color_outputs`. Attachments without any keep what they hold; the other components of the rest
   /// are written as 0.
   std::uint32_t color_outputs = 0;
-  /// Depth is tested after shading: the program discards, writes depth or writes memory, and does not force
-  /// early tests.
+  /// Depth is tested after shading: the program discards, writes depth or memory or takes away samples, and
+  /// does not force early tests.
   bool late_depth = false;
+  // Several samples a pixel.
+  bool by_sample = false;           ///< each covered sample is a fragment of its own, shaded where it lies
+  bool reads_coverage = false;      ///< of the fragment program (`models::reads_coverage`)
+  bool alpha_to_coverage = false;   ///< alpha of the first colour says which samples stay
+  std::uint32_t sample_mask = ~0u;  ///< samples that may be covered, a bit each
   /// The fragment program accesses a buffer that programs of the frame write. Which of its fragments are
   /// shaded must then not depend on the machine: what they read or write could meet another access.
   bool meets_written_memory = false;
@@ -111,6 +116,11 @@ struct DrawState {
   /// Its fragments have to meet stored depths or stencil values.
   [[nodiscard]] bool uses_depth() const { return depth_stencil.tests(); }
   [[nodiscard]] const models::SampleGrid& samples() const { return setup.samples; }
+  [[nodiscard]] bool covers(int sample) const { return (sample_mask >> sample & 1u) != 0; }
+  /// What is shaded may have fewer samples than were covered.
+  [[nodiscard]] bool limits_coverage() const {
+    return alpha_to_coverage || fragment.program->writes_sample_mask;
+  }
   /// Hidden fragments are shaded all the same: their program accesses written memory before their depth is
   /// tested. [VK1.3 #fragops-early]
   [[nodiscard]] bool shades_hidden() const { return meets_written_memory && late_depth; }

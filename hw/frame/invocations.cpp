@@ -41,7 +41,7 @@ void bind_storage(const Frame& frame, const WarpSlot& work, const TriangleStore&
       storage.invocations[4 * q + pixel] =
           models::invocation_of_fragment(work.draw.index(), triangle.instance, triangle.primitive,
                                          static_cast<std::uint16_t>(quad.x + (pixel & 1)),
-                                         static_cast<std::uint16_t>(quad.y + (pixel >> 1)));
+                                         static_cast<std::uint16_t>(quad.y + (pixel >> 1)), quad.sample);
   }
 }
 

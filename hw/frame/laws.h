@@ -44,6 +44,8 @@
   law(kFragmentsShaded, "fragments shaded = fragments at the ROP", "core.fragments", "rop.fragments_in") \
   law(kFragmentsRetired, "fragments at the ROP = discarded + killed late + written", \
       "rop.fragments_in", "rop.discarded + late_killed + written") \
+  law(kSamplesRetired, "samples packed = discarded + killed late + written", \
+      "warp_packer.samples", "rop.samples_discarded + samples_written + depth.late_killed_samples") \
   law(kKilledLate, "killed late, seen by ROP = seen by depth", "rop.late_killed", "depth.late_killed") \
   law(kVertexCache, "vertex_fetch.cache: requests = hits + merged + misses", \
       "vertex_fetch.cache.requests", "vertex_fetch.cache.hits + merged + misses") \

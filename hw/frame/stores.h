@@ -7,6 +7,7 @@
 #include "models/raster/primitives.h"
 #include "models/raster/span_tiles.h"
 
+#include <bit>
 #include <memory>
 
 namespace quadrille::hw {
@@ -43,14 +44,19 @@ struct WarpSlot {
   struct Quad {
     std::uint64_t triangle = 0;
     std::uint16_t x = 0, y = 0;  ///< pixel position of the top-left pixel
+    std::uint8_t sample = 0;     ///< of a draw by sample: its lanes are of this one
+    /// of several samples a pixel: those that it covered when it was packed, a bit each
+    std::uint8_t planes = 0;
   };
   DrawId draw;
   int quads = 0;
   bool late = false;             ///< depth is tested after shading
   models::LaneMask covered = 0;  ///< live lanes at launch
   std::array<Quad, models::kWarpQuads> quad;
-  models::LaneMask alive = 0;  ///< lanes to write: covered, not discarded, not failed late
-  /// Of several samples a pixel: by lane, those that are covered, a bit each; the late depth test takes some.
+  models::LaneMask alive = 0;        ///< lanes to write: covered, not discarded, not failed late
+  std::uint64_t packed_samples = 0;  ///< live ones at launch
+  /// Of several samples a pixel: by lane, those that are covered, a bit each; masks of samples and the late
+  /// depth test take some.
   std::array<std::uint8_t, models::kWarpLanes> samples{};
   /// by colour attachment; those that the draw's program writes
   std::array<std::array<models::LaneFloats, 4>, models::kMaxColorAttachments> color;
@@ -63,12 +69,18 @@ struct WarpSlot {
       if ((samples[4 * static_cast<std::size_t>(q) + i] >> sample & 1) == 0) lanes &= ~(1u << i);
     return lanes;
   }
-  /// Samples of which the quad covers a pixel, a bit each.
-  [[nodiscard]] std::uint8_t samples_of(int q) const {
-    const std::size_t i = 4 * static_cast<std::size_t>(q);
-    return static_cast<std::uint8_t>(samples[i] | samples[i + 1] | samples[i + 2] | samples[i + 3]);
-  }
+  /// Samples of all lanes that are alive; `count` a pixel.
+  [[nodiscard]] std::uint64_t alive_samples(int count) const;
 };
+
+inline std::uint64_t WarpSlot::alive_samples(int count) const {
+  if (count == 1) return static_cast<std::uint64_t>(std::popcount(alive));
+  std::uint64_t sum = 0;
+  for (models::LaneMask lanes = alive; lanes != 0; lanes &= lanes - 1)
+    sum += static_cast<std::uint64_t>(  // a bit each
+        std::popcount(samples[static_cast<std::size_t>(std::countr_zero(lanes))]));
+  return sum;
+}
 
 /// `Slot` names a place: a number, or an id where one could be taken for another.
 template <class T, class Slot = std::uint64_t>

@@ -65,11 +65,12 @@ std::uint64_t FineRaster::coverage_of(const TileToken& tile, const models::Sampl
 }
 
 int FineRaster::cover(const TileToken& tile) {
-  const models::SampleGrid& samples = frame_.draw(tile.part.draw()).samples();
+  const DrawState& draw = frame_.draw(tile.part.draw());
+  const models::SampleGrid& samples = draw.samples();
   next_plane_ = plane_count_ = 0;
   std::uint64_t any = 0, all = ~std::uint64_t{0};
   for (int s = 0; s < samples.count; ++s) {
-    const std::uint64_t coverage = coverage_of(tile, samples, s);
+    const std::uint64_t coverage = draw.covers(s) ? coverage_of(tile, samples, s) : 0;
     any |= coverage;
     all &= coverage;
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));

@@ -90,7 +90,7 @@ void WarpPacker::take_boundary(Tick now) {
 
 bool WarpPacker::more_samples(Tick now) const {
   return coverage_in.ready_at(now) && coverage_in.front().kind == TokenKind::kWork &&
-         !coverage_in.front().last;
+         !coverage_in.front().last && !frame_.draw(coverage_in.front().part.draw()).by_sample;
 }
 
 void WarpPacker::take_sample(Tick now) {
@@ -109,6 +109,7 @@ void WarpPacker::open_warp(const CoverageToken& token) {
   warp.late = token.late;
   warp.quads = 0;
   warp.covered = 0;
+  warp.packed_samples = 0;
 }
 
 void WarpPacker::add_quad(WarpSlot& warp, const CoverageToken& token, int q) {
@@ -119,11 +120,15 @@ void WarpPacker::add_quad(WarpSlot& warp, const CoverageToken& token, int q) {
       token.triangle, static_cast<std::uint16_t>(8 * token.tile_x + 2 * (q & 3)),
       static_cast<std::uint16_t>(8 * token.tile_y + 2 * (q >> 2))};
   stats_.fragments += static_cast<std::uint64_t>(std::popcount(lanes));
-  const int samples = frame_.draw(warp.draw).samples().count;
+  const DrawState& draw = frame_.draw(warp.draw);
+  const int samples = draw.samples().count;
   if (samples == 1) {
+    warp.packed_samples += static_cast<std::uint64_t>(std::popcount(lanes));
     stats_.samples += static_cast<std::uint64_t>(std::popcount(lanes));
     return;
   }
+  WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(warp.quads - 1)];
+  if (draw.by_sample) quad.sample = token.sample;
   for (std::size_t i = 0; i < 4; ++i) {
     std::uint8_t& of_pixel = warp.samples[first + i];
     of_pixel = 0;
@@ -132,6 +137,8 @@ void WarpPacker::add_quad(WarpSlot& warp, const CoverageToken& token, int q) {
       of_pixel =
           static_cast<std::uint8_t>(of_pixel | (plane >> (4 * static_cast<std::size_t>(q) + i) & 1u) << s);
     }
+    quad.planes = static_cast<std::uint8_t>(quad.planes | of_pixel);
+    warp.packed_samples += static_cast<std::uint64_t>(std::popcount(of_pixel));
     stats_.samples += static_cast<std::uint64_t>(std::popcount(of_pixel));
   }
 }
@@ -139,16 +146,15 @@ void WarpPacker::add_quad(WarpSlot& warp, const CoverageToken& token, int q) {
 void WarpPacker::take_quads(Tick now) {
   const CoverageToken& token = coverage_in.front();
   stats_.working_for(token.part.draw(), token.tile_x, token.tile_y);
-  if (!open_) open_warp(token);
-  WarpSlot& warp = warps_[slot_of(opened_ - 1)];
-  if (taken_quads_ == 0) ++stats_.tiles;
+  if (taken_quads_ == 0 && token.last) ++stats_.tiles;
   std::uint32_t left = models::quads_of(covered_ | token.coverage) & ~taken_quads_;
+  if (!open_ && left != 0) open_warp(token);
   int packed = 0;
-  for (; left != 0 && warp.quads < models::kWarpQuads; ++packed) {
+  for (; left != 0 && !full(); ++packed) {
     const int q = std::countr_zero(left);
     left &= left - 1;
     taken_quads_ |= 1u << q;
-    add_quad(warp, token, q);
+    add_quad(warps_[slot_of(opened_ - 1)], token, q);
   }
   stats_.quads += static_cast<std::uint64_t>(packed);
   if (left == 0) {
@@ -181,6 +187,7 @@ void WarpPacker::launch(Tick now) {
 
 void WarpPacker::audit(Audit& audit) const {
   audit.right(laws::kFragmentsPassed, stats_.samples.value());
+  audit.left(laws::kSamplesRetired, stats_.samples.value());
   audit.left(laws::kFragmentsPacked, stats_.fragments.value());
   audit.left(laws::kWarpsPacked, stats_.warps.value());
 }

@@ -5,7 +5,7 @@
 ///       release_in   a warp has retired
 /// Out   warp_out     a warp to shade
 ///       order_out    what retires next: warps and boundaries, in order
-/// Time  `quads_per_clk` quads a cycle; a partial warp leaves at a boundary, when another draw's tile
+/// Time  `quads_per_clk` quads a cycle, of a draw that is shaded by sample for each sample of its own; a partial warp leaves at a boundary, when another draw's tile
 ///       arrives, or after `patience_clk` cycles without input
 #pragma once
 
@@ -72,9 +72,9 @@ class WarpPacker final : public Unit {
   /// The token at the head may not join the open warp.
   [[nodiscard]] bool must_launch_first() const;
   void work(Tick now);
-  /// The tile at the head has more tokens, of other samples.
+  /// The tile at the head has more tokens, of other samples of its pixels.
   [[nodiscard]] bool more_samples(Tick now) const;
-  /// Takes the pixels of one sample; the quads are packed when the last one of the tile is here.
+  /// Takes the pixels of one sample; unless a draw is shaded by sample, the quads are packed when the last one of the tile is here.
   void take_sample(Tick now);
   void take_quads(Tick now);
   void open_warp(const CoverageToken& token);

@@ -168,6 +168,7 @@ void DepthUnit::audit(Audit& audit) const {
   audit.both(laws::kFragmentsDeferred, stats_.deferred.value(), stats_.late_tested.value());
   audit.left(laws::kFragmentsPassed, stats_.fragments_out.value());
   audit.right(laws::kKilledLate, stats_.late_killed.value());
+  audit.right(laws::kSamplesRetired, stats_.late_killed_samples.value());
   cache_.stats().audit(audit, laws::kDepthCache);
   port_.audit(audit);
 }

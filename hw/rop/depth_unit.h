@@ -10,10 +10,11 @@
 /// Time  `quads_per_clk` quads of one sample a cycle through either port, one port a cycle, the late one
 ///       first; waits for the tile's lines
 ///
-/// Stencil values are tested with the depths. Early test-and-write needs a program without discard or depth
-/// output, and no older late fragment of the tile. Else the tile goes late, thinned early where one that
-/// fails now fails at its turn too: all writes of the pass lower depths, and "less" is the only test. Late
-/// tests come in API order, so every pixel sees its tests and writes in that order.
+/// Stencil values are tested with the depths. Early test-and-write needs a program that does not discard,
+/// write depth or take away samples, and no older late fragment of the tile. Else the tile goes late, thinned
+/// early where a fragment that fails now fails at its turn too: all writes of the pass lower depths, and
+/// "less" is the only test. Late tests come in API order, so every pixel sees its tests and writes in that
+/// order.
 #pragma once
 
 #include "hw/base/param.h"
@@ -64,6 +65,8 @@ class DepthUnit final : public Unit {
     Counter hiz_dropped{*this, "hiz_dropped", "update", "Hi-Z updates dropped because their link was full"};
     Counter stencil_written{*this, "stencil_written", "fragment",
                             "Fragments that an operation other than keep was done for"};
+    Counter late_killed_samples{*this, "late_killed_samples", "sample",
+                                "Samples killed after shading, which are the same where a pixel has one"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,

@@ -78,16 +78,19 @@ bool DepthUnit::test_late(Tick now) {
     return false;
   }
   int quads = 0;
+  std::uint64_t samples = 0;
   visit_samples(warp, [&](const WarpSlot::Quad&, models::LaneMask lanes, int) {
     ++quads;
-    stats_.late_tested += static_cast<std::uint64_t>(std::popcount(lanes));
+    samples += static_cast<std::uint64_t>(std::popcount(lanes));
     return true;
   });
+  stats_.late_tested += samples;
   const models::LaneMask tested = warp.alive;
   models::LaneMask survivors = 0;
   for (int q = 0; q < warp.quads; ++q) survivors |= test_quad(draw, warp, q, now) << (4 * q);
   stats_.late_killed += static_cast<std::uint64_t>(std::popcount(tested & ~survivors));
   warp.alive = survivors;
+  stats_.late_killed_samples += samples - warp.alive_samples(draw.samples().count);
   late_out.push(now, token);
   late_.pop_front();
   // A quad whose lanes are all dead takes its place all the same.
@@ -104,7 +107,7 @@ models::LaneMask DepthUnit::test_quad(const DrawState& draw, WarpSlot& warp, int
   const std::uint32_t tx = part.place.tile_x, ty = part.place.tile_y;
   const int samples = draw.samples().count;
   late_in_flight_[tile_number(tx, ty)] -=
-      samples == 1 ? 1u : static_cast<std::uint32_t>(std::popcount(warp.samples_of(q)));
+      samples == 1 ? 1u : static_cast<std::uint32_t>(std::popcount(quad.planes));
   if (part.lanes == 0) return 0;
   const models::TriangleSetup& triangle = triangles_[quad.triangle].setup;
   const models::LaneMask passed = test_samples(draw, warp, triangle, part, [&](int sample) {

@@ -46,15 +46,6 @@ class TouchedTiles {
   std::size_t count_ = 0;
 };
 
-/// Samples of some lanes of a warp; `count` a pixel.
-int samples_in(const WarpSlot& warp, models::LaneMask lanes, int count) {
-  if (count == 1) return std::popcount(lanes);
-  int samples = 0;
-  for (; lanes != 0; lanes &= lanes - 1)
-    samples += std::popcount(warp.samples[static_cast<std::size_t>(std::countr_zero(lanes))]);
-  return samples;
-}
-
 /// Of a quad of these pixels, which the unit's path to its cache takes at once up to 4 bytes each.
 int quad_cost(const AttachmentState& color) {
   return std::max(1, static_cast<int>(color.surface.pixel_bytes) / 4);
@@ -211,7 +202,7 @@ void Rop::test(Tick now) {
     const WarpSlot& warp = warps_[entry.token.slot];
     entry.shaded = std::popcount(warp.alive);
     entry.discarded_samples =
-        samples_in(warp, warp.covered & ~warp.alive, frame_.draw(warp.draw).samples().count);
+        warp.packed_samples - warp.alive_samples(frame_.draw(warp.draw).samples().count);
     if (warp.late) {
       entry.stage = Stage::kTesting;
       late_out.push(now, {TokenKind::kWork, entry.token.slot});
@@ -276,7 +267,8 @@ void Rop::retire(Tick now) {
     stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(warp.covered));
     const auto discarded = static_cast<std::uint64_t>(std::popcount(warp.covered) - entry.shaded);
     stats_.discarded += discarded;
-    if (warp.late) stats_.late_discarded += static_cast<std::uint64_t>(entry.discarded_samples);
+    stats_.samples_discarded += entry.discarded_samples;
+    if (warp.late) stats_.late_discarded += entry.discarded_samples;
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
     cycles = write_colors(warp);
     shaded_[entry.token.slot.index()] = false;
@@ -342,6 +334,7 @@ int Rop::write_colors(const WarpSlot& warp) {
       if (part.lanes == 0) continue;
       ++quads;
       const auto pixels = static_cast<std::uint64_t>(std::popcount(part.lanes));
+      stats_.samples_written += pixels;
       draw.visit_colors([&](std::size_t color) {
         stats_.pixels_written += pixels;
         if (draw.reads_color(color)) stats_.blended += pixels;
@@ -364,6 +357,7 @@ void Rop::audit(Audit& audit) const {
   audit.right(laws::kFragmentsShaded, stats_.fragments_in.value());
   audit.both(laws::kFragmentsRetired, stats_.fragments_in.value(),
              stats_.discarded.value() + stats_.late_killed.value() + stats_.written.value());
+  audit.right(laws::kSamplesRetired, stats_.samples_discarded.value() + stats_.samples_written.value());
   audit.left(laws::kKilledLate, stats_.late_killed.value());
   cache_.stats().audit(audit, laws::kColorCache);
   port_.audit(audit);

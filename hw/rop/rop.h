@@ -62,6 +62,11 @@ class Rop final : public Unit {
                      "Tiles of colour attachments resolved from their samples"};
     Counter resolved_clear{*this, "resolved_clear", "tile",
                            "Tiles of those that nothing was drawn to, which move nothing"};
+    Counter samples_discarded{
+        *this, "samples_discarded", "sample",
+        "Samples whose fragments were discarded, or that a mask of samples or alpha to coverage took away; "
+        "here and below, where a pixel has one sample, fragments"};
+    Counter samples_written{*this, "samples_written", "sample", "Samples of the fragments written"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps);
@@ -94,10 +99,10 @@ class Rop final : public Unit {
     Stage stage = Stage::kShading;
     int missing = 0;
     Tick ready = 0;
-    int shaded = 0;             ///< live lanes after discard
-    int discarded_samples = 0;  ///< of the others
-    int parts = 0;              ///< touched tiles, of each attachment, that are acquired
-    AcquiredLines done{};       ///< of `SurfaceCache::acquire`, of the next one
+    int shaded = 0;                       ///< live lanes after discard
+    std::uint64_t discarded_samples = 0;  ///< discarded with their lanes, or taken from live ones
+    int parts = 0;                        ///< touched tiles, of each attachment, that are acquired
+    AcquiredLines done{};                 ///< of `SurfaceCache::acquire`, of the next one
   };
 
   [[nodiscard]] Wake test_wake() const;

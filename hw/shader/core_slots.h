@@ -9,7 +9,7 @@ namespace quadrille::hw {
 struct CoreSlot {
   models::Warp warp;
   models::FragmentInputs fragment;
-  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs;  ///< fragment stage: colour, depth
+  std::array<models::LaneWords, models::kFragmentOutputs> outputs;  ///< fragment stage: colour, depth, mask
   /// Filtered texels of `warp.textures`, by request.
   std::array<std::array<models::LaneFloats, 4>, models::kMaxClauseRequests> texels;
   models::WarpStorage storage;

@@ -254,7 +254,7 @@ void ShaderCore::launch_fragment(CoreSlot& slot) {
   const WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
   const std::uint32_t engine =
       models::engine_of_partition(slot.partition, static_cast<std::uint32_t>(triangles_.size()));
-  fill_fragment_inputs(work, *triangles_[engine], frame_.draw(work.draw).smooth_lines(), slot.fragment);
+  fill_fragment_inputs(draw, work, *triangles_[engine], slot.fragment);
   const models::LaneMask lanes =
       work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
   slot.warp.vertex = nullptr;

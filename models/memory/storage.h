@@ -28,7 +28,7 @@ namespace quadrille::models {
 /// them are one invocation.
 struct Invocation {
   std::uint64_t draw = 0;  ///< draw, stage, instance: `invocation_of_vertex`, `invocation_of_fragment`
-  std::uint64_t work = 0;  ///< vertex, or primitive and pixel
+  std::uint64_t work = 0;  ///< vertex, or primitive, pixel (below 2^14) and sample
   // The check takes what the compiler makes of this for a null pointer.
   friend auto operator<=>(const Invocation&, const Invocation&) = default;  // NOLINT(modernize-use-nullptr)
 };
@@ -38,9 +38,9 @@ struct Invocation {
 }
 [[nodiscard]] constexpr Invocation invocation_of_fragment(std::uint32_t draw, std::uint32_t instance,
                                                           std::uint32_t primitive, std::uint16_t x,
-                                                          std::uint16_t y) {
+                                                          std::uint16_t y, std::uint8_t sample = 0) {
   return {std::uint64_t{draw} << 33 | std::uint64_t{1} << 32 | instance,
-          std::uint64_t{primitive} << 32 | std::uint64_t{y} << 16 | x};
+          std::uint64_t{primitive} << 32 | std::uint64_t{y} << 18 | std::uint64_t{x} << 4 | sample};
 }
 
 enum class AtomicOp : std::uint8_t {

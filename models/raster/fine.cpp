@@ -102,4 +102,19 @@ std::uint64_t sample_coverage(const TriangleSetup& triangle, int tile_x, int til
   });
 }
 
+std::uint32_t covered_samples(const TriangleSetup& triangle, int x, int y, const SampleGrid& samples) {
+  const PixelRect& bounds = triangle.bounds;
+  if (x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1) return 0;
+  std::uint32_t covered = samples.all();
+  for (int s = 0; s < samples.count; ++s) {
+    const GridPoint at = triangle.whole_pixels ? GridPoint{} : samples.offset[static_cast<std::size_t>(s)];
+    for (int i = 0; i < triangle.edge_count; ++i) {
+      const EdgeFunction edge =
+          at_sample(triangle.edges[static_cast<std::size_t>(i)], at, samples.subpixel_bits);
+      if (edge.at(x, y) < 0) covered &= ~(1u << s);
+    }
+  }
+  return covered;
+}
+
 }  // namespace quadrille::models

@@ -15,5 +15,8 @@ namespace quadrille::models {
                                             const SampleGrid& samples, int sample);
 /// Pixels of the tile within a rectangle.
 [[nodiscard]] std::uint64_t rect_coverage(const PixelRect& rect, int tile_x, int tile_y);
+/// Samples of pixel (x, y) that are covered, a bit each: as `sample_coverage`, the other way round.
+[[nodiscard]] std::uint32_t covered_samples(const TriangleSetup& triangle, int x, int y,
+                                            const SampleGrid& samples);
 
 }  // namespace quadrille::models

@@ -57,8 +57,8 @@ void tile_depths(const TriangleSetup& triangle, int tile_x, int tile_y, float ou
 
 void sample_depths(const TriangleSetup& triangle, int tile_x, int tile_y, const SampleGrid& samples,
                    int sample, float out[64]) {
-  const GridPoint& offset = samples.offset[static_cast<std::size_t>(sample)];
-  depths_at(triangle, tile_x, tile_y, 0.5 + samples.pixels(offset.x), 0.5 + samples.pixels(offset.y), out);
+  const PixelOffset at = samples.from_centre(sample);
+  depths_at(triangle, tile_x, tile_y, 0.5 + at.x, 0.5 + at.y, out);
 }
 
 DepthBounds tile_depth_bounds(const TriangleSetup& triangle, int tile_x, int tile_y,
@@ -75,10 +75,11 @@ DepthBounds tile_depth_bounds(const TriangleSetup& triangle, int tile_x, int til
           depth_at(triangle, grows_right ? right : left, grows_down ? bottom : top)};
 }
 
-void interpolate_quad(const TriangleSetup& triangle, int quad_x, int quad_y, int slot, FragmentInputs& out) {
+void interpolate_quad(const TriangleSetup& triangle, int quad_x, int quad_y, int slot, FragmentInputs& out,
+                      const PixelOffset& from_centre) {
   const auto lane = static_cast<std::size_t>(4 * slot);
-  const __m256d centre_x = _mm256_add_pd(_mm256_set1_pd(quad_x + 0.5), quad_x_offsets());
-  const __m256d centre_y = _mm256_add_pd(_mm256_set1_pd(quad_y + 0.5), quad_y_offsets());
+  const __m256d centre_x = _mm256_add_pd(_mm256_set1_pd(quad_x + (0.5 + from_centre.x)), quad_x_offsets());
+  const __m256d centre_y = _mm256_add_pd(_mm256_set1_pd(quad_y + (0.5 + from_centre.y)), quad_y_offsets());
   const __m256d x = _mm256_sub_pd(centre_x, _mm256_set1_pd(triangle.ref_x)),
                 y = _mm256_sub_pd(centre_y, _mm256_set1_pd(triangle.ref_y));
   const __m256d inv_w = evaluate(triangle.inv_w, x, y);
@@ -97,6 +98,14 @@ void interpolate_quad(const TriangleSetup& triangle, int quad_x, int quad_y, int
   store(out.linear_2, evaluate(triangle.linear_2, x, y));
   _mm_storeu_si128(reinterpret_cast<__m128i*>(&out.front_facing[lane]),
                    _mm_set1_epi32(triangle.front_facing ? -1 : 0));
+}
+
+VertexWeights weights_at(const TriangleSetup& t, double px, double py) {
+  const double x = px - t.ref_x, y = py - t.ref_y;
+  const auto at = [&](const Plane& plane) { return (plane.value + plane.dx * x) + plane.dy * y; };
+  const double w = 1.0 / at(t.inv_w);
+  return {static_cast<float>(at(t.persp_1) * w), static_cast<float>(at(t.persp_2) * w),
+          static_cast<float>(at(t.linear_1)), static_cast<float>(at(t.linear_2))};
 }
 
 }  // namespace quadrille::models

@@ -27,7 +27,15 @@ struct DepthBounds {
                                             const SampleGrid& samples = {});
 
 /// Fills lanes 4 * slot .. 4 * slot + 3 of a fragment warp with the quad whose top-left pixel is (quad_x,
-/// quad_y): x, y, z, inv_w, persp_1/2, linear_1/2 and front_facing.
-void interpolate_quad(const TriangleSetup& triangle, int quad_x, int quad_y, int slot, FragmentInputs& out);
+/// quad_y): x, y, z, inv_w, persp_1/2, linear_1/2 and front_facing, at the pixels' centres or `from_centre`.
+void interpolate_quad(const TriangleSetup& triangle, int quad_x, int quad_y, int slot, FragmentInputs& out,
+                      const PixelOffset& from_centre = {});
+
+/// Weights of a triangle's second and third vertex.
+struct VertexWeights {
+  float persp_1 = 0, persp_2 = 0, linear_1 = 0, linear_2 = 0;
+};
+/// At a position in the window, in pixels; as `interpolate_quad`, bit for bit.
+[[nodiscard]] VertexWeights weights_at(const TriangleSetup& triangle, double px, double py);
 
 }  // namespace quadrille::models

@@ -13,6 +13,11 @@ inline constexpr int kMaxSamples = 8;
   return count == 1 || count == 2 || count == 4 || count == 8;
 }
 
+/// A way in pixels.
+struct PixelOffset {
+  double x = 0, y = 0;
+};
+
 /// The samples of a pixel on the sub-pixel grid. A single one lies at the centre.
 struct SampleGrid {
   int count = 1;
@@ -22,6 +27,12 @@ struct SampleGrid {
   [[nodiscard]] double pixels(std::int64_t grid) const {
     return static_cast<double>(grid) / static_cast<double>(std::int64_t{1} << subpixel_bits);
   }
+  [[nodiscard]] PixelOffset from_centre(int sample) const {
+    const GridPoint& at = offset[static_cast<std::size_t>(sample)];
+    return {pixels(at.x), pixels(at.y)};
+  }
+  /// All samples of a pixel, a bit each.
+  [[nodiscard]] std::uint32_t all() const { return (1u << count) - 1; }
   friend bool operator==(const SampleGrid&, const SampleGrid&) = default;
 };
 

@@ -73,7 +73,7 @@ class Decoder {
   void variable(const SpirvInstruction& in);
   void interface_scalars(std::vector<Port>& ports, const Decorations& decorations, Id type, Slot slot,
                          std::uint32_t location, bool input);
-  void builtin(std::uint32_t which, Slot slot, std::uint32_t cells);
+  void builtin(std::uint32_t which, Slot slot, std::uint32_t cells, bool input);
   void block_scalars(UniformScalar place, Id type, const Decorations& layout);
   void texture_variable(const SpirvInstruction& in, Value& value);
 

@@ -18,6 +18,8 @@ Decorations inherit(Decorations member, const Decorations& whole) {
   member.flat = member.flat || whole.flat;
   member.no_perspective = member.no_perspective || whole.no_perspective;
   member.index = std::max(member.index, whole.index);
+  member.centroid = member.centroid || whole.centroid;
+  member.sample = member.sample || whole.sample;
   return member;
 }
 
@@ -75,7 +77,7 @@ void Decoder::texture_variable(const SpirvInstruction& in, Value& v) {
 void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& decorations, Id type, Slot slot,
                                 std::uint32_t location, bool input) {
   const SpirvType& t = module_.type(type);
-  if (decorations.builtin != kNoNumber) return builtin(decorations.builtin, slot, t.cells);
+  if (decorations.builtin != kNoNumber) return builtin(decorations.builtin, slot, t.cells, input);
   if (t.cells == 0) return;
   if (t.kind == TypeKind::kStruct) {
     for (std::uint32_t i = 0; i < t.members.size(); ++i) {
@@ -94,17 +96,19 @@ void Decoder::interface_scalars(std::vector<Port>& ports, const Decorations& dec
       if (ports.size() != before) location = ports.back().location + 1;
     }
   } else {
+    program_.by_sample |= input && decorations.sample;
     const ScalarKind kind = scalar_kind(module_.scalar_of(type).kind);
     const auto interpolation = decorations.flat             ? Interpolation::kFlat
                                : decorations.no_perspective ? Interpolation::kLinear
                                                             : Interpolation::kPerspective;
     const std::uint32_t component = decorations.component == kNoNumber ? 0 : decorations.component;
     for (std::uint32_t i = 0; i < t.cells; ++i)
-      ports.push_back({location, component + i, slot + i, kind, interpolation, decorations.index});
+      ports.push_back(
+          {location, component + i, slot + i, kind, interpolation, decorations.index, decorations.centroid});
   }
 }
 
-void Decoder::builtin(std::uint32_t which, Slot slot, std::uint32_t cells) {
+void Decoder::builtin(std::uint32_t which, Slot slot, std::uint32_t cells, bool input) {
   BuiltinSlots& b = program_.builtins;
   switch (which) {
     case spv::BuiltInPosition: b.position = slot; return;
@@ -116,13 +120,17 @@ void Decoder::builtin(std::uint32_t which, Slot slot, std::uint32_t cells) {
     case spv::BuiltInFragDepth: b.frag_depth = slot; return;
     case spv::BuiltInPointSize: b.point_size = slot; return;
     case spv::BuiltInPointCoord: b.point_coord = slot; return;
+    case spv::BuiltInSampleId: b.sample_id = slot, program_.by_sample = true; return;
+    case spv::BuiltInSamplePosition: b.sample_position = slot, program_.by_sample = true; return;
+    case spv::BuiltInSampleMask: (input ? b.sample_mask_in : b.sample_mask) = slot; return;
     case spv::BuiltInClipDistance: b.clip_distance = slot, b.clip_distances = cells; return;
     case spv::BuiltInCullDistance: b.cull_distance = slot, b.cull_distances = cells; return;
     default:
       unsupported(
           "a built-in other than Position, PointSize, ClipDistance, CullDistance, VertexIndex, "
           "InstanceIndex, "
-          "FragCoord, FrontFacing, PrimitiveId, PointCoord and FragDepth");
+          "FragCoord, FrontFacing, PrimitiveId, PointCoord, SampleId, SamplePosition, SampleMask and "
+          "FragDepth");
   }
 }
 

@@ -37,15 +37,22 @@ std::vector<Link> link_varyings(const ShaderProgram& vertex, const ShaderProgram
 /// Samples of four pixels, a bit each.
 using Samples = std::array<unsigned, kLanes>;
 
+/// A place in the original triangle.
+struct Place {
+  double z = 0, inv_w = 0;
+  std::array<double, 2> perspective{}, linear{};  ///< (b1, b2)
+};
+
 /// Four fragments: which are covered, and where they are in the original triangle.
 struct Quad {
   int x = 0, y = 0;
+  double from_centre_x = 0, from_centre_y = 0;  ///< where its fragments lie
+  std::uint32_t sample = 0;                     ///< of fragments by sample
   Samples covered{};
   std::array<std::array<double, 8>, kLanes> sample_z{};
-  std::array<double, kLanes> z{}, inv_w{};
-  std::array<std::array<double, 2>, kLanes> perspective{}, linear{};  ///< (b1, b2)
-  std::array<double, kLanes> part{};                                  ///< covered by a smooth line
-  std::array<std::array<double, 2>, kLanes> point{};                  ///< coordinates within a point
+  std::array<Place, kLanes> at{}, centroid{};
+  std::array<double, kLanes> part{};                  ///< covered by a smooth line
+  std::array<std::array<double, 2>, kLanes> point{};  ///< coordinates within a point
 };
 
 /// Draws all triangles within one band after another, in order.
@@ -110,11 +117,55 @@ class BandWorker {
       if (in_bounds(px, py)) cover(t, places[static_cast<std::size_t>(lane)], quad, lane);
     }
     if (!any(quad.covered)) return;
+    if (by_sample()) return draw_samples(t, quad);
+    place_quad(t, places, quad);
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      quad.centroid[lane] = centroid_of(t, quad, static_cast<int>(lane));
+    shade_and_write(t, quad);
+  }
+
+  [[nodiscard]] bool by_sample() const {
+    return state_.samples > 1 &&
+           (state_.pipeline->sample_shading || (program_ != nullptr && program_->by_sample));
+  }
+
+  /// A quad for each sample, of those pixels that have it.
+  void draw_samples(const WindowTriangle& t, const Quad& all) {
+    for (std::uint32_t s = 0; s < state_.samples; ++s) {
+      Quad quad = all;
+      quad.sample = s;
+      std::array<SamplePlace, kLanes> places;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        quad.covered[lane] &= 1u << s;
+        const SampleAt at = sample_of_lane(quad, static_cast<int>(lane), s);
+        quad.from_centre_x = at.from_centre_x, quad.from_centre_y = at.from_centre_y;
+        places[lane] = locate_sample(t, at);
+      }
+      if (!any(quad.covered)) continue;
+      place_quad(t, places, quad);
+      quad.centroid = quad.at;
+      shade_and_write(t, quad);
+    }
+  }
+
+  [[nodiscard]] SampleAt sample_of_lane(const Quad& quad, int lane, std::uint32_t sample) const {
+    return sample_at(quad.x + (lane & 1), quad.y + (lane >> 1), state_.samples, sample);
+  }
+
+  static void place_quad(const WindowTriangle& t, const std::array<SamplePlace, kLanes>& places, Quad& quad) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      place_fragment(t, places[lane].weights, quad, lane);
+      quad.at[lane] = place_of(t, places[lane].weights);
       quad.part[lane] = places[lane].part, quad.point[lane] = places[lane].point;
     }
-    shade_and_write(t, quad);
+  }
+
+  /// The first covered sample, unless all are.
+  [[nodiscard]] Place centroid_of(const WindowTriangle& t, const Quad& quad, int lane) const {
+    const auto l = static_cast<std::size_t>(lane);
+    const unsigned covered = quad.covered[l];
+    if (covered == 0 || covered == (1u << state_.samples) - 1) return quad.at[l];
+    const auto first = static_cast<std::uint32_t>(std::countr_zero(covered));
+    return place_of(t, locate_sample(t, sample_of_lane(quad, lane, first)).weights);
   }
 
   [[nodiscard]] static bool any(const Samples& samples) {
@@ -125,7 +176,8 @@ class BandWorker {
   void cover(const WindowTriangle& t, const SamplePlace& centre, Quad& quad, int lane) {
     const auto l = static_cast<std::size_t>(lane);
     for (std::uint32_t s = 0; s < state_.samples; ++s) {
-      const SampleAt at = sample_at(quad.x + (lane & 1), quad.y + (lane >> 1), state_.samples, s);
+      if ((state_.pipeline->sample_mask >> s & 1u) == 0) continue;
+      const SampleAt at = sample_of_lane(quad, lane, s);
       const SamplePlace place = state_.samples == 1 ? centre : locate_sample(t, at);
       if (!place.covered) continue;
       quad.covered[l] |= 1u << s;
@@ -135,19 +187,20 @@ class BandWorker {
   }
 
   /// [VK1.3 #primsrast-polygons-basic: interpolation of data across polygons]
-  static void place_fragment(const WindowTriangle& t, const std::array<double, 3>& weights, Quad& quad,
-                             std::size_t lane) {
+  static Place place_of(const WindowTriangle& t, const std::array<double, 3>& weights) {
+    Place at;
     for (std::size_t i = 0; i < 3; ++i) {
-      quad.z[lane] += weights[i] * t.z[i];
-      quad.inv_w[lane] += weights[i] * t.inv_w[i];
+      at.z += weights[i] * t.z[i];
+      at.inv_w += weights[i] * t.inv_w[i];
     }
     for (std::size_t b = 0; b < 2; ++b) {
       for (std::size_t i = 0; i < 3; ++i) {
-        quad.perspective[lane][b] += weights[i] * t.inv_w[i] * t.barycentric[i][b];
-        quad.linear[lane][b] += weights[i] * t.screen_barycentric[i][b];
+        at.perspective[b] += weights[i] * t.inv_w[i] * t.barycentric[i][b];
+        at.linear[b] += weights[i] * t.screen_barycentric[i][b];
       }
-      quad.perspective[lane][b] /= quad.inv_w[lane];
+      at.perspective[b] /= at.inv_w;
     }
+    return at;
   }
 
   void shade_and_write(const WindowTriangle& t, const Quad& quad) {
@@ -156,7 +209,7 @@ class BandWorker {
     for (std::size_t lane = 0; lane < kLanes; ++lane)
       for (std::uint32_t s = 0; s < state_.samples; ++s) depth[lane][s] = final_depth(quad.sample_z[lane][s]);
     const bool shader_depth = program_ != nullptr && program_->builtins.frag_depth != kNoSlot;
-    const bool late = shader_depth || (program_ != nullptr && program_->discards);
+    const bool late = shader_depth || limits_coverage() || (program_ != nullptr && program_->discards);
     if (!late) alive = test_depth(t, quad, depth, alive);
     if (!any(alive)) return;
     if (program_ != nullptr) {
@@ -168,9 +221,28 @@ class BandWorker {
       note_discards(quad);
       for (std::size_t lane = 0; lane < kLanes; ++lane)
         if ((lanes_.killed >> lane & 1u) != 0) alive[lane] = 0;
+      if (limits_coverage())
+        for (std::size_t lane = 0; lane < kLanes; ++lane) alive[lane] &= kept_samples(static_cast<int>(lane));
     }
     if (late) alive = test_depth(t, quad, depth, alive);
     write(t, quad, depth, alive);
+  }
+
+  /// May a fragment lose samples when it has been shaded?
+  [[nodiscard]] bool limits_coverage() const {
+    return program_ != nullptr &&
+           (state_.pipeline->alpha_to_coverage || program_->builtins.sample_mask != kNoSlot);
+  }
+  [[nodiscard]] unsigned kept_samples(int lane) {
+    unsigned kept = ~0u;
+    if (program_->builtins.sample_mask != kNoSlot) kept = lanes_.at(program_->builtins.sample_mask)->u(lane);
+    const Slot alpha = color_slots_[0][3];
+    if (!state_.pipeline->alpha_to_coverage || alpha == kNoSlot) return kept;
+    for (std::uint32_t s = 0; s < state_.samples; ++s) {
+      const double least = state_.samples == 1 ? 0.5 : static_cast<double>(s) / state_.samples;
+      if (!(lanes_.at(alpha)->f(lane) > least)) kept &= ~(1u << s);
+    }
+    return kept;
   }
 
   [[nodiscard]] double final_depth(double z) const {
@@ -258,9 +330,11 @@ class BandWorker {
     }
     const double a0 = std::bit_cast<double>(bits(0)), a1 = std::bit_cast<double>(bits(1)),
                  a2 = std::bit_cast<double>(bits(2));
-    const auto& place = link.input.interpolation == Interpolation::kLinear ? quad.linear : quad.perspective;
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-      cell.set_f(static_cast<int>(lane), a0 + place[lane][0] * (a1 - a0) + place[lane][1] * (a2 - a0));
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Place& at = link.input.centroid ? quad.centroid[lane] : quad.at[lane];
+      const auto& place = link.input.interpolation == Interpolation::kLinear ? at.linear : at.perspective;
+      cell.set_f(static_cast<int>(lane), a0 + place[0] * (a1 - a0) + place[1] * (a2 - a0));
+    }
   }
 
   void feed_builtins(const WindowTriangle& t, const Quad& quad) {
@@ -269,15 +343,21 @@ class BandWorker {
       const auto l = static_cast<std::size_t>(lane);
       if (b.frag_coord != kNoSlot) {
         Cell* coord = lanes_.at(b.frag_coord);
-        coord[0].set_f(lane, quad.x + (lane & 1) + 0.5);
-        coord[1].set_f(lane, quad.y + (lane >> 1) + 0.5);
-        coord[2].set_f(lane, quad.z[l]);
-        coord[3].set_f(lane, quad.inv_w[l]);
+        coord[0].set_f(lane, quad.x + (lane & 1) + 0.5 + quad.from_centre_x);
+        coord[1].set_f(lane, quad.y + (lane >> 1) + 0.5 + quad.from_centre_y);
+        coord[2].set_f(lane, quad.at[l].z);
+        coord[3].set_f(lane, quad.at[l].inv_w);
       }
       if (b.point_coord != kNoSlot) {
         lanes_.at(b.point_coord)[0].set_f(lane, quad.point[l][0]);
         lanes_.at(b.point_coord)[1].set_f(lane, quad.point[l][1]);
       }
+      if (b.sample_id != kNoSlot) lanes_.at(b.sample_id)->set_u(lane, quad.sample);
+      if (b.sample_position != kNoSlot) {
+        lanes_.at(b.sample_position)[0].set_f(lane, 0.5 + quad.from_centre_x);
+        lanes_.at(b.sample_position)[1].set_f(lane, 0.5 + quad.from_centre_y);
+      }
+      if (b.sample_mask_in != kNoSlot) lanes_.at(b.sample_mask_in)->set_u(lane, quad.covered[l]);
       if (b.front_facing != kNoSlot) lanes_.at(b.front_facing)->set_u(lane, t.front ? 1u : 0u);
       if (b.primitive_id != kNoSlot) lanes_.at(b.primitive_id)->set_u(lane, t.primitive);
     }

@@ -94,6 +94,7 @@ struct Port {
   ScalarKind kind = ScalarKind::kFloat;
   Interpolation interpolation = Interpolation::kPerspective;
   std::uint32_t index = 0;  ///< of a fragment shader's output: 1 is the second colour
+  bool centroid = false;
 };
 
 /// A scalar of a uniform block or of the push constants (`push`), and where it goes.
@@ -112,7 +113,9 @@ struct TextureUse {
 struct BuiltinSlots {
   Slot position = kNoSlot, vertex_index = kNoSlot, instance_index = kNoSlot;
   Slot frag_coord = kNoSlot, front_facing = kNoSlot, primitive_id = kNoSlot, frag_depth = kNoSlot;
-  Slot point_size = kNoSlot, point_coord = kNoSlot, clip_distance = kNoSlot, cull_distance = kNoSlot;
+  Slot point_size = kNoSlot, point_coord = kNoSlot, sample_id = kNoSlot, sample_position = kNoSlot;
+  Slot sample_mask_in = kNoSlot, sample_mask = kNoSlot;  ///< read, written
+  Slot clip_distance = kNoSlot, cull_distance = kNoSlot;
   std::uint32_t clip_distances = 0, cull_distances = 0;  ///< as declared
 };
 
@@ -127,6 +130,7 @@ struct ShaderProgram {
   std::vector<TextureUse> textures;
   BuiltinSlots builtins;
   bool discards = false;
+  bool by_sample = false;  ///< runs for each covered sample
 };
 
 /// Decodes a shader. Throws `UserError` naming the shader and what it uses that is outside the subset.

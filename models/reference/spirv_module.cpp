@@ -141,6 +141,8 @@ class Reader {
       case spv::DecorationRowMajor: d.row_major = true; break;
       case spv::DecorationFlat: d.flat = true; break;
       case spv::DecorationNoPerspective: d.no_perspective = true; break;
+      case spv::DecorationCentroid: d.centroid = true; break;
+      case spv::DecorationSample: d.sample = true; break;
       default: break;  // precision hints and names change nothing here
     }
   }

@@ -58,7 +58,7 @@ struct Decorations {
                 set = kNoNumber;
   std::uint32_t offset = kNoNumber, array_stride = kNoNumber, matrix_stride = kNoNumber;
   std::uint32_t index = 0;  ///< of a fragment shader's output
-  bool row_major = false, flat = false, no_perspective = false;
+  bool row_major = false, flat = false, no_perspective = false, centroid = false, sample = false;
 };
 
 struct SpirvBlock {

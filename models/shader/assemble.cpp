@@ -118,7 +118,10 @@ class Assembler {
       const auto* flag = std::find_if(kProgramFlags.begin(), kProgramFlags.end(),
                                       [&](const NamedFlag& f) { return f.name == word; });
       if (flag == kProgramFlags.end())
-        fail("unknown flag '{}'; legal: discard depth early-tests derivatives atomic-outputs", word);
+        fail(
+            "unknown flag '{}'; legal: discard depth sample-mask by-sample early-tests derivatives "
+            "atomic-outputs",
+            word);
       program_.*flag->member = true;
     }
   }

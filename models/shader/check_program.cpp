@@ -85,7 +85,7 @@ class Checker {
       case Immediate::kOutputSlot: {
         const std::size_t slots = program_.stage == ShaderStage::kVertex
                                       ? static_cast<std::size_t>(vertex_outputs(program_))
-                                      : kDepthOutput + 1u;
+                                      : std::size_t{kFragmentOutputs};
         require(in.imm < slots, "output slot {} does not exist; the stage has {}", in.imm, slots);
         break;
       }

@@ -168,6 +168,17 @@ std::uint32_t color_outputs(const Program& program) {
   return outputs;
 }
 
+bool reads_coverage(const Program& program) {
+  if (program.stage != ShaderStage::kFragment) return false;
+  const auto centroid = [](Interpolation mode) {
+    return mode == Interpolation::kPerspectiveCentroid || mode == Interpolation::kLinearCentroid;
+  };
+  const auto asks = [](const Instruction& i) {
+    return i.op == Op::kInput && i.imm == static_cast<std::uint16_t>(SystemValue::kSampleMask);
+  };
+  return std::ranges::any_of(program.varyings, centroid) || std::ranges::any_of(program.code, asks);
+}
+
 bool is_atomic(Op op) { return op >= Op::kAtomicAdd && op <= Op::kAtomicCompareExchange; }
 bool writes_buffer(Op op) { return op == Op::kStoreBuffer || is_atomic(op); }
 bool writes_buffers(const Program& program) {
@@ -177,7 +188,7 @@ bool writes_buffers(const Program& program) {
 const StageInfo& stage_info(ShaderStage stage) {
   static constexpr std::array<StageInfo, kStages> kInfos{
       {{"vertex", SystemValue::kVertexIndex, SystemValue::kInstanceIndex, true, false},
-       {"fragment", SystemValue::kFragCoordX, SystemValue::kPointCoordY, false, true}}};
+       {"fragment", SystemValue::kFragCoordX, SystemValue::kSampleMask, false, true}}};
   return kInfos[static_cast<std::size_t>(stage)];
 }
 

@@ -184,17 +184,29 @@ enum class SystemValue : std::uint16_t {
   kFrontFacing,
   kPrimitiveId,
   kPointCoordX,
-  kPointCoordY
+  kPointCoordY,
+  kSampleId,
+  kSamplePositionX,  ///< in the pixel, from its upper left corner
+  kSamplePositionY,
+  kSampleMask  ///< samples that the primitive covers, a bit each; of one alone where its fragment is shaded
 };
 
 /// Output slots. Vertex stage: 0..3 clip-space position, then varyings from 4, then what `VertexExtras` says.
-/// Fragment stage: 4 to each of eight colour attachments, then depth.
+/// Fragment stage: 4 to each of eight colour attachments, then depth and the mask of samples.
 inline constexpr std::uint16_t kFirstVaryingOutput = 4;
-inline constexpr std::uint16_t kDepthOutput = kMaxColorOutputs;
+inline constexpr std::uint16_t kDepthOutput = kMaxColorOutputs, kSampleMaskOutput = kDepthOutput + 1;
+inline constexpr int kFragmentOutputs = kSampleMaskOutput + 1;
 /// The second colour for attachment 0, of a program that has one: it takes the place of attachment 1's.
 inline constexpr std::uint16_t kSecondSourceOutput = 4;
 
-enum class Interpolation : std::uint8_t { kPerspective, kLinear, kFlat };
+/// Of a centroid varying the place is a covered sample where the primitive does not cover all of them.
+enum class Interpolation : std::uint8_t {
+  kPerspective,
+  kLinear,
+  kFlat,
+  kPerspectiveCentroid,
+  kLinearCentroid
+};
 
 /// Where words of the constant file come from. Literals carry their value; blocks are copied from a buffer
 /// when a draw is bound.
@@ -286,6 +298,8 @@ struct Program {
   VertexExtras extras;  ///< vertex stage
   bool uses_discard = false;
   bool writes_depth = false;
+  bool writes_sample_mask = false;
+  bool by_sample = false;  ///< runs for each covered sample: it asks which, or has inputs that follow it
   bool early_fragment_tests = false;
   bool second_source = false;     ///< of attachment 0, at `kSecondSourceOutput`
   bool uses_derivatives = false;  ///< explicit or through implicit-lod texturing: helper lanes are needed
@@ -307,6 +321,9 @@ void prepare(const Program& program);
 [[nodiscard]] inline int vertex_outputs(const Program& program) {
   return first_extra_output(program) + program.extras.count();
 }
+
+/// Does a fragment program ask which samples the primitive covers, itself or by a centroid varying?
+[[nodiscard]] bool reads_coverage(const Program& program);
 
 /// Components of colours that a fragment program writes: bit 4 * attachment + component.
 [[nodiscard]] std::uint32_t color_outputs(const Program& program);

@@ -54,6 +54,10 @@ Kernel input_kernel(std::uint16_t slot) {
     case SysVal::kPrimitiveId: return kInputKernel<FragmentValue<&FragmentInputs::primitive_id>>;
     case SysVal::kPointCoordX: return kInputKernel<FragmentValue<&FragmentInputs::linear_1>>;
     case SysVal::kPointCoordY: return kInputKernel<FragmentValue<&FragmentInputs::linear_2>>;
+    case SysVal::kSampleId: return kInputKernel<FragmentValue<&FragmentInputs::sample_id>>;
+    case SysVal::kSamplePositionX: return kInputKernel<FragmentValue<&FragmentInputs::sample_x>>;
+    case SysVal::kSamplePositionY: return kInputKernel<FragmentValue<&FragmentInputs::sample_y>>;
+    case SysVal::kSampleMask: return kInputKernel<FragmentValue<&FragmentInputs::sample_mask>>;
   }
   return {};
 }
@@ -63,12 +67,25 @@ inline Floats quad_pair(const float* first, const float* second) {
   return {_mm256_set_m128(_mm_broadcast_ss(second), _mm_broadcast_ss(first))};
 }
 
+/// Weight of the second (`kSecond`) or third vertex, where a varying of this mode is taken.
+template <Interpolation kMode, bool kSecond>
+const LaneFloats& weight_of(const FragmentInputs& in) {
+  switch (kMode) {
+    case Interpolation::kPerspective: return kSecond ? in.persp_1 : in.persp_2;
+    case Interpolation::kPerspectiveCentroid: return kSecond ? in.centroid_persp_1 : in.centroid_persp_2;
+    case Interpolation::kLinearCentroid: return kSecond ? in.centroid_linear_1 : in.centroid_linear_2;
+    case Interpolation::kLinear:
+    case Interpolation::kFlat: break;
+  }
+  return kSecond ? in.linear_1 : in.linear_2;
+}
+
 /// (a0 + p1 (a1 - a0)) + p2 (a2 - a0), each step rounded; weights by the interpolation mode.
 template <Interpolation kMode, bool kMasked>
 void execute_interp(const DecodedInstruction& d, ExecutionContext& x) {
   const FragmentInputs& in = *x.warp->fragment;
-  const auto& weight_1 = kMode == Interpolation::kPerspective ? in.persp_1 : in.linear_1;
-  const auto& weight_2 = kMode == Interpolation::kPerspective ? in.persp_2 : in.linear_2;
+  const auto& weight_1 = weight_of<kMode, true>(in);
+  const auto& weight_2 = weight_of<kMode, false>(in);
   std::byte* const dst = x.regs + d.dst;
   const std::size_t first = 3u * d.imm;
   const auto finish = [&](int g, Floats a0, Floats da1, Floats da2) {
@@ -101,6 +118,8 @@ Kernel interp_kernel(Interpolation mode) {
     case Interpolation::kPerspective: return kInterpKernel<Interpolation::kPerspective>;
     case Interpolation::kLinear: return kInterpKernel<Interpolation::kLinear>;
     case Interpolation::kFlat: return kInterpKernel<Interpolation::kFlat>;
+    case Interpolation::kPerspectiveCentroid: return kInterpKernel<Interpolation::kPerspectiveCentroid>;
+    case Interpolation::kLinearCentroid: return kInterpKernel<Interpolation::kLinearCentroid>;
   }
   return {};
 }

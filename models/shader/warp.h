@@ -28,8 +28,12 @@ struct FragmentInputs {
   alignas(64) LaneFloats persp_1, persp_2;
   /// the same, linear in screen space; of a point, its coordinates
   alignas(64) LaneFloats linear_1, linear_2;
-  alignas(64) LaneFloats line_coverage;  ///< of smooth lines: how much of the pixel is covered
-  LaneWords front_facing, primitive_id;  ///< all ones / zero; 0-based primitive of the draw
+  /// the four of them at the place of centroid varyings, for programs that `reads_coverage`
+  alignas(64) LaneFloats centroid_persp_1, centroid_persp_2, centroid_linear_1, centroid_linear_2;
+  alignas(64) LaneFloats sample_x, sample_y;  ///< where in the pixel, for programs by sample
+  alignas(64) LaneFloats line_coverage;       ///< of smooth lines: how much of the pixel is covered
+  LaneWords sample_id, sample_mask;           ///< for programs by sample, and those that `reads_coverage`
+  LaneWords front_facing, primitive_id;       ///< all ones / zero; 0-based primitive of the draw
   /// Per quad: `3 * varyings.size()` floats, (a0, a1 - a0, a2 - a0) for each scalar component. A quad that is
   /// not used points at a valid one.
   std::array<const float*, kWarpQuads> varyings{};

@@ -143,6 +143,7 @@ class Encoder {
     program.varyings = linkage_.interpolation;
     if (shader_.stage == models::ShaderStage::kVertex) program.extras = linkage_.extras;
     program.early_fragment_tests = shader_.early_fragment_tests;
+    program.by_sample = shader_.by_sample;
     for (const auto& [raw, slot] : inputs_)
       program.vertex_inputs.push_back(
           {static_cast<std::uint16_t>(raw / 4), static_cast<std::uint16_t>(raw % 4)});
@@ -158,6 +159,8 @@ class Encoder {
       program.uses_discard |= out.op == Op::kKillIf;
       program.writes_depth |= shader_.stage == models::ShaderStage::kFragment && out.op == Op::kOutput &&
                               out.imm == models::kDepthOutput;
+      program.writes_sample_mask |= shader_.stage == models::ShaderStage::kFragment &&
+                                    out.op == Op::kOutput && out.imm == models::kSampleMaskOutput;
       program.uses_derivatives |= (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) ||
                                   out.op == Op::kTexImplicit || out.op == Op::kTexBias;
       program.code.push_back(out);

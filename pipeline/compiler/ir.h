@@ -70,6 +70,7 @@ struct ScalarShader {
   std::uint32_t integer_inputs = 0;
   bool early_fragment_tests = false;
   bool second_source = false;  ///< a second colour for attachment 0
+  bool by_sample = false;      ///< fragment: as `models::Program::by_sample`
 };
 
 }  // namespace quadrille::pipeline

@@ -14,6 +14,13 @@ using Kind = spirv::Type::Kind;
 
 constexpr std::uint32_t kMaxInterfaceScalars = 1024;
 
+models::Interpolation interpolation_of(const spirv::Decorations& d) {
+  using enum models::Interpolation;
+  if (d.flat) return kFlat;
+  if (d.no_perspective) return d.centroid ? kLinearCentroid : kLinear;
+  return d.centroid ? kPerspectiveCentroid : kPerspective;
+}
+
 }  // namespace
 
 void Lowering::declare_interface(const spirv::Variable& variable) {
@@ -22,6 +29,8 @@ void Lowering::declare_interface(const spirv::Variable& variable) {
   if (module_.type(variable.type).scalars > kMaxInterfaceScalars)
     throw user_error("{}: interface variable {} has more than {} scalars", module_.shader,
                      module_.name(variable.id), kMaxInterfaceScalars);
+  const bool of_fragment = !output && shader_.stage == ShaderStage::kFragment;
+  shader_.by_sample |= of_fragment && follows_sample(variable, d);
   auto location = static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.location));
   add_slots(slots_[variable.id], variable.type, d, location, output);
   if (!output || (!read_outputs_.contains(variable.id) && variable.initializer == 0 &&
@@ -39,6 +48,16 @@ void Lowering::declare_interface(const spirv::Variable& variable) {
   }
 }
 
+/// Does an input of a fragment shader make it run by sample? [VK1.3 #primsrast-sampleshading]
+bool Lowering::follows_sample(const spirv::Variable& variable, const spirv::Decorations& d) const {
+  if (d.sample || d.built_in == spv::BuiltInSampleId || d.built_in == spv::BuiltInSamplePosition) return true;
+  const spirv::Type& type = module_.type(variable.type);
+  if (type.kind != Kind::kStruct) return false;
+  for (std::uint32_t k = 0; k < type.members.size(); ++k)
+    if (module_.member_decorations(variable.type, k).sample) return true;
+  return false;
+}
+
 void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Decorations& inherited,
                          std::uint32_t& location, bool output) {
   const spirv::Type& type = module_.type(type_id);
@@ -47,6 +66,7 @@ void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Deco
       spirv::Decorations d = module_.member_decorations(type_id, k);
       d.flat = d.flat || inherited.flat;
       d.no_perspective = d.no_perspective || inherited.no_perspective;
+      d.centroid = d.centroid || inherited.centroid;
       if (d.location >= 0) location = static_cast<std::uint32_t>(d.location);
       add_slots(slots, type.members[k], d, location, output);
     }
@@ -94,6 +114,11 @@ Lowering::Slot Lowering::built_in_slot(std::int64_t built_in, std::uint32_t comp
     case spv::BuiltInFrontFacing: return vertex ? slot : system(SystemValue::kFrontFacing);
     case spv::BuiltInPrimitiveId: return vertex ? slot : system(SystemValue::kPrimitiveId);
     case spv::BuiltInPointCoord: return vertex ? slot : system(SystemValue::kPointCoordX);
+    case spv::BuiltInSampleId: return vertex ? slot : system(SystemValue::kSampleId);
+    case spv::BuiltInSamplePosition: return vertex ? slot : system(SystemValue::kSamplePositionX);
+    case spv::BuiltInSampleMask:
+      if (vertex || component > 0) return slot;  // a pixel has no more samples than bits of one word
+      return output ? use(models::kSampleMaskOutput) : system(SystemValue::kSampleMask);
     case spv::BuiltInFragDepth: return !vertex && output ? use(models::kDepthOutput) : slot;
     default: return slot;
   }
@@ -117,9 +142,7 @@ Lowering::Slot Lowering::location_slot(std::uint32_t location, std::uint32_t com
   slot.kind = Slot::Kind::kUsed;
   slot.imm = static_cast<std::uint16_t>(4 * location + component +
                                         (vertex && output ? models::kFirstVaryingOutput : 0u));
-  slot.interpolation = d.flat             ? models::Interpolation::kFlat
-                       : d.no_perspective ? models::Interpolation::kLinear
-                                          : models::Interpolation::kPerspective;
+  slot.interpolation = interpolation_of(d);
   return slot;
 }
 
@@ -137,12 +160,10 @@ Value Lowering::load_input(Id variable, std::uint32_t place, const spirv::Instru
 void Lowering::store_output(const Pointer& p, std::uint32_t place, Value v, const spirv::Instruction& i) {
   const Slot& slot = slots_[p.variable].at(place);
   if (slot.kind == Slot::Kind::kRefused)
-    throw unsupported(
-        i,
-        fmt::format(
-            "output {} (only colour locations 0 to 7, gl_FragDepth, gl_Position, gl_PointSize, clip and cull "
-            "distances and varyings are written)",
-            module_.name(p.variable)));
+    throw unsupported(i, fmt::format("output {} (only colour locations 0 to 7, gl_FragDepth, gl_SampleMask, "
+                                     "gl_Position, gl_PointSize, clip and cull "
+                                     "distances and varyings are written)",
+                                     module_.name(p.variable)));
   build_.effect(Op::kOutput, v, slot.imm);
 }
 

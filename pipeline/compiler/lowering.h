@@ -155,6 +155,7 @@ class Lowering {
 
   // lower_interface.cpp
   void declare_interface(const spirv::Variable& variable);
+  [[nodiscard]] bool follows_sample(const spirv::Variable& variable, const spirv::Decorations& d) const;
   void add_slots(std::vector<Slot>& slots, Id type, const spirv::Decorations& inherited,
                  std::uint32_t& location, bool output);
   Slot built_in_slot(std::int64_t built_in, std::uint32_t component, bool output) const;

@@ -216,7 +216,9 @@ void Module::add_decoration(Decorations& target, spv::Decoration decoration,
     case spv::DecorationRowMajor: target.row_major = true; break;
     case spv::DecorationFlat: target.flat = true; break;
     case spv::DecorationNoPerspective: target.no_perspective = true; break;
-    // precision, contraction, centroid, sample and the like do not change what is computed here
+    case spv::DecorationCentroid: target.centroid = true; break;
+    case spv::DecorationSample: target.sample = true; break;
+    // precision, contraction and the like do not change what is computed here
     default: break;
   }
 }

@@ -47,7 +47,8 @@ struct Type {
 struct Decorations {
   std::int64_t built_in = -1, location = -1, component = -1, binding = -1, set = -1, offset = -1,
                array_stride = -1, matrix_stride = -1, index = -1;
-  bool row_major = false, flat = false, no_perspective = false, buffer_block = false;
+  bool row_major = false, flat = false, no_perspective = false, centroid = false, sample = false,
+       buffer_block = false;
 };
 
 struct Instruction {

@@ -248,8 +248,13 @@ class FrameBuilder {
           "{}: writes memory where pipeline '{}' draws triangles by their edges or corners, which is not "
           "supported: two edges of a triangle may cover one pixel; draw lines or points",
           program.name, pipeline.name);
-    draw.late_depth = draw.uses_depth() && !program.early_fragment_tests &&
-                      (program.uses_discard || program.writes_depth || writes_memory);
+    draw.by_sample = draw.samples().count > 1 && (program.by_sample || pipeline.sample_shading);
+    draw.reads_coverage = models::reads_coverage(program);
+    draw.alpha_to_coverage = pipeline.alpha_to_coverage;
+    draw.sample_mask = pipeline.sample_mask;
+    draw.late_depth =
+        draw.uses_depth() && !program.early_fragment_tests &&
+        (program.uses_discard || program.writes_depth || writes_memory || draw.limits_coverage());
   }
 
   /// Of a pass that has the attachment; else nothing is tested.

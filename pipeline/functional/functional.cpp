@@ -199,14 +199,30 @@ class FunctionalRenderer {
       std::uint64_t any = 0;
       for (int s = 0; s < samples.count; ++s) {
         std::uint64_t& coverage = planes[static_cast<std::size_t>(s)];
+        if (!draw_->covers(s)) continue;
         coverage = tile.fully_covered ? ~std::uint64_t{0}
                                       : models::sample_coverage(setup, tile.tile_x, tile.tile_y, samples, s);
         counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
         if (draw_->uses_depth() && !draw_->late_depth) coverage = test_tile(setup, tile, s, coverage);
         any |= coverage;
       }
-      for (std::uint32_t quads = models::quads_of(any); quads != 0; quads &= quads - 1)
-        add_quad(tile, planes, any, std::countr_zero(quads));
+      if (draw_->by_sample) {
+        for (std::size_t s = 0; s < planes.size(); ++s) {
+          Planes one{};
+          one[s] = planes[s];
+          add_quads(tile, one, planes[s], static_cast<std::uint8_t>(s));
+        }
+      } else {
+        add_quads(tile, planes, any, 0);
+      }
+    }
+  }
+
+  /// `any`: pixels of which a sample is covered; `sample`: of a draw by sample, the one.
+  void add_quads(const models::TileHit& tile, const Planes& planes, std::uint64_t any, std::uint8_t sample) {
+    for (std::uint32_t quads = models::quads_of(any); quads != 0; quads &= quads - 1) {
+      add_quad(tile, planes, any, std::countr_zero(quads));
+      warp_.quad[static_cast<std::size_t>(warp_.quads - 1)].sample = sample;
     }
   }
 
@@ -229,7 +245,6 @@ class FunctionalRenderer {
     return survivors;
   }
 
-  /// `any`: pixels of which a sample is covered.
   void add_quad(const models::TileHit& tile, const Planes& planes, std::uint64_t any, int q) {
     if (warp_.quads == models::kWarpQuads) shade();
     for (std::size_t i = 0; i < 4; ++i) {
@@ -251,7 +266,7 @@ class FunctionalRenderer {
     const auto live = static_cast<std::uint64_t>(std::popcount(warp_.covered));
     counts_.fragments_shaded += live;
     counts_.helper_lanes += 4 * static_cast<std::uint64_t>(warp_.quads) - live;
-    hw::fill_fragment_inputs(warp_, triangles_, draw_->smooth_lines(), inputs_);
+    hw::fill_fragment_inputs(*draw_, warp_, triangles_, inputs_);
     const models::LaneMask lanes = warp_.quads == models::kWarpQuads
                                        ? ~models::LaneMask{0}
                                        : (models::LaneMask{1} << (4 * warp_.quads)) - 1;
@@ -263,8 +278,8 @@ class FunctionalRenderer {
     engine_.launch(*draw_->fragment.program, draw_->fragment.constants.data(), lanes);
     run_warp(engine_, draw_->fragment.textures, frame_.precision, memory_, plan_);
     warp_.alive = warp_.covered & ~engine_.killed;
-    counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & engine_.killed));
     hw::take_outputs(*draw_, outputs_, inputs_, warp_);
+    counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & ~warp_.alive));
     for (int q = 0; q < warp_.quads; ++q) write_quad(q);
     warp_.quads = 0;
     warp_.covered = 0;
@@ -311,7 +326,7 @@ class FunctionalRenderer {
   std::uint64_t sequence_ = 0;
   WarpSlot warp_;
   models::FragmentInputs inputs_;
-  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs_{};
+  std::array<models::LaneWords, models::kFragmentOutputs> outputs_{};
   models::Warp engine_;
   models::WarpStorage storage_;
   models::TexturePlan plan_;

@@ -32,9 +32,9 @@ enum class DrawOrder : std::uint8_t { kFile, kPainter };
 inline constexpr std::array<std::string_view, 2> kDrawOrderNames{"file", "painter"};
 
 /// What of a frame the picture shows. The names are those of all but the first.
-enum class Showing : std::uint8_t { kColors, kDepth, kOverdraw, kUv, kNormal, kTriangle };
-inline constexpr std::array<std::string_view, 5> kShowingNames{"depth", "overdraw", "uv", "normal",
-                                                               "triangle"};
+enum class Showing : std::uint8_t { kColors, kDepth, kOverdraw, kUv, kNormal, kTriangle, kSamples };
+inline constexpr std::array<std::string_view, 6> kShowingNames{"depth",  "overdraw", "uv",
+                                                               "normal", "triangle", "samples"};
 
 /// The enumerator that `name` stands for in one of these lists, of which `first` is the first one's; `first`
 /// too for a name that is not in it.
@@ -69,7 +69,10 @@ struct SceneOptions {
   models::Format color_format = models::Format::kR8G8B8A8Srgb;
   models::Format depth_format = models::Format::kD32Float;
   Showing shown = Showing::kColors;  ///< all but colours have shaders of their own, and no shading
-  bool visibility = false;           ///< draw triangle ids instead of all that (see `triangle_id_color`)
+  std::uint32_t samples = 1;         ///< a pixel, of which a picture of samples has its colours
+  /// Masked materials without layers let their alpha say which samples stay, instead of a test.
+  bool alpha_to_coverage = false;
+  bool visibility = false;  ///< draw triangle ids instead of all that (see `triangle_id_color`)
   /// false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
   bool leave_out = true;
   /// record textures packed, for a machine that unpacks those that it samples (`traces::Image::packed`)

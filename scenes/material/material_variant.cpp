@@ -137,6 +137,7 @@ std::string_view set_define(ShaderSet set) {
     case ShaderSet::kUv: return "SHOW_UV";
     case ShaderSet::kNormal: return "SHOW_NORMAL";
     case ShaderSet::kTriangle: return "SHOW_TRIANGLE";
+    case ShaderSet::kSamples: return "SHOW_SAMPLES";
   }
   return {};
 }
@@ -215,6 +216,7 @@ ShaderSet shader_set(const SceneOptions& options) {
     case Showing::kUv: return ShaderSet::kUv;
     case Showing::kNormal: return ShaderSet::kNormal;
     case Showing::kTriangle: return ShaderSet::kTriangle;
+    case Showing::kSamples: return ShaderSet::kSamples;
   }
   switch (options.shading) {
     case Shading::kMinimal: return ShaderSet::kMinimal;
@@ -226,11 +228,17 @@ ShaderSet shader_set(const SceneOptions& options) {
   return ShaderSet::kMaterial;
 }
 
-Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set) {
+bool covers_by_alpha(const Material& material, ShaderSet set) {
+  return material.alpha == AlphaMode::kMask && !material.see_through() &&
+         (set == ShaderSet::kMaterial || lights_by_phong(set));
+}
+
+Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set,
+                       bool alpha_to_coverage, std::uint32_t samples) {
   if (!material.unlit && lacks_normals(primitive, set)) {
     Material plain = material;
     plain.unlit = true;
-    return choose_variant(plain, primitive, set);
+    return choose_variant(plain, primitive, set, alpha_to_coverage, samples);
   }
   Variant v;
   v.set = set;
@@ -240,6 +248,9 @@ Variant choose_variant(const Material& material, const Primitive& primitive, Sha
   choose_textures(v, material, primitive, set);
   choose_attributes(v, material, primitive, set);
   choose_modes(v, material, set);
+  if (alpha_to_coverage && covers_by_alpha(material, set))
+    std::ranges::replace(v.defines, "ALPHA_MASK", "ALPHA_TO_COVERAGE");
+  if (set == ShaderSet::kSamples) v.defines.push_back(fmt::format("SAMPLES {}", samples));
   for (std::size_t i = 1; i < kSemantics; ++i) {
     if (v.attributes[i]) v.defines.emplace_back(kAttributeDefines[i]);
   }

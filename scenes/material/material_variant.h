@@ -30,7 +30,8 @@ enum class ShaderSet : std::uint8_t {
   kOverdraw,
   kUv,
   kNormal,
-  kTriangle
+  kTriangle,
+  kSamples
 };
 
 /// Is the surface lit by Blinn's and Phong's model?
@@ -60,7 +61,11 @@ struct Variant {
 
 /// The variant for a material on a primitive. Points and lines without normals are drawn without light.
 /// [glTF2.0 #point-and-line-materials] For `kUser` everything that the two offer is read.
-[[nodiscard]] Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set);
+/// `samples` a pixel matter to `kSamples` alone.
+[[nodiscard]] Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set,
+                                     bool alpha_to_coverage = false, std::uint32_t samples = 1);
+/// Does the alpha of a material's fragments say which samples they keep, where that is wished?
+[[nodiscard]] bool covers_by_alpha(const Material& material, ShaderSet set);
 
 /// What a stage of the project's shaders is called in messages and in streams. For `kUser`, as for
 /// `kMaterial`.

@@ -293,6 +293,7 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
   const bool whole_pixels = solid || shaders_.set() == ShaderSet::kOverdraw;
   if (whole_pixels && p.line_mode == traces::LineMode::kSmooth) p.line_mode = traces::LineMode::kRectangular;
   p.line_width = primitive.style.line_width;
+  p.alpha_to_coverage = options_.alpha_to_coverage && covers_by_alpha(material, shaders_.set());
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
   p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
   p.depth = {has_depth(), has_depth() && (!blended || material.alpha != AlphaMode::kBlend),

@@ -76,7 +76,7 @@ const Variant& Recorder::variant(const Primitive& primitive) {
                              by_corners, primitive.style.point_size});
   if (added) {
     entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive,
-                                   shaders_.set());
+                                   shaders_.set(), options_.alpha_to_coverage, options_.samples);
     if (shaders_.set() == ShaderSet::kUser && options_.leave_out) leave_out_unread(entry->second);
   }
   return entry->second;

@@ -108,8 +108,10 @@ const Experiment kExperiments[] = {
      "Samples a pixel",
      "Nothing is published to compare with: each doubling of the samples must bring the picture nearer to "
      "one of 64 "
-     "samples, and may cost at most twice the cycles.",
-     "Scenes with 1, 2, 4 and 8 samples a pixel on the default machine: cycles, bytes moved by the memory "
+     "samples, and may cost at most twice the cycles. Shading each sample for itself must bring it nearer "
+     "again, at not more than as many times the cycles.",
+     "Scenes with 1, 2, 4 and 8 samples a pixel, each pixel shaded once or each sample, on the default "
+     "machine: cycles, bytes moved by the memory "
      "channels, and "
      "the error of the picture.",
      &samples,

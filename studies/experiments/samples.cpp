@@ -1,5 +1,5 @@
 /// Samples a pixel: what 2, 4 and 8 of them cost in cycles and bytes, and how much nearer the picture comes
-/// to one of 64 samples.
+/// to one of 64 samples; and the same when each sample is shaded for itself.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,13 @@
 namespace quadrille::studies::experiments {
 namespace {
 
-constexpr std::uint32_t kSamples[] = {1, 2, 4, 8};
-constexpr int kIdealSide = 8;  ///< samples along a pixel's side
+struct Way {
+  std::uint32_t samples;
+  bool supersampled;
+};
+constexpr Way kWays[] = {{1, false}, {2, false}, {4, false}, {8, false}, {2, true}, {4, true}, {8, true}};
+constexpr std::size_t kMultisampled = 4;  ///< of them, before the others
+constexpr int kIdealSide = 8;             ///< samples along a pixel's side
 
 /// Linear values, three a pixel.
 std::vector<double> linear_of(const std::vector<std::uint32_t>& pixels) {
@@ -58,7 +63,7 @@ double error_between(const std::vector<double>& a, const std::vector<double>& b)
 
 double megabytes(const Readings& r) { return (r["memory.read_bytes"] + r["memory.write_bytes"]) / 1e6; }
 
-/// One scene at every number of samples.
+/// One scene in every way.
 struct Curve {
   std::vector<double> cycles, bytes, error;
 };
@@ -66,17 +71,18 @@ struct Curve {
 Curve measure(const traces::CommandStream& plain, const Setting& setting) {
   std::vector<traces::CommandStream> streams;
   std::vector<Frame> frames;
-  streams.reserve(std::size(kSamples));
-  for (const std::uint32_t samples : kSamples) {
+  streams.reserve(std::size(kWays));
+  for (const Way& way : kWays) {
     streams.push_back(plain);
-    traces::use_samples(streams.back(), samples);
+    traces::use_samples(streams.back(), way.samples);
+    if (way.supersampled) traces::use_sample_shading(streams.back());
     frames.push_back({&streams.back(), {}});
   }
   const std::vector<Readings> readings = draw(frames, setting);
   setting.progress("64 samples a pixel");
   const std::vector<double> wanted = ideal(plain);
   Curve curve;
-  for (std::size_t i = 0; i < std::size(kSamples); ++i) {
+  for (std::size_t i = 0; i < std::size(kWays); ++i) {
     curve.cycles.push_back(readings[i]["frame.cycles"]);
     curve.bytes.push_back(megabytes(readings[i]));
     curve.error.push_back(error_between(drawn(streams[i]), wanted));
@@ -84,45 +90,61 @@ Curve measure(const traces::CommandStream& plain, const Setting& setting) {
   return curve;
 }
 
+/// The way with as many samples, each pixel shaded once.
+std::size_t multisampled_beside(std::size_t way) {
+  return static_cast<std::size_t>(std::ranges::find(kWays, kWays[way].samples, &Way::samples) - kWays);
+}
+
+/// What each way must be beside another one.
+void judge(const std::string& scene, const Curve& curve, Result& result) {
+  const auto beside = [&](std::size_t i, std::size_t j, const std::string& what, double most) {
+    result.verdicts.push_back(
+        {fmt::format("{}: error of {}", scene, what), curve.error[i] / curve.error[j], 0, 1});
+    result.verdicts.push_back(
+        {fmt::format("{}: cycles of {}", scene, what), curve.cycles[i] / curve.cycles[j], 1, most});
+  };
+  for (std::size_t i = 1; i < kMultisampled; ++i)
+    beside(i, i - 1, fmt::format("{} samples over {}", kWays[i].samples, kWays[i - 1].samples), 2);
+  for (std::size_t i = kMultisampled; i < std::size(kWays); ++i)
+    beside(i, multisampled_beside(i), fmt::format("{} samples, supersampled over not", kWays[i].samples),
+           kWays[i].samples);
+}
+
 }  // namespace
 
 Result samples(const Setting& setting) {
   Result result;
-  result.table.head = {"scene",     "samples", "cycles",  "over 1",
+  result.table.head = {"scene",     "samples", "shaded",  "cycles",      "over 1",
                        "memory MB", "over 1",  "error %", "of that of 1"};
   std::string data, plot;
   for (const auto& [name, load] : setting.scenes) {
     setting.progress(name);
     const Curve curve = measure(load(), setting);
-    data += fmt::format("$s{} << EOD\n", result.table.rows.size());
-    plot += fmt::format("{}$s{} using 1:2 with linespoints pointtype 7 title {}", plot.empty() ? "" : ", ",
-                        result.table.rows.size(), quoted(name));
-    for (std::size_t i = 0; i < std::size(kSamples); ++i) {
+    for (std::size_t i = 0; i < std::size(kWays); ++i) {
+      if (i == 0 || i == kMultisampled) {
+        data += fmt::format("$s{} << EOD\n", result.table.rows.size());
+        plot += fmt::format("{}$s{} using 1:2 with linespoints pointtype {} title {}",
+                            plot.empty() ? "" : ", ", result.table.rows.size(), i == 0 ? 7 : 6,
+                            quoted(i == 0 ? name : name + ", supersampled"));
+      }
       result.table.rows.push_back(
-          {name, fmt::format("{}", kSamples[i]), fmt::format("{:.0f}", curve.cycles[i]),
-           fmt::format("{:.2f}", curve.cycles[i] / curve.cycles[0]), fmt::format("{:.2f}", curve.bytes[i]),
-           fmt::format("{:.2f}", curve.bytes[i] / curve.bytes[0]),
+          {name, fmt::format("{}", kWays[i].samples), kWays[i].supersampled ? "each sample" : "each pixel",
+           fmt::format("{:.0f}", curve.cycles[i]), fmt::format("{:.2f}", curve.cycles[i] / curve.cycles[0]),
+           fmt::format("{:.2f}", curve.bytes[i]), fmt::format("{:.2f}", curve.bytes[i] / curve.bytes[0]),
            fmt::format("{:.3f}", 100 * curve.error[i]),
            fmt::format("{:.2f}", curve.error[i] / curve.error[0])});
       data += fmt::format("{} {}\n", curve.cycles[i] / curve.cycles[0], 100 * curve.error[i]);
-      if (i == 0) continue;
-      result.verdicts.push_back(
-          {fmt::format("{}: error of {} samples over {}", name, kSamples[i], kSamples[i - 1]),
-           curve.error[i] / curve.error[i - 1], 0, 1});
-      result.verdicts.push_back(
-          {fmt::format("{}: cycles of {} samples over {}", name, kSamples[i], kSamples[i - 1]),
-           curve.cycles[i] / curve.cycles[i - 1], 1, 2});
+      if (i + 1 == kMultisampled || i + 1 == std::size(kWays)) data += "EOD\n";
     }
-    data += "EOD\n";
+    judge(name, curve, result);
   }
   result.remarks = {
       "The error is the root of the mean square difference of linear colour values, in per cent of the full "
       "range, from "
       "the mean of 64 pictures whose viewports are moved by eighths of a pixel. Each of these is shaded for "
-      "itself, so "
-      "what textures and lights do within a pixel is part of the error, and no number of samples takes it "
-      "away: a pixel "
-      "is shaded once.",
+      "itself, so what textures and lights do within a pixel is part of the error. No number of samples "
+      "takes "
+      "that away while a pixel is shaded once; shading each sample does, at the cost of as many fragments.",
       "Bytes are those of the memory channels. A small picture whose planes fit the L2 cache moves next to "
       "none, so its "
       "bytes leap where they do not fit any more; in a larger one they grow less than the samples, since the "

@@ -1,4 +1,6 @@
-/// --samples: what is refused, and that a scene, its trace and a functional run agree.
+/// --samples and what goes with it: what is refused, and that a scene, its trace and a functional run agree.
+#include <nlohmann/json.hpp>
+
 #include "tests/cli/quadrille.h"
 
 using namespace quadrille::tests;
@@ -45,4 +47,58 @@ TEST_CASE("samples: passes that must keep one are told of") {
       folder, {"render", "builtin:outlines", "--size", "64x36", "--samples", "4", "-q", "--out", "a.png"});
   CHECK(done.exit_code == 0);
   CHECK_THAT(done.err, Catch::Contains("builtin:outlines: 1 of its passes keep one sample a pixel"));
+}
+
+TEST_CASE("samples: shading each is refused where there is one, goes into traces, and shades as many") {
+  refused({"render", "builtin:cubes", "--supersample", "--out", "a.png"},
+          {"--supersample", "--samples 2, 4 or 8"});
+  refused({"render", "builtin:cubes", "--supersample", "--samples", "1"}, {"--supersample"});
+  const ScratchFolder folder;
+  const std::vector<std::string> scene{"builtin:flag", "--size", "64x36", "--samples", "4"};
+  const auto with = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), scene.begin(), scene.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  run(folder, with({"render"}, {"-q", "--out", "a.png", "--stats", "a.json"}));
+  run(folder, with({"render"}, {"-q", "--out", "b.png", "--stats", "b.json", "--supersample"}));
+  run(folder, with({"trace", "record"}, {"--out", "x.qtrace", "--supersample"}));
+  run(folder, {"render", "x.qtrace", "-q", "--out", "c.png", "--fidelity", "functional"});
+  CHECK_FALSE(equal(folder, "a.png", "b.png"));
+  CHECK(equal(folder, "b.png", "c.png"));
+  const auto shaded = [&](const std::string& file) {
+    return nlohmann::json::parse(folder.read(file)).at("frame").at("fragments_shaded").get<int>();
+  };
+  CHECK(shaded("b.json") > 3 * shaded("a.json"));
+  CHECK(shaded("b.json") < 4 * shaded("a.json"));
+}
+
+TEST_CASE("samples: alpha to coverage smooths what an alpha test cuts out; a trace has it in it") {
+  const ScratchFolder folder;
+  const std::vector<std::string> scene{"builtin:courtyard", "--size",     "96x54",
+                                       "--fidelity",        "functional", "-q"};
+  const auto picture = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render"};
+    arguments.insert(arguments.end(), scene.begin(), scene.end());
+    arguments.insert(arguments.end(), {"--out", file});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run(folder, arguments);
+  };
+  picture("a.png", {"--samples", "4"});
+  picture("b.png", {"--samples", "4", "--alpha-to-coverage"});
+  CHECK_FALSE(equal(folder, "a.png", "b.png"));
+  run(folder, {"trace", "record", "builtin:courtyard", "--size", "96x54", "--samples", "4",
+               "--alpha-to-coverage", "--out", "x.qtrace"});
+  run(folder, {"render", "x.qtrace", "-q", "--out", "c.png", "--fidelity", "functional"});
+  CHECK(equal(folder, "b.png", "c.png"));
+  require_refused(run_quadrille(folder, {"render", "x.qtrace", "--alpha-to-coverage"}),
+                  {"--alpha-to-coverage", "are for scenes"});
+}
+
+TEST_CASE("samples: a picture of them has the edges of triangles in other colours than their inside") {
+  const ScratchFolder folder;
+  for (const char* file : {"a.png", "b.png"})
+    run(folder, {"render", "builtin:cubes", "--size", "64x36", "--view", "samples", "--samples",
+                 file[0] == 'a' ? "1" : "4", "-q", "--out", file});
+  CHECK_FALSE(equal(folder, "a.png", "b.png"));
 }

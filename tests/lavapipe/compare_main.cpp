@@ -36,7 +36,7 @@ struct Arguments {
   int camera = -1;
   std::string vertex_shader, fragment_shader, report, images;
   std::string shading = "pbr", order = "file", view;
-  bool lavapipe_only = false, validate = false;
+  bool lavapipe_only = false, validate = false, supersample = false, alpha_to_coverage = false;
   int time_frames = 0;
   int threads = -1;
   std::uint32_t samples = 1;
@@ -62,6 +62,8 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--samples", a.samples,
                  "samples a pixel of the coloured picture: 1 or 4, which lavapipe has")
       ->check(CLI::IsMember({1, 4}));
+  app.add_flag("--supersample", a.supersample, "as of quadrille render");
+  app.add_flag("--alpha-to-coverage", a.alpha_to_coverage, "as of quadrille render");
   app.add_flag("--lavapipe-only", a.lavapipe_only, "render and time lavapipe; compare nothing");
   app.add_flag("--validate", a.validate,
                "run lavapipe under the Khronos validation layer; any message is a failure");
@@ -89,6 +91,8 @@ scenes::SceneOptions scene_options(const Arguments& a) {
   options.fragment_shader = a.fragment_shader;
   options.shading = scenes::named(scenes::kShadingNames, a.shading, scenes::Shading::kMinimal);
   options.order = scenes::named(scenes::kDrawOrderNames, a.order, scenes::DrawOrder::kFile);
+  options.samples = a.samples;
+  options.alpha_to_coverage = a.alpha_to_coverage;
   if (!a.view.empty()) options.shown = scenes::named(scenes::kShowingNames, a.view, scenes::Showing::kDepth);
   return options;
 }
@@ -164,6 +168,7 @@ int run(const Arguments& arguments, VulkanRenderer& renderer) {
   scenes::SceneOptions options = scene_options(arguments);
   traces::CommandStream color = scenes::load_scene(arguments.scene, options);
   traces::use_samples(color, arguments.samples);
+  if (arguments.supersample) traces::use_sample_shading(color);
   options.visibility = true;
   const traces::CommandStream triangles = scenes::load_scene(arguments.scene, options);
 

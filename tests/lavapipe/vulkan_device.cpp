@@ -247,6 +247,7 @@ void VulkanDevice::create_device() {
   features.features.largePoints = present.largePoints;
   features.features.shaderClipDistance = present.shaderClipDistance;
   features.features.shaderCullDistance = present.shaderCullDistance;
+  features.features.sampleRateShading = present.sampleRateShading;
   features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
   features.features.geometryShader = present.geometryShader;      // gl_PrimitiveID in a fragment shader
   features.features.robustBufferAccess = present.robustBufferAccess;

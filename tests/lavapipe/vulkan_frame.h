@@ -63,7 +63,8 @@ class VulkanFrame {
   [[nodiscard]] SetShape shape_of(traces::Index set) const;
   [[nodiscard]] VkDescriptorSetLayout set_layout(const SetShape& shape);
   [[nodiscard]] VkPipelineLayout pipeline_layout(const SetShapes& shapes);
-  [[nodiscard]] VkShaderModule shader_module(traces::Index shader);
+  /// `by_sample`: of a fragment shader whose pipeline shades by sample.
+  [[nodiscard]] VkShaderModule shader_module(traces::Index shader, bool by_sample = false);
   [[nodiscard]] const PipelineObjects& pipeline_for(const Bound& bound);
   [[nodiscard]] VkPipeline create_pipeline(const traces::Pipeline& pipeline, const PassFormats& pass,
                                            VkPipelineLayout layout);
@@ -88,7 +89,7 @@ class VulkanFrame {
   std::vector<VkDescriptorSet> descriptor_sets_;
   std::map<SetShape, VkDescriptorSetLayout> set_layouts_;
   std::map<SetShapes, VkPipelineLayout> pipeline_layouts_;
-  std::map<traces::Index, VkShaderModule> modules_;
+  std::map<std::pair<traces::Index, bool>, VkShaderModule> modules_;  ///< by shader, and whether by sample
   /// by pipeline, formats of the pass, set shapes
   std::map<std::tuple<traces::Index, PassFormats, SetShapes>, PipelineObjects> pipelines_;
   VkCommandBuffer commands_ = VK_NULL_HANDLE;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "models/base/error.h"
+#include "tests/lavapipe/sample_inputs.h"
 #include "tests/lavapipe/vulkan_enums.h"
 #include "tests/lavapipe/vulkan_frame.h"
 
@@ -199,18 +200,19 @@ VkPipelineLayout VulkanFrame::pipeline_layout(const SetShapes& shapes) {
   return pipeline_layouts_[shapes] = layout;
 }
 
-VkShaderModule VulkanFrame::shader_module(traces::Index shader) {
-  const auto known = modules_.find(shader);
+VkShaderModule VulkanFrame::shader_module(traces::Index shader, bool by_sample) {
+  const auto known = modules_.find({shader, by_sample});
   if (known != modules_.end()) return known->second;
   const traces::Shader& source = stream_.shaders[shader];
   VkShaderModuleCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  info.codeSize = source.spirv.size() * sizeof(std::uint32_t);
-  info.pCode = source.spirv.data();
+  const std::vector<std::uint32_t> words = by_sample ? with_sample_inputs(source.spirv) : source.spirv;
+  info.codeSize = words.size() * sizeof(std::uint32_t);
+  info.pCode = words.data();
   VkShaderModule module = VK_NULL_HANDLE;
   require(vkCreateShaderModule(device_.handle(), &info, nullptr, &module), "vkCreateShaderModule");
   cleanup_.add([this, module] { vkDestroyShaderModule(device_.handle(), module, nullptr); });
-  return modules_[shader] = module;
+  return modules_[{shader, by_sample}] = module;
 }
 
 const VulkanFrame::PipelineObjects& VulkanFrame::pipeline_for(const Bound& bound) {
@@ -245,7 +247,8 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
                                         VkPipelineLayout layout) {
   const VkPipelineShaderStageCreateInfo stages[] = {
       stage_info(VK_SHADER_STAGE_VERTEX_BIT, shader_module(pipeline.vertex_shader)),
-      stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, shader_module(pipeline.fragment_shader))};
+      stage_info(VK_SHADER_STAGE_FRAGMENT_BIT,
+                 shader_module(pipeline.fragment_shader, pipeline.sample_shading))};
   const VertexInput input(pipeline);
   VkPipelineInputAssemblyStateCreateInfo assembly{};
   assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
@@ -262,6 +265,10 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   VkPipelineMultisampleStateCreateInfo samples{};
   samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
   samples.rasterizationSamples = static_cast<VkSampleCountFlagBits>(pass.samples);
+  samples.sampleShadingEnable = pipeline.sample_shading ? VK_TRUE : VK_FALSE;
+  samples.minSampleShading = 1;
+  samples.pSampleMask = &pipeline.sample_mask;
+  samples.alphaToCoverageEnable = pipeline.alpha_to_coverage ? VK_TRUE : VK_FALSE;
   const VkPipelineDepthStencilStateCreateInfo depth = depth_state(pipeline);
   const std::vector<traces::Format>& formats = pass.formats;
   std::vector<VkPipelineColorBlendAttachmentState> attachments;

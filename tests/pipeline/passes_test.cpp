@@ -112,3 +112,15 @@ TEST_CASE("passes: a trace file of version 1, with its table of targets, draws w
   CHECK(functional_digest(old) == functional_digest(now));
   CHECK(traces::decode_trace(traces::encode_trace(old), "t") == old);
 }
+
+TEST_CASE("passes: pipelines of a file from before shading by sample shade pixels and mask nothing") {
+  const traces::CommandStream old =
+      traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_samples_pipe_3.qtrace");
+  scenes::SceneOptions options;
+  options.width = 64;
+  options.height = 36;
+  traces::CommandStream now = scenes::load_scene("builtin:triangle", options);
+  traces::use_samples(now, 4);
+  CHECK(old.pipelines == now.pipelines);
+  CHECK(functional_digest(old) == functional_digest(now));
+}

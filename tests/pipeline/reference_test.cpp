@@ -60,11 +60,33 @@ TEST_CASE("machine: the lectures' pipelines equal the reference in given mode") 
     SceneOptions painter;
     painter.order = DrawOrder::kPainter;
     check_scene(scene, painter);
-    for (const Showing shown :
-         {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal, Showing::kTriangle}) {
+    for (const Showing shown : {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal,
+                                Showing::kTriangle, Showing::kSamples}) {
       SceneOptions options;
       options.shown = shown;
       check_scene(scene, options);
+    }
+  }
+}
+
+TEST_CASE(
+    "machine: scenes of four samples, by sample and covered by alpha, equal the reference in given mode") {
+  for (const char* scene : {"builtin:cubes", "builtin:flag", "builtin:courtyard"}) {
+    for (const bool by_sample : {false, true}) {
+      scenes::SceneOptions options;
+      options.width = 200;
+      options.height = 112;
+      options.alpha_to_coverage = true;
+      traces::CommandStream stream = scenes::load_scene(scene, options);
+      traces::use_samples(stream, 4);
+      if (by_sample) traces::use_sample_shading(stream);
+      const auto both = studies::render_with_reference(stream, {});
+      const auto difference =
+          ref::compare_images({both.machine.width, both.machine.height, both.machine.color},
+                              {both.machine.width, both.machine.height, both.reference.color});
+      INFO(scene << (by_sample ? ", by sample" : ", by pixel"));
+      CHECK(difference.fraction_within(2) >= 0.999);
+      CHECK(difference.bad_blocks == 0);
     }
   }
 }

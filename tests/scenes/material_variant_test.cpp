@@ -2,12 +2,14 @@
 /// 1.1.
 #include "scenes/material/material_variant.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 #include <spirv-tools/libspirv.hpp>
 
 #include "models/base/error.h"
 #include "scenes/material/frame_block.h"
+#include "scenes/material/glsl.h"
 #include "scenes/material/shader_library.h"
 #include "tests/scenes/gltf_text.h"
 
@@ -114,12 +116,34 @@ TEST_CASE("material variants: the lectures' pipelines, and pictures of values, c
     compile_all(options, defines_for(1, 2, 1, true), 311);
     compile_all(options, defines_for(0, 5, 2, false), 311);
   }
-  for (const Showing shown :
-       {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal, Showing::kTriangle}) {
+  for (const Showing shown : {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal,
+                              Showing::kTriangle, Showing::kSamples}) {
     SceneOptions options;
     options.shown = shown;
     compile_all(options, defines_for(1, 0, 0, false), 101);
   }
+}
+
+TEST_CASE("material variants: alpha covers where it would be tested and nothing shines through") {
+  Material m = material_with(0x1f);
+  m.alpha = AlphaMode::kMask;
+  const auto has = [&](const char* define, ShaderSet set, bool wished) {
+    const Variant v = choose_variant(m, primitive_with(0xff), set, wished);
+    return std::ranges::count(v.defines, define) == 1;
+  };
+  for (const ShaderSet set : {ShaderSet::kMaterial, ShaderSet::kPhong}) {
+    CHECK((has("ALPHA_TO_COVERAGE", set, true) && !has("ALPHA_MASK", set, true)));
+    CHECK((has("ALPHA_MASK", set, false) && !has("ALPHA_TO_COVERAGE", set, false)));
+    const Variant v = choose_variant(m, primitive_with(0xff), set, true);
+    CHECK(compile_glsl(
+              material_shader_glsl(traces::ShaderStage::kFragment, set), traces::ShaderStage::kFragment, "t",
+              material_shader_defines(traces::ShaderStage::kFragment, v, defines_for(1, 0, 0, false)))
+              .size() > 100);
+  }
+  for (const ShaderSet set : {ShaderSet::kVisibility, ShaderSet::kTriangle, ShaderSet::kSamples})
+    CHECK(has("ALPHA_MASK", set, true));
+  m.alpha = AlphaMode::kBlend;
+  CHECK_FALSE(has("ALPHA_TO_COVERAGE", ShaderSet::kMaterial, true));
 }
 
 TEST_CASE("material variants: the lectures' pipelines know of a material its colour and its alpha") {

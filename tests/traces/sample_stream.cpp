@@ -71,6 +71,9 @@ Pipeline random_pipeline(Dice& dice) {
                 dice.choice(BlendOp::kMax),
                 dice.choice(BlendOp::kMax),
                 static_cast<std::uint8_t>(dice.below(16))};
+  p.sample_shading = dice.coin();
+  p.alpha_to_coverage = dice.coin();
+  p.sample_mask = dice.coin() ? dice.below(256) : ~0u;
   return p;
 }
 

@@ -37,6 +37,9 @@ void main() {
 #else
   vec4 base = read_base_color();
   alpha_test(base.a);
+#ifdef ALPHA_TO_COVERAGE
+  base.a = alpha_coverage(base.a);
+#endif
   out_color = vec4(lit(base.rgb), base.a);
 #endif
 }

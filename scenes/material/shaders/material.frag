@@ -308,6 +308,9 @@ Surface surface(vec3 base) {
 void main() {
   vec4 base = read_base_color();
   alpha_test(base.a);
+#ifdef ALPHA_TO_COVERAGE
+  base.a = alpha_coverage(base.a);
+#endif
 #ifdef UNLIT
   vec3 color = base.rgb;
 #else
@@ -330,7 +333,7 @@ void main() {
 #else
   out_color = vec4(color, 1.0 - seen);
 #endif
-#elif defined(ALPHA_BLEND)
+#elif defined(ALPHA_BLEND) || defined(ALPHA_TO_COVERAGE)
   out_color = vec4(color, base.a);
 #else
   out_color = vec4(color, 1.0);

@@ -105,3 +105,10 @@ void alpha_test(float alpha) {
   if (alpha < material.emissive.w) discard;
 #endif
 }
+
+#ifdef ALPHA_TO_COVERAGE
+// How much of the pixel the alpha test would leave: its edge, where alpha is at the cut-off, is one pixel wide, and a half there.
+float alpha_coverage(float alpha) {
+  return clamp((alpha - material.emissive.w) / max(fwidth(alpha), 1.0 / 256.0) + 0.5, 0.0, 1.0);
+}
+#endif

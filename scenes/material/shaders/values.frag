@@ -34,5 +34,11 @@ void main() {
   uint code = (draw.first_triangle + uint(gl_PrimitiveID) + 1u) * 2654435761u;
   value = vec3(uvec3(code, code >> 8, code >> 16) & 255u) / 255.0;
 #endif
+#ifdef SHOW_SAMPLES
+  // Dark blue where the primitive covers all samples of the pixel, else from red (one) to yellow.
+  int covered = 0;
+  [[unroll]] for (int s = 0; s < SAMPLES; ++s) covered += gl_SampleMaskIn[0] >> s & 1;
+  value = covered == SAMPLES ? vec3(0.05, 0.1, 0.3) : vec3(1.0, float(covered - 1) / float(SAMPLES), 0.0);
+#endif
   out_color = vec4(value, 1.0);
 }

@@ -14,13 +14,17 @@ struct PackerBench final : Bench {
     std::vector<Timed<CoverageToken>> coverage;
     std::vector<Timed<WarpReleaseToken>> releases{};
     int rate = 4, slots = 16, patience = 64, launch = 1, samples = 1;
+    bool by_sample = false;
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
   PackerBench(Driver& driver, const contract::Variation& v, const Setup& s)
       : Bench(driver, v), warps(static_cast<std::size_t>(s.slots)) {
     frame.draws.resize(16);
-    for (DrawState& draw : frame.draws) draw.setup.samples = quadrille::models::sample_grid(s.samples, 8);
+    for (DrawState& draw : frame.draws) {
+      draw.setup.samples = quadrille::models::sample_grid(s.samples, 8);
+      draw.by_sample = s.by_sample;
+    }
     params.quads_per_clk.set(s.rate);
     params.patience_clk.set(s.patience);
     params.launch_clk.set(s.launch);
@@ -105,6 +109,30 @@ TEST_CASE("warp_packer: the samples of a tile are gathered, and its pixels are p
   });
   // Packed in cycle 1, when the last token is there; it leaves when its patience ends.
   CHECK(text == "12:0 quads 3 covered ff1 samples 5 0 1 4 fragments 9 samples 10");
+}
+
+TEST_CASE("warp_packer: of a draw by sample each sample has quads of its own, at the rate") {
+  const auto plane = [](std::uint8_t sample, std::uint64_t mask) {
+    return CoverageToken{TokenKind::kWork, false, 0, 0, DrawId(0), 5, mask, sample, sample == 0, sample == 3};
+  };
+  const PackerBench::Setup s{.coverage = {{0, plane(0, 0xf1)}, {0, plane(2, 0xf01)}, {0, plane(3, 0)}},
+                             .rate = 1,
+                             .patience = 10,
+                             .samples = 4,
+                             .by_sample = true};
+  const auto text = run<PackerBench>(s, [](const PackerBench& b) {
+    const WarpSlot& warp = b.warps[WarpSlotId(0)];
+    std::string quads;
+    for (std::size_t q = 0; q < 4; ++q)
+      quads += fmt::format("{},{}:{} ", warp.quad[q].x, warp.quad[q].y, warp.quad[q].sample);
+    return fmt::format("{} quads {} {}covered {:x} samples {} {} {} {} fragments {} samples {} tiles {}",
+                       b.work->text(), warp.quads, quads, warp.covered, warp.samples[0], warp.samples[1],
+                       warp.samples[4], warp.samples[8], counter(b, 1), counter(b, 6), counter(b, 0));
+  });
+  // Two quads of sample 0 in cycles 1 and 2, two of sample 2 in 3 and 4; in 5 it is known that there are no
+  // more.
+  CHECK(text ==
+        "16:0 quads 4 0,0:0 2,0:0 0,0:2 4,0:2 covered f1f1 samples 1 0 1 4 fragments 10 samples 10 tiles 1");
 }
 
 TEST_CASE("warp_packer: a partial warp leaves exactly when its patience ends") {

@@ -20,6 +20,7 @@ struct RopBench final : Bench {
     int lines = 256, ways = 8, misses = 32, memory_latency = 10;
     std::size_t colors = 1;
     int samples = 1;
+    unsigned mask = ~0u;  ///< samples that the program has left
     models::LoadOp load = models::LoadOp::kClear;
     models::StoreOp store = models::StoreOp::kStore;
   };
@@ -72,7 +73,8 @@ struct RopBench final : Bench {
     warp.covered = ~0u;
     warp.alive = s.alive;
     warp.late = s.late_warps;
-    warp.samples.fill(static_cast<std::uint8_t>((1 << s.samples) - 1));
+    warp.packed_samples = std::uint64_t{32} * static_cast<std::uint64_t>(s.samples);
+    warp.samples.fill(static_cast<std::uint8_t>(((1u << s.samples) - 1) & s.mask));
     for (std::size_t q = 0; q < 8; ++q) {
       const auto i = static_cast<std::uint16_t>(q);
       if (number % 2 == 0)
@@ -170,6 +172,26 @@ TEST_CASE("rop: what a program discards of a warp that is tested late is counted
           return fmt::format("discarded {}, late {}", counter(*b.unit, "discarded"),
                              counter(*b.unit, "late_discarded"));
         }) == "discarded 23, late 23");
+}
+
+TEST_CASE("rop: samples that a program takes from its fragments are counted and not written") {
+  const auto text = [](const RopBench& b) {
+    return fmt::format("{} discarded {}, late {}, samples discarded {} written {}", b.released->text(),
+                       counter(*b.unit, "discarded"), counter(*b.unit, "late_discarded"),
+                       counter(*b.unit, "samples_discarded"), counter(*b.unit, "samples_written"));
+  };
+  RopBench::Setup s{
+      .order = {{0, kBegin}, {0, warp(0)}, {0, warp(1)}, {0, kDrawEnd}},
+      .done = {done(10, 0), done(10, 1)},
+      .late = {{50, {TokenKind::kWork, WarpSlotId(0)}}, {50, {TokenKind::kWork, WarpSlotId(1)}}},
+      .samples = 4,
+      .mask = 0x5};
+  s.late.clear();
+  CHECK(run<RopBench>(s, text) == "22:0 26:1 discarded 0, late 0, samples discarded 128 written 128");
+  s.late = {{50, {TokenKind::kWork, WarpSlotId(0)}}, {50, {TokenKind::kWork, WarpSlotId(1)}}};
+  s.late_warps = true;
+  s.alive = 0x0000ffff;
+  CHECK(run<RopBench>(s, text) == "52:0 54:1 discarded 32, late 192, samples discarded 192 written 64");
 }
 
 TEST_CASE("rop: a late-tested warp is sent when it is shaded and retires when its answer is there") {

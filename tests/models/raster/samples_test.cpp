@@ -9,7 +9,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <memory>
 #include <set>
 #include <vector>
 
@@ -91,6 +93,44 @@ TEST_CASE("samples: what is covered is what the definition covers, at 2, 4 and 8
     }
   }
   SUCCEED();
+}
+
+TEST_CASE(
+    "samples: those of a pixel are those of the tiles, and inputs there are those of a quad moved there") {
+  RandomSource random(15);
+  auto in = std::make_unique<FragmentInputs>();
+  int moved = 0;
+  for (int round = 0; round < 400; ++round) {
+    const int bits = random.integer(4, 12), samples = 1 << round % 4;
+    const SampleGrid grid = sample_grid(samples, bits);
+    TriangleSetup t;
+    if (setup_in_square(awkward_triangle(random, kSize, bits), kSize, bits, t, samples) !=
+        SetupOutcome::kKept)
+      continue;
+    const int tile_x = random.integer(0, 7), tile_y = random.integer(0, 7);
+    for (int s = 0; s < samples; ++s) {
+      const std::uint64_t plane = sample_coverage(t, tile_x, tile_y, grid, s);
+      for (int entry = 0; entry < kTilePixels; ++entry) {
+        const int x = 8 * tile_x + entry_x(entry), y = 8 * tile_y + entry_y(entry);
+        REQUIRE((covered_samples(t, x, y, grid) >> s & 1u) == (plane >> entry & 1u));
+        if ((plane >> entry & 1u) == 0) continue;
+        const PixelOffset at = grid.from_centre(s);
+        interpolate_quad(t, x & ~1, y & ~1, 3, *in, at);
+        const auto lane = static_cast<std::size_t>(12 + (x & 1) + 2 * (y & 1));
+        const VertexWeights weights = weights_at(t, x + (0.5 + at.x), y + (0.5 + at.y));
+        REQUIRE(weights.persp_1 == in->persp_1[lane]);
+        REQUIRE(weights.persp_2 == in->persp_2[lane]);
+        REQUIRE(weights.linear_1 == in->linear_1[lane]);
+        REQUIRE(weights.linear_2 == in->linear_2[lane]);
+        REQUIRE(in->x[lane] == static_cast<float>(x + (0.5 + at.x)));
+        // A covered sample lies in the triangle: its weights are within, but for rounding.
+        REQUIRE(std::min({weights.linear_1, weights.linear_2, 1 - weights.linear_1 - weights.linear_2}) >
+                -1e-3f);
+        moved += samples > 1 ? 1 : 0;
+      }
+    }
+  }
+  CHECK(moved > 1000);
 }
 
 TEST_CASE("samples: two triangles that share an edge cover each sample of their square once") {

@@ -122,7 +122,9 @@ TEST_CASE("shader lanes: a quad's values do not depend on the other quads of its
     };
     for (LaneFloats* row :
          {&g.fragment.x, &g.fragment.y, &g.fragment.z, &g.fragment.inv_w, &g.fragment.persp_1,
-          &g.fragment.persp_2, &g.fragment.linear_1, &g.fragment.linear_2})
+          &g.fragment.persp_2, &g.fragment.linear_1, &g.fragment.linear_2, &g.fragment.centroid_persp_1,
+          &g.fragment.centroid_persp_2, &g.fragment.centroid_linear_1, &g.fragment.centroid_linear_2,
+          &g.fragment.sample_x, &g.fragment.sample_y})
       shuffle(*row);
     shuffle(g.fragment.front_facing);
     const auto place = [&](auto& row, const auto& source) {
@@ -133,6 +135,12 @@ TEST_CASE("shader lanes: a quad's values do not depend on the other quads of its
         place(g.fragment.inv_w, original.inv_w);
     place(g.fragment.persp_1, original.persp_1), place(g.fragment.persp_2, original.persp_2);
     place(g.fragment.linear_1, original.linear_1), place(g.fragment.linear_2, original.linear_2);
+    place(g.fragment.centroid_persp_1, original.centroid_persp_1),
+        place(g.fragment.centroid_persp_2, original.centroid_persp_2);
+    place(g.fragment.centroid_linear_1, original.centroid_linear_1),
+        place(g.fragment.centroid_linear_2, original.centroid_linear_2);
+    place(g.fragment.sample_x, original.sample_x), place(g.fragment.sample_y, original.sample_y);
+    place(g.fragment.sample_id, original.sample_id), place(g.fragment.sample_mask, original.sample_mask);
     place(g.fragment.front_facing, original.front_facing),
         place(g.fragment.primitive_id, original.primitive_id);
     LaneMask lanes = 0xfu << (4 * to);
@@ -143,7 +151,7 @@ TEST_CASE("shader lanes: a quad's values do not depend on the other quads of its
     g.run(program, lanes);
     INFO(disassemble(program));
     for (std::size_t lane = 0; lane < 4; ++lane) {
-      for (std::size_t slot = 0; slot <= kDepthOutput; ++slot)
+      for (std::size_t slot = 0; slot < kFragmentOutputs; ++slot)
         REQUIRE(g.outputs[slot][4 * to + lane] == outputs[slot][4 * from + lane]);
       for (std::size_t r = 0; r < regs.size(); ++r)
         REQUIRE(g.warp.regs[r][4 * to + lane] == regs[r][4 * from + lane]);

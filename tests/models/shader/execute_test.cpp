@@ -157,6 +157,14 @@ TEST_CASE("shader interface: inputs, system values and outputs reach their rows"
   check_lanes(f, 2, [&](std::uint32_t i) { return bits_of(f.fragment.inv_w[i]); });
   check_lanes(f, 3, [&](std::uint32_t i) { return f.fragment.front_facing[i]; });
   check_lanes(f, 4, [&](std::uint32_t i) { return f.fragment.primitive_id[i]; });
+  f.run(fragment(
+      "input r0, sample_id\ninput r1, sample_x\ninput r2, sample_y\ninput r3, sample_mask\noutput out33, "
+      "r3\n"));
+  check_lanes(f, 0, [&](std::uint32_t i) { return f.fragment.sample_id[i]; });
+  check_lanes(f, 1, [&](std::uint32_t i) { return bits_of(f.fragment.sample_x[i]); });
+  check_lanes(f, 2, [&](std::uint32_t i) { return bits_of(f.fragment.sample_y[i]); });
+  check_lanes(f, 3, [&](std::uint32_t i) { return f.fragment.sample_mask[i]; });
+  CHECK(f.outputs[kSampleMaskOutput] == f.fragment.sample_mask);
 }
 
 TEST_CASE("shader interface: interpolation by mode, for one triangle and for eight") {
@@ -164,9 +172,12 @@ TEST_CASE("shader interface: interpolation by mode, for one triangle and for eig
     for (const bool masked : {false, true}) {
       WarpFixture f;
       if (one_triangle) f.fragment.varyings.fill(f.planes[3].data());
-      const std::string body = "interp r1, vary0\ninterp r2, vary1\ninterp r3, vary2\n";
-      f.run(fragment(".varying perspective\n.varying linear\n.varying flat\n" + kLaneNumber +
-                     (masked ? "ult r4, r0, 13\nif r4\n" + body + "endif\n" : body)));
+      const std::string body =
+          "interp r1, vary0\ninterp r2, vary1\ninterp r3, vary2\ninterp r5, vary3\ninterp r6, vary4\n";
+      f.run(
+          fragment(".varying perspective\n.varying linear\n.varying flat\n.varying perspective-centroid\n"
+                   ".varying linear-centroid\n" +
+                   kLaneNumber + (masked ? "ult r4, r0, 13\nif r4\n" + body + "endif\n" : body)));
       const auto plane = [&](std::uint32_t lane, std::size_t slot, const LaneFloats& w1,
                              const LaneFloats& w2) {
         const float* v = f.fragment.varyings[lane / 4] + 3 * slot;
@@ -178,6 +189,12 @@ TEST_CASE("shader interface: interpolation by mode, for one triangle and for eig
                   [&](std::uint32_t i) { return plane(i, 1, f.fragment.linear_1, f.fragment.linear_2); });
       check_lanes(f, 3, [&](std::uint32_t i) {
         return masked && i >= 13 ? 0u : bits_of(f.fragment.varyings[i / 4][6]);
+      });
+      check_lanes(f, 5, [&](std::uint32_t i) {
+        return plane(i, 3, f.fragment.centroid_persp_1, f.fragment.centroid_persp_2);
+      });
+      check_lanes(f, 6, [&](std::uint32_t i) {
+        return plane(i, 4, f.fragment.centroid_linear_1, f.fragment.centroid_linear_2);
       });
     }
 }

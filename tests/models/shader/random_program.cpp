@@ -21,7 +21,7 @@ class Generator {
   Program generate() {
     header();
     statements(options_.statements);
-    for (std::uint16_t slot = 0; slot <= kDepthOutput; ++slot) {
+    for (std::uint16_t slot = 0; slot < kFragmentOutputs; ++slot) {
       Instruction in = make(Op::kOutput);
       in.imm = slot;
       program_.code.push_back(in);
@@ -39,9 +39,11 @@ class Generator {
     program_.num_regs = kFirstCounter + kMaxNesting;
     program_.uses_discard = below(2) != 0;
     program_.writes_depth = true;
+    program_.writes_sample_mask = true;
+    program_.by_sample = below(2) != 0;
     program_.early_fragment_tests = below(2) != 0;
     program_.uses_derivatives = options_.quad_operations;
-    for (int i = 0; i < 6; ++i) program_.varyings.push_back(static_cast<Interpolation>(below(3)));
+    for (int i = 0; i < 6; ++i) program_.varyings.push_back(static_cast<Interpolation>(below(5)));
     for (std::uint32_t i = 0; i < 3; ++i) program_.textures.push_back({i, below(9)});
     ConstantLayout::Range literals{.words = 12, .literals = {7, 1, 1u + below(4)}};
     while (literals.literals.size() < literals.words) literals.literals.push_back(random_word(random_));
@@ -81,7 +83,7 @@ class Generator {
     if (info.immediate == Immediate::kVaryingSlot) in.imm = below(program_.varyings.size());
     if (info.immediate == Immediate::kTextureBinding) in.imm = below(program_.textures.size());
     if (info.immediate == Immediate::kInputSlot)
-      in.imm = static_cast<std::uint16_t>(static_cast<std::uint16_t>(SystemValue::kFragCoordX) + below(6));
+      in.imm = static_cast<std::uint16_t>(static_cast<std::uint16_t>(SystemValue::kFragCoordX) + below(12));
     if (info.immediate == Immediate::kConstantWord) {
       in.imm = below(16);
       in.b = {Operand::kConstant, 0, kLastIndex};

@@ -49,6 +49,11 @@ struct WarpFixture {
       fragment.inv_w[i] = 1 / (t + 1);
       fragment.persp_1[i] = t / 64, fragment.persp_2[i] = 0.5f - t / 64, fragment.linear_1[i] = t / 40,
       fragment.linear_2[i] = 0.25f;
+      fragment.centroid_persp_1[i] = t / 48, fragment.centroid_persp_2[i] = 0.4f - t / 80;
+      fragment.centroid_linear_1[i] = t / 36, fragment.centroid_linear_2[i] = 0.2f;
+      fragment.sample_x[i] = t / 33, fragment.sample_y[i] = 1 - t / 35;
+      fragment.sample_id[i] = static_cast<std::uint32_t>(i % 8);
+      fragment.sample_mask[i] = static_cast<std::uint32_t>(37 * i % 256);
       fragment.front_facing[i] = (i & 4) != 0 ? ~0u : 0u;
       fragment.primitive_id[i] = static_cast<std::uint32_t>(i / 4);
       for (std::size_t a = 0; a < attributes.size(); ++a)

@@ -61,7 +61,7 @@ RandomShaderResult run_fragment_program(const models::Program& program) {
     in.y[lane] = place_of_lane(lane).y;
     in.inv_w[lane] = 1;
   }
-  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs{};
+  std::array<models::LaneWords, models::kFragmentOutputs> outputs{};
   models::Warp warp;
   warp.fragment = &in;
   return run_warp(warp, program, outputs, 0);

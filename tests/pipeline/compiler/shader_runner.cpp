@@ -94,7 +94,7 @@ RunOutput run_fragment(const models::Program& program, const RunInput& input, mo
       in.primitive_id[lane] = static_cast<std::uint32_t>(q);
     }
   }
-  std::array<models::LaneWords, models::kMaxColorOutputs + 1> outputs{};
+  std::array<models::LaneWords, models::kFragmentOutputs> outputs{};
   const std::vector<models::TextureSize> sizes(program.textures.size(), {64, 32, 7});
   models::Warp warp;
   warp.fragment = &in;
