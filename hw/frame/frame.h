@@ -166,7 +166,7 @@ struct PassState {
   /// Where colour attachments of several samples are resolved to when the pass ends.
   std::array<AttachmentState, models::kMaxColorAttachments> resolve;
   std::uint32_t resolved = 0;  ///< bit i: attachment i is
-  AttachmentState depth;
+  AttachmentState depth{.surface = {}, .format = models::Format::kD32Float};
   bool has_depth = false;            ///< a draw tests depth, or someone reads it later
   float clear_depth = 1;             ///< of a depth attachment that is not loaded, as it holds it
   bool samples_attachments = false;  ///< that earlier passes drew

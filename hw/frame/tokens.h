@@ -111,6 +111,7 @@ struct TileToken {
   /// what is covered, in the store of walked tiles; or the fine rasteriser tests it
   std::uint32_t walked = kNotWalked;
   static constexpr std::uint32_t kNotWalked = ~std::uint32_t{0};
+  bool in_front = false;  ///< every fragment passes the depth test: it is nearer than all that is there
 };
 
 /// Fine rasteriser -> depth unit -> warp packer: the covered pixels of one triangle in one tile. Of several
@@ -124,6 +125,7 @@ struct CoverageToken {
   std::uint64_t coverage = 0;  ///< quad-major
   std::uint8_t sample = 0;
   bool first = true, last = true;  ///< of the tokens of its triangle in its tile
+  bool in_front = false;           ///< as of its tile
 };
 
 /// Warp packer -> ROP: what retires next, in order. kWork: the warp in `slot`; `sync` (if not 0) may be

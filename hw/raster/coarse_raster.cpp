@@ -112,12 +112,14 @@ void CoarseRaster::begin_pass(PassId pass) {
   const PassState& state = frame_.pass(pass);
   hiz_trusted_ = true;
   hiz_.clear();
+  hiz_min_.clear();
   const bool tests = state.has_depth && std::ranges::any_of(frame_.draws_of(state), [](const DrawState& d) {
                        return d.uses_depth();
                      });
-  if (tests && params_.hiz)
-    hiz_.assign(std::size_t{state.depth.surface.tiles_x} * state.depth.surface.tiles_y,
-                state.loads_depth() ? std::numeric_limits<float>::infinity() : state.clear_depth);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::size_t tiles = std::size_t{state.depth.surface.tiles_x} * state.depth.surface.tiles_y;
+  if (tests && params_.hiz) hiz_.assign(tiles, state.loads_depth() ? kInfinity : state.clear_depth);
+  if (tests && params_.hiz_min) hiz_min_.assign(tiles, state.loads_depth() ? -kInfinity : state.clear_depth);
 }
 
 void CoarseRaster::note_direction(const DrawState& draw) {
@@ -134,13 +136,38 @@ void CoarseRaster::note_direction(const DrawState& draw) {
 
 bool CoarseRaster::hidden(const models::TileHit& tile) const {
   if (!hiz_usable_) return false;
-  const float held = hiz_[static_cast<std::size_t>(tile.tile_y) * frame_.pass(pass_).depth.surface.tiles_x +
-                          static_cast<std::size_t>(tile.tile_x)];
+  const float held = hiz_[tile_number(tile)];
   const DrawState& draw = frame_.draw(draw_);
   const float nearest = models::round_depth(
       frame_.pass(pass_).depth.format,
       models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y, draw.samples()).min);
   return draw.depth_stencil.depth_compare == models::CompareOp::kLess ? nearest >= held : nearest > held;
+}
+
+std::size_t CoarseRaster::tile_number(const models::TileHit& tile) const {
+  return static_cast<std::size_t>(tile.tile_y) * frame_.pass(pass_).depth.surface.tiles_x +
+         static_cast<std::size_t>(tile.tile_x);
+}
+
+/// Tiles are handed on in API order, so that what is noted here is all that can be stored when this one is
+/// tested, be it that some of it fails its own test.
+bool CoarseRaster::passes_in_front(const models::TileHit& tile) {
+  const DrawState& draw = frame_.draw(draw_);
+  const models::DepthStencilState& state = draw.depth_stencil;
+  if (hiz_min_.empty() || !state.depth_test) return false;
+  const models::Format format = frame_.pass(pass_).depth.format;
+  models::DepthBounds depths =
+      models::tile_depth_bounds(triangles_[triangle_].setup, tile.tile_x, tile.tile_y, draw.samples());
+  depths = {models::round_depth(format, depths.min), models::round_depth(format, depths.max)};
+  float& held = hiz_min_[tile_number(tile)];
+  const bool nearer =
+      state.depth_compare == models::CompareOp::kLess ? depths.max < held : depths.max <= held;
+  const bool in_front = nearer && lowers_depth(state.depth_compare) && !state.bounds.test &&
+                        !state.stencil.test && !draw.late_depth && !draw.fragment.program->writes_depth;
+  if (state.depth_write)
+    held = draw.fragment.program->writes_depth ? -std::numeric_limits<float>::infinity()
+                                               : std::min(held, depths.min);
+  return in_front;
 }
 
 void CoarseRaster::look_ahead() {
@@ -187,9 +214,11 @@ void CoarseRaster::walk(Tick now) {
 
 void CoarseRaster::hand_on(Tick now, const Traversal::Tile& tile) {
   ++stats_.tiles_kept;
+  const bool in_front = passes_in_front(tile.hit);
+  if (in_front) ++stats_.tiles_in_front;
   tile_out.push(now, {TokenKind::kWork, tile.hit.fully_covered, static_cast<std::uint16_t>(tile.hit.tile_x),
                       static_cast<std::uint16_t>(tile.hit.tile_y), draw_, triangle_,
-                      tile.walked ? walked_.put(tile.coverage) : TileToken::kNotWalked});
+                      tile.walked ? walked_.put(tile.coverage) : TileToken::kNotWalked, in_front});
 }
 
 void CoarseRaster::count(const Traversal::Work& work) {

@@ -11,6 +11,10 @@
 ///       samples a cycle, `segments_per_clk` crossed tiles a cycle and `walk_setup_clk` cycles a part of a
 ///       triangle; meanwhile the next row of tiles is walked, or the first one of the next triangle
 ///
+/// With `hiz_min` it holds a depth too that none is below: the least of all tiles of draws that write depth,
+/// as they are handed on, so that no update has to travel. A tile that is wholly nearer passes the depth test
+/// unread.
+///
 /// Hi-Z holds, for each tile of the pass, a depth that no stored depth exceeds. It may be late (updates
 /// travel by FIFO), which only keeps more. It is trusted only while every depth write of the pass can but
 /// lower depths: a draw that writes with another comparison switches it off until the next clear.
@@ -51,6 +55,9 @@ class CoarseRaster final : public Unit {
                        "the store waits]",
                        Effect::kTradeOff};
     Param<bool> hiz{*this, "hiz", true, "", "Drop tiles that Hi-Z proves hidden."};
+    Param<bool> hiz_min{*this, "hiz_min", false, "",
+                        "Keep the least depth of each tile too, so that the depths behind a tile that is "
+                        "wholly in front are not read."};
     PolicyParam<models::TileOrderPolicy> order{*this, "order", models::tile_order_policies(),
                                                models::kScanTileOrder,
                                                "In which order the tiles of a triangle go on. Their tests "
@@ -96,6 +103,8 @@ class CoarseRaster final : public Unit {
     Counter rows{*this, "rows", "row", "Edge walking: rows of samples walked"};
     Counter spans{*this, "spans", "span", "Edge walking: rows with a covered sample"};
     Counter segments{*this, "segments", "segment", "Edge walking: tiles crossed by spans"};
+    Counter tiles_in_front{*this, "tiles_in_front", "tile",
+                           "Tiles handed on as wholly in front of all that is there"};
   };
   CoarseRaster(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
                const TriangleStore& triangles, WalkedStore& walked);
@@ -131,6 +140,9 @@ class CoarseRaster final : public Unit {
   void count(const Traversal::Work& work);
   [[nodiscard]] bool hidden(const models::TileHit& tile) const;
   void drop(const models::TileHit& tile);
+  /// Is the tile in front of all that is there? Takes its depths into account from now on.
+  [[nodiscard]] bool passes_in_front(const models::TileHit& tile);
+  [[nodiscard]] std::size_t tile_number(const models::TileHit& tile) const;
   void note_direction(const DrawState& draw);
 
   const Params& params_;
@@ -150,7 +162,8 @@ class CoarseRaster final : public Unit {
   bool hiz_trusted_ = true;  ///< no draw of the pass has raised depths
   std::uint64_t since_sync_ = 0;
   bool sync_due_ = false;
-  std::vector<float> hiz_;  ///< by tile of the pass; empty when no draw of it tests depth
+  std::vector<float> hiz_;      ///< by tile of the pass; empty when no draw of it tests depth
+  std::vector<float> hiz_min_;  ///< likewise, and without `hiz_min`
   WorkRate rate_;
   Tick free_ = 0;
 };

@@ -76,9 +76,9 @@ int FineRaster::cover(const TileToken& tile) {
     stats_.fragments += static_cast<std::uint64_t>(std::popcount(coverage));
     if (coverage == 0) continue;
     planes_[static_cast<std::size_t>(plane_count_)] = {
-        TokenKind::kWork,  false,         tile.tile_x, tile.tile_y,
-        tile.part,         tile.triangle, coverage,    static_cast<std::uint8_t>(s),
-        plane_count_ == 0, false};
+        TokenKind::kWork,  false,         tile.tile_x,  tile.tile_y,
+        tile.part,         tile.triangle, coverage,     static_cast<std::uint8_t>(s),
+        plane_count_ == 0, false,         tile.in_front};
     ++plane_count_;
   }
   if (plane_count_ > 0) planes_[static_cast<std::size_t>(plane_count_ - 1)].last = true;

@@ -67,6 +67,8 @@ class DepthUnit final : public Unit {
                             "Fragments that an operation other than keep was done for"};
     Counter late_killed_samples{*this, "late_killed_samples", "sample",
                                 "Samples killed after shading, which are the same where a pixel has one"};
+    Counter tiles_unread{*this, "tiles_unread", "tile",
+                         "Tiles of those that are in front of all that is there, whose depths are not read"};
   };
   using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
   DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
@@ -139,6 +141,7 @@ class DepthUnit final : public Unit {
   }
   // Both.
   void acquire_waiting(Tick now);
+  [[nodiscard]] SectorWishes early_wishes(const CoverageToken& token) const;
   bool acquire_early(EarlyEntry& entry, std::uint32_t number);
   bool acquire_late(LateEntry& entry, std::uint32_t number);
   void take_answers(Tick now);

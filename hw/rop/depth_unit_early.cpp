@@ -62,19 +62,26 @@ void DepthUnit::take_early(Tick now) {
   const CoverageToken token = coverage_in.pop(now);
   if (token.kind == TokenKind::kWork) {
     ++stats_.tiles;
+    if (token.in_front) ++stats_.tiles_unread;
     stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(token.coverage));
   }
   early_.push_back({token, 0, after(now, 1), false, {}});
   take_free_ = after(now, 1);
 }
 
+/// What is in front of all that is there does not ask what that is.
+SectorWishes DepthUnit::early_wishes(const CoverageToken& token) const {
+  const std::uint32_t bytes = frame_.pass(pass_).depth.surface.pixel_bytes;
+  if (!token.in_front) return {.read = sectors_of(token.coverage, bytes)};
+  if (!frame_.draw(token.part.draw()).depth_stencil.depth_write) return {};
+  return wishes_of_write(token.coverage, bytes, false);
+}
+
 bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   stats_.working_for(entry.token.part.draw());
   if (entry.token.kind == TokenKind::kWork && frame_.draw(entry.token.part.draw()).uses_depth()) {
-    const std::uint32_t sectors =
-        sectors_of(entry.token.coverage, frame_.pass(pass_).depth.surface.pixel_bytes);
-    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y, entry.token.sample}, {.read = sectors},
-                        number, entry.missing, entry.done, port_))
+    if (!cache_.acquire({0, entry.token.tile_x, entry.token.tile_y, entry.token.sample},
+                        early_wishes(entry.token), number, entry.missing, entry.done, port_))
       return false;
   }
   entry.acquired = true;
@@ -143,7 +150,10 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
         return false;
       models::write_depth_stencil(outcome, incoming, stored);
       stats_.stencil_written += static_cast<std::uint64_t>(std::popcount(outcome.stencil_written));
-      if (outcome.depth_written != 0) send_hiz(now, token.tile_x, token.tile_y);
+      // What was not read is not known, so that only a tile that is covered whole tells its greatest depth.
+      const bool known =
+          !token.in_front || (token.coverage == ~std::uint64_t{0} && draw.samples().count == 1);
+      if (outcome.depth_written != 0 && known) send_hiz(now, token.tile_x, token.tile_y);
     }
     token.coverage = outcome.passed;
   }

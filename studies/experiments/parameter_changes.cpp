@@ -69,6 +69,7 @@ struct Tight {
 const std::vector<Tight>& tight_grounds() {
   static const std::vector<Tight> all{
       {"memory.page_idle", {"memory.page=adaptive"}},
+      {"coarse_raster.hiz_min", with(kNarrowMemory, {"depth.cache_lines=8", "depth.cache_ways=4"})},
       {"memory.in_order_ahead", {"memory.scheduler=in_order"}},
       {"memory.t_rfc", {"memory.refresh=all_bank"}},
       {"memory.t_rtrs", with(kNarrowMemory, {"memory.ranks=2"})},

@@ -57,7 +57,7 @@ traces::CommandStream storage_stream(const Setting& setting) {
 }
 
 /// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up,
-/// layers that lie behind each other, fragments that the shader drops, lines within and beyond the guard
+/// layers that lie behind each other, the same from back to front, fragments that the shader drops, lines within and beyond the guard
 /// band, points, and storage buffers.
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   constexpr std::int32_t kBeyond = 100'000;  // pixels
@@ -72,6 +72,7 @@ std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   streams.push_back(stream_of(small, {.cull = traces::CullMode::kBack}));
   streams.push_back(stream_of(hiding, {.depth = true}));
   streams.push_back(stream_of(hiding, {.depth = true, .discards = true}));
+  streams.push_back(stream_of(layers(setting.width, setting.height, kLayers, false), {.depth = true}));
   streams.push_back(stream_of(clipped, {.topology = traces::Topology::kLineList}));
   streams.push_back(stream_of(through_near_plane(setting.width, setting.height, 1),
                               {.topology = traces::Topology::kLineList, .depth = true}));

@@ -69,6 +69,7 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.scan_out.lines_in_flight.set(random.pick({1, 50}));
   config.memory.queue_depth.set(random.pick({1, 8}));
   config.coarse_raster.hiz.set(random.chance(0.7));
+  config.coarse_raster.hiz_min.set(random.chance(0.5));
   const int engines = random.pick({1, 2, 3, 4});
   config.gpu.engines.set(config.gpu.partitions % engines == 0 ? engines : 1);
 }

@@ -20,7 +20,7 @@ struct CoarseBench final : Bench {
     int rate = 4, tiles_per_clk = 1, reports = 8;
     Pace pace{};
     LinkSpec out{.depth = 64};
-    bool use_hiz = true;
+    bool use_hiz = true, use_least = false;
     std::size_t store_slots = 64;
   };
   CoarseBench(Driver& driver, const contract::Variation& v, const Setup& s)
@@ -37,6 +37,7 @@ struct CoarseBench final : Bench {
     params.tiles_per_clk.set(s.tiles_per_clk);
     params.reports.set(s.reports);
     params.hiz.set(s.use_hiz);
+    params.hiz_min.set(s.use_least);
     unit = std::make_unique<CoarseRaster>("unit", context(), params, store, walked);
     add(*unit);
     feed(unit->triangle_in, s.triangles);
@@ -161,6 +162,25 @@ TEST_CASE("coarse_raster: with 'less' a triangle at the held depth is hidden, a 
   CoarseBench::Setup s{.triangles = {{0, kBegin}, {10, triangle(1)}, {10, triangle(2)}},
                        .hiz = {{5, update}}};
   CHECK(tiles(s) == "2:903 13:20");  // the hidden one costs a cycle
+}
+
+TEST_CASE("coarse_raster: a tile that is nearer than all before it in its place is handed on as in front") {
+  // At depth 0.5, 0.25 and 0.75, and at 0.75 of a draw that writes with "greater".
+  CoarseBench::Setup s{
+      .triangles = {{0, kBegin}, {10, triangle(1)}, {20, triangle(2)}, {30, triangle(1)}, {40, triangle(3)}},
+      .use_hiz = false,
+      .use_least = true};
+  const auto in_front = [](const CoarseBench& b) {
+    std::string text;
+    for (const auto& t : b.sink->got)
+      if (t.token.kind == TokenKind::kWork) text += t.token.in_front ? "front " : "- ";
+    return text + fmt::format("{}", counter(*b.unit, "tiles_in_front"));
+  };
+  CHECK(run<CoarseBench>(s, in_front) == "front front - - 2");
+  s.triangles[1] = {10, triangle(4, 1)};  // it asks for greater depths, and leaves its own behind
+  CHECK(run<CoarseBench>(s, in_front) == "- front - - 1");
+  s.use_least = false;
+  CHECK(run<CoarseBench>(s, in_front) == "- - - - 0");
 }
 
 TEST_CASE("coarse_raster: an update never raises what Hi-Z holds, and one of another pass changes nothing") {

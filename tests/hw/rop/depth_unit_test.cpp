@@ -2,6 +2,7 @@
 #include "hw/rop/depth_unit.h"
 #include "models/rop/tile_in_frame.h"
 #include "tests/hw/bench_stub.h"
+#include "tests/hw/cache_user.h"
 #include "tests/hw/raster/triangles.h"
 
 #include <catch2/catch.hpp>
@@ -21,6 +22,7 @@ struct DepthBench final : Bench {
     models::LoadOp load = models::LoadOp::kClear;
     models::StoreOp store = models::StoreOp::kStore;
     bool read_later = false;
+    float stored = 0;  ///< what a loaded surface holds
   };
   /// Draws: 0 tests and writes with "less" early, 1 the same late, 2 without depth, 3 writes with "greater".
   /// Triangle i lies at depth i / 8.
@@ -29,6 +31,7 @@ struct DepthBench final : Bench {
     PassState pass;
     pass.has_depth = true;
     pass.depth.surface = models::allocate_surface(device, s.width, s.height);
+    models::fill_surface(device, pass.depth.surface, {{std::bit_cast<std::uint32_t>(s.stored)}});
     pass.depth.clear = {{std::bit_cast<std::uint32_t>(pass.clear_depth)}};
     pass.depth.load = s.load;
     pass.depth.store = s.store;
@@ -121,6 +124,23 @@ TEST_CASE(
   });
   // a cleared tile is not fetched
   CHECK(text == "3:903 13:4 17:6 coverage ffffffff00000000 in 128 killed 64 out 64 reads 0");
+}
+
+TEST_CASE("depth_unit: what is in front of all that is there does not read it, and is written all the same") {
+  const auto requests = [](bool in_front) {
+    CoverageToken token = tile(2, 0, kUpperHalf);
+    token.in_front = in_front;
+    const DepthBench::Setup s{.coverage = {{0, kBegin}, {10, token}},
+                              .late = {{60, {TokenKind::kPassEnd, {}}}},
+                              .load = models::LoadOp::kLoad,
+                              .stored = 1};
+    return run<DepthBench>(s, [](const DepthBench& b) {
+      return fmt::format("{} out, {} unread: {}", counter(*b.unit, "fragments_out"),
+                         counter(*b.unit, "tiles_unread"), requests_seen(*b.memory));
+    });
+  };
+  CHECK(requests(false) == "32 out, 0 unread:  r0/f w0/f");
+  CHECK(requests(true) == "32 out, 1 unread:  w0/f");
 }
 
 TEST_CASE("depth_unit: a draw without depth test passes untouched") {
