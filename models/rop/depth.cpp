@@ -54,14 +54,4 @@ float tile_max(const float depths[64]) {
   return ordered ? greatest : std::numeric_limits<float>::infinity();
 }
 
-float tile_min(const float depths[64]) {
-  float least = std::numeric_limits<float>::infinity();
-  bool ordered = true;
-  for (int i = 0; i < 64; ++i) {
-    ordered &= !std::isnan(depths[i]);
-    least = std::min(least, depths[i]);
-  }
-  return ordered ? least : -std::numeric_limits<float>::infinity();
-}
-
 }  // namespace quadrille::models

@@ -1,4 +1,4 @@
-/// Depth test of a tile, and the bounds that Hi-Z keeps of one. [VK1.3 #fragops-depth]
+/// Depth test of a tile, and the bound that Hi-Z is told of one. [VK1.3 #fragops-depth]
 #pragma once
 
 #include "models/base/pipeline_state.h"
@@ -15,9 +15,8 @@ namespace quadrille::models {
 /// Writes `incoming` where `mask` is set.
 void depth_write(float stored[64], const float incoming[64], std::uint64_t mask);
 
-/// Greatest and smallest depth of a tile. A NaN, which only a shader can write, counts as +infinity and
-/// -infinity, so that bounds stay conservative.
+/// Greatest depth of a tile. A NaN, which only a shader can write, counts as +infinity, so that the bound stays
+/// conservative.
 [[nodiscard]] float tile_max(const float depths[64]);
-[[nodiscard]] float tile_min(const float depths[64]);
 
 }  // namespace quadrille::models
