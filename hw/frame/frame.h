@@ -152,7 +152,7 @@ struct AttachmentState {
   models::Format format = models::Format::kR8G8B8A8Srgb;
   models::LoadOp load = models::LoadOp::kClear;
   models::StoreOp store = models::StoreOp::kStore;
-  models::PixelCode clear;  ///< encoded: what every pixel begins with, unless it is loaded
+  models::PixelCode clear{};  ///< encoded: what every pixel begins with, unless it is loaded
   /// Someone reads it after the pass, so tiles that nothing drew to must be written out too.
   bool read_later = true;
   [[nodiscard]] bool loads() const { return load == models::LoadOp::kLoad; }
@@ -166,7 +166,7 @@ struct PassState {
   /// Where colour attachments of several samples are resolved to when the pass ends.
   std::array<AttachmentState, models::kMaxColorAttachments> resolve;
   std::uint32_t resolved = 0;  ///< bit i: attachment i is
-  AttachmentState depth{.surface = {}, .format = models::Format::kD32Float};
+  AttachmentState depth{{}, models::Format::kD32Float};
   bool has_depth = false;            ///< a draw tests depth, or someone reads it later
   float clear_depth = 1;             ///< of a depth attachment that is not loaded, as it holds it
   bool samples_attachments = false;  ///< that earlier passes drew
