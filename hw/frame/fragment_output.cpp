@@ -57,9 +57,8 @@ void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outp
   if (draw.limits_coverage()) limit_coverage(draw, outputs, warp);
 }
 
-models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
-                            const models::TriangleSetup& triangle, const QuadOfWarp& quad,
-                            models::DepthPlane stored) {
+QuadOutcome test_depth(const DrawState& draw, const WarpSlot& warp, const models::TriangleSetup& triangle,
+                       const QuadOfWarp& quad, models::DepthPlane stored) {
   alignas(32) float incoming[models::kTilePixels] = {};
   const int first = quad.place.first_pixel();
   if (draw.samples().count == 1 || draw.fragment.program->writes_depth)
@@ -71,7 +70,8 @@ models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
   const models::DepthStencilOutcome outcome = models::test_depth_stencil(
       draw.depth_stencil, triangle.front_facing, stored, incoming, std::uint64_t{quad.lanes} << first);
   models::write_depth_stencil(outcome, incoming, stored);
-  return static_cast<models::LaneMask>(outcome.passed >> first) & 0xf;
+  return {static_cast<models::LaneMask>(outcome.passed >> first) & 0xf,
+          std::popcount(outcome.stencil_written)};
 }
 
 models::DepthPlane depth_plane(const AttachmentState& depth, models::DeviceMemory& memory,

@@ -24,34 +24,40 @@ struct QuadOfWarp {
   models::LaneMask lanes = 0;  ///< to write, bits 0..3
   int sample = 0;              ///< of these pixels
 };
-/// Tests a quad against the depths and stencil values stored in its tile, and writes where it shall; lanes
-/// that pass. Depths are the program's, or else those of the triangle at the sample.
-[[nodiscard]] models::LaneMask test_depth(const DrawState& draw, const WarpSlot& warp,
-                                          const models::TriangleSetup& triangle, const QuadOfWarp& quad,
-                                          models::DepthPlane stored);
+/// What the tests of a quad, of one or all of its samples, came to.
+struct QuadOutcome {
+  models::LaneMask passed = 0;  ///< lanes of which a sample passed
+  int stencil_written = 0;      ///< samples whose stencil value was operated on
+};
+/// Tests a quad against the depths and stencil values stored in its tile, and writes where it shall. Depths
+/// are the program's, or else those of the triangle at the sample.
+[[nodiscard]] QuadOutcome test_depth(const DrawState& draw, const WarpSlot& warp,
+                                     const models::TriangleSetup& triangle, const QuadOfWarp& quad,
+                                     models::DepthPlane stored);
 /// The plane of one sample in a tile of a depth attachment.
 [[nodiscard]] models::DepthPlane depth_plane(const AttachmentState& depth, models::DeviceMemory& memory,
                                              std::uint32_t tile_x, std::uint32_t tile_y,
                                              std::uint32_t sample);
-/// Tests all samples of a quad that are alive, and takes those from `warp` that fail; lanes of which one
-/// passes. `plane_of(sample)` is the tile's `DepthPlane`.
+/// Tests all samples of a quad that are alive, and takes those from `warp` that fail.
+/// `plane_of(sample)` is the tile's `DepthPlane`.
 template <class PlaneOf>
-models::LaneMask test_samples(const DrawState& draw, WarpSlot& warp, const models::TriangleSetup& triangle,
-                              QuadOfWarp quad, const PlaneOf& plane_of) {
+QuadOutcome test_samples(const DrawState& draw, WarpSlot& warp, const models::TriangleSetup& triangle,
+                         QuadOfWarp quad, const PlaneOf& plane_of) {
   const int count = draw.samples().count;
-  models::LaneMask survivors = 0;
+  QuadOutcome outcome;
   for (quad.sample = 0; quad.sample < count; ++quad.sample) {
     quad.lanes = warp.lanes_of(quad.number, count, quad.sample);
     if (quad.lanes == 0) continue;
-    const models::LaneMask passed = test_depth(draw, warp, triangle, quad, plane_of(quad.sample));
-    survivors |= passed;
+    const auto [passed, stencil_written] = test_depth(draw, warp, triangle, quad, plane_of(quad.sample));
+    outcome.passed |= passed;
+    outcome.stencil_written += stencil_written;
     for (unsigned i = 0; i < 4; ++i) {
       std::uint8_t& samples = warp.samples[4 * static_cast<std::size_t>(quad.number) + i];
       if ((quad.lanes & ~passed & 1u << i) != 0)
         samples = static_cast<std::uint8_t>(samples & ~(1u << quad.sample));
     }
   }
-  return survivors;
+  return outcome;
 }
 /// Blends a quad's colours into one attachment of its pass.
 void write_color(const DrawState& draw, const PassState& pass, std::size_t attachment, const WarpSlot& warp,

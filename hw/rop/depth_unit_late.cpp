@@ -110,11 +110,12 @@ models::LaneMask DepthUnit::test_quad(const DrawState& draw, WarpSlot& warp, int
       samples == 1 ? 1u : static_cast<std::uint32_t>(std::popcount(quad.planes));
   if (part.lanes == 0) return 0;
   const models::TriangleSetup& triangle = triangles_[quad.triangle].setup;
-  const models::LaneMask passed = test_samples(draw, warp, triangle, part, [&](int sample) {
+  const QuadOutcome outcome = test_samples(draw, warp, triangle, part, [&](int sample) {
     return plane(tx, ty, static_cast<std::uint32_t>(sample));
   });
-  if (draw.depth_stencil.depth_write && passed != 0) send_hiz(now, tx, ty);
-  return passed;
+  stats_.stencil_written += static_cast<std::uint64_t>(outcome.stencil_written);
+  if (draw.depth_stencil.depth_write && outcome.passed != 0) send_hiz(now, tx, ty);
+  return outcome.passed;
 }
 
 }  // namespace quadrille::hw

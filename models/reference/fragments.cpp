@@ -345,7 +345,7 @@ class BandWorker {
         Cell* coord = lanes_.at(b.frag_coord);
         coord[0].set_f(lane, quad.x + (lane & 1) + 0.5 + quad.from_centre_x);
         coord[1].set_f(lane, quad.y + (lane >> 1) + 0.5 + quad.from_centre_y);
-        coord[2].set_f(lane, quad.at[l].z);
+        coord[2].set_f(lane, quad.at[l].z + bias_);
         coord[3].set_f(lane, quad.at[l].inv_w);
       }
       if (b.point_coord != kNoSlot) {

@@ -302,9 +302,10 @@ class FunctionalRenderer {
   void test_late(hw::QuadOfWarp& part) {
     const models::TriangleSetup& triangle =
         triangles_[warp_.quad[static_cast<std::size_t>(part.number)].triangle].setup;
-    const models::LaneMask passed = hw::test_samples(*draw_, warp_, triangle, part, [&](int sample) {
+    const hw::QuadOutcome outcome = hw::test_samples(*draw_, warp_, triangle, part, [&](int sample) {
       return plane(part.place.tile_x, part.place.tile_y, sample);
     });
+    const models::LaneMask passed = outcome.passed;
     const models::LaneMask killed = part.lanes & ~passed;
     counts_.fates.hidden += static_cast<std::uint64_t>(std::popcount(killed));
     warp_.alive &= ~(killed << (4 * part.number));

@@ -75,7 +75,7 @@ struct WalkBench final : Bench {
     frame.passes = {pass};
     DrawState draw;
     draw.fragment.program = &program;
-    draw.depth_test = draw.depth_write = true;
+    draw.depth_stencil.depth_test = draw.depth_stencil.depth_write = true;
     draw.setup.samples = models::sample_grid(s.samples, 8);
     frame.draws.push_back(draw);
   }
