@@ -205,14 +205,16 @@ std::string plot_of(const Table& table) {
   std::string data = "$cycles << EOD\n";
   for (const auto& row : table.rows) data += fmt::format("{} {}\n", quoted(row[0]), row.back());
   return "set multiplot\n" + orders_plot() + data +
-         "EOD\nset origin 0,0\nset size 1,0.53\nset title 'cycles of edge walking over those of edge "
-         "functions: "
-         "below 1 it wins'\nset autoscale\nset yrange [0.05:20]\nset logscale y\nset ytics (0.1, 0.2, 0.5, "
-         "1, 2, 5, "
-         "10)\nset xtics autofreq rotate by -25 font ',9'\nset grid\nset style fill solid 0.6\nset boxwidth "
-         "0.6\nset "
-         "xrange [-0.6:*]\nplot $cycles using 0:2:xtic(1) with boxes notitle, 1 with lines lc black "
-         "notitle\nunset multiplot";
+         fmt::format(
+             "EOD\nset origin 0,0\nset size 1,0.53\n"
+             "set title 'cycles of edge walking over those of edge functions: below 1 it wins'\n"
+             "set autoscale\nset xrange [-0.6:{}.6]\nset yrange [0.02:20]\nset logscale y\n"
+             "set ytics (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)\n"
+             "set xtics autofreq rotate by -20 font ',9'\nset grid\nset style fill solid 0.6\n",
+             table.rows.size() - 1) +
+         "plot $cycles using 0:2:($0-0.3):($0+0.3):($2<1?$2:1):($2>1?$2:1):xtic(1) with boxxyerror notitle, "
+         "1 "
+         "with lines lc black notitle\nunset multiplot";
 }
 
 }  // namespace
