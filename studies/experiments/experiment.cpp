@@ -128,16 +128,14 @@ const Experiment kExperiments[] = {
     {"traversal",
      "Traversal of triangles",
      "Lectures teach two ways (Papaioannou, Rasterization Architectures): edge walking is reasonably good "
-     "unless "
-     "one cares about coherent memory access, several rows at a time, positions of samples or wide hardware, "
-     "and "
-     "thin, elongated triangles make that worse. Nothing is published to compare cycles with: the ruler is "
-     "arithmetic.",
-     "Frames of one shape of triangles each on a machine of 16 cores and 8 channels, where the rasteriser is "
-     "the "
-     "limit, by edge functions and by edge walking. The work is counted by a rasteriser of its own, before "
-     "the "
-     "frame is drawn. Then scenes on the default machine. Cycles until the pass is flushed.",
+     "unless one cares about coherent memory access, several rows at a time, positions of samples or wide "
+     "hardware, and thin, elongated triangles make that worse. Nothing is published to compare cycles with: "
+     "the ruler is arithmetic.",
+     "Frames of one shape of triangles each, by edge functions and by edge walking, on a machine of 16 "
+     "cores, "
+     "8 channels and 16 tile tests a cycle, so that the rasteriser is the limit. The work is counted by a "
+     "rasteriser of its own, before the frame is drawn. Then scenes on the default machine. Cycles until the "
+     "pass is flushed.",
      &traversal,
      {"builtin:courtyard", "builtin:flag"},
      "256x256"},

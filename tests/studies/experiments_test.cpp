@@ -148,3 +148,9 @@ TEST_CASE("experiments: a frame of small triangles takes the closed form's cycle
   check_holds(verdicts_of(result, "over closed form"));
   check_holds(verdicts_of(result, "GeForce GTX 680"));
 }
+
+TEST_CASE("experiments: both traversals take the cycles that arithmetic predicts", "[slow]") {
+  const Result result = traversal(sized(128, 128));
+  CHECK(result.verdicts.size() == 2 * result.table.rows.size());
+  check_holds(result.verdicts);
+}

@@ -288,3 +288,14 @@ TEST_CASE("edge_walk: every sample has rows and parts of its own") {
     CHECK(walked({{{10, 10}, {40, 30}, {20, 50}}}, {0, 0, kSize, kSize}, samples) ==
           Walked{20 * samples, 2 * samples});
 }
+
+TEST_CASE("edge_walk: a Bresenham line is walked once for all samples of its pixels") {
+  SetupState state = state_of(8, 4, {0, 0, kSize, kSize});
+  TriangleSetup t;
+  const LineEnd a{{10 * 256, 10 * 256, 0.5F, 1.0F}, {0, 0}}, b{{20 * 256, 30 * 256, 0.5F, 1.0F}, {1, 0}};
+  REQUIRE(setup_line({a, b}, state, t) == SetupOutcome::kKept);
+  CHECK(EdgeWalk(t, state.samples).samples() == 1);
+  state.line_mode = LineMode::kRectangular;
+  REQUIRE(setup_line({a, b}, state, t) == SetupOutcome::kKept);
+  CHECK(EdgeWalk(t, state.samples).samples() == 4);
+}
