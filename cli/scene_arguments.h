@@ -51,7 +51,7 @@ struct SceneArguments {
   [[nodiscard]] Loaded record(scenes::Scene& file, const scenes::Moment& moment) const;
   /// Loads the scene or trace. Throws `UserError`.
   [[nodiscard]] Loaded load() const;
-  /// Lets the passes of a stream have the wished samples, and shade by sample if that is wished. Throws `UserError`.
+  /// Lets the passes of a stream have the wished samples, and shade by sample if wished. Throws `UserError`.
   void use_samples(traces::CommandStream& stream) const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;

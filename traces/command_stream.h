@@ -126,8 +126,8 @@ struct Pipeline {
   bool depth_clamp = false;
   DepthState depth;
   std::array<BlendState, kMaxColorAttachments> blend;  ///< by colour attachment of the pass
-  /// Each covered sample is shaded for itself, where it lies; so it is too if the fragment shader asks for its
-  /// sample.
+  /// Each covered sample is shaded for itself, where it lies; so it is too if the fragment shader asks for
+  /// its sample.
   bool sample_shading = false;
   /// Alpha of the first colour says which samples a fragment keeps.
   bool alpha_to_coverage = false;

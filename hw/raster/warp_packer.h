@@ -5,8 +5,8 @@
 ///       release_in   a warp has retired
 /// Out   warp_out     a warp to shade
 ///       order_out    what retires next: warps and boundaries, in order
-/// Time  `quads_per_clk` quads a cycle, of a draw that is shaded by sample for each sample of its own; a partial warp leaves at a boundary, when another draw's tile
-///       arrives, or after `patience_clk` cycles without input
+/// Time  `quads_per_clk` quads a cycle, of each sample if a draw is shaded by sample; partial warps leave at
+///       a boundary, when another draw's tile arrives, or after `patience_clk` cycles without input
 #pragma once
 
 #include "hw/base/param.h"
@@ -72,9 +72,9 @@ class WarpPacker final : public Unit {
   /// The token at the head may not join the open warp.
   [[nodiscard]] bool must_launch_first() const;
   void work(Tick now);
-  /// The tile at the head has more tokens, of other samples of its pixels.
+  /// The tile at the head has more tokens, of samples that are packed with this one.
   [[nodiscard]] bool more_samples(Tick now) const;
-  /// Takes the pixels of one sample; unless a draw is shaded by sample, the quads are packed when the last one of the tile is here.
+  /// Takes the pixels of one sample; the quads of all are packed when the last one of the tile is here.
   void take_sample(Tick now);
   void take_quads(Tick now);
   void open_warp(const CoverageToken& token);

@@ -10,10 +10,10 @@
 /// Time  `quads_per_clk` quads of one sample a cycle through either port, one port a cycle, the late one
 ///       first; waits for the tile's lines
 ///
-/// Early test-and-write needs a program that does not discard, write depth or take away samples, and no older late-tested fragment of
-/// the tile in flight. Otherwise the tile goes late; it is still thinned early where a fragment that fails
-/// now would fail at its turn too: all depth writes of the pass so far can but lower depths, and the test is
-/// "less". Late tests arrive in API order, so every pixel sees its tests and writes in that order.
+/// Early test-and-write needs a program that does not discard, write depth or take samples away, and no older
+/// late-tested fragment of the tile in flight. Otherwise the tile goes late; it is thinned early where what
+/// fails now would fail at its turn too: all depth writes of the pass so far can but lower depths, and the
+/// test is "less". Late tests arrive in API order, so every pixel sees its tests and writes in that order.
 #pragma once
 
 #include "hw/base/param.h"

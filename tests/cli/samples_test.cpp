@@ -73,7 +73,7 @@ TEST_CASE("samples: shading each is refused where there is one, goes into traces
   CHECK(shaded("b.json") < 4 * shaded("a.json"));
 }
 
-TEST_CASE("samples: alpha to coverage smooths what an alpha test cuts out; a trace has it in it") {
+TEST_CASE("samples: alpha to coverage smooths what an alpha test cuts out, and is in a trace") {
   const ScratchFolder folder;
   const std::vector<std::string> scene{"builtin:courtyard", "--size",     "96x54",
                                        "--fidelity",        "functional", "-q"};
