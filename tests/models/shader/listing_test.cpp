@@ -96,7 +96,7 @@ TEST_CASE("listing: a mistake is reported with its line") {
   starts("interp r0, vary0\nend\n", "shader:1: varying 0 does not exist");
   starts(".stage vertex\nkillif r0\nend\n", "shader:2: 'killif' exists only in fragment shaders");
   starts(".stage fragment\ninput r0, vertex_index\nend\n", "shader:2: system value");
-  starts(".stage fragment\noutput out33, r0\nend\n", "shader:2: output slot 33");
+  starts(".stage fragment\noutput out34, r0\nend\n", "shader:2: output slot 34");
   starts("if r0\nloop\nendif\nendloop\nend\n", "shader:3: 'endif' does not end");
   starts("if r0\nend\n", "shader:2: 'end' inside an open 'if'");
   starts("if r0\nelse\nelse\nendif\nend\n", "shader:3: 'else' has no 'if'");
