@@ -187,7 +187,7 @@ TEST_CASE("rop: samples that a program takes from its fragments are counted and 
       .samples = 4,
       .mask = 0x5};
   s.late.clear();
-  CHECK(run<RopBench>(s, text) == "22:0 26:1 discarded 0, late 0, samples discarded 128 written 128");
+  CHECK(run<RopBench>(s, text) == "12:0 16:1 discarded 0, late 0, samples discarded 128 written 128");
   s.late = {{50, {TokenKind::kWork, WarpSlotId(0)}}, {50, {TokenKind::kWork, WarpSlotId(1)}}};
   s.late_warps = true;
   s.alive = 0x0000ffff;
