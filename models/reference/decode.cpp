@@ -17,6 +17,7 @@ bool is_null_or_undefined(std::uint32_t op) { return op == spv::OpConstantNull |
 
 Decoder::Decoder(const traces::Shader& shader) : module_(read_spirv(shader)), stage_(shader.stage) {
   program_.name = shader.name;
+  program_.early_fragment_tests = module_.early_fragment_tests;
   globals_.resize(module_.types.size());
   zero_slot_ = allocate(1);
 }

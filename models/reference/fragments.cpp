@@ -208,9 +208,11 @@ class BandWorker {
     Depths depth{};
     for (std::size_t lane = 0; lane < kLanes; ++lane)
       for (std::uint32_t s = 0; s < state_.samples; ++s) depth[lane][s] = final_depth(quad.sample_z[lane][s]);
-    const bool shader_depth = program_ != nullptr && program_->builtins.frag_depth != kNoSlot;
-    const bool late = shader_depth || limits_coverage() || (program_ != nullptr && program_->discards);
-    if (!late) alive = test_depth(t, quad, depth, alive);
+    const bool early = program_ != nullptr && program_->early_fragment_tests;
+    const bool shader_depth = program_ != nullptr && program_->builtins.frag_depth != kNoSlot && !early;
+    const bool late =
+        !early && (shader_depth || limits_coverage() || (program_ != nullptr && program_->discards));
+    if (!late) alive = test_and_write_depth(t, quad, depth, alive);
     if (!any(alive)) return;
     if (program_ != nullptr) {
       shade(t, quad);
@@ -224,8 +226,8 @@ class BandWorker {
       if (limits_coverage())
         for (std::size_t lane = 0; lane < kLanes; ++lane) alive[lane] &= kept_samples(static_cast<int>(lane));
     }
-    if (late) alive = test_depth(t, quad, depth, alive);
-    write(t, quad, depth, alive);
+    if (late) alive = test_and_write_depth(t, quad, depth, alive);
+    write(t, quad, alive);
   }
 
   /// May a fragment lose samples when it has been shaded?
@@ -300,6 +302,17 @@ class BandWorker {
     return stencil && passes;
   }
 
+  Samples test_and_write_depth(const WindowTriangle& t, const Quad& quad, const Depths& depth,
+                               Samples alive) {
+    alive = test_depth(t, quad, depth, alive);
+    if (!has_depth() || !state_.pipeline->depth.write) return alive;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      for (std::uint32_t s = 0; s < state_.samples; ++s)
+        if ((alive[lane] >> s & 1u) != 0)
+          (*state_.depth)[pixel(quad, lane) * state_.samples + s] = depth[lane][s];
+    return alive;
+  }
+
   void note_discards(const Quad& quad) {
     if (!program_->discards) return;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -363,12 +376,11 @@ class BandWorker {
     }
   }
 
-  void write(const WindowTriangle& t, const Quad& quad, const Depths& depth, const Samples& alive) {
+  void write(const WindowTriangle& t, const Quad& quad, const Samples& alive) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       for (std::uint32_t s = 0; s < state_.samples; ++s) {
         if ((alive[lane] >> s & 1u) == 0) continue;
         const std::size_t at = pixel(quad, lane) * state_.samples + s;
-        if (has_depth() && state_.pipeline->depth.write) (*state_.depth)[at] = depth[lane][s];
         if (program_ == nullptr) continue;
         for (std::size_t color = 0; color < state_.colors.size(); ++color)
           write_color(t, color, at, static_cast<int>(lane), quad.part[lane]);

@@ -129,6 +129,7 @@ struct ShaderProgram {
   std::vector<UniformScalar> uniforms;
   std::vector<TextureUse> textures;
   BuiltinSlots builtins;
+  bool early_fragment_tests = false;
   bool discards = false;
   bool by_sample = false;  ///< runs for each covered sample
 };

@@ -100,6 +100,9 @@ class Reader {
         if (literal_string(in.words) == "GLSL.std.450") module_.glsl_import = in.result;
         return;
       case spv::OpEntryPoint: return entry_point(in);
+      case spv::OpExecutionMode:
+        module_.early_fragment_tests |= in.words[1] == spv::ExecutionModeEarlyFragmentTests;
+        return;
       case spv::OpDecorate: return decorate(module_.decorations[in.words[0]], std::span(in.words).subspan(1));
       case spv::OpMemberDecorate:
         return decorate(module_.member_decorations[{in.words[0], in.words[1]}],

@@ -85,6 +85,7 @@ struct SpirvModule {
   std::unordered_map<Id, SpirvFunction> functions;
   Id glsl_import = 0;  ///< of "GLSL.std.450"; 0: none
   Id entry = 0;        ///< function of the entry point "main"
+  bool early_fragment_tests = false;
   bool origin_upper_left = true;
 
   [[nodiscard]] const SpirvType& type(Id id) const { return types[id]; }

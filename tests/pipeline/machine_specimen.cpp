@@ -52,8 +52,8 @@ std::uint64_t image_digest(const DeviceFrame& frame) {
         for (const std::uint32_t word : pixel.word) hash = mix(hash, word);
     }
     if (!pass.has_depth) continue;
-    for (const std::uint32_t depth : models::detile(frame.memory, pass.depth.surface))
-      hash = mix(hash, depth);
+    for (const models::PixelCode& depth : models::detile_codes(frame.memory, pass.depth.surface))
+      for (const std::uint32_t word : depth.word) hash = mix(hash, word);
   }
   for (const WrittenBuffer& written : frame.written_buffers)
     for (const std::byte byte : frame.memory.read(written.address, written.bytes))

@@ -139,8 +139,8 @@ TEST_CASE("depth_unit: what is in front of all that is there does not read it, a
                          counter(*b.unit, "tiles_unread"), requests_seen(*b.memory));
     });
   };
-  CHECK(requests(false) == "32 out, 0 unread:  r0/f w0/f");
-  CHECK(requests(true) == "32 out, 1 unread:  w0/f");
+  CHECK(requests(false) == "32 out, 0 unread:  r0/f w0/f f0/0");
+  CHECK(requests(true) == "32 out, 1 unread:  w0/f f0/0");
 }
 
 TEST_CASE("depth_unit: a draw without depth test passes untouched") {

@@ -122,7 +122,7 @@ TEST_CASE("stability: coverage is counted within the scissor") {
                  .state({.paint = Paint::kCount})
                  .draw(quad({-1, -1}, {1, 1}, 0, glm::vec4(1)))
                  .finish();
-  o.exact.image = {8, 8, std::vector<std::uint32_t>(64, 1), {}};
+  o.exact.image = {8, 8, std::vector<std::uint32_t>(64, 1), {}, {}};
   CHECK(not_once(o) == 0);
   o.exact.image.color[3 * 8 + 3] = 2;
   o.exact.image.color[5 * 8 + 5] = 0;
