@@ -15,8 +15,8 @@ namespace quadrille::models {
 /// Writes `incoming` where `mask` is set.
 void depth_write(float stored[64], const float incoming[64], std::uint64_t mask);
 
-/// Greatest depth of a tile. A NaN, which only a shader can write, counts as +infinity, so that the bound stays
-/// conservative.
+/// Greatest depth of a tile. A NaN, which only a shader can write, counts as +infinity, so that the bound
+/// stays conservative.
 [[nodiscard]] float tile_max(const float depths[64]);
 
 }  // namespace quadrille::models

@@ -57,8 +57,8 @@ traces::CommandStream storage_stream(const Setting& setting) {
 }
 
 /// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up,
-/// layers that lie behind each other, the same from back to front, fragments that the shader drops, lines within and beyond the guard
-/// band, points, and storage buffers.
+/// layers that lie behind each other, the same from back to front, fragments that the shader drops, lines
+/// within and beyond the guard band, points, and storage buffers.
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   constexpr std::int32_t kBeyond = 100'000;  // pixels
   constexpr int kLayers = 8;
