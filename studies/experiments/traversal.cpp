@@ -26,12 +26,12 @@ struct Shape {
 
 /// Triangles a sixteenth of a pixel thick, along (dx, dy) in pixels.
 TriangleMesh needles(std::uint32_t width, std::uint32_t height, std::int32_t dx, std::int32_t dy) {
-  constexpr std::int32_t kCount = 2048, kThick = kGrid / 16, kStride = 40503;
+  constexpr std::int32_t kCount = 2048, kThick = kGrid / 16, kStrideX = 40503, kStrideY = 13501;
   TriangleMesh mesh{width, height, {}, {}};
   const auto w = static_cast<std::int32_t>(width) * kGrid, h = static_cast<std::int32_t>(height) * kGrid;
   for (std::int32_t i = 0; i < kCount; ++i) {
-    const std::int32_t x = dx * kGrid < w ? i * kStride % (w - dx * kGrid) : 0,
-                       y = dy * kGrid < h ? i * kStride % (h - dy * kGrid) : 0;
+    const std::int32_t x = dx * kGrid < w ? i * kStrideX % (w - dx * kGrid) : 0,
+                       y = dy * kGrid < h ? i * kStrideY % (h - dy * kGrid) : 0;
     const auto first = static_cast<std::uint32_t>(mesh.corners.size());
     mesh.corners.push_back({x, y});
     mesh.corners.push_back({x + dx * kGrid, y + dy * kGrid});
@@ -255,19 +255,18 @@ Result traversal(const Setting& setting) {
       "On large triangles both fill 16 pixels a cycle, and neither wins.",
       "Edge walking wins on lying slivers. Edge functions hand on each tile that no edge excludes by itself, "
       "and "
-      "the fine rasteriser finds many of them empty: of a lying needle most of its 33 or so. A walk takes "
-      "the few "
-      "rows whose centres lie between the highest and the lowest corner, and of these the tiles that are "
-      "covered.",
+      "the fine rasteriser finds most of a lying needle's tiles empty. A walk takes the few rows whose "
+      "centres "
+      "lie between the highest and the lowest corner, and of these the tiles that are covered.",
       "Predictions take the longest of vertex fetch (an index costs a quarter of a cycle), set-up (a cycle a "
       "triangle and a batch), the coarse and the fine rasteriser.",
       "At one sample a pixel the scenes are limited by the cores, and the traversal does not show, though "
       "the "
       "coarse rasteriser is busy three to four times as long. With four samples every sample has rows and "
       "parts "
-      "of its own, so a walk takes several times as long: the lectures name the positions of samples among "
+      "of its own, so a walk takes several times as long (the lectures name the positions of samples among "
       "its "
-      "problems. Then it limits the scenes.",
+      "problems), and the frames take a fifth longer.",
       "The picture shows in which order the pixels of a triangle are visited, from dark blue to dark "
       "red: "
       "by edge functions all pixels of a tile at a time, also those beyond the edges; by edge walking the "

@@ -150,7 +150,7 @@ TEST_CASE("experiments: a frame of small triangles takes the closed form's cycle
 }
 
 TEST_CASE("experiments: both traversals take the cycles that arithmetic predicts", "[slow]") {
-  const Result result = traversal(sized(128, 128));
+  const Result result = traversal(sized(256, 256));
   CHECK(result.verdicts.size() == 2 * result.table.rows.size());
   check_holds(result.verdicts);
 }
