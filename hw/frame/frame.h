@@ -129,6 +129,13 @@ struct DrawState {
   [[nodiscard]] bool shades_visible_only() const {
     return meets_written_memory && uses_depth() && !late_depth;
   }
+  /// What the early tests write stays where the program discards the fragment, or takes its samples, after
+  /// that: no test may wait for the program. [VK1.3 #fragops-early]
+  [[nodiscard]] bool writes_before_discards() const {
+    return !late_depth && depth_stencil.writes() && (fragment.program->uses_discard || limits_coverage());
+  }
+  /// Its tests come before shading on every machine.
+  [[nodiscard]] bool must_test_early() const { return shades_visible_only() || writes_before_discards(); }
   /// Calls `visit(attachment)` for each colour attachment that the program writes.
   template <class Visit>
   void visit_colors(const Visit& visit) const {

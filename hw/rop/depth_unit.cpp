@@ -43,7 +43,7 @@ DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, c
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
              surface_writer(SurfaceKind::kDepth, context.partition())) {
   add_initiation_rate("quads_per_clk");
-  some_wait_for_late_ = std::ranges::any_of(frame_.draws, &DrawState::shades_visible_only);
+  some_wait_for_late_ = std::ranges::any_of(frame_.draws, &DrawState::must_test_early);
   add_places("tiles_in_flight",
              [this] { return early_.size() >= static_cast<std::size_t>(params_.tiles_in_flight.value()); });
   add_memory_places("cache_misses", [this] { return cache_.full(); });

@@ -88,10 +88,9 @@ bool DepthUnit::acquire_early(EarlyEntry& entry, std::uint32_t number) {
   return true;
 }
 
-/// Fragments before it in this tile are still to be tested, and it may not be shaded before it is known to be
-/// visible.
+/// Fragments before it in this tile are still to be tested, and its own tests may not wait for its shading.
 bool DepthUnit::waits_for_late(const CoverageToken& token) const {
-  return token.kind == TokenKind::kWork && frame_.draw(token.part.draw()).shades_visible_only() &&
+  return token.kind == TokenKind::kWork && frame_.draw(token.part.draw()).must_test_early() &&
          late_in_flight_[tile_number(token.tile_x, token.tile_y)] > 0;
 }
 

@@ -54,7 +54,7 @@ TEST_CASE("samples: shading each is refused where there is one, goes into traces
           {"--supersample", "--samples 2, 4 or 8"});
   refused({"render", "builtin:cubes", "--supersample", "--samples", "1"}, {"--supersample"});
   const ScratchFolder folder;
-  const std::vector<std::string> scene{"builtin:flag", "--size", "64x36", "--samples", "4"};
+  const std::vector<std::string> scene{"builtin:quad", "--size", "64x36", "--samples", "4"};
   const auto with = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
     arguments.insert(arguments.end(), scene.begin(), scene.end());
     arguments.insert(arguments.end(), more.begin(), more.end());

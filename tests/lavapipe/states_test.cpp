@@ -14,7 +14,8 @@ constexpr std::uint32_t kWidth = 64, kHeight = 48;
 /// The part of the pixels that are alike.
 double alike(VulkanRenderer& vulkan, std::uint64_t seed, int draws, std::uint32_t samples) {
   const traces::CommandStream stream = pipeline::test::states_stream(
-      seed, kWidth, kHeight, {.depth_bounds = false, .samples = samples, .draws = draws});
+      seed, kWidth, kHeight,
+      {.depth_bounds = false, .small_floats = false, .samples = samples, .draws = draws});
   const pipeline::RenderedFrame ours = pipeline::render_functional_frame(stream, {});
   const Rendered theirs = vulkan.render(stream);
   return models::reference::compare_images({kWidth, kHeight, ours.image.color},

@@ -59,7 +59,7 @@ constexpr std::array<std::array<Format, 4>, 4> kFormats{
     {{Format::kR8G8B8A8Unorm, Format::kB8G8R8A8Srgb, Format::kA2B10G10R10Unorm, Format::kR8G8B8A8Srgb},
      {Format::kR16G16B16A16Float, Format::kR8Unorm, Format::kB10G11R11Ufloat, Format::kR16G16B16A16Float},
      {Format::kR16G16Float, Format::kR32G32B32A32Float, Format::kR16Float, Format::kR8G8B8A8Srgb},
-     {Format::kR32G32Float, Format::kR8G8Unorm, Format::kR32Float, Format::kB10G11R11Ufloat}}};
+     {Format::kR32G32Float, Format::kR8G8Unorm, Format::kR32Float, Format::kR16G16B16A16Float}}};
 
 class Maker {
  public:

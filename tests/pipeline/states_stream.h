@@ -8,6 +8,7 @@ namespace quadrille::pipeline::test {
 
 struct StatesOptions {
   bool depth_bounds = true;  ///< some drivers have none
+  bool small_floats = true;  ///< B10G11R11, which some drivers round otherwise
   std::uint32_t samples = 1;
   int draws = 12;
 };
