@@ -258,8 +258,7 @@ Result traversal(const Setting& setting) {
       "the fine rasteriser finds most of a lying needle's tiles empty. A walk takes the few rows whose "
       "centres "
       "lie between the highest and the lowest corner, and of these the tiles that are covered.",
-      "Predictions take the longest of vertex fetch (an index costs a quarter of a cycle), set-up (a cycle a "
-      "triangle and a batch), the coarse and the fine rasteriser.",
+      "Predictions: the longest of fetch (4 indices a cycle), set-up (1 triangle or batch) and rasterisers.",
       "At one sample a pixel the scenes are limited by the cores, and the traversal does not show, though "
       "the "
       "coarse rasteriser is busy three to four times as long. With four samples every sample has rows and "
