@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::uint32_t kWidth = 64, kHeight = 48;
 
-/// The part of the pixels that are alike.
+/// The part of the pixels that are alike: a unit of the last place may move with each of the blends that
+/// follow.
 double alike(VulkanRenderer& vulkan, std::uint64_t seed, int draws, std::uint32_t samples) {
   const traces::CommandStream stream = pipeline::test::states_stream(
       seed, kWidth, kHeight,
@@ -20,7 +21,7 @@ double alike(VulkanRenderer& vulkan, std::uint64_t seed, int draws, std::uint32_
   const Rendered theirs = vulkan.render(stream);
   return models::reference::compare_images({kWidth, kHeight, ours.image.color},
                                            {kWidth, kHeight, theirs.color})
-      .fraction_within(2);
+      .fraction_within(4);
 }
 
 /// The fewest draws of a stream that still differ, for whoever looks for the cause.
@@ -40,9 +41,9 @@ TEST_CASE("states: random states draw the driver's pixels at one and at four sam
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const std::uint32_t samples = seed % 4 == 0 ? 4 : 1;
     const double part = alike(*vulkan, seed, kDraws, samples);
-    if (part >= kLeast) continue;
-    FAIL_CHECK("stream " << seed << " at " << samples << " samples: " << part << " alike; "
-                         << fewest_draws(*vulkan, seed, kDraws, samples, kLeast) << " draws differ");
+    const int fewest = part >= kLeast ? 0 : fewest_draws(*vulkan, seed, kDraws, samples, kLeast);
+    INFO("stream " << seed << " at " << samples << " samples; its first " << fewest << " draws differ");
+    CHECK(part >= kLeast);
   }
 }
 
