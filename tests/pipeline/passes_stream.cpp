@@ -143,6 +143,7 @@ class Maker {
 
   Index triangles(int count) {
     std::vector<Vertex> vertices;
+    vertices.reserve(3 * static_cast<std::size_t>(count));
     for (int i = 0; i < 3 * count; ++i)
       vertices.push_back(
           {{random_.real(-1.2f, 1.2f), random_.real(-1.2f, 1.2f), random_.real(0, 1), 1},
