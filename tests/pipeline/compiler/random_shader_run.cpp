@@ -79,8 +79,8 @@ RandomShaderResult run_vertex_program(const models::Program& program) {
 }  // namespace
 
 LanePlace place_of_lane(std::size_t lane) {
-  const std::size_t quad = lane / 4, pixel = lane % 4;
-  return {16.5f + static_cast<float>(2 * quad + pixel % 2), 20.5f + static_cast<float>(pixel / 2)};
+  const std::size_t quad = lane / 4, pixel = lane % 4, row = pixel / 2;
+  return {16.5f + static_cast<float>(2 * quad + pixel % 2), 20.5f + static_cast<float>(row)};
 }
 
 RandomShaderResult run_compiled(const RandomShader& shader, const ShaderTarget& target) {
