@@ -15,7 +15,7 @@ std::uint32_t kept_samples(const DrawState& draw, std::span<const models::LaneWo
                            std::size_t lane) {
   std::uint32_t kept = ~0u;
   if (draw.fragment.program->writes_sample_mask) kept &= outputs[models::kSampleMaskOutput][lane];
-  if (draw.alpha_to_coverage && (models::color_outputs(*draw.fragment.program) >> 3 & 1u) != 0)
+  if (draw.alpha_to_coverage)
     kept &= models::alpha_coverage(std::bit_cast<float>(outputs[3][lane]), draw.samples().count);
   return kept;
 }

@@ -2,11 +2,11 @@
 #include "models/reference/fragments.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "models/reference/output.h"
 #include "models/reference/parallel.h"
+#include "models/reference/sample_tests.h"
 
 namespace quadrille::models::reference {
 namespace {
@@ -58,16 +58,17 @@ struct Quad {
 /// Draws all triangles within one band after another, in order.
 class BandWorker {
  public:
-  BandWorker(const FragmentWork& work, Result& result) : work_(work), state_(*work.state), result_(result) {
+  BandWorker(const FragmentWork& work, Result& result)
+      : work_(work), state_(*work.state), result_(result), tests_(state_, work.float_depth, result) {
     for (std::array<Slot, 4>& slots : color_slots_) slots.fill(kNoSlot);
+    second_slots_.fill(kNoSlot);
     if (work.fragment_shader == nullptr) return;
     program_ = work.fragment_shader->program;
     lanes_ = work.fragment_shader->lanes();
     links_ = link_varyings(*work.vertex_shader->program, *program_);
     for (const Port& port : program_->outputs) {
-      // A second colour for attachment 0 takes the place of attachment 1's.
-      const std::uint32_t place = port.location + port.index;
-      if (place < kMaxColorAttachments && port.component < 4) color_slots_[place][port.component] = port.slot;
+      if (port.location >= kMaxColorAttachments || port.component >= 4) continue;
+      (port.index == 1 ? second_slots_ : color_slots_[port.location])[port.component] = port.slot;
     }
   }
 
@@ -75,7 +76,7 @@ class BandWorker {
     const int first = static_cast<int>(band) * kBandRows, last = first + kBandRows - 1;
     for (const WindowTriangle& t : work_.triangles) {
       if (t.last_y < first || t.first_y > last) continue;
-      bias_ = depth_bias(t);
+      bias_ = tests_.bias_of(t);
       for (int y = std::max(first, t.first_y & ~1); y <= std::min(last, t.last_y); y += 2) {
         for (int x = t.first_x & ~1; x <= t.last_x; x += 2) draw_quad(t, x, y);
       }
@@ -83,23 +84,6 @@ class BandWorker {
   }
 
  private:
-  /// [VK1.3 #primsrast-depthbias]
-  [[nodiscard]] double depth_bias(const WindowTriangle& t) const {
-    const traces::DepthBias& bias = state_.pipeline->depth_bias;
-    if (!bias.enable || t.shape != Shape::kTriangle || state_.depth == nullptr) return 0;
-    const double area = doubled_area(t);
-    const double x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], z1 = t.z[1] - t.z[0];
-    const double x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0], z2 = t.z[2] - t.z[0];
-    const double slope = std::max(std::abs((z1 * y2 - z2 * y1) / area), std::abs((z2 * x1 - z1 * x2) / area));
-    const double greatest = std::max({std::abs(t.z[0]), std::abs(t.z[1]), std::abs(t.z[2])});
-    const FormatInfo& format = format_info(state_.depth_format);
-    const double step = format.numeric != Numeric::kFloat ? std::ldexp(1.0, -format.component[0].bits)
-                        : greatest > 0                    ? std::ldexp(1.0, std::ilogb(greatest) - 23)
-                                                          : 0.0;
-    const double offset = static_cast<double>(bias.slope) * slope + static_cast<double>(bias.constant) * step;
-    const auto clamp = static_cast<double>(bias.clamp);
-    return clamp > 0 ? std::min(offset, clamp) : clamp < 0 ? std::max(offset, clamp) : offset;
-  }
   using Depths = std::array<std::array<double, 8>, kLanes>;  ///< by pixel and sample
 
   [[nodiscard]] bool in_bounds(int x, int y) const {
@@ -207,7 +191,8 @@ class BandWorker {
     Samples alive = quad.covered;
     Depths depth{};
     for (std::size_t lane = 0; lane < kLanes; ++lane)
-      for (std::uint32_t s = 0; s < state_.samples; ++s) depth[lane][s] = final_depth(quad.sample_z[lane][s]);
+      for (std::uint32_t s = 0; s < state_.samples; ++s)
+        depth[lane][s] = tests_.final_depth(quad.sample_z[lane][s], bias_ != 0);
     const bool early = program_ != nullptr && program_->early_fragment_tests;
     const bool shader_depth = program_ != nullptr && program_->builtins.frag_depth != kNoSlot && !early;
     const bool late =
@@ -217,8 +202,10 @@ class BandWorker {
     if (program_ != nullptr) {
       shade(t, quad);
       if (shader_depth) {
-        for (std::size_t lane = 0; lane < kLanes; ++lane)
-          depth[lane].fill(final_depth(lanes_.at(program_->builtins.frag_depth)->f(static_cast<int>(lane))));
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+          const double z = lanes_.at(program_->builtins.frag_depth)->f(static_cast<int>(lane));
+          depth[lane].fill(tests_.final_depth(z, false));
+        }
       }
       note_discards(quad);
       for (std::size_t lane = 0; lane < kLanes; ++lane)
@@ -247,69 +234,21 @@ class BandWorker {
     return kept;
   }
 
-  [[nodiscard]] double final_depth(double z) const {
-    const double low = state_.viewport.min_depth, high = state_.viewport.max_depth;
-    if (state_.pipeline->depth_clamp) z = std::clamp(z, std::min(low, high), std::max(low, high));
-    if (bias_ != 0) z = std::clamp(z, 0.0, 1.0);
-    if (work_.float_depth) z = static_cast<double>(static_cast<float>(z));
-    return state_.depth == nullptr ? z : held_depth(state_.depth_format, z);
-  }
-
-  [[nodiscard]] bool has_depth() const { return state_.pipeline->depth.test && state_.depth != nullptr; }
-  [[nodiscard]] bool has_stencil() const {
-    return state_.pipeline->stencil.test && state_.depth != nullptr &&
-           models::has_stencil(state_.depth_format);
-  }
-  [[nodiscard]] bool has_bounds() const {
-    return state_.pipeline->depth_bounds.test && state_.depth != nullptr;
-  }
-
   [[nodiscard]] std::size_t pixel(const Quad& quad, std::size_t lane) const {
     return (static_cast<std::size_t>(quad.y) + lane / 2) * result_.width + static_cast<std::size_t>(quad.x) +
            lane % 2;
   }
 
-  /// Samples that pass; notes how near the decisions were.
-  Samples test_depth(const WindowTriangle& t, const Quad& quad, const Depths& depth, Samples alive) {
-    if (!has_depth() && !has_stencil() && !has_bounds()) return alive;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t at = pixel(quad, lane);
-      for (std::uint32_t s = 0; s < state_.samples; ++s) {
-        if ((alive[lane] >> s & 1u) == 0) continue;
-        if (!test_sample(t.front, at, s, depth[lane][s])) alive[lane] &= ~(1u << s);
-      }
-    }
-    return alive;
-  }
-
-  /// Depth bounds, then stencil, then depth. [VK1.3 #fragops]
-  bool test_sample(bool front, std::size_t at, std::uint32_t sample, double depth) {
-    const traces::Pipeline& pipeline = *state_.pipeline;
-    const std::size_t place = at * state_.samples + sample;
-    const double stored = (*state_.depth)[place];
-    if (has_bounds() && !(stored >= static_cast<double>(pipeline.depth_bounds.least) &&
-                          stored <= static_cast<double>(pipeline.depth_bounds.most)))
-      return false;
-    if (has_depth())
-      result_.depth_margin[at] =
-          std::min(result_.depth_margin[at], static_cast<float>(float_ulps(depth, stored)));
-    const bool passes = !has_depth() || depth_passes(pipeline.depth.compare, depth, stored);
-    if (!has_stencil()) return passes;
-    const traces::StencilFace& face = front ? pipeline.stencil.front : pipeline.stencil.back;
-    std::uint8_t& value = (*state_.stencil)[place];
-    const bool stencil = stencil_passes(face, value);
-    value = stencil_after(face, !stencil ? face.fail : passes ? face.pass : face.depth_fail, value);
-    return stencil && passes;
-  }
-
+  /// Samples that pass.
   Samples test_and_write_depth(const WindowTriangle& t, const Quad& quad, const Depths& depth,
                                Samples alive) {
-    alive = test_depth(t, quad, depth, alive);
-    if (!has_depth() || !state_.pipeline->depth.write) return alive;
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-      for (std::uint32_t s = 0; s < state_.samples; ++s)
-        if ((alive[lane] >> s & 1u) != 0)
-          (*state_.depth)[pixel(quad, lane) * state_.samples + s] = depth[lane][s];
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      for (std::uint32_t s = 0; s < state_.samples; ++s) {
+        if ((alive[lane] >> s & 1u) == 0) continue;
+        if (!tests_.test_and_write(t.front, pixel(quad, lane) * state_.samples + s, depth[lane][s]))
+          alive[lane] &= ~(1u << s);
+      }
+    }
     return alive;
   }
 
@@ -377,11 +316,11 @@ class BandWorker {
   }
 
   void write(const WindowTriangle& t, const Quad& quad, const Samples& alive) {
+    if (program_ == nullptr) return;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       for (std::uint32_t s = 0; s < state_.samples; ++s) {
         if ((alive[lane] >> s & 1u) == 0) continue;
         const std::size_t at = pixel(quad, lane) * state_.samples + s;
-        if (program_ == nullptr) continue;
         for (std::size_t color = 0; color < state_.colors.size(); ++color)
           write_color(t, color, at, static_cast<int>(lane), quad.part[lane]);
       }
@@ -394,15 +333,9 @@ class BandWorker {
     const traces::BlendState& state = state_.pipeline->blend[color];
     if (state.write_mask == 0 || std::ranges::all_of(slots, [](Slot s) { return s == kNoSlot; })) return;
     std::array<double, 4> source{};
-    const auto output = [&](std::size_t of, std::size_t c) {
-      const Slot slot = color_slots_[of][c];
-      return slot == kNoSlot ? 0.0 : lanes_.at(slot)->f(lane);
-    };
+    const auto output = [&](Slot slot) { return slot == kNoSlot ? 0.0 : lanes_.at(slot)->f(lane); };
     std::array<double, 4> second{};
-    for (std::size_t c = 0; c < 4; ++c) {
-      source[c] = output(color, c);
-      if (state.uses_second_source()) second[c] = output(1, c);
-    }
+    for (std::size_t c = 0; c < 4; ++c) source[c] = output(slots[c]), second[c] = output(second_slots_[c]);
     source[3] *= part;
     ColorTarget& target = *state_.colors[color];
     const auto linear = target.linear.begin() + static_cast<std::ptrdiff_t>(4 * at);
@@ -420,10 +353,12 @@ class BandWorker {
   const FragmentWork& work_;
   const DrawState& state_;
   Result& result_;
+  SampleTests tests_;
   const ShaderProgram* program_ = nullptr;
   Lanes lanes_;
   std::vector<Link> links_;
   std::array<std::array<Slot, 4>, kMaxColorAttachments> color_slots_;  ///< by attachment and component
+  std::array<Slot, 4> second_slots_;  ///< of the second colour for attachment 0
 };
 
 }  // namespace

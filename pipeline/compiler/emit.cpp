@@ -157,8 +157,9 @@ class Encoder {
                            out.a.modifiers == 0 && out.a.index == out.dst;
       if (useless) continue;
       program.uses_discard |= out.op == Op::kKillIf;
+      // Where early tests are forced, the depth that it writes counts for nothing. [VK1.3 #fragops-early]
       program.writes_depth |= shader_.stage == models::ShaderStage::kFragment && out.op == Op::kOutput &&
-                              out.imm == models::kDepthOutput;
+                              out.imm == models::kDepthOutput && !shader_.early_fragment_tests;
       program.writes_sample_mask |= shader_.stage == models::ShaderStage::kFragment &&
                                     out.op == Op::kOutput && out.imm == models::kSampleMaskOutput;
       program.uses_derivatives |= (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) ||

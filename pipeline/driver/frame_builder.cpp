@@ -3,6 +3,7 @@
 #include "models/base/error.h"
 #include "pipeline/driver/attachment_lives.h"
 #include "pipeline/driver/device_resources.h"
+#include "pipeline/driver/fixed_function.h"
 
 #include <algorithm>
 #include <bit>
@@ -62,9 +63,8 @@ class FrameBuilder {
     }
     pass.samples = static_cast<int>(stream_.images[c.first_image()].samples);
     if (c.depth.image != kNone)
-      pass.clear_depth = c.depth.load == traces::LoadOp::kClear
-                             ? models::round_depth(stream_.images[c.depth.image].format, c.depth.clear)
-                             : 0;
+      pass.clear_depth =
+          c.depth.load == traces::LoadOp::kClear ? models::round_depth(depth_format(), c.depth.clear) : 0;
     pass.first_draw = hw::DrawId(out_.frame.draws.size());
     out_.frame.passes.push_back(pass);
     scissor_ = {0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)};
@@ -91,6 +91,11 @@ class FrameBuilder {
                                fmt::format("{} bytes of device memory",
                                            traces::texel_bytes(stream_.images[begun_->depth.image]))});
     }
+  }
+  /// Of the pass; kUndefined: it has no depth attachment.
+  [[nodiscard]] models::Format depth_format() const {
+    return begun_->depth.image == kNone ? models::Format::kUndefined
+                                        : stream_.images[begun_->depth.image].format;
   }
   hw::AttachmentState attachment(const traces::AttachmentUse& use) {
     return {
@@ -119,11 +124,11 @@ class FrameBuilder {
     draw.pass = hw::PassId(out_.frame.passes.size() - 1);
     draw.vertex.program = &programs.vertex;
     draw.fragment.program = &programs.fragment;
-    const auto bits = static_cast<unsigned>(4 * out_.frame.passes.back().colors);
-    draw.color_outputs = models::color_outputs(programs.fragment) & (bits < 32 ? (1u << bits) - 1 : ~0u);
     geometry(c, pipeline, draw);
     attributes(pipeline, programs.integer_inputs, draw);
-    fixed_function(pipeline, draw);
+    set_fixed_function({pipeline, out_.frame.passes.back(), depth_format(), viewport_, scissor_,
+                        out_.frame.precision.subpixel_bits},
+                       draw);
     draw.vertex.constants = constants(programs.vertex);
     draw.fragment.constants = constants(programs.fragment);
     textures(programs.vertex, draw.vertex.textures, draw.vertex.texture_sizes);
@@ -204,76 +209,6 @@ class FrameBuilder {
                          draw.vertex.program->name, use.location, pipeline.name);
       }
     }
-  }
-
-  static models::PrimitiveState primitives(const traces::Pipeline& pipeline, const models::Program& vertex) {
-    return {models::assembled_kind(pipeline.topology), pipeline.polygon_mode, vertex.extras.clip_distances,
-            vertex.extras.cull_distances, vertex.extras.point_size};
-  }
-
-  void fixed_function(const traces::Pipeline& pipeline, hw::DrawState& draw) {
-    draw.primitives = primitives(pipeline, *draw.vertex.program);
-    // A point whose centre is in the view volume is drawn whole.
-    const bool points = draw.primitives.pieces() == models::PieceKind::kPoint;
-    const models::PixelRect rect = models::drawable_rect(viewport_, scissor_, out_.frame.passes.back().width,
-                                                         out_.frame.passes.back().height);
-    const int bits = out_.frame.precision.subpixel_bits;
-    draw.viewport = viewport_;
-    draw.clip = models::make_clip_state(viewport_, pipeline.depth_clamp, bits);
-    draw.setup = {pipeline.cull,
-                  pipeline.front,
-                  points ? scissor_ : rect,
-                  bits,
-                  viewport_.min_depth,
-                  viewport_.max_depth,
-                  pipeline.line_mode,
-                  pipeline.line_width,
-                  models::sample_grid(out_.frame.passes.back().samples, bits),
-                  pipeline.depth_bias,
-                  depth_step()};
-    draw.depth_stencil = depth_stencil(pipeline);
-    draw.blend = pipeline.blend;
-    draw.blend_shared = pipeline.blend_shared;
-    draw.second_source = pipeline.blend[0].uses_second_source();
-    if (draw.second_source && (!draw.fragment.program->second_source || out_.frame.passes.back().colors != 1))
-      throw user_error(
-          "{}: pipeline '{}' blends by a second colour: the fragment shader has to have an output at "
-          "location "
-          "0, index 1, and the pass one colour attachment",
-          draw.fragment.program->name, pipeline.name);
-    const models::Program& program = *draw.fragment.program;
-    const bool writes_memory = models::writes_buffers(program);
-    if (writes_memory && draw.primitives.pieces() != draw.primitives.assembled)
-      throw user_error(
-          "{}: writes memory where pipeline '{}' draws triangles by their edges or corners, which is not "
-          "supported: two edges of a triangle may cover one pixel; draw lines or points",
-          program.name, pipeline.name);
-    draw.by_sample = draw.samples().count > 1 && (program.by_sample || pipeline.sample_shading);
-    draw.reads_coverage = models::reads_coverage(program);
-    draw.alpha_to_coverage = pipeline.alpha_to_coverage;
-    draw.sample_mask = pipeline.sample_mask;
-    draw.late_depth =
-        draw.uses_depth() && !program.early_fragment_tests &&
-        (program.uses_discard || program.writes_depth || writes_memory || draw.limits_coverage());
-  }
-
-  /// Of a pass that has the attachment; else nothing is tested.
-  models::DepthStencilState depth_stencil(const traces::Pipeline& pipeline) const {
-    models::DepthStencilState state;
-    state.depth_compare = pipeline.depth.compare;
-    if (begun_->depth.image == kNone) return state;
-    state.depth_test = pipeline.depth.test;
-    state.depth_write = pipeline.depth.test && pipeline.depth.write;
-    state.bounds = pipeline.depth_bounds;
-    if (models::has_stencil(stream_.images[begun_->depth.image].format)) state.stencil = pipeline.stencil;
-    return state;
-  }
-
-  /// What depths of the pass's attachment are apart; 0 for floats, or without one.
-  [[nodiscard]] double depth_step() const {
-    if (begun_->depth.image == kNone) return 0;
-    const models::FormatInfo& format = models::format_info(stream_.images[begun_->depth.image].format);
-    return format.numeric == models::Numeric::kFloat ? 0 : std::ldexp(1.0, -format.component[0].bits);
   }
 
   std::vector<std::uint32_t> constants(const models::Program& program) {

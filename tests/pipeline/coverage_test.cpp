@@ -63,16 +63,9 @@ void check_reference(const traces::CommandStream& stream) {
 }
 
 void check_machines(const traces::CommandStream& stream, std::uint64_t first, std::uint64_t machines) {
-  const std::uint64_t expected = functional_digest(stream);
   for (std::uint64_t seed = first; seed < first + machines; ++seed) {
-    const hw::contract::Outcome outcome = hw::contract::run_forked(machine_builder(stream, seed), {});
-    INFO("machine " << seed << ": " << outcome.failure);
-    REQUIRE(outcome.failure.empty());
-    CHECK(outcome.digest == expected);
-    for (const auto& [name, value] : outcome.figures) {
-      INFO(name);
-      if (name.starts_with("law broken")) CHECK(value == 0);
-    }
+    INFO("machine " << seed);
+    CHECK(machine_faults(stream, seed) == "");
   }
 }
 

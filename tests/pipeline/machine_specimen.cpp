@@ -75,4 +75,18 @@ hw::contract::Builder machine_builder(const traces::CommandStream& stream, std::
   };
 }
 
+std::string faults_of(const hw::contract::Outcome& outcome, std::uint64_t digest) {
+  if (!outcome.failure.empty()) return outcome.failure;
+  std::string faults = outcome.digest == digest ? "" : "other pixels; ";
+  for (const auto& [name, value] : outcome.figures)
+    if (name.starts_with("law broken") && value != 0) faults += name + "; ";
+  return faults;
+}
+
+std::string machine_faults(const traces::CommandStream& stream, std::uint64_t machine_seed,
+                           const hw::contract::Variation& variation) {
+  return faults_of(hw::contract::run_forked(machine_builder(stream, machine_seed), variation),
+                   functional_digest(stream));
+}
+
 }  // namespace quadrille::pipeline::test

@@ -6,6 +6,8 @@
 #include "tests/hw/contract.h"
 #include "traces/command_stream.h"
 
+#include <string>
+
 namespace quadrille::pipeline::test {
 
 /// Checksum of colour and depth.
@@ -17,5 +19,11 @@ namespace quadrille::pipeline::test {
 /// unit, needed or not.
 [[nodiscard]] hw::contract::Builder machine_builder(const traces::CommandStream& stream,
                                                     std::uint64_t machine_seed, bool leave_out = true);
+
+/// What is wrong with a run that should have left this digest and kept all laws; empty: nothing.
+[[nodiscard]] std::string faults_of(const hw::contract::Outcome& outcome, std::uint64_t digest);
+/// The same of the machine of `machine_seed`, which should draw what the functional rendering draws.
+[[nodiscard]] std::string machine_faults(const traces::CommandStream& stream, std::uint64_t machine_seed,
+                                         const hw::contract::Variation& variation = {});
 
 }  // namespace quadrille::pipeline::test

@@ -52,9 +52,7 @@ traces::CommandStream partial_stream(std::uint64_t seed) {
 TEST_CASE("partial outputs: twenty random machines draw what the functional run draws") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const traces::CommandStream stream = partial_stream(1 + seed / 5);
-    const hw::contract::Outcome outcome = hw::contract::run_forked(machine_builder(stream, seed), {});
-    INFO("machine " << seed << ": " << outcome.failure);
-    REQUIRE(outcome.failure.empty());
-    CHECK(outcome.digest == functional_digest(stream));
+    INFO("machine " << seed);
+    CHECK(machine_faults(stream, seed) == "");
   }
 }

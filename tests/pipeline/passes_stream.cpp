@@ -54,6 +54,11 @@ struct Vertex {
   float position[4], color[4];
 };
 
+/// Of the depth attachments, by the same choice as the colours; later passes load and sample them.
+constexpr std::array<std::array<Format, 2>, 4> kDepthFormats{{{Format::kD32Float, Format::kD32Float},
+                                                              {Format::kD24UnormS8Uint, Format::kD16Unorm},
+                                                              {Format::kD32FloatS8Uint, Format::kD32Float},
+                                                              {Format::kD16Unorm, Format::kD24UnormS8Uint}}};
 /// Of the first pass's three colour attachments and of the picture. Pixels of 1, 2, 4, 8 and 16 bytes.
 constexpr std::array<std::array<Format, 4>, 4> kFormats{
     {{Format::kR8G8B8A8Unorm, Format::kB8G8R8A8Srgb, Format::kA2B10G10R10Unorm, Format::kR8G8B8A8Srgb},
@@ -67,7 +72,8 @@ class Maker {
       : random_(seed), width_(width), height_(height) {
     const std::array<Format, 4>& formats = kFormats[seed % kFormats.size()];
     for (std::size_t i = 0; i < 3; ++i) add_image(formats[i], traces::kColorAttachment);
-    for (int i = 0; i < 2; ++i) add_image(Format::kD32Float, traces::kDepthAttachment);
+    for (const Format depth : kDepthFormats[seed % kFormats.size()])
+      add_image(depth, traces::kDepthAttachment);
     add_image(formats[3], traces::kColorAttachment);
     stream_.name = "passes";
     stream_.samplers.resize(2);

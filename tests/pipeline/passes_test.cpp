@@ -34,14 +34,8 @@ std::string refusal(const traces::CommandStream& stream) {
 TEST_CASE("passes: thirty random machines give the pixels of the functional rendering, and keep all laws") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     const traces::CommandStream stream = passes_stream(1 + seed / 3);
-    const hw::contract::Outcome outcome = hw::contract::run_forked(machine_builder(stream, seed), {});
-    INFO("machine " << seed << ": " << outcome.failure);
-    REQUIRE(outcome.failure.empty());
-    CHECK(outcome.digest == functional_digest(stream));
-    for (const auto& [name, value] : outcome.figures) {
-      INFO(name);
-      if (name.starts_with("law broken")) CHECK(value == 0);
-    }
+    INFO("machine " << seed);
+    CHECK(machine_faults(stream, seed) == "");
   }
 }
 

@@ -34,11 +34,18 @@ layout(early_fragment_tests) in;
 layout(location = 0) in vec4 v_color;
 layout(location = 0) out vec4 o;
 void main() { if ((int(gl_FragCoord.x) & 3) == 1) discard; o = v_color; })";
+constexpr const char* kEarlyDepth = R"(#version 450
+layout(early_fragment_tests) in;
+layout(location = 0) in vec4 v_color;
+layout(location = 0) out vec4 o;
+void main() { o = v_color; gl_FragDepth = 0.125; })";
 constexpr const char* kTwoColors = R"(#version 450
 layout(location = 0) in vec4 v_color;
 layout(location = 0, index = 0) out vec4 o;
 layout(location = 0, index = 1) out vec4 second;
 void main() { o = v_color; second = vec4(v_color.gbr, 0.25); })";
+
+constexpr int kTwoColorsShader = 5;  ///< the last fragment shader of the stream; a vertex shader follows
 
 struct Vertex {
   float position[4], color[4];
@@ -56,7 +63,7 @@ class Maker {
     constexpr std::array kDepths{Format::kD32Float, Format::kD16Unorm, Format::kD24UnormS8Uint,
                                  Format::kD32FloatS8Uint, Format::kD24UnormS8Uint};
     stream_.name = "states";
-    for (const char* source : {kPlain, kDiscards, kWritesDepth, kEarly, kTwoColors})
+    for (const char* source : {kPlain, kDiscards, kWritesDepth, kEarly, kEarlyDepth, kTwoColors})
       shader(source, traces::ShaderStage::kFragment);
     shader(kVertex, traces::ShaderStage::kVertex);
     pass_ = traces::make_pass(
@@ -121,9 +128,9 @@ class Maker {
 
   traces::Pipeline pipeline() {
     traces::Pipeline p;
-    const int shader = random_.integer(0, 4);
+    const int shader = random_.integer(0, kTwoColorsShader);
     p.fragment_shader = static_cast<Index>(shader);
-    p.vertex_shader = 5;
+    p.vertex_shader = kTwoColorsShader + 1;
     p.bindings = {{0, sizeof(Vertex), false}};
     p.attributes = {{0, 0, Format::kR32G32B32A32Float, 0}, {1, 0, Format::kR32G32B32A32Float, 16}};
     p.front = random_.chance(0.5) ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
@@ -134,7 +141,7 @@ class Maker {
     if (options_.depth_bounds) p.depth_bounds = {random_.chance(0.2), 0.2f, 0.6f};
     if (random_.chance(0.3)) p.depth_bias = {true, static_cast<float>(random_.integer(-3000, 3000)), 0.5f, 0};
     if (p.depth_bias.enable && random_.chance(0.3)) p.depth_bias.clamp = random_.chance(0.5) ? 0.01f : -0.01f;
-    blending(p, shader == 4);
+    blending(p, shader == kTwoColorsShader);
     return p;
   }
 

@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <map>
+
 using namespace quadrille;
 using namespace quadrille::hw;
 using namespace quadrille::hw::bench;
@@ -22,7 +24,8 @@ struct DepthBench final : Bench {
     models::LoadOp load = models::LoadOp::kClear;
     models::StoreOp store = models::StoreOp::kStore;
     bool read_later = false;
-    float stored = 0;  ///< what a loaded surface holds
+    float stored = 0;      ///< what a loaded surface holds
+    bool stencil = false;  ///< draws 0 and 1 count what passes, in a surface of 24 bits and stencil values
   };
   /// Draws: 0 tests and writes with "less" early, 1 the same late, 2 without depth, 3 writes with "greater".
   /// Triangle i lies at depth i / 8.
@@ -30,9 +33,10 @@ struct DepthBench final : Bench {
       : Bench(driver, v), triangles(8), warps(4) {
     PassState pass;
     pass.has_depth = true;
+    if (s.stencil) pass.depth.format = models::Format::kD24UnormS8Uint;
     pass.depth.surface = models::allocate_surface(device, s.width, s.height);
     models::fill_surface(device, pass.depth.surface, {{std::bit_cast<std::uint32_t>(s.stored)}});
-    pass.depth.clear = {{std::bit_cast<std::uint32_t>(pass.clear_depth)}};
+    pass.depth.clear = models::encode_depth(pass.depth.format, pass.clear_depth, 0);
     pass.depth.load = s.load;
     pass.depth.store = s.store;
     pass.depth.read_later = s.read_later;
@@ -42,6 +46,9 @@ struct DepthBench final : Bench {
     for (DrawState& draw : frame.draws) {
       draw.fragment.program = &program;
       draw.depth_stencil.depth_test = draw.depth_stencil.depth_write = true;
+      draw.depth_stencil.stencil.test = s.stencil;
+      draw.depth_stencil.stencil.front.pass = models::StencilOp::kIncrementClamp;
+      draw.depth_stencil.stencil.back = draw.depth_stencil.stencil.front;
     }
     frame.draws[1].late_depth = true;
     frame.draws[2].depth_stencil.depth_test = false;
@@ -141,6 +148,29 @@ TEST_CASE("depth_unit: what is in front of all that is there does not read it, a
   };
   CHECK(requests(false) == "32 out, 0 unread:  r0/f w0/f f0/0");
   CHECK(requests(true) == "32 out, 1 unread:  w0/f f0/0");
+}
+
+TEST_CASE("depth_unit: stencil values count what passes, early and late, at the rate of depth alone") {
+  const auto seen = [](bool stencil) {
+    const DepthBench::Setup s{.coverage = {{0, kBegin},
+                                           {10, tile(4)},
+                                           {10, tile(6)},
+                                           {10, tile(2, 0, 0xf)},
+                                           {10, tile(1, 1, kUpperHalf)}},
+                              .late = {{60, {TokenKind::kWork, WarpSlotId(0)}}},
+                              .stencil = stencil};
+    return run<DepthBench>(s, [](const DepthBench& b) {
+      std::map<std::uint32_t, int> pixels;
+      for (const std::uint32_t word : models::detile(b.device, b.frame.passes[0].depth.surface))
+        ++pixels[word >> 24];
+      return fmt::format("{} late {}, {} written: {} {} {} {}", b.out->text(), b.late->text(),
+                         counter(*b.unit, "stencil_written"), pixels[0], pixels[1], pixels[2], pixels[3]);
+    });
+  };
+  const std::string with = seen(true), without = seen(false);
+  // 64 pixels at 4/8, none at 6/8, 4 at 2/8, and the upper 32 at 1/8 after shading; the right tile stays.
+  CHECK(with.substr(with.find(',')) == ", 100 written: 64 32 28 4");
+  CHECK(with.substr(0, with.find(',')) == without.substr(0, without.find(',')));
 }
 
 TEST_CASE("depth_unit: a draw without depth test passes untouched") {
