@@ -113,6 +113,11 @@ traces::CommandStream Scene::record(const Moment& moment) {
   }
   SceneData& scene = parts_->file ? parts_->file->data() : made;
   scene.name = parts_->name;
+  if (const RecordPasses passes = parts_->file ? nullptr : builtin_passes(parts_->builtin)) {
+    traces::CommandStream stream = passes(scene, options);
+    traces::validate(stream);
+    return stream;
+  }
   Recorder recorder(scene, options);
   traces::CommandStream stream = recorder.record();
   parts_->compiled_shaders += recorder.compiled_shaders();

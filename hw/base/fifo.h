@@ -221,7 +221,8 @@ class PortBase {
   [[nodiscard]] Unit& owner() const { return owner_; }
   /// Cycles the owner waited for this port: starved on an input, blocked on an output.
   [[nodiscard]] std::int64_t waited() const;
-  /// `span` as the owner counts it: ticks on a uniform clock, else cycles.
+  /// The same as the owner counts it: ticks on a uniform clock, else cycles.
+  [[nodiscard]] std::int64_t waited_span() const { return waited_; }
   void add_wait(std::int64_t span) const { waited_ += span; }
 
  protected:

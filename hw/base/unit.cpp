@@ -50,11 +50,18 @@ std::int64_t taken_from(std::int64_t& charge, std::int64_t excess) {
 }  // namespace
 
 // Only a memory channel has so much to do behind the frame's end: it writes back, so what it is charged is
-// its own (docs/deviations.md#D87).
+// first its own, and then what it waited for between two writes (docs/deviations.md#D87).
 void Unit::take_back_rest(Tick end) {
-  const std::int64_t left = taken_from(busy_, taken_from(waiting_, span(end, accounted_)));
-  QUADRILLE_CHECK(left == 0, "{}: {} cycles were charged behind the frame's end to what it waited for",
-                  name(), left);
+  std::int64_t left = taken_from(busy_, taken_from(waiting_, span(end, accounted_)));
+  for (const PortBase* port : ports_) {
+    std::int64_t& of = port->direction() == PortBase::Direction::kIn ? starved_ : blocked_;
+    const std::int64_t part = std::min(left, port->waited_span());
+    of -= part;
+    port->add_wait(-part);
+    left -= part;
+  }
+  QUADRILLE_CHECK(left == 0, "{}: {} cycles were charged behind the frame's end, and none before", name(),
+                  left);
   accounted_ = end;
 }
 

@@ -47,7 +47,7 @@ class TouchedTiles {
 };
 
 /// Of a quad of these pixels, which the unit's path to its cache takes at once up to 4 bytes each.
-int quad_cost(const AttachmentState& color) {
+int path_turns(const AttachmentState& color) {
   return std::max(1, static_cast<int>(color.surface.pixel_bytes) / 4);
 }
 
@@ -343,11 +343,19 @@ int Rop::write_colors(const WarpSlot& warp) {
     }
   }
   int quad_cycles = 0;
-  draw.visit_colors([&](std::size_t color) {
-    const int cost = quad_cost(frame_.pass(pass_).color[color]);
-    quad_cycles += (draw.reads_color(color) ? 2 * quads : quads) * cost;
-  });
+  draw.visit_colors([&](std::size_t color) { quad_cycles += quads * quad_turns(draw, color); });
   return std::max(1, (quad_cycles + params_.quads_per_clk - 1) / params_.quads_per_clk);
+}
+
+int Rop::quad_turns(const DrawState& draw, std::size_t color) const {
+  const AttachmentState& attachment = frame_.pass(pass_).color[color];
+  const int path = path_turns(attachment);
+  if (!draw.reads_color(color)) return path;
+  const models::FormatInfo& format = models::format_info(attachment.format);
+  const bool floats = format.numeric == models::Numeric::kFloat || format.numeric == models::Numeric::kUfloat;
+  if (!draw.blend[color].enable || !floats) return 2 * path;
+  const bool wide = format.component[0].bits == 32;
+  return std::max(2 * path, wide ? params_.float_blend_turns * format.channels : params_.half_blend_turns);
 }
 
 void Rop::audit(Audit& audit) const {

@@ -11,7 +11,8 @@
 ///       load_out     a core has done a warp
 /// Mem   colour tiles
 /// Time  `quads_per_clk` quads of one sample a cycle and colour attachment (half of that where blending reads
-///       the old colour; half of it again for pixels of 8 bytes, a quarter for 16); up to `warps_in_flight`
+///       the old colour; half of it again for pixels of 8 bytes, a quarter for 16; less where blending
+///       floats takes more turns than that); up to `warps_in_flight`
 ///       warps wait for their lines. At the end of a pass of several samples a pixel it resolves them
 ///       (hw/rop/resolve.h).
 #pragma once
@@ -42,6 +43,23 @@ class Rop final : public Unit {
     Param<int> cache_ways{
         *this, "cache_ways", 8, "way", {1, 64}, "Associativity of the colour cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
+    Param<int> half_blend_turns{
+        *this,
+        "half_blend_turns",
+        1,
+        "turn",
+        {1, 64},
+        "Turns in which a quad of floats of 16 bits or fewer is blended, however many channels it has; its "
+        "path to the cache takes at least two. [G: no slower than the path]",
+        Effect::kSlower};
+    Param<int> float_blend_turns{
+        *this,
+        "float_blend_turns",
+        1,
+        "turn",
+        {1, 64},
+        "The same: floats of 32 bits, for each channel. [G: no slower than the path]",
+        Effect::kSlower};
   };
   struct Stats : StatGroup {
     Counter warps{*this, "warps", "warp", "Warps retired"};
@@ -121,6 +139,8 @@ class Rop final : public Unit {
   void retire_boundary(Tick now, const Entry& entry);
   bool claim_colors(const WarpSlot& warp);
   int write_colors(const WarpSlot& warp);
+  /// Turns that a quad takes at an attachment.
+  [[nodiscard]] int quad_turns(const DrawState& draw, std::size_t color) const;
 
   const Params& params_;
   const Frame& frame_;

@@ -66,6 +66,7 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
     for (const Simd& simd : simds_) issued += simd.issued(this->clock().edges_before(at));
     return issued / params_.simds;
   });
+  add_rate("export", [this] { return export_clk_; });
   add_places("warp_slots", [this] { return kept_out(true); });
   add_places("register_rows", [this] { return kept_out(false); });
   for (std::size_t p = 0; p < warps_.size(); ++p) {
@@ -135,8 +136,9 @@ Wake ShaderCore::completion_wake(const Completion& done) const {
     if (slot.warp.access_count > 0) wake.output(*storage_out);
     return wake;
   }
-  return slot.stage == models::ShaderStage::kVertex ? wake.output(vertex_out)
-                                                    : wake.output(*fragment_out[slot.partition.index()]);
+  return slot.stage == models::ShaderStage::kVertex
+             ? wake.output(vertex_out)
+             : Wake(std::max(done.at, export_free_)).output(*fragment_out[slot.partition.index()]);
 }
 
 const ShaderCore::Completion* ShaderCore::next_completion(Wake& wake) const {
@@ -332,10 +334,23 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
     work.alive = work.covered & ~slot.warp.killed;
     take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment, work);
     fragment_out[slot.partition.index()]->push(now, {slot.warp_slot});
+    export_colors(now, work);
   }
   --simd_warps_[slot.simd];
   free_rows_ += slot.warp.program->num_regs;
   free_slots_.push_back(index);
+}
+
+void ShaderCore::export_colors(Tick now, const WarpSlot& work) {
+  const DrawState& draw = frame_.draw(work.draw);
+  int pixel_bytes = 0;
+  draw.visit_colors([&](std::size_t color) {
+    pixel_bytes += static_cast<int>(frame_.pass(draw.pass).color[color].surface.pixel_bytes);
+  });
+  const int bytes = pixel_bytes * std::popcount(work.alive), width = params_.export_bytes_per_clk;
+  stats_.exported_bytes += static_cast<std::uint64_t>(bytes);
+  export_clk_ += static_cast<double>(bytes) / width;
+  export_free_ = after(now, std::max(1, (bytes + width - 1) / width));
 }
 
 void ShaderCore::audit(Audit& audit) const {

@@ -11,6 +11,7 @@
 ///       of the SIMD issue meanwhile, as `scheduler` says (hw/shader/simd.h). A warp stays on the SIMD that
 ///       it was given, the one with the fewest warps. It needs a slot and its registers; a slot and registers
 ///       for one fragment warp are never given to vertex warps.
+///       Colours leave for the ROPs at `export_bytes_per_clk`, a warp after the other.
 /// Not modelled: instruction and constant caches (docs/deviations.md#D4), register bank conflicts (#D5)
 #pragma once
 
@@ -77,6 +78,14 @@ class ShaderCore final : public Unit {
                                              "ready, or all in turn. [G: within 1 % of each "
                                              "other on our scenes at 640x360]"};
     Param<int> warp_slots{*this, "warp_slots", 32, "warp", {2, 1024}, "Warps resident on the core. [G]"};
+    Param<int> export_bytes_per_clk{
+        *this,
+        "export_bytes_per_clk",
+        128,
+        "B/clk",
+        {1, 1 << 16},
+        "Bytes of colours, as their attachments store them, that leave the core a cycle. [G: a warp of "
+        "4-byte pixels]"};
     Param<int> register_rows{*this, "register_rows", 1024,
                              "row", {16, 1 << 20},   "Register rows of 32 words: 1024 are 128 KiB. [G]"};
   };
@@ -95,6 +104,8 @@ class ShaderCore final : public Unit {
     Counter storage{*this, "storage_instructions", "instruction", "Storage requests sent"};
     Counter lane_operations{*this, "lane_operations", "lane", "Lanes executed, summed over instructions"};
     Counter simd_busy{*this, "simd_busy", "clk", "Cycles in which SIMD units issued, summed over the units"};
+    Counter exported_bytes{*this, "exported_bytes", "B",
+                           "Colours that left the core for the ROPs, as their attachments store them"};
     Counter operand_waits{
         *this, "operand_waits", "clk",
         "Cycles in which a clause, alone on its SIMD, would wait for its own results, summed over clauses"};
@@ -172,6 +183,8 @@ class ShaderCore final : public Unit {
   [[nodiscard]] const models::ProgramTiming& timing_of(const models::Program& program);
   void complete(Tick now, const Completion& done);
   void retire(Tick now, std::uint32_t index);
+  /// The warp's colours are on their way out until they have passed.
+  void export_colors(Tick now, const WarpSlot& work);
   void take_texels(Tick now);
   void take_reply(Tick now, std::uint32_t index);
 
@@ -192,7 +205,8 @@ class ShaderCore final : public Unit {
   std::vector<int> simd_warps_;  ///< resident, by SIMD
   Queue<Ready> ready_;
   std::vector<Completion> completions_;
-  Tick accept_free_ = 0;
+  Tick accept_free_ = 0, export_free_ = 0;
+  double export_clk_ = 0;  ///< that exported bytes take at their rate
 };
 
 }  // namespace quadrille::hw

@@ -14,6 +14,7 @@
 #include "scenes/builtin/mesh_builder.h"
 #include "scenes/builtin/procedural_texture.h"
 #include "scenes/data/rounded_math.h"
+#include "scenes/passes/rotunda.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -21,10 +22,11 @@ namespace {
 struct Entry {
   BuiltinScene scene;
   SceneData (*build)(double time);
-  double length = 0;  ///< seconds
+  double length = 0;                     ///< seconds
+  RecordPasses record_passes = nullptr;  ///< its frames have passes of their own
 };
 
-constexpr std::array<Entry, 11> kEntries{{
+constexpr std::array<Entry, 13> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
@@ -60,6 +62,19 @@ constexpr std::array<Entry, 11> kEntries{{
       "vertex shader"},
      build_flag,
      kFlagSeconds},
+    {{"shadow",
+      "columns in the sun: a shadow map of 1024x1024, the lit scene in 16-bit floats, and a pass for tones "
+      "and "
+      "glare"},
+     [](double) { return build_rotunda(); },
+     0,
+     record_shadow},
+    {{"deferred",
+      "the same columns at night: colours, normals and depths first, then 48 lamps added up over them, then "
+      "tones"},
+     [](double) { return build_rotunda(); },
+     0,
+     record_deferred},
 }};
 
 /// An unlit quad that fills the picture of `flat_camera`, at distance `depth`.
@@ -287,6 +302,8 @@ const Entry& entry_of(const std::string& name) {
 }  // namespace
 
 SceneData build_builtin(const std::string& name, double time) { return entry_of(name).build(time); }
+
+RecordPasses builtin_passes(const std::string& name) { return entry_of(name).record_passes; }
 
 double builtin_length(const std::string& name) { return entry_of(name).length; }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenes/data/scene_data.h"
+#include "scenes/passes/passes.h"
 
 namespace quadrille::scenes {
 
@@ -23,6 +24,10 @@ struct BuiltinScene {
 [[nodiscard]] SceneData build_builtin(const std::string& name, double time = 0);
 /// Seconds that its animation takes; 0: nothing moves. Throws as `build_builtin`.
 [[nodiscard]] double builtin_length(const std::string& name);
+
+/// What records its frames where they have passes of their own; null: a recorder of scenes does. Throws as
+/// `build_builtin`.
+[[nodiscard]] RecordPasses builtin_passes(const std::string& name);
 
 // One function a scene; the descriptions are in builtin.cpp.
 [[nodiscard]] SceneData build_triangle();

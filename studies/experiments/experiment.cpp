@@ -125,6 +125,16 @@ const Experiment kExperiments[] = {
      &formats,
      {},
      "256x128"},
+    {"color-writes",
+     "Colour writes by format",
+     "Measured on a GeForce GTX 460 with a bus of 192 bits (GPU Pro series, compressed frame buffers, fig. "
+     "4.6): pixels a second by format, blended and not.",
+     "Layers over the whole frame in each format, on a machine of that card's rates. Each rate is held to "
+     "the "
+     "first one's.",
+     &color_writes,
+     {},
+     "512x512"},
     {"traversal",
      "Traversal of triangles",
      "Lectures teach two ways (Papaioannou, Rasterization Architectures): edge walking is reasonably good "

@@ -57,9 +57,10 @@ traces::CommandStream storage_stream(const Setting& setting) {
 }
 
 /// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up,
-/// layers that lie behind each other, the same from back to front, fragments that the shader drops, lines
-/// within and beyond the guard band, points, and storage buffers.
+/// layers that lie behind each other, fragments that the shader drops, blended as floats, layers from back to
+/// front, lines within and beyond the guard band, points, and storage buffers.
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
+  using traces::Format;
   constexpr std::int32_t kBeyond = 100'000;  // pixels
   constexpr int kLayers = 8;
   TriangleMesh clipped{setting.width, setting.height, {}, {}};
@@ -71,8 +72,10 @@ std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   streams.push_back(stream_of(small));
   streams.push_back(stream_of(small, {.cull = traces::CullMode::kBack}));
   streams.push_back(stream_of(hiding, {.depth = true}));
-  streams.push_back(stream_of(hiding, {.depth = true, .discards = true}));
-  streams.push_back(stream_of(layers(setting.width, setting.height, kLayers, false), {.depth = true}));
+  streams.push_back(stream_of(
+      hiding, {.depth = true, .discards = true, .blends = true, .format = Format::kR16G16B16A16Float}));
+  streams.push_back(stream_of(layers(setting.width, setting.height, kLayers, false),
+                              {.depth = true, .blends = true, .format = Format::kR32G32Float}));
   streams.push_back(stream_of(clipped, {.topology = traces::Topology::kLineList}));
   streams.push_back(stream_of(through_near_plane(setting.width, setting.height, 1),
                               {.topology = traces::Topology::kLineList, .depth = true}));

@@ -149,7 +149,7 @@ traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& opt
   stream.buffers = {buffer_of<float>("positions", positions), buffer_of("indices", indices)};
   const traces::BeginPass pass =
       traces::make_pass(stream, {mesh.width, mesh.height, options.format,
-                                 options.depth ? traces::Format::kD32Float : traces::Format::kUndefined});
+                                 options.depth ? options.depth_format : traces::Format::kUndefined});
   stream.pipelines = {pipeline_of(options)};
   traces::Draw draw;
   draw.indexed = true;

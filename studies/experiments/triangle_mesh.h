@@ -56,6 +56,7 @@ struct DrawOptions {
   DrawTexture texture{};
   std::uint32_t storage_words = 0;  ///< of a storage buffer at set 0, binding 1, zeros; 0: there is none
   std::uint32_t draws = 1;          ///< so often, each a draw of its own
+  traces::Format depth_format = traces::Format::kD32Float;  ///< where `depth` is asked for
 };
 /// An indexed draw of the mesh; the shaders hand positions through and write one colour.
 [[nodiscard]] traces::CommandStream stream_of(const TriangleMesh& mesh, const DrawOptions& options = {});

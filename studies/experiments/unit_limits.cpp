@@ -141,6 +141,17 @@ void add_pixels(Frames& frames, std::uint32_t width, std::uint32_t height) {
              [](const Work& w, const MachineConfig& m) {
                return 2 * w.quads / m.rop.quads_per_clk / m.gpu.partitions;
              });
+  frames.add("rop", "the same, floats of 16 bits, 5 turns to blend", "5 x quads / quads_per_clk / partitions",
+             covered_frame(width, height, 8), {.blends = true, .format = traces::Format::kR16G16B16A16Float},
+             {"rop.quads_per_clk=1", "rop.half_blend_turns=5"}, [](const Work& w, const MachineConfig& m) {
+               return m.rop.half_blend_turns * w.quads / m.rop.quads_per_clk / m.gpu.partitions;
+             });
+  frames.add("rop", "the same, two floats of 32 bits, 3 turns each",
+             "3 x 2 x quads / quads_per_clk / partitions", covered_frame(width, height, 8),
+             {.blends = true, .format = traces::Format::kR32G32Float},
+             {"rop.quads_per_clk=1", "rop.float_blend_turns=3"}, [](const Work& w, const MachineConfig& m) {
+               return 2 * m.rop.float_blend_turns * w.quads / m.rop.quads_per_clk / m.gpu.partitions;
+             });
 }
 
 void add_cores(Frames& frames, std::uint32_t width, std::uint32_t height) {
@@ -158,6 +169,11 @@ void add_cores(Frames& frames, std::uint32_t width, std::uint32_t height) {
       {"gpu.cores=16", "gpu.partitions=4", "fine_raster.quads_per_clk=16", "warp_packer.quads_per_clk=16",
        "warp_packer.launch_clk=0", "depth.quads_per_clk=16", "rop.quads_per_clk=16"},
       [](const Work& w, const MachineConfig&) { return w.warps; });
+  frames.add("core", "the frame covered 32 times, 8 bytes of colours a cycle and core",
+             "warps x 32 x 4 / export_bytes_per_clk / cores", covered_frame(width, height, 32), {},
+             {"core.export_bytes_per_clk=8"}, [](const Work& w, const MachineConfig& m) {
+               return w.warps * kWarpLanes * 4 / m.core.export_bytes_per_clk / m.gpu.cores;
+             });
   frames.add("core", fmt::format("four chains of {} steps", kSteps),
              "warps x instructions x 32 / simd_lanes / (cores x simds)", once,
              {.fragment_shader = chain_shader(4, kSteps)}, {}, issue(4));

@@ -17,7 +17,7 @@ PassStatistics statistics_of(const Readings& r) {
           .clipping_invocations = count("clipper.triangles"),
           .clipping_primitives = count("clipper.passed") + count("clipper.pieces"),
           .fragment_invocations = count("core.fragments"),
-          .samples_passed = count("rop.written")};
+          .samples_passed = count("rop.samples_written")};
 }
 
 }  // namespace

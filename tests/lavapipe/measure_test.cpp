@@ -150,6 +150,33 @@ TEST_CASE("statistics of layers equal the machine's counters, llvmpipe counts hi
   }
 }
 
+TEST_CASE("statistics of layers in every format equal the machine's counters") {
+  for (const char* name : {"opaque-formats", "blended-formats", "depth-formats"}) {
+    for (const Pair& p : both(name)) {
+      INFO(name);
+      check_equal(p);
+      check_vertices(p);
+      CHECK(p.ours.fragment_invocations == p.theirs.samples_passed);
+    }
+  }
+}
+
+TEST_CASE("samples that pass are counted by sample, and fragments once a pixel and triangle") {
+  for (const char* name : {"samples", "samples-with-depth"}) {
+    const std::vector<Pair> pairs = both(name);
+    if (pairs.empty()) return;
+    REQUIRE(pairs.size() == 4);  // of one sample, then of four
+    for (const std::size_t i : {0, 1}) {
+      const Pair &one = pairs[i], &four = pairs[i + 2];
+      CHECK(four.ours.samples_passed == 4 * one.ours.samples_passed);
+      CHECK(four.theirs.samples_passed == four.ours.samples_passed);
+      // Both triangles of a layer shade the pixels of the diagonal between them.
+      CHECK(four.ours.fragment_invocations > one.ours.fragment_invocations);
+      CHECK(four.ours.fragment_invocations <= one.ours.fragment_invocations * (kWidth + 2) / kWidth);
+    }
+  }
+}
+
 TEST_CASE("a time is a median of what was measured, and the JSON holds each") {
   CHECK(median({3, 1, 2}) == 2);
   CHECK(median({4, 1, 2, 3}) == 2.5);

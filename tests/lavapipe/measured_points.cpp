@@ -101,6 +101,55 @@ MeasuredExperiment colour_layers(Frame f, bool blended) {
   return e;
 }
 
+/// Few layers and many of them: their difference is what layers cost, without what begins and ends a pass.
+constexpr std::uint32_t kFewLayers = 2;
+
+void add_layers(MeasuredExperiment& e, Frame f, const std::string& name, const DrawOptions& options,
+                std::uint32_t samples = 1) {
+  for (const std::uint32_t n : {kFewLayers, kMostLayers}) {
+    const auto mesh = [=] { return meshes::layers(f.width, f.height, n, false); };
+    e.points.push_back({fmt::format("{} {}", name, n), static_cast<double>(e.points.size() + 1), mesh, [=] {
+                          traces::CommandStream stream = meshes::stream_of(mesh(), options);
+                          if (samples > 1) traces::use_samples(stream, samples);
+                          return stream;
+                        }});
+  }
+}
+
+MeasuredExperiment colour_formats(Frame f, bool blended) {
+  using traces::Format;
+  MeasuredExperiment e{blended ? "blended-formats" : "opaque-formats",
+                       "format of the colour attachment, and layers over the whole frame",
+                       {}};
+  for (const Format format :
+       {Format::kR8G8B8A8Unorm, Format::kR16G16B16A16Float, Format::kR32G32B32A32Float, Format::kR8G8Unorm,
+        Format::kR16G16Float, Format::kR32G32Float, Format::kR8Unorm, Format::kR16Float, Format::kR32Float,
+        Format::kA2B10G10R10Unorm, Format::kB10G11R11Ufloat}) {
+    add_layers(e, f, std::string(models::format_info(format).name), {.blends = blended, .format = format});
+  }
+  return e;
+}
+
+MeasuredExperiment depth_formats(Frame f) {
+  using traces::Format;
+  MeasuredExperiment e{
+      "depth-formats", "format of depth, and layers over the whole frame, back to front", {}};
+  for (const Format format :
+       {Format::kD32Float, Format::kD16Unorm, Format::kD24UnormS8Uint, Format::kD32FloatS8Uint}) {
+    add_layers(e, f, std::string(models::format_info(format).name), {.depth = true, .depth_format = format});
+  }
+  return e;
+}
+
+MeasuredExperiment samples(Frame f, bool depth) {
+  MeasuredExperiment e{
+      depth ? "samples-with-depth" : "samples", "samples a pixel, and layers over the whole frame", {}};
+  // What every Vulkan device has.
+  for (const std::uint32_t count : {1U, 4U})
+    add_layers(e, f, fmt::format("{}", count), {.depth = depth}, count);
+  return e;
+}
+
 MeasuredExperiment near_plane(Frame f) {
   MeasuredExperiment e{"near-plane", "corners of a triangle before the near plane", {}};
   for (std::uint32_t behind = 0; behind <= 3; ++behind) {
@@ -134,9 +183,11 @@ MeasuredExperiment scene_experiment(const std::vector<std::string>& scenes, Fram
 
 std::vector<MeasuredExperiment> measured_experiments(std::uint32_t width, std::uint32_t height) {
   const Frame f{width, height};
-  return {vertex_reuse(f),         small_triangles(f),    thin_triangles(f),        setup_rate(f),
-          near_plane(f),           quad_overhead(f),      hidden_surfaces(f, true), hidden_surfaces(f, false),
-          colour_layers(f, false), colour_layers(f, true)};
+  return {
+      vertex_reuse(f),         small_triangles(f),     thin_triangles(f),        setup_rate(f),
+      near_plane(f),           quad_overhead(f),       hidden_surfaces(f, true), hidden_surfaces(f, false),
+      colour_layers(f, false), colour_layers(f, true), colour_formats(f, false), colour_formats(f, true),
+      depth_formats(f),        samples(f, false),      samples(f, true)};
 }
 
 std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string>& names, std::uint32_t width,

@@ -64,6 +64,9 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.triangle_setup.triangle_slots.set(random.pick({1, 2, 9, 64}));
   config.command_processor.draws_in_flight.set(random.pick({1, 2, 32}));
   config.depth.tiles_in_flight.set(random.pick({1, 4}));
+  config.core.export_bytes_per_clk.set(random.pick({1, 24, 128, 65536}));
+  config.rop.half_blend_turns.set(random.pick({1, 5}));
+  config.rop.float_blend_turns.set(random.pick({1, 3}));
   config.rop.warps_in_flight.set(random.pick({1, 4}));
   config.texture.groups_in_flight.set(random.pick({1, 4}));
   config.scan_out.lines_in_flight.set(random.pick({1, 50}));

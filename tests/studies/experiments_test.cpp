@@ -98,7 +98,7 @@ TEST_CASE("units: a unit of another rate than the arithmetic's fails, so each fr
       {"fine_raster", {"fine_raster.quads_per_clk=8"}},
       {"depth", {"depth.quads_per_clk=2"}},
       {"warp_packer", {"warp_packer.quads_per_clk=2"}},
-      {"core", {"core.simd_lanes=16", "core.alu_clk=7"}},
+      {"core", {"core.simd_lanes=16", "core.alu_clk=7", "core.export_bytes_per_clk=16"}},
       {"texture", {"texture.filter_quads_per_clk=2"}},
       {"load_store", {"load_store.lines_per_clk=2"}},
       {"rop", {"rop.quads_per_clk=2"}},

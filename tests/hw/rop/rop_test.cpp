@@ -23,6 +23,8 @@ struct RopBench final : Bench {
     unsigned mask = ~0u;  ///< samples that the program has left
     models::LoadOp load = models::LoadOp::kClear;
     models::StoreOp store = models::StoreOp::kStore;
+    models::Format format = models::Format::kR8G8B8A8Srgb;
+    int half_blend_turns = 1, float_blend_turns = 1;
   };
   /// The target has two tiles; even warps write the upper half of the left one, odd warps two quads of each
   /// row of the right one.
@@ -30,7 +32,9 @@ struct RopBench final : Bench {
     PassState pass;
     DrawState draw;
     for (std::size_t i = 0; i < s.colors; ++i) {
-      pass.color[i].surface = models::allocate_surface(device, 16, 8, static_cast<std::uint32_t>(s.samples));
+      pass.color[i].surface = models::allocate_surface(device, 16, 8, static_cast<std::uint32_t>(s.samples),
+                                                       models::format_info(s.format).bytes);
+      pass.color[i].format = s.format;
       if (s.samples > 1) {
         pass.resolve[i].surface = models::allocate_surface(device, 16, 8);
         pass.resolve[i].load = models::LoadOp::kLoad;
@@ -50,6 +54,8 @@ struct RopBench final : Bench {
     frame.draws = {draw};
     for (std::uint32_t i = 0; i < 4; ++i) fill(warps[WarpSlotId(i)], i, s);
     set_cache(params, s.lines, s.ways, s.misses);
+    params.half_blend_turns.set(s.half_blend_turns);
+    params.float_blend_turns.set(s.float_blend_turns);
     unit = std::make_unique<Rop>("unit", context(), params, warps);
     add(*unit);
     feed(unit->order_in, s.order);
@@ -147,6 +153,32 @@ TEST_CASE(
   CHECK(run<RopBench>(s, text) == "32:0 36:2 draw 40:200");
   s.alive = 0xff;
   CHECK(run<RopBench>(s, text) == "32:0 33:2 draw 34:200");
+}
+
+TEST_CASE("rop: blending floats takes the longer of the blender's turns and the path's") {
+  using models::Format;
+  struct Case {
+    Format format;
+    bool blend;
+    int half_turns, float_turns, turns;
+  };
+  for (const Case& c : {Case{Format::kR16G16B16A16Float, true, 1, 9, 4},
+                        {Format::kR16G16B16A16Float, true, 5, 1, 5},
+                        {Format::kR16G16B16A16Float, false, 5, 1, 2},
+                        {Format::kR16G16Float, true, 5, 1, 5},
+                        {Format::kB10G11R11Ufloat, true, 5, 1, 5},
+                        {Format::kR32G32Float, true, 9, 3, 6},
+                        {Format::kR32G32B32A32Float, true, 1, 3, 12},
+                        {Format::kR8G8B8A8Unorm, true, 5, 5, 2}}) {
+    INFO(models::format_info(c.format).name);
+    RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}}, .done = {done(60, 0), done(60, 2)}};
+    s.format = c.format;
+    s.blend = c.blend;
+    s.half_blend_turns = c.half_turns;
+    s.float_blend_turns = c.float_turns;
+    CHECK(run<RopBench>(s, released) ==
+          fmt::format("62:0 {}:2", 62 + 2 * c.turns));  // eight quads, four a turn
+  }
 }
 
 TEST_CASE("rop: fragments that were discarded are counted and not written") {

@@ -23,6 +23,8 @@ struct CoreBench final : Bench {
     int alu_clk = 4, sfu_clk = 0, interp_clk = 0, const_clk = 0, branch_clk = 0;
     const SimdSharingPolicy* scheduler = &kOldestSharing;
     bool textured = false;
+    models::Format format = models::Format::kUndefined;  ///< of the colour attachment; none
+    int export_bytes_per_clk = 128;
     Pace pace{};
     LinkSpec out{.depth = 64};
   };
@@ -37,6 +39,13 @@ struct CoreBench final : Bench {
     draw.vertex.program = &vertex_program;
     draw.fragment.program = &fragment_program;
     draw.fragment.constants.assign(fragment_program.constants.words, 0);
+    if (s.format != models::Format::kUndefined) {
+      draw.color_outputs = 0xf;
+      draw.pass = PassId(0);
+      frame.passes.emplace_back();
+      frame.passes[0].color[0].surface =
+          models::allocate_surface(device, 8, 8, 1, models::format_info(s.format).bytes);
+    }
     frame.draws = {draw};
     triangles[0] = flat_triangle({glm::ivec2{0, 0}, {0, 40}, {40, 0}});
     triangles[0].varyings.assign(3, 0);
@@ -56,6 +65,7 @@ struct CoreBench final : Bench {
     params.branch_clk.set(s.branch_clk);
     params.scheduler.set(*s.scheduler);
     params.warp_slots.set(s.warp_slots);
+    params.export_bytes_per_clk.set(s.export_bytes_per_clk);
     params.register_rows.set(s.rows);
     unit = std::make_unique<ShaderCore>("unit", context(), params,
                                         ShaderCore::Stores{slots, batches, {&warps}, {&triangles}},
@@ -174,6 +184,27 @@ TEST_CASE("shader_core: varyings and indexed constants are there after the laten
                  "interp r0, vary0\nieq r1, r0, r2\n") == expected);
     CHECK(period({.simds = 1, .alu_clk = 0, .const_clk = latency}, ".literal c0 1 2 3\n",
                  "loadconst r0, c1, r8, 2\nieq r2, r0, r3\n") == expected);
+  }
+}
+
+TEST_CASE("shader_core: the colours of a warp leave after those of the one before, by their bytes") {
+  // Seven fragments a warp. Without the way out, warps end a cycle apart: one is accepted a cycle.
+  struct Case {
+    models::Format format;
+    int width, cycles;  ///< a warp
+  };
+  for (const Case& c : {Case{models::Format::kUndefined, 1, 1},
+                        {models::Format::kR8G8B8A8Unorm, 28, 1},
+                        {models::Format::kR8G8B8A8Unorm, 8, 4},
+                        {models::Format::kR32G32B32A32Float, 8, 14},
+                        {models::Format::kR8Unorm, 4, 2}}) {
+    const CoreBench::Setup s{
+        .fragment = fragments(0, 3), .format = c.format, .export_bytes_per_clk = c.width};
+    const auto text = run<CoreBench>(s, [](const CoreBench& b) {
+      return fmt::format("{} bytes {}", b.fragment_done->text(), counter(*b.unit, "exported_bytes"));
+    });
+    CHECK(text == fmt::format("20:0 {}:1 {}:2 bytes {}", 20 + c.cycles, 20 + 2 * c.cycles,
+                              3 * 7 * models::format_info(c.format).bytes));
   }
 }
 

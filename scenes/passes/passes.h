@@ -1,0 +1,23 @@
+/// Built-in frames of several passes. Each takes the scene of scenes/passes/rotunda.h with a camera, and
+/// gives all of its commands. What it draws with is its own, so a choice of shaders or of another picture is
+/// refused: throws `UserError`.
+#pragma once
+
+#include "scenes/data/scene_data.h"
+#include "scenes/data/scene_options.h"
+#include "traces/command_stream.h"
+
+namespace quadrille::scenes {
+
+using RecordPasses = traces::CommandStream (*)(const SceneData&, const SceneOptions&);
+
+/// Depths as the sun sees them; the lit scene, in floats; a pass that maps its tones and lets what is bright
+/// glare.
+[[nodiscard]] traces::CommandStream record_shadow(const SceneData& scene, const SceneOptions& options);
+/// Surfaces alone (colours, normals, depths); lights added up over what they reach; tones.
+[[nodiscard]] traces::CommandStream record_deferred(const SceneData& scene, const SceneOptions& options);
+
+/// Throws `UserError` for what frames of their own passes cannot follow.
+void refuse_other_pictures(const SceneData& scene, const SceneOptions& options);
+
+}  // namespace quadrille::scenes
