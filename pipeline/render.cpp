@@ -3,6 +3,7 @@
 #include <bit>
 #include <chrono>
 
+#include "pipeline/driver/draw_culling.h"
 #include "pipeline/driver/host_cost.h"
 #include "pipeline/report/detail_log.h"
 
@@ -121,6 +122,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
   build_frame(stream, config.precision(), frame, options.leave_out, config.shader_target());
+  if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
   if (detail.any()) log.emplace(machine, frame, detail);

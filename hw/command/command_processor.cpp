@@ -18,6 +18,7 @@ CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const UnitConte
   for (int i = 0; i < context.machine.partitions; ++i) {
     retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply);
   }
+  retired_at_.resize(frame_.draws.size());
   if (frame_.passes.empty()) step_ = Step::kDone;
 }
 
@@ -31,6 +32,7 @@ Wake CommandProcessor::retire_wake() const { return retire_in.earliest(); }
 Wake CommandProcessor::issue_wake() const {
   switch (step_) {
     case Step::kDraw:
+      if (culls()) return Wake(free_);
       if (all_in_flight()) return Wake::never(retire_in[0]);
       return Wake(free_).output(draw_out);
     case Step::kPassBegin:
@@ -58,8 +60,7 @@ void CommandProcessor::take_retirements(Tick now) {
   });
   const std::uint32_t all = *std::min_element(retired_by_.begin(), retired_by_.end());
   stats_.draws_retired += all - retired_;
-  retired_ = all;
-  retired_at_.resize(all, now);
+  for (; retired_ < all; ++retired_) retired_at_[sent_[retired_]] = now;
   if (step_ == Step::kWaitFlush && flushes_ == static_cast<int>(retire_in.size())) {
     flushes_ = 0;
     render_end_ = now;
@@ -80,8 +81,14 @@ void CommandProcessor::issue(Tick now) {
       step_ = pass.draws > 0 ? Step::kDraw : Step::kPassEnd;
       break;
     case Step::kDraw:
+      if (culls()) {
+        cull(now);
+        next_draw(pass);
+        return;
+      }
       draw_out.push(now, {TokenKind::kWork, DrawId(draw_)});
       ++stats_.draws;
+      sent_.push_back(draw_);
       issued_at_.push_back(now);
       free_ = after(now, params_.draw_clk);
       occupy(now, params_.draw_clk);
@@ -89,8 +96,7 @@ void CommandProcessor::issue(Tick now) {
       return;
     case Step::kDrawEnd:
       draw_out.push(now, {TokenKind::kDrawEnd, DrawId(draw_)});
-      ++draw_;
-      step_ = draw_ == pass.first_draw.index() + pass.draws ? Step::kPassEnd : Step::kDraw;
+      next_draw(pass);
       break;
     case Step::kPassEnd:
       draw_out.push(now, {TokenKind::kPassEnd, PassId(pass_)});
@@ -112,13 +118,28 @@ void CommandProcessor::issue(Tick now) {
   occupy(now, 1);
 }
 
+void CommandProcessor::cull(Tick now) {
+  ++stats_.draws_culled;
+  issued_at_.push_back(now);
+  free_ = after(now, params_.draw_clk);
+  retired_at_[draw_] = free_;
+  occupy(now, params_.draw_clk);
+}
+
+void CommandProcessor::next_draw(const PassState& pass) {
+  ++draw_;
+  step_ = draw_ == pass.first_draw.index() + pass.draws ? Step::kPassEnd : Step::kDraw;
+}
+
 void CommandProcessor::audit(Audit& audit) const {
-  audit.left(laws::kDrawsOfFrame, stats_.draws.value());
+  audit.left(laws::kDrawsOfFrame, stats_.draws.value() + stats_.draws_culled.value());
   audit.left(laws::kDraws, stats_.draws.value() * retire_in.size());
 }
 
 std::vector<Facet> CommandProcessor::row() const {
-  return {count("draws", stats_.draws), count("passes", stats_.passes)};
+  std::vector<Facet> facets{count("draws", stats_.draws), count("passes", stats_.passes)};
+  if (params_.cull_draws) facets.push_back(count("culled", stats_.draws_culled));
+  return facets;
 }
 
 }  // namespace quadrille::hw

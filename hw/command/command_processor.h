@@ -6,7 +6,8 @@
 /// Out   draw_out      draws and pass boundaries, in order
 ///       scan_out      show a pass's target
 /// Time  `draw_clk` cycles a draw; waits while `draws_in_flight` draws are not retired everywhere; a pass
-///       ends when all partitions have flushed
+///       ends when all partitions have flushed. With `cull_draws` a draw that the driver has found outside of
+///       the view volume takes its `draw_clk` cycles, and nothing is sent for it
 /// Not modelled: fetching and parsing the command buffer itself (docs/deviations.md#D1)
 #pragma once
 
@@ -32,9 +33,14 @@ class CommandProcessor final : public Unit {
         *this,      "draws_in_flight",
         32,         "draw",
         {1, 65536}, "Draws whose state is kept at a time. [G: context slots of the front end]"};
+    Param<bool> cull_draws{
+        *this, "cull_draws", false, "",
+        "Drop draws whose box lies outside the view volume. The test is part of draw_clk."};
   };
   struct Stats : StatGroup {
     Counter draws{*this, "draws", "draw", "Draws issued"};
+    Counter draws_culled{*this, "draws_culled", "draw",
+                         "Draws dropped: their boxes lie outside the view volume"};
     Counter draws_retired{*this, "draws_retired", "draw", "Draws retired by every partition"};
     Counter passes{*this, "passes", "pass", "Passes begun"};
   };
@@ -58,7 +64,8 @@ class CommandProcessor final : public Unit {
   /// Tick at which the last pass was flushed, and at which the last image was read.
   [[nodiscard]] Tick render_end() const { return render_end_; }
   [[nodiscard]] Tick end() const { return end_; }
-  /// By draw: tick at which it was issued, and at which every partition had retired it.
+  /// By draw: tick at which it was issued, and at which every partition had retired it, or the command
+  /// processor was done with it.
   [[nodiscard]] const std::vector<Tick>& issued_at() const { return issued_at_; }
   [[nodiscard]] const std::vector<Tick>& retired_at() const { return retired_at_; }
 
@@ -74,13 +81,18 @@ class CommandProcessor final : public Unit {
     kDone
   };
   [[nodiscard]] Wake issue_wake() const;
-  /// As many draws are under way as may be.
+  /// The next draw is dropped.
+  [[nodiscard]] bool culls() const { return params_.cull_draws && frame_.draw(DrawId(draw_)).outside_view; }
+  /// The next draw is sent, and as many are under way as may be.
   [[nodiscard]] bool all_in_flight() const {
-    return draw_ - retired_ >= static_cast<std::uint32_t>(params_.draws_in_flight.value());
+    return sent_.size() - retired_ >= static_cast<std::size_t>(params_.draws_in_flight.value()) && !culls();
   }
   [[nodiscard]] Wake retire_wake() const;
   void take_retirements(Tick now);
   void issue(Tick now);
+  void cull(Tick now);
+  /// Goes on to the next draw of the pass, or to its end.
+  void next_draw(const PassState& pass);
 
   const Params& params_;
   const Frame& frame_;
@@ -91,7 +103,8 @@ class CommandProcessor final : public Unit {
   Tick free_ = 0;
   Tick quiet_since_ = 0, render_end_ = 0, end_ = 0;
   std::vector<std::uint32_t> retired_by_;  ///< draws retired, by partition
-  std::uint32_t retired_ = 0;              ///< draws retired everywhere
+  std::vector<std::uint32_t> sent_;        ///< draws that were sent, in order
+  std::uint32_t retired_ = 0;              ///< of them, retired everywhere
   std::vector<Tick> issued_at_, retired_at_;
   int flushes_ = 0;
 };

@@ -78,6 +78,8 @@ struct DrawState {
   std::int32_t vertex_offset = 0;
   std::uint32_t instances = 1, first_instance = 0;
   std::vector<AttributeFetch> attributes;
+  /// The driver has found that no primitive of it can reach a pixel (pipeline/driver/draw_culling.h).
+  bool outside_view = false;
   // Programs.
   ProgramState vertex, fragment;
   // Fixed function.

@@ -8,7 +8,8 @@
 // Each law once, a law a line: name, text, and the counters of its two sides.
 // clang-format off
 #define QUADRILLE_LAWS(law) \
-  law(kDrawsOfFrame, "draws issued = draws of the frame", "command_processor.draws", "frame.draws") \
+  law(kDrawsOfFrame, "draws issued + dropped = draws of the frame", \
+      "command_processor.draws + draws_culled", "frame.draws") \
   law(kDraws, "draws issued = draws retired", "command_processor.draws * partitions", "rop.draws") \
   law(kVerticesFetched, "vertices fetched = vertices shaded", "vertex_fetch.vertices", "core.vertices") \
   law(kVerticesShaded, "vertices shaded = vertices assembled", \

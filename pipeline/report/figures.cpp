@@ -160,7 +160,8 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame, std::optiona
   f.frame.cycles = m.clock().edges_before(m.end());
   f.frame.render_cycles = m.clock().edges_before(m.one<hw::CommandProcessor>().render_end());
   f.frame.clock_mhz = static_cast<double>(m.clock().frequency_hz()) * 1e-6;
-  f.frame.draws = m.one<hw::CommandProcessor>().stats()->draws.value();
+  const hw::CommandProcessor::Stats& commands = *m.one<hw::CommandProcessor>().stats();
+  f.frame.draws = commands.draws.value() + commands.draws_culled.value();
   f.frame.triangles = m.one<hw::PrimitiveAssembly>().stats()->triangles.value();
   f.frame.vertices = sum<hw::ShaderCore>(m, &Core::vertices);
   f.frame.fragments_covered = sum<hw::FineRaster>(m, &hw::FineRaster::Stats::fragments);

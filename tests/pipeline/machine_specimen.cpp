@@ -1,5 +1,6 @@
 #include "tests/pipeline/machine_specimen.h"
 
+#include "pipeline/driver/draw_culling.h"
 #include "pipeline/functional/functional.h"
 #include "pipeline/report/figures.h"
 #include "tests/pipeline/random_machine.h"
@@ -22,6 +23,7 @@ class MachineSpecimen final : public hw::contract::Specimen {
       }
     }
     build_frame(stream, config_.precision(), frame_);
+    if (config_.command_processor.cull_draws) find_draws_outside(frame_.frame, frame_.memory);
     MachineOptions options;
     options.external_driver = &driver;
     options.leave_out = leave_out;

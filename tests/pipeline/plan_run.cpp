@@ -1,5 +1,6 @@
 #include "tests/pipeline/plan_run.h"
 
+#include "pipeline/driver/draw_culling.h"
 #include "pipeline/machine/machine.h"
 #include "pipeline/report/figures.h"
 #include "pipeline/report/report.h"
@@ -22,6 +23,7 @@ std::string run_here(const Settings& settings, bool strict, const traces::Comman
   for (const auto& [key, value] : settings) config.set(key, value, "test");
   DeviceFrame frame(std::uint64_t{1} << 30);
   build_frame(stream, config.precision(), frame);
+  if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   std::optional<hw::StrictDriver> driver;
   MachineOptions options;
   if (strict) options.external_driver = &driver.emplace("strict_driver");

@@ -63,6 +63,7 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.warp_packer.patience_clk.set(random.pick({1, 5, 1000}));
   config.triangle_setup.triangle_slots.set(random.pick({1, 2, 9, 64}));
   config.command_processor.draws_in_flight.set(random.pick({1, 2, 32}));
+  config.command_processor.cull_draws.set(random.chance(0.5));
   config.depth.tiles_in_flight.set(random.pick({1, 4}));
   config.core.export_bytes_per_clk.set(random.pick({1, 24, 128, 65536}));
   config.rop.half_blend_turns.set(random.pick({1, 5}));

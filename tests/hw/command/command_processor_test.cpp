@@ -17,6 +17,8 @@ struct CommandBench final : Bench {
     int draw_clk = 16, in_flight = 32;
     Pace pace{};
     LinkSpec out{.depth = 64};
+    std::vector<std::size_t> outside{};  ///< draws out of view
+    bool culls = true;
   };
   CommandBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     for (const std::uint32_t draws : s.draws_of_pass) {
@@ -26,6 +28,8 @@ struct CommandBench final : Bench {
       frame.passes.push_back(pass);
       frame.draws.resize(frame.draws.size() + draws);
     }
+    for (const std::size_t draw : s.outside) frame.draws[draw].outside_view = true;
+    params.cull_draws.set(s.culls);
     params.draw_clk.set(s.draw_clk);
     params.draws_in_flight.set(s.in_flight);
     unit = std::make_unique<CommandProcessor>("unit", context({.partitions = 2}), params, quiet);
@@ -123,6 +127,35 @@ TEST_CASE("command_processor: the time from a flush to the next pass's begin is 
   CHECK(text == "50:300 51:400 52:301 53:401 quiet [31,51)");
 }
 
+TEST_CASE("command_processor: a draw out of view takes draw_clk cycles, and nothing is sent for it") {
+  CommandBench::Setup s{.draws_of_pass = {3}, .draw_clk = 10, .outside = {1}};
+  const auto told = [](const CommandBench& b) {
+    return fmt::format("{} draws {} culled {}", b.issued->text(), counter(*b.unit, "draws"),
+                       counter(*b.unit, "draws_culled"));
+  };
+  // The second draw from 13 to 23.
+  CHECK(run<CommandBench>(s, told) == "1:300 2:0 12:200 23:2 33:202 34:400 draws 2 culled 1");
+  s.culls = false;
+  CHECK(run<CommandBench>(s, told) == "1:300 2:0 12:200 13:1 23:201 24:2 34:202 35:400 draws 3 culled 0");
+}
+
+TEST_CASE("command_processor: a draw out of view is dropped while as many are in flight as may be") {
+  const CommandBench::Setup s{.draws_of_pass = {3},
+                              .retire_0 = {{40, kRetired}, {90, kRetired}},
+                              .retire_1 = {{50, kRetired}, {95, kRetired}},
+                              .draw_clk = 5,
+                              .in_flight = 1,
+                              .outside = {1}};
+  const auto text = run<CommandBench>(s, [](const CommandBench& b) {
+    std::string all = b.issued->text();
+    for (const Tick tick : b.unit->issued_at()) all += fmt::format(" {}", tick / kCycle);
+    for (const Tick tick : b.unit->retired_at()) all += fmt::format(" {}", tick / kCycle);
+    return all;
+  });
+  // Issued at 1, 7 and 51; done with at 51, 12 and 96.
+  CHECK(text == "1:300 2:0 7:200 52:2 57:202 58:400 1 7 51 51 12 96");
+}
+
 TEST_CASE("command_processor: keeps the contract, one-deep links included") {
   const CommandBench::Setup s{.draws_of_pass = {2, 0, 1},
                               .retire_0 = {{60, kRetired},
@@ -140,5 +173,16 @@ TEST_CASE("command_processor: keeps the contract, one-deep links included") {
                               .scan_done = {{400, {}}},
                               .in_flight = 1,
                               .pace = {.from = 0, .period = 2}};
+  CHECK(contract_text<CommandBench>(s) == "");
+}
+
+TEST_CASE("command_processor: keeps the contract where it drops draws") {
+  const CommandBench::Setup s{.draws_of_pass = {4, 1},
+                              .retire_0 = {{60, kRetired}, {110, kRetired}, {150, kFlushed}, {300, kFlushed}},
+                              .retire_1 = {{70, kRetired}, {100, kRetired}, {160, kFlushed}, {310, kFlushed}},
+                              .scan_done = {{400, {}}},
+                              .in_flight = 1,
+                              .pace = {.from = 0, .period = 2},
+                              .outside = {0, 2, 4}};
   CHECK(contract_text<CommandBench>(s) == "");
 }
