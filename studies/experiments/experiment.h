@@ -106,6 +106,7 @@ class Readings {
 [[nodiscard]] Result engines(const Setting& setting);
 [[nodiscard]] Result samples(const Setting& setting);
 [[nodiscard]] Result formats(const Setting& setting);
+[[nodiscard]] Result compression(const Setting& setting);
 [[nodiscard]] Result traversal(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments
