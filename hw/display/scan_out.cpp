@@ -2,14 +2,24 @@
 
 #include "hw/frame/laws.h"
 
+#include <bit>
+
 namespace quadrille::hw {
+namespace {
+
+std::uint64_t bytes_of(std::uint8_t sectors) {
+  return std::uint64_t{models::kSectorBytes} * static_cast<unsigned>(std::popcount(sectors));
+}
+
+}  // namespace
 
 ScanOut::ScanOut(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
       frame_(context.frame),
       device_(context.memory),
-      port_(*this, stats_, context.machine.channels) {
+      port_(*this, stats_, context.machine.channels),
+      encoded_(stats_) {
   add_initiation_rate("rate");
   add_memory_places("lines_in_flight", [this] { return in_flight_ >= params_.lines_in_flight; });
 }
@@ -41,11 +51,7 @@ void ScanOut::act(Tick now) {
       end_line_ = next_line_ + static_cast<std::uint32_t>(surface.bytes() / models::kLineBytes);
       scanning_ = true;
     } else if (next_line_ < end_line_) {
-      device_.check_readable(std::uint64_t{next_line_} * models::kLineBytes, models::kLineBytes,
-                             models::DeviceMemory::kClean);
-      port_.read(next_line_++, sectors_, 0);
-      ++in_flight_;
-      ++stats_.lines;
+      read_next();
     } else {
       done_out.push(now, {});
       scanning_ = false;
@@ -56,8 +62,26 @@ void ScanOut::act(Tick now) {
   port_.send(now);
 }
 
+void ScanOut::read_next() {
+  device_.check_readable(std::uint64_t{next_line_} * models::kLineBytes, models::kLineBytes,
+                         models::DeviceMemory::kClean);
+  if (device_.stored_lines().is_encoded(next_line_)) {
+    const models::StoredLines::Place place = device_.stored_lines().place_of(next_line_);
+    port_.read(place.line, place.sectors, 0);
+    ++encoded_.lines;
+    encoded_.bytes += bytes_of(place.sectors);
+  } else {
+    port_.read(next_line_, sectors_, 0);
+  }
+  ++next_line_;
+  ++in_flight_;
+  ++stats_.lines;
+}
+
 void ScanOut::audit(Audit& audit) const {
-  audit.left(laws::kScanOut, port_.stats().read_bytes.value());
+  // An encoded line stands for all of its bytes.
+  audit.left(laws::kScanOut, port_.stats().read_bytes.value() - encoded_.bytes.value() +
+                                 encoded_.lines.value() * bytes_of(sectors_));
   port_.audit(audit);
 }
 

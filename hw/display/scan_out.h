@@ -10,6 +10,7 @@
 #include "hw/base/param.h"
 #include "hw/frame/frame.h"
 #include "hw/frame/unit_context.h"
+#include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 
 namespace quadrille::hw {
@@ -23,7 +24,7 @@ class ScanOut final : public Unit {
   struct Stats : StatGroup {
     Counter lines{*this, "lines", "line", "Lines of 128 bytes read"};
   };
-  using CounterParts = Parts<MemoryPortStats>;
+  using CounterParts = Parts<MemoryPortStats, EncodedReadStats>;
   ScanOut(sc_core::sc_module_name name, const UnitContext& context, const Params& params);
 
   FifoIn<ScanToken> scan_in{*this, "scan_in"};
@@ -41,12 +42,14 @@ class ScanOut final : public Unit {
 
  private:
   [[nodiscard]] Wake ask_wake() const;
+  void read_next();
 
   const Params& params_;
   const Frame& frame_;
   const models::DeviceMemory& device_;
   Stats stats_;
   MemoryPort port_;
+  EncodedReadStats encoded_;
   bool scanning_ = false;
   std::uint32_t next_line_ = 0, end_line_ = 0;
   std::uint8_t sectors_ = 0xf;  ///< of each line, that hold pixels

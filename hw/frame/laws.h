@@ -70,6 +70,8 @@
   law(kClientReads, "bytes asked by clients = bytes answered by L2", "clients.read_bytes", "l2.read_bytes") \
   law(kClientWrites, "bytes written by clients = bytes taken by L2", \
       "clients.write_bytes", "l2.write_bytes") \
+  law(kSurfaceBytes, "bytes of depths and colours as they are stored = bytes of them taken by L2", \
+      "depth, rop: encoded_write_bytes, or write_bytes where nothing is encoded", "l2.surface_write_bytes") \
   law(kFills, "bytes filled into L2 = bytes read from memory", "l2.fill_bytes", "memory.read_bytes") \
   law(kWriteBacks, "bytes written back by L2 = bytes written to memory", \
       "l2.writeback_bytes", "memory.write_bytes") \

@@ -1,11 +1,13 @@
 #include "hw/memory/l1_cache.h"
 
+#include <bit>
 #include <utility>
 
 namespace quadrille::hw {
 namespace {
 
 constexpr std::uint32_t kWordsOfSector = 0xff;
+constexpr std::uint8_t kAllSectors = 0xf;
 
 std::uint32_t words_of(std::uint8_t sectors) {
   std::uint32_t words = 0;
@@ -39,30 +41,49 @@ L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::u
     ++stats_.hits;
     return Result::kHit;
   }
+  const bool encoded = stored_lines_ != nullptr && stored_lines_->is_encoded(line);
+  if (encoded) sectors = kAllSectors;
   const auto asked = misses_.ask(slot, sectors, [&] { return place(line, port); });
   if (!asked) return Result::kStall;
   ++stats_.requests;
   ++(asked->missing != 0 ? stats_.misses : stats_.merged);
-  if (asked->missing != 0) port.read(line, asked->missing, asked->tag);
+  if (asked->missing != 0) fetch(line, asked->missing, asked->tag, encoded, port);
   misses_.wait(asked->tag, waiter);
   return Result::kPending;
+}
+
+void L1Cache::fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag, bool encoded,
+                    MemoryPort& port) {
+  if (!encoded) return port.read(line, missing, tag);
+  const models::StoredLines::Place place = stored_lines_->place_of(line);
+  expands_[tag] = true;
+  ++read_stats_->lines;
+  read_stats_->bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(place.sectors));
+  port.read(place.line, place.sectors, tag);
+}
+
+std::uint8_t L1Cache::arrived(const MemoryResponse& response) {
+  if (expands_.empty() || !expands_[response.tag]) return response.sectors;
+  expands_[response.tag] = false;
+  return tags_.at(misses_.slot_of(response.tag)).pending;
 }
 
 int L1Cache::place(std::uint32_t line, MemoryPort& port) {
   const models::TagArray::Allocation got = tags_.allocate(line);
   if (got.slot == models::TagArray::kNone || parts_.empty()) return got.slot;
-  write_back(got.slot, got.victim.line, got.victim.dirty, port);
+  write_back(got.slot, {got.victim.line, got.victim.dirty, got.victim.present}, port);
   return got.slot;
 }
 
-void L1Cache::write_back(int slot, std::uint32_t line, std::uint8_t sectors, MemoryPort& port) {
-  const std::uint32_t parts = parts_.empty() ? 0 : std::exchange(parts_[static_cast<std::size_t>(slot)], 0);
-  if (sectors == 0 && parts == 0) return;
+void L1Cache::write_back(int slot, Leaving leaving, MemoryPort& port) {
+  if (!parts_.empty())
+    leaving.parts = sectors_with_any(std::exchange(parts_[static_cast<std::size_t>(slot)], 0));
+  if (leaving.dirty == 0 && leaving.parts == 0) return;
   WorkLog* const log = group_.log();
-  if (log == nullptr) return send_back(line, sectors, parts, port);
+  if (log == nullptr) return send_back(leaving, port);
   const Work now = log->now();
   log->turn_to(writers_[static_cast<std::size_t>(slot)]);
-  send_back(line, sectors, parts, port);
+  send_back(leaving, port);
   log->turn_to(now);
 }
 
@@ -71,10 +92,11 @@ void L1Cache::note_writer(int slot) {
   writers_[static_cast<std::size_t>(slot)] = group_.log()->now();
 }
 
-void L1Cache::send_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port) {
-  if (sectors != 0) port.write(line, sectors);
-  if (parts != 0) port.write_part(line, sectors_with_any(parts));
-  memory_->mark_clean(line);
+void L1Cache::send_back(const Leaving& leaving, MemoryPort& port) {
+  const std::uint8_t sectors = store_ != nullptr ? store_->store(leaving) : leaving.dirty;
+  if (sectors != 0) port.write(leaving.line, sectors);
+  if (leaving.parts != 0) port.write_part(leaving.line, leaving.parts);
+  memory_->mark_clean(leaving.line);
 }
 
 void L1Cache::complete(int slot, std::uint8_t sectors) {
@@ -118,6 +140,12 @@ void L1Cache::forget() {
   tags_.invalidate_all();
 }
 
+void L1Cache::clean(std::uint32_t line) {
+  const int slot = tags_.find(line);
+  tags_.clean(slot);
+  memory_->mark_clean(line);
+}
+
 void L1Cache::discard(std::uint32_t first, std::uint32_t end) {
   QUADRILLE_CHECK(idle(), "lines are discarded with {} misses under way", misses_.under_way());
   for (int slot = 0; slot < tags_.slots(); ++slot) {
@@ -133,7 +161,7 @@ void L1Cache::flush(MemoryPort& port) {
   QUADRILLE_CHECK(idle(), "flush with {} misses under way", misses_.under_way());
   for (int slot = 0; slot < tags_.slots(); ++slot) {
     const models::TagArray::Line& held = tags_.at(slot);
-    write_back(slot, held.line, held.dirty, port);
+    write_back(slot, {held.line, held.dirty, held.valid}, port);
     tags_.clean(slot);
   }
   tags_.invalidate_all();

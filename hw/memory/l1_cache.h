@@ -9,6 +9,9 @@
 /// written. It becomes whole when the others are written too, or when someone reads it and the rest is
 /// fetched; else it leaves as it is, and the level below completes it.
 ///
+/// Lines of surfaces may be stored encoded (models/memory/stored_lines.h). Such a line is fetched whole, by
+/// the sectors of its encoding. The owner of the cache decides how a line is stored that leaves it.
+///
 /// In a unit that keeps a log of its work (hw/base/work_log.h), a line that is written back counts for whom
 /// it was written last, whoever takes its place.
 #pragma once
@@ -36,8 +39,31 @@ struct L1CacheStats {
   Counter requests, hits, merged, misses;
 };
 
+/// Of a cache whose lines may be stored encoded.
+struct EncodedReadStats {
+  explicit EncodedReadStats(StatGroup& group)
+      : lines{group, "encoded_reads", "line", "Lines fetched by their encodings"},
+        bytes{group, "encoded_read_bytes", "byte", "Bytes that those moved"} {}
+  Counter lines, bytes;
+};
+
 class L1Cache {
  public:
+  /// A line that was written leaves the cache.
+  struct Leaving {
+    std::uint32_t line = 0;
+    std::uint8_t dirty = 0, present = 0;  ///< sectors
+    std::uint8_t parts = 0;               ///< sectors that were written in part and are not whole
+  };
+  /// Decides how lines are stored that leave.
+  class Store {
+   public:
+    /// The sectors to be written of it, beside those that leave in part.
+    virtual std::uint8_t store(const Leaving& leaving) = 0;
+
+   protected:
+    ~Store() = default;
+  };
   enum class Result : std::uint8_t {
     kHit,      ///< present
     kPending,  ///< the waiter will be told
@@ -52,13 +78,23 @@ class L1Cache {
     parts_.assign(static_cast<std::size_t>(tags_.slots()), 0);
   }
 
+  /// From here on lines may be stored encoded.
+  void read_encoded(const models::StoredLines& lines, EncodedReadStats& stats) {
+    stored_lines_ = &lines;
+    read_stats_ = &stats;
+    expands_.assign(misses_.size(), false);
+  }
+  /// From here on `store` decides what is written of lines that leave.
+  void store_through(Store& store) { store_ = &store; }
+
   /// Looks up sectors of a line; asks for what is missing through `port`.
   Result access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter, MemoryPort& port);
   /// Takes an answer in; calls `ready(waiter)` once for each pending access that is now complete.
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {
-    const bool all = misses_.arrive(response.tag, response.sectors);
-    complete(misses_.slot_of(response.tag), response.sectors);
+    const std::uint8_t sectors = arrived(response);
+    const bool all = misses_.arrive(response.tag, sectors);
+    complete(misses_.slot_of(response.tag), sectors);
     if (all) misses_.release(response.tag, ready);
   }
   /// Gives the line a place and makes sectors (there may be none) present without fetching them, because they
@@ -67,10 +103,22 @@ class L1Cache {
   [[nodiscard]] bool has_place(std::uint32_t line) const {
     return tags_.find(line) != models::TagArray::kNone;
   }
+  /// These sectors are there, and nothing of the line is under way.
+  [[nodiscard]] bool holds(std::uint32_t line, std::uint8_t sectors) const {
+    const int slot = tags_.find(line);
+    if (slot == models::TagArray::kNone) return false;
+    return (tags_.at(slot).valid & sectors) == sectors && tags_.at(slot).pending == 0;
+  }
+  [[nodiscard]] std::uint8_t dirty_sectors(std::uint32_t line) const {
+    const int slot = tags_.find(line);
+    return slot == models::TagArray::kNone ? models::SectorMask{0} : tags_.at(slot).dirty;
+  }
   /// Words (bit 0 the first of 32) of a line that has a place were written.
   void write(std::uint32_t line, std::uint32_t words);
   /// Forgets all lines of a cache that does not write; nothing may be under way.
   void forget();
+  /// Nothing of this line, which is there, has to be written.
+  void clean(std::uint32_t line);
   /// Forgets what was written to lines `first` to before `end`: nobody will read it.
   void discard(std::uint32_t first, std::uint32_t end);
   /// Queues all dirty sectors for writing and forgets all lines; nothing may be under way.
@@ -84,8 +132,11 @@ class L1Cache {
   int place(std::uint32_t line, MemoryPort& port);
   /// Sectors became whole: what was written of them in parts is in them now.
   void complete(int slot, std::uint8_t sectors);
-  void write_back(int slot, std::uint32_t line, std::uint8_t sectors, MemoryPort& port);
-  void send_back(std::uint32_t line, std::uint8_t sectors, std::uint32_t parts, MemoryPort& port);
+  void write_back(int slot, Leaving leaving, MemoryPort& port);
+  void send_back(const Leaving& leaving, MemoryPort& port);
+  void fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag, bool encoded, MemoryPort& port);
+  /// The sectors that an answer brings: all of the line if its encoding was asked for.
+  [[nodiscard]] std::uint8_t arrived(const MemoryResponse& response);
   void note_writer(int slot);
 
   models::TagArray tags_;
@@ -97,6 +148,10 @@ class L1Cache {
   std::vector<Work> writers_;
   /// by slot: words written of sectors that are not whole; empty in a cache that does not write
   std::vector<std::uint32_t> parts_;
+  const models::StoredLines* stored_lines_ = nullptr;  ///< null: all lines are plain
+  EncodedReadStats* read_stats_ = nullptr;
+  Store* store_ = nullptr;     ///< null: dirty sectors are written
+  std::vector<bool> expands_;  ///< by tag: what was asked for is the line's encoding
   L1CacheStats stats_;
 };
 

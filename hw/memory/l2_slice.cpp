@@ -13,6 +13,11 @@
 namespace quadrille::hw {
 
 namespace {
+bool writes_surface(MemoryClient client, MemoryRequest::Kind kind) {
+  return (client == MemoryClient::kDepth || client == MemoryClient::kColor) &&
+         (kind == MemoryRequest::Kind::kWrite || kind == MemoryRequest::Kind::kWritePart);
+}
+
 std::uint64_t bytes_of(std::uint8_t sectors) {
   return models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors));
 }
@@ -122,6 +127,8 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
     return;
   }
   if (request.kind != MemoryRequest::Kind::kFence) ++stats_.requests;
+  if (writes_surface(client_kinds_[client], request.kind))
+    stats_.surface_write_bytes += bytes_of(request.sectors);
   (void)request_in[client].pop(now);
   turn_ = (client + 1) % request_in.size();
   free_ = after(now, 1);
@@ -260,6 +267,7 @@ void L2Slice::audit(Audit& audit) const {
   audit.right(laws::kClientRequests, stats_.requests.value());
   audit.right(laws::kClientReads, stats_.read_bytes.value());
   audit.right(laws::kClientWrites, stats_.write_bytes.value());
+  audit.right(laws::kSurfaceBytes, stats_.surface_write_bytes.value());
   audit.left(laws::kFills, stats_.fill_bytes.value());
   audit.left(laws::kWriteBacks, stats_.writeback_bytes.value());
 }

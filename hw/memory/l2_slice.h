@@ -60,6 +60,8 @@ class L2Slice final : public Unit {
                    "Requests for which a sector was fetched from the memory channel"};
     Counter read_bytes{*this, "read_bytes", "byte", "Bytes answered to clients"};
     Counter write_bytes{*this, "write_bytes", "byte", "Bytes written by clients"};
+    Counter surface_write_bytes{*this, "surface_write_bytes", "byte",
+                                "Bytes of those that depth units and ROPs wrote"};
     Counter fill_bytes{*this, "fill_bytes", "byte", "Bytes read from the memory channel"};
     Counter writeback_bytes{*this, "writeback_bytes", "byte", "Bytes written back to the memory channel"};
     Counter early_write_backs{*this, "early_write_backs", "line",

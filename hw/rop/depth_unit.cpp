@@ -41,7 +41,8 @@ DepthUnit::DepthUnit(sc_core::sc_module_name name, const UnitContext& context, c
       partitions_(static_cast<std::uint32_t>(context.machine.partitions)),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
-             surface_writer(SurfaceKind::kDepth, context.partition())) {
+             surface_writer(SurfaceKind::kDepth, context.partition()),
+             SurfaceCompression::of(params.compression)) {
   add_initiation_rate("quads_per_clk");
   some_wait_for_late_ = std::ranges::any_of(frame_.draws, &DrawState::must_test_early);
   add_places("tiles_in_flight",
@@ -169,7 +170,7 @@ void DepthUnit::audit(Audit& audit) const {
   audit.left(laws::kFragmentsPassed, stats_.fragments_out.value());
   audit.right(laws::kKilledLate, stats_.late_killed.value());
   audit.right(laws::kSamplesRetired, stats_.late_killed_samples.value());
-  cache_.stats().audit(audit, laws::kDepthCache);
+  cache_.audit(audit, laws::kDepthCache, port_);
   port_.audit(audit);
 }
 

@@ -41,6 +41,13 @@ class DepthUnit final : public Unit {
     Param<int> cache_ways{
         *this, "cache_ways", 8, "way", {1, 64}, "Associativity of the depth cache. [G]", Effect::kTradeOff};
     Param<int> cache_misses{*this, "cache_misses", 32, "line", {1, 4096}, "Lines under way. [G]"};
+    Choice<DepthCompression> compression{
+        *this,
+        "compression",
+        DepthCompression::kNone,
+        {"none", "offset", "plane_offset"},
+        "How lines of depths are stored: as they are, or as offsets from their least codes where that takes "
+        "fewer sectors, or from a plane too. [P: Hasselgren 2006]"};
   };
   struct Stats : StatGroup {
     Counter tiles{*this, "tiles", "tile", "Tiles taken in by the early port, once for each covered sample"};
@@ -70,7 +77,8 @@ class DepthUnit final : public Unit {
     Counter tiles_unread{*this, "tiles_unread", "tile",
                          "Tiles of those that are in front of all that is there, whose depths are not read"};
   };
-  using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
+  using CounterParts =
+      Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats, EncodedReadStats, SurfaceEncoderStats>;
   DepthUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
             const TriangleStore& triangles, WarpStore& warps);
 

@@ -148,6 +148,7 @@ bool DepthUnit::test_tile(const DrawState& draw, CoverageToken& token, Tick now)
       if (!cache_.write({0, token.tile_x, token.tile_y, token.sample}, outcome.written(), port_))
         return false;
       models::write_depth_stencil(outcome, incoming, stored);
+      cache_.pixels_written();
       stats_.stencil_written += static_cast<std::uint64_t>(std::popcount(outcome.stencil_written));
       // What was not read is not known, so that only a tile that is covered whole tells its greatest depth.
       const bool known =

@@ -20,6 +20,8 @@ Wake DepthUnit::late_test_wake() const {
   if (late_.empty()) return Wake::never(late_in);
   const LateEntry& head = late_.front();
   if (!head.acquired && !stalled_) return Wake(std::max(free_, head.ready));
+  // Lines that nobody waits for come before the flush.
+  if (head.token.kind == TokenKind::kPassEnd && !cache_.idle()) return Wake::never(port_.response_in[0]);
   if (!head.acquired || head.missing > 0) return Wake::never(port_.response_in[0]);
   return Wake(std::max(free_, head.ready)).output(late_out);
 }
@@ -88,6 +90,7 @@ bool DepthUnit::test_late(Tick now) {
   const models::LaneMask tested = warp.alive;
   models::LaneMask survivors = 0;
   for (int q = 0; q < warp.quads; ++q) survivors |= test_quad(draw, warp, q, now) << (4 * q);
+  cache_.pixels_written();
   stats_.late_killed += static_cast<std::uint64_t>(std::popcount(tested & ~survivors));
   warp.alive = survivors;
   stats_.late_killed_samples += samples - warp.alive_samples(draw.samples().count);

@@ -111,6 +111,7 @@ bool Resolve::resolve(const Tile& tile) {
     return false;
   }
   resolve_tile(*pass_, tile.color, tile.x, tile.y, memory_);
+  cache_.pixels_written();
   return true;
 }
 

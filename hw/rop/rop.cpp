@@ -63,7 +63,8 @@ Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params&
       partitions_(static_cast<std::uint32_t>(context.machine.partitions)),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, context.memory,
-             surface_writer(SurfaceKind::kColor, context.partition())),
+             surface_writer(SurfaceKind::kColor, context.partition()),
+             SurfaceCompression::of(params.compression)),
       shaded_(static_cast<std::size_t>(warps.size()), false),
       resolve_(context.memory, cache_, port_) {
   add_initiation_rate("quads_per_clk");
@@ -140,6 +141,7 @@ Wake Rop::next() const {
 
 void Rop::act(Tick now) {
   take_inputs(now);
+  if (depth_flushed_ && cache_.idle()) end_pass();
   if (test_wake().at() <= now) test(now);
   if (acquire_wake().at() <= now) acquire(now);
   if (retire_wake().at() <= now) retire(now);
@@ -168,14 +170,18 @@ void Rop::take_inputs(Tick now) {
 
 void Rop::take_late(Tick now) {
   if (late_in.pop(now).kind == TokenKind::kPassEnd) {
-    depth_flushes_ = false;
-    const PassState& pass = frame_.pass(pass_);
-    if (pass.resolved != 0) resolve_.begin(pass, partition_, partitions_, params_.warps_in_flight);
-    else begin_flush();
+    depth_flushed_ = true;
     return;
   }
   entries_[awaiting_].stage = Stage::kTested;
   while (awaiting_ < tested_ && entries_[awaiting_].stage == Stage::kTested) ++awaiting_;
+}
+
+void Rop::end_pass() {
+  depth_flushes_ = depth_flushed_ = false;
+  const PassState& pass = frame_.pass(pass_);
+  if (pass.resolved != 0) resolve_.begin(pass, partition_, partitions_, params_.warps_in_flight);
+  else begin_flush();
 }
 
 void Rop::begin_flush() {
@@ -271,6 +277,7 @@ void Rop::retire(Tick now) {
     if (warp.late) stats_.late_discarded += entry.discarded_samples;
     stats_.late_killed += static_cast<std::uint64_t>(entry.shaded - live);
     cycles = write_colors(warp);
+    cache_.pixels_written();
     shaded_[entry.token.slot.index()] = false;
     release_out.push(now, {entry.token.slot});
     if (entry.token.sync != 0) sync_out.push(now, {0, entry.token.sync});
@@ -313,8 +320,12 @@ bool Rop::claim_colors(const WarpSlot& warp) {
   const TouchedTiles touched(warp, draw.samples().count);
   bool placed = true;
   draw.visit_colors([&](std::size_t color) {
-    for (const TileTouch& touch : touched.all())
+    const std::span<const TileTouch> tiles = touched.all();
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      // Later samples first: where all of them are overwritten, no copy has to be saved from its original.
+      const TileTouch& touch = tiles[cache_.keeps_copies() ? tiles.size() - 1 - i : i];
       placed = placed && cache_.write(touch.tile_of(color), touch.pixels, port_);
+    }
   });
   return placed;
 }
@@ -367,7 +378,7 @@ void Rop::audit(Audit& audit) const {
              stats_.discarded.value() + stats_.late_killed.value() + stats_.written.value());
   audit.right(laws::kSamplesRetired, stats_.samples_discarded.value() + stats_.samples_written.value());
   audit.left(laws::kKilledLate, stats_.late_killed.value());
-  cache_.stats().audit(audit, laws::kColorCache);
+  cache_.audit(audit, laws::kColorCache, port_);
   port_.audit(audit);
 }
 

@@ -60,6 +60,13 @@ class Rop final : public Unit {
         {1, 64},
         "The same: floats of 32 bits, for each channel. [G: no slower than the path]",
         Effect::kSlower};
+    Choice<ColorCompression> compression{
+        *this,
+        "compression",
+        ColorCompression::kNone,
+        {"none", "offset", "samples_offset"},
+        "How lines of colours are stored: as they are, or as offsets from their least codes where that takes "
+        "fewer sectors, and lines of later samples that equal those of the first not at all."};
   };
   struct Stats : StatGroup {
     Counter warps{*this, "warps", "warp", "Warps retired"};
@@ -86,7 +93,8 @@ class Rop final : public Unit {
         "here and below, where a pixel has one sample, fragments"};
     Counter samples_written{*this, "samples_written", "sample", "Samples of the fragments written"};
   };
-  using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats>;
+  using CounterParts =
+      Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats, EncodedReadStats, SurfaceEncoderStats>;
   Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps);
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
@@ -130,6 +138,7 @@ class Rop final : public Unit {
   [[nodiscard]] Wake outputs_of(const Entry& entry, Wake wake) const;
   void take_inputs(Tick now);
   void take_late(Tick now);
+  void end_pass();
   void begin_flush();
   void resolve(Tick now);
   void test(Tick now);
@@ -161,6 +170,7 @@ class Rop final : public Unit {
   bool stalled_ = false;
   bool claim_stalled_ = false;  ///< the same for the head, whose lines were evicted
   bool depth_flushes_ = false;  ///< the pass is over, and the depth unit flushes before this one
+  bool depth_flushed_ = false;  ///< it has; the lines that nobody waits for come before this one flushes
   Resolve resolve_;
   Flush flush_{port_};
   Tick free_ = 0, test_free_ = 0, acquire_free_ = 0;

@@ -57,18 +57,26 @@ SectorWishes wishes_of_write(std::uint64_t pixels, std::uint32_t pixel_bytes, bo
 }
 
 SurfaceCache::SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory,
-                           models::DeviceMemory::Owner owner)
-    : cache_(stats, lines, ways, misses), memory_(memory), group_(stats), stats_(stats) {
+                           models::DeviceMemory::Owner owner, const SurfaceCompression& compression)
+    : cache_(stats, lines, ways, misses),
+      memory_(memory),
+      group_(stats),
+      stats_(stats),
+      read_stats_(stats),
+      encoder_(stats, cache_, memory, compression) {
   cache_.own_dirty_lines(memory, owner);
+  cache_.read_encoded(memory.stored_lines(), read_stats_);
 }
 
 void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, PartitionId partition,
                               std::uint32_t partitions) {
   count_ = surfaces.size();
+  encoder_.begin_pass();
   for (std::size_t i = 0; i < count_; ++i) {
     surfaces_[i].state = &surfaces[i];
     const models::SurfaceLayout& layout = surfaces[i].surface;
     surfaces_[i].cleared.assign(layout.planes(), false);
+    encoder_.add(surfaces[i]);
     if (!surfaces[i].loads()) mark_cleared(surfaces_[i], partition, partitions);
   }
 }
@@ -76,6 +84,7 @@ void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, Partiti
 std::size_t SurfaceCache::add_surface(const AttachmentState& surface) {
   surfaces_[count_].state = &surface;
   surfaces_[count_].cleared.assign(surface.surface.planes(), false);
+  encoder_.add(surface);
   return count_++;
 }
 
@@ -88,6 +97,9 @@ void SurfaceCache::mark_cleared(Surface& surface, PartitionId partition, std::ui
           memory_.write(layout.tile_address(x, y), std::uint64_t{layout.samples} * layout.plane_stride()),
           layout.pixel_bytes, surface.state->clear);
       for (std::uint32_t s = 0; s < layout.samples; ++s) surface.cleared[layout.plane_number(x, y, s)] = true;
+      const auto line = static_cast<std::uint32_t>(layout.tile_address(x, y) / models::kLineBytes);
+      for (std::uint32_t l = 0; encoder_.on() && l < layout.samples * layout.plane_lines(); ++l)
+        encoder_.forget(line + l);
       stats_.cleared_tiles += layout.samples;
     }
   }
@@ -114,19 +126,32 @@ bool SurfaceCache::acquire(const SurfaceTile& tile, const SectorWishes& wishes, 
   if (mark_of(tile) && !materialize(tile, done, port)) return false;
   for (std::uint32_t i = 0; i < layout_of(tile).plane_lines(); ++i) {
     if ((done.acquired >> i & 1u) != 0) continue;
-    const std::uint32_t line = first_line_of(tile) + i;
-    const std::uint8_t wanted = line_part(wishes.read, i);
-    const auto written = static_cast<std::uint8_t>(line_part(wishes.write, i) & ~wanted);
-    const bool in_part = line_part(wishes.part, i) != 0;
-    if ((written != 0 || in_part) && !cache_.claim(line, written, port)) return false;
-    if (wanted != 0) {
-      const L1Cache::Result result = cache_.access(line, wanted, waiter, port);
+    const LineWishes line = line_wishes(tile, i, wishes);
+    if ((line.write != 0 || line.in_part) && !cache_.claim(line.line, line.write, port)) return false;
+    if (line.read != 0) {
+      const L1Cache::Result result = cache_.access(line.line, line.read, waiter, port);
       if (result == L1Cache::Result::kStall) return false;
       if (result == L1Cache::Result::kPending) ++missing;
     }
     done.acquired = static_cast<std::uint8_t>(done.acquired | 1u << i);
   }
   return true;
+}
+
+SurfaceCache::LineWishes SurfaceCache::line_wishes(const SurfaceTile& tile, std::uint32_t line,
+                                                   const SectorWishes& wishes) const {
+  const std::uint8_t read = line_part(wishes.read, line);
+  LineWishes of{first_line_of(tile) + line, read,
+                static_cast<std::uint8_t>(line_part(wishes.write, line) & ~read),
+                line_part(wishes.part, line) != 0};
+  if (!encoder_.lines().is_encoded(of.line) || cache_.has_place(of.line)) return of;
+  const std::uint8_t all = layout_of(tile).line_sectors();
+  const bool is_copy = encoder_.lines().is_copy(of.line);
+  const bool old_needed = of.read != 0 || of.in_part || (of.write != 0 && of.write != all);
+  const std::uint32_t stored = is_copy ? encoder_.lines().original_of(of.line) : of.line;
+  if (old_needed) return {stored, all};
+  // A copy that is overwritten whole becomes a line of its own with the write.
+  return is_copy ? LineWishes{stored} : of;
 }
 
 bool SurfaceCache::write(const SurfaceTile& tile, std::uint64_t pixels, MemoryPort& port) {
@@ -137,6 +162,7 @@ bool SurfaceCache::write(const SurfaceTile& tile, std::uint64_t pixels, MemoryPo
     const std::uint32_t line = first_line_of(tile) + i;
     const std::uint32_t words = words_of(pixels >> i * per_line & low_bits(per_line), layout.pixel_bytes);
     if (words == 0) continue;
+    if (encoder_.on() && !encoder_.prepare_write(line, words, port)) return false;
     if (!cache_.has_place(line) && !cache_.claim(line, 0, port)) return false;
     cache_.write(line, words);
   }
@@ -149,7 +175,12 @@ void SurfaceCache::write_marked(Surface& surface, MemoryPort& port) {
     if (!surface.cleared[i]) continue;
     const auto line =
         static_cast<std::uint32_t>((layout.base + i * layout.plane_stride()) / models::kLineBytes);
-    for (std::uint32_t l = 0; l < layout.plane_lines(); ++l) port.write(line + l, layout.line_sectors());
+    const std::size_t first = i - i % layout.samples;
+    for (std::uint32_t l = 0; l < layout.plane_lines(); ++l) {
+      const std::uint8_t sectors =
+          encoder_.on() ? encoder_.store_cleared(line + l, surface.cleared[first]) : layout.line_sectors();
+      if (sectors != 0) port.write(line + l, sectors);
+    }
     ++stats_.clear_writes;
   }
 }

@@ -9,6 +9,7 @@
 
 #include "hw/frame/frame.h"
 #include "hw/memory/l1_cache.h"
+#include "hw/rop/surface_encoder.h"
 #include "models/memory/surface.h"
 
 #include <array>
@@ -62,7 +63,7 @@ struct AcquiredLines {
 class SurfaceCache {
  public:
   SurfaceCache(StatGroup& stats, int lines, int ways, int misses, models::DeviceMemory& memory,
-               models::DeviceMemory::Owner owner);
+               models::DeviceMemory::Owner owner, const SurfaceCompression& compression = {});
 
   /// Begins a pass on these surfaces, of which this partition draws its tiles: what is not loaded is filled
   /// and marked. The attachments must outlive the pass.
@@ -86,9 +87,15 @@ class SurfaceCache {
   /// Pixels of a tile were written. Takes back a line that was evicted since it was acquired; false when
   /// there is no place for it now.
   bool write(const SurfaceTile& tile, std::uint64_t pixels, MemoryPort& port);
+  /// Lines of later samples may be copies of those of the first.
+  [[nodiscard]] bool keeps_copies() const { return encoder_.keeps_copies(); }
+  /// The pixels of all writes so far are in memory.
+  void pixels_written() { encoder_.pixels_written(); }
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {
-    cache_.fill(response, std::forward<F>(ready));
+    cache_.fill(response, [&](std::uint32_t waiter) {
+      if (waiter != SurfaceEncoder::kNobody) ready(waiter);
+    });
   }
   /// Ends the pass: queues for writing what is dirty in the surfaces that are stored, and what is still
   /// marked in those that someone reads later.
@@ -96,6 +103,10 @@ class SurfaceCache {
   [[nodiscard]] bool full() const { return cache_.full(); }
   [[nodiscard]] bool idle() const { return cache_.idle(); }
   [[nodiscard]] const L1CacheStats& stats() const { return cache_.stats(); }
+  void audit(Audit& audit, const Law& law, const MemoryPort& port) const {
+    cache_.stats().audit(audit, law);
+    encoder_.audit(audit, port);
+  }
 
  private:
   struct Surface {
@@ -114,6 +125,14 @@ class SurfaceCache {
     return surface.cleared[surface.state->surface.plane_number(tile.x, tile.y, tile.sample)];
   }
   void mark_cleared(Surface& surface, PartitionId partition, std::uint32_t partitions);
+  /// What is asked for of a line so that an encoded one is fetched whole.
+  struct LineWishes {
+    std::uint32_t line = 0;  ///< the original of a copy
+    std::uint8_t read = 0, write = 0;
+    bool in_part = false;
+  };
+  [[nodiscard]] LineWishes line_wishes(const SurfaceTile& tile, std::uint32_t line,
+                                       const SectorWishes& wishes) const;
   void write_marked(Surface& surface, MemoryPort& port);
   bool materialize(const SurfaceTile& tile, AcquiredLines& done, MemoryPort& port);
 
@@ -121,6 +140,8 @@ class SurfaceCache {
   models::DeviceMemory& memory_;
   StatGroup& group_;
   SurfaceCacheStats stats_;
+  EncodedReadStats read_stats_;
+  SurfaceEncoder encoder_;
   /// attachments, and what they are resolved to
   std::array<Surface, std::size_t{2} * models::kMaxColorAttachments> surfaces_;
   std::size_t count_ = 0;

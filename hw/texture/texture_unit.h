@@ -66,7 +66,7 @@ class TextureUnit final : public Unit {
         "Times that the cache forgot all lines, since a pass samples what earlier ones drew"};
     Counter groups_answered{*this, "groups_answered", "group", "Groups whose texels went back"};
   };
-  using CounterParts = Parts<MemoryPortStats, L1CacheStats>;
+  using CounterParts = Parts<MemoryPortStats, L1CacheStats, EncodedReadStats>;
   TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
               Store<CoreSlot>& slots);
 
@@ -104,6 +104,7 @@ class TextureUnit final : public Unit {
   Stats stats_;
   MemoryPort port_;
   L1Cache cache_;
+  EncodedReadStats encoded_;
   PassId pass_;  ///< of the latest request
   models::TexturePlan plan_;
   WaitingQueue<Group> groups_;

@@ -59,7 +59,8 @@ TagArray::Allocation TagArray::allocate(std::uint32_t line) {
   if (chosen == ways_) return {};
   std::uint32_t& tag = tags_[std::size_t{set} * stride_ + chosen];
   Line& held = lines_[first + chosen];
-  const Allocation result{static_cast<int>(first + chosen), {tag != kFree, held.line, held.dirty}};
+  const Allocation result{static_cast<int>(first + chosen),
+                          {tag != kFree, held.line, held.dirty, held.valid}};
   tag = line;
   held = {line, 0, 0, 0};
   used_[first + chosen] = ++clock_;

@@ -23,7 +23,8 @@ class TagArray {
   struct Victim {
     bool valid = false;  ///< a line was evicted
     std::uint32_t line = 0;
-    SectorMask dirty = 0;  ///< sectors that must be written back
+    SectorMask dirty = 0;    ///< sectors that must be written back
+    SectorMask present = 0;  ///< sectors that were there
   };
   struct Allocation {
     int slot = kNone;  ///< kNone: every way of the set is pending; try again later

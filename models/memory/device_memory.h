@@ -7,6 +7,8 @@
 /// first touch.
 #pragma once
 
+#include "models/memory/stored_lines.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -60,6 +62,9 @@ class DeviceMemory {
   [[nodiscard]] Owner dirty_owner(std::uint64_t line) const;
   /// Aborts when a line of the range is dirty in a cache other than the reader's own.
   void check_readable(std::uint64_t address, std::uint64_t bytes, Owner reader) const;
+  /// How lines of surfaces are stored.
+  [[nodiscard]] StoredLines& stored_lines() { return stored_lines_; }
+  [[nodiscard]] const StoredLines& stored_lines() const { return stored_lines_; }
   /// Lines held dirty somewhere; 0 after all caches were flushed.
   [[nodiscard]] std::uint64_t dirty_lines() const { return dirty_lines_; }
 
@@ -78,6 +83,7 @@ class DeviceMemory {
   Block<std::byte> bytes_;
   Block<Owner> owner_;  ///< by line
   std::uint64_t dirty_lines_ = 0;
+  StoredLines stored_lines_;
 };
 
 }  // namespace quadrille::models

@@ -135,6 +135,16 @@ const Experiment kExperiments[] = {
      &color_writes,
      {},
      "512x512"},
+    {"compression",
+     "Compression of depths and colours",
+     "Nothing is published that could be compared byte for byte: the ruler is arithmetic.",
+     "Layers over the whole frame, in caches that hold little of it: the bytes that depth units and ROPs "
+     "move, "
+     "plain and encoded, beside closed forms. Then scenes on the default machine, with 1, 4 and 8 samples a "
+     "pixel.",
+     &compression,
+     {"builtin:courtyard", "builtin:flag"},
+     "480x270"},
     {"traversal",
      "Traversal of triangles",
      "Lectures teach two ways (Papaioannou, Rasterization Architectures): edge walking is reasonably good "

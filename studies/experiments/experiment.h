@@ -107,6 +107,7 @@ class Readings {
 [[nodiscard]] Result samples(const Setting& setting);
 [[nodiscard]] Result formats(const Setting& setting);
 [[nodiscard]] Result color_writes(const Setting& setting);
+[[nodiscard]] Result compression(const Setting& setting);
 [[nodiscard]] Result traversal(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

@@ -73,8 +73,10 @@ TEST_CASE("conservation: lost bytes are noticed, read and written") {
   };
   CHECK_THAT(shorten("scan_out_to_l2_0", hw::MemoryRequest::Kind::kRead),
              Catch::Contains("bytes asked by clients = bytes answered by L2"));
-  CHECK_THAT(shorten("rop_0_to_l2_0", hw::MemoryRequest::Kind::kWrite),
-             Catch::Contains("bytes written by clients = bytes taken by L2"));
+  CHECK_THAT(
+      shorten("rop_0_to_l2_0", hw::MemoryRequest::Kind::kWrite),
+      Catch::Contains("bytes written by clients = bytes taken by L2") &&
+          Catch::Contains("bytes of depths and colours as they are stored = bytes of them taken by L2"));
   // A first-level cache waits for the sector that nobody brings.
   CHECK_THAT(shorten("vertex_fetch_to_l2_0", hw::MemoryRequest::Kind::kRead),
              Catch::Contains("the machine cannot progress"));

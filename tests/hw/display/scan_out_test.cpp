@@ -14,7 +14,8 @@ struct ScanBench final : Bench {
   struct Setup {
     std::vector<Timed<ScanToken>> scans;
     int lines_in_flight = 128, latency = 10;
-    bool dirty = false;  ///< a colour cache still holds a line
+    bool dirty = false;    ///< a colour cache still holds a line
+    bool encoded = false;  ///< the second line lies in one sector
   };
   ScanBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     PassState pass;
@@ -23,6 +24,9 @@ struct ScanBench final : Bench {
     frame.passes = {pass};
     if (s.dirty) device.mark_dirty(pass.color[0].surface.base / models::kLineBytes + 3, 1);
     params.lines_in_flight.set(s.lines_in_flight);
+    if (s.encoded)
+      device.stored_lines().set_encoded(
+          static_cast<std::uint32_t>(pass.color[0].surface.base / models::kLineBytes) + 1, 1);
     unit = std::make_unique<ScanOut>("unit", context(), params);
     add(*unit);
     feed(unit->scan_in, s.scans);
@@ -56,6 +60,13 @@ TEST_CASE("scan_out: keeps no more lines under way than allowed") {
 TEST_CASE("scan_out: a line that a cache still holds dirty is noticed") {
   CHECK_THAT(run<ScanBench>({.scans = {{0, {PassId(0)}}}, .dirty = true}, report),
              Catch::StartsWith("failed: signal"));
+}
+
+TEST_CASE("scan_out: reads an encoded line by its encoding") {
+  CHECK(run<ScanBench>({.scans = {{0, {PassId(0)}}}, .encoded = true}, [](const ScanBench& b) {
+          return fmt::format("{} encoded {} in {} bytes", report(b), counter(*b.unit, "encoded_reads"),
+                             counter(*b.unit, "encoded_read_bytes"));
+        }) == "3:r2/f 4:r3/1 5:r4/f 6:r5/f done 18:0 lines 4 encoded 1 in 32 bytes");
 }
 
 TEST_CASE("scan_out: keeps the contract, one-deep links included") {

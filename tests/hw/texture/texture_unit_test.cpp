@@ -18,6 +18,7 @@ struct TextureBench final : Bench {
     int groups = 32, lines = 256, ways = 8, misses = 64, filter_clk = 8;
     Pace pace{};
     LinkSpec out{.depth = 64};
+    bool encoded = false;  ///< the texture's first line lies in two sectors
   };
   /// A texture of 32 x 32 texels, nearest filter. Slot i samples one quad in the line of texels (8 i, 0);
   /// slot 3 samples eight quads there.
@@ -42,6 +43,9 @@ struct TextureBench final : Bench {
     params.groups_in_flight.set(s.groups);
     set_cache(params, s.lines, s.ways, s.misses);
     params.filter_clk.set(s.filter_clk);
+    if (s.encoded)
+      device.stored_lines().set_encoded(static_cast<std::uint32_t>(texture.view.base / models::kLineBytes),
+                                        2);
     unit = std::make_unique<TextureUnit>("unit", context(), params, slots);
     add(*unit);
     feed(unit->request_in, s.requests);
@@ -91,6 +95,20 @@ TEST_CASE("texture_unit: a hit behind a miss is looked up at once and answered i
 TEST_CASE("texture_unit: no more groups are under way than allowed") {
   const TextureBench::Setup s{.requests = {{0, slot(0)}, {0, slot(1)}}, .groups = 1};
   CHECK(run<TextureBench>(s, answers) == "63:0 124:1");  // taken at 62, the cycle the first is answered
+}
+
+TEST_CASE("texture_unit: an encoded line is read by its encoding, and all of it is there then") {
+  const auto seen = [](bool encoded) {
+    return run<TextureBench>(
+        {.requests = {{0, slot(0)}, {100, slot(0)}}, .encoded = encoded}, [](const TextureBench& b) {
+          const MemoryRequest& first = b.memory->got.front().token;
+          return fmt::format("{} requests, sectors {:x}, encoded {} in {} bytes", b.memory->got.size(),
+                             first.sectors, counter(*b.unit, "encoded_reads"),
+                             counter(*b.unit, "encoded_read_bytes"));
+        });
+  };
+  CHECK(seen(false) == "1 requests, sectors 1, encoded 0 in 0 bytes");
+  CHECK(seen(true) == "1 requests, sectors 3, encoded 1 in 64 bytes");
 }
 
 TEST_CASE("texture_unit: a cache of one line and one miss gets through") {
