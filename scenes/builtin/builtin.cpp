@@ -14,7 +14,6 @@
 #include "scenes/builtin/mesh_builder.h"
 #include "scenes/builtin/procedural_texture.h"
 #include "scenes/data/rounded_math.h"
-#include "scenes/passes/rotunda.h"
 
 namespace quadrille::scenes {
 namespace {

@@ -40,6 +40,7 @@ struct BuiltinScene {
 [[nodiscard]] SceneData build_materials();
 [[nodiscard]] SceneData build_primitives();
 [[nodiscard]] SceneData build_courtyard();
+[[nodiscard]] SceneData build_rotunda();
 [[nodiscard]] SceneData build_flag(double time);
 inline constexpr double kFlagSeconds = 2;
 

@@ -6,7 +6,6 @@
 
 #include "scenes/passes/pass_recorder.h"
 #include "scenes/passes/passes.h"
-#include "scenes/passes/rotunda.h"
 #include "scenes/passes/sunlight.h"
 
 namespace quadrille::scenes {
@@ -94,12 +93,13 @@ struct LightInstance {
 /// Lamps in two rings, over the floor and between the columns.
 std::vector<LightInstance> lamps() {
   constexpr int kLamps = 48;
+  constexpr double kOuter = 5.1, kInner = 2.5;  // metres
   constexpr double kTurn = 2 * std::numbers::pi;
   std::vector<LightInstance> all;
   all.reserve(kLamps);
   for (int i = 0; i < kLamps; ++i) {
     const double turns = static_cast<double>(i) / kLamps, hue = kTurn * 5 * turns;
-    const double radius = i % 2 == 0 ? kRotundaRadius + 0.9 : 0.6 * kRotundaRadius;
+    const double radius = i % 2 == 0 ? kOuter : kInner;
     all.push_back(
         {{static_cast<float>(radius * std::cos(kTurn * turns)), i % 2 == 0 ? 1.2F : 0.6F,
           static_cast<float>(radius * std::sin(kTurn * turns)), 1.6F},

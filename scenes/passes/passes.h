@@ -1,5 +1,5 @@
-/// Built-in frames of several passes. Each takes the scene of scenes/passes/rotunda.h with a camera, and
-/// gives all of its commands. What it draws with is its own, so a choice of shaders or of another picture is
+/// Built-in frames of several passes. Each takes a scene, whose vertices have normals and colours, and gives
+/// all of its commands. What it draws with is its own, so a choice of shaders or of another picture is
 /// refused: throws `UserError`.
 #pragma once
 

@@ -84,7 +84,6 @@ void refuse_other_pictures(const SceneData& scene, const SceneOptions& options) 
   if (options.shading != Shading::kPbr) refuse("--shading");
   if (options.order != DrawOrder::kFile) refuse("--order");
   if (options.shown != Showing::kColors) refuse("--view");
-  if (options.visibility) refuse("a picture of triangles");
   if (options.alpha_to_coverage) refuse("--alpha-to-coverage");
   if (!options.vertex_shader.empty() || !options.fragment_shader.empty()) refuse("a shader of yours");
 }

@@ -43,9 +43,10 @@ void check_scene(const std::string& scene, scenes::SceneOptions options = {}) {
 }  // namespace
 
 TEST_CASE("machine: built-in scenes equal the reference in given mode") {
-  for (const char* scene : {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines",
-                            "builtin:overdraw", "builtin:fill", "builtin:cycle", "builtin:flag",
-                            "builtin:courtyard", "builtin:materials", "builtin:primitives"})
+  for (const char* scene :
+       {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines", "builtin:shadow",
+        "builtin:deferred", "builtin:overdraw", "builtin:fill", "builtin:cycle", "builtin:flag",
+        "builtin:courtyard", "builtin:materials", "builtin:primitives"})
     check_scene(scene);
 }
 

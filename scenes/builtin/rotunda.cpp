@@ -1,4 +1,6 @@
-#include "scenes/passes/rotunda.h"
+/// The stage of the frames of several passes: a floor with a ring of columns around a pedestal, steps, balls
+/// and rings, each vertex with its colour.
+#include "scenes/builtin/builtin.h"
 
 #include <cmath>
 #include <numbers>
@@ -14,6 +16,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kColumns = 12, kBalls = 6;
+constexpr float kRingRadius = 4.2F;  // metres
 constexpr Streams kStreams{.normal = true, .tangent = false, .uv = false, .color = true};
 
 /// (cos, sin) of a part of a turn, in double and rounded once.
@@ -93,7 +96,7 @@ SceneData build_rotunda() {
   place(scene, pedestal(scene));
   const std::uint32_t pillar = column(scene);
   for (int i = 0; i < kColumns; ++i) {
-    const glm::vec2 at = kRotundaRadius * around(static_cast<double>(i) / kColumns);
+    const glm::vec2 at = kRingRadius * around(static_cast<double>(i) / kColumns);
     place(scene, pillar, glm::translate(glm::mat4(1), {at.x, 0, at.y}));
   }
   const glm::mat4 above = glm::translate(glm::mat4(1), {0, 1.5F, 0});
