@@ -58,11 +58,9 @@ class L1Cache {
   /// Decides how lines are stored that leave.
   class Store {
    public:
+    virtual ~Store() = default;
     /// The sectors to be written of it, beside those that leave in part.
     virtual std::uint8_t store(const Leaving& leaving) = 0;
-
-   protected:
-    ~Store() = default;
   };
   enum class Result : std::uint8_t {
     kHit,      ///< present

@@ -138,7 +138,7 @@ const Experiment kExperiments[] = {
     {"compression",
      "Compression of depths and colours",
      "Nothing is published that could be compared byte for byte: the ruler is arithmetic.",
-     "Layers over the whole frame, in caches that hold little of it: the bytes that depth units and ROPs "
+     "Layers over the whole frame, in caches that do not hold it: the bytes that depth units and ROPs "
      "move, "
      "plain and encoded, beside closed forms. Then scenes on the default machine, with 1, 4 and 8 samples a "
      "pixel.",

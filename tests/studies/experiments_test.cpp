@@ -154,3 +154,9 @@ TEST_CASE("experiments: both traversals take the cycles that arithmetic predicts
   CHECK(result.verdicts.size() == 2 * result.table.rows.size());
   check_holds(result.verdicts);
 }
+
+TEST_CASE("experiments: encoded layers move the bytes that arithmetic predicts", "[slow]") {
+  const Result result = compression(sized(256, 128));
+  CHECK(result.verdicts.size() == 2 * result.table.rows.size());
+  check_holds(result.verdicts);
+}
