@@ -17,8 +17,8 @@ struct Change {
   bool more = false;  ///< of a number; of a switch, on
 };
 
-/// Half and twice of each number, and every other word, on the default machine and on some that are narrow
-/// elsewhere. Changes that give no legal machine are left out, and what changes the picture.
+/// Half and twice of each number, and every other word, on the default machine and, but for links, on some
+/// that are narrow elsewhere. Changes that give no legal machine are left out, and what changes the picture.
 [[nodiscard]] std::vector<Change> near_changes();
 
 /// For parameters that showed nothing so: an eighth and eight times of it there, and all of these on a

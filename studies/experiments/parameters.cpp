@@ -228,7 +228,7 @@ Result parameters(const Setting& setting) {
       {"parameters without any effect", count(silent(findings).size()), 0, 0}};
   result.remarks = {
       fmt::format("{} changes: half and twice of each number and every other word of each choice, on three "
-                  "machines; and {} "
+                  "machines (of links on the default one); and {} "
                   "of those that did nothing so, farther and on machines made for them. What seemed wrong "
                   "was drawn {} times.",
                   near.size(), far.size(), kShakes)};

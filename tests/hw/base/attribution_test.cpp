@@ -147,6 +147,24 @@ TEST_CASE(
   CHECK(text == "60 0 0 0;2 25 0 33;2 26 0 32;");
 }
 
+TEST_CASE("attribution: a frame that ends thousands of charges ago keeps the sum of its cycles") {
+  const std::string text = contract::in_child([] {
+    // Every token is a charge for the stage's work and one for its wait.
+    const WorldSpec w = pipeline({.period = 20, .count = 2000}, {}, {});
+    Dispatcher driver("driver");
+    World world(w, driver);
+    driver.run({});
+    close_accounts(driver.units(), 60 * kCycle);
+    const Unit& stage = world.unit(1);
+    std::int64_t waited = 0;
+    for (const PortBase* port : stage.ports()) waited += port->waited();
+    return fmt::format("{} cycles, ports waited {} of {}",
+                       stage.busy_cycles() + stage.starved_cycles() + stage.blocked_cycles() + stage.idle_cycles(),
+                       waited, stage.starved_cycles() + stage.blocked_cycles());
+  });
+  CHECK(text == "60 cycles, ports waited 60 of 60");
+}
+
 TEST_CASE(
     "attribution: the four charges sum to the cycles in every unit of random worlds, wherever the frame is "
     "cut") {
