@@ -103,7 +103,7 @@ std::vector<std::string> bounded_programs() {
 std::vector<std::string> unbounded_programs() {
   const char* const bodies[] = {
       "at.x += sin(at.y); gl_Position = p.view * (p.model * at);",
-      "int n = int(fract(at.x) * 9.0); for (int i = 0; i < n; ++i) at *= 1.5; gl_Position = p.view * at;",
+      "for (int i = int(fract(at.x) * 9.0); i > 0; --i) at *= 1.5; gl_Position = p.view * (p.model * at);",
       "at.x += float(gl_VertexIndex); gl_Position = p.view * (p.model * at);",
       "at += textureLod(t, at.xy, 0.0); gl_Position = p.view * (p.model * at);",
       "gl_Position = p.view * (p.model * at); gl_Position *= 1.0 / at.x;",
