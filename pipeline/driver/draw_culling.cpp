@@ -84,8 +84,7 @@ class BoxFinder {
       if (!draw.restarts || !hw::is_restart(draw, memory_, position))
         elements.push_back(hw::vertex_number(draw, memory_, position));
     std::ranges::sort(elements);
-    const auto rest = std::ranges::unique(elements);
-    elements.erase(rest.begin(), rest.end());
+    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
     return elements;
   }
 

@@ -130,6 +130,7 @@ TEST_CASE("draw culling: no draw is dropped of which a piece reaches the raster,
   for (const auto& programs : {bounded_programs(), unbounded_programs()}) {
     for (int round = 0; round < 20; ++round) {
       std::vector<ObjectDraw> objects;
+      objects.reserve(60);
       for (int d = 0; d < 60; ++d) objects.push_back(random_object(random, programs.size()));
       const Draws draws = cull(object_stream(objects, programs));
       INFO("round " << round);

@@ -101,13 +101,13 @@ std::vector<std::string> bounded_programs() {
 }
 
 std::vector<std::string> unbounded_programs() {
-  const char* const bodies[] = {"at.x += sin(at.y); gl_Position = p.view * (p.model * at);",
-                                "for (int i = 0; i < int(clamp(position.x, 0.0, 1.0) * 9.0); ++i) at *= 1.5; "
-                                "gl_Position = p.view * (p.model * at);",
-                                "at.x += float(gl_VertexIndex); gl_Position = p.view * (p.model * at);",
-                                "at += textureLod(t, at.xy, 0.0); gl_Position = p.view * (p.model * at);",
-                                "gl_Position = p.view * (p.model * at); gl_Position *= 1.0 / at.x;",
-                                "b.w[0] = 7u; gl_Position = p.view * (p.model * at);"};
+  const char* const bodies[] = {
+      "at.x += sin(at.y); gl_Position = p.view * (p.model * at);",
+      "for (int i = int(fract(at.x) * 9.0); i > 0; --i) at *= 1.5; gl_Position = p.view * (p.model * at);",
+      "at.x += float(gl_VertexIndex); gl_Position = p.view * (p.model * at);",
+      "at += textureLod(t, at.xy, 0.0); gl_Position = p.view * (p.model * at);",
+      "gl_Position = p.view * (p.model * at); gl_Position *= 1.0 / at.x;",
+      "b.w[0] = 7u; gl_Position = p.view * (p.model * at);"};
   std::vector<std::string> programs;
   for (const char* const body : bodies) programs.push_back(vertex_shader(body));
   return programs;
