@@ -164,10 +164,12 @@ void measure_scenes(const Setting& setting, Result& result) {
 std::string plot_of(const Table& scenes) {
   std::string data;
   for (const auto& row : scenes.rows)
-    data += fmt::format("\"{}, {}\" {} {}\n", row[0], row[1], row[3] == "-" ? "0" : row[3], row[7]);
+    data +=
+        fmt::format("\"{}, {}\" {} {} {}\n", row[0], row[1], row[3] == "-" ? "0" : row[3], row[7], row[12]);
   return "set style data histogram\nset style fill solid 0.7\nset ylabel 'bytes, encoded over plain'\nset "
-         "yrange [0:1]\nset xtics rotate by -30\nset grid y\n$d << EOD\n" +
-         data + "EOD\nplot $d using 2:xtic(1) title 'depth', '' using 3 title 'colour'";
+         "yrange [0:*]\nset xtics rotate by -30\nset grid y\n$d << EOD\n" +
+         data +
+         "EOD\nplot $d using 2:xtic(1) title 'depth', '' using 3 title 'colour', '' using 4 title 'memory'";
 }
 
 }  // namespace

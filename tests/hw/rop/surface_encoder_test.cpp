@@ -32,6 +32,12 @@ constexpr Content kHalfNoise = [](std::uint32_t line, std::uint32_t pixel) {
   return line % 2 == 0 ? 0x11223344u : kNoise(line, pixel);
 };
 
+/// Depths of D24 that lie on a plane: 64 codes a pixel to the right, 32 downwards.
+constexpr Content kPlane = [](std::uint32_t, std::uint32_t pixel) {
+  const auto entry = static_cast<int>(pixel);
+  return static_cast<std::uint32_t>(100000 + 64 * models::entry_x(entry) + 32 * models::entry_y(entry));
+};
+
 struct EncoderBench final : Bench {
   struct Setup {
     Script script;
@@ -39,11 +45,12 @@ struct EncoderBench final : Bench {
     std::uint32_t samples = 1;
     int lines = 16;
     models::LoadOp load = models::LoadOp::kLoad;
+    models::Format format = models::Format::kR8G8B8A8Unorm;
     SurfaceCompression compression = SurfaceCompression::of(ColorCompression::kSamplesOffset);
   };
   EncoderBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
     surface = models::allocate_surface(device, 8, 32, s.samples);
-    attachment = {surface, models::Format::kR8G8B8A8Unorm, s.load, models::StoreOp::kStore, {{7}}, true};
+    attachment = {surface, s.format, s.load, models::StoreOp::kStore, {{7}}, true};
     unit = std::make_unique<User>("unit", clock, s.script, s.lines, s.lines, 4, device,
                                   surface_writer(SurfaceKind::kColor, PartitionId(0)), s.compression);
     for (std::uint32_t i = 0; s.load == models::LoadOp::kLoad && i < surface.bytes() / 4; ++i)
@@ -113,6 +120,20 @@ TEST_CASE("surface_encoder: a line leaves in the sectors of its encoding, and a 
   CHECK(seen({.script = drawn(), .content = kHalfNoise}) == "missing 0; | w0/1 w1/f | dirty 0");
   CHECK(counted({.script = drawn(), .content = kHalfNoise}) ==
         "plain 1 offset 1 plane 0 copied 0 bytes 160 of 256, read 0 lines in 0 bytes");
+}
+
+TEST_CASE("surface_encoder: depths of a plane leave in a sector a line, and in two without planes") {
+  const auto stored = [](DepthCompression compression) {
+    return counted({.script = drawn(),
+                    .content = kPlane,
+                    .format = models::Format::kD24UnormS8Uint,
+                    .compression = SurfaceCompression::of(compression)});
+  };
+  CHECK(stored(DepthCompression::kPlaneOffset) ==
+        "plain 0 offset 0 plane 2 copied 0 bytes 64 of 256, read 0 lines in 0 bytes");
+  // 7 * 64 + 3 * 32 = 544 codes apart: 10 bits a pixel beside the header.
+  CHECK(stored(DepthCompression::kOffset) ==
+        "plain 0 offset 2 plane 0 copied 0 bytes 128 of 256, read 0 lines in 0 bytes");
 }
 
 TEST_CASE("surface_encoder: without compression nothing is encoded or counted") {
