@@ -86,12 +86,10 @@ inline std::uint64_t WarpSlot::alive_samples(int count) const {
 template <class T, class Slot = std::uint64_t>
 class Store {
  public:
-  /// What a slot's type does not set of itself stays as it is until somebody fills it: most of a large
-  /// store is never touched.
-  explicit Store(std::size_t slots) : slots_(std::make_unique_for_overwrite<T[]>(slots)), size_(slots) {}
+  explicit Store(std::size_t slots) : slots_(slots) {}
   [[nodiscard]] T& operator[](Slot slot) { return slots_[place_of(slot)]; }
   [[nodiscard]] const T& operator[](Slot slot) const { return slots_[place_of(slot)]; }
-  [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] std::uint64_t size() const { return slots_.size(); }
 
  private:
   static std::size_t place_of(std::uint64_t slot) { return static_cast<std::size_t>(slot); }
@@ -99,8 +97,7 @@ class Store {
   static std::size_t place_of(models::Id<Tag> slot) {
     return slot.index();
   }
-  std::unique_ptr<T[]> slots_;
-  std::size_t size_;
+  std::vector<T> slots_;
 };
 /// The fragment warps of a partition.
 using WarpStore = Store<WarpSlot, WarpSlotId>;

@@ -79,7 +79,7 @@ std::uint32_t floor(SceneData& scene) {
 
 std::uint32_t pedestal(SceneData& scene) {
   MeshBuilder mesh;
-  const glm::vec4 stone(0.55F, 0.5F, 0.46F, 1);
+  const glm::vec4 stone(0.55F, 0.51F, 0.46F, 1);
   for (int step = 0; step < 3; ++step) {
     const float half = 1.6F - 0.35F * static_cast<float>(step), low = 0.2F * static_cast<float>(step);
     mesh.box({-half, low, -half}, {half, low + 0.2F, half}, 1, stone);
@@ -100,8 +100,8 @@ SceneData build_rotunda() {
     place(scene, pillar, glm::translate(glm::mat4(1), {at.x, 0, at.y}));
   }
   const glm::mat4 above = glm::translate(glm::mat4(1), {0, 1.5F, 0});
-  place(scene, ball(scene, "globe", 0.6F, {0.85F, 0.72F, 0.3F, 1}), above);
-  place(scene, ring(scene, 0.95F, 0.08F, {0.7F, 0.2F, 0.15F, 1}), above);
+  place(scene, ball(scene, "globe", 0.6F, {0.85F, 0.72F, 0.31F, 1}), above);
+  place(scene, ring(scene, 0.95F, 0.08F, {0.71F, 0.2F, 0.15F, 1}), above);
   for (int i = 0; i < kBalls; ++i) {
     const double turns = (i + 0.5) / kBalls;
     const glm::vec2 at = 2.6F * around(turns);

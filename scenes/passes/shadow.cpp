@@ -33,7 +33,8 @@ void main() {
   gl_Position = frame.view_projection * at;
 }
 )";
-/// The part of nine texels around the place that the sun sees no nearer than it.
+/// The mean over nine texels around the place: 1 where the sun sees nothing nearer than it, falling to 0 over
+/// some centimetres.
 constexpr std::string_view kLitFragment = R"(
 layout(location = 0) in vec3 world;
 layout(location = 1) in vec3 facing;
@@ -46,7 +47,7 @@ float sunlit(vec3 at) {
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x)
-      sum += textureLod(map, uv + vec2(x, y) * texel, 0.0).r >= at.z ? 1.0 : 0.0;
+      sum += clamp(1.0 + 600.0 * (textureLod(map, uv + vec2(x, y) * texel, 0.0).r - at.z), 0.0, 1.0);
   return sum / 9.0;
 }
 void main() {

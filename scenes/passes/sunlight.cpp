@@ -24,7 +24,7 @@ void main() {
   vec2 texel = 1.0 / vec2(textureSize(radiance, 0));
   vec3 sum = vec3(0.0);
   for (int i = 1; i <= 4; ++i) {
-    vec2 far = texel * float(i) * 1.5;
+    vec2 far = texel * float(2 * i);
     sum += (glare(uv + vec2(far.x, far.y)) + glare(uv - vec2(far.x, far.y)) +
             glare(uv + vec2(far.x, -far.y)) + glare(uv - vec2(far.x, -far.y))) / float(4 + 4 * i);
   }

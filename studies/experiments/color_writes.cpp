@@ -1,5 +1,5 @@
-/// Colour writes by format on a machine after a GeForce GTX 460: published rates of twelve formats and blends,
-/// each over that of the first.
+/// Colour writes by format on a machine after a GeForce GTX 460: the published rates of twelve formats and
+/// blends, each over that of the first.
 #include <fmt/format.h>
 
 #include "studies/experiments/experiment.h"

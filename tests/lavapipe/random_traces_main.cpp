@@ -1,5 +1,6 @@
-/// quadrille_random_traces: the frames of the random tests as traces, for a device that has no tests: draw
-/// them there with `quadrille_measure_vulkan --scene F.qtrace --pictures P`, and here with `quadrille render`.
+/// quadrille_random_traces: the frames of the random tests as traces, for a device that has no tests. Draw
+/// them there with `quadrille_measure_vulkan --scene F.qtrace --pictures P`, and here with `quadrille
+/// render`.
 ///
 /// Exit code: 0 written, 2 a mistake in what was given.
 #include <fmt/format.h>

@@ -155,6 +155,12 @@ TEST_CASE("experiments: both traversals take the cycles that arithmetic predicts
   check_holds(result.verdicts);
 }
 
+TEST_CASE("experiments: colours are written at the published ratios of formats", "[slow]") {
+  const Result result = color_writes(sized(256, 256));
+  CHECK(result.verdicts.size() == 11);
+  check_holds(result.verdicts);
+}
+
 TEST_CASE("experiments: encoded layers move the bytes that arithmetic predicts", "[slow]") {
   const Result result = compression(sized(256, 128));
   CHECK(result.verdicts.size() == 2 * result.table.rows.size());
