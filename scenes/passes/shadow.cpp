@@ -42,8 +42,8 @@ layout(location = 2) in vec3 albedo;
 layout(location = 0) out vec4 result;
 layout(set = 1, binding = 0) uniform sampler2D map;
 float sunlit(vec3 at) {
-  vec2 uv = at.xy * 0.5 + 0.5;
   vec2 texel = 1.0 / vec2(textureSize(map, 0));
+  vec2 uv = (floor((at.xy * 0.5 + 0.5) / texel) + 0.5) * texel;
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x)
@@ -73,8 +73,9 @@ traces::CommandStream record_shadow(const SceneData& scene, const SceneOptions& 
   const traces::Index map = recorder.attachment("shadow map", Format::kD32Float, kMapSide, kMapSide);
   traces::Pipeline casters =
       recorder.scene_pipeline("casters", {Semantic::kPosition}, kMapVertex, kMapFragment);
+  // Only the sides away from the sun are drawn, so that what it reaches lies before its own depths. The sun's
+  // clip space has y up, which turns fronts over.
   casters.cull = traces::CullMode::kBack;
-  casters.depth_bias = {.enable = true, .constant = 1.5F, .slope = 2.0F};
   const traces::Index casting = recorder.add(std::move(casters));
   traces::BeginPass pass;
   pass.depth.image = map;

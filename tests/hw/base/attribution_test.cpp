@@ -158,9 +158,10 @@ TEST_CASE("attribution: a frame that ends thousands of charges ago keeps the sum
     const Unit& stage = world.unit(1);
     std::int64_t waited = 0;
     for (const PortBase* port : stage.ports()) waited += port->waited();
-    return fmt::format("{} cycles, ports waited {} of {}",
-                       stage.busy_cycles() + stage.starved_cycles() + stage.blocked_cycles() + stage.idle_cycles(),
-                       waited, stage.starved_cycles() + stage.blocked_cycles());
+    return fmt::format(
+        "{} cycles, ports waited {} of {}",
+        stage.busy_cycles() + stage.starved_cycles() + stage.blocked_cycles() + stage.idle_cycles(), waited,
+        stage.starved_cycles() + stage.blocked_cycles());
   });
   CHECK(text == "60 cycles, ports waited 60 of 60");
 }
