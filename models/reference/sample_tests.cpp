@@ -16,11 +16,11 @@ double depth_step(traces::Format format, double size) {
   return size > 0 ? std::ldexp(1.0, std::ilogb(size) - kMantissaBits) : 0.0;
 }
 
-/// The greater of the slopes of depth in x and in y.
+/// The greater of the slopes of depth in x and in y, a pixel.
 double depth_slope(const WindowTriangle& t) {
-  const double area = doubled_area(t);
   const double x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], z1 = t.z[1] - t.z[0];
   const double x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0], z2 = t.z[2] - t.z[0];
+  const double area = x1 * y2 - x2 * y1;
   return std::max(std::abs((z1 * y2 - z2 * y1) / area), std::abs((z2 * x1 - z1 * x2) / area));
 }
 

@@ -76,6 +76,8 @@ traces::CommandStream record_shadow(const SceneData& scene, const SceneOptions& 
   // Only the sides away from the sun are drawn, so that what it reaches lies before its own depths. The sun's
   // clip space has y up, which turns fronts over.
   casters.cull = traces::CullMode::kBack;
+  // A little toward the sun, so that no light leaks in where things touch the floor.
+  casters.depth_bias = {.enable = true, .constant = -2.0F, .slope = -1.0F, .clamp = -0.0005F};
   const traces::Index casting = recorder.add(std::move(casters));
   traces::BeginPass pass;
   pass.depth.image = map;
