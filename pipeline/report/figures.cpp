@@ -63,6 +63,8 @@ double least_ticks(const hw::FifoBase& link, std::uint64_t tokens) {
 
 LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tick end) {
   const hw::LinkSpec& spec = link.spec();
+  // Write-backs may go on behind the frame's end.
+  const hw::Tick over = std::max(end, link.last_push());
   return {link.path(),
           key,
           link.producer()->name(),
@@ -72,7 +74,7 @@ LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tic
           spec.latency,
           spec.credit_latency,
           link.pushes(),
-          end > 0 ? least_ticks(link, link.pushes()) / static_cast<double>(end) : 0};
+          end > 0 ? least_ticks(link, link.pushes()) / static_cast<double>(over) : 0};
 }
 
 /// Sum of a counter over the units of a kind.

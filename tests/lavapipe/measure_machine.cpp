@@ -36,8 +36,10 @@ Measurement simulate_all(const std::vector<MeasuredExperiment>& experiments,
   for (const MeasuredExperiment& e : experiments) {
     setting.progress = [&](const std::string& text) { progress(e.name + ": " + text); };
     std::vector<traces::CommandStream> streams;
+    streams.reserve(e.points.size());
     for (const Point& p : e.points) streams.push_back(p.stream());
     std::vector<studies::experiments::Frame> frames;
+    frames.reserve(streams.size());
     for (const traces::CommandStream& stream : streams) frames.push_back({&stream, settings});
     const std::vector<Readings> read = studies::experiments::draw(frames, setting);
     measurement.curves.push_back({e.name, e.axis, {}});

@@ -166,7 +166,7 @@ TEST_CASE("samples that pass are counted by sample, and fragments once a pixel a
     const std::vector<Pair> pairs = both(name);
     if (pairs.empty()) return;
     REQUIRE(pairs.size() == 4);  // of one sample, then of four
-    for (const std::size_t i : {0, 1}) {
+    for (const std::size_t i : {0U, 1U}) {
       const Pair &one = pairs[i], &four = pairs[i + 2];
       CHECK(four.ours.samples_passed == 4 * one.ours.samples_passed);
       CHECK(four.theirs.samples_passed == four.ours.samples_passed);

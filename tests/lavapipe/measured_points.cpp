@@ -194,6 +194,7 @@ std::vector<MeasuredExperiment> chosen_experiments(const std::vector<std::string
                                                    std::uint32_t height) {
   std::vector<MeasuredExperiment> all = measured_experiments(width, height);
   std::vector<std::string> known;
+  known.reserve(all.size());
   for (const MeasuredExperiment& e : all) known.push_back(e.name);
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) == known.end())
