@@ -197,7 +197,7 @@ std::vector<Change> far_changes(const std::vector<std::string>& paths) {
   };
   for (const std::string& path : paths) {
     for (const Ground& ground : common_grounds())
-      if (is_tried(ground, path)) add(ground, path, {0.125, 8.0});
+      if (is_tried(ground, path) || path.ends_with(".width")) add(ground, path, {0.125, 8.0});
     add({"tight", tight_settings(path)}, path, {0.125, 0.5, 2.0, 8.0, 512.0});
   }
   return changes;
