@@ -2,16 +2,7 @@
 
 #include "hw/frame/laws.h"
 
-#include <bit>
-
 namespace quadrille::hw {
-namespace {
-
-std::uint64_t bytes_of(std::uint8_t sectors) {
-  return std::uint64_t{models::kSectorBytes} * static_cast<unsigned>(std::popcount(sectors));
-}
-
-}  // namespace
 
 ScanOut::ScanOut(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
     : Unit(name, Kind::kChooser, context.clock),
@@ -69,7 +60,7 @@ void ScanOut::read_next() {
     const models::StoredLines::Place place = device_.stored_lines().place_of(next_line_);
     port_.read(place.line, place.sectors, 0);
     ++encoded_.lines;
-    encoded_.bytes += bytes_of(place.sectors);
+    encoded_.bytes += models::sector_bytes(place.sectors);
   } else {
     port_.read(next_line_, sectors_, 0);
   }
@@ -81,7 +72,7 @@ void ScanOut::read_next() {
 void ScanOut::audit(Audit& audit) const {
   // An encoded line stands for all of its bytes.
   audit.left(laws::kScanOut, port_.stats().read_bytes.value() - encoded_.bytes.value() +
-                                 encoded_.lines.value() * bytes_of(sectors_));
+                                 encoded_.lines.value() * models::sector_bytes(sectors_));
   port_.audit(audit);
 }
 

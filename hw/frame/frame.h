@@ -197,6 +197,12 @@ struct Frame {
   [[nodiscard]] const DrawState& draw(DrawId id) const { return draws[id.index()]; }
   [[nodiscard]] const PassState& pass(PassId id) const { return passes[id.index()]; }
   [[nodiscard]] const PassState& pass_of(DrawId id) const { return pass(draw(id).pass); }
+  /// Bytes of a pixel in all colour attachments that the draw's program writes.
+  [[nodiscard]] std::uint32_t color_bytes(const DrawState& draw) const {
+    std::uint32_t bytes = 0;
+    draw.visit_colors([&](std::size_t color) { bytes += pass(draw.pass).color[color].surface.pixel_bytes; });
+    return bytes;
+  }
   [[nodiscard]] std::span<const DrawState> draws_of(const PassState& pass) const {
     return std::span(draws).subspan(pass.first_draw.index(), pass.draws);
   }

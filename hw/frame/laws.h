@@ -43,6 +43,8 @@
   law(kWarpsDistributed, "warps distributed = warps retired", \
       "work_distributor.fragment_warps", "rop.warps") \
   law(kFragmentsShaded, "fragments shaded = fragments at the ROP", "core.fragments", "rop.fragments_in") \
+  law(kColorsExported, "bytes of colours exported = bytes of colours at the ROP", \
+      "core.exported_bytes", "rop.bytes_in") \
   law(kFragmentsRetired, "fragments at the ROP = discarded + killed late + written", \
       "rop.fragments_in", "rop.discarded + late_killed + written") \
   law(kSamplesRetired, "samples packed = discarded + killed late + written", \

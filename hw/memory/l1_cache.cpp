@@ -1,6 +1,5 @@
 #include "hw/memory/l1_cache.h"
 
-#include <bit>
 #include <utility>
 
 namespace quadrille::hw {
@@ -58,7 +57,7 @@ void L1Cache::fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag,
   const models::StoredLines::Place place = stored_lines_->place_of(line);
   expands_[tag] = true;
   ++read_stats_->lines;
-  read_stats_->bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(place.sectors));
+  read_stats_->bytes += models::sector_bytes(place.sectors);
   port.read(place.line, place.sectors, tag);
 }
 

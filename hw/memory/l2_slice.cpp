@@ -7,7 +7,6 @@
 #include "models/memory/device_memory.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 namespace quadrille::hw {
@@ -18,9 +17,6 @@ bool writes_surface(MemoryClient client, MemoryRequest::Kind kind) {
          (kind == MemoryRequest::Kind::kWrite || kind == MemoryRequest::Kind::kWritePart);
 }
 
-std::uint64_t bytes_of(std::uint8_t sectors) {
-  return models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors));
-}
 /// `texture_3` has the ports `texture_in_3` and `texture_out_3`: the number stays last, as in all ports of a
 /// kind.
 std::string port_name(const std::string& client, std::string_view side) {
@@ -128,7 +124,7 @@ void L2Slice::look_up(Tick now, std::uint32_t client) {
   }
   if (request.kind != MemoryRequest::Kind::kFence) ++stats_.requests;
   if (writes_surface(client_kinds_[client], request.kind))
-    stats_.surface_write_bytes += bytes_of(request.sectors);
+    stats_.surface_write_bytes += models::sector_bytes(request.sectors);
   (void)request_in[client].pop(now);
   turn_ = (client + 1) % request_in.size();
   free_ = after(now, 1);
@@ -145,7 +141,7 @@ int L2Slice::place(Tick now, std::uint32_t line) {
 }
 
 void L2Slice::write_back(Tick now, std::uint32_t line, std::uint8_t sectors) {
-  stats_.writeback_bytes += bytes_of(sectors);
+  stats_.writeback_bytes += models::sector_bytes(sectors);
   to_memory_.push_back({after(now, params_.hit_clk),
                         {line, 0, sectors, MemoryRequest::Kind::kWrite, MemoryClient::kWriteBack}});
 }
@@ -186,7 +182,7 @@ std::optional<std::uint32_t> L2Slice::fetch(Tick now, std::uint32_t client, cons
     return asked->tag;
   }
   ++stats_.misses;
-  stats_.fill_bytes += bytes_of(asked->missing);
+  stats_.fill_bytes += models::sector_bytes(asked->missing);
   to_memory_.push_back({after(now, params_.hit_clk),
                         {request.line, asked->tag, asked->missing, MemoryRequest::Kind::kRead,
                          client_kinds_[client], request.draw}});
@@ -199,7 +195,7 @@ bool L2Slice::write(Tick now, const MemoryRequest& request) {
   if (slot == models::TagArray::kNone) return false;
   tags_.mark_dirty(slot, request.sectors);
   ++stats_.hits;
-  stats_.write_bytes += bytes_of(request.sectors);
+  stats_.write_bytes += models::sector_bytes(request.sectors);
   return true;
 }
 
@@ -219,7 +215,7 @@ std::optional<std::uint32_t> L2Slice::write_when_fetched(Tick now, std::uint32_t
   tags_.mark_dirty(place, there);
   std::uint8_t& parts = parts_[static_cast<std::size_t>(place)];
   parts = static_cast<std::uint8_t>(parts | (request.sectors & ~there));
-  stats_.write_bytes += bytes_of(request.sectors);
+  stats_.write_bytes += models::sector_bytes(request.sectors);
   return tag;
 }
 
@@ -250,7 +246,7 @@ void L2Slice::take_fill(Tick now) {
 }
 
 void L2Slice::answer(Tick at, std::uint32_t client, const MemoryResponse& token) {
-  stats_.read_bytes += bytes_of(token.sectors);
+  stats_.read_bytes += models::sector_bytes(token.sectors);
   Queue<Answer>& queue = answers_[client];
   queue.push_back({at, token});
   // Misses overtake hits that were looked up later but answer after a fixed latency: keep the queue in order

@@ -6,7 +6,6 @@
 #include "models/memory/device_memory.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace quadrille::hw {
 
@@ -159,7 +158,7 @@ void MemoryChannel::take(Tick now, std::int64_t cycle) {
   const MemoryRequest request = request_in.pop(now);
   stats_->working_for(request.draw);
   const bool write = request.kind == MemoryRequest::Kind::kWrite;
-  const auto bytes = models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(request.sectors));
+  const std::uint64_t bytes = models::sector_bytes(request.sectors);
   note_occupancy(cycle);
   ++(write ? stats_->writes : stats_->reads);
   (write ? stats_->write_bytes : stats_->read_bytes) += bytes;

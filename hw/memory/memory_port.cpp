@@ -6,7 +6,6 @@
 #include "models/memory/device_memory.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace quadrille::hw {
 
@@ -21,7 +20,7 @@ MemoryPort::MemoryPort(Unit& owner, StatGroup& stats, int slices)
 
 void MemoryPort::read(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag) {
   ++stats_.reads;
-  stats_.read_bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(sectors));
+  stats_.read_bytes += models::sector_bytes(sectors);
   queue({line, tag, sectors, MemoryRequest::Kind::kRead});
 }
 
@@ -34,7 +33,7 @@ void MemoryPort::write_part(std::uint32_t line, std::uint8_t sectors) {
 }
 
 void MemoryPort::atomic(std::uint32_t line, std::uint8_t sectors, std::uint32_t tag) {
-  const std::uint64_t bytes = models::kSectorBytes * static_cast<std::uint64_t>(std::popcount(sectors));
+  const std::uint64_t bytes = models::sector_bytes(sectors);
   ++stats_.writes;
   stats_.write_bytes += bytes;
   stats_.read_bytes += bytes;
@@ -43,7 +42,7 @@ void MemoryPort::atomic(std::uint32_t line, std::uint8_t sectors, std::uint32_t 
 
 void MemoryPort::queue_write(std::uint32_t line, std::uint8_t sectors, MemoryRequest::Kind kind) {
   ++stats_.writes;
-  stats_.write_bytes += models::kSectorBytes * static_cast<unsigned>(std::popcount(sectors));
+  stats_.write_bytes += models::sector_bytes(sectors);
   queue({line, 0, sectors, kind});
 }
 

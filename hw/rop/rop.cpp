@@ -3,6 +3,7 @@
 #include "hw/frame/detail_counts.h"
 #include "hw/frame/fragment_output.h"
 #include "hw/frame/laws.h"
+#include "hw/rop/touched_tiles.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,40 +12,6 @@
 namespace quadrille::hw {
 
 namespace {
-
-/// Live pixels of a warp in one tile, of one sample.
-struct TileTouch {
-  std::uint32_t tile_x = 0, tile_y = 0, sample = 0;
-  std::uint64_t pixels = 0;
-  [[nodiscard]] SurfaceTile tile_of(std::size_t surface) const { return {surface, tile_x, tile_y, sample}; }
-};
-
-/// A warp's live quads by tile and sample; at most one entry a quad and sample.
-class TouchedTiles {
- public:
-  TouchedTiles(const WarpSlot& warp, int samples) {
-    for (int s = 0; s < samples; ++s) {
-      const std::size_t first = count_;
-      for (int q = 0; q < warp.quads; ++q)
-        add(warp.quad[static_cast<std::size_t>(q)], warp.lanes_of(q, samples, s), s, first);
-    }
-  }
-  [[nodiscard]] std::span<const TileTouch> all() const { return std::span(tiles_).first(count_); }
-
- private:
-  /// `first`: of the entries of this sample.
-  void add(const WarpSlot::Quad& quad, models::LaneMask lanes, int sample, std::size_t first) {
-    if (lanes == 0) return;
-    const models::QuadPlace place = models::place_of_quad(quad.x, quad.y);
-    std::size_t i = first;
-    while (i < count_ && (tiles_[i].tile_x != place.tile_x || tiles_[i].tile_y != place.tile_y)) ++i;
-    if (i == count_) tiles_[count_++] = {place.tile_x, place.tile_y, static_cast<std::uint32_t>(sample), {}};
-    tiles_[i].pixels |= std::uint64_t{lanes} << place.first_pixel();
-  }
-
-  std::array<TileTouch, std::size_t{models::kWarpQuads} * models::kMaxSamples> tiles_;
-  std::size_t count_ = 0;
-};
 
 /// Of a quad of these pixels, which the unit's path to its cache takes at once up to 4 bytes each.
 int path_turns(const AttachmentState& color) {
@@ -271,6 +238,7 @@ void Rop::retire(Tick now) {
     const int live = std::popcount(warp.alive);
     ++stats_.warps;
     stats_.fragments_in += static_cast<std::uint64_t>(std::popcount(warp.covered));
+    stats_.bytes_in += static_cast<std::uint64_t>(entry.shaded) * frame_.color_bytes(frame_.draw(warp.draw));
     const auto discarded = static_cast<std::uint64_t>(std::popcount(warp.covered) - entry.shaded);
     stats_.discarded += discarded;
     stats_.samples_discarded += entry.discarded_samples;
@@ -374,6 +342,7 @@ void Rop::audit(Audit& audit) const {
   audit.right(laws::kFragmentsDeferred, stats_.late_discarded.value());
   audit.right(laws::kWarpsDistributed, stats_.warps.value());
   audit.right(laws::kFragmentsShaded, stats_.fragments_in.value());
+  audit.right(laws::kColorsExported, stats_.bytes_in.value());
   audit.both(laws::kFragmentsRetired, stats_.fragments_in.value(),
              stats_.discarded.value() + stats_.late_killed.value() + stats_.written.value());
   audit.right(laws::kSamplesRetired, stats_.samples_discarded.value() + stats_.samples_written.value());

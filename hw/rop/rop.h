@@ -92,6 +92,8 @@ class Rop final : public Unit {
         "Samples whose fragments were discarded, or that a mask of samples or alpha to coverage took away; "
         "here and below, where a pixel has one sample, fragments"};
     Counter samples_written{*this, "samples_written", "sample", "Samples of the fragments written"};
+    Counter bytes_in{*this, "bytes_in", "B",
+                     "Colours that came with the warps, as their attachments store them"};
   };
   using CounterParts =
       Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats, EncodedReadStats, SurfaceEncoderStats>;

@@ -14,9 +14,6 @@ constexpr std::uint32_t kAllWords = 0xffffffffu;
 std::uint32_t words_of(const models::SurfaceLayout& layout) {
   return layout.line_sectors() == 0xf ? kAllWords : 0xffffu;
 }
-constexpr std::uint64_t bytes_of(std::uint8_t sectors) {
-  return std::uint64_t{models::kSectorBytes} * static_cast<unsigned>(std::popcount(sectors));
-}
 constexpr std::uint8_t first_sectors(std::uint32_t count) {
   return static_cast<std::uint8_t>((1u << count) - 1);
 }
@@ -105,8 +102,8 @@ std::uint8_t SurfaceEncoder::store(const L1Cache::Leaving& leaving) {
                     leaving.line);
     ++stats_.plain;
   }
-  stats_.plain_bytes += bytes_of(leaving.dirty) + bytes_of(leaving.parts);
-  stats_.stored_bytes += bytes_of(stored) + bytes_of(leaving.parts);
+  stats_.plain_bytes += models::sector_bytes(leaving.dirty) + models::sector_bytes(leaving.parts);
+  stats_.stored_bytes += models::sector_bytes(stored) + models::sector_bytes(leaving.parts);
   return stored;
 }
 
@@ -131,7 +128,7 @@ void SurfaceEncoder::find_copies(const Surface& surface, std::uint32_t original)
     const std::uint32_t line = original + s * surface.layout.plane_lines();
     if (!cache_.holds(line, all) || cache_.dirty_sectors(line) == 0 || !equal(surface, original, line))
       continue;
-    stats_.plain_bytes += bytes_of(cache_.dirty_sectors(line));
+    stats_.plain_bytes += models::sector_bytes(cache_.dirty_sectors(line));
     cache_.clean(line);
     memory_.stored_lines().set_copy(line, original);
     ++stats_.copied;
@@ -172,8 +169,8 @@ std::uint8_t SurfaceEncoder::store_cleared(std::uint32_t line, bool with_first) 
   } else {
     stored = encode(surface, {line, all, all});
   }
-  stats_.plain_bytes += bytes_of(all);
-  stats_.stored_bytes += bytes_of(stored);
+  stats_.plain_bytes += models::sector_bytes(all);
+  stats_.stored_bytes += models::sector_bytes(stored);
   return stored;
 }
 

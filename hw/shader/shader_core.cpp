@@ -66,7 +66,9 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
     for (const Simd& simd : simds_) issued += simd.issued(this->clock().edges_before(at));
     return issued / params_.simds;
   });
-  add_rate("export", [this] { return export_clk_; });
+  add_rate("export", [this] {
+    return static_cast<double>(stats_.exported_bytes.value()) / params_.export_bytes_per_clk;
+  });
   add_places("warp_slots", [this] { return kept_out(true); });
   add_places("register_rows", [this] { return kept_out(false); });
   for (std::size_t p = 0; p < warps_.size(); ++p) {
@@ -342,14 +344,9 @@ void ShaderCore::retire(Tick now, std::uint32_t index) {
 }
 
 void ShaderCore::export_colors(Tick now, const WarpSlot& work) {
-  const DrawState& draw = frame_.draw(work.draw);
-  int pixel_bytes = 0;
-  draw.visit_colors([&](std::size_t color) {
-    pixel_bytes += static_cast<int>(frame_.pass(draw.pass).color[color].surface.pixel_bytes);
-  });
-  const int bytes = pixel_bytes * std::popcount(work.alive), width = params_.export_bytes_per_clk;
+  const int bytes = static_cast<int>(frame_.color_bytes(frame_.draw(work.draw))) * std::popcount(work.alive);
+  const int width = params_.export_bytes_per_clk;
   stats_.exported_bytes += static_cast<std::uint64_t>(bytes);
-  export_clk_ += static_cast<double>(bytes) / width;
   export_free_ = after(now, std::max(1, (bytes + width - 1) / width));
 }
 
@@ -358,6 +355,7 @@ void ShaderCore::audit(Audit& audit) const {
   audit.left(laws::kVerticesShaded, stats_.vertices.value());
   audit.right(laws::kFragmentsPacked, stats_.fragments.value());
   audit.left(laws::kFragmentsShaded, stats_.fragments.value());
+  audit.left(laws::kColorsExported, stats_.exported_bytes.value());
   if (texture_out) audit.left(laws::kTextureRequests, stats_.texture.value());
   if (storage_out) audit.left(laws::kStorageRequests, stats_.storage.value());
 }

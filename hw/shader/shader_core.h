@@ -206,7 +206,6 @@ class ShaderCore final : public Unit {
   Queue<Ready> ready_;
   std::vector<Completion> completions_;
   Tick accept_free_ = 0, export_free_ = 0;
-  double export_clk_ = 0;  ///< that exported bytes take at their rate
 };
 
 }  // namespace quadrille::hw

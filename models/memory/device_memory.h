@@ -9,6 +9,7 @@
 
 #include "models/memory/stored_lines.h"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -21,6 +22,10 @@ namespace quadrille::models {
 inline constexpr std::uint32_t kLineBytes = 128;   ///< cache line
 inline constexpr std::uint32_t kSectorBytes = 32;  ///< smallest transfer; four a line
 inline constexpr std::uint32_t kLineSectors = 4;
+/// Of a set of sectors, a bit each.
+[[nodiscard]] constexpr std::uint64_t sector_bytes(std::uint8_t sectors) {
+  return std::uint64_t{kSectorBytes} * static_cast<unsigned>(std::popcount(sectors));
+}
 
 class DeviceMemory {
  public:

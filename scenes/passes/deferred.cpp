@@ -11,21 +11,9 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::string_view kSurfaceVertex = R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec4 color;
-layout(location = 0) out vec3 facing;
-layout(location = 1) out vec3 albedo;
-void main() {
-  facing = mat3(draw.model) * normal;
-  albedo = color.rgb;
-  gl_Position = frame.view_projection * (draw.model * vec4(position, 1.0));
-}
-)";
 constexpr std::string_view kSurfaceFragment = R"(
-layout(location = 0) in vec3 facing;
-layout(location = 1) in vec3 albedo;
+layout(location = 1) in vec3 facing;
+layout(location = 2) in vec3 albedo;
 layout(location = 0) out vec4 color;
 layout(location = 1) out vec4 normal;
 void main() {
@@ -149,17 +137,13 @@ traces::CommandStream record_deferred(const SceneData& scene, const SceneOptions
                       depths = attachment("depths", options.depth_format),
                       radiance = attachment("radiance", Format::kR16G16B16A16Float);
 
-  const PassStreams streams{Semantic::kPosition, Semantic::kNormal, Semantic::kColor};
-  traces::Pipeline surfaces = recorder.scene_pipeline("surfaces", streams, kSurfaceVertex, kSurfaceFragment);
-  surfaces.cull = traces::CullMode::kBack;
-  const traces::Index surface_pipeline = recorder.add(std::move(surfaces));
   traces::BeginPass pass;
   pass.colors.resize(2);
   pass.colors[0].image = colors;
   pass.colors[1].image = normals;
   pass.depth.image = depths;
   recorder.begin(pass);
-  recorder.draw_scene(surface_pipeline, streams);
+  draw_surfaces(recorder, "surfaces", kSurfaceFragment);
   recorder.end();
 
   const traces::Index set = recorder.textures({colors, normals, depths});

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "scenes/material/glsl.h"
+#include "scenes/material/screen_triangle.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -16,13 +17,6 @@ layout(set = 0, binding = 0) uniform FrameBlock {
   vec4 eye, right, up, sun;
 } frame;
 layout(push_constant) uniform DrawBlock { mat4 model; } draw;
-)";
-constexpr std::string_view kScreenVertex = R"(
-layout(location = 0) out vec2 uv;
-void main() {
-  uv = vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2);
-  gl_Position = vec4(uv * 2.0 - 1.0, 0.0, 1.0);
-}
 )";
 
 template <class T>
@@ -76,8 +70,14 @@ traces::Pipeline PassRecorder::scene_pipeline(const std::string& name, const Pas
 }
 
 traces::Pipeline PassRecorder::screen_pipeline(const std::string& name, std::string_view fragment) {
-  traces::Pipeline p = scene_pipeline(name, {}, kScreenVertex, fragment);
-  p.depth = {};
+  using traces::ShaderStage;
+  const std::string vertex_name = name + ".vert";
+  traces::Pipeline p;
+  p.name = name;
+  p.vertex_shader = append(stream_.shaders,
+                           traces::Shader{vertex_name, ShaderStage::kVertex,
+                                          compile_glsl(kScreenTriangle, ShaderStage::kVertex, vertex_name)});
+  p.fragment_shader = shader(ShaderStage::kFragment, name + ".frag", fragment);
   return p;
 }
 

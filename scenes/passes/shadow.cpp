@@ -18,21 +18,6 @@ void main() { gl_Position = frame.light * (draw.model * vec4(position, 1.0)); }
 constexpr std::string_view kMapFragment = R"(
 void main() {}
 )";
-constexpr std::string_view kLitVertex = R"(
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec4 color;
-layout(location = 0) out vec3 world;
-layout(location = 1) out vec3 facing;
-layout(location = 2) out vec3 albedo;
-void main() {
-  vec4 at = draw.model * vec4(position, 1.0);
-  world = at.xyz;
-  facing = mat3(draw.model) * normal;
-  albedo = color.rgb;
-  gl_Position = frame.view_projection * at;
-}
-)";
 /// The mean over nine texels around the place: 1 where the sun sees nothing nearer than it, falling to 0 over
 /// some centimetres.
 constexpr std::string_view kLitFragment = R"(
@@ -89,13 +74,9 @@ traces::CommandStream record_shadow(const SceneData& scene, const SceneOptions& 
       recorder.attachment("radiance", Format::kR16G16B16A16Float, options.width, options.height);
   const traces::Index depth =
       recorder.attachment("depth", options.depth_format, options.width, options.height);
-  const PassStreams streams{Semantic::kPosition, Semantic::kNormal, Semantic::kColor};
-  traces::Pipeline lit = recorder.scene_pipeline("lit", streams, kLitVertex, kLitFragment);
-  lit.cull = traces::CullMode::kBack;
-  const traces::Index lighting = recorder.add(std::move(lit));
   const traces::Index map_set = recorder.textures({map});
   recorder.begin(cleared_pass(scene, colors, depth));
-  recorder.draw_scene(lighting, streams, map_set);
+  draw_surfaces(recorder, "lit", kLitFragment, map_set);
   recorder.end();
 
   add_tone_pass(recorder, colors, options);

@@ -15,6 +15,21 @@ namespace {
 
 constexpr glm::dvec3 kTowardSun{-0.75, 0.7, -0.15};
 
+constexpr std::string_view kSurfaceVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 color;
+layout(location = 0) out vec3 world;
+layout(location = 1) out vec3 facing;
+layout(location = 2) out vec3 albedo;
+void main() {
+  vec4 at = draw.model * vec4(position, 1.0);
+  world = at.xyz;
+  facing = mat3(draw.model) * normal;
+  albedo = color.rgb;
+  gl_Position = frame.view_projection * at;
+}
+)";
 constexpr std::string_view kToneFragment = R"(
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 result;
@@ -51,6 +66,14 @@ PassFrame sunlit_frame(const SceneData& scene, const View& view) {
   frame.up = glm::vec4(view.up, 0);
   frame.sun = glm::vec4(glm::vec3(toward), 0);
   return frame;
+}
+
+void draw_surfaces(PassRecorder& recorder, const std::string& name, std::string_view fragment,
+                   traces::Index textures) {
+  const PassStreams streams{Semantic::kPosition, Semantic::kNormal, Semantic::kColor};
+  traces::Pipeline pipeline = recorder.scene_pipeline(name, streams, kSurfaceVertex, fragment);
+  pipeline.cull = traces::CullMode::kBack;
+  recorder.draw_scene(recorder.add(std::move(pipeline)), streams, textures);
 }
 
 traces::BeginPass cleared_pass(const SceneData& scene, traces::Index colors, traces::Index depth) {

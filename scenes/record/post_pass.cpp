@@ -5,20 +5,12 @@
 #include <vector>
 
 #include "scenes/material/glsl.h"
+#include "scenes/material/screen_triangle.h"
 
 namespace quadrille::scenes {
 namespace {
 
 using traces::Index;
-
-/// A triangle that holds the picture, from the numbers of its vertices alone.
-constexpr std::string_view kVertexShader = R"(#version 450
-layout(location = 0) out vec2 uv;
-void main() {
-  uv = vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2);
-  gl_Position = vec4(uv * 2.0 - 1.0, 0.0, 1.0);
-}
-)";
 
 template <class T>
 Index append(std::vector<T>& table, T object) {
@@ -61,7 +53,7 @@ Index add_pipeline(traces::CommandStream& stream, const std::string& fragment_sh
   pipeline.name = "post";
   pipeline.vertex_shader = append(
       stream.shaders,
-      {"post.vert", ShaderStage::kVertex, compile_glsl(kVertexShader, ShaderStage::kVertex, "post.vert")});
+      {"post.vert", ShaderStage::kVertex, compile_glsl(kScreenTriangle, ShaderStage::kVertex, "post.vert")});
   pipeline.fragment_shader =
       append(stream.shaders, {"post.frag", ShaderStage::kFragment,
                               compile_glsl(fragment_shader, ShaderStage::kFragment, "post.frag")});

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "studies/experiments/experiment.h"
-#include "studies/experiments/triangle_mesh.h"
+#include "studies/experiments/measured_meshes.h"
 
 namespace quadrille::studies::experiments {
 namespace {
@@ -41,11 +41,8 @@ std::vector<double> measure(const Setting& setting) {
   std::vector<traces::CommandStream> streams;
   for (const Row& row : kRows) {
     for (const std::uint32_t n : {kFewLayers, kFewLayers + kMoreLayers}) {
-      TriangleMesh mesh{setting.width, setting.height, {}, {}};
-      for (std::uint32_t i = 0; i < n; ++i)
-        mesh.rectangle(0, 0, static_cast<std::int32_t>(setting.width),
-                       static_cast<std::int32_t>(setting.height), 0.5F);
-      streams.push_back(stream_of(mesh, {.blends = row.blends, .format = row.format}));
+      streams.push_back(stream_of(layers(setting.width, setting.height, n, false),
+                                  {.blends = row.blends, .format = row.format}));
     }
   }
   std::vector<Frame> frames;

@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "studies/experiments/experiment.h"
-#include "studies/experiments/triangle_mesh.h"
+#include "studies/experiments/measured_meshes.h"
 
 namespace quadrille::studies::experiments {
 namespace {
 
-constexpr int kLayers = 8;
+constexpr std::uint32_t kLayers = 8;
 /// The ROPs limit: one quad a cycle each, and memory that keeps up with 16 bytes a pixel, read and written.
 const std::vector<std::string> kSlowRops{"rop.quads_per_clk=1", "rop.cache_lines=4096",
                                          "rop.cache_ways=64",   "gpu.cores=32",
@@ -25,15 +25,6 @@ std::vector<traces::Format> color_formats() {
   return formats;
 }
 
-/// So many layers over the whole frame.
-traces::CommandStream fill(const Setting& setting, traces::Format format, int layers, bool blends) {
-  TriangleMesh mesh{setting.width, setting.height, {}, {}};
-  for (int i = 0; i < layers; ++i)
-    mesh.rectangle(0, 0, static_cast<std::int32_t>(setting.width), static_cast<std::int32_t>(setting.height),
-                   0.5F);
-  return stream_of(mesh, {.blends = blends, .format = format});
-}
-
 /// One format.
 struct Fill {
   double opaque = 0, blended = 0;  ///< cycles that a layer more takes
@@ -46,7 +37,9 @@ std::vector<Fill> measure(const std::vector<traces::Format>& formats, const Sett
   std::vector<traces::CommandStream> streams;
   for (const traces::Format format : formats) {
     for (const bool blends : {false, true})
-      for (const int layers : {1, kLayers + 1}) streams.push_back(fill(setting, format, layers, blends));
+      for (const std::uint32_t count : {1U, kLayers + 1})
+        streams.push_back(stream_of(layers(setting.width, setting.height, count, false),
+                                    {.blends = blends, .format = format}));
   }
   std::vector<Frame> frames;
   frames.reserve(streams.size());

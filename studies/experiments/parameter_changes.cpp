@@ -172,7 +172,8 @@ void visit_parameters(const Ground& ground, const Visit& visit) {
     for (const hw::ParamBase* p : params->params()) visit(group + "." + std::string(p->name()), *p);
 }
 
-/// Links are two thirds of all parameters, and the same everywhere: the default machine is enough for them.
+/// Links are two thirds of all parameters: they are tried on the default machine alone, but for widths that
+/// do nothing there.
 bool is_tried(const Ground& ground, const std::string& path) {
   return ground.settings.empty() || !path.starts_with("link.");
 }

@@ -4,6 +4,7 @@
 #include "scenes/material/glsl.h"
 
 #include <cstring>
+#include <span>
 
 namespace quadrille::pipeline::test {
 namespace {
@@ -84,6 +85,13 @@ void add_descriptors(traces::CommandStream& stream) {
   stream.descriptor_sets.push_back(std::move(set));
 }
 
+std::vector<std::string> vertex_shaders(std::span<const char* const> bodies) {
+  std::vector<std::string> shaders;
+  shaders.reserve(bodies.size());
+  for (const char* const body : bodies) shaders.push_back(vertex_shader(body));
+  return shaders;
+}
+
 }  // namespace
 
 std::vector<std::string> bounded_programs() {
@@ -95,9 +103,7 @@ std::vector<std::string> bounded_programs() {
       "at.xyz = clamp(at.xyz * at.yzx, vec3(-0.7), vec3(0.8)); gl_Position = p.view * (p.model * at);",
       "at.y *= float(gl_InstanceIndex + 2); gl_Position = p.view * (p.model * at);",
       "at.x += p.model[gl_InstanceIndex & 3][1]; gl_Position = p.view * (p.model * at);"};
-  std::vector<std::string> programs;
-  for (const char* const body : bodies) programs.push_back(vertex_shader(body));
-  return programs;
+  return vertex_shaders(bodies);
 }
 
 std::vector<std::string> unbounded_programs() {
@@ -108,9 +114,7 @@ std::vector<std::string> unbounded_programs() {
       "at += textureLod(t, at.xy, 0.0); gl_Position = p.view * (p.model * at);",
       "gl_Position = p.view * (p.model * at); gl_Position *= 1.0 / at.x;",
       "b.w[0] = 7u; gl_Position = p.view * (p.model * at);"};
-  std::vector<std::string> programs;
-  for (const char* const body : bodies) programs.push_back(vertex_shader(body));
-  return programs;
+  return vertex_shaders(bodies);
 }
 
 traces::CommandStream object_stream(const std::vector<ObjectDraw>& draws,

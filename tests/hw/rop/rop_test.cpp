@@ -1,137 +1,11 @@
 /// ROP: retirement in order, the time of a warp, the late test's detour, the flush.
-#include "hw/rop/rop.h"
-#include "tests/hw/bench_stub.h"
+#include "tests/hw/rop/rop_bench.h"
 
 #include <catch2/catch.hpp>
 
 using namespace quadrille;
 using namespace quadrille::hw;
 using namespace quadrille::hw::bench;
-
-namespace {
-
-struct RopBench final : Bench {
-  struct Setup {
-    std::vector<Timed<OrderToken>> order;
-    std::vector<Timed<FragmentDoneToken>> done;
-    std::vector<Timed<LateToken>> late{};
-    bool blend = false, late_warps = false;
-    models::LaneMask alive = ~0u;
-    int lines = 256, ways = 8, misses = 32, memory_latency = 10;
-    std::size_t colors = 1;
-    int samples = 1;
-    unsigned mask = ~0u;  ///< samples that the program has left
-    models::LoadOp load = models::LoadOp::kClear;
-    models::StoreOp store = models::StoreOp::kStore;
-    models::Format format = models::Format::kR8G8B8A8Srgb;
-    int half_blend_turns = 1, float_blend_turns = 1;
-  };
-  /// The target has two tiles; even warps write the upper half of the left one, odd warps two quads of each
-  /// row of the right one.
-  RopBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v), warps(4) {
-    PassState pass;
-    DrawState draw;
-    for (std::size_t i = 0; i < s.colors; ++i) {
-      pass.color[i].surface = models::allocate_surface(device, 16, 8, static_cast<std::uint32_t>(s.samples),
-                                                       models::format_info(s.format).bytes);
-      pass.color[i].format = s.format;
-      if (s.samples > 1) {
-        pass.resolve[i].surface = models::allocate_surface(device, 16, 8);
-        pass.resolve[i].load = models::LoadOp::kLoad;
-        pass.resolved |= 1u << i;
-      }
-      pass.color[i].clear = {{0x80402010}};
-      pass.color[i].load = s.load;
-      pass.color[i].store = s.store;
-      draw.color_outputs |= 0xfu << 4 * i;
-      draw.blend[i].enable = s.blend;
-      draw.blend[i].dst_color = models::BlendFactor::kOneMinusSrcAlpha;
-    }
-    pass.colors = s.colors;
-    pass.samples = s.samples;
-    draw.setup.samples = models::sample_grid(s.samples, 8);
-    frame.passes = {pass};
-    frame.draws = {draw};
-    for (std::uint32_t i = 0; i < 4; ++i) fill(warps[WarpSlotId(i)], i, s);
-    set_cache(params, s.lines, s.ways, s.misses);
-    params.half_blend_turns.set(s.half_blend_turns);
-    params.float_blend_turns.set(s.float_blend_turns);
-    unit = std::make_unique<Rop>("unit", context(), params, warps);
-    add(*unit);
-    feed(unit->order_in, s.order);
-    feed(unit->done_in[0], s.done);
-    feed(unit->late_in, s.late);
-    late = &drain<LateToken>(unit->late_out, [](const LateToken& t) {
-      return 100 * static_cast<unsigned>(t.kind) + t.slot.index();
-    });
-    released =
-        &drain<WarpReleaseToken>(unit->release_out, [](const WarpReleaseToken& t) { return t.slot.index(); });
-    drain<ReleaseToken>(unit->load_out, [](const ReleaseToken& t) { return t.slot; });
-    synced = &drain<ReleaseToken>(unit->sync_out, [](const ReleaseToken& t) { return t.sequence; });
-    retired = &drain<RetireToken>(unit->retire_out, [](const RetireToken& t) {
-      return 100 * static_cast<unsigned>(t.kind) +
-             (t.kind == TokenKind::kPassEnd ? t.part.pass().index() : t.part.draw().index());
-    });
-    memory = &serve(unit->memory_port(), s.memory_latency);
-  }
-  static void fill(WarpSlot& warp, std::uint32_t number, const Setup& s) {
-    warp.quads = 8;
-    warp.covered = ~0u;
-    warp.alive = s.alive;
-    warp.late = s.late_warps;
-    warp.packed_samples = std::uint64_t{32} * static_cast<std::uint64_t>(s.samples);
-    warp.samples.fill(static_cast<std::uint8_t>(((1u << s.samples) - 1) & s.mask));
-    for (std::size_t q = 0; q < 8; ++q) {
-      const auto i = static_cast<std::uint16_t>(q);
-      if (number % 2 == 0)
-        warp.quad[q] = {0, static_cast<std::uint16_t>(2 * (i % 4)), static_cast<std::uint16_t>(2 * (i / 4))};
-      else
-        warp.quad[q] = {0, static_cast<std::uint16_t>(8 + 4 * (i % 2)),
-                        static_cast<std::uint16_t>(2 * (i / 2))};
-    }
-    for (std::size_t c = 0; c < 4; ++c) {
-      for (std::size_t lane = 0; lane < 32; ++lane)
-        for (std::size_t color = 0; color < s.colors; ++color)
-          warp.color[color][c][lane] = static_cast<float>((7 * number + 3 * c + lane + color) % 16) / 16.0f;
-    }
-  }
-  [[nodiscard]] std::uint64_t image() const {
-    std::string bytes;
-    if (frame.passes[0].colors == 0) return 0;
-    for (const std::uint8_t byte : models::detile_rgba8(device, frame.passes[0].picture().surface))
-      bytes += static_cast<char>(byte);
-    return std::hash<std::string>{}(bytes);
-  }
-  [[nodiscard]] std::uint64_t digest() const override { return Bench::digest() ^ image(); }
-  Rop::Params params;
-  WarpStore warps;
-  std::unique_ptr<Rop> unit;
-  StubSink<LateToken>* late = nullptr;
-  StubSink<WarpReleaseToken>* released = nullptr;
-  StubSink<ReleaseToken>* synced = nullptr;
-  StubSink<RetireToken>* retired = nullptr;
-  StubMemory* memory = nullptr;
-};
-
-OrderToken warp(std::uint32_t slot, std::uint64_t sync = 0) {
-  return {TokenKind::kWork, DrawId(0), WarpSlotId(slot), sync};
-}
-const OrderToken kBegin{TokenKind::kPassBegin, PassId(0), {}, 0},
-    kDrawEnd{TokenKind::kDrawEnd, DrawId(0), {}, 0}, kPassEnd{TokenKind::kPassEnd, PassId(0), {}, 0};
-/// The warp in this slot is shaded.
-Timed<FragmentDoneToken> done(std::int64_t cycle, std::uint32_t slot) { return {cycle, {WarpSlotId(slot)}}; }
-std::string released(const RopBench& b) { return b.released->text(); }
-
-/// Four warps, all shaded by cycle 20, and the depth unit's answer to the flush at cycle 300.
-RopBench::Setup whole_pass() {
-  return {
-      .order =
-          {{0, kBegin}, {0, warp(0)}, {0, warp(1)}, {0, warp(2)}, {0, warp(3)}, {0, kDrawEnd}, {0, kPassEnd}},
-      .done = {done(20, 2), done(20, 0), done(20, 3), done(20, 1)},
-      .late = {{300, {TokenKind::kPassEnd, {}}}}};
-}
-
-}  // namespace
 
 TEST_CASE("rop: warps retire in order although the later one is shaded first") {
   const RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(1)}},
@@ -187,11 +61,12 @@ TEST_CASE("rop: fragments that were discarded are counted and not written") {
     int changed = 0;
     for (const std::uint32_t pixel : models::detile(b.device, b.frame.passes[0].color[0].surface))
       changed += static_cast<int>(pixel != 0x80402010);
-    return fmt::format("in {} discarded {}, late {}, written {} pixels {}", counter(*b.unit, "fragments_in"),
+    return fmt::format("in {} with {} bytes discarded {}, late {}, written {} pixels {}",
+                       counter(*b.unit, "fragments_in"), counter(*b.unit, "bytes_in"),
                        counter(*b.unit, "discarded"), counter(*b.unit, "late_discarded"),
                        counter(*b.unit, "written"), changed);
   });
-  CHECK(text == "in 32 discarded 23, late 0, written 9 pixels 9");
+  CHECK(text == "in 32 with 36 bytes discarded 23, late 0, written 9 pixels 9");
 }
 
 TEST_CASE("rop: what a program discards of a warp that is tested late is counted by itself") {
@@ -304,72 +179,6 @@ TEST_CASE("rop: each colour attachment that the program writes takes its own cyc
   };
   // Eight quads of three attachments at four a cycle: six cycles a warp. Three times the four lines.
   CHECK(run<RopBench>(s, text) == "22:0 28:1 34:2 40:3 pixels 384 fragments 128 cleared 6 writes 12");
-}
-
-TEST_CASE("rop: a warp takes its quads once for each of their samples") {
-  for (const auto& [samples, cycles] : {std::pair{1, 2}, {2, 4}, {4, 8}, {8, 16}}) {
-    RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}}, .done = {done(30, 0), done(30, 2)}};
-    s.samples = samples;
-    CHECK(run<RopBench>(s, released) == fmt::format("32:0 {}:2", 32 + cycles));
-  }
-}
-
-TEST_CASE("rop: a pass of several samples is resolved from its cache, and only means reach memory") {
-  RopBench::Setup s = whole_pass();
-  s.samples = 4;
-  s.store = models::StoreOp::kDiscard;
-  const auto text = run<RopBench>(s, [](const RopBench& b) {
-    return fmt::format("{} reads {} writes {} fences {} tiles {}", b.retired->text(),
-                       b.memory->count(MemoryRequest::Kind::kRead),
-                       b.memory->count(MemoryRequest::Kind::kWrite),
-                       b.memory->count(MemoryRequest::Kind::kFence), counter(*b.unit, "resolved_tiles"));
-  });
-  // Depth is flushed at 300; a tile takes sixteen quads of four samples and of their mean at four a cycle, 20
-  // cycles, two of them 40; then four lines leave, a fence, and its answer ten cycles later.
-  CHECK(text.ends_with("reads 0 writes 4 fences 1 tiles 2"));
-  const std::string plain = run<RopBench>(whole_pass(), [](const RopBench& b) { return b.retired->text(); });
-  const auto end_of = [](const std::string& all) {
-    const std::size_t end = all.find(':', all.rfind(' ', all.find("reads") - 2) + 1);
-    return std::stoi(all.substr(all.rfind(' ', end) + 1));
-  };
-  CHECK(end_of(text) - end_of(plain) == Approx(41).margin(1));
-}
-
-TEST_CASE("rop: what nothing was drawn to is resolved without a look at its samples") {
-  RopBench::Setup s{
-      .order = {{0, kBegin}, {0, kPassEnd}}, .done = {}, .late = {{20, {TokenKind::kPassEnd, {}}}}};
-  s.samples = 4;
-  s.store = models::StoreOp::kDiscard;
-  CHECK(run<RopBench>(s, [](const RopBench& b) {
-          return fmt::format("reads {} writes {} clear {} pixel {:x}",
-                             b.memory->count(MemoryRequest::Kind::kRead),
-                             b.memory->count(MemoryRequest::Kind::kWrite), counter(*b.unit, "resolved_clear"),
-                             models::detile(b.device, b.frame.passes[0].picture().surface)[0]);
-        }) == "reads 0 writes 4 clear 2 pixel 80402010");
-}
-
-TEST_CASE("rop: a tile that nothing was drawn to moves nothing, also while others wait for their samples") {
-  // The left tile is drawn by warps 0 and 2, the right one by none.
-  RopBench::Setup s{.order = {{0, kBegin}, {0, warp(0)}, {0, warp(2)}, {0, kPassEnd}},
-                    .done = {done(10, 0), done(10, 2)},
-                    .late = {{100, {TokenKind::kPassEnd, {}}}}};
-  s.samples = 4;
-  s.store = models::StoreOp::kDiscard;
-  s.lines = s.ways = 8;  // all of the left tile and no more: what is resolved drives samples out
-  CHECK(run<RopBench>(s, [](const RopBench& b) {
-          return fmt::format("tiles {} clear {} clears met {}", counter(*b.unit, "resolved_tiles"),
-                             counter(*b.unit, "resolved_clear"), counter(*b.unit, "clear_hits"));
-        }) == "tiles 2 clear 1 clears met 4");
-}
-
-TEST_CASE("rop: a cache of one line resolves to the same picture") {
-  RopBench::Setup s = whole_pass();
-  s.samples = 4;
-  s.store = models::StoreOp::kDiscard;
-  const auto picture = [](const RopBench& b) { return fmt::format("{:x}", b.image()); };
-  const std::string expected = run<RopBench>(s, picture);
-  s.lines = s.ways = s.misses = 1;
-  CHECK(run<RopBench>(s, picture) == expected);
 }
 
 TEST_CASE("rop: a surface that is loaded is read where it is blended, and has no cleared tiles") {
