@@ -12,6 +12,7 @@ void add_render(CLI::App& app, Command& chosen) {
   const auto job = std::make_shared<RenderJob>();
   job->scene.add_to(*command);
   job->scene.add_samples_to(*command);
+  job->scene.add_queries_to(*command);
   job->scene.add_formats_to(*command);
   job->add_to(*command);
   job->frames.add_to(*command);

@@ -210,6 +210,19 @@ void SceneArguments::add_samples_to(CLI::App& command) {
                    "are smoothed too");
 }
 
+void SceneArguments::add_queries_to(CLI::App& command) {
+  command.add_flag("--queries", queries,
+                   "puts an occlusion query around every draw and one of pipeline statistics around every "
+                   "pass; a trace may have queries of its own without it");
+}
+
+void SceneArguments::use_queries(traces::CommandStream& stream) const {
+  if (!queries) return;
+  try {
+    traces::query_everything(stream);
+  } catch (const UserError& error) { throw user_error("--queries: {}: {}", scene, error.what()); }
+}
+
 void SceneArguments::use_samples(traces::CommandStream& stream) const {
   if (supersample) traces::use_sample_shading(stream);
   if (!samples) return;
@@ -312,6 +325,7 @@ traces::CommandStream SceneArguments::load_visibility() const {
 SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes::Moment& moment) const {
   Loaded loaded{file.record(moment), {}};
   use_samples(loaded.stream);
+  use_queries(loaded.stream);
   if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
   if (const std::size_t packed = file.unused_images(); packed > 0)
     loaded.left_out.push_back({"images", "no shader of the frame samples them",
@@ -329,6 +343,7 @@ SceneArguments::Loaded SceneArguments::load() const {
   if (is_trace()) {
     Loaded loaded{traces::read_trace(scene), {}};
     use_samples(loaded.stream);
+    use_queries(loaded.stream);
     return loaded;
   }
   const scenes::SceneOptions wanted = options();

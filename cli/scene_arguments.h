@@ -22,6 +22,7 @@ struct SceneArguments {
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
   bool supersample = false;            ///< each sample is shaded for itself
   bool alpha_to_coverage = false;      ///< of masked materials; not of a trace
+  bool queries = false;                ///< around every draw and pass
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
   bool leave_out = true;
@@ -38,6 +39,8 @@ struct SceneArguments {
   void add_formats_to(CLI::App& command);
   /// Adds --samples and what goes with it, for a command that draws or records.
   void add_samples_to(CLI::App& command);
+  /// Adds --queries, for a command that draws or records.
+  void add_queries_to(CLI::App& command);
   /// Adds SCENE alone, for a trace, which has its view and shaders in it.
   void add_trace_to(CLI::App& command);
   /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
@@ -55,6 +58,8 @@ struct SceneArguments {
   [[nodiscard]] Loaded load() const;
   /// Lets the passes of a stream have the wished samples, and shade by sample if wished. Throws `UserError`.
   void use_samples(traces::CommandStream& stream) const;
+  /// Puts queries around its draws and passes if wished. Throws `UserError`.
+  void use_queries(traces::CommandStream& stream) const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;
   [[nodiscard]] bool is_trace() const;

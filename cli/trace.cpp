@@ -19,6 +19,7 @@ void add_record(CLI::App& trace, Command& chosen) {
   const auto file = std::make_shared<std::string>();
   scene->add_to(*command);
   scene->add_samples_to(*command);
+  scene->add_queries_to(*command);
   scene->add_formats_to(*command);
   command->add_option("-o,--out", *file, "the trace to write")->type_name("F.qtrace")->required();
   command->callback([=, &chosen] {

@@ -99,6 +99,7 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   out.figures.fidelity = "functional";
   out.figures.scene = stream.name;
   out.figures.left_out = frame.left_out;
+  out.figures.queries = query_figures(frame.queries, counts.samples_passed);
   out.figures.order_dependent = frame.order_dependent();
   note_pending(frame, out.figures.left_out);
   FrameFigures& f = out.figures.frame;
@@ -125,7 +126,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
-  if (detail.any()) log.emplace(machine, frame, detail);
+  if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail);
   const double build_s = seconds_since(start) - frame.fills.seconds();
   const RunTimer timer(frame.fills);
   machine.run(limits);

@@ -22,6 +22,7 @@
 #include "models/base/format.h"
 #include "models/base/pipeline_state.h"
 #include "models/base/sampler.h"
+#include "traces/queries.h"
 
 namespace quadrille::traces {
 
@@ -247,8 +248,9 @@ struct Draw {
   std::string label;
   friend bool operator==(const Draw&, const Draw&) = default;
 };
-using Command = std::variant<BeginPass, EndPass, BindPipeline, BindDescriptorSet, BindVertexBuffer,
-                             BindIndexBuffer, PushConstants, SetViewport, SetScissor, Draw>;
+using Command =
+    std::variant<BeginPass, EndPass, BindPipeline, BindDescriptorSet, BindVertexBuffer, BindIndexBuffer,
+                 PushConstants, SetViewport, SetScissor, Draw, BeginQuery, EndQuery>;
 
 struct CommandStream {
   std::string name;
@@ -258,6 +260,7 @@ struct CommandStream {
   std::vector<Shader> shaders;
   std::vector<Pipeline> pipelines;
   std::vector<DescriptorSet> descriptor_sets;
+  std::vector<QueryPool> query_pools{};
   std::vector<Command> commands;
   friend bool operator==(const CommandStream&, const CommandStream&) = default;
 };

@@ -17,6 +17,7 @@ struct Counter {
   void operator()(const BindPipeline& c) {
     if (c.pipeline < stream.pipelines.size()) topology = stream.pipelines[c.pipeline].topology;
   }
+  void operator()(const BeginQuery&) const { ++totals.queries; }
   void operator()(const Draw& c) const {
     ++totals.draws;
     const std::uint64_t primitives = std::uint64_t{models::primitive_count(topology, c.count)} * c.instances;
@@ -64,6 +65,7 @@ std::string trace_info(const CommandStream& stream) {
       fmt::format("  samplers   {:6}\n  shaders    {:6}\n", stream.samplers.size(), stream.shaders.size());
   text += fmt::format("  pipelines  {:6}\n  sets       {:6}\n", stream.pipelines.size(),
                       stream.descriptor_sets.size());
+  if (!stream.query_pools.empty()) text += fmt::format("  queries    {:6}\n", totals.queries);
   text += fmt::format("  commands   {:6}\n  passes     {:6}\n", stream.commands.size(), totals.passes);
   text += fmt::format("  draws      {:6}\n  triangles  {:6}\n", totals.draws, totals.triangles);
   if (totals.lines > 0) text += fmt::format("  lines      {:6}\n", totals.lines);

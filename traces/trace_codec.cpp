@@ -315,6 +315,22 @@ void fields(A& a, Draw& v) {
   a.text(v.label);
 }
 
+template <class A>
+void fields(A& a, BeginQuery& v) {
+  numbers(a, v.pool, v.query, v.precise);
+}
+template <class A>
+void fields(A& a, EndQuery& v) {
+  numbers(a, v.pool, v.query);
+}
+
+template <class A>
+void transfer(A& a, QueryPool& v) {
+  a.text(v.name);
+  a.choice(v.type, QueryType::kPipelineStatistics);
+  numbers(a, v.statistics, v.queries);
+}
+
 /// Makes the alternative with number `kind` the active one.
 template <std::size_t I = 0>
 void emplace(Command& command, std::size_t kind) {
@@ -351,7 +367,9 @@ void transfer(A& a, CommandStream& s, Chunk chunk) {
     case Chunk::kPipelines: return table(s.pipelines);
     case Chunk::kDescriptorSets: return table(s.descriptor_sets);
     case Chunk::kTargets: return;  // not part of a stream any more
-    case Chunk::kCommands: return table(s.commands);
+    case Chunk::kCommands:
+      if (a.version() >= 5) table(s.query_pools);
+      return table(s.commands);
   }
 }
 

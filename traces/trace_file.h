@@ -41,7 +41,7 @@ void write_trace(const CommandStream& stream, const std::string& path);
 /// What a stream asks for, counted from its commands.
 struct StreamTotals {
   std::uint64_t buffer_bytes = 0, image_bytes = 0;
-  std::uint64_t passes = 0, draws = 0;
+  std::uint64_t passes = 0, draws = 0, queries = 0;
   /// of all draws and instances, degenerate ones included; without regard to indices that end a strip
   std::uint64_t triangles = 0, lines = 0, points = 0;
   std::uint64_t vertices = 0;  ///< vertex references, before any reuse

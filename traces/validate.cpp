@@ -229,6 +229,7 @@ void validate(const CommandStream& stream) {
   for (std::size_t i = 0; i < stream.pipelines.size(); ++i) check_pipeline(stream, stream.pipelines[i], i);
   for (std::size_t i = 0; i < stream.descriptor_sets.size(); ++i)
     check_descriptors(stream, stream.descriptor_sets[i], i);
+  for (std::size_t i = 0; i < stream.query_pools.size(); ++i) check_query_pool(stream.query_pools[i], i);
   CommandWalk(stream).run();
 }
 

@@ -47,6 +47,7 @@ void CommandWalk::run() {
     std::visit([this](const auto& command) { visit(command); }, stream_.commands[at_]);
   }
   if (pass_ != nullptr) throw user_error("commands: the last render pass is not ended");
+  queries_.finish();
   if (passes_ == 0) throw user_error("commands: there is no render pass");
   if (!last_->colors.empty() && last_->colors[0].resolve == kNone &&
       stream_.images[last_->colors[0].image].samples > 1)
@@ -120,6 +121,7 @@ void CommandWalk::visit(const BeginPass& c) {
 
 void CommandWalk::visit(const EndPass&) {
   if (pass_ == nullptr) throw user_error("command {}: a render pass ends that has not begun", at_);
+  queries_.end_pass(at_);
   for (const ColorAttachmentUse& color : pass_->colors) {
     stored_[color.image] = color.store == StoreOp::kStore;
     if (color.resolve != kNone) stored_[color.resolve] = true;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "traces/command_stream.h"
+#include "traces/validate_queries.h"
 
 namespace quadrille::traces {
 
@@ -20,7 +21,10 @@ inline constexpr std::uint32_t kMaxDescriptorSets = 4;
 class CommandWalk {
  public:
   explicit CommandWalk(const CommandStream& stream)
-      : stream_(stream), attached_(stream.images.size()), stored_(stream.images.size()) {}
+      : stream_(stream),
+        attached_(stream.images.size()),
+        stored_(stream.images.size()),
+        queries_(stream.query_pools) {}
   /// Throws `UserError` naming the command.
   void run();
 
@@ -43,6 +47,8 @@ class CommandWalk {
   void visit(const SetViewport& c);
   void visit(const SetScissor& c);
   void visit(const Draw& c);
+  void visit(const BeginQuery& c) { queries_.begin(c, at_, pass_ != nullptr); }
+  void visit(const EndQuery& c) { queries_.end(c, at_, pass_ != nullptr); }
 
   void check_resolve(const ColorAttachmentUse& color);
   void check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what);
@@ -65,6 +71,7 @@ class CommandWalk {
   std::uint32_t samples_ = 1;            ///< a pixel, of the pass
   std::vector<bool> attached_, stored_;  ///< by image: in this pass; by an earlier one
   Index pipeline_ = kNone;
+  QueryWalk queries_;
   std::array<VertexStream, kMaxVertexBindings> vertex_streams_;
   BindIndexBuffer indices_;
   std::optional<SetViewport> viewport_;

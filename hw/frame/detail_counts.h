@@ -8,7 +8,8 @@
 
 namespace quadrille::hw {
 
-/// What is counted by draw. Those from `kVerticesFetched` on only serve the laws.
+/// What is counted by draw. Those from `kVerticesFetched` on only serve the laws
+/// and queries.
 enum class DrawCount : std::uint8_t {
   kTrianglesIn,
   kTrianglesDrawn,
@@ -42,10 +43,14 @@ enum class DrawCount : std::uint8_t {
   kClientRequests,
   kL2Requests,
   kFillBytes,
-  kMemoryReadBytes
+  kMemoryReadBytes,
+  kIndices,
+  kPiecesClipped,
+  kSamplesWritten,
+  kSamplesDiscarded
 };
 inline constexpr auto kReportedDrawCounts = static_cast<std::size_t>(DrawCount::kVerticesFetched);
-inline constexpr auto kDrawCounts = static_cast<std::size_t>(DrawCount::kMemoryReadBytes) + 1;
+inline constexpr auto kDrawCounts = static_cast<std::size_t>(DrawCount::kSamplesDiscarded) + 1;
 
 /// What is counted by part of the screen.
 enum class TileCount : std::uint8_t { kShaded, kKilledEarly, kTilesHidden, kWritten, kTextureMisses, kBytes };

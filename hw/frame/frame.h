@@ -107,6 +107,8 @@ struct DrawState {
   /// The fragment program accesses a buffer that programs of the frame write. Which of its fragments are
   /// shaded must then not depend on the machine: what they read or write could meet another access.
   bool meets_written_memory = false;
+  /// An occlusion query is active.
+  bool counts_samples = false;
 
   [[nodiscard]] const ProgramState& stage(models::ShaderStage stage) const {
     return stage == models::ShaderStage::kVertex ? vertex : fragment;
@@ -131,13 +133,18 @@ struct DrawState {
   [[nodiscard]] bool shades_visible_only() const {
     return meets_written_memory && uses_depth() && !late_depth;
   }
-  /// What the early tests write stays where the program discards the fragment, or takes its samples, after
-  /// that: no test may wait for the program. [VK1.3 #fragops-early]
-  [[nodiscard]] bool writes_before_discards() const {
-    return !late_depth && depth_stencil.writes() && (fragment.program->uses_discard || limits_coverage());
+  /// An occlusion query counts a sample when it has passed its tests and, unless these are forced to come
+  /// before the program, its program: what that takes away then was counted. [VK1.3 #fragops]
+  [[nodiscard]] bool counts_before_shading() const { return fragment.program->early_fragment_tests; }
+  /// What the early tests write, and what a query counts of them, stays where the program discards the
+  /// fragment, or takes its samples, after that: no test may wait for the program. [VK1.3 #fragops-early]
+  [[nodiscard]] bool keeps_tests_of_discarded() const {
+    const bool counted = counts_samples && counts_before_shading();
+    return uses_depth() && !late_depth && (depth_stencil.writes() || counted) &&
+           (fragment.program->uses_discard || limits_coverage());
   }
   /// Its tests come before shading on every machine.
-  [[nodiscard]] bool must_test_early() const { return shades_visible_only() || writes_before_discards(); }
+  [[nodiscard]] bool must_test_early() const { return shades_visible_only() || keeps_tests_of_discarded(); }
   /// Calls `visit(attachment)` for each colour attachment that the program writes.
   template <class Visit>
   void visit_colors(const Visit& visit) const {

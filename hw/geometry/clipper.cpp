@@ -134,6 +134,8 @@ void Clipper::audit(Audit& audit) const {
 
 void Clipper::details(Details& details) const {
   details.by_draw(DrawCount::kTrianglesClipped, stats_.triangles);
+  details.by_draw(DrawCount::kPiecesClipped, stats_.passed);
+  details.by_draw(DrawCount::kPiecesClipped, stats_.pieces);
 }
 
 std::vector<Facet> Clipper::row() const {

@@ -264,6 +264,7 @@ void VertexFetch::audit(Audit& audit) const {
 }
 
 void VertexFetch::details(Details& details) const {
+  details.by_draw(DrawCount::kIndices, stats_.indices);
   details.by_draw(DrawCount::kVerticesFetched, stats_.vertices);
   details.by_draw(DrawCount::kTrianglesFetched, stats_.triangles);
   port_.details(details, DrawCount::kVertexBytes);

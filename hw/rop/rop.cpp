@@ -355,6 +355,8 @@ void Rop::details(Details& details) const {
   details.by_draw(DrawCount::kAtRop, stats_.fragments_in);
   details.by_draw(DrawCount::kDiscarded, stats_.discarded);
   details.by_draw(DrawCount::kWritten, stats_.written);
+  details.by_draw(DrawCount::kSamplesWritten, stats_.samples_written);
+  details.by_draw(DrawCount::kSamplesDiscarded, stats_.samples_discarded);
   details.by_tile(TileCount::kWritten, stats_.written);
   port_.details(details, DrawCount::kColorBytes, TileCount::kBytes);
 }

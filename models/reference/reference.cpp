@@ -182,6 +182,8 @@ class Renderer {
               state_.push_constants.begin() + static_cast<std::ptrdiff_t>(c.offset));
   }
   void execute(const traces::SetViewport& c) { state_.viewport = c, has_viewport_ = true; }
+  void execute(const traces::BeginQuery&) {}
+  void execute(const traces::EndQuery&) {}
   void execute(const traces::SetScissor& c) { state_.scissor = c, has_scissor_ = true; }
 
   void execute(const traces::Draw& draw) {

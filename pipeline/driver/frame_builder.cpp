@@ -27,7 +27,8 @@ class FrameBuilder {
         out_(out),
         resources_(stream, out.memory, out.fills),
         storage_(stream, resources_),
-        lives_(stream) {
+        lives_(stream),
+        queries_(stream.query_pools) {
     out.frame.precision = precision;
     out.frame.storage = &out.storage;
   }
@@ -37,6 +38,7 @@ class FrameBuilder {
       std::visit([this](const auto& c) { apply(c); }, command);
     }
     out_.written_buffers = storage_.finish(out_.frame, out_.storage);
+    out_.queries = queries_.ranges();
     if (!leave_out) resources_.place_rest();
     out_.buffer_bytes = resources_.buffer_bytes();
     out_.texture_bytes = resources_.texture_bytes();
@@ -116,6 +118,8 @@ class FrameBuilder {
     scissor_ = {c.x, c.y, c.x + static_cast<std::int32_t>(c.width),
                 c.y + static_cast<std::int32_t>(c.height)};
   }
+  void apply(const traces::BeginQuery& c) { queries_.begin(c, out_.frame.draws.size()); }
+  void apply(const traces::EndQuery& c) { queries_.end(c, out_.frame.draws.size()); }
   void apply(const traces::Draw& c) {
     const traces::Pipeline& pipeline = stream_.pipelines[pipeline_];
     const CompiledPipeline& programs = compiled(pipeline_);
@@ -129,6 +133,7 @@ class FrameBuilder {
     set_fixed_function({pipeline, out_.frame.passes.back(), depth_format(), viewport_, scissor_,
                         out_.frame.precision.subpixel_bits},
                        draw);
+    draw.counts_samples = queries_.counts_samples();
     draw.vertex.constants = constants(programs.vertex);
     draw.fragment.constants = constants(programs.fragment);
     textures(programs.vertex, draw.vertex.textures, draw.vertex.texture_sizes);
@@ -306,6 +311,7 @@ class FrameBuilder {
   Index pipeline_ = kNone;
   const traces::BeginPass* begun_ = nullptr;
   AttachmentLives lives_;
+  QueryRanges queries_;
   std::uint64_t unread_attributes_ = 0;
 };
 

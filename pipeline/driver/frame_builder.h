@@ -7,6 +7,7 @@
 
 #include "hw/frame/frame.h"
 #include "pipeline/compiler/compile.h"
+#include "pipeline/driver/query_ranges.h"
 #include "pipeline/driver/storage_binder.h"
 #include "pipeline/driver/texture_fills.h"
 #include "traces/command_stream.h"
@@ -33,6 +34,7 @@ struct DeviceFrame {
   std::vector<WrittenBuffer> written_buffers;  ///< in order of the stream's buffers
   std::deque<CompiledPipeline> programs;
   hw::Frame frame;
+  std::vector<QueryRange> queries;  ///< in the order in which they begin
   std::vector<LeftOut> left_out;
   /// the target of the last pass has a depth attachment, whether it is tested or not
   bool shown_has_depth = false;

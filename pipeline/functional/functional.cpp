@@ -44,6 +44,7 @@ class FunctionalRenderer {
       : frame_(frame), memory_(memory), observer_(observer), triangles_(kTriangles) {}
 
   FunctionalCounts run() {
+    counts_.samples_passed.assign(frame_.draws.size(), 0);
     for (const hw::PassState& pass : frame_.passes) {
       for (std::size_t c = 0; c < pass.colors; ++c) begin(pass.color[c]);
       if (pass.has_depth) begin(pass.depth);
@@ -204,6 +205,8 @@ class FunctionalRenderer {
                                       : models::sample_coverage(setup, tile.tile_x, tile.tile_y, samples, s);
         counts_.fragments_covered += static_cast<std::uint64_t>(std::popcount(coverage));
         if (draw_->uses_depth() && !draw_->late_depth) coverage = test_tile(setup, tile, s, coverage);
+        if (draw_->counts_before_shading())
+          count_samples(static_cast<std::uint64_t>(std::popcount(coverage)));
         any |= coverage;
       }
       if (draw_->by_sample) {
@@ -225,6 +228,8 @@ class FunctionalRenderer {
       warp_.quad[static_cast<std::size_t>(warp_.quads - 1)].sample = sample;
     }
   }
+
+  void count_samples(std::uint64_t samples) { counts_.samples_passed[warp_.draw.index()] += samples; }
 
   models::DepthPlane plane(std::uint32_t tile_x, std::uint32_t tile_y, int sample) {
     return hw::depth_plane(pass_->depth, memory_, tile_x, tile_y, static_cast<std::uint32_t>(sample));
@@ -294,6 +299,8 @@ class FunctionalRenderer {
     for (part.sample = 0; part.sample < samples; ++part.sample) {
       part.lanes = warp_.lanes_of(q, samples, part.sample);
       if (part.lanes == 0) continue;
+      if (!draw_->counts_before_shading())
+        count_samples(static_cast<std::uint64_t>(std::popcount(part.lanes)));
       draw_->visit_colors(
           [&](std::size_t attachment) { hw::write_color(*draw_, *pass_, attachment, warp_, part, memory_); });
     }

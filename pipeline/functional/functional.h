@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace quadrille::pipeline {
 
@@ -15,6 +16,7 @@ struct FunctionalCounts {
   std::uint64_t vertices = 0, triangles = 0;
   std::uint64_t fragments_covered = 0, fragments_shaded = 0, fragments_written = 0, helper_lanes = 0;
   Fates fates;
+  std::vector<std::uint64_t> samples_passed;  ///< by draw, as an occlusion query counts them
 };
 
 /// A primitive or a piece of one, in window space, as it was rasterised: for the reference renderer.

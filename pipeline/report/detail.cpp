@@ -150,6 +150,22 @@ const std::array<DetailCount, kDrawCounts>& draw_counts() {
       {"", "", {}},
       {"", "", {}},
       {"", "", {}},
+      {"",
+       "",
+       {"indices of draws and of none = of the frame", "draws.indices + outside_draws",
+        "vertex_fetch.indices"}},
+      {"",
+       "",
+       {"pieces clipped of draws and of none = of the frame", "draws.pieces + outside_draws",
+        "clipper.passed + pieces"}},
+      {"",
+       "",
+       {"samples written of draws and of none = of the frame", "draws.samples_written + outside_draws",
+        "rop.samples_written"}},
+      {"",
+       "",
+       {"samples discarded of draws and of none = of the frame", "draws.samples_discarded + outside_draws",
+        "rop.samples_discarded"}},
   }};
   return counts;
 }

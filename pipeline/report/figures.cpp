@@ -158,6 +158,7 @@ Fates fates_of(const Machine& m) {
 Figures collect_figures(const Machine& m, const DeviceFrame& frame, std::optional<Detail> detail) {
   Figures f;
   f.detail = std::move(detail);
+  if (f.detail) f.queries = query_figures(frame.queries, frame.frame, *f.detail);
   using Core = hw::ShaderCore::Stats;
   f.frame.cycles = m.clock().edges_before(m.end());
   f.frame.render_cycles = m.clock().edges_before(m.one<hw::CommandProcessor>().render_end());

@@ -5,6 +5,7 @@
 #include "pipeline/functional/fates.h"
 #include "pipeline/machine/machine.h"
 #include "pipeline/report/detail.h"
+#include "pipeline/report/queries.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -122,7 +123,8 @@ struct Figures {
   std::vector<LeftOut> left_out;
   /// Programs whose outputs follow values that atomic operations returned: timing may change what they draw.
   std::vector<std::string> order_dependent;
-  std::optional<Detail> detail;  ///< only where it was asked for
+  std::optional<Detail> detail;            ///< only where it was asked for, or the frame has queries
+  std::vector<QueryFigures> queries = {};  ///< in the order in which they begin
   HostFigures host;
   [[nodiscard]] bool checks_hold() const;
 };

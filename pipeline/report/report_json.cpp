@@ -186,6 +186,26 @@ void add_detail(Json& document, const std::optional<Detail>& detail) {
   if (detail->wanted.tiles) document["tiles"] = tiles_json(detail->tiles);
 }
 
+/// Only where the frame has some.
+void add_queries(Json& document, const std::vector<QueryFigures>& queries) {
+  if (queries.empty()) return;
+  Json all = Json::array();
+  for (const QueryFigures& q : queries) {
+    const bool occlusion = q.range.type == traces::QueryType::kOcclusion;
+    Json values = Json::object();
+    for (const QueryValue& v : q.values)
+      values[std::string(v.name)] = v.value ? Json(*v.value) : Json(nullptr);
+    all.push_back({{"pool", q.range.pool},
+                   {"pool_number", q.range.pool_number},
+                   {"query", q.range.query},
+                   {"type", occlusion ? "occlusion" : "pipeline_statistics"},
+                   {"first_draw", q.range.first_draw},
+                   {"draws", q.range.draws},
+                   {"values", std::move(values)}});
+  }
+  document["queries"] = std::move(all);
+}
+
 Json host_json(const Figures& f) {
   const HostFigures& h = f.host;
   return {{"load_s", h.load_s},
@@ -238,6 +258,7 @@ std::string report_json(const ReportSubject& s) {
                    {"bandwidth", std::move(bandwidth)},
                    {"checks", checks_json(f)},
                    {"left_out", std::move(left_out)}};
+  add_queries(document, f.queries);
   add_detail(document, f.detail);
   document["host"] = host_json(f);
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

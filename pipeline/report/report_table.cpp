@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <span>
 
 namespace quadrille::pipeline {
 
@@ -233,6 +234,29 @@ std::string draws_text(const Figures& f) {
   return out;
 }
 
+/// So many lines at most; the JSON has all.
+constexpr std::size_t kShownQueries = 20;
+
+std::string queries_text(const Figures& f) {
+  if (f.queries.empty()) return "";
+  const std::size_t shown = std::min(f.queries.size(), kShownQueries);
+  std::string out = fmt::format("\nQUERIES  {} of {}: sums over their draws\n", shown, f.queries.size());
+  for (const QueryFigures& q : std::span(f.queries).first(shown)) {
+    std::vector<std::string> values;
+    for (const QueryValue& v : q.values) {
+      std::string name(v.name);
+      std::ranges::replace(name, '_', ' ');
+      values.push_back(fmt::format("{} {}", v.value ? grouped(*v.value) : "-", name));
+    }
+    const std::string draws = q.range.draws == 0   ? "no draw"
+                              : q.range.draws == 1 ? fmt::format("draw {}", q.range.first_draw)
+                                                   : fmt::format("draws {}..{}", q.range.first_draw,
+                                                                 q.range.first_draw + q.range.draws - 1);
+    out += fmt::format("  {:<12}{:>6}  {:<18}", q.range.pool, q.range.query, draws) + wrapped(values, 40);
+  }
+  return out;
+}
+
 std::string left_out_text(const Figures& f) {
   if (f.left_out.empty()) return "";
   std::string out = "\nLEFT OUT  what this frame does not need\n";
@@ -285,7 +309,8 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
   return frame_text(subject) + notes_text(subject.figures) + units_text(subject, rows) +
          limit_text(subject.figures) + bandwidth_text(subject) + draws_text(subject.figures) +
-         checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
+         queries_text(subject.figures) + checks_text(subject.figures) + left_out_text(subject.figures) +
+         host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

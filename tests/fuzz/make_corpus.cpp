@@ -230,6 +230,9 @@ void write_spirv(const Corpus& corpus, const std::string& scene) {
 
 void write_traces(const Corpus& corpus, const std::string& scene) {
   corpus.write("trace/small.qtrace", traces::encode_trace(traces::small_stream()));
+  traces::CommandStream queried = traces::small_stream();
+  traces::query_everything(queried);
+  corpus.write("trace/queries.qtrace", traces::encode_trace(queried));
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     const Buffer file = traces::encode_trace(traces::random_stream(seed));
     if (file.size() < 20000) corpus.write(fmt::format("trace/random{}.qtrace", seed), file);

@@ -55,9 +55,8 @@ VkAttachmentLoadOp vk_load(traces::LoadOp op) {
   return VK_ATTACHMENT_LOAD_OP_CLEAR;
 }
 
-/// What shows the pass: its first colours, or what they are resolved to.
-traces::Index picture_of(const traces::BeginPass& pass) {
-  const traces::ColorAttachmentUse& color = pass.colors.at(0);
+/// What shows the colours, or what they are resolved to.
+traces::Index shown(const traces::ColorAttachmentUse& color) {
   return color.resolve == traces::kNone ? color.image : color.resolve;
 }
 
@@ -74,7 +73,7 @@ VkImageUsageFlags usage_of(const traces::Image& image) {
 
 VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream,
                          const PassQueries* queries)
-    : device_(device), stream_(stream), queries_(queries) {
+    : device_(device), stream_(stream), queries_(queries), stream_queries_(device, stream) {
   upload_buffers();
   upload_images();
   create_samplers();
@@ -152,6 +151,7 @@ void VulkanFrame::create_samplers() {
 void VulkanFrame::record() {
   commands_ = device_.begin_commands(cleanup_);
   if (queries_ != nullptr) queries_->reset(commands_);
+  else stream_queries_.reset(commands_);
   const auto commands = commands_;
   const auto& buffers = buffers_;
   const Overloaded record_one{
@@ -180,9 +180,16 @@ void VulkanFrame::record() {
         const VkRect2D scissor{{c.x, c.y}, {c.width, c.height}};
         vkCmdSetScissor(commands, 0, 1, &scissor);
       },
-      [this](const traces::Draw& c) { draw(c); }};
+      [this](const traces::Draw& c) { draw(c); },
+      [this](const traces::BeginQuery& c) {
+        if (queries_ == nullptr) stream_queries_.begin(commands_, c);
+      },
+      [this](const traces::EndQuery& c) {
+        if (queries_ == nullptr) stream_queries_.end(commands_, c);
+      }};
   for (const traces::Command& command : stream_.commands) std::visit(record_one, command);
-  move(picture_of(*bound_.pass), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  for (const traces::ColorAttachmentUse& color : bound_.pass->colors)
+    move(shown(color), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   if (bound_.pass->depth.image != traces::kNone)
     move(bound_.pass->depth.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   require(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
@@ -316,42 +323,52 @@ void VulkanFrame::read_back_buffers(Rendered& result) const {
   }
 }
 
-Rendered VulkanFrame::read_back() const {
-  const traces::PassTarget source = traces::target_of(stream_, *bound_.pass);
-  const std::size_t pixels = std::size_t{source.width} * source.height;
+std::vector<models::PixelCode> VulkanFrame::read_target(traces::Index index) const {
+  const traces::Image& image = stream_.images[index];
+  const std::size_t pixel_bytes = models::format_bytes(image.format);
+  std::vector<models::PixelCode> codes(std::size_t{image.width} * image.height);
   Cleanup scratch;
-  const std::size_t pixel_bytes = models::format_bytes(source.color);
-  const HostBuffer color = device_.buffer(scratch, pixel_bytes * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  const HostBuffer depth = device_.buffer(scratch, 4 * pixels, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  // Depths of several samples cannot be copied.
-  const bool has_depth =
-      bound_.pass->depth.image != traces::kNone && stream_.images[bound_.pass->depth.image].samples == 1;
-  const VkCommandBuffer commands = device_.begin_commands(scratch);
-  const auto copy_to = [&](traces::Index index, VkBuffer buffer) {
-    const Image& image = images_[index];
-    VkBufferImageCopy copy{};
-    copy.imageExtent = {source.width, source.height, 1};
-    copy.imageSubresource = {image.aspect, 0, 0, 1};
-    vkCmdCopyImageToBuffer(commands, image.device.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
-                           &copy);
-  };
-  copy_to(picture_of(*bound_.pass), color.buffer);
-  if (has_depth) copy_to(bound_.pass->depth.image, depth.buffer);
+  const HostBuffer copied = copy_image(scratch, index, pixel_bytes);
+  for (std::size_t i = 0; i < codes.size(); ++i)
+    std::memcpy(codes[i].word.data(), static_cast<const std::byte*>(copied.mapped) + pixel_bytes * i,
+                pixel_bytes);
+  return codes;
+}
+
+HostBuffer VulkanFrame::copy_image(Cleanup& cleanup, traces::Index index, std::size_t pixel_bytes) const {
+  const traces::Image& source = stream_.images[index];
+  const HostBuffer target =
+      device_.buffer(cleanup, pixel_bytes * source.width * source.height, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  const VkCommandBuffer commands = device_.begin_commands(cleanup);
+  VkBufferImageCopy copy{};
+  copy.imageExtent = {source.width, source.height, 1};
+  copy.imageSubresource = {images_[index].aspect, 0, 0, 1};
+  vkCmdCopyImageToBuffer(commands, images_[index].device.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                         target.buffer, 1, &copy);
   require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   device_.submit(commands);
+  return target;
+}
 
+Rendered VulkanFrame::read_back() const {
+  const traces::PassTarget source = traces::target_of(stream_, *bound_.pass);
   Rendered result;
   result.width = source.width;
   result.height = source.height;
-  result.color.reserve(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    models::PixelCode code;
-    std::memcpy(code.word.data(), static_cast<const std::byte*>(color.mapped) + pixel_bytes * i, pixel_bytes);
+  for (const traces::ColorAttachmentUse& color : bound_.pass->colors)
+    result.targets.push_back(read_target(shown(color)));
+  result.color.reserve(result.targets.at(0).size());
+  for (const models::PixelCode& code : result.targets[0])
     result.color.push_back(models::to_rgba8(source.color, code));
+  // Depths of several samples cannot be copied.
+  const traces::Index depth = bound_.pass->depth.image;
+  if (depth != traces::kNone && stream_.images[depth].samples == 1) {
+    Cleanup scratch;
+    result.depth.resize(result.color.size());
+    read_depths(stream_.images[depth].format, copy_image(scratch, depth, 4), result.depth);
   }
-  result.depth.resize(has_depth ? pixels : 0);
-  if (has_depth) read_depths(stream_.images[bound_.pass->depth.image].format, depth, result.depth);
   read_back_buffers(result);
+  if (queries_ == nullptr) result.queries = stream_queries_.results();
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "tests/lavapipe/stream_queries.h"
 #include "tests/lavapipe/vulkan_device.h"
 #include "tests/lavapipe/vulkan_queries.h"
 #include "traces/command_stream.h"
@@ -15,7 +16,7 @@ namespace quadrille::lavapipe {
 class VulkanFrame {
  public:
   /// Uploads and records. `device` and `stream` must outlive the frame, and so must `queries`, which are
-  /// asked around each pass.
+  /// asked around each pass, in place of the stream's own.
   VulkanFrame(const VulkanDevice& device, const traces::CommandStream& stream,
               const PassQueries* queries = nullptr);
 
@@ -55,6 +56,10 @@ class VulkanFrame {
 
   void upload_buffers();
   void read_back_buffers(Rendered& result) const;
+  /// What a colour image of the last pass holds, row by row.
+  [[nodiscard]] std::vector<models::PixelCode> read_target(traces::Index index) const;
+  /// Copies an image of the last pass, of so many bytes a pixel, and waits for it.
+  [[nodiscard]] HostBuffer copy_image(Cleanup& cleanup, traces::Index index, std::size_t pixel_bytes) const;
   void upload_images();
   void create_samplers();
   void upload_texels(const traces::Image& source, const DeviceImage& image);
@@ -82,6 +87,7 @@ class VulkanFrame {
   const traces::CommandStream& stream_;
   Cleanup cleanup_;
   const PassQueries* queries_;
+  StreamQueries stream_queries_;
   std::uint32_t passes_ = 0;  ///< recorded
   std::vector<VkBuffer> buffers_;
   std::vector<Image> images_;

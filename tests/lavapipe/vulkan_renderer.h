@@ -42,6 +42,10 @@ struct Rendered {
   std::vector<float> depth;             ///< empty when the target has none
   /// What the buffers that a descriptor set holds as storage held at the end, by index in the stream.
   std::map<traces::Index, std::vector<std::byte>> buffers{};
+  /// What each colour attachment holds, or what it is resolved to, by its number, as stored.
+  std::vector<std::vector<models::PixelCode>> targets{};
+  /// Values of the stream's queries, in the order in which they begin (tests/lavapipe/stream_queries.h).
+  std::vector<std::vector<std::uint64_t>> queries{};
 };
 
 /// Time of one submission of the whole stream, uploads and read-back excluded.

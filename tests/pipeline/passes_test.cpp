@@ -107,6 +107,17 @@ TEST_CASE("passes: a trace file of version 1, with its table of targets, draws w
   CHECK(traces::decode_trace(traces::encode_trace(old), "t") == old);
 }
 
+TEST_CASE("passes: a file from before queries draws what its scene draws today") {
+  const traces::CommandStream old =
+      traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_cmds_4.qtrace");
+  scenes::SceneOptions options;
+  options.width = 24;
+  options.height = 16;
+  traces::CommandStream now = scenes::load_scene("builtin:triangle", options);
+  traces::use_samples(now, 2);
+  CHECK(old == now);
+}
+
 TEST_CASE("passes: pipelines of a file from before shading by sample shade pixels and mask nothing") {
   const traces::CommandStream old =
       traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_samples_pipe_3.qtrace");

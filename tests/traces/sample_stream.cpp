@@ -109,14 +109,21 @@ void random_commands(Dice& dice, CommandStream& s) {
   c.emplace_back(BindVertexBuffer{3, 0, 0});
   const auto type = dice.choice(IndexType::kUint32);
   c.emplace_back(BindIndexBuffer{1, type == IndexType::kUint8 ? dice.below(4) : 4, type});
+  const bool queried = dice.coin();
+  if (queried)
+    s.query_pools = {{dice.name(), QueryType::kOcclusion, 0, 6 + dice.below(9)},
+                     {dice.name(), QueryType::kPipelineStatistics, kAllStatistics & ~dice.below(7), 6}};
   for (std::uint32_t i = 0; i < 1 + dice.below(6); ++i) {
     c.emplace_back(BindPipeline{dice.below(static_cast<std::uint32_t>(s.pipelines.size()))});
     c.emplace_back(BindDescriptorSet{dice.below(4), 0});
     c.emplace_back(PushConstants{4 * dice.below(8), dice.bytes(4 + 4 * dice.below(8))});
     const bool indexed = dice.coin();
+    const std::uint32_t pool = dice.below(2);
+    if (queried) c.emplace_back(BeginQuery{pool, i, pool == 0 && dice.coin()});
     c.emplace_back(Draw{indexed, dice.below(7), dice.below(3),
                         indexed ? static_cast<std::int32_t>(dice.below(3)) : 0, dice.below(3), dice.below(2),
                         dice.name()});
+    if (queried) c.emplace_back(EndQuery{pool, i});
   }
   c.emplace_back(EndPass{});
 }

@@ -33,6 +33,14 @@ TEST_CASE("totals: draws, instances and bytes are counted") {
   REQUIRE(trace_info(stream).find("triangles       6") != std::string::npos);
 }
 
+TEST_CASE("totals: queries are counted where a stream has some") {
+  CommandStream stream = small_stream();
+  REQUIRE(trace_info(stream).find("queries") == std::string::npos);
+  query_everything(stream);
+  REQUIRE(stream_totals(stream).queries == 3);
+  REQUIRE(trace_info(stream).find("queries         3") != std::string::npos);
+}
+
 TEST_CASE("formats: bytes are components times component size") {
   REQUIRE(format_bytes(Format::kR16G16B16A16Unorm) == 8);
   REQUIRE(format_bytes(Format::kR8G8Unorm) == 2);

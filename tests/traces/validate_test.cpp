@@ -46,6 +46,60 @@ TEST_CASE("validate: the samples are valid") {
   for (std::uint32_t seed = 0; seed < 300; ++seed) REQUIRE(refusal(random_stream(seed)) == "accepted");
 }
 
+TEST_CASE("validate: queries") {
+  const auto pools = [](CommandStream& s) {
+    s.query_pools = {{"samples", QueryType::kOcclusion, 0, 2},
+                     {"stages", QueryType::kPipelineStatistics, kAllStatistics, 1}};
+  };
+  // Commands put before the one of that number.
+  const auto with = [&](std::vector<std::pair<std::size_t, Command>> added) {
+    return [=](CommandStream& s) {
+      pools(s);
+      for (const auto& [at, c] : added) s.commands.insert(s.commands.begin() + static_cast<int>(at), c);
+    };
+  };
+  const auto pool = [&](std::size_t number, auto harm) {
+    return [=](CommandStream& s) {
+      pools(s);
+      harm(s.query_pools[number]);
+    };
+  };
+  constexpr std::size_t kDraw = 8, kEnd = 10;
+  const BeginQuery first{0, 0, true}, second{0, 1, false}, stages{1, 0, false};
+  CommandStream good = small_stream();
+  with({{kDraw, first},
+        {kDraw + 1, stages},
+        {kDraw + 3, EndQuery{0, 0}},
+        {kDraw + 4, second},
+        {kDraw + 5, EndQuery{0, 1}},
+        {kDraw + 6, EndQuery{1, 0}}})(good);
+  CHECK(refusal(good) == "accepted");
+  good = small_stream();
+  with({{0, first}, {12, EndQuery{0, 0}}})(good);
+  CHECK(refusal(good) == "accepted");
+  expect({
+      {"query pool 2 does not exist", with({{kDraw, BeginQuery{2, 0, true}}})},
+      {"query 2 does not exist; query pool 0 'samples' has 2", with({{kDraw, BeginQuery{0, 2, true}}})},
+      {"query 3 does not exist", with({{kDraw, EndQuery{0, 3}}})},
+      {"command 9: query 1 of pool 0 begins inside query 0 of pool 0; one of a type may be active at a time",
+       with({{kDraw, first}, {kDraw + 1, second}})},
+      {"command 9: query 0 of pool 0 begins inside query 0", with({{kDraw, first}, {kDraw + 1, first}})},
+      {"begins twice", with({{kDraw, first}, {kDraw + 1, EndQuery{0, 0}}, {kDraw + 2, first}})},
+      {"command 8: query 0 of pool 0 ends that is not active", with({{kDraw, EndQuery{0, 0}}})},
+      {"query 1 of pool 0 ends that is not active", with({{kDraw, first}, {kDraw + 1, EndQuery{0, 1}}})},
+      {"a render pass ends in which query 0 of pool 0 has begun and not ended", with({{kEnd, first}})},
+      {"query 0 of pool 0 began outside of the render pass in which it ends",
+       with({{0, first}, {kDraw, EndQuery{0, 0}}})},
+      {"query 0 of pool 1 is not ended", with({{0, stages}})},
+      {"query 0 of pool 1 is precise; only occlusion queries are", with({{kDraw, BeginQuery{1, 0, true}}})},
+      {"query pool 0 'samples': 0 queries", pool(0, [](QueryPool& p) { p.queries = 0; })},
+      {"4294967295 queries; 1 to 1048576 are possible", pool(0, [](QueryPool& p) { p.queries = ~0u; })},
+      {"statistics 0x1 of occlusion queries", pool(0, [](QueryPool& p) { p.statistics = 1; })},
+      {"statistics 0x0; a part of 0xe7", pool(1, [](QueryPool& p) { p.statistics = 0; })},
+      {"statistics 0x8; a part of 0xe7 is possible", pool(1, [](QueryPool& p) { p.statistics = 8; })},
+  });
+}
+
 TEST_CASE("validate: primitives") {
   expect({
       {"pipeline 0 '", [](auto& s) { s.pipelines[0].line_width = kNan; }},
