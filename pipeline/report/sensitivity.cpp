@@ -14,20 +14,30 @@ namespace {
 
 /// How bounds of like length add up: infinity would be perfect overlap, 1 none. [M: `quadrille experiment
 /// limits`]
-constexpr double kNorm = 12;
+constexpr double kNorm = 48;
 /// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between
 /// them it is shared. Where places are full, somebody waits for one, and the bounds of units have to reach
 /// further; a link's own bound counts its places. [M: the same]
 struct Reach {
   double waiting, work;
 };
-constexpr Reach kReach{0.35, 0.75}, kReachWithFullPlaces{0.5, 0.95};
+constexpr Reach kReach{0.5, 0.9}, kReachWithFullPlaces{0.6, 1};
+/// A data bus that moves much while nobody waits for memory is no limit to the same degree: writes are left
+/// to it, and who reads has enough under way. It counts for so much where no places of what is under way to
+/// memory are full for this part of a slice. [M: the same]
+constexpr double kUnawaited = 0.7, kAwaited = 0.1;
+/// Of the waiting of a slice that is not for memory, cores that issue all the time would save so much: warps
+/// are what others wait for, and a part of their time is their own issuing. [M: the same]
+constexpr double kCoreWaiting = 0.3;
+const std::string kCoreIssue = "core.issue";
 /// Slices are joined until they are no shorter than this, and no more than so many: within a batch or a tile
 /// units take turns, and that is no phase.
 constexpr double kShortestSlice = 4000;
 constexpr std::size_t kMostSlices = 24;
 /// From this part of a slice on, places that are all taken hold it up.
 constexpr double kTaken = 0.5;
+
+constexpr std::string_view kMemoryKind = UnitKind<hw::MemoryChannel>::name;
 
 /// Where a kind of places lies: the greater, the further downstream. Who is full because of a full place
 /// further on waits for that. Places of what is under way to memory lie at the door of the L2 cache, behind
@@ -77,6 +87,7 @@ class Slices {
   struct Places {
     std::vector<double> full;  ///< by slice: part of the time, of the fullest unit
     Downstream where;
+    bool memory = false;  ///< of what is under way to memory, there too
   };
   [[nodiscard]] const std::map<std::string, Places>& places() const { return places_; }
 
@@ -105,6 +116,7 @@ class Slices {
       if (r.kind == hw::Resource::Kind::kPlaces) {
         Places& places = places_[name];
         places.where = downstream(kind, r, named);
+        places.memory = r.memory || kind == UnitKind<hw::L2Slice>::name || kind == kMemoryKind;
         places.full.resize(count_, 0);
         for (std::size_t s = 0; s < count_; ++s) places.full[s] = std::max(places.full[s], part[s]);
         continue;
@@ -151,25 +163,63 @@ std::string_view full_places(const Slices& slices, std::size_t s) {
   return furthest;
 }
 
-void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double>& gains,
-               double& waiting_cycles) {
-  double sum = 0;
-  for (const auto& [name, bound] : slices.rates()) sum += std::pow(bound.use[s], kNorm);
-  const double reach = std::pow(sum, 1 / kNorm), length = slices.length(s);
-  const std::string_view full = full_places(slices, s);
-  const auto greatest =
-      std::ranges::max_element(slices.rates(), {}, [s](const auto& r) { return r.second.use[s]; });
-  const Reach& between = full.empty() || greatest->first.starts_with("link.") ? kReach : kReachWithFullPlaces;
-  const double work = std::clamp((reach - between.waiting) / (between.work - between.waiting), 0.0, 1.0);
+/// How far the bounds of a kind count in a slice, 0..1.
+double weight(const Slices& slices, std::size_t s, std::string_view bound) {
+  if (!bound.starts_with(kMemoryKind)) return 1;
+  const bool awaited = std::ranges::any_of(slices.places(), [s](const auto& places) {
+    return places.second.memory && places.second.full[s] >= kAwaited;
+  });
+  return awaited ? 1 : kUnawaited;
+}
+
+/// What the bounds of a slice come to together.
+struct SliceBounds {
+  double sum = 0;     ///< of the powers of the uses
+  double reach = 0;   ///< their norm
+  bool link = false;  ///< the greatest is a link's
+};
+
+SliceBounds bounds_of(const Slices& slices, std::size_t s) {
+  SliceBounds bounds;
+  double greatest = -1;
   for (const auto& [name, bound] : slices.rates()) {
+    const double use = weight(slices, s, name) * bound.use[s];
+    bounds.sum += std::pow(use, kNorm);
+    if (use <= greatest) continue;
+    greatest = use;
+    bounds.link = name.starts_with("link.");
+  }
+  bounds.reach = std::pow(bounds.sum, 1 / kNorm);
+  return bounds;
+}
+
+/// What doubling each rate saves of the cycles that the slice's bounds limit.
+void add_rates(const Slices& slices, std::size_t s, const SliceBounds& bounds, double cycles,
+               std::map<std::string, double>& gains) {
+  if (bounds.reach <= 0) return;
+  for (const auto& [name, bound] : slices.rates()) {
+    const double counts = weight(slices, s, name), use = counts * bound.use[s];
     for (const auto& [resource, part] : bound.of) {
-      const double rest = sum - std::pow(bound.use[s], kNorm) + std::pow(bound.use[s] - part[s] / 2, kNorm);
-      if (reach > 0)
-        gains[resource] += length * work * (1 - std::pow(std::max(0.0, rest), 1 / kNorm) / reach);
+      const double rest = bounds.sum - std::pow(use, kNorm) + std::pow(use - counts * part[s] / 2, kNorm);
+      gains[resource] += cycles * (1 - std::pow(std::max(0.0, rest), 1 / kNorm) / bounds.reach);
     }
   }
-  if (full.empty()) waiting_cycles += length * (1 - work);
-  else gains[std::string(full)] += length * (1 - work) * (1 - std::max(0.5, std::min(1.0, reach)));
+}
+
+void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double>& gains,
+               double& waiting_cycles) {
+  const SliceBounds bounds = bounds_of(slices, s);
+  const std::string_view full = full_places(slices, s);
+  const Reach& between = full.empty() || bounds.link ? kReach : kReachWithFullPlaces;
+  const double work =
+      std::clamp((bounds.reach - between.waiting) / (between.work - between.waiting), 0.0, 1.0);
+  const double waiting = slices.length(s) * (1 - work);
+  add_rates(slices, s, bounds, slices.length(s) * work, gains);
+  if (full.empty()) waiting_cycles += waiting;
+  else gains[std::string(full)] += waiting * (1 - std::max(0.5, std::min(1.0, bounds.reach)));
+  const bool for_memory = !full.empty() && slices.places().at(std::string(full)).memory;
+  if (const auto issue = slices.rates().find(kCoreIssue); issue != slices.rates().end() && !for_memory)
+    gains[kCoreIssue] += waiting * kCoreWaiting * issue->second.use[s];
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 /// it, since work does not overlap perfectly: the time of a slice is the p-norm of its bounds and its
 /// waiting, with one p for all frames. Doubling a rate halves its bound. Doubling a number of places halves
 /// the waiting of the slices in which all places were taken, and those of nobody further downstream: who
-/// waits for a full place downstream is full himself. docs/limit.md has the table of what doubling sets, and
+/// waits for a full place downstream is full himself. What is not waiting for memory is in part waiting for
+/// warps, which faster cores shorten. docs/limit.md has the table of what doubling sets, and
 /// how often the estimate is right.
 #pragma once
 

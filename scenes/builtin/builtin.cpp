@@ -25,7 +25,7 @@ struct Entry {
   RecordPasses record_passes = nullptr;  ///< its frames have passes of their own
 };
 
-constexpr std::array<Entry, 13> kEntries{{
+constexpr std::array<Entry, 14> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
@@ -74,6 +74,12 @@ constexpr std::array<Entry, 13> kEntries{{
      [](double) { return build_rotunda(); },
      0,
      record_deferred},
+    {{"blends",
+      "a card of blending: six ways to mix, layers one by one and as a group, see-through textures both "
+      "ways"},
+     [](double) { return build_blends(); },
+     0,
+     record_blends},
 }};
 
 /// An unlit quad that fills the picture of `flat_camera`, at distance `depth`.
@@ -227,6 +233,14 @@ SceneData build_overdraw() {
     place(scene, screen_quad(scene, fmt::format("layer {}", i), i, 50 - static_cast<float>(i)),
           glm::translate(glm::mat4(1), {0.1F * static_cast<float>(i), 0, 0}));
   }
+  return scene;
+}
+
+SceneData build_blends() {
+  SceneData scene;
+  scene.cameras.push_back(flat_camera());
+  scene.background = {0.02F, 0.02F, 0.03F};
+  scene.depth = false;
   return scene;
 }
 

@@ -41,6 +41,8 @@ struct BuiltinScene {
 [[nodiscard]] SceneData build_primitives();
 [[nodiscard]] SceneData build_courtyard();
 [[nodiscard]] SceneData build_rotunda();
+/// A camera and a background: the card of blending is drawn by passes of its own.
+[[nodiscard]] SceneData build_blends();
 [[nodiscard]] SceneData build_flag(double time);
 inline constexpr double kFlagSeconds = 2;
 

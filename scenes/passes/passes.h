@@ -16,6 +16,8 @@ using RecordPasses = traces::CommandStream (*)(const SceneData&, const SceneOpti
 [[nodiscard]] traces::CommandStream record_shadow(const SceneData& scene, const SceneOptions& options);
 /// Surfaces alone (colours, normals, depths); lights added up over what they reach; tones.
 [[nodiscard]] traces::CommandStream record_deferred(const SceneData& scene, const SceneOptions& options);
+/// The test card of blending (blend_card.h); what the scene holds is not drawn.
+[[nodiscard]] traces::CommandStream record_blends(const SceneData& scene, const SceneOptions& options);
 
 /// Throws `UserError` for what frames of their own passes cannot follow.
 void refuse_other_pictures(const SceneData& scene, const SceneOptions& options);

@@ -159,6 +159,32 @@ const Experiment kExperiments[] = {
      &traversal,
      {"builtin:courtyard", "builtin:flag"},
      "256x256"},
+    {"raster",
+     "The end of the pipeline",
+     "Nothing is published that could be compared byte for byte: the ruler is arithmetic.",
+     "Layers over a frame larger than the caches, with one thing changed at a time: Hi-Z, its least depths, "
+     "clear or load, blending, stencil.",
+     &raster,
+     {},
+     "512x256"},
+    {"depth-precision",
+     "Depth precision",
+     "Nothing is published that could be compared value for value: the ruler is exact arithmetic and the "
+     "theory "
+     "of rounding.",
+     "Pairs of surfaces at 64 distances between the planes, in 32 steps closer to each other, in each "
+     "format, "
+     "standard and reversed, for planes up to a billion times apart.",
+     &depth_precision,
+     {},
+     "256x128"},
+    {"blend-drift",
+     "Blending drift",
+     "Nothing is published to compare with: the ruler is exact arithmetic and the theory of rounding.",
+     "Ten thousand layers of unlike colours, blended by *over* with 16 alphas, in four formats.",
+     &blend_drift,
+     {},
+     "16x16"},
     {"units",
      "Every unit by itself",
      "Nothing is published to compare with: the ruler is arithmetic.",

@@ -109,5 +109,8 @@ class Readings {
 [[nodiscard]] Result color_writes(const Setting& setting);
 [[nodiscard]] Result compression(const Setting& setting);
 [[nodiscard]] Result traversal(const Setting& setting);
+[[nodiscard]] Result raster(const Setting& setting);
+[[nodiscard]] Result depth_precision(const Setting& setting);
+[[nodiscard]] Result blend_drift(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

@@ -166,3 +166,21 @@ TEST_CASE("experiments: encoded layers move the bytes that arithmetic predicts",
   CHECK(result.verdicts.size() == 2 * result.table.rows.size());
   check_holds(result.verdicts);
 }
+
+TEST_CASE("experiments: the end of the pipeline moves the bytes that arithmetic predicts", "[slow]") {
+  const Result result = raster(sized(512, 256));
+  CHECK(result.verdicts.size() == result.table.rows.size());
+  check_holds(result.verdicts);
+}
+
+TEST_CASE("experiments: depths are off by no more than rounding allows, and fight no earlier") {
+  const Result result = depth_precision(sized(256, 128));
+  CHECK(result.table.rows.size() == 36);
+  check_holds(result.verdicts);
+}
+
+TEST_CASE("experiments: ten thousand blended layers drift no further than rounding allows") {
+  const Result result = blend_drift(sized(16, 16));
+  CHECK(result.verdicts.size() == 4);
+  check_holds(result.verdicts);
+}
