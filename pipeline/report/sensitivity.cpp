@@ -22,10 +22,10 @@ struct Reach {
   double waiting, work;
 };
 constexpr Reach kReach{0.5, 0.9}, kReachWithFullPlaces{0.6, 1};
-/// A data bus that moves much while nobody waits for memory is no limit to the same degree: writes are left
+/// A data bus that is held much while nobody waits for memory is no limit to the same degree: writes are left
 /// to it, and who reads has enough under way. It counts for so much where no places of what is under way to
-/// memory are full for this part of a slice. [M: the same]
-constexpr double kUnawaited = 0.7, kAwaited = 0.1;
+/// memory are full for this part of a slice, unless the data alone take most of the slice. [M: the same]
+constexpr double kUnawaited = 0.7, kAwaited = 0.1, kAllData = 0.9;
 /// Of the waiting of a slice that is not for memory, cores that issue all the time would save so much: warps
 /// are what others wait for, and a part of their time is their own issuing. [M: the same]
 constexpr double kCoreWaiting = 0.3;
@@ -63,6 +63,7 @@ Downstream downstream(std::string_view kind, const ResourceFigure& places, std::
 /// What a slice of the frame took of a bound, and of each resource of it.
 struct Bound {
   std::vector<double> use;                        ///< by slice, of the busiest unit
+  std::vector<double> work;                       ///< the same without losses
   std::map<std::string, std::vector<double>> of;  ///< by resource
 };
 
@@ -123,7 +124,11 @@ class Slices {
       }
       Bound& bound = mine[r.serial.empty() ? name : kind + "." + r.serial];
       bound.use.resize(count_, 0);
-      for (std::size_t s = 0; s < count_; ++s) bound.use[s] += part[s];
+      bound.work.resize(count_, 0);
+      for (std::size_t s = 0; s < count_; ++s) {
+        bound.use[s] += part[s];
+        if (r.kind == hw::Resource::Kind::kRate) bound.work[s] += part[s];
+      }
       bound.of[name] = part;
     }
     for (auto& [name, bound] : mine) merge(rates_[name], bound);
@@ -131,17 +136,19 @@ class Slices {
   /// The busiest unit of a kind counts, slice by slice.
   void merge(Bound& all, const Bound& one) const {
     all.use.resize(count_, -1);
+    all.work.resize(count_, 0);
     for (const auto& [name, part] : one.of) all.of[name].resize(count_, 0);
     for (std::size_t s = 0; s < count_; ++s) {
       if (one.use[s] <= all.use[s]) continue;
       all.use[s] = one.use[s];
+      all.work[s] = one.work[s];
       for (const auto& [name, part] : one.of) all.of[name][s] = part[s];
     }
   }
   void add(const LinkFigures& link) {
     Bound& bound = rates_[link.key];
     if (bound.use.empty() || bound.use[0] < link.use) bound.use.assign(count_, link.use);
-    bound.of[link.key] = bound.use;
+    bound.of[link.key] = bound.work = bound.use;
   }
 
   std::size_t joined_ = 1, count_ = 1;
@@ -163,9 +170,9 @@ std::string_view full_places(const Slices& slices, std::size_t s) {
   return furthest;
 }
 
-/// How far the bounds of a kind count in a slice, 0..1.
-double weight(const Slices& slices, std::size_t s, std::string_view bound) {
-  if (!bound.starts_with(kMemoryKind)) return 1;
+/// How far a bound counts in a slice, 0..1.
+double weight(const Slices& slices, std::size_t s, std::string_view name, const Bound& bound) {
+  if (!name.starts_with(kMemoryKind) || bound.work[s] >= kAllData) return 1;
   const bool awaited = std::ranges::any_of(slices.places(), [s](const auto& places) {
     return places.second.memory && places.second.full[s] >= kAwaited;
   });
@@ -183,7 +190,7 @@ SliceBounds bounds_of(const Slices& slices, std::size_t s) {
   SliceBounds bounds;
   double greatest = -1;
   for (const auto& [name, bound] : slices.rates()) {
-    const double use = weight(slices, s, name) * bound.use[s];
+    const double use = weight(slices, s, name, bound) * bound.use[s];
     bounds.sum += std::pow(use, kNorm);
     if (use <= greatest) continue;
     greatest = use;
@@ -198,7 +205,7 @@ void add_rates(const Slices& slices, std::size_t s, const SliceBounds& bounds, d
                std::map<std::string, double>& gains) {
   if (bounds.reach <= 0) return;
   for (const auto& [name, bound] : slices.rates()) {
-    const double counts = weight(slices, s, name), use = counts * bound.use[s];
+    const double counts = weight(slices, s, name, bound), use = counts * bound.use[s];
     for (const auto& [resource, part] : bound.of) {
       const double rest = bounds.sum - std::pow(use, kNorm) + std::pow(use - counts * part[s] / 2, kNorm);
       gains[resource] += cycles * (1 - std::pow(std::max(0.0, rest), 1 / kNorm) / bounds.reach);

@@ -204,7 +204,8 @@ Result depth_precision(const Setting& setting) {
       "and more most of a standard depth's error is float32's, in the matrix and the division, and not the "
       "format's."};
   result.plot =
-      "set logscale xy\nset xlabel 'far : near'\nset ylabel 'told apart at the far end, part of the "
+      "set logscale xy\nset format xy '%.0e'\nset xlabel 'far : near'\nset ylabel 'told apart at the far "
+      "end, part of the "
       "distance'\nset grid\nset key outside\n$d << EOD\n" +
       data +
       "EOD\nplot for [i=0:5] $d index i with linespoints lw 2 title "

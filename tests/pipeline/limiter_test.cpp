@@ -87,6 +87,9 @@ TEST_CASE("limiter: a rate and its losses add up, halving one leaves the other, 
   f.units.push_back(unit("memory_0", 0, {}));
   f.units.back().resources = {{"bus", "data bus", hw::Resource::Kind::kRate, 700},
                               {"rows", "data bus", hw::Resource::Kind::kLoss, 300}};
+  // Nobody waits for it: it is no limit to the same degree.
+  CHECK(sensitivity(f).gains[0].share == Approx(0.5 * 0.35).epsilon(0.01));
+  f.units.back().resources.push_back({"queue_depth", "", hw::Resource::Kind::kPlaces, 200});
   const Sensitivity s = sensitivity(f);
   REQUIRE(s.gains.size() >= 2);
   CHECK(s.gains[0].resource == "memory.bus");
