@@ -223,6 +223,37 @@ void SceneArguments::use_queries(traces::CommandStream& stream) const {
   } catch (const UserError& error) { throw user_error("--queries: {}: {}", scene, error.what()); }
 }
 
+void SceneArguments::add_transparency_to(CLI::App& command) {
+  command
+      .add_option("--transparency", transparency,
+                  "how see-through surfaces are put in order: sorted: draws by the centres of their boxes "
+                  "(default); abuffer: all fragments of a pixel by depth; kbuffer: the nearest ones of each "
+                  "sample by depth, those behind them as they come")
+      ->check(one_of(scenes::kTransparencyNames));
+  command
+      .add_option("--transparency-layers", transparency_layers,
+                  "fragments that a pixel of an A-buffer may have, 1..64 (default 16), or a sample of a "
+                  "k-buffer, 1..8 (default 4)")
+      ->type_name("K");
+}
+
+models::TransparencyState SceneArguments::parse_transparency() const {
+  using enum models::Transparency;
+  const auto mode = scenes::named(scenes::kTransparencyNames, transparency.value_or("sorted"), kNone);
+  if (mode == kNone) {
+    if (transparency_layers)
+      throw user_error("--transparency-layers: nothing keeps them; add --transparency abuffer or kbuffer");
+    return {};
+  }
+  if (view || order == "painter")
+    throw user_error(
+        "--transparency: not together with --view or --order painter, which have an order of "
+        "their own or blend nothing");
+  const std::string layers = transparency_layers.value_or(mode == kAbuffer ? "16" : "4");
+  return {mode, static_cast<std::uint8_t>(
+                    parse_whole(layers, "--transparency-layers", 1, models::most_layers(mode)))};
+}
+
 void SceneArguments::use_samples(traces::CommandStream& stream) const {
   if (supersample) traces::use_sample_shading(stream);
   if (!samples) return;
@@ -279,6 +310,7 @@ scenes::SceneOptions SceneArguments::options() const {
   if (shading) options.shading = scenes::named(scenes::kShadingNames, *shading, scenes::Shading::kMinimal);
   if (order) options.order = scenes::named(scenes::kDrawOrderNames, *order, scenes::DrawOrder::kFile);
   options.alpha_to_coverage = alpha_to_coverage;
+  options.transparency = parse_transparency();
   if (samples) options.samples = parse_samples(*samples);
   if (view) options.shown = scenes::named(scenes::kShowingNames, *view, scenes::Showing::kDepth);
   options.vertex_shader = vert.value_or("");
@@ -292,11 +324,13 @@ void SceneArguments::check() const {
     throw user_error("--supersample: one sample a pixel is shaded once anyway; add --samples 2, 4 or 8");
   if (is_trace()) {
     if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag ||
-        shading || order || view || color_format || depth_format || alpha_to_coverage) {
+        shading || order || view || color_format || depth_format || alpha_to_coverage || transparency ||
+        transparency_layers) {
       throw user_error(
           "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, "
           "--eye, --at, --time, --animation, --exposure, --vert, --frag, --shading, --order, --view, "
-          "--color-format, --depth-format and --alpha-to-coverage are for scenes",
+          "--color-format, --depth-format, --alpha-to-coverage, --transparency and --transparency-layers "
+          "are for scenes",
           scene);
     }
     return;

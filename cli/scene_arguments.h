@@ -20,9 +20,10 @@ struct SceneArguments {
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, shading, order,
       view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
-  bool supersample = false;            ///< each sample is shaded for itself
-  bool alpha_to_coverage = false;      ///< of masked materials; not of a trace
-  bool queries = false;                ///< around every draw and pass
+  std::optional<std::string> transparency, transparency_layers;
+  bool supersample = false;        ///< each sample is shaded for itself
+  bool alpha_to_coverage = false;  ///< of masked materials; not of a trace
+  bool queries = false;            ///< around every draw and pass
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
   bool leave_out = true;
@@ -37,6 +38,8 @@ struct SceneArguments {
   void add_view_to(CLI::App& command, const std::string& default_size);
   /// Adds --color-format and --depth-format, for a command that draws or records.
   void add_formats_to(CLI::App& command);
+  /// Adds --transparency and --transparency-layers, for such a command.
+  void add_transparency_to(CLI::App& command);
   /// Adds --samples and what goes with it, for a command that draws or records.
   void add_samples_to(CLI::App& command);
   /// Adds --queries, for a command that draws or records.
@@ -63,6 +66,8 @@ struct SceneArguments {
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;
   [[nodiscard]] bool is_trace() const;
+  /// Throws `UserError` naming the flag.
+  [[nodiscard]] models::TransparencyState parse_transparency() const;
   /// The options as the scene library takes them. Throws `UserError` naming the flag.
   [[nodiscard]] scenes::SceneOptions options() const;
 };

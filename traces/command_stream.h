@@ -55,6 +55,8 @@ using models::StencilOp;
 using models::StencilState;
 using models::StoreOp;
 using models::Topology;
+using models::Transparency;
+using models::TransparencyState;
 using models::Wrap;
 using Sampler = models::SamplerState;
 
@@ -144,6 +146,9 @@ struct Pipeline {
   /// Alpha of the first colour says which samples a fragment keeps.
   bool alpha_to_coverage = false;
   std::uint32_t sample_mask = ~0u;  ///< samples that may be covered, a bit each
+  /// Fragments are put over the colours by their depths, not in the order of drawing: of passes that keep
+  /// them (`BeginPass::transparency`). Blending is `models::is_over`, and no depth is written.
+  bool order_independent = false;
   friend bool operator==(const Pipeline&, const Pipeline&) = default;
 };
 
@@ -196,6 +201,9 @@ struct DepthAttachmentUse : AttachmentUse {
 struct BeginPass {
   std::vector<ColorAttachmentUse> colors;
   DepthAttachmentUse depth;  ///< without image: the pass has no depth attachment
+  /// Of a pass with one colour attachment. Behind its order-independent draws come no others that write
+  /// depths or colours.
+  TransparencyState transparency{};
   [[nodiscard]] Index first_image() const { return colors.empty() ? depth.image : colors[0].image; }
   friend bool operator==(const BeginPass&, const BeginPass&) = default;
 };

@@ -231,6 +231,7 @@ void transfer(A& a, Pipeline& v) {
   if (a.version() < 4) return;
   numbers(a, v.sample_shading, v.alpha_to_coverage, v.sample_mask);
   transfer_tests(a, v);
+  if (a.version() >= 5) numbers(a, v.order_independent);
 }
 
 template <class A>
@@ -276,6 +277,9 @@ void fields(A& a, BeginPass& v) {
   transfer(a, static_cast<AttachmentUse&>(v.depth));
   numbers(a, v.depth.clear);
   if (a.version() >= 4) numbers(a, v.depth.clear_stencil);
+  if (a.version() < 5) return;
+  a.choice(v.transparency.mode, Transparency::kKbuffer);
+  numbers(a, v.transparency.layers);
 }
 template <class A>
 void fields(A&, EndPass&) {}

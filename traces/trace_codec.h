@@ -40,7 +40,7 @@ inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"IMGS", 3},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
-                                                   {"PIPE", 4},
+                                                   {"PIPE", 5},
                                                    {"DESC", 2},
                                                    {"TARG", 0},
                                                    {"CMDS", 5}}};

@@ -164,12 +164,24 @@ void check_tests(const Pipeline& pipeline, std::size_t index) {
   }
 }
 
+void check_order_independent(const Pipeline& pipeline, std::size_t index) {
+  if (!pipeline.order_independent) return;
+  if (!models::is_over(pipeline.blend[0]) || pipeline.blend_shared.logic)
+    throw user_error(
+        "pipeline {} '{}': order-independent, but its blending is not one over the other: (one or source "
+        "alpha, one minus source alpha), alpha (one, one minus source alpha), added, all components written",
+        index, pipeline.name);
+  if (pipeline.depth.write)
+    throw user_error("pipeline {} '{}': order-independent, but it writes depths", index, pipeline.name);
+}
+
 void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::size_t index) {
   check_stage(stream, pipeline, index, pipeline.vertex_shader, ShaderStage::kVertex, "vertex");
   check_stage(stream, pipeline, index, pipeline.fragment_shader, ShaderStage::kFragment, "fragment");
   check_vertex_input(pipeline, index);
   check_primitives(pipeline, index);
   check_tests(pipeline, index);
+  check_order_independent(pipeline, index);
   for (const BlendState& blend : pipeline.blend) {
     if (blend.write_mask > 0xf)
       throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,

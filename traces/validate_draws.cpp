@@ -92,6 +92,18 @@ void CommandWalk::check_resolve(const ColorAttachmentUse& color) {
   attached_[color.resolve] = true;
 }
 
+void CommandWalk::check_transparency(const BeginPass& pass) const {
+  const auto [mode, layers] = pass.transparency;
+  if (mode != Transparency::kNone && pass.colors.size() != 1)
+    throw user_error(
+        "command {}: a pass with {} colour attachments keeps fragments of order-independent "
+        "draws; it has to have one",
+        at_, pass.colors.size());
+  if (const int most = models::most_layers(mode); layers > most || (layers == 0 && most > 0))
+    throw user_error("command {}: {} fragments a pixel are kept; {}..{} are possible", at_, layers,
+                     std::min(1, most), most);
+}
+
 void CommandWalk::visit(const BeginPass& c) {
   if (pass_ != nullptr) throw user_error("command {}: a render pass begins inside another", at_);
   if (c.colors.size() > kMaxColorAttachments)
@@ -115,6 +127,8 @@ void CommandWalk::visit(const BeginPass& c) {
   if (c.depth.image != kNone) check_attachment(c.depth, kDepthAttachment, "depth attachment");
   if (!within(c.depth.clear, 0, 1))
     throw user_error("command {}: clear depth {} is outside 0..1", at_, c.depth.clear);
+  check_transparency(c);
+  drew_any_order_ = false;
   pass_ = last_ = &c;
   ++passes_;
 }
@@ -217,6 +231,19 @@ void CommandWalk::check_draw_state() const {
   }
 }
 
+void CommandWalk::check_draw_order() {
+  const Pipeline& pipeline = stream_.pipelines[pipeline_];
+  if (pipeline.order_independent) {
+    if (pass_->transparency.mode == Transparency::kNone)
+      throw user_error("command {}: order-independent draw in a pass that keeps no fragments", at_);
+    drew_any_order_ = true;
+    return;
+  }
+  const bool writes = pipeline.depth.write || pipeline.blend[0].write_mask != 0;
+  if (drew_any_order_ && writes)
+    throw user_error("command {}: draw that writes depths or colours behind an order-independent one", at_);
+}
+
 void CommandWalk::count_vertices(const Draw& draw) {
   // Both factors are below 2^32, so the product fits.
   const std::uint64_t vertices = std::uint64_t{draw.count} * draw.instances;
@@ -283,6 +310,7 @@ void CommandWalk::check_attribute(const Pipeline& pipeline, const VertexAttribut
 
 void CommandWalk::visit(const Draw& c) {
   check_draw_state();
+  check_draw_order();
   if (c.count == 0 || c.instances == 0) return;
   count_vertices(c);
   const std::optional<VertexRange> vertices = vertex_range(c);

@@ -52,7 +52,9 @@ class CommandWalk {
 
   void check_resolve(const ColorAttachmentUse& color);
   void check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what);
+  void check_transparency(const BeginPass& pass) const;
   void check_draw_state() const;
+  void check_draw_order();
   void check_scissor() const;
   void count_vertices(const Draw& draw);
   /// None: all its indices only end strips.
@@ -68,6 +70,7 @@ class CommandWalk {
   const BeginPass* pass_ = nullptr;  ///< that has begun and not ended
   const BeginPass* last_ = nullptr;
   PassTarget target_;
+  bool drew_any_order_ = false;          ///< the pass has an order-independent draw
   std::uint32_t samples_ = 1;            ///< a pixel, of the pass
   std::vector<bool> attached_, stored_;  ///< by image: in this pass; by an earlier one
   Index pipeline_ = kNone;

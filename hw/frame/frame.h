@@ -104,6 +104,8 @@ struct DrawState {
   bool reads_coverage = false;      ///< of the fragment program (`models::reads_coverage`)
   bool alpha_to_coverage = false;   ///< alpha of the first colour says which samples stay
   std::uint32_t sample_mask = ~0u;  ///< samples that may be covered, a bit each
+  /// Its fragments become nodes, which are put over the colours when the pass ends.
+  bool order_independent = false;
   /// The fragment program accesses a buffer that programs of the frame write. Which of its fragments are
   /// shaded must then not depend on the machine: what they read or write could meet another access.
   bool meets_written_memory = false;
@@ -171,7 +173,19 @@ struct AttachmentState {
   models::PixelCode clear{};  ///< encoded: what every pixel begins with, unless it is loaded
   /// Someone reads it after the pass, so tiles that nothing drew to must be written out too.
   bool read_later = true;
+  bool encodes = true;  ///< its lines may be stored encoded
   [[nodiscard]] bool loads() const { return load == models::LoadOp::kLoad; }
+};
+
+/// What a pass keeps of its order-independent draws. No image: it is gone when the pass ends.
+struct TransparencyPass {
+  models::Transparency mode = models::Transparency::kNone;  ///< kNone too if it has no such draw
+  int layers = 0;                                           ///< nodes that a pixel or sample may have
+  /// k-buffer: entries, a plane for each sample and layer of it; A-buffer: heads of lists
+  AttachmentState hidden;
+  AttachmentState pool;  ///< A-buffer: a block of nodes for each row
+  [[nodiscard]] bool on() const { return mode != models::Transparency::kNone; }
+  [[nodiscard]] bool lists() const { return mode == models::Transparency::kAbuffer; }
 };
 
 struct PassState {
@@ -192,6 +206,7 @@ struct PassState {
   }
   /// No depth of the pass is known when it begins.
   [[nodiscard]] bool loads_depth() const { return has_depth && depth.loads(); }
+  TransparencyPass transparency;
   DrawId first_draw;
   std::uint32_t draws = 0;
 };

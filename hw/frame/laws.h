@@ -49,6 +49,8 @@
       "rop.fragments_in", "rop.discarded + late_killed + written") \
   law(kSamplesRetired, "samples packed = discarded + killed late + written", \
       "warp_packer.samples", "rop.samples_discarded + samples_written + depth.late_killed_samples") \
+  law(kNodes, "nodes of order-independent fragments = merged + lost + composed", \
+      "rop.nodes", "rop.nodes_merged + nodes_lost + nodes_composed") \
   law(kKilledLate, "killed late, seen by ROP = seen by depth", "rop.late_killed", "depth.late_killed") \
   law(kVertexCache, "vertex_fetch.cache: requests = hits + merged + misses", \
       "vertex_fetch.cache.requests", "vertex_fetch.cache.hits + merged + misses") \

@@ -1,7 +1,6 @@
 #include "hw/rop/rop.h"
 
 #include "hw/frame/detail_counts.h"
-#include "hw/frame/fragment_output.h"
 #include "hw/frame/laws.h"
 #include "hw/rop/touched_tiles.h"
 
@@ -10,15 +9,6 @@
 #include <span>
 
 namespace quadrille::hw {
-
-namespace {
-
-/// Of a quad of these pixels, which the unit's path to its cache takes at once up to 4 bytes each.
-int path_turns(const AttachmentState& color) {
-  return std::max(1, static_cast<int>(color.surface.pixel_bytes) / 4);
-}
-
-}  // namespace
 
 Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps)
     : Unit(name, Kind::kChooser, context.clock),
@@ -33,6 +23,8 @@ Rop::Rop(sc_core::sc_module_name name, const UnitContext& context, const Params&
              surface_writer(SurfaceKind::kColor, context.partition()),
              SurfaceCompression::of(params.compression)),
       shaded_(static_cast<std::size_t>(warps.size()), false),
+      transparency_(stats_, context.memory, cache_, port_),
+      compose_(context.memory, cache_, port_, transparency_),
       resolve_(context.memory, cache_, port_) {
   add_initiation_rate("quads_per_clk");
   add_places("warps_in_flight",
@@ -80,7 +72,8 @@ Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
 
 Wake Rop::retire_wake() const {
   if (flush_.done()) return Wake(free_).output(retire_out);
-  if (resolve_.running()) return resolve_wake();
+  if (compose_.running()) return end_wake(compose_.next(free_));
+  if (resolve_.running()) return end_wake(resolve_.next(free_));
   if (depth_flushes_ || flush_.running()) return Wake(kNever);
   if (entries_.empty() || acquired_ == 0) return Wake(kNever);
   const Entry& head = entries_.front();
@@ -88,10 +81,7 @@ Wake Rop::retire_wake() const {
   return outputs_of(head, Wake(std::max(free_, head.ready)));
 }
 
-Wake Rop::resolve_wake() const {
-  const Tick at = resolve_.next(free_);
-  return at == kNever ? Wake::never(port_.response_in[0]) : Wake(at);
-}
+Wake Rop::end_wake(Tick at) const { return at == kNever ? Wake::never(port_.response_in[0]) : Wake(at); }
 
 Wake Rop::next() const {
   Wake wake = Wake::sooner(retire_wake(), acquire_wake());
@@ -121,8 +111,10 @@ void Rop::take_inputs(Tick now) {
     if (flush_.take(answer)) return;
     stalled_ = false;
     claim_stalled_ = false;
+    compose_.wake();
     cache_.fill(answer, [&](std::uint32_t number) {
-      if (!resolve_.answer(number, now)) entries_.answer(number, now);
+      const bool own = compose_.running() ? compose_.answer(number, now) : resolve_.answer(number, now);
+      if (!own) entries_.answer(number, now);
     });
   });
   done_in.visit_holding(0, [&](std::size_t core, FifoIn<FragmentDoneToken>& in) {
@@ -146,6 +138,21 @@ void Rop::take_late(Tick now) {
 
 void Rop::end_pass() {
   depth_flushes_ = depth_flushed_ = false;
+  const PassState& pass = frame_.pass(pass_);
+  if (pass.transparency.on()) compose_.begin(partition_, partitions_, params_.warps_in_flight);
+  else begin_resolve();
+}
+
+void Rop::compose(Tick now) {
+  stats_.working_for(kNoDraw);
+  const int turns = compose_.step(now);
+  if (!compose_.running()) return begin_resolve();
+  const int cycles = std::max(1, (turns + params_.quads_per_clk - 1) / params_.quads_per_clk);
+  free_ = after(now, cycles);
+  occupy(now, cycles);
+}
+
+void Rop::begin_resolve() {
   const PassState& pass = frame_.pass(pass_);
   if (pass.resolved != 0) resolve_.begin(pass, partition_, partitions_, params_.warps_in_flight);
   else begin_flush();
@@ -201,25 +208,31 @@ bool Rop::acquire_colors(Entry& entry, std::uint32_t number) {
   const WarpSlot& warp = warps_[entry.token.slot];
   stats_.working_for(warp.draw);
   const DrawState& draw = frame_.draw(warp.draw);
-  const TouchedTiles touched(warp, draw.samples().count);
   bool placed = true;
   int part = 0;
+  const auto ask = [&](const SurfaceTile& tile, const SectorWishes& wishes) {
+    if (!placed || part++ < entry.parts) return;
+    placed = cache_.acquire(tile, wishes, number, entry.missing, entry.done, port_);
+    if (!placed) return;
+    ++entry.parts;
+    entry.done = {};
+  };
+  if (draw.order_independent) {
+    transparency_.visit_tiles(warp, draw.samples().count, ask);
+    return placed;
+  }
+  const TouchedTiles touched(warp, draw.samples().count);
   draw.visit_colors([&](std::size_t color) {
     const bool reads = draw.reads_color(color);
     const std::uint32_t bytes = frame_.pass(draw.pass).color[color].surface.pixel_bytes;
-    for (const TileTouch& touch : touched.all()) {
-      if (!placed || part++ < entry.parts) continue;
-      placed = cache_.acquire(touch.tile_of(color), wishes_of_write(touch.pixels, bytes, reads), number,
-                              entry.missing, entry.done, port_);
-      if (!placed) continue;
-      ++entry.parts;
-      entry.done = {};
-    }
+    for (const TileTouch& touch : touched.all())
+      ask(touch.tile_of(color), wishes_of_write(touch.pixels, bytes, reads));
   });
   return placed;
 }
 
 void Rop::retire(Tick now) {
+  if (compose_.running()) return compose(now);
   if (resolve_.running()) return resolve(now);
   if (flush_.done()) {
     retire_out.push(now, {TokenKind::kPassEnd, pass_});
@@ -267,6 +280,7 @@ void Rop::retire_boundary(Tick now, const Entry& entry) {
       pass_ = entry.token.part.pass();
       const PassState& pass = frame_.pass(pass_);
       cache_.begin_pass({pass.color.data(), pass.colors}, partition_, partitions_);
+      transparency_.begin_pass(pass, partition_, partitions_);
       return;
     }
     case TokenKind::kDrawEnd:
@@ -283,60 +297,6 @@ void Rop::retire_boundary(Tick now, const Entry& entry) {
   }
 }
 
-bool Rop::claim_colors(const WarpSlot& warp) {
-  const DrawState& draw = frame_.draw(warp.draw);
-  const TouchedTiles touched(warp, draw.samples().count);
-  bool placed = true;
-  draw.visit_colors([&](std::size_t color) {
-    const std::span<const TileTouch> tiles = touched.all();
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
-      // Later samples first: where all of them are overwritten, no copy has to be saved from its original.
-      const TileTouch& touch = tiles[cache_.keeps_copies() ? tiles.size() - 1 - i : i];
-      placed = placed && cache_.write(touch.tile_of(color), touch.pixels, port_);
-    }
-  });
-  return placed;
-}
-
-int Rop::write_colors(const WarpSlot& warp) {
-  const DrawState& draw = frame_.draw(warp.draw);
-  const int samples = draw.samples().count;
-  int quads = 0;
-  for (int q = 0; q < warp.quads; ++q) {
-    if (warp.lanes_of(q) == 0) continue;
-    const WarpSlot::Quad& quad = warp.quad[static_cast<std::size_t>(q)];
-    QuadOfWarp part{q, models::place_of_quad(quad.x, quad.y)};
-    stats_.working_at(part.place.tile_x, part.place.tile_y);
-    stats_.written += static_cast<std::uint64_t>(std::popcount(warp.lanes_of(q)));
-    for (part.sample = 0; part.sample < samples; ++part.sample) {
-      part.lanes = warp.lanes_of(q, samples, part.sample);
-      if (part.lanes == 0) continue;
-      ++quads;
-      const auto pixels = static_cast<std::uint64_t>(std::popcount(part.lanes));
-      stats_.samples_written += pixels;
-      draw.visit_colors([&](std::size_t color) {
-        stats_.pixels_written += pixels;
-        if (draw.reads_color(color)) stats_.blended += pixels;
-        write_color(draw, frame_.pass(pass_), color, warp, part, device_);
-      });
-    }
-  }
-  int quad_cycles = 0;
-  draw.visit_colors([&](std::size_t color) { quad_cycles += quads * quad_turns(draw, color); });
-  return std::max(1, (quad_cycles + params_.quads_per_clk - 1) / params_.quads_per_clk);
-}
-
-int Rop::quad_turns(const DrawState& draw, std::size_t color) const {
-  const AttachmentState& attachment = frame_.pass(pass_).color[color];
-  const int path = path_turns(attachment);
-  if (!draw.reads_color(color)) return path;
-  const models::FormatInfo& format = models::format_info(attachment.format);
-  const bool floats = format.numeric == models::Numeric::kFloat || format.numeric == models::Numeric::kUfloat;
-  if (!draw.blend[color].enable || !floats) return 2 * path;
-  const bool wide = format.component[0].bits == 32;
-  return std::max(2 * path, wide ? params_.float_blend_turns * format.channels : params_.half_blend_turns);
-}
-
 void Rop::audit(Audit& audit) const {
   audit.right(laws::kDraws, stats_.draws.value());
   audit.right(laws::kFragmentsDeferred, stats_.late_discarded.value());
@@ -347,6 +307,7 @@ void Rop::audit(Audit& audit) const {
              stats_.discarded.value() + stats_.late_killed.value() + stats_.written.value());
   audit.right(laws::kSamplesRetired, stats_.samples_discarded.value() + stats_.samples_written.value());
   audit.left(laws::kKilledLate, stats_.late_killed.value());
+  transparency_.audit(audit);
   cache_.audit(audit, laws::kColorCache, port_);
   port_.audit(audit);
 }

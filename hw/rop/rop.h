@@ -13,8 +13,10 @@
 /// Time  `quads_per_clk` quads of one sample a cycle and colour attachment (half of that where blending reads
 ///       the old colour; half of it again for pixels of 8 bytes, a quarter for 16; less where blending
 ///       floats takes more turns than that); up to `warps_in_flight`
-///       warps wait for their lines. At the end of a pass of several samples a pixel it resolves them
-///       (hw/rop/resolve.h).
+///       warps wait for their lines. Of order-independent draws a quad of one sample takes eight turns a
+///       layer of a k-buffer, and a quad eight turns in all of an A-buffer: two each to read and write its
+///       heads, four for its nodes. At the end of a pass it puts those over the colours (hw/rop/compose.h),
+///       and resolves several samples a pixel (hw/rop/resolve.h).
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -23,8 +25,10 @@
 #include "hw/frame/stores.h"
 #include "hw/frame/unit_context.h"
 #include "hw/memory/flush.h"
+#include "hw/rop/compose.h"
 #include "hw/rop/resolve.h"
 #include "hw/rop/surface_cache.h"
+#include "hw/rop/transparency_buffer.h"
 
 namespace quadrille::hw {
 
@@ -95,8 +99,8 @@ class Rop final : public Unit {
     Counter bytes_in{*this, "bytes_in", "B",
                      "Colours that came with the warps, as their attachments store them"};
   };
-  using CounterParts =
-      Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats, EncodedReadStats, SurfaceEncoderStats>;
+  using CounterParts = Parts<MemoryPortStats, L1CacheStats, SurfaceCacheStats, EncodedReadStats,
+                             SurfaceEncoderStats, TransparencyStats>;
   Rop(sc_core::sc_module_name name, const UnitContext& context, const Params& params, WarpStore& warps);
 
   FifoIn<OrderToken> order_in{*this, "order_in"};
@@ -136,12 +140,14 @@ class Rop final : public Unit {
   [[nodiscard]] Wake test_wake() const;
   [[nodiscard]] Wake acquire_wake() const;
   [[nodiscard]] Wake retire_wake() const;
-  [[nodiscard]] Wake resolve_wake() const;
+  [[nodiscard]] Wake end_wake(Tick at) const;
   [[nodiscard]] Wake outputs_of(const Entry& entry, Wake wake) const;
   void take_inputs(Tick now);
   void take_late(Tick now);
   void end_pass();
+  void begin_resolve();
   void begin_flush();
+  void compose(Tick now);
   void resolve(Tick now);
   void test(Tick now);
   void acquire(Tick now);
@@ -149,7 +155,10 @@ class Rop final : public Unit {
   void retire(Tick now);
   void retire_boundary(Tick now, const Entry& entry);
   bool claim_colors(const WarpSlot& warp);
+  /// Returns the cycles that it takes.
   int write_colors(const WarpSlot& warp);
+  int write_quads(const WarpSlot& warp);
+  void write_samples(const DrawState& draw, const WarpSlot& warp, const QuadOfWarp& part);
   /// Turns that a quad takes at an attachment.
   [[nodiscard]] int quad_turns(const DrawState& draw, std::size_t color) const;
 
@@ -173,6 +182,8 @@ class Rop final : public Unit {
   bool claim_stalled_ = false;  ///< the same for the head, whose lines were evicted
   bool depth_flushes_ = false;  ///< the pass is over, and the depth unit flushes before this one
   bool depth_flushed_ = false;  ///< it has; the lines that nobody waits for come before this one flushes
+  TransparencyBuffer transparency_;
+  Compose compose_;
   Resolve resolve_;
   Flush flush_{port_};
   Tick free_ = 0, test_free_ = 0, acquire_free_ = 0;

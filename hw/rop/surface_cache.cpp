@@ -76,6 +76,7 @@ void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, Partiti
     surfaces_[i].state = &surfaces[i];
     const models::SurfaceLayout& layout = surfaces[i].surface;
     surfaces_[i].cleared.assign(layout.planes(), false);
+    surfaces_[i].on_screen = true;
     encoder_.add(surfaces[i]);
     if (!surfaces[i].loads()) mark_cleared(surfaces_[i], partition, partitions);
   }
@@ -84,8 +85,22 @@ void SurfaceCache::begin_pass(std::span<const AttachmentState> surfaces, Partiti
 std::size_t SurfaceCache::add_surface(const AttachmentState& surface) {
   surfaces_[count_].state = &surface;
   surfaces_[count_].cleared.assign(surface.surface.planes(), false);
+  surfaces_[count_].on_screen = true;
   encoder_.add(surface);
   return count_++;
+}
+
+std::size_t SurfaceCache::add_pool(const AttachmentState& surface) {
+  const std::size_t number = add_surface(surface);
+  surfaces_[number].on_screen = false;
+  return number;
+}
+
+std::size_t SurfaceCache::add_cleared(const AttachmentState& surface, PartitionId partition,
+                                      std::uint32_t partitions) {
+  const std::size_t number = add_surface(surface);
+  mark_cleared(surfaces_[number], partition, partitions);
+  return number;
 }
 
 void SurfaceCache::mark_cleared(Surface& surface, PartitionId partition, std::uint32_t partitions) {
@@ -122,7 +137,7 @@ bool SurfaceCache::materialize(const SurfaceTile& tile, AcquiredLines& done, Mem
 
 bool SurfaceCache::acquire(const SurfaceTile& tile, const SectorWishes& wishes, std::uint32_t waiter,
                            int& missing, AcquiredLines& done, MemoryPort& port) {
-  group_.working_at(tile.x, tile.y);
+  work_at(tile);
   if (mark_of(tile) && !materialize(tile, done, port)) return false;
   for (std::uint32_t i = 0; i < layout_of(tile).plane_lines(); ++i) {
     if ((done.acquired >> i & 1u) != 0) continue;
@@ -155,7 +170,7 @@ SurfaceCache::LineWishes SurfaceCache::line_wishes(const SurfaceTile& tile, std:
 }
 
 bool SurfaceCache::write(const SurfaceTile& tile, std::uint64_t pixels, MemoryPort& port) {
-  group_.working_at(tile.x, tile.y);
+  work_at(tile);
   const models::SurfaceLayout& layout = layout_of(tile);
   const std::uint32_t per_line = models::kLineBytes / layout.pixel_bytes;
   for (std::uint32_t i = 0; i < layout.plane_lines(); ++i) {

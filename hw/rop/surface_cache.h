@@ -70,6 +70,11 @@ class SurfaceCache {
   void begin_pass(std::span<const AttachmentState> surfaces, PartitionId partition, std::uint32_t partitions);
   /// A further surface of the pass, which begins as it is; returns its number.
   [[nodiscard]] std::size_t add_surface(const AttachmentState& surface);
+  /// The same of one whose tiles are none of the screen.
+  [[nodiscard]] std::size_t add_pool(const AttachmentState& surface);
+  /// The same, which begins filled and marked as the surfaces of `begin_pass`.
+  [[nodiscard]] std::size_t add_cleared(const AttachmentState& surface, PartitionId partition,
+                                        std::uint32_t partitions);
   /// Nothing was drawn to the tile since the pass cleared it.
   [[nodiscard]] bool is_cleared(const SurfaceTile& tile) { return mark_of(tile); }
   /// The tile is cleared now, as far as memory is concerned: the caller writes the pixels. Nothing of it may
@@ -112,9 +117,14 @@ class SurfaceCache {
   struct Surface {
     const AttachmentState* state = nullptr;
     std::vector<bool> cleared;  ///< by plane of a tile
+    bool on_screen = true;
   };
   [[nodiscard]] const models::SurfaceLayout& layout_of(const SurfaceTile& tile) const {
     return surfaces_[tile.surface].state->surface;
+  }
+  /// What is counted from here on is for this tile.
+  void work_at(const SurfaceTile& tile) {
+    if (surfaces_[tile.surface].on_screen) group_.working_at(tile.x, tile.y);
   }
   [[nodiscard]] std::uint32_t first_line_of(const SurfaceTile& tile) const {
     return static_cast<std::uint32_t>(layout_of(tile).tile_address(tile.x, tile.y, tile.sample) /
@@ -142,7 +152,7 @@ class SurfaceCache {
   SurfaceCacheStats stats_;
   EncodedReadStats read_stats_;
   SurfaceEncoder encoder_;
-  /// attachments, and what they are resolved to
+  /// attachments, what order-independent draws leave, and what the attachments are resolved to
   std::array<Surface, std::size_t{2} * models::kMaxColorAttachments> surfaces_;
   std::size_t count_ = 0;
 };

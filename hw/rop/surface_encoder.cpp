@@ -27,7 +27,8 @@ SurfaceEncoder::SurfaceEncoder(StatGroup& stats, L1Cache& cache, models::DeviceM
 }
 
 void SurfaceEncoder::add(const AttachmentState& surface) {
-  surfaces_.push_back({surface.surface, models::LineCodec(surface.format, compression_.planes)});
+  surfaces_.push_back(
+      {surface.surface, models::LineCodec(surface.format, compression_.planes), surface.encodes});
 }
 
 const SurfaceEncoder::Surface& SurfaceEncoder::surface_of(std::uint32_t line) const {
@@ -55,6 +56,7 @@ bool SurfaceEncoder::equal(const Surface& surface, std::uint32_t a, std::uint32_
 
 bool SurfaceEncoder::prepare_write(std::uint32_t line, std::uint32_t words, MemoryPort& port) {
   const Surface& surface = surface_of(line);
+  if (!surface.encodes) return true;
   if (!is_open(line)) open_.push_back(line);
   if (!part_copies(surface, line, port)) return false;
   const bool whole = words == words_of(surface.layout);
@@ -95,7 +97,7 @@ std::uint8_t SurfaceEncoder::store(const L1Cache::Leaving& leaving) {
   const Surface& surface = surface_of(leaving.line);
   const std::uint8_t all = surface.layout.line_sectors();
   std::uint8_t stored = leaving.dirty;
-  if ((leaving.present & all) == all) {
+  if (surface.encodes && (leaving.present & all) == all) {
     stored = store_whole(surface, leaving);
   } else {
     QUADRILLE_CHECK(!lines().is_encoded(leaving.line), "a part of line {} leaves, which is encoded",

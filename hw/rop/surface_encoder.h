@@ -84,6 +84,7 @@ class SurfaceEncoder final : public L1Cache::Store {
   struct Surface {
     models::SurfaceLayout layout;
     models::LineCodec codec;
+    bool encodes = true;
     [[nodiscard]] std::uint32_t first_line() const {
       return static_cast<std::uint32_t>(layout.base / models::kLineBytes);
     }

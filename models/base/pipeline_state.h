@@ -147,6 +147,32 @@ struct BlendState {
   friend bool operator==(const BlendState&, const BlendState&) = default;
 };
 
+/// What lies behind is seen through: the source, straight or multiplied by its alpha, over the destination.
+[[nodiscard]] constexpr bool is_over(const BlendState& state) {
+  return state.enable &&
+         (state.src_color == BlendFactor::kSrcAlpha || state.src_color == BlendFactor::kOne) &&
+         state.dst_color == BlendFactor::kOneMinusSrcAlpha && state.src_alpha == BlendFactor::kOne &&
+         state.dst_alpha == BlendFactor::kOneMinusSrcAlpha && state.color == BlendOp::kAdd &&
+         state.alpha == BlendOp::kAdd && state.write_mask == 0xf;
+}
+
+/// How a pass keeps the fragments of its order-independent draws, which are put over its colours by their
+/// depths when it ends (models/rop/transparency.h).
+enum class Transparency : std::uint8_t {
+  kNone,
+  kAbuffer,  ///< all of them, a list a pixel
+  kKbuffer   ///< the nearest ones of each sample
+};
+/// Fragments that a pixel (or a sample, of a k-buffer) may hold.
+[[nodiscard]] constexpr int most_layers(Transparency mode) {
+  return mode == Transparency::kAbuffer ? 64 : mode == Transparency::kKbuffer ? 8 : 0;
+}
+struct TransparencyState {
+  Transparency mode = Transparency::kNone;
+  std::uint8_t layers = 0;  ///< 1..most_layers(mode)
+  friend bool operator==(const TransparencyState&, const TransparencyState&) = default;
+};
+
 /// Bits of the colour (s) and of what is stored (d). [VK1.3 #framebuffer-logicop]
 enum class LogicOp : std::uint8_t {
   kClear,

@@ -35,9 +35,8 @@ SurfaceLayout surface_layout(std::uint32_t width, std::uint32_t height, std::uin
 
 SurfaceLayout allocate_surface(DeviceMemory& memory, std::uint32_t width, std::uint32_t height,
                                std::uint32_t samples, std::uint32_t pixel_bytes) {
-  constexpr std::uint64_t kAlignment = 256;
   SurfaceLayout surface = surface_layout(width, height, samples, pixel_bytes);
-  surface.base = memory.allocate(surface.bytes(), kAlignment);
+  surface.base = memory.allocate(surface.bytes(), kSurfaceAlignment);
   return surface;
 }
 

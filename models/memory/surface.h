@@ -51,6 +51,8 @@ struct SurfaceLayout {
   }
 };
 
+inline constexpr std::uint64_t kSurfaceAlignment = 256;  ///< bytes
+
 /// Lays out a surface of width x height pixels (both at least 1) of 1, 2, 4 or 8 samples, from address 0 on.
 [[nodiscard]] SurfaceLayout surface_layout(std::uint32_t width, std::uint32_t height,
                                            std::uint32_t samples = 1, std::uint32_t pixel_bytes = 4);

@@ -2,6 +2,7 @@
 /// the reference.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <vector>
@@ -24,6 +25,13 @@ struct ColorTarget {
   std::vector<double> linear;
 };
 
+/// A fragment of an order-independent draw: its colour multiplied by its alpha.
+struct KeptFragment {
+  double depth = 0;
+  std::array<double, 4> color{};
+};
+using KeptFragments = std::vector<KeptFragment>;
+
 struct DrawState {
   const traces::CommandStream* stream = nullptr;
   std::vector<ColorTarget*> colors;              ///< of the pass, by attachment
@@ -31,6 +39,8 @@ struct DrawState {
   std::vector<std::uint8_t>* stencil = nullptr;  ///< beside `depth`
   traces::Format depth_format = traces::Format::kD32Float;
   std::uint32_t samples = 1;  ///< a pixel, of the pass
+  /// of a pass that keeps fragments: by place, as colours
+  std::vector<KeptFragments>* kept = nullptr;
   /// what earlier passes have drawn, with texels, for samplers
   const std::map<traces::Index, traces::Image>* drawn = nullptr;
   const traces::Pipeline* pipeline = nullptr;

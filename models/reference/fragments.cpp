@@ -7,6 +7,7 @@
 #include "models/reference/output.h"
 #include "models/reference/parallel.h"
 #include "models/reference/sample_tests.h"
+#include "models/reference/transparency.h"
 
 namespace quadrille::models::reference {
 namespace {
@@ -214,7 +215,7 @@ class BandWorker {
         for (std::size_t lane = 0; lane < kLanes; ++lane) alive[lane] &= kept_samples(static_cast<int>(lane));
     }
     if (late) alive = test_and_write_depth(t, quad, depth, alive);
-    write(t, quad, alive);
+    write(t, quad, alive, depth);
   }
 
   /// May a fragment lose samples when it has been shaded?
@@ -315,20 +316,21 @@ class BandWorker {
     }
   }
 
-  void write(const WindowTriangle& t, const Quad& quad, const Samples& alive) {
+  void write(const WindowTriangle& t, const Quad& quad, const Samples& alive, const Depths& depth) {
     if (program_ == nullptr) return;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       for (std::uint32_t s = 0; s < state_.samples; ++s) {
         if ((alive[lane] >> s & 1u) == 0) continue;
         const std::size_t at = pixel(quad, lane) * state_.samples + s;
         for (std::size_t color = 0; color < state_.colors.size(); ++color)
-          write_color(t, color, at, static_cast<int>(lane), quad.part[lane]);
+          write_color(t, color, at, static_cast<int>(lane), quad.part[lane], depth[lane][s]);
       }
     }
   }
 
   /// An attachment that the program has no output for keeps what it holds.
-  void write_color(const WindowTriangle& t, std::size_t color, std::size_t at, int lane, double part) {
+  void write_color(const WindowTriangle& t, std::size_t color, std::size_t at, int lane, double part,
+                   double depth) {
     const std::array<Slot, 4>& slots = color_slots_[color];
     const traces::BlendState& state = state_.pipeline->blend[color];
     if (state.write_mask == 0 || std::ranges::all_of(slots, [](Slot s) { return s == kNoSlot; })) return;
@@ -338,6 +340,10 @@ class BandWorker {
     for (std::size_t c = 0; c < 4; ++c) source[c] = output(slots[c]), second[c] = output(second_slots_[c]);
     source[3] *= part;
     ColorTarget& target = *state_.colors[color];
+    if (color == 0)
+      result_.triangle_id[at / state_.samples] = std::uint64_t{state_.number} << 32 | t.primitive;
+    if (state_.pipeline->order_independent)
+      return keep_fragment(state, target.format, depth, source, (*state_.kept)[at]);
     const auto linear = target.linear.begin() + static_cast<std::ptrdiff_t>(4 * at);
     StoredColor before{target.code[at], {}};
     std::copy_n(linear, 4, before.linear.begin());
@@ -345,8 +351,6 @@ class BandWorker {
         blend(state, state_.pipeline->blend_shared, target.format, source, second, before);
     target.code[at] = after.code;
     std::copy_n(after.linear.begin(), 4, linear);
-    if (color == 0)
-      result_.triangle_id[at / state_.samples] = std::uint64_t{state_.number} << 32 | t.primitive;
   }
 
   double bias_ = 0;  ///< of the triangle in work

@@ -11,6 +11,7 @@
 #include "models/reference/fragments.h"
 #include "models/reference/output.h"
 #include "models/reference/primitives.h"
+#include "models/reference/transparency.h"
 
 namespace quadrille::models::reference {
 namespace {
@@ -81,6 +82,8 @@ class Renderer {
     if (state_.depth != nullptr && pass.depth.load != traces::LoadOp::kLoad)
       state_.depth->assign(values, held_depth(stream_.images[pass.depth.image].format, clear_depth(pass)));
     note_stencil(pass, values);
+    state_.kept = &kept_;
+    if (pass.transparency.mode != traces::Transparency::kNone) kept_.resize(values);
     result_.triangle_id.assign(pixels, kNoTriangle);
     result_.depth_margin.assign(pixels, std::numeric_limits<float>::infinity());
     result_.alpha_margin.assign(pixels, std::numeric_limits<float>::infinity());
@@ -114,6 +117,7 @@ class Renderer {
 
   void execute(const traces::EndPass&) {
     if (!seen()) return;
+    if (begun_->transparency.mode != traces::Transparency::kNone) put_over(kept_, *state_.colors[0]);
     for (const traces::ColorAttachmentUse& use : begun_->colors) {
       keep(use.image, colors_[use.image].code);
       if (use.resolve == traces::kNone) continue;
@@ -271,6 +275,7 @@ class Renderer {
   std::map<traces::Index, ColorTarget> colors_;
   std::map<traces::Index, std::vector<double>> depths_;
   std::map<traces::Index, std::vector<std::uint8_t>> stencils_;
+  std::vector<KeptFragments> kept_;
   std::map<traces::Index, traces::Image> drawn_;
   std::map<traces::Index, ShaderProgram> programs_;
   Result result_;

@@ -61,6 +61,13 @@ const models::SurfaceLayout& DeviceResources::attachment(traces::Index image) {
   return *surface;
 }
 
+models::SurfaceLayout DeviceResources::surface(const models::SurfaceLayout& wanted) {
+  models::SurfaceLayout placed = wanted;
+  placed.base = memory_.allocate(wanted.bytes(), models::kSurfaceAlignment);
+  surface_bytes_ += placed.bytes();
+  return placed;
+}
+
 void DeviceResources::place_rest() {
   for (traces::Index i = 0; i < buffers_.size(); ++i) (void)buffer(i);
   for (traces::Index i = 0; i < textures_.size(); ++i) {

@@ -31,6 +31,8 @@ class DeviceResources {
   [[nodiscard]] const Texture& texture(traces::Index image);
   /// For a pass.
   [[nodiscard]] const models::SurfaceLayout& attachment(traces::Index image);
+  /// A surface that is no image of the stream.
+  [[nodiscard]] models::SurfaceLayout surface(const models::SurfaceLayout& wanted);
   /// Places buffers and textures that nobody asked for, behind all else, so that no address depends on it,
   /// and brings all texels. Throws `UserError`.
   void place_rest();

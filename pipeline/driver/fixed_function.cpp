@@ -84,6 +84,7 @@ void set_fixed_function(const FixedFunctionInputs& in, hw::DrawState& draw) {
   // Without an alpha there is nothing that could take samples away.
   draw.alpha_to_coverage = pipeline.alpha_to_coverage && (models::color_outputs(program) >> 3 & 1u) != 0;
   draw.sample_mask = pipeline.sample_mask;
+  draw.order_independent = pipeline.order_independent && draw.color_outputs != 0;
   draw.late_depth = draw.uses_depth() && !program.early_fragment_tests &&
                     (program.uses_discard || program.writes_depth || models::writes_buffers(program) ||
                      draw.limits_coverage());

@@ -4,6 +4,7 @@
 #include "pipeline/driver/attachment_lives.h"
 #include "pipeline/driver/device_resources.h"
 #include "pipeline/driver/fixed_function.h"
+#include "pipeline/driver/transparency.h"
 
 #include <algorithm>
 #include <bit>
@@ -77,6 +78,7 @@ class FrameBuilder {
     const bool attached = begun_->depth.image != kNone;
     out_.shown_has_depth = attached;
     pass.draws = static_cast<std::uint32_t>(out_.frame.draws.size()) - pass.first_draw.index();
+    place_transparency(begun_->transparency, out_.frame.draws_of(pass), resources_, pass);
     if (!attached) return;
     const bool tests =
         std::ranges::any_of(out_.frame.draws_of(pass), [](const hw::DrawState& d) { return d.uses_depth(); });

@@ -3,6 +3,7 @@
 #include "hw/frame/fragment_output.h"
 #include "hw/frame/indices.h"
 #include "hw/frame/invocations.h"
+#include "hw/frame/transparency.h"
 #include "hw/frame/varyings.h"
 #include "models/base/error.h"
 #include "models/geometry/post_transform.h"
@@ -48,7 +49,9 @@ class FunctionalRenderer {
     for (const hw::PassState& pass : frame_.passes) {
       for (std::size_t c = 0; c < pass.colors; ++c) begin(pass.color[c]);
       if (pass.has_depth) begin(pass.depth);
+      if (pass.transparency.on()) begin_transparency(pass);
       for (std::uint32_t d = 0; d < pass.draws; ++d) draw(hw::DrawId(pass.first_draw.index() + d));
+      if (pass.transparency.on()) compose(pass);
       for (std::size_t c = 0; c < pass.colors; ++c)
         if ((pass.resolved >> c & 1u) != 0) resolve(pass, c);
     }
@@ -62,6 +65,18 @@ class FunctionalRenderer {
 
   void begin(const hw::AttachmentState& attachment) {
     if (!attachment.loads()) models::fill_surface(memory_, attachment.surface, attachment.clear);
+  }
+
+  /// As the only partition.
+  void begin_transparency(const hw::PassState& pass) {
+    begin(pass.transparency.hidden);
+    if (pass.transparency.lists()) pool_ = hw::node_pool_of(pass, models::PartitionId(0), 1);
+  }
+
+  void compose(const hw::PassState& pass) {
+    const models::SurfaceLayout& surface = pass.transparency.hidden.surface;
+    for (std::uint32_t y = 0; y < surface.tiles_y; ++y)
+      for (std::uint32_t x = 0; x < surface.tiles_x; ++x) hw::compose_tile(pass, x, y, memory_);
   }
 
   void resolve(const hw::PassState& pass, std::size_t attachment) {
@@ -286,6 +301,10 @@ class FunctionalRenderer {
     hw::take_outputs(*draw_, outputs_, inputs_, warp_);
     counts_.fates.discarded += static_cast<std::uint64_t>(std::popcount(warp_.covered & ~warp_.alive));
     for (int q = 0; q < warp_.quads; ++q) write_quad(q);
+    if (draw_->order_independent && pass_->transparency.lists()) {
+      const hw::AppendPlan plan = hw::plan_append(*pass_, warp_, memory_);
+      hw::append_nodes(*draw_, *pass_, warp_, plan, pool_, memory_);
+    }
     warp_.quads = 0;
     warp_.covered = 0;
   }
@@ -301,6 +320,10 @@ class FunctionalRenderer {
       if (part.lanes == 0) continue;
       if (!draw_->counts_before_shading())
         count_samples(static_cast<std::uint64_t>(std::popcount(part.lanes)));
+      if (draw_->order_independent) {
+        if (!pass_->transparency.lists()) hw::put_layers(*draw_, *pass_, warp_, part, memory_);
+        continue;
+      }
       draw_->visit_colors(
           [&](std::size_t attachment) { hw::write_color(*draw_, *pass_, attachment, warp_, part, memory_); });
     }
@@ -338,6 +361,7 @@ class FunctionalRenderer {
   models::Warp engine_;
   models::WarpStorage storage_;
   models::TexturePlan plan_;
+  hw::NodePool pool_;
 };
 
 }  // namespace

@@ -42,6 +42,8 @@ constexpr std::array<Entry, 14> kEntries{{
      [](double) { return build_courtyard(); }},
     {{"overdraw", "sixteen translucent layers over the whole screen: blending and colour bandwidth"},
      [](double) { return build_overdraw(); }},
+    {{"glass", "twelve panes of coloured glass that cut through each other: sorting draws cannot be right"},
+     [](double) { return build_glass(); }},
     {{"fill",
       "eight untextured layers over the whole screen, without depth or blending: raw fill rate, and most "
       "units left out"},

@@ -35,6 +35,7 @@ struct BuiltinScene {
 [[nodiscard]] SceneData build_cubes();
 [[nodiscard]] SceneData build_outlines();
 [[nodiscard]] SceneData build_overdraw();
+[[nodiscard]] SceneData build_glass();
 [[nodiscard]] SceneData build_fill();
 [[nodiscard]] SceneData build_cycle();
 [[nodiscard]] SceneData build_materials();

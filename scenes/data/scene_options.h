@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include "models/base/format.h"
+#include "models/base/pipeline_state.h"
 
 namespace quadrille::scenes {
 
@@ -30,6 +31,10 @@ inline constexpr std::array<std::string_view, 5> kShadingNames{"minimal", "flat"
 /// How hidden surfaces go away: by the depth test, or by drawing from back to front.
 enum class DrawOrder : std::uint8_t { kFile, kPainter };
 inline constexpr std::array<std::string_view, 2> kDrawOrderNames{"file", "painter"};
+
+/// How see-through surfaces are put in order: whole draws by the centres of their boxes, or each pixel's
+/// fragments by their depths. The names are those of `models::Transparency`.
+inline constexpr std::array<std::string_view, 3> kTransparencyNames{"sorted", "abuffer", "kbuffer"};
 
 /// What of a frame the picture shows. The names are those of all but the first.
 enum class Showing : std::uint8_t { kColors, kDepth, kOverdraw, kUv, kNormal, kTriangle, kSamples };
@@ -72,6 +77,8 @@ struct SceneOptions {
   std::uint32_t samples = 1;         ///< a pixel, of which a picture of samples has its colours
   /// Masked materials without layers let their alpha say which samples stay, instead of a test.
   bool alpha_to_coverage = false;
+  /// of passes with see-through materials; kNone: sorted
+  models::TransparencyState transparency{};
   bool visibility = false;  ///< draw triangle ids instead of all that (see `triangle_id_color`)
   /// false: also unpack and record textures that no shader samples; all shaders are compiled from GLSL
   bool leave_out = true;

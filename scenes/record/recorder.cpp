@@ -109,6 +109,7 @@ traces::CommandStream Recorder::record() {
   const bool values = options_.visibility || shows_values(shaders_.set());
   const std::array<float, 4> clear = values ? std::array<float, 4>{0, 0, 0, options_.visibility ? 0.0F : 1.0F}
                                             : std::array<float, 4>{back.r, back.g, back.b, 1};
+  const std::size_t begin = stream_.commands.size();
   stream_.commands.emplace_back(traces::make_pass(
       stream_,
       {options_.width, options_.height, values ? traces::Format::kR8G8B8A8Unorm : options_.color_format,
@@ -123,6 +124,7 @@ traces::CommandStream Recorder::record() {
   else
     for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
   stream_.commands.emplace_back(traces::EndPass{});
+  keep_fragments(begin);
   add_second_pass();
   return std::move(stream_);
 }
@@ -137,13 +139,24 @@ void Recorder::add_second_pass() {
   post_shaders_ = 2;
 }
 
+bool Recorder::order_independent(const Material& material) const {
+  return options_.transparency.mode != traces::Transparency::kNone && material.see_through() &&
+         !draws_solid(options_, shaders_.set()) && models::is_over(blend_of(material, shaders_.set()));
+}
+
+void Recorder::keep_fragments(std::size_t begin) {
+  if (std::ranges::any_of(stream_.pipelines, &traces::Pipeline::order_independent))
+    std::get<traces::BeginPass>(stream_.commands[begin]).transparency = options_.transparency;
+}
+
 std::vector<std::size_t> Recorder::draw_order() const {
-  std::vector<std::size_t> order;
+  std::vector<std::size_t> order, independent;
   std::vector<std::pair<float, std::size_t>> blended;  // distance along the view direction, instance
   for (std::size_t i = 0; i < placed_.at.instances.size(); ++i) {
     const Primitive& primitive = scene_.primitives[placed_.at.instances[i].primitive];
-    if (!scene_.materials[static_cast<std::size_t>(primitive.material)].see_through()) {
-      order.push_back(i);
+    const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
+    if (!material.see_through() || order_independent(material)) {
+      (material.see_through() ? independent : order).push_back(i);
       continue;
     }
     const Bounds box = placed_.box(placed_.at.instances[i]);
@@ -151,6 +164,7 @@ std::vector<std::size_t> Recorder::draw_order() const {
   }
   std::ranges::stable_sort(blended, std::ranges::greater{}, &std::pair<float, std::size_t>::first);
   for (const auto& [distance, i] : blended) order.push_back(i);
+  order.insert(order.end(), independent.begin(), independent.end());
   return order;
 }
 
@@ -296,8 +310,9 @@ traces::Index Recorder::pipeline(const Primitive& primitive, const Material& mat
   p.alpha_to_coverage = options_.alpha_to_coverage && covers_by_alpha(material, shaders_.set());
   p.cull = material.double_sided ? traces::CullMode::kNone : traces::CullMode::kBack;
   p.front = g.mirrored ? traces::FrontFace::kClockwise : traces::FrontFace::kCounterClockwise;
-  p.depth = {has_depth(), has_depth() && (!blended || material.alpha != AlphaMode::kBlend),
-             traces::CompareOp::kLess};
+  p.order_independent = order_independent(material);
+  const bool writes_depth = !p.order_independent && (!blended || material.alpha != AlphaMode::kBlend);
+  p.depth = {has_depth(), has_depth() && writes_depth, traces::CompareOp::kLess};
   if (!solid) p.blend[0] = blend_of(material, shaders_.set());
   if (!p.blend[0].enable && p.line_mode == traces::LineMode::kSmooth) p.blend[0] = kOver;
   const auto found = std::ranges::find_if(

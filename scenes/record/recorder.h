@@ -101,8 +101,12 @@ class Recorder {
   /// What the host has posed: format and buffer by semantic; kNone: the mesh's own.
   using PosedStreams = std::array<std::pair<traces::Format, traces::Index>, kSemantics>;
 
+  /// Are its fragments put in order by their depths?
+  [[nodiscard]] bool order_independent(const Material& material) const;
+  /// Lets the pass that began at a command keep the fragments of its order-independent draws.
+  void keep_fragments(std::size_t begin);
   /// Indices into the scene's instances: opaque and masked ones in scene order, then blended ones back to
-  /// front.
+  /// front, then order-independent ones in scene order.
   [[nodiscard]] std::vector<std::size_t> draw_order() const;
   void record_arrays();
   void record_textures();

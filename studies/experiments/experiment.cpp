@@ -185,6 +185,16 @@ const Experiment kExperiments[] = {
      &blend_drift,
      {},
      "16x16"},
+    {"transparency",
+     "Order-independent transparency",
+     "Nothing is published to compare with: the ruler is the exact picture. An A-buffer must reach it, more "
+     "layers of a k-buffer must come nearer to it, and both must be nearer than sorted draws.",
+     "Panes of glass that cut through each other (`builtin:glass`), with 1 and 4 samples a pixel, on the "
+     "default machine: sorted by the centres of their boxes, by k-buffers of 1, 2, 4 and 8 layers, and by an "
+     "A-buffer.",
+     &transparency,
+     {},
+     "480x300"},
     {"units",
      "Every unit by itself",
      "Nothing is published to compare with: the ruler is arithmetic.",

@@ -112,5 +112,6 @@ class Readings {
 [[nodiscard]] Result raster(const Setting& setting);
 [[nodiscard]] Result depth_precision(const Setting& setting);
 [[nodiscard]] Result blend_drift(const Setting& setting);
+[[nodiscard]] Result transparency(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

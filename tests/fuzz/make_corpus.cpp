@@ -242,6 +242,8 @@ void write_traces(const Corpus& corpus, const std::string& scene) {
   corpus.write("trace/triangle.qtrace",
                traces::encode_trace(scenes::load_scene("builtin:triangle", options)));
   corpus.write("trace/rich.qtrace", traces::encode_trace(scenes::load_scene(scene, options)));
+  options.transparency = {traces::Transparency::kKbuffer, 3};
+  corpus.write("trace/kept.qtrace", traces::encode_trace(scenes::load_scene("builtin:glass", options)));
 }
 
 void write_images(const Corpus& corpus) {

@@ -129,3 +129,15 @@ TEST_CASE("passes: pipelines of a file from before shading by sample shade pixel
   CHECK(old.pipelines == now.pipelines);
   CHECK(functional_digest(old) == functional_digest(now));
 }
+
+TEST_CASE("passes: a trace file from before order-independent draws has none") {
+  const traces::CommandStream old =
+      traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_pipe_4.qtrace");
+  scenes::SceneOptions options;
+  options.width = 64;
+  options.height = 36;
+  const traces::CommandStream now = scenes::load_scene("builtin:triangle", options);
+  CHECK(old.pipelines == now.pipelines);
+  CHECK(old.commands == now.commands);
+  CHECK(functional_digest(old) == functional_digest(now));
+}

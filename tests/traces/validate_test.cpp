@@ -114,6 +114,58 @@ TEST_CASE("validate: primitives") {
   });
 }
 
+namespace {
+
+/// The small stream with its draw order-independent, as it has to be.
+CommandStream kept_stream() {
+  CommandStream s = small_stream();
+  Pipeline& p = s.pipelines[0];
+  using enum BlendFactor;
+  p.order_independent = true;
+  p.depth.write = false;
+  p.blend[0] = {true, kOne, kOneMinusSrcAlpha, kOne, kOneMinusSrcAlpha, BlendOp::kAdd, BlendOp::kAdd, 0xf};
+  command<BeginPass>(s, 0).transparency = {Transparency::kKbuffer, 8};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("validate: order-independent draws") {
+  CHECK(refusal(kept_stream()) == "accepted");
+  const std::vector<Defect> defects{
+      {"its blending is not one over the other",
+       [](auto& s) { s.pipelines[0].blend[0].dst_color = BlendFactor::kOne; }},
+      {"its blending is not one over the other", [](auto& s) { s.pipelines[0].blend[0].write_mask = 7; }},
+      {"its blending is not one over the other", [](auto& s) { s.pipelines[0].blend_shared.logic = true; }},
+      {"but it writes depths", [](auto& s) { s.pipelines[0].depth.write = true; }},
+      {"in a pass that keeps no fragments", [](auto& s) { command<BeginPass>(s, 0).transparency = {}; }},
+      {"command 0: 9 fragments a pixel are kept; 1..8",
+       [](auto& s) { command<BeginPass>(s, 0).transparency.layers = 9; }},
+      {"command 0: 0 fragments a pixel are kept; 1..64",
+       [](auto& s) {
+         command<BeginPass>(s, 0).transparency = {Transparency::kAbuffer, 0};
+       }},
+      {"command 0: 1 fragments a pixel are kept; 0..0",
+       [](auto& s) {
+         command<BeginPass>(s, 0).transparency = {Transparency::kNone, 1};
+       }},
+      {"behind an order-independent one",
+       [](auto& s) {
+         s.pipelines.push_back(s.pipelines[0]);
+         s.pipelines[1].order_independent = false;
+         const auto end = s.commands.end() - 1;
+         const Command draw = *(end - 1);
+         s.commands.insert(end, {Command(BindPipeline{1}), draw});
+       }},
+  };
+  for (const Defect& defect : defects) {
+    CommandStream stream = kept_stream();
+    defect.make(stream);
+    CAPTURE(defect.message);
+    REQUIRE_THAT(refusal(stream), Catch::Contains(defect.message));
+  }
+}
+
 TEST_CASE("validate: an index that ends a strip fetches nothing") {
   CommandStream stream = small_stream();
   stream.pipelines[0].topology = Topology::kLineStrip;

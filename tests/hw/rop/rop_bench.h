@@ -27,6 +27,7 @@ struct RopBench final : Bench {
     models::StoreOp store = models::StoreOp::kStore;
     models::Format format = models::Format::kR8G8B8A8Srgb;
     int half_blend_turns = 1, float_blend_turns = 1;
+    models::TransparencyState transparency{};
   };
   /// The target has two tiles; even warps write the upper half of the left one, odd warps two quads of each
   /// row of the right one.
@@ -52,6 +53,7 @@ struct RopBench final : Bench {
     pass.colors = s.colors;
     pass.samples = s.samples;
     draw.setup.samples = models::sample_grid(s.samples, 8);
+    if (s.transparency.mode != models::Transparency::kNone) keep_fragments(s, pass, draw);
     frame.passes = {pass};
     frame.draws = {draw};
     for (std::uint32_t i = 0; i < 4; ++i) fill(warps[WarpSlotId(i)], i, s);
@@ -76,6 +78,29 @@ struct RopBench final : Bench {
     });
     memory = &serve(unit->memory_port(), s.memory_latency);
   }
+  /// The draw is order-independent, and a pixel may have sixteen nodes of it.
+  void keep_fragments(const Setup& s, PassState& pass, DrawState& draw) {
+    draw.order_independent = true;
+    draw.blend[0] = {true,
+                     models::BlendFactor::kSrcAlpha,
+                     models::BlendFactor::kOneMinusSrcAlpha,
+                     models::BlendFactor::kOne,
+                     models::BlendFactor::kOneMinusSrcAlpha,
+                     models::BlendOp::kAdd,
+                     models::BlendOp::kAdd,
+                     0xf};
+    TransparencyPass& kept = pass.transparency;
+    kept.mode = s.transparency.mode;
+    kept.layers = s.transparency.layers;
+    for (AttachmentState* const state : {&kept.hidden, &kept.pool}) {
+      state->store = models::StoreOp::kDiscard;
+      state->read_later = state->encodes = false;
+    }
+    const auto planes = static_cast<std::uint32_t>(s.samples * kept.layers);
+    kept.hidden.surface = models::allocate_surface(
+        device, 16, 8, kept.lists() ? 1 : planes, kept.lists() ? models::kListHeadBytes : models::kNodeBytes);
+    kept.pool.surface = models::allocate_surface(device, 8, 8 * 2 * 16, 1, models::kNodeBytes);
+  }
   static void fill(WarpSlot& warp, std::uint32_t number, const Setup& s) {
     warp.quads = 8;
     warp.covered = ~0u;
@@ -91,6 +116,8 @@ struct RopBench final : Bench {
         warp.quad[q] = {0, static_cast<std::uint16_t>(8 + 4 * (i % 2)),
                         static_cast<std::uint16_t>(2 * (i / 2))};
     }
+    for (std::size_t lane = 0; lane < 32; ++lane)
+      warp.depth[lane] = static_cast<float>((3 * number + lane) % 5) / 5.0f;
     for (std::size_t c = 0; c < 4; ++c) {
       for (std::size_t lane = 0; lane < 32; ++lane)
         for (std::size_t color = 0; color < s.colors; ++color)
