@@ -25,7 +25,7 @@ struct Entry {
   RecordPasses record_passes = nullptr;  ///< its frames have passes of their own
 };
 
-constexpr std::array<Entry, 14> kEntries{{
+constexpr std::array<Entry, 15> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
