@@ -75,8 +75,8 @@ double linear(std::uint32_t pixel, int c) {
 
 glm::dvec3 linear(std::uint32_t pixel) { return {linear(pixel, 0), linear(pixel, 1), linear(pixel, 2)}; }
 
-/// Each layer of a field is stored as a code, and so is off by half a code: in linear colours, where codes lie
-/// furthest apart, by 0.0045.
+/// Each layer of a field is stored as a code, and so is off by half a code: in linear colours by 0.0045 where
+/// codes lie furthest apart.
 bool near(std::uint32_t pixel, const glm::dvec3& expected, int layers) {
   const glm::dvec3 off = glm::abs(linear(pixel) - glm::clamp(expected, 0.0, 1.0));
   return std::max({off.x, off.y, off.z}) <= 0.0045 * layers;
@@ -125,7 +125,7 @@ TEST_CASE("blends: the six ways of the lectures, at every pixel") {
   }
 }
 
-TEST_CASE("blends: over repeated, premultiplied and as a group; a group taken as straight is too dark") {
+TEST_CASE("blends: over repeated, premultiplied and as a group, and a group taken as straight is too dark") {
   const Picture card = functional_card();
   for (int field = BlendCard::kStraight; field <= BlendCard::kDividedGroup; ++field) {
     INFO(BlendCard::name(field));
@@ -157,7 +157,7 @@ TEST_CASE("blends: filtered colours that were not multiplied by alpha leave a da
     CHECK(darker(straight) > 20);
     CHECK(darker(straight + 1) == 0);
   }
-  // Far away the leaf is one colour of the leaf's mean alpha over the background: a closed form. Straight, its
+  // Far away the leaf is one colour, of its mean alpha, over the background: a closed form. Straight, its
   // colour is multiplied by that alpha once more.
   double alpha = 0;
   for (std::uint32_t y = 0; y < BlendCard::kMaskSide; ++y)
