@@ -114,7 +114,8 @@ traces::CommandStream Scene::record(const Moment& moment) {
   SceneData& scene = parts_->file ? parts_->file->data() : made;
   scene.name = parts_->name;
   const RecordPasses passes = parts_->file ? nullptr : builtin_passes(parts_->builtin);
-  if (passes != nullptr && !options.visibility) {  // which triangle is seen, a single pass tells
+  // Which triangle is seen, a single pass tells, of a scene that has some.
+  if (passes != nullptr && (!options.visibility || scene.instances.empty())) {
     traces::CommandStream stream = passes(scene, options);
     traces::validate(stream);
     return stream;

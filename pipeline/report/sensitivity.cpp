@@ -17,11 +17,11 @@ namespace {
 constexpr double kNorm = 48;
 /// A slice whose bounds reach so far is all theirs, and one whose bounds reach less is all waiting; between
 /// them it is shared. Where places are full, somebody waits for one, and the bounds of units have to reach
-/// further; a link's own bound counts its places. [M: the same]
+/// further; a link's own bound counts its places and need not reach so far. [M: the same]
 struct Reach {
   double waiting, work;
 };
-constexpr Reach kReach{0.5, 0.9}, kReachWithFullPlaces{0.6, 1};
+constexpr Reach kReach{0.5, 0.9}, kReachWithFullPlaces{0.6, 1}, kReachOfLink{0.35, 0.75};
 /// A data bus that is held much while nobody waits for memory is no limit to the same degree: writes are left
 /// to it, and who reads has enough under way. It counts for so much where no places of what is under way to
 /// memory are full for this part of a slice, unless the data alone take most of the slice. [M: the same]
@@ -217,7 +217,7 @@ void add_slice(const Slices& slices, std::size_t s, std::map<std::string, double
                double& waiting_cycles) {
   const SliceBounds bounds = bounds_of(slices, s);
   const std::string_view full = full_places(slices, s);
-  const Reach& between = full.empty() || bounds.link ? kReach : kReachWithFullPlaces;
+  const Reach& between = bounds.link ? kReachOfLink : full.empty() ? kReach : kReachWithFullPlaces;
   const double work =
       std::clamp((bounds.reach - between.waiting) / (between.work - between.waiting), 0.0, 1.0);
   const double waiting = slices.length(s) * (1 - work);

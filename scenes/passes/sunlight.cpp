@@ -104,6 +104,7 @@ void refuse_other_pictures(const SceneData& scene, const SceneOptions& options) 
   const auto refuse = [&](const char* what) {
     throw user_error("{}: draws passes of its own; {} is not for it", scene.name, what);
   };
+  if (options.visibility) refuse("a picture of its triangles");
   if (options.shading != Shading::kPbr) refuse("--shading");
   if (options.order != DrawOrder::kFile) refuse("--order");
   if (options.transparency.mode != models::Transparency::kNone) refuse("--transparency");
