@@ -46,7 +46,7 @@ TEST_CASE("machine: built-in scenes equal the reference in given mode") {
   for (const char* scene :
        {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines", "builtin:shadow",
         "builtin:deferred", "builtin:overdraw", "builtin:fill", "builtin:cycle", "builtin:flag",
-        "builtin:courtyard", "builtin:materials", "builtin:primitives", "builtin:blends", "builtin:glass"})
+        "builtin:courtyard", "builtin:materials", "builtin:primitives", "builtin:glass"})
     check_scene(scene);
 }
 

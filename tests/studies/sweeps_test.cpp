@@ -38,10 +38,10 @@ TEST_CASE("sweeps: every parameter does something, and what it declares", "[slow
   }
 }
 
-/// Falls short of the 95 % that the page asks for (docs/limit.md); it shall not fall further.
-TEST_CASE("sweeps: the first doubling named is the best or near it in four frames of five", "[slow]") {
+/// The gains fall short of the 95 % that the page asks for (docs/limit.md); they shall not fall further.
+TEST_CASE("sweeps: the first doubling named is the best or near it in nine frames of ten", "[slow]") {
   const Result result = run("limits", {"builtin:cubes", "builtin:flag", "builtin:overdraw"}, 96, 54);
   INFO(result.verdicts[0].what << " " << result.verdicts[0].value);
-  CHECK(result.verdicts[0].value >= 0.8);
-  CHECK(result.verdicts[1].value >= 0.35);
+  CHECK(result.verdicts[0].value >= 0.9);
+  CHECK(result.verdicts[1].value >= 0.6);
 }
