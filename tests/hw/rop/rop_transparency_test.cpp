@@ -71,7 +71,7 @@ TEST_CASE("rop: what is kept is composed when the pass ends, and counted") {
 
 TEST_CASE("rop: composing takes the turns of its nodes and colours") {
   // A tile has eight quads with nodes of one sample. Each takes two turns for its colours and four a level.
-  const auto took = [](RopBench::Setup s) {
+  const auto took = [](const RopBench::Setup& s) {
     return run<RopBench>(s, [](const RopBench& b) { return fmt::format("{}", end_of(b)); });
   };
   const int plain = std::stoi(took(kept_pass(models::Transparency::kNone, 0)));

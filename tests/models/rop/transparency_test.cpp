@@ -55,6 +55,7 @@ std::array<float, 4> composed(std::vector<TransparencyNode> nodes, const std::ar
 
 std::vector<TransparencyNode> random_nodes(RandomSource& random, int count) {
   std::vector<TransparencyNode> nodes;
+  nodes.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     nodes.push_back(node({random.real(0, 1), random.real(0, 1), random.real(0, 1), random.real(0, 1)},
                          static_cast<float>(i + 1) / 64));
