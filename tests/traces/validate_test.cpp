@@ -52,7 +52,7 @@ TEST_CASE("validate: queries") {
                      {"stages", QueryType::kPipelineStatistics, kAllStatistics, 1}};
   };
   // Commands put before the one of that number.
-  const auto with = [&](std::vector<std::pair<std::size_t, Command>> added) {
+  const auto with = [&](const std::vector<std::pair<std::size_t, Command>>& added) {
     return [=](CommandStream& s) {
       pools(s);
       for (const auto& [at, c] : added) s.commands.insert(s.commands.begin() + static_cast<int>(at), c);
