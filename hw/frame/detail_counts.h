@@ -8,8 +8,7 @@
 
 namespace quadrille::hw {
 
-/// What is counted by draw. Those from `kVerticesFetched` on only serve the laws
-/// and queries.
+/// What is counted by draw. Those from `kVerticesFetched` on only serve laws and queries.
 enum class DrawCount : std::uint8_t {
   kTrianglesIn,
   kTrianglesDrawn,

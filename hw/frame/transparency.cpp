@@ -41,7 +41,7 @@ std::uint64_t entry_address(const PassState& pass, std::uint32_t tile_x, std::ui
          models::kNodeBytes * static_cast<std::uint64_t>(pixel);
 }
 
-/// Nodes of a pixel, nearest first.
+/// Nodes of a pixel: those of layers nearest first, those of a list newest first until they are sorted.
 class PixelNodes {
  public:
   void take_list(const PassState& pass, std::uint32_t tile_x, std::uint32_t tile_y, int pixel,
@@ -50,8 +50,8 @@ class PixelNodes {
     for (std::uint32_t at = head_at(pass, tile_x, tile_y, pixel, memory).first; at != 0;
          at = node_[count_ - 1].next)
       node_[count_++] = node_at(pass, at, memory);
-    models::sort_nodes(std::span(node_).first(count_));
   }
+  void sort() { models::sort_nodes(std::span(node_).first(count_)); }
   void take_layers(const PassState& pass, std::uint32_t tile_x, std::uint32_t tile_y, int sample, int pixel,
                    const models::DeviceMemory& memory) {
     for (count_ = 0; count_ < static_cast<std::size_t>(pass.transparency.layers); ++count_) {
@@ -67,9 +67,10 @@ class PixelNodes {
   std::size_t count_ = 0;
 };
 
-/// Calls `visit(quad, nodes of its four pixels)` for each quad of a tile that has nodes; of a k-buffer, of
-/// one sample.
-template <class Visit>
+enum class NodeOrder : std::uint8_t { kAsKept, kByDepth };
+
+/// Calls `visit(quad, nodes of its four pixels)` for each quad of a tile; of a k-buffer, of one sample.
+template <NodeOrder order, class Visit>
 void visit_quads(const PassState& pass, std::uint32_t tile_x, std::uint32_t tile_y, int sample,
                  const models::DeviceMemory& memory, const Visit& visit) {
   std::array<PixelNodes, 4> pixels;
@@ -77,9 +78,9 @@ void visit_quads(const PassState& pass, std::uint32_t tile_x, std::uint32_t tile
     std::array<std::span<const TransparencyNode>, 4> nodes;
     for (std::size_t i = 0; i < 4; ++i) {
       const int pixel = 4 * q + static_cast<int>(i);
-      if (pass.transparency.mode == Transparency::kAbuffer)
-        pixels[i].take_list(pass, tile_x, tile_y, pixel, memory);
+      if (pass.transparency.lists()) pixels[i].take_list(pass, tile_x, tile_y, pixel, memory);
       else pixels[i].take_layers(pass, tile_x, tile_y, sample, pixel, memory);
+      if (order == NodeOrder::kByDepth && pass.transparency.lists()) pixels[i].sort();
       nodes[i] = pixels[i].all();
     }
     visit(q, nodes);
@@ -181,9 +182,8 @@ void append_nodes(const DrawState& draw, const PassState& pass, const WarpSlot& 
 TileNodes tile_nodes(const PassState& pass, std::uint32_t tile_x, std::uint32_t tile_y,
                      const models::DeviceMemory& memory) {
   TileNodes tile;
-  const bool lists = pass.transparency.mode == Transparency::kAbuffer;
-  for (int s = 0; s < (lists ? 1 : pass.samples); ++s) {
-    visit_quads(pass, tile_x, tile_y, s, memory, [&](int q, const auto& nodes) {
+  for (int s = 0; s < (pass.transparency.lists() ? 1 : pass.samples); ++s) {
+    visit_quads<NodeOrder::kAsKept>(pass, tile_x, tile_y, s, memory, [&](int q, const auto& nodes) {
       for (std::size_t i = 0; i < 4; ++i) {
         const std::size_t pixel = 4 * static_cast<std::size_t>(q) + i;
         tile.nodes += nodes[i].size();
@@ -209,15 +209,15 @@ void compose_tile(const PassState& pass, std::uint32_t tile_x, std::uint32_t til
     models::compose_quad(color.format, nodes, sample, tile + quad_bytes * static_cast<std::size_t>(q));
   };
   const auto samples = static_cast<std::uint32_t>(pass.samples);
-  if (pass.transparency.mode == Transparency::kAbuffer) {
-    visit_quads(pass, tile_x, tile_y, 0, memory, [&](int q, const auto& nodes) {
+  if (pass.transparency.lists()) {
+    visit_quads<NodeOrder::kByDepth>(pass, tile_x, tile_y, 0, memory, [&](int q, const auto& nodes) {
       for (std::uint32_t s = 0; s < samples; ++s) compose(q, nodes, s);
     });
     return;
   }
   for (std::uint32_t s = 0; s < samples; ++s)
-    visit_quads(pass, tile_x, tile_y, static_cast<int>(s), memory,
-                [&](int q, const auto& nodes) { compose(q, nodes, s); });
+    visit_quads<NodeOrder::kByDepth>(pass, tile_x, tile_y, static_cast<int>(s), memory,
+                                     [&](int q, const auto& nodes) { compose(q, nodes, s); });
 }
 
 }  // namespace quadrille::hw

@@ -25,7 +25,8 @@ bool TransparencyBuffer::claim(const WarpSlot& warp, int samples) {
                         port_))
         return false;
   if (!transparency.lists()) return true;
-  const std::uint32_t end = pool_.next + plan_append(*pass_, warp, memory_).nodes;
+  plan_ = plan_append(*pass_, warp, memory_);
+  const std::uint32_t end = pool_.next + plan_.nodes;
   for (std::uint32_t node = pool_.next; node < end;) {
     const std::uint32_t first = node % models::kTilePixels;
     const std::uint32_t count = std::min(models::kTilePixels - first, end - node);
@@ -37,10 +38,9 @@ bool TransparencyBuffer::claim(const WarpSlot& warp, int samples) {
 
 int TransparencyBuffer::put(const DrawState& draw, const WarpSlot& warp) {
   if (!pass_->transparency.lists()) return put_layers_of(draw, warp);
-  const AppendPlan plan = plan_append(*pass_, warp, memory_);
-  append_nodes(draw, *pass_, warp, plan, pool_, memory_);
-  stats_.nodes += plan.counts.offered;
-  stats_.lost += plan.counts.overflowed;
+  append_nodes(draw, *pass_, warp, plan_, pool_, memory_);
+  stats_.nodes += plan_.counts.offered;
+  stats_.lost += plan_.counts.overflowed;
   int quads = 0;
   for (int q = 0; q < warp.quads; ++q) quads += warp.lanes_of(q) != 0 ? 1 : 0;
   return quads * (2 * kHeadTurns + kNodeTurns);

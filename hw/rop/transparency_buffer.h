@@ -50,7 +50,8 @@ class TransparencyBuffer {
   }
   /// Takes the places of all that a warp writes; false when there is none now.
   bool claim(const WarpSlot& warp, int samples);
-  /// Puts the warp's fragments in, after `claim`. Returns what that takes, in turns of a quad.
+  /// Keeps the fragments of the warp that `claim` has just taken places for. Returns what that takes, in
+  /// turns of a quad.
   int put(const DrawState& draw, const WarpSlot& warp);
 
   [[nodiscard]] const PassState& pass() const { return *pass_; }
@@ -82,6 +83,7 @@ class TransparencyBuffer {
   const PassState* pass_ = nullptr;
   std::size_t hidden_ = 0, pool_surface_ = 0;  ///< numbers in the cache
   NodePool pool_;
+  AppendPlan plan_;  ///< of the warp that was claimed last
 };
 
 }  // namespace quadrille::hw

@@ -14,15 +14,14 @@ struct Ramp {
   float left = 1, right = 1;
 };
 
-inline constexpr Ramp kBackground{{0.9F, 0.75F, 0.2F}, {0.25F, 0.6F, 0.85F}, 1, 1};
-/// What the first row mixes with it.
-inline constexpr Ramp kSource{{0.8F, 0.15F, 0.2F}, {0.3F, 0.5F, 0.1F}, 0, 1};
-/// The two layers of the second row.
-inline constexpr Ramp kLower{{0.1F, 0.7F, 0.3F}, {0.7F, 0.1F, 0.6F}, 0.1F, 0.9F};
-inline constexpr Ramp kUpper{{0.9F, 0.2F, 0.1F}, {0.2F, 0.3F, 0.9F}, 0.8F, 0.2F};
-
 class BlendCard {
  public:
+  static constexpr Ramp kBackground{{0.9F, 0.75F, 0.2F}, {0.25F, 0.6F, 0.85F}, 1, 1};
+  /// What the first row mixes with it.
+  static constexpr Ramp kSource{{0.8F, 0.15F, 0.2F}, {0.3F, 0.5F, 0.1F}, 0, 1};
+  /// The two layers of the second row.
+  static constexpr Ramp kLower{{0.1F, 0.7F, 0.3F}, {0.7F, 0.1F, 0.6F}, 0.1F, 0.9F};
+  static constexpr Ramp kUpper{{0.9F, 0.2F, 0.1F}, {0.2F, 0.3F, 0.9F}, 0.8F, 0.2F};
   static constexpr int kColumns = 6, kRows = 3;
   /// Fields of the second row; those of the first are the six ways of the lectures.
   static constexpr int kStraight = 6, kPremultiplied = 7, kStraightGroup = 8, kPremultipliedGroup = 9,
@@ -31,7 +30,7 @@ class BlendCard {
   static constexpr int kMasks = 12;
   static constexpr std::uint32_t kMaskSide = 32, kMaskLevels = 6;
 
-  /// On a picture of so many pixels, of which at least one is in every field.
+  /// On a picture of so many pixels, at least a column and row for each field.
   BlendCard(std::uint32_t width, std::uint32_t height);
   struct Place {
     int x = 0, y = 0;

@@ -13,6 +13,7 @@
 
 #include <glm/packing.hpp>
 
+#include "models/base/error.h"
 #include "scenes/passes/blend_card.h"
 #include "scenes/passes/pass_recorder.h"
 #include "scenes/passes/passes.h"
@@ -84,7 +85,7 @@ class Card {
          {glm::vec4(0, 0, 0, premultiplied ? 1 : 0), glm::vec4(ramp.top, ramp.left),
           glm::vec4(ramp.bottom, ramp.right)});
   }
-  void background(int field) { ramp(field, kBackground, {}); }
+  void background(int field) { ramp(field, BlendCard::kBackground, {}); }
   /// What an earlier pass drew in the same place; `divided` by its alpha.
   void group(int field, traces::Index image, const BlendState& state, bool divided = false) {
     draw(field, group_, state, image, {glm::vec4(0, 0, 0, divided ? 1 : 0)});
@@ -130,22 +131,22 @@ void draw_ways(Card& card) {
   for (int field = 0; field < 6; ++field) {
     const auto& [state, premultiplied] = ways[static_cast<std::size_t>(field)];
     card.background(field);
-    card.ramp(field, kSource, state, premultiplied);
+    card.ramp(field, BlendCard::kSource, state, premultiplied);
   }
 }
 
 /// Two layers, the lower one first, on whatever is there.
 void two_layers(Card& card, int field, const BlendState& state, bool premultiplied) {
-  card.ramp(field, kLower, state, premultiplied);
-  card.ramp(field, kUpper, state, premultiplied);
+  card.ramp(field, BlendCard::kLower, state, premultiplied);
+  card.ramp(field, BlendCard::kUpper, state, premultiplied);
 }
 
 void draw_groups(Card& card) {
   two_layers(card, BlendCard::kStraightGroup, straight_over(), false);
   two_layers(card, BlendCard::kPremultipliedGroup, premultiplied_over(), true);
   two_layers(card, BlendCard::kDividedGroup, premultiplied_over(), true);
-  card.ramp(BlendCard::kFrontToBack, kUpper, premultiplied_under(), true);
-  card.ramp(BlendCard::kFrontToBack, kLower, premultiplied_under(), true);
+  card.ramp(BlendCard::kFrontToBack, BlendCard::kUpper, premultiplied_under(), true);
+  card.ramp(BlendCard::kFrontToBack, BlendCard::kLower, premultiplied_under(), true);
 }
 
 void draw_layers(Card& card, traces::Index groups) {
@@ -276,6 +277,9 @@ glm::vec4 BlendCard::mask_texel(std::uint32_t x, std::uint32_t y, bool premultip
 
 traces::CommandStream record_blends(const SceneData& scene, const SceneOptions& options) {
   refuse_other_pictures(scene, options);
+  if (std::cmp_less(options.width, BlendCard::kColumns) || std::cmp_less(options.height, BlendCard::kRows))
+    throw user_error("{}: {}x{} pixels do not hold its fields; it needs at least {}x{}", scene.name,
+                     options.width, options.height, BlendCard::kColumns, BlendCard::kRows);
   PassRecorder recorder(scene, options);
   recorder.set_frame({});
   const BlendCard places(options.width, options.height);

@@ -62,7 +62,7 @@ glm::dvec3 way(int field, const Layer& source, const glm::dvec3& target) {
 }
 
 glm::dvec3 two_layers(int field, glm::dvec2 at, const glm::dvec3& target) {
-  const Layer lower = layer(kLower, at), upper = layer(kUpper, at);
+  const Layer lower = layer(BlendCard::kLower, at), upper = layer(BlendCard::kUpper, at);
   if (field != BlendCard::kStraightGroup) return over(upper, over(lower, target));
   // The group's colours are multiplied by its alpha, which a straight *over* does once more.
   const double alpha = upper.alpha + (1 - upper.alpha) * lower.alpha;
@@ -118,7 +118,8 @@ TEST_CASE("blends: the six ways of the lectures, at every pixel") {
     INFO(BlendCard::name(field));
     int wrong = 0;
     card.visit(field, [&](std::uint32_t pixel, glm::dvec2 at) {
-      const glm::dvec3 expected = way(field, layer(kSource, at), layer(kBackground, at).color);
+      const glm::dvec3 expected =
+          way(field, layer(BlendCard::kSource, at), layer(BlendCard::kBackground, at).color);
       wrong += near(pixel, expected, 2) ? 0 : 1;
     });
     CHECK(wrong == 0);
@@ -131,7 +132,7 @@ TEST_CASE("blends: over repeated, premultiplied and as a group, and a group take
     INFO(BlendCard::name(field));
     int wrong = 0;
     card.visit(field, [&](std::uint32_t pixel, glm::dvec2 at) {
-      wrong += near(pixel, two_layers(field, at, layer(kBackground, at).color), 3) ? 0 : 1;
+      wrong += near(pixel, two_layers(field, at, layer(BlendCard::kBackground, at).color), 3) ? 0 : 1;
     });
     CHECK(wrong == 0);
   }
@@ -146,7 +147,7 @@ TEST_CASE("blends: filtered colours that were not multiplied by alpha leave a da
   const auto darker = [&](int field) {
     int count = 0;
     card.visit(field, [&](std::uint32_t pixel, glm::dvec2 at) {
-      const glm::dvec3 back = layer(kBackground, at).color;
+      const glm::dvec3 back = layer(BlendCard::kBackground, at).color;
       const glm::dvec3 least = glm::min(leaf, back) - 0.015;
       count += glm::any(glm::lessThan(linear(pixel), least)) ? 1 : 0;
     });
@@ -164,7 +165,8 @@ TEST_CASE("blends: filtered colours that were not multiplied by alpha leave a da
     for (std::uint32_t x = 0; x < BlendCard::kMaskSide; ++x)
       alpha += static_cast<double>(BlendCard::mask_texel(x, y, false).a);
   alpha /= double{BlendCard::kMaskSide} * BlendCard::kMaskSide;
-  const glm::dvec3 back = 0.5 * (glm::dvec3(kBackground.top) + glm::dvec3(kBackground.bottom));
+  const glm::dvec3 back =
+      0.5 * (glm::dvec3(BlendCard::kBackground.top) + glm::dvec3(BlendCard::kBackground.bottom));
   for (int c = 0; c < 3; ++c) {
     CHECK(card.mean(BlendCard::kMasks + 5)[c] ==
           Approx(alpha * leaf[c] + (1 - alpha) * back[c]).margin(0.02));
@@ -190,6 +192,9 @@ TEST_CASE("blends: a picture of few pixels has a pixel of every field, and other
   CHECK(tiny.side() == 1);
   CHECK(tiny.place(17).x == 5);
   CHECK(tiny.place(17).y == 2);
+  SceneOptions small = options();
+  small.width = 5;
+  CHECK_THROWS_AS(load_scene("builtin:blends", small), UserError);
   SceneOptions other = options();
   other.shading = Shading::kFlat;
   CHECK_THROWS_AS(load_scene("builtin:blends", other), UserError);

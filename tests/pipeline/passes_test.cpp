@@ -29,6 +29,20 @@ std::string refusal(const traces::CommandStream& stream) {
   } catch (const UserError& error) { return error.what(); }
 }
 
+/// A trace file that an earlier version of the program wrote.
+traces::CommandStream kept_file(const std::string& name) {
+  return traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/" + name + ".qtrace");
+}
+/// What such a file recorded, as it is recorded today.
+traces::CommandStream triangle(std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+  scenes::SceneOptions options;
+  options.width = width;
+  options.height = height;
+  traces::CommandStream stream = scenes::load_scene("builtin:triangle", options);
+  traces::use_samples(stream, samples);
+  return stream;
+}
+
 }  // namespace
 
 TEST_CASE("passes: thirty random machines give the pixels of the functional rendering, and keep all laws") {
@@ -97,46 +111,24 @@ TEST_CASE("passes: a stream of several passes survives its trace file") {
 }
 
 TEST_CASE("passes: a trace file of version 1, with its table of targets, draws what its scene draws today") {
-  const traces::CommandStream old =
-      traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_version_1.qtrace");
-  scenes::SceneOptions options;
-  options.width = 64;
-  options.height = 36;
-  const traces::CommandStream now = scenes::load_scene("builtin:triangle", options);
+  const traces::CommandStream old = kept_file("triangle_version_1"), now = triangle(64, 36, 1);
   CHECK(functional_digest(old) == functional_digest(now));
   CHECK(traces::decode_trace(traces::encode_trace(old), "t") == old);
 }
 
 TEST_CASE("passes: a file from before queries draws what its scene draws today") {
-  const traces::CommandStream old =
-      traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_cmds_4.qtrace");
-  scenes::SceneOptions options;
-  options.width = 24;
-  options.height = 16;
-  traces::CommandStream now = scenes::load_scene("builtin:triangle", options);
-  traces::use_samples(now, 2);
+  const traces::CommandStream old = kept_file("triangle_cmds_4"), now = triangle(24, 16, 2);
   CHECK(old == now);
 }
 
 TEST_CASE("passes: pipelines of a file from before shading by sample shade pixels and mask nothing") {
-  const traces::CommandStream old =
-      traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_samples_pipe_3.qtrace");
-  scenes::SceneOptions options;
-  options.width = 64;
-  options.height = 36;
-  traces::CommandStream now = scenes::load_scene("builtin:triangle", options);
-  traces::use_samples(now, 4);
+  const traces::CommandStream old = kept_file("triangle_samples_pipe_3"), now = triangle(64, 36, 4);
   CHECK(old.pipelines == now.pipelines);
   CHECK(functional_digest(old) == functional_digest(now));
 }
 
 TEST_CASE("passes: a trace file from before order-independent draws has none") {
-  const traces::CommandStream old =
-      traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/triangle_pipe_4.qtrace");
-  scenes::SceneOptions options;
-  options.width = 64;
-  options.height = 36;
-  const traces::CommandStream now = scenes::load_scene("builtin:triangle", options);
+  const traces::CommandStream old = kept_file("triangle_pipe_4"), now = triangle(64, 36, 1);
   CHECK(old.pipelines == now.pipelines);
   CHECK(old.commands == now.commands);
   CHECK(functional_digest(old) == functional_digest(now));

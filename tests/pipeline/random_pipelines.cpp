@@ -1,7 +1,7 @@
 #include "tests/pipeline/random_pipelines.h"
 
 #include "scenes/material/glsl.h"
-#include "tests/pipeline/random_source.h"
+#include "tests/pipeline/random_states.h"
 
 #include <algorithm>
 #include <array>
@@ -127,15 +127,6 @@ class Maker {
   /// Few values, so that depths are often equal, and none in the middle between two of a format's.
   float depth_value() { return static_cast<float>(random_.integer(1, 5)) / 8.0f + 1.0f / 1024; }
 
-  traces::StencilFace face() {
-    const auto op = [&] { return static_cast<traces::StencilOp>(random_.integer(0, 7)); };
-    const auto mask = [&] {
-      return static_cast<std::uint8_t>(random_.chance(0.7) ? 0xff : random_.integer(0, 255));
-    };
-    return {static_cast<traces::CompareOp>(random_.integer(0, 7)), op(), op(), op(), mask(), mask(),
-            static_cast<std::uint8_t>(random_.integer(0, 4))};
-  }
-
   traces::BlendState blend(bool second_source) {
     traces::BlendState b;
     const int last =
@@ -169,7 +160,7 @@ class Maker {
     p.depth = {random_.chance(0.7), random_.chance(0.7),
                static_cast<traces::CompareOp>(random_.integer(0, 7))};
     if (random_.chance(0.5)) p.depth.compare = traces::CompareOp::kLessOrEqual;
-    p.stencil = {random_.chance(0.5), face(), face()};
+    p.stencil = {random_.chance(0.5), random_stencil_face(random_), random_stencil_face(random_)};
     if (options_.depth_bounds) p.depth_bounds = {random_.chance(0.2), 0.2f, 0.6f};
     if (random_.chance(0.2)) p.depth_bias = {true, static_cast<float>(random_.integer(-3000, 3000)), 0.5f, 0};
     if (p.depth_bias.enable && random_.chance(0.3)) p.depth_bias.clamp = random_.chance(0.5) ? 0.01f : -0.01f;

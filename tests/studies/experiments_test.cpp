@@ -184,3 +184,9 @@ TEST_CASE("experiments: ten thousand blended layers drift no further than roundi
   CHECK(result.verdicts.size() == 4);
   check_holds(result.verdicts);
 }
+
+TEST_CASE("experiments: order-independent transparency reaches the exact picture", "[slow]") {
+  const Result result = transparency(sized(160, 100));
+  CHECK(result.verdicts.size() == 20);
+  check_holds(result.verdicts);
+}
