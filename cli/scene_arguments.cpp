@@ -191,7 +191,7 @@ void SceneArguments::add_formats_to(CLI::App& command) {
   command
       .add_option("--color-format", color_format,
                   "what a pixel of the scene's colour attachments is stored as (default: R8G8B8A8_SRGB)")
-      ->check(CLI::IsMember(format_names(models::kColorUse)));
+      ->check(CLI::IsMember(format_names(models::kBlendUse)));
   command.add_option("--depth-format", depth_format, "what its depths are stored as (default: D32_SFLOAT)")
       ->check(CLI::IsMember(format_names(models::kDepthUse)));
 }
@@ -303,7 +303,7 @@ scenes::SceneOptions SceneArguments::options() const {
   if (view && shading) throw user_error("--view: not together with --shading; it shows no shading");
   if (view && color_format)
     throw user_error("--color-format: not together with --view, whose values have a format of their own");
-  if (color_format) options.color_format = format_named(*color_format, models::kColorUse);
+  if (color_format) options.color_format = format_named(*color_format, models::kBlendUse);
   if (depth_format) options.depth_format = format_named(*depth_format, models::kDepthUse);
   options.leave_out = leave_out;
   options.keep_packed = keep_packed;

@@ -48,6 +48,8 @@ using models::kMaxColorAttachments;
 using models::LineMode;
 using models::LoadOp;
 using models::LogicOp;
+using models::number_kind;
+using models::NumberKind;
 using models::PolygonMode;
 using models::ShaderStage;
 using models::StencilFace;
@@ -187,6 +189,8 @@ struct AttachmentUse {
 };
 struct ColorAttachmentUse : AttachmentUse {
   std::array<float, 4> clear{0, 0, 0, 1};  ///< linear values
+  /// In place of `clear` where the format holds integers: their bits, which it has to be able to hold.
+  std::array<std::uint32_t, 4> clear_integers{0, 0, 0, 1};
   /// An image of one sample and the same format: holds the means of the samples when the pass ends.
   Index resolve = kNone;
   friend bool operator==(const ColorAttachmentUse&, const ColorAttachmentUse&) = default;

@@ -140,6 +140,7 @@ void fields(A& a, BeginPass& v) {
     transfer(a, static_cast<AttachmentUse&>(color));
     numbers(a, color.clear);
     if (a.version() >= 3) numbers(a, color.resolve);
+    if (a.version() >= 6) numbers(a, color.clear_integers);
   });
   transfer(a, static_cast<AttachmentUse&>(v.depth));
   numbers(a, v.depth.clear);

@@ -43,7 +43,7 @@ inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"PIPE", 5},
                                                    {"DESC", 2},
                                                    {"TARG", 0},
-                                                   {"CMDS", 5}}};
+                                                   {"CMDS", 6}}};
 
 [[nodiscard]] std::vector<std::byte> encode_chunk(const CommandStream& stream, Chunk chunk);
 

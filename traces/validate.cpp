@@ -206,6 +206,18 @@ void check_block(const CommandStream& stream, std::size_t set, const Block& bloc
                      block.offset, kBlockAlignment);
 }
 
+/// Integers have no numbers between them. [VK1.3 #textures-texel-filtering]
+void check_filters(const CommandStream& stream, const TextureDescriptor& t, std::size_t set) {
+  const Image& image = stream.images[t.image];
+  const Sampler& sampler = stream.samplers[t.sampler];
+  if (!is_integer_format(image.format)) return;
+  for (const Filter filter : {sampler.mag, sampler.min, sampler.mip}) {
+    if (filter == Filter::kLinear)
+      throw user_error("descriptor set {} binding {}: image {} '{}' of integers ({}) with a linear filter",
+                       set, t.binding, t.image, image.name, models::format_info(image.format).name);
+  }
+}
+
 void check_descriptors(const CommandStream& stream, const DescriptorSet& descriptors, std::size_t set) {
   std::set<std::uint32_t> bindings;
   const auto claim = [&](std::uint32_t binding) {
@@ -229,6 +241,7 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
                        t.image, stream.images[t.image].name);
     if (t.sampler >= stream.samplers.size())
       throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
+    check_filters(stream, t, set);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "models/base/error.h"
+#include "models/rop/blend.h"
 
 namespace quadrille::traces {
 namespace {
@@ -121,6 +122,11 @@ void CommandWalk::visit(const BeginPass& c) {
     check_attachment(color, kColorAttachment, "colour attachment");
     if (!std::ranges::all_of(color.clear, [](float v) { return std::isfinite(v); }))
       throw user_error("command {}: the clear colour is not finite", at_);
+    const Format format = stream_.images[color.image].format;
+    if (color.load == LoadOp::kClear && is_integer_format(format) &&
+        !models::holds_integers(format, color.clear_integers))
+      throw user_error("command {}: the clear value has integers that {} does not hold", at_,
+                       models::format_info(format).name);
   }
   for (const ColorAttachmentUse& color : c.colors)
     if (color.resolve != kNone) check_resolve(color);
@@ -228,6 +234,22 @@ void CommandWalk::check_draw_state() const {
   const DepthState& depth = stream_.pipelines[pipeline_].depth;
   if ((depth.test || depth.write) && pass_->depth.image == kNone) {
     throw user_error("command {}: draw with depth test or write into a target without depth", at_);
+  }
+  check_integers();
+}
+
+/// [VK1.3 #framebuffer-blending, #fragops-covg]
+void CommandWalk::check_integers() const {
+  const Pipeline& pipeline = stream_.pipelines[pipeline_];
+  for (std::size_t i = 0; i < pass_->colors.size(); ++i) {
+    const Format format = stream_.images[pass_->colors[i].image].format;
+    if (models::format_info(format).may(models::kBlendUse)) continue;
+    const std::string_view name = models::format_info(format).name;
+    if (pipeline.blend[i].enable)
+      throw user_error("command {}: draw blends colour attachment {}, but {} holds integers", at_, i, name);
+    if (i == 0 && pipeline.alpha_to_coverage)
+      throw user_error("command {}: draw with alpha to coverage, but colour attachment 0 holds integers ({})",
+                       at_, name);
   }
 }
 

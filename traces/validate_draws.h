@@ -54,6 +54,7 @@ class CommandWalk {
   void check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what);
   void check_transparency(const BeginPass& pass) const;
   void check_draw_state() const;
+  void check_integers() const;
   void check_draw_order();
   void check_scissor() const;
   void count_vertices(const Draw& draw);

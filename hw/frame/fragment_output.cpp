@@ -46,7 +46,7 @@ void take_outputs(const DrawState& draw, std::span<const models::LaneWords> outp
         warp.color[attachment][c] = std::bit_cast<models::LaneFloats>(outputs[slot]);
       else warp.color[attachment][c].fill(0);
     }
-    if (!draw.smooth_lines()) return;
+    if (!draw.smooth_lines() || (draw.integer_colors >> attachment & 1u) != 0) return;
     models::LaneFloats& alpha = warp.color[attachment][3];
     for (std::size_t lane = 0; lane < alpha.size(); ++lane) alpha[lane] *= inputs.line_coverage[lane];
   });

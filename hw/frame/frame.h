@@ -96,6 +96,7 @@ struct DrawState {
   /// `models::color_outputs`. Attachments without any keep what they hold; the other components of the rest
   /// are written as 0.
   std::uint32_t color_outputs = 0;
+  std::uint32_t integer_colors = 0;  ///< bit i: colour attachment i holds integers
   /// Depth is tested after shading: the program discards, writes depth or memory or takes away samples, and
   /// does not force early tests.
   bool late_depth = false;

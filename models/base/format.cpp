@@ -5,7 +5,8 @@
 namespace quadrille::models {
 namespace {
 
-constexpr std::uint8_t kTexture = kFileUse | kSampleUse, kTarget = kColorUse | kSampleUse;
+constexpr std::uint8_t kTexture = kFileUse | kSampleUse, kTarget = kColorUse | kBlendUse | kSampleUse,
+                       kIntegers = kColorUse | kSampleUse;
 
 /// Components of eight bits at these shifts; alpha is never sRGB.
 constexpr std::array<ComponentBits, 4> bytes_at(std::uint8_t red, std::uint8_t green, std::uint8_t blue,
@@ -45,8 +46,8 @@ constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFor
     {"R16G16B16A16_UNORM", 8, 4, kAttributeUse, Numeric::kUnorm},
     {"R8G8B8A8_SNORM", 4, 4, kAttributeUse, Numeric::kSnorm},
     {"R16G16B16A16_SNORM", 8, 4, kAttributeUse, Numeric::kSnorm},
-    {"R8G8B8A8_UINT", 4, 4, kAttributeUse, Numeric::kUint},
-    {"R16G16B16A16_UINT", 8, 4, kAttributeUse, Numeric::kUint},
+    {"R8G8B8A8_UINT", 4, 4, kAttributeUse | kIntegers, Numeric::kUint, in_a_row(4, 8, Numeric::kUint)},
+    {"R16G16B16A16_UINT", 8, 4, kAttributeUse | kIntegers, Numeric::kUint, in_a_row(4, 16, Numeric::kUint)},
     {"B8G8R8A8_UNORM", 4, 4, kTarget, Numeric::kUnorm, bytes_at(16, 8, 0, Numeric::kUnorm)},
     {"B8G8R8A8_SRGB", 4, 4, kTarget, Numeric::kSrgb, bytes_at(16, 8, 0, Numeric::kSrgb)},
     {"A2B10G10R10_UNORM_PACK32", 4, 4, kTarget, Numeric::kUnorm, kTenTenTenTwo},
@@ -64,6 +65,22 @@ constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFor
      in_a_row(1, 24, Numeric::kUnorm),
      {24, 8, Numeric::kUint}},
     {"D32_SFLOAT_S8_UINT", 8, 1, kDepthUse | kSampleUse, Numeric::kFloat, kOneFloat, {32, 8, Numeric::kUint}},
+    {"R8_UINT", 1, 1, kIntegers, Numeric::kUint, in_a_row(1, 8, Numeric::kUint)},
+    {"R8_SINT", 1, 1, kIntegers, Numeric::kSint, in_a_row(1, 8, Numeric::kSint)},
+    {"R8G8_UINT", 2, 2, kIntegers, Numeric::kUint, in_a_row(2, 8, Numeric::kUint)},
+    {"R8G8_SINT", 2, 2, kIntegers, Numeric::kSint, in_a_row(2, 8, Numeric::kSint)},
+    {"R8G8B8A8_SINT", 4, 4, kIntegers, Numeric::kSint, in_a_row(4, 8, Numeric::kSint)},
+    {"R16_UINT", 2, 1, kIntegers, Numeric::kUint, in_a_row(1, 16, Numeric::kUint)},
+    {"R16_SINT", 2, 1, kIntegers, Numeric::kSint, in_a_row(1, 16, Numeric::kSint)},
+    {"R16G16_UINT", 4, 2, kIntegers, Numeric::kUint, in_a_row(2, 16, Numeric::kUint)},
+    {"R16G16_SINT", 4, 2, kIntegers, Numeric::kSint, in_a_row(2, 16, Numeric::kSint)},
+    {"R16G16B16A16_SINT", 8, 4, kIntegers, Numeric::kSint, in_a_row(4, 16, Numeric::kSint)},
+    {"R32_UINT", 4, 1, kIntegers, Numeric::kUint, in_a_row(1, 32, Numeric::kUint)},
+    {"R32_SINT", 4, 1, kIntegers, Numeric::kSint, in_a_row(1, 32, Numeric::kSint)},
+    {"R32G32_UINT", 8, 2, kIntegers, Numeric::kUint, in_a_row(2, 32, Numeric::kUint)},
+    {"R32G32_SINT", 8, 2, kIntegers, Numeric::kSint, in_a_row(2, 32, Numeric::kSint)},
+    {"R32G32B32A32_UINT", 16, 4, kIntegers, Numeric::kUint, in_a_row(4, 32, Numeric::kUint)},
+    {"R32G32B32A32_SINT", 16, 4, kIntegers, Numeric::kSint, in_a_row(4, 32, Numeric::kSint)},
 }};
 
 }  // namespace

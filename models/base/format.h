@@ -29,7 +29,7 @@ enum class Format : std::uint8_t {
   kR16G16B16A16Unorm,
   kR8G8B8A8Snorm,
   kR16G16B16A16Snorm,
-  // Vertex attributes that a shader reads as unsigned integers.
+  // Vertex attributes that a shader reads as unsigned integers, and images of integers.
   kR8G8B8A8Uint,
   kR16G16B16A16Uint,
   // More images.
@@ -45,9 +45,26 @@ enum class Format : std::uint8_t {
   // Depth and stencil.
   kD16Unorm,
   kD24UnormS8Uint,
-  kD32FloatS8Uint
+  kD32FloatS8Uint,
+  // Images of integers.
+  kR8Uint,
+  kR8Sint,
+  kR8G8Uint,
+  kR8G8Sint,
+  kR8G8B8A8Sint,
+  kR16Uint,
+  kR16Sint,
+  kR16G16Uint,
+  kR16G16Sint,
+  kR16G16B16A16Sint,
+  kR32Uint,
+  kR32Sint,
+  kR32G32Uint,
+  kR32G32Sint,
+  kR32G32B32A32Uint,
+  kR32G32B32A32Sint
 };
-inline constexpr Format kLastFormat = Format::kD32FloatS8Uint;
+inline constexpr Format kLastFormat = Format::kR32G32B32A32Sint;
 // clang-format on
 
 /// How the bits of a component stand for a number.
@@ -58,6 +75,7 @@ enum class Numeric : std::uint8_t {
   kSrgb,   ///< as kUnorm, and encoded by the sRGB transfer function
   kFloat,  ///< of 16 or 32 bits
   kUint,
+  kSint,   ///< two's complement
   kUfloat  ///< of 10 or 11 bits: no sign, five bits of exponent [VK1.3 #fundamentals-fp11]
 };
 
@@ -65,9 +83,10 @@ enum class Numeric : std::uint8_t {
 enum FormatUse : std::uint8_t {
   kAttributeUse = 1,  ///< of a vertex
   kFileUse = 2,       ///< of an image that a stream brings texels for
-  kColorUse = 4,      ///< of a colour attachment, which may be blended
+  kColorUse = 4,      ///< of a colour attachment
   kDepthUse = 8,      ///< of a depth attachment
-  kSampleUse = 16     ///< of an image that shaders sample, with linear filtering too
+  kSampleUse = 16,    ///< of an image that shaders sample, with linear filtering unless it holds integers
+  kBlendUse = 32      ///< of a colour attachment that is blended
 };
 
 /// A component of a pixel or texel, which never lies in two words of 32 bits.
@@ -102,9 +121,23 @@ struct FormatInfo {
 [[nodiscard]] inline std::uint32_t format_bytes(Format format) { return format_info(format).bytes; }
 /// Components that an attribute of this format supplies (1..4).
 [[nodiscard]] inline int format_components(Format format) { return format_info(format).channels; }
-/// Does a shader read attributes of this format as unsigned integers? All others arrive as floats.
+/// What a number is to a shader that reads or writes it. Of integers, registers hold the bits.
+enum class NumberKind : std::uint8_t { kFloat, kUint, kSint };
+[[nodiscard]] constexpr NumberKind number_kind(Numeric numeric) {
+  if (numeric == Numeric::kUint) return NumberKind::kUint;
+  return numeric == Numeric::kSint ? NumberKind::kSint : NumberKind::kFloat;
+}
+[[nodiscard]] inline NumberKind number_kind(Format format) {
+  return number_kind(format_info(format).numeric);
+}
+[[nodiscard]] constexpr std::string_view name_of(NumberKind kind) {
+  return kind == NumberKind::kFloat  ? "floats"
+         : kind == NumberKind::kUint ? "unsigned integers"
+                                     : "signed integers";
+}
+/// Do shaders read and write this format as integers? All others are floats to them.
 [[nodiscard]] inline bool is_integer_format(Format format) {
-  return format_info(format).numeric == Numeric::kUint;
+  return number_kind(format) != NumberKind::kFloat;
 }
 /// Does an image of this format hold numbers outside 0..1 too?
 [[nodiscard]] inline bool is_float_format(Format format) {

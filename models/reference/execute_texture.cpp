@@ -1,4 +1,6 @@
 /// Texture operations of the interpreter.
+#include <cmath>
+
 #include "models/reference/handlers.h"
 
 namespace quadrille::models::reference {
@@ -13,7 +15,10 @@ void sample_lanes(const Operation& o, Lanes& lanes, const TextureView& texture, 
     if ((lanes.mask >> lane & 1u) == 0) continue;
     const double u = lanes.cells[o.src[0]].f(lane), v = lanes.cells[o.src[0] + 1].f(lane);
     const Texel texel = sample_texture(texture, u, v, lod(lane), bias(lane));
-    for (std::size_t c = 0; c < 4; ++c) result[c].set_f(lane, texel[c]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (!traces::is_integer_format(texture.image->format)) result[c].set_f(lane, texel[c]);
+      else result[c].set_u(lane, static_cast<std::uint32_t>(std::llround(texel[c])));
+    }
   }
   for (std::uint32_t c = 0; c < 4; ++c) write(lanes, lanes.cells[o.dst + c], result[c]);
 }

@@ -334,12 +334,17 @@ class BandWorker {
     const std::array<Slot, 4>& slots = color_slots_[color];
     const traces::BlendState& state = state_.pipeline->blend[color];
     if (state.write_mask == 0 || std::ranges::all_of(slots, [](Slot s) { return s == kNoSlot; })) return;
+    ColorTarget& target = *state_.colors[color];
+    const bool integers = traces::is_integer_format(target.format);
     std::array<double, 4> source{};
-    const auto output = [&](Slot slot) { return slot == kNoSlot ? 0.0 : lanes_.at(slot)->f(lane); };
+    const auto output = [&](Slot slot) {
+      if (slot == kNoSlot) return 0.0;
+      const Cell& cell = *lanes_.at(slot);
+      return integers ? integer_value(target.format, cell.u(lane)) : cell.f(lane);
+    };
     std::array<double, 4> second{};
     for (std::size_t c = 0; c < 4; ++c) source[c] = output(slots[c]), second[c] = output(second_slots_[c]);
-    source[3] *= part;
-    ColorTarget& target = *state_.colors[color];
+    if (!integers) source[3] *= part;
     if (color == 0)
       result_.triangle_id[at / state_.samples] = std::uint64_t{state_.number} << 32 | t.primitive;
     if (state_.pipeline->order_independent)

@@ -65,7 +65,14 @@ double decode_float(const ComponentBits& component, std::uint32_t bits) {
                                : std::ldexp(1 + fraction, static_cast<int>(exponent) - 15));
 }
 
+bool is_integer(const ComponentBits& component) {
+  return number_kind(component.numeric) != NumberKind::kFloat;
+}
+
+/// Of an integer: its low bits.
 std::uint32_t encode(const ComponentBits& component, double linear) {
+  if (is_integer(component))
+    return static_cast<std::uint32_t>(std::llround(linear)) & static_cast<std::uint32_t>(most_of(component));
   if (is_float(component)) return encode_float(component, linear);
   const double clamped = clamp_unit(linear);
   const double encoded = component.numeric == Numeric::kSrgb ? linear_to_srgb(clamped) : clamped;
@@ -97,6 +104,9 @@ double srgb_code_to_linear(std::uint32_t code) {
 double decode(const ComponentBits& component, const PixelCode& code) {
   const std::uint32_t bits = bits_of(component, code);
   if (is_float(component)) return decode_float(component, bits);
+  if (component.numeric == Numeric::kUint) return bits;
+  if (component.numeric == Numeric::kSint)
+    return bits > most_of(component) / 2 ? bits - most_of(component) - 1 : bits;
   return component.numeric == Numeric::kSrgb ? srgb_code_to_linear(bits) : bits / most_of(component);
 }
 
@@ -225,7 +235,8 @@ StoredColor blend(const traces::BlendState& state, const traces::BlendShared& sh
     of.second[c] = held(info, second[c]);
     of.constant[c] = held(info, static_cast<double>(shared.constants[c]));
   }
-  const bool operates = shared.logic && info.numeric == Numeric::kUnorm;
+  const bool integers = number_kind(info.numeric) != NumberKind::kFloat;
+  const bool operates = shared.logic && (integers || info.numeric == Numeric::kUnorm);
   StoredColor after = before;
   for (std::size_t c = 0; c < info.channels; ++c) {
     if ((state.write_mask >> c & 1u) == 0) continue;
@@ -243,8 +254,8 @@ StoredColor blend(const traces::BlendState& state, const traces::BlendShared& sh
              static_cast<std::uint32_t>(most_of(info.component[c]));
       value = bits / most_of(info.component[c]);
     }
-    after.linear[c] = value;
     put(info.component[c], bits, after.code);
+    after.linear[c] = integers ? decode(info.component[c], after.code) : value;
   }
   return after;
 }
@@ -261,6 +272,10 @@ std::uint32_t to_bytes(traces::Format format, const PixelCode& code) {
   std::uint32_t bytes = info.channels < 4 ? 0xff000000u : 0;
   for (std::size_t c = 0; c < info.channels; ++c) {
     const ComponentBits& component = info.component[c];
+    if (is_integer(component)) {
+      bytes |= (bits_of(component, code) & 0xffu) << (8 * c);
+      continue;
+    }
     double value = bits_of(component, code) / most_of(component);
     if (is_float(component)) {
       value = clamp_unit(decode(component, code));

@@ -34,7 +34,8 @@ struct StoredColor {
 
 /// Blends a shader's output into a stored pixel: source and destination in linear values, clamped to 0..1
 /// (NaN: 0) where the format holds no others, as is the result, which is then encoded and rounded to nearest,
-/// ties to even. Channels that the mask leaves out keep what they hold. [VK1.3 #framebuffer-blending]
+/// ties to even. Of integers the low bits are stored as they come. Channels that the mask leaves out keep
+/// what they hold. [VK1.3 #framebuffer-blending]
 /// `second` is the second source.
 [[nodiscard]] StoredColor blend(const traces::BlendState& state, const traces::BlendShared& shared,
                                 traces::Format format, const std::array<double, 4>& source,
@@ -42,7 +43,8 @@ struct StoredColor {
 
 /// The linear values of a pixel or texel. Components that the format lacks are (0, 0, 0, 1).
 [[nodiscard]] std::array<double, 4> load_color(traces::Format format, const PixelCode& code);
-/// A pixel as 8 bits a component, red in bits 0..7, an sRGB encoding kept, floats sRGB-encoded.
+/// A pixel as 8 bits a component, red in bits 0..7, an sRGB encoding kept, floats sRGB-encoded, of integers
+/// the low bits.
 [[nodiscard]] std::uint32_t to_bytes(traces::Format format, const PixelCode& code);
 
 /// The stored form of linear values.

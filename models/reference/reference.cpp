@@ -104,12 +104,19 @@ class Renderer {
   void clear(ColorTarget& color, const traces::ColorAttachmentUse& use, std::size_t pixels) const {
     color.format = stream_.images[use.image].format;
     std::array<double, 4> value{};
-    if (use.load == traces::LoadOp::kClear) std::copy(use.clear.begin(), use.clear.end(), value.begin());
+    if (use.load == traces::LoadOp::kClear) value = clear_value(color.format, use);
     const StoredColor stored = store_color(color.format, value);
     color.code.assign(pixels, stored.code);
     color.linear.clear();
     for (std::size_t i = 0; i < pixels; ++i)
       color.linear.insert(color.linear.end(), stored.linear.begin(), stored.linear.end());
+  }
+  static std::array<double, 4> clear_value(traces::Format format, const traces::ColorAttachmentUse& use) {
+    std::array<double, 4> value{};
+    if (!traces::is_integer_format(format)) std::copy(use.clear.begin(), use.clear.end(), value.begin());
+    else
+      for (std::size_t c = 0; c < 4; ++c) value[c] = integer_value(format, use.clear_integers[c]);
+    return value;
   }
   static double clear_depth(const traces::BeginPass& pass) {
     return pass.depth.load == traces::LoadOp::kClear ? static_cast<double>(pass.depth.clear) : 0.0;
@@ -132,14 +139,16 @@ class Renderer {
     }
   }
 
-  /// The means of a pixel's samples. [VK1.3 #renderpass-resolve-operations]
+  /// The means of a pixel's samples; of integers the first. [VK1.3 #renderpass-resolve-operations]
   void resolve(const ColorTarget& from, ColorTarget& to) const {
     to.format = from.format;
     to.code.clear();
     to.linear.clear();
     for (std::size_t first = 0; first < from.code.size(); first += state_.samples) {
       std::array<double, 4> mean{};
-      for (std::uint32_t s = 0; s < state_.samples; ++s) {
+      const bool integers = traces::is_integer_format(from.format);
+      if (integers) mean = load_color(from.format, from.code[first]);
+      for (std::uint32_t s = 0; s < state_.samples && !integers; ++s) {
         const std::array<double, 4> color = load_color(from.format, from.code[first + s]);
         for (std::size_t c = 0; c < 4; ++c) mean[c] += color[c] / state_.samples;
       }

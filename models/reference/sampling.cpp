@@ -64,6 +64,12 @@ Texel sample_level(const TextureView& texture, std::uint32_t level, double u, do
 
 }  // namespace
 
+double integer_value(traces::Format format, std::uint32_t bits) {
+  return traces::number_kind(format) == traces::NumberKind::kSint
+             ? static_cast<double>(static_cast<std::int32_t>(bits))
+             : bits;
+}
+
 double finite_or_zero(double a) { return std::isfinite(a) ? a : 0.0; }
 
 double srgb_to_linear(double encoded) {

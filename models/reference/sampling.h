@@ -8,7 +8,7 @@
 
 namespace quadrille::models::reference {
 
-using Texel = std::array<double, 4>;  ///< linear red, green, blue, alpha
+using Texel = std::array<double, 4>;  ///< linear red, green, blue, alpha; or integers
 
 /// An image with the sampler it is read through. Borrowed from the stream. `precision` null: no quantisation.
 struct TextureView {
@@ -31,6 +31,9 @@ struct TextureView {
 /// +-16. A nearest mip level is the one of ceil(lambda + 0.5) - 1. A coordinate or bias that is not finite
 /// counts as 0, so does a NaN level. [VK1.3 #textures-level-of-detail-operation]
 [[nodiscard]] Texel sample_texture(const TextureView& texture, double u, double v, double base, double bias);
+
+/// What a word of a format of integers stands for.
+[[nodiscard]] double integer_value(traces::Format format, std::uint32_t bits);
 
 /// The number, or 0 if it is not finite.
 [[nodiscard]] double finite_or_zero(double a);

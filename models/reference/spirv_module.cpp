@@ -175,11 +175,8 @@ class Reader {
       case spv::OpTypeFunction: t.kind = TypeKind::kFunction, t.element = w[0]; break;
       case spv::OpTypeImage:
         t.kind = TypeKind::kImage;
-        if (w[1] != spv::Dim2D || w[2] == 1 || w[3] != 0 || w[4] != 0 || w[5] != 1 ||
-            module_.type(w[0]).kind != TypeKind::kFloat) {
-          unsupported(
-              "an image other than a sampled, single-sample, non-array, non-shadow 2D image of floats");
-        }
+        if (w[1] != spv::Dim2D || w[2] == 1 || w[3] != 0 || w[4] != 0 || w[5] != 1)
+          unsupported("an image other than a sampled, single-sample, non-array, non-shadow 2D image");
         break;
       case spv::OpTypeSampledImage: t.kind = TypeKind::kSampledImage, t.element = w[0]; break;
       default:

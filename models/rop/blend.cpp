@@ -5,6 +5,7 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -92,7 +93,7 @@ __m128i logic(LogicOp op, __m128i s, __m128i d) {
 }
 
 bool has_logic(const FormatInfo& format) {
-  return format.numeric == Numeric::kUnorm || format.numeric == Numeric::kUint;
+  return format.numeric == Numeric::kUnorm || number_kind(format.numeric) != NumberKind::kFloat;
 }
 
 /// All ones in the bits of the components that are written.
@@ -179,12 +180,40 @@ PixelCode encode_color(Format format, const std::array<float, 4>& rgba) {
   return code;
 }
 
+PixelCode encode_integers(Format format, const std::array<std::uint32_t, 4>& rgba) {
+  const FormatInfo& info = format_info(format);
+  PixelCode code;
+  for (std::size_t c = 0; c < info.channels; ++c) {
+    const ComponentBits& component = info.component[c];
+    code.word[component.shift / 32] |= (rgba[c] & most_of(component)) << component.shift % 32;
+  }
+  return code;
+}
+
+bool holds_integers(Format format, const std::array<std::uint32_t, 4>& rgba) {
+  const FormatInfo& info = format_info(format);
+  for (std::size_t c = 0; c < info.channels; ++c) {
+    const auto beyond =
+        static_cast<unsigned>(info.component[c].bits) - (info.numeric == Numeric::kSint ? 1 : 0);
+    const std::uint32_t rest = info.numeric == Numeric::kSint
+                                   ? static_cast<std::uint32_t>(static_cast<std::int32_t>(rgba[c]) >> beyond)
+                                   : static_cast<std::uint32_t>(std::uint64_t{rgba[c]} >> beyond);
+    if (rest != 0 && (info.numeric != Numeric::kSint || rest != ~0u)) return false;
+  }
+  return true;
+}
+
 std::array<float, 4> decode_color(Format format, const PixelCode& pixel) {
   QuadWords quad;
   for (std::size_t w = 0; w < 4; ++w) quad.word[w] = _mm_set1_epi32(static_cast<int>(pixel.word[w]));
   const QuadColor color = decode_quad(format_info(format), quad);
   std::array<float, 4> rgba{};
-  for (std::size_t c = 0; c < 4; ++c) rgba[c] = _mm_cvtss_f32(color[c]);
+  const NumberKind kind = number_kind(format);
+  for (std::size_t c = 0; c < 4; ++c) {
+    rgba[c] = _mm_cvtss_f32(color[c]);
+    if (kind == NumberKind::kUint) rgba[c] = static_cast<float>(std::bit_cast<std::uint32_t>(rgba[c]));
+    if (kind == NumberKind::kSint) rgba[c] = static_cast<float>(std::bit_cast<std::int32_t>(rgba[c]));
+  }
   return rgba;
 }
 
@@ -196,6 +225,13 @@ std::uint32_t to_rgba8(Format format, const PixelCode& pixel) {
       const ComponentBits& component = info.component[c];
       const std::uint32_t most = most_of(component), code = pixel.word[0] >> component.shift & most;
       rgba |= (255 * code + most / 2) / most << (8 * c);
+    }
+    return rgba;
+  }
+  if (is_integer_format(format)) {
+    for (std::size_t c = 0; c < info.channels; ++c) {
+      const ComponentBits& component = info.component[c];
+      rgba |= (pixel.word[component.shift / 32] >> component.shift % 32 & 0xffu) << (8 * c);
     }
     return rgba;
   }

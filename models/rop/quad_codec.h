@@ -1,5 +1,5 @@
-/// Four pixels of a colour attachment or texture, decoded to numbers and encoded again: linear values, and
-/// floats as they are.
+/// Four pixels of a colour attachment or texture, decoded to numbers and encoded again: linear values, floats
+/// as they are, and of integers their bits.
 #pragma once
 
 #include "models/base/format.h"
@@ -91,9 +91,18 @@ inline __m128i to_half(__m128 v) {
 /// is negative is 0, what is finite and too large the greatest finite value. [VK1.3 #fundamentals-fp11]
 [[nodiscard]] std::uint32_t encode_ufloat(float value, int mantissa_bits);
 
+/// Its low bits, extended to 32 by zeros or by the sign.
+inline __m128i decode_integer(__m128i word, const ComponentBits& component) {
+  const __m128i high = _mm_sll_epi32(word, _mm_cvtsi32_si128(32 - component.bits - component.shift % 32));
+  const __m128i down = _mm_cvtsi32_si128(32 - component.bits);
+  return component.numeric == Numeric::kSint ? _mm_sra_epi32(high, down) : _mm_srl_epi32(high, down);
+}
+
 inline __m128 decode_component(const QuadWords& quad, const ComponentBits& component) {
   const __m128i word = quad.word[component.shift / 32];
   if (component.numeric == Numeric::kFloat && component.bits == 32) return _mm_castsi128_ps(word);
+  if (number_kind(component.numeric) != NumberKind::kFloat)
+    return _mm_castsi128_ps(decode_integer(word, component));
   const __m128i code = _mm_and_si128(_mm_srl_epi32(word, _mm_cvtsi32_si128(component.shift % 32)),
                                      _mm_set1_epi32(static_cast<int>(most_of(component))));
   if (component.numeric == Numeric::kSrgb) return _mm_i32gather_ps(kSrgbToLinear.data(), code, 4);
@@ -106,7 +115,9 @@ inline __m128 decode_component(const QuadWords& quad, const ComponentBits& compo
 
 /// Components that the format lacks are (0, 0, 0, 1).
 inline QuadColor decode_quad(const FormatInfo& format, const QuadWords& quad) {
-  QuadColor color{{_mm_setzero_ps(), _mm_setzero_ps(), _mm_setzero_ps(), _mm_set1_ps(1.0f)}};
+  const bool integers = number_kind(format.numeric) != NumberKind::kFloat;
+  const __m128 one = integers ? _mm_castsi128_ps(_mm_set1_epi32(1)) : _mm_set1_ps(1.0f);
+  QuadColor color{{_mm_setzero_ps(), _mm_setzero_ps(), _mm_setzero_ps(), one}};
   for (std::size_t c = 0; c < format.channels; ++c) color[c] = decode_component(quad, format.component[c]);
   return color;
 }
@@ -122,8 +133,10 @@ inline __m128i encode_srgb(__m128 v) {
   return _mm_sub_epi32(code, _mm_castps_si128(_mm_cmpge_ps(v, threshold)));
 }
 
-/// A number as its component's code; what fits into 0..1 alone must be there.
+/// A number as its component's code; what fits into 0..1 alone must be there. Of an integer: its low bits.
 inline __m128i encode_component(__m128 v, const ComponentBits& component) {
+  if (number_kind(component.numeric) != NumberKind::kFloat)
+    return _mm_and_si128(_mm_castps_si128(v), _mm_set1_epi32(static_cast<int>(most_of(component))));
   if (component.numeric == Numeric::kSrgb) return encode_srgb(v);
   if (component.numeric == Numeric::kFloat) return component.bits == 32 ? _mm_castps_si128(v) : to_half(v);
   if (component.numeric == Numeric::kUfloat) {

@@ -5,6 +5,7 @@
 #include "models/rop/quad_codec.h"
 
 #include <array>
+#include <cstring>
 
 namespace quadrille::models {
 namespace {
@@ -26,6 +27,10 @@ QuadColor mean(std::array<QuadColor, kMaxSamples>& samples, std::size_t count) {
 void resolve_tile(Format format, const std::byte* planes, std::size_t stride, std::uint32_t samples,
                   std::byte* pixels) {
   const FormatInfo& info = format_info(format);
+  if (is_integer_format(format)) {
+    std::memcpy(pixels, planes, std::size_t{kTilePixels} * info.bytes);
+    return;
+  }
   const std::size_t quad_bytes = std::size_t{4} * info.bytes;
   for (std::size_t at = 0; at < std::size_t{kTilePixels} * info.bytes; at += quad_bytes) {
     std::array<QuadColor, kMaxSamples> colors;

@@ -8,8 +8,8 @@
 
 namespace quadrille::models {
 
-/// Means of the samples of 64 pixels in linear values, encoded. A sample's pixels begin `stride` bytes behind
-/// those of the one before; `samples` is a power of two.
+/// Means of the samples of 64 pixels in linear values; of integers, the first ones. A sample's pixels begin
+/// `stride` bytes behind those of the one before; `samples` is a power of two.
 void resolve_tile(Format format, const std::byte* planes, std::size_t stride, std::uint32_t samples,
                   std::byte* pixels);
 

@@ -72,7 +72,8 @@ class Assembler {
     else if (name == "constants") program_.constants.words = count(words, kMaxConstantWords);
     else if (name == "flags") read_flags(words);
     else if (name == "texture")
-      program_.textures.push_back({field(words, 0, "set"), field(words, 1, "binding")});
+      program_.textures.push_back({field(words, 0, "set"), field(words, 1, "binding"), kind(words, 2)});
+    else if (name == "color") read_color(words);
     else if (name == "buffer")
       program_.buffers.push_back({field(words, 0, "set"), field(words, 1, "binding")});
     else if (name == "input")
@@ -84,8 +85,8 @@ class Assembler {
     else if (name == "uniform") read_block(words, ConstantLayout::Source::kUniformBlock);
     else
       fail(
-          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture buffer "
-          "input varying extras",
+          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture color "
+          "buffer input varying extras",
           name);
   }
 
@@ -124,6 +125,19 @@ class Assembler {
             word);
       program_.*flag->member = true;
     }
+  }
+
+  /// Of the numbers of a texture or colour: word `i`, or floats if there is none.
+  [[nodiscard]] NumberKind kind(const std::vector<std::string_view>& words, std::size_t i) const {
+    if (words.size() <= i) return NumberKind::kFloat;
+    return one_of<NumberKind>({words[i]}, kNumberKindNames, "numbers");
+  }
+
+  void read_color(const std::vector<std::string_view>& words) {
+    const std::uint32_t location = field(words, 0, "location");
+    if (location >= program_.color_kinds.size())
+      fail("location is {}; legal: at most {}", location, program_.color_kinds.size() - 1);
+    program_.color_kinds[location] = kind(words, 1);
   }
 
   void read_extras(const std::vector<std::string_view>& words) {

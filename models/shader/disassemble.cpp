@@ -28,6 +28,12 @@ std::string range_text(const ConstantLayout::Range& range) {
   return {};
 }
 
+/// Floats are not mentioned.
+std::string kind_text(NumberKind kind) {
+  if (kind == NumberKind::kFloat) return {};
+  return fmt::format(" {}", kNumberKindNames[static_cast<std::size_t>(kind)]);
+}
+
 std::string header_text(const Program& p) {
   std::string title = p.name;
   std::replace_if(
@@ -40,7 +46,10 @@ std::string header_text(const Program& p) {
   if (p.constants.words != 0) text += fmt::format(".constants {}\n", p.constants.words);
   for (const auto& range : p.constants.ranges) text += fmt::format("{}\n", range_text(range));
   for (const TextureBinding& t : p.textures)
-    text += fmt::format(".texture set={} binding={}\n", t.set, t.binding);
+    text += fmt::format(".texture set={} binding={}{}\n", t.set, t.binding, kind_text(t.texels));
+  for (std::size_t location = 0; location < p.color_kinds.size(); ++location)
+    if (p.color_kinds[location] != NumberKind::kFloat)
+      text += fmt::format(".color location={}{}\n", location, kind_text(p.color_kinds[location]));
   for (const BufferBinding& b : p.buffers)
     text += fmt::format(".buffer set={} binding={}\n", b.set, b.binding);
   for (const VertexInputUse& v : p.vertex_inputs)

@@ -8,8 +8,10 @@
 #pragma once
 
 #include "models/base/attachment.h"
+#include "models/base/format.h"
 #include "models/base/pipeline_state.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -236,6 +238,7 @@ struct VertexExtras {
 
 struct TextureBinding {
   std::uint32_t set = 0, binding = 0;
+  NumberKind texels = NumberKind::kFloat;  ///< what the program takes them for
   friend bool operator==(const TextureBinding&, const TextureBinding&) = default;
 };
 
@@ -301,7 +304,9 @@ struct Program {
   bool writes_sample_mask = false;
   bool by_sample = false;  ///< runs for each covered sample: it asks which, or has inputs that follow it
   bool early_fragment_tests = false;
-  bool second_source = false;     ///< of attachment 0, at `kSecondSourceOutput`
+  bool second_source = false;  ///< of attachment 0, at `kSecondSourceOutput`
+  /// What it writes to each location, as it declares it.
+  std::array<NumberKind, kMaxColorAttachments> color_kinds{};
   bool uses_derivatives = false;  ///< explicit or through implicit-lod texturing: helper lanes are needed
   /// What an atomic operation returned reaches its outputs or discards: they depend on the order of warps.
   bool outputs_follow_atomics = false;

@@ -31,6 +31,8 @@ inline constexpr std::array<std::string_view, 14> kSystemValueNames{
     "frag_coord_w", "front_facing",   "primitive_id", "point_coord_x", "point_coord_y",
     "sample_id",    "sample_x",       "sample_y",     "sample_mask"};
 
+inline constexpr std::array<std::string_view, 3> kNumberKindNames{"float", "uint", "sint"};
+
 /// Prefix of the slot number of an immediate.
 constexpr std::string_view slot_prefix(Immediate immediate) {
   switch (immediate) {

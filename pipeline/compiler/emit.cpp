@@ -151,6 +151,7 @@ class Encoder {
     for (const auto& [raw, slot] : buffers_) program.buffers.push_back(shader_.buffers[raw]);
     program.outputs_follow_atomics = outputs_follow_atomics(shader_);
     program.second_source = shader_.second_source;
+    program.color_kinds = shader_.color_kinds;
     for (const ScalarInstruction& i : chosen_.code) {
       const Instruction out = encode(i);
       const bool useless = out.op == Op::kMov && out.flags == 0 && out.a.kind == Operand::kRegister &&

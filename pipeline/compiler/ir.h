@@ -7,6 +7,7 @@
 
 #include "models/shader/isa.h"
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -70,7 +71,9 @@ struct ScalarShader {
   std::uint32_t integer_inputs = 0;
   bool early_fragment_tests = false;
   bool second_source = false;  ///< a second colour for attachment 0
-  bool by_sample = false;      ///< fragment: as `models::Program::by_sample`
+  /// fragment: as `models::Program::color_kinds`
+  std::array<models::NumberKind, models::kMaxColorAttachments> color_kinds{};
+  bool by_sample = false;  ///< fragment: as `models::Program::by_sample`
 };
 
 }  // namespace quadrille::pipeline

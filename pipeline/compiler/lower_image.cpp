@@ -1,4 +1,4 @@
-/// Textures and derivatives: combined 2D image samplers. [VK1.3 #textures]
+/// Textures and derivatives: combined 2D image samplers, of floats or integers. [VK1.3 #textures]
 #include "pipeline/compiler/lowering.h"
 
 #include <algorithm>
@@ -11,20 +11,24 @@ using Kind = spirv::Type::Kind;
 
 }  // namespace
 
+models::NumberKind Lowering::number_kind(Id scalar) const {
+  const spirv::Type& type = module_.type(scalar);
+  if (type.kind != Kind::kInt) return models::NumberKind::kFloat;
+  return type.is_signed ? models::NumberKind::kSint : models::NumberKind::kUint;
+}
+
 void Lowering::declare_texture(const spirv::Variable& variable) {
   const spirv::Type& type = module_.type(variable.type);
-  if (type.kind != Kind::kSampledImage || module_.type(type.element).count != 2 ||
-      module_.type(module_.type(type.element).element).kind != Kind::kFloat)
+  if (type.kind != Kind::kSampledImage || module_.type(type.element).count != 2)
     throw user_error(
-        "{}",
-        module_.at_use(
-            variable.id,
-            fmt::format(
-                "resource {} is not a combined 2D float image sampler (sampler2D), the only kind supported",
-                module_.name(variable.id))));
+        "{}", module_.at_use(variable.id, fmt::format("resource {} is not a combined 2D image sampler "
+                                                      "(sampler2D, isampler2D or usampler2D), the only "
+                                                      "kinds supported",
+                                                      module_.name(variable.id))));
   const spirv::Decorations& d = module_.decorations(variable.id);
   const models::TextureBinding binding{static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.set)),
-                                       static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.binding))};
+                                       static_cast<std::uint32_t>(std::max<std::int64_t>(0, d.binding)),
+                                       number_kind(module_.type(type.element).element)};
   const auto found = std::find(shader_.textures.begin(), shader_.textures.end(), binding);
   textures_[variable.id] = static_cast<std::uint16_t>(found - shader_.textures.begin());
   if (found == shader_.textures.end()) shader_.textures.push_back(binding);

@@ -85,6 +85,9 @@ void Lowering::add_slots(std::vector<Slot>& slots, Id type_id, const spirv::Deco
   const bool integers = shader_.stage == ShaderStage::kVertex && !output && inherited.built_in < 0 &&
                         module_.type(scalar_type).kind != Kind::kFloat;
   if (integers && location < kMaxAttributeLocations) shader_.integer_inputs |= 1u << location;
+  const bool color = shader_.stage == ShaderStage::kFragment && output && inherited.built_in < 0;
+  if (color && location < models::kMaxColorAttachments)
+    shader_.color_kinds[location] = number_kind(scalar_type);
   ++location;
 }
 

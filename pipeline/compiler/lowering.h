@@ -182,6 +182,8 @@ class Lowering {
   // lower_image.cpp
   bool image(const spirv::Instruction& i);
   void declare_texture(const spirv::Variable& variable);
+  /// Of a scalar type of an interface or texture.
+  [[nodiscard]] models::NumberKind number_kind(Id scalar) const;
   void sample(const spirv::Instruction& i, bool projective);
   void image_size(const spirv::Instruction& i);
   void derivative(const spirv::Instruction& i);

@@ -30,6 +30,20 @@ models::DepthStencilState depth_stencil(const traces::Pipeline& pipeline, models
   return state;
 }
 
+/// Integers are written to formats of integers of their sign, and to no others.
+void check_color_kinds(const traces::Pipeline& pipeline, const hw::PassState& pass,
+                       const hw::DrawState& draw) {
+  const models::Program& program = *draw.fragment.program;
+  draw.visit_colors([&](std::size_t color) {
+    const models::Format format = pass.color[color].format;
+    const models::NumberKind wanted = models::number_kind(format), given = program.color_kinds[color];
+    if (given != wanted)
+      throw user_error("{}: writes {} to location {}, where pipeline '{}' draws to {}, which holds {}",
+                       program.name, models::name_of(given), color, pipeline.name,
+                       models::format_info(format).name, models::name_of(wanted));
+  });
+}
+
 void check_programs(const traces::Pipeline& pipeline, const hw::PassState& pass, const hw::DrawState& draw) {
   const models::Program& program = *draw.fragment.program;
   if (draw.second_source && (!program.second_source || pass.colors != 1))
@@ -37,6 +51,7 @@ void check_programs(const traces::Pipeline& pipeline, const hw::PassState& pass,
         "{}: pipeline '{}' blends by a second colour: the fragment shader has to have an output at location "
         "0, index 1, and the pass one colour attachment",
         program.name, pipeline.name);
+  check_color_kinds(pipeline, pass, draw);
   if (models::writes_buffers(program) && draw.primitives.pieces() != draw.primitives.assembled)
     throw user_error(
         "{}: writes memory where pipeline '{}' draws triangles by their edges or corners, which is not "
@@ -78,6 +93,8 @@ void set_fixed_function(const FixedFunctionInputs& in, hw::DrawState& draw) {
   draw.blend_shared = pipeline.blend_shared;
   draw.second_source = pipeline.blend[0].uses_second_source();
   draw.color_outputs = color_outputs(program, in.pass.colors);
+  for (std::size_t i = 0; i < in.pass.colors; ++i)
+    if (models::is_integer_format(in.pass.color[i].format)) draw.integer_colors |= 1u << i;
   check_programs(pipeline, in.pass, draw);
   draw.by_sample = draw.samples().count > 1 && (program.by_sample || pipeline.sample_shading);
   draw.reads_coverage = models::reads_coverage(program);

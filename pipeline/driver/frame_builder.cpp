@@ -57,8 +57,10 @@ class FrameBuilder {
     for (const traces::ColorAttachmentUse& use : c.colors) {
       hw::AttachmentState& color = pass.color[pass.colors++];
       color = attachment(use);
-      color.clear = use.load == traces::LoadOp::kClear ? models::encode_color(color.format, use.clear)
-                                                       : models::PixelCode{};
+      if (use.load == traces::LoadOp::kClear)
+        color.clear = models::is_integer_format(color.format)
+                          ? models::encode_integers(color.format, use.clear_integers)
+                          : models::encode_color(color.format, use.clear);
       if (use.resolve == traces::kNone) continue;
       hw::AttachmentState& resolve = pass.resolve[pass.colors - 1];
       resolve = attachment({use.resolve, traces::LoadOp::kLoad, traces::StoreOp::kStore});
@@ -269,6 +271,11 @@ class FrameBuilder {
     for (const models::TextureBinding& use : program.textures) {
       const traces::TextureDescriptor& bound = texture(program, use.set, use.binding);
       const traces::Image& image = stream_.images[bound.image];
+      if (models::number_kind(image.format) != use.texels)
+        throw user_error("{}: samples {} from image {} '{}', whose format {} holds {}", program.name,
+                         models::name_of(use.texels), bound.image, image.name,
+                         models::format_info(image.format).name,
+                         models::name_of(models::number_kind(image.format)));
       lives_.check_sampled(bound.image, out_.frame.passes.size() - 1, program.name);
       out_.frame.passes.back().samples_attachments |= image.is_attachment();
       const DeviceResources::Texture& texture = resources_.texture(bound.image);

@@ -41,7 +41,9 @@ std::vector<Target> our_targets(const traces::CommandStream& stream) {
 }
 
 /// Components may differ by a hundredth and a half, or by as much of themselves: rounding, a few blends long.
+/// Integers may not.
 bool alike(models::Format format, const models::PixelCode& a, const models::PixelCode& b) {
+  if (models::is_integer_format(format)) return a == b;
   const std::array<float, 4> x = models::decode_color(format, a), y = models::decode_color(format, b);
   for (std::size_t c = 0; c < 4; ++c) {
     const float most = std::max(std::abs(x[c]), std::abs(y[c]));

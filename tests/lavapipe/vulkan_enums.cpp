@@ -35,6 +35,22 @@ VkFormat vk_format(traces::Format format) {
     case F::kD16Unorm: return VK_FORMAT_D16_UNORM;
     case F::kD24UnormS8Uint: return VK_FORMAT_D24_UNORM_S8_UINT;
     case F::kD32FloatS8Uint: return VK_FORMAT_D32_SFLOAT_S8_UINT;
+    case F::kR8Uint: return VK_FORMAT_R8_UINT;
+    case F::kR8Sint: return VK_FORMAT_R8_SINT;
+    case F::kR8G8Uint: return VK_FORMAT_R8G8_UINT;
+    case F::kR8G8Sint: return VK_FORMAT_R8G8_SINT;
+    case F::kR8G8B8A8Sint: return VK_FORMAT_R8G8B8A8_SINT;
+    case F::kR16Uint: return VK_FORMAT_R16_UINT;
+    case F::kR16Sint: return VK_FORMAT_R16_SINT;
+    case F::kR16G16Uint: return VK_FORMAT_R16G16_UINT;
+    case F::kR16G16Sint: return VK_FORMAT_R16G16_SINT;
+    case F::kR16G16B16A16Sint: return VK_FORMAT_R16G16B16A16_SINT;
+    case F::kR32Uint: return VK_FORMAT_R32_UINT;
+    case F::kR32Sint: return VK_FORMAT_R32_SINT;
+    case F::kR32G32Uint: return VK_FORMAT_R32G32_UINT;
+    case F::kR32G32Sint: return VK_FORMAT_R32G32_SINT;
+    case F::kR32G32B32A32Uint: return VK_FORMAT_R32G32B32A32_UINT;
+    case F::kR32G32B32A32Sint: return VK_FORMAT_R32G32B32A32_SINT;
   }
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }

@@ -223,12 +223,14 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
   std::vector<VkRenderingAttachmentInfo> colors;
   for (const traces::ColorAttachmentUse& use : pass.colors) {
     VkClearValue clear{};
-    std::copy(use.clear.begin(), use.clear.end(), clear.color.float32);
+    const bool integers = traces::is_integer_format(stream_.images[use.image].format);
+    if (integers) std::copy(use.clear_integers.begin(), use.clear_integers.end(), clear.color.uint32);
+    else std::copy(use.clear.begin(), use.clear.end(), clear.color.float32);
     colors.push_back(attach(use, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, clear));
     if (use.resolve == traces::kNone) continue;
     images_[use.resolve].layout = VK_IMAGE_LAYOUT_UNDEFINED;
     move(use.resolve, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    colors.back().resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+    colors.back().resolveMode = integers ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT : VK_RESOLVE_MODE_AVERAGE_BIT;
     colors.back().resolveImageView = images_[use.resolve].device.view;
     colors.back().resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }

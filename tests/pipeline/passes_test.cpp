@@ -121,6 +121,18 @@ TEST_CASE("passes: a file from before queries draws what its scene draws today")
   CHECK(old == now);
 }
 
+TEST_CASE("passes: a file from before integers, levels and layers draws what its scene draws today") {
+  const traces::CommandStream old = kept_file("outlines_cmds_5");
+  scenes::SceneOptions options;
+  options.width = 24;
+  options.height = 16;
+  const traces::CommandStream now = scenes::load_scene("builtin:outlines", options);
+  CHECK(old.images == now.images);
+  CHECK(old.descriptor_sets == now.descriptor_sets);
+  CHECK(old.commands == now.commands);
+  CHECK(functional_digest(old) == functional_digest(now));
+}
+
 TEST_CASE("passes: pipelines of a file from before shading by sample shade pixels and mask nothing") {
   const traces::CommandStream old = kept_file("triangle_samples_pipe_3"), now = triangle(64, 36, 4);
   CHECK(old.pipelines == now.pipelines);

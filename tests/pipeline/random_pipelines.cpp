@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
+#include <string>
 
 namespace quadrille::pipeline::test {
 namespace {
@@ -20,13 +22,32 @@ layout(location = 0) in vec4 position; layout(location = 1) in vec4 color;
 layout(location = 0) out vec4 v_color; layout(location = 1) flat out vec4 v_flat;
 void main() { gl_Position = position; gl_PointSize = 1.0 + 4.0 * color.r; v_color = color; v_flat = color.bgra; })";
 
+/// What the targets hold, each.
+using Kinds = std::array<models::NumberKind, kMostTargets>;
+
+/// A colour as what a target holds. Integers are few and fit into 8 bits.
+std::string converted(models::NumberKind kind, const std::string& color) {
+  if (kind == models::NumberKind::kFloat) return color;
+  const bool is_signed = kind == models::NumberKind::kSint;
+  return (is_signed ? "ivec4(" : "uvec4(") + ("clamp(" + color + ", 0.0, 1.0) * 7.0) * ") +
+         (is_signed ? "31 - 100" : "31u");
+}
+
 /// Every program has outputs for all targets.
-constexpr const char* kHead = R"(#version 450
-layout(location = 0) in vec4 v_color; layout(location = 1) flat in vec4 v_flat;
-layout(location = 0) out vec4 o0; layout(location = 1) out vec4 o1;
-layout(location = 2) out vec4 o2; layout(location = 3) out vec4 o3;
-void put(vec4 c) { o0 = c; o1 = c.gbra; o2 = 1.0 - c; o3 = v_flat; }
-)";
+std::string head(const Kinds& kinds) {
+  constexpr std::array kTypes{"vec4", "uvec4", "ivec4"};
+  constexpr std::array kColors{"c", "c.gbra", "1.0 - c", "v_flat"};
+  std::string text =
+      "#version 450\nlayout(location = 0) in vec4 v_color; layout(location = 1) flat in vec4 v_flat;\n";
+  std::string body;
+  for (std::size_t i = 0; i < kMostTargets; ++i) {
+    const std::string name = "o" + std::to_string(i);
+    text += "layout(location = " + std::to_string(i) + ") out " + kTypes[static_cast<std::size_t>(kinds[i])] +
+            " " + name + ";\n";
+    body += name + " = " + converted(kinds[i], std::string("(") + kColors[i] + ")") + "; ";
+  }
+  return text + "void put(vec4 c) { " + body + "}\n";
+}
 constexpr std::array kBodies{
     "void main() { put(v_color); }",
     "void main() { put(v_flat); }",
@@ -48,18 +69,18 @@ void main() { o = v_color; second = vec4(v_flat.rgb, 0.25); })";
 constexpr auto kTwoColorsShader = static_cast<Index>(kBodies.size());  ///< the last fragment shader
 constexpr Index kVertexShader = kTwoColorsShader + 1;
 
-const std::vector<traces::Shader>& shaders() {
-  static const std::vector<traces::Shader> all = [] {
-    std::vector<traces::Shader> made;
-    const auto add = [&](const std::string& text, traces::ShaderStage stage) {
-      made.push_back({"pipelines", stage, scenes::compile_glsl(text, stage, "pipelines")});
-    };
-    for (const char* body : kBodies) add(std::string(kHead) + body, traces::ShaderStage::kFragment);
-    add(kTwoColors, traces::ShaderStage::kFragment);
-    add(kVertex, traces::ShaderStage::kVertex);
-    return made;
-  }();
-  return all;
+/// Made once for each choice of kinds.
+const std::vector<traces::Shader>& shaders(const Kinds& kinds) {
+  static std::map<Kinds, std::vector<traces::Shader>> all;
+  std::vector<traces::Shader>& made = all[kinds];
+  if (!made.empty()) return made;
+  const auto add = [&](const std::string& text, traces::ShaderStage stage) {
+    made.push_back({"pipelines", stage, scenes::compile_glsl(text, stage, "pipelines")});
+  };
+  for (const char* body : kBodies) add(head(kinds) + body, traces::ShaderStage::kFragment);
+  add(kTwoColors, traces::ShaderStage::kFragment);
+  add(kVertex, traces::ShaderStage::kVertex);
+  return made;
 }
 
 std::vector<Format> formats_for(models::FormatUse use) {
@@ -75,10 +96,11 @@ struct Vertex {
 
 class Maker {
  public:
-  Maker(std::uint64_t seed, const PipelinesOptions& options) : random_(seed), options_(options) {
+  Maker(std::uint64_t seed, const PipelinesOptions& options)
+      : random_(seed), integers_(~seed), options_(options) {
     stream_.name = "pipelines";
-    stream_.shaders = shaders();
     begin_pass();
+    stream_.shaders = shaders(kinds_);
     const auto side = static_cast<float>(options.side);
     stream_.commands.emplace_back(traces::SetViewport{0, 0, side, side, 0, 1});
   }
@@ -97,17 +119,25 @@ class Maker {
     return formats[static_cast<std::size_t>(random_.integer(0, static_cast<int>(formats.size()) - 1))];
   }
 
+  /// One in five holds integers, which no other choice depends on.
+  Format pick_color() {
+    const Format other = pick(formats_for(models::kBlendUse));
+    if (!integers_.chance(0.2)) return other;
+    std::vector<Format> formats = formats_for(models::kColorUse);
+    std::erase_if(formats, [](Format f) { return !models::is_integer_format(f); });
+    return formats[static_cast<std::size_t>(integers_.integer(0, static_cast<int>(formats.size()) - 1))];
+  }
+
   void begin_pass() {
     const Format depth = random_.chance(0.9) ? pick(formats_for(models::kDepthUse)) : Format::kUndefined;
-    traces::BeginPass pass = traces::make_pass(
-        stream_, {options_.side, options_.side, pick(formats_for(models::kColorUse)), depth}, color(),
-        random_.chance(0.8) ? 1.0f : 0.0f);
+    traces::BeginPass pass = traces::make_pass(stream_, {options_.side, options_.side, pick_color(), depth},
+                                               color(), random_.chance(0.8) ? 1.0f : 0.0f);
     pass.depth.clear_stencil = static_cast<std::uint8_t>(random_.integer(0, 3));
     targets_ = static_cast<std::size_t>(random_.integer(1, kMostTargets));
     while (pass.colors.size() < targets_) {
       traces::Image image;
       image.name = "target";
-      image.format = pick(formats_for(models::kColorUse));
+      image.format = pick_color();
       image.width = image.height = options_.side;
       image.usage = traces::kColorAttachment;
       stream_.images.push_back(image);
@@ -117,6 +147,10 @@ class Maker {
       pass.colors.push_back(use);
     }
     depths_ = depth;
+    for (std::size_t i = 0; i < targets_; ++i) {
+      kinds_[i] = models::number_kind(stream_.images[pass.colors[i].image].format);
+      pass.colors[i].clear_integers.fill(static_cast<std::uint32_t>(integers_.integer(0, 100)));
+    }
     colors_ = pass.colors;
     stream_.commands.emplace_back(pass);
   }
@@ -148,7 +182,9 @@ class Maker {
     for (std::size_t i = 0; i < targets_; ++i) {
       p.blend[i] = blend(second_source && i == 0);
       const Format format = stream_.images[colors_[i].image].format;
-      integers = integers && (format == Format::kR8G8B8A8Unorm || format == Format::kB8G8R8A8Unorm);
+      p.blend[i].enable = p.blend[i].enable && !models::is_integer_format(format);
+      integers = integers && (format == Format::kR8G8B8A8Unorm || format == Format::kB8G8R8A8Unorm ||
+                              models::is_integer_format(format));
     }
     p.blend_shared.constants = color();
     p.blend_shared.logic = integers && random_.chance(0.3);
@@ -180,7 +216,8 @@ class Maker {
   traces::Pipeline pipeline() {
     traces::Pipeline p;
     p.name = "random";
-    const bool second_source = targets_ == 1 && random_.chance(0.15);
+    const bool floats = kinds_[0] == models::NumberKind::kFloat;
+    const bool second_source = targets_ == 1 && random_.chance(0.15) && floats;
     p.fragment_shader =
         second_source ? kTwoColorsShader : static_cast<Index>(random_.integer(0, kTwoColorsShader - 1));
     p.vertex_shader = kVertexShader;
@@ -191,7 +228,7 @@ class Maker {
     colors(p, second_source);
     const bool several = options_.samples > 1;
     p.sample_shading = several && options_.sample_shading && random_.chance(0.1);
-    p.alpha_to_coverage = several && !p.sample_shading && random_.chance(0.1);
+    p.alpha_to_coverage = several && !p.sample_shading && random_.chance(0.1) && floats;
     if ((several || options_.sample_masks) && random_.chance(0.15))
       p.sample_mask = static_cast<std::uint32_t>(random_.integer(0, 15));
     return p;
@@ -261,11 +298,12 @@ class Maker {
     commands.emplace_back(draw);
   }
 
-  RandomSource random_;
+  RandomSource random_, integers_;
   PipelinesOptions options_;
   traces::CommandStream stream_;
   Format depths_ = Format::kUndefined;
   std::size_t targets_ = 1;
+  Kinds kinds_{};  ///< of the targets
   std::vector<traces::ColorAttachmentUse> colors_;
 };
 

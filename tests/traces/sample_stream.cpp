@@ -98,6 +98,7 @@ void random_commands(Dice& dice, CommandStream& s) {
                               dice.coin() ? Format::kR8G8B8A8Srgb : Format::kA2B10G10R10Unorm},
                              {dice.unit(), dice.unit(), dice.unit(), dice.unit()}, dice.unit());
   pass.colors[0].load = dice.coin() ? LoadOp::kClear : LoadOp::kDontCare;
+  for (std::uint32_t& word : pass.colors[0].clear_integers) word = dice.below(256);
   pass.depth.store = dice.choice(StoreOp::kDiscard);
   s.images[pass.colors[0].image].usage |= kSampled;
   if (dice.coin()) add_samples(s, pass, 2u << dice.below(3));

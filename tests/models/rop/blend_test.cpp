@@ -137,7 +137,7 @@ TEST_CASE("blend: every format with every factor and operation rounds to a neigh
   for (int round = 0; round < 60000; ++round) {
     const auto format = static_cast<Format>(random.integer(0, static_cast<int>(kLastFormat)));
     const FormatInfo& info = format_info(format);
-    if (!info.may(kColorUse)) continue;
+    if (!info.may(kBlendUse)) continue;
     const bool floats = is_float_format(format);
     const BlendState state = random_state(random, static_cast<int>(kLastBlendFactor));
     const BlendShared shared{

@@ -64,10 +64,23 @@ TEST_CASE("resolve: equal samples are themselves, in every colour format and cod
   }
 }
 
+TEST_CASE("resolve: of integers the first sample stays") {
+  RandomSource random(6);
+  for (int f = 0; f <= static_cast<int>(kLastFormat); ++f) {
+    const auto format = static_cast<Format>(f);
+    if (!format_info(format).may(kColorUse) || !is_integer_format(format)) continue;
+    std::vector<std::byte> planes(std::size_t{4} * 64 * format_bytes(format));
+    for (std::byte& byte : planes) byte = static_cast<std::byte>(random.bits());
+    INFO(format_info(format).name);
+    CHECK(resolved(format, planes, 4) ==
+          std::vector(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(planes.size() / 4)));
+  }
+}
+
 TEST_CASE("resolve: half of white and half of black is a half in linear values") {
   for (int f = 0; f <= static_cast<int>(kLastFormat); ++f) {
     const auto format = static_cast<Format>(f);
-    if (!format_info(format).may(kColorUse)) continue;
+    if (!format_info(format).may(kBlendUse)) continue;
     for (const std::uint32_t samples : {2u, 4u, 8u}) {
       std::vector<std::byte> planes;
       add_planes(planes, format, samples / 2, {1, 1, 1, 1});

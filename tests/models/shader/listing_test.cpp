@@ -37,7 +37,8 @@ TEST_CASE("listing: a vertex program with every directive reads back") {
       ".stage vertex\n.regs 9\n.push c0 offset=64 words=16\n.uniform c16 set=2 binding=5 offset=32 "
       "words=4\n.literal c20 0.5 -1 0xffc00001 "
       "1e-30\n.constants 40\n"
-      ".texture set=1 binding=3\n.input location=4 component=2\n.varying flat\n.varying linear\n"
+      ".texture set=1 binding=3\n.texture set=1 binding=4 uint\n.color location=2 sint\n.input location=4 "
+      "component=2\n.varying flat\n.varying linear\n"
       "input r0, in0\ninput r1, vertex_index\noutput out0, r0\noutput out5, -|c20|\ntexlod r2, t0, r0, r1, "
       "0.0\nend",
       "vertex");
@@ -47,6 +48,8 @@ TEST_CASE("listing: a vertex program with every directive reads back") {
   CHECK(p.constants.ranges[2].literals ==
         std::vector<std::uint32_t>{bits_of(0.5f), ~0u, 0xffc00001u, bits_of(1e-30f)});
   CHECK(p.textures[0] == TextureBinding{1, 3});
+  CHECK(p.textures[1] == TextureBinding{1, 4, NumberKind::kUint});
+  CHECK(p.color_kinds[2] == NumberKind::kSint);
   CHECK(p.vertex_inputs[0] == VertexInputUse{4, 2});
   CHECK(p.varyings == std::vector<Interpolation>{Interpolation::kFlat, Interpolation::kLinear});
   CHECK(assemble(disassemble(p), "vertex") == p);
@@ -81,6 +84,8 @@ TEST_CASE("listing: a mistake is reported with its line") {
   starts("fadd c0, r1, r1\nend\n", "shader:1: the destination must be a register");
   starts("fadd r0, r1, q7\nend\n", "shader:1: 'q7' is no operand");
   starts(".colour\nend\n", "shader:1: unknown directive");
+  starts(".texture set=0 binding=0 short\nend\n", "shader:1: numbers must be one of: float uint sint");
+  starts(".color location=8 uint\nend\n", "shader:1: location is 8; legal: at most 7");
   starts(".stage geometry\nend\n", "shader:1: stage must be one of: vertex fragment");
   starts(".varying smooth\nend\n", "shader:1: interpolation must be one of");
   starts(".flags fast\nend\n", "shader:1: unknown flag 'fast'");

@@ -211,6 +211,26 @@ TEST_CASE(
                             [](const auto& use) { return use.location == 3 && use.component == 1; }));
 }
 
+TEST_CASE("compiler: a program says what it writes to each location, and what its textures' texels are") {
+  const auto vertex = vertex_spirv(plain_vertex_source());
+  const auto fragment = fragment_spirv(
+      "#version 450\nlayout(location=0) out uvec4 a; layout(location=1) out vec2 b; layout(location=3) out "
+      "int c;\n"
+      "layout(set=0,binding=1) uniform usampler2D u; layout(set=0,binding=2) uniform isampler2D s;\n"
+      "layout(set=0,binding=3) uniform sampler2D f;\n"
+      "void main() { a = textureLod(u, vec2(0.5), 0.0); b = textureLod(f, vec2(0.5), 0.0).xy;\n"
+      "  c = textureLod(s, vec2(0.5), 0.0).w; }");
+  const CompiledPipeline p = compile_pipeline(vertex, "v", fragment, "f");
+  using models::NumberKind;
+  CHECK(p.fragment.color_kinds[0] == NumberKind::kUint);
+  CHECK(p.fragment.color_kinds[1] == NumberKind::kFloat);
+  CHECK(p.fragment.color_kinds[3] == NumberKind::kSint);
+  CHECK(std::ranges::count(p.fragment.textures, models::TextureBinding{0, 1, NumberKind::kUint}) == 1);
+  CHECK(std::ranges::count(p.fragment.textures, models::TextureBinding{0, 2, NumberKind::kSint}) == 1);
+  CHECK(std::ranges::count(p.fragment.textures, models::TextureBinding{0, 3}) == 1);
+  CHECK(models::assemble(models::disassemble(p.fragment), "f").color_kinds == p.fragment.color_kinds);
+}
+
 TEST_CASE(
     "specialisation constants may be floats and vectors chosen by others, and what is computed of them") {
   const std::string declarations =
