@@ -5,15 +5,25 @@
 
 namespace quadrille::traces {
 
+std::uint32_t level_width(const Image& image, std::uint32_t level) {
+  return std::max(1u, image.width >> level);
+}
+std::uint32_t level_height(const Image& image, std::uint32_t level) {
+  return std::max(1u, image.height >> level);
+}
+
 std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
-  return std::uint64_t{format_bytes(image.format)} * std::max(1u, image.width >> level) *
-         std::max(1u, image.height >> level);
+  return std::uint64_t{format_bytes(image.format)} * level_width(image, level) * level_height(image, level);
 }
 
 std::uint64_t texel_bytes(const Image& image) {
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < image.levels; ++level) bytes += level_bytes(image, level);
   return bytes;
+}
+
+std::uint32_t level_count(const CommandStream& stream, const TextureDescriptor& texture) {
+  return texture.levels != 0 ? texture.levels : stream.images[texture.image].levels - texture.first_level;
 }
 
 std::size_t texture_count(const CommandStream& stream) {
@@ -43,8 +53,10 @@ BeginPass make_pass(CommandStream& stream, const PassTarget& target, const std::
 }
 
 PassTarget target_of(const CommandStream& stream, const BeginPass& pass) {
-  const Image& image = stream.images[pass.first_image()];
-  return {image.width, image.height, pass.colors.empty() ? Format::kUndefined : image.format,
+  const AttachmentUse& first = pass.first();
+  const Image& image = stream.images[first.image];
+  return {level_width(image, first.level), level_height(image, first.level),
+          pass.colors.empty() ? Format::kUndefined : image.format,
           pass.depth.image == kNone ? Format::kUndefined : stream.images[pass.depth.image].format};
 }
 

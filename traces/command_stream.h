@@ -80,7 +80,7 @@ inline constexpr std::uint8_t kAllUsages = kSampled | kColorAttachment | kDepthA
 
 /// A 2D image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
 /// first, rows top to bottom, tightly packed. Level i is max(1, width >> i) by max(1, height >> i). An
-/// attachment has one level and no texels: it holds what passes store.
+/// attachment has no texels: it holds what passes store, in each level of each layer.
 struct Image {
   std::string name;
   Format format = Format::kR8G8B8A8Unorm;
@@ -90,10 +90,20 @@ struct Image {
   std::shared_ptr<const UnpackTexels> packed{};
   std::uint8_t usage = kSampled;  ///< of `ImageUsage`
   std::uint32_t samples = 1;      ///< a pixel: 1, 2, 4 or 8; of an attachment that is not sampled
+  std::uint32_t layers = 1;       ///< of an attachment: images of this size and as many levels
   [[nodiscard]] bool is_attachment() const { return (usage & (kColorAttachment | kDepthAttachment)) != 0; }
   friend bool operator==(const Image&, const Image&) = default;
 };
-/// Bytes of a level's texels, and of all levels'.
+/// Texels of a level.
+[[nodiscard]] std::uint32_t level_width(const Image& image, std::uint32_t level);
+[[nodiscard]] std::uint32_t level_height(const Image& image, std::uint32_t level);
+/// A level of a layer of an image, of which a pass may draw to one by itself.
+struct ImagePart {
+  Index image = kNone;
+  std::uint32_t level = 0, layer = 0;
+  friend auto operator<=>(const ImagePart&, const ImagePart&) = default;  // NOLINT(modernize-use-nullptr)
+};
+/// Bytes of a level's texels, and of all levels' of a layer.
 [[nodiscard]] std::uint64_t level_bytes(const Image& image, std::uint32_t level);
 [[nodiscard]] std::uint64_t texel_bytes(const Image& image);
 /// Puts the texels of a packed image into `texels`. Throws `UserError`.
@@ -163,6 +173,8 @@ struct UniformBinding {
 struct TextureDescriptor {
   std::uint32_t binding = 0;
   Index image = kNone, sampler = kNone;
+  /// What is sampled: so many levels of one layer, from this one on, which is the finest. 0: all behind it.
+  std::uint32_t first_level = 0, levels = 0, layer = 0;
   friend bool operator==(const TextureDescriptor&, const TextureDescriptor&) = default;
 };
 /// A range of a buffer that programs may read and write.
@@ -185,6 +197,8 @@ struct AttachmentUse {
   Index image = kNone;
   LoadOp load = LoadOp::kClear;
   StoreOp store = StoreOp::kStore;
+  std::uint32_t level = 0, layer = 0;  ///< of the image: what is drawn to
+  [[nodiscard]] ImagePart part() const { return {image, level, layer}; }
   friend bool operator==(const AttachmentUse&, const AttachmentUse&) = default;
 };
 struct ColorAttachmentUse : AttachmentUse {
@@ -193,6 +207,8 @@ struct ColorAttachmentUse : AttachmentUse {
   std::array<std::uint32_t, 4> clear_integers{0, 0, 0, 1};
   /// An image of one sample and the same format: holds the means of the samples when the pass ends.
   Index resolve = kNone;
+  std::uint32_t resolve_level = 0, resolve_layer = 0;
+  [[nodiscard]] ImagePart resolve_part() const { return {resolve, resolve_level, resolve_layer}; }
   friend bool operator==(const ColorAttachmentUse&, const ColorAttachmentUse&) = default;
 };
 struct DepthAttachmentUse : AttachmentUse {
@@ -208,7 +224,10 @@ struct BeginPass {
   /// Of a pass with one colour attachment. Behind its order-independent draws come no others that write
   /// depths or colours.
   TransparencyState transparency{};
-  [[nodiscard]] Index first_image() const { return colors.empty() ? depth.image : colors[0].image; }
+  [[nodiscard]] const AttachmentUse& first() const {
+    return colors.empty() ? static_cast<const AttachmentUse&>(depth) : colors[0];
+  }
+  [[nodiscard]] Index first_image() const { return first().image; }
   friend bool operator==(const BeginPass&, const BeginPass&) = default;
 };
 struct EndPass {
@@ -276,6 +295,9 @@ struct CommandStream {
   std::vector<Command> commands;
   friend bool operator==(const CommandStream&, const CommandStream&) = default;
 };
+
+/// Levels that a descriptor names.
+[[nodiscard]] std::uint32_t level_count(const CommandStream& stream, const TextureDescriptor& texture);
 
 /// Images that bring texels.
 [[nodiscard]] std::size_t texture_count(const CommandStream& stream);

@@ -48,19 +48,25 @@ class SampleAdder {
   void change(BeginPass& pass) {
     for (ColorAttachmentUse& color : pass.colors) {
       color.resolve = color.image;
-      color.image = add(color.image, kColorAttachment);
+      color.resolve_level = color.level, color.resolve_layer = color.layer;
+      attach(color, kColorAttachment);
       color.store = StoreOp::kDiscard;
     }
-    if (pass.depth.image != kNone) pass.depth.image = add(pass.depth.image, kDepthAttachment);
+    if (pass.depth.image != kNone) attach(pass.depth, kDepthAttachment);
   }
 
-  Index add(Index like, ImageUsage usage) {
-    Image image = stream_.images[like];
+  /// Puts an image of several samples in the place of what is drawn to.
+  void attach(AttachmentUse& use, ImageUsage usage) {
+    Image image = stream_.images[use.image];
     image.name += ", samples";
+    image.width = level_width(image, use.level);
+    image.height = level_height(stream_.images[use.image], use.level);
+    image.levels = image.layers = 1;
     image.usage = usage;
     image.samples = samples_;
     stream_.images.push_back(std::move(image));
-    return static_cast<Index>(stream_.images.size() - 1);
+    use.image = static_cast<Index>(stream_.images.size() - 1);
+    use.level = use.layer = 0;
   }
 
   CommandStream& stream_;

@@ -39,6 +39,12 @@ std::string megabytes(std::uint64_t bytes) {
   return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
 }
 
+/// Of an attachment that has more than one level or layer.
+std::string parts_of(const Image& image) {
+  if (image.levels == 1 && image.layers == 1) return {};
+  return fmt::format("{} levels, {} layers, ", image.levels, image.layers);
+}
+
 }  // namespace
 
 StreamTotals stream_totals(const CommandStream& stream) {
@@ -56,7 +62,7 @@ std::string trace_info(const CommandStream& stream) {
   std::string text = fmt::format("trace '{}'\n", stream.name);
   for (const Image& image : stream.images) {
     if (image.is_attachment())
-      text += fmt::format("  attachment {}x{}, {} '{}'\n", image.width, image.height,
+      text += fmt::format("  attachment {}x{}, {}{} '{}'\n", image.width, image.height, parts_of(image),
                           models::format_info(image.format).name, image.name);
   }
   text += fmt::format("  buffers    {:6} {}\n", stream.buffers.size(), megabytes(totals.buffer_bytes));

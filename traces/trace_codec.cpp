@@ -29,6 +29,7 @@ void transfer(A& a, Image& v) {
   a.array(v.texels);
   if (a.version() >= 2) numbers(a, v.usage);
   if (a.version() >= 3) numbers(a, v.samples);
+  if (a.version() >= 4) numbers(a, v.layers);
 }
 
 template <class A>
@@ -104,7 +105,10 @@ void transfer(A& a, Pipeline& v) {
 template <class A>
 void transfer(A& a, DescriptorSet& v) {
   a.table(v.uniforms, [&](UniformBinding& u) { numbers(a, u.binding, u.buffer, u.offset, u.range); });
-  a.table(v.textures, [&](TextureDescriptor& t) { numbers(a, t.binding, t.image, t.sampler); });
+  a.table(v.textures, [&](TextureDescriptor& t) {
+    numbers(a, t.binding, t.image, t.sampler);
+    if (a.version() >= 3) numbers(a, t.first_level, t.levels, t.layer);
+  });
   if (a.version() >= 2)
     a.table(v.buffers, [&](StorageBinding& b) { numbers(a, b.binding, b.buffer, b.offset, b.range); });
 }
@@ -121,6 +125,7 @@ void transfer(A& a, AttachmentUse& v) {
   numbers(a, v.image);
   a.choice(v.load, LoadOp::kDontCare);
   a.choice(v.store, StoreOp::kDiscard);
+  if (a.version() >= 7) numbers(a, v.level, v.layer);
 }
 
 template <class A>
@@ -141,6 +146,7 @@ void fields(A& a, BeginPass& v) {
     numbers(a, color.clear);
     if (a.version() >= 3) numbers(a, color.resolve);
     if (a.version() >= 6) numbers(a, color.clear_integers);
+    if (a.version() >= 7) numbers(a, color.resolve_level, color.resolve_layer);
   });
   transfer(a, static_cast<AttachmentUse&>(v.depth));
   numbers(a, v.depth.clear);

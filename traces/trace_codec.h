@@ -37,13 +37,13 @@ struct ChunkInfo {
 };
 inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"BUFS", 1},
-                                                   {"IMGS", 3},
+                                                   {"IMGS", 4},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
                                                    {"PIPE", 5},
-                                                   {"DESC", 2},
+                                                   {"DESC", 3},
                                                    {"TARG", 0},
-                                                   {"CMDS", 6}}};
+                                                   {"CMDS", 7}}};
 
 [[nodiscard]] std::vector<std::byte> encode_chunk(const CommandStream& stream, Chunk chunk);
 

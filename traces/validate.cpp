@@ -16,6 +16,7 @@ namespace quadrille::traces {
 namespace {
 
 constexpr std::uint32_t kMaxSide = 16384;  // texels or pixels [VK1.3 #limits-maxImageDimension2D]
+constexpr std::uint32_t kMaxLayers = 256;  // [VK1.3 #limits-required: maxImageArrayLayers]
 // bindings and locations [VK1.3 #limits-required: maxVertexInputBindings]
 constexpr std::uint32_t kMaxVertexSlots = 16;
 // bytes [VK1.3 #limits-required: maxVertexInputBindingStride]
@@ -54,12 +55,19 @@ void check_samples(const Image& image, std::size_t index) {
   if (image.samples > 1 && (!image.is_attachment() || (image.usage & kSampled) != 0))
     throw user_error("image {} '{}': only an attachment that is not sampled has {} samples a pixel", index,
                      image.name, image.samples);
+  if (image.samples > 1 && image.levels > 1)
+    throw user_error("image {} '{}': {} levels of {} samples a pixel; it can have one", index, image.name,
+                     image.levels, image.samples);
 }
 
 void check_texels(const Image& image, std::size_t index) {
   const std::uint64_t bytes = image.packed || image.is_attachment() ? 0 : texel_bytes(image);
-  if (image.is_attachment() && (image.levels != 1 || image.packed || !image.texels.empty()))
-    throw user_error("image {} '{}': an attachment has one level and brings no texels", index, image.name);
+  if (image.is_attachment() && (image.packed || !image.texels.empty()))
+    throw user_error("image {} '{}': an attachment brings no texels", index, image.name);
+  const std::uint32_t most_layers = image.is_attachment() ? kMaxLayers : 1;
+  if (image.layers == 0 || image.layers > most_layers)
+    throw user_error("image {} '{}': {} layers; 1..{} are possible (1 unless it is an attachment)", index,
+                     image.name, image.layers, most_layers);
   if (image.texels.size() != bytes) {
     throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index,
                      image.name, image.texels.size(), image.width, image.height, image.levels, bytes);
@@ -206,6 +214,17 @@ void check_block(const CommandStream& stream, std::size_t set, const Block& bloc
                      block.offset, kBlockAlignment);
 }
 
+/// Levels and layer that are sampled are those of the image.
+void check_view(const CommandStream& stream, const TextureDescriptor& t, std::size_t set) {
+  const Image& image = stream.images[t.image];
+  if (t.first_level >= image.levels || t.levels > image.levels - t.first_level)
+    throw user_error("descriptor set {} binding {}: levels {}+{} of image {} '{}', which has {}", set,
+                     t.binding, t.first_level, t.levels, t.image, image.name, image.levels);
+  if (t.layer >= image.layers)
+    throw user_error("descriptor set {} binding {}: layer {} of image {} '{}', which has {}", set, t.binding,
+                     t.layer, t.image, image.name, image.layers);
+}
+
 /// Integers have no numbers between them. [VK1.3 #textures-texel-filtering]
 void check_filters(const CommandStream& stream, const TextureDescriptor& t, std::size_t set) {
   const Image& image = stream.images[t.image];
@@ -241,6 +260,7 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
                        t.image, stream.images[t.image].name);
     if (t.sampler >= stream.samplers.size())
       throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
+    check_view(stream, t, set);
     check_filters(stream, t, set);
   }
 }

@@ -62,17 +62,27 @@ void CommandWalk::check_attachment(const AttachmentUse& use, ImageUsage usage, c
   const Image& image = stream_.images[use.image];
   if ((image.usage & usage) == 0)
     throw user_error("command {}: {}: image {} '{}' is not for that use", at_, what, use.image, image.name);
-  if (image.width != target_.width || image.height != target_.height)
-    throw user_error("command {}: {}: image {} of {}x{} beside one of {}x{}", at_, what, use.image,
-                     image.width, image.height, target_.width, target_.height);
+  check_part(use.part(), what);
+  const std::uint32_t width = level_width(image, use.level), height = level_height(image, use.level);
+  if (width != target_.width || height != target_.height)
+    throw user_error("command {}: {}: image {} of {}x{} beside one of {}x{}", at_, what, use.image, width,
+                     height, target_.width, target_.height);
   if (image.samples != samples_)
     throw user_error("command {}: {}: image {} of {} samples a pixel beside one of {}", at_, what, use.image,
                      image.samples, samples_);
-  if (attached_[use.image])
-    throw user_error("command {}: {}: image {} is attached twice", at_, what, use.image);
-  if (use.load == LoadOp::kLoad && !stored_[use.image])
+  if (use.load == LoadOp::kLoad && !stored_.contains(use.part()))
     throw user_error("command {}: {}: image {} is loaded before a pass has stored it", at_, what, use.image);
-  attached_[use.image] = true;
+}
+
+/// Notes a level of a layer as one that the pass draws to.
+void CommandWalk::check_part(const ImagePart& part, const char* what) {
+  const Image& image = stream_.images[part.image];
+  if (part.level >= image.levels || part.layer >= image.layers)
+    throw user_error(
+        "command {}: {}: level {} of layer {} of image {} '{}', which has {} levels and {} layers", at_, what,
+        part.level, part.layer, part.image, image.name, image.levels, image.layers);
+  if (!attached_.insert(part).second)
+    throw user_error("command {}: {}: image {} is attached twice", at_, what, part.image);
 }
 
 void CommandWalk::check_resolve(const ColorAttachmentUse& color) {
@@ -85,12 +95,11 @@ void CommandWalk::check_resolve(const ColorAttachmentUse& color) {
         "command {}: {}: several samples a pixel are resolved to a colour attachment of one; "
         "images {} and {} have {} and {}",
         at_, kWhat, color.image, color.resolve, from.samples, to.samples);
-  if (to.width != from.width || to.height != from.height || to.format != from.format)
+  check_part(color.resolve_part(), kWhat);
+  if (level_width(to, color.resolve_level) != target_.width ||
+      level_height(to, color.resolve_level) != target_.height || to.format != from.format)
     throw user_error("command {}: {}: images {} and {} differ in size or format", at_, kWhat, color.image,
                      color.resolve);
-  if (attached_[color.resolve])
-    throw user_error("command {}: {}: image {} is attached twice", at_, kWhat, color.resolve);
-  attached_[color.resolve] = true;
 }
 
 void CommandWalk::check_transparency(const BeginPass& pass) const {
@@ -113,11 +122,9 @@ void CommandWalk::visit(const BeginPass& c) {
   if (c.first_image() == kNone) throw user_error("command {}: a render pass without attachments", at_);
   if (c.first_image() >= stream_.images.size())
     throw user_error("command {}: image {} does not exist", at_, c.first_image());
-  const Image& first = stream_.images[c.first_image()];
-  target_.width = first.width;
-  target_.height = first.height;
-  samples_ = first.samples;
-  attached_.assign(stream_.images.size(), false);
+  target_ = target_of(stream_, c);
+  samples_ = stream_.images[c.first_image()].samples;
+  attached_.clear();
   for (const ColorAttachmentUse& color : c.colors) {
     check_attachment(color, kColorAttachment, "colour attachment");
     if (!std::ranges::all_of(color.clear, [](float v) { return std::isfinite(v); }))
@@ -142,11 +149,15 @@ void CommandWalk::visit(const BeginPass& c) {
 void CommandWalk::visit(const EndPass&) {
   if (pass_ == nullptr) throw user_error("command {}: a render pass ends that has not begun", at_);
   queries_.end_pass(at_);
+  const auto leave = [this](const AttachmentUse& use) {
+    if (use.store == StoreOp::kStore) stored_.insert(use.part());
+    else stored_.erase(use.part());
+  };
   for (const ColorAttachmentUse& color : pass_->colors) {
-    stored_[color.image] = color.store == StoreOp::kStore;
-    if (color.resolve != kNone) stored_[color.resolve] = true;
+    leave(color);
+    if (color.resolve != kNone) stored_.insert(color.resolve_part());
   }
-  if (pass_->depth.image != kNone) stored_[pass_->depth.image] = pass_->depth.store == StoreOp::kStore;
+  if (pass_->depth.image != kNone) leave(pass_->depth);
   pass_ = nullptr;
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -20,11 +21,7 @@ inline constexpr std::uint32_t kMaxDescriptorSets = 4;
 
 class CommandWalk {
  public:
-  explicit CommandWalk(const CommandStream& stream)
-      : stream_(stream),
-        attached_(stream.images.size()),
-        stored_(stream.images.size()),
-        queries_(stream.query_pools) {}
+  explicit CommandWalk(const CommandStream& stream) : stream_(stream), queries_(stream.query_pools) {}
   /// Throws `UserError` naming the command.
   void run();
 
@@ -52,6 +49,7 @@ class CommandWalk {
 
   void check_resolve(const ColorAttachmentUse& color);
   void check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what);
+  void check_part(const ImagePart& part, const char* what);
   void check_transparency(const BeginPass& pass) const;
   void check_draw_state() const;
   void check_integers() const;
@@ -71,9 +69,9 @@ class CommandWalk {
   const BeginPass* pass_ = nullptr;  ///< that has begun and not ended
   const BeginPass* last_ = nullptr;
   PassTarget target_;
-  bool drew_any_order_ = false;          ///< the pass has an order-independent draw
-  std::uint32_t samples_ = 1;            ///< a pixel, of the pass
-  std::vector<bool> attached_, stored_;  ///< by image: in this pass; by an earlier one
+  bool drew_any_order_ = false;            ///< the pass has an order-independent draw
+  std::uint32_t samples_ = 1;              ///< a pixel, of the pass
+  std::set<ImagePart> attached_, stored_;  ///< in this pass; by an earlier one
   Index pipeline_ = kNone;
   QueryWalk queries_;
   std::array<VertexStream, kMaxVertexBindings> vertex_streams_;

@@ -48,13 +48,14 @@ TextureView texture_view(const ShaderProgram& program, const DrawState& state, c
                          const Precision* precision) {
   for (const traces::TextureDescriptor& texture : descriptor_set(program, state, use.set).textures) {
     if (texture.binding != use.binding) continue;
-    const auto drawn = state.drawn->find(texture.image);
+    const auto drawn = state.drawn->find({texture.image, texture.layer});
     const traces::Image* const image =
         drawn != state.drawn->end() ? &drawn->second : &state.stream->images[texture.image];
     if (image->texels.empty())
       throw user_error("draw {}: shader '{}' samples image '{}' before a pass has drawn it", state.number,
                        program.name, image->name);
-    return {image, &state.stream->samplers[texture.sampler], precision};
+    return {image, &state.stream->samplers[texture.sampler], precision, texture.first_level,
+            traces::level_count(*state.stream, texture)};
   }
   throw user_error("draw {}: shader '{}' uses texture (set {}, binding {}), which is not bound", state.number,
                    program.name, use.set, use.binding);

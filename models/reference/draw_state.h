@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "models/reference/shader_program.h"
@@ -32,6 +33,9 @@ struct KeptFragment {
 };
 using KeptFragments = std::vector<KeptFragment>;
 
+/// Layers of attachments, each with all its levels as texels.
+using DrawnLayers = std::map<std::pair<traces::Index, std::uint32_t>, traces::Image>;
+
 struct DrawState {
   const traces::CommandStream* stream = nullptr;
   std::vector<ColorTarget*> colors;              ///< of the pass, by attachment
@@ -41,8 +45,8 @@ struct DrawState {
   std::uint32_t samples = 1;  ///< a pixel, of the pass
   /// of a pass that keeps fragments: by place, as colours
   std::vector<KeptFragments>* kept = nullptr;
-  /// what earlier passes have drawn, with texels, for samplers
-  const std::map<traces::Index, traces::Image>* drawn = nullptr;
+  /// what earlier passes have drawn, by image and layer, with texels, for samplers
+  const DrawnLayers* drawn = nullptr;
   const traces::Pipeline* pipeline = nullptr;
   std::map<std::uint32_t, traces::Index> descriptor_sets;
   std::map<std::uint32_t, VertexBuffer> vertex_buffers;

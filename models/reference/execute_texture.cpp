@@ -51,7 +51,7 @@ void sample_explicit(const Operation& o, Lanes& lanes) {
 void query_size(const Operation& o, Lanes& lanes) {
   std::array<Cell, 2> size{};
   for (int lane = 0; lane < kLanes; ++lane) {
-    const auto extent = level_extent(*(*lanes.textures)[o.imm[0]].image, lanes.cells[o.src[1]].u(lane));
+    const auto extent = level_extent((*lanes.textures)[o.imm[0]], lanes.cells[o.src[1]].u(lane));
     for (std::size_t axis = 0; axis < 2; ++axis) size[axis].set_u(lane, extent[axis]);
   }
   for (std::uint32_t axis = 0; axis < 2; ++axis) write(lanes, lanes.cells[o.dst + axis], size[axis]);
@@ -59,7 +59,7 @@ void query_size(const Operation& o, Lanes& lanes) {
 
 void query_levels(const Operation& o, Lanes& lanes) {
   Cell levels;
-  for (int lane = 0; lane < kLanes; ++lane) levels.set_u(lane, (*lanes.textures)[o.imm[0]].image->levels);
+  for (int lane = 0; lane < kLanes; ++lane) levels.set_u(lane, (*lanes.textures)[o.imm[0]].levels);
   write(lanes, lanes.cells[o.dst], levels);
 }
 

@@ -75,10 +75,10 @@ class Renderer {
     result_.width = target.width, result_.height = target.height;
     state_.colors.clear();
     for (const traces::ColorAttachmentUse& use : pass.colors) {
-      state_.colors.push_back(&colors_[use.image]);
-      if (use.load != traces::LoadOp::kLoad) clear(colors_[use.image], use, values);
+      state_.colors.push_back(&colors_[use.part()]);
+      if (use.load != traces::LoadOp::kLoad) clear(colors_[use.part()], use, values);
     }
-    state_.depth = pass.depth.image == traces::kNone ? nullptr : &depths_[pass.depth.image];
+    state_.depth = pass.depth.image == traces::kNone ? nullptr : &depths_[pass.depth.part()];
     if (state_.depth != nullptr && pass.depth.load != traces::LoadOp::kLoad)
       state_.depth->assign(values, held_depth(stream_.images[pass.depth.image].format, clear_depth(pass)));
     note_stencil(pass, values);
@@ -94,7 +94,7 @@ class Renderer {
     state_.stencil = nullptr;
     if (state_.depth == nullptr) return;
     state_.depth_format = stream_.images[pass.depth.image].format;
-    state_.stencil = &stencils_[pass.depth.image];
+    state_.stencil = &stencils_[pass.depth.part()];
     if (pass.depth.load == traces::LoadOp::kLoad) return;
     const bool clears = pass.depth.load == traces::LoadOp::kClear;
     state_.stencil->assign(values, clears ? pass.depth.clear_stencil : std::uint8_t{0});
@@ -126,16 +126,17 @@ class Renderer {
     if (!seen()) return;
     if (begun_->transparency.mode != traces::Transparency::kNone) put_over(kept_, *state_.colors[0]);
     for (const traces::ColorAttachmentUse& use : begun_->colors) {
-      keep(use.image, colors_[use.image].code);
+      keep(use.part(), colors_[use.part()].code);
       if (use.resolve == traces::kNone) continue;
-      resolve(colors_[use.image], colors_[use.resolve]);
-      keep(use.resolve, colors_[use.resolve].code);
+      ColorTarget& to = colors_[use.resolve_part()];
+      resolve(colors_[use.part()], to);
+      keep(use.resolve_part(), to.code);
     }
     if (state_.depth != nullptr && state_.samples == 1) {
       std::vector<PixelCode> codes;
       for (const double z : *state_.depth)
         codes.push_back(store_depth(stream_.images[begun_->depth.image].format, z));
-      keep(begun_->depth.image, codes);
+      keep(begun_->depth.part(), codes);
     }
   }
 
@@ -158,20 +159,22 @@ class Renderer {
     }
   }
 
-  /// Makes what a pass drew a texture.
-  void keep(traces::Index index, const std::vector<PixelCode>& codes) {
-    if ((stream_.images[index].usage & traces::kSampled) == 0) return;
-    traces::Image& image = drawn_[index] = stream_.images[index];
+  /// Makes what a pass drew a level of a texture.
+  void keep(const traces::ImagePart& part, const std::vector<PixelCode>& codes) {
+    if ((stream_.images[part.image].usage & traces::kSampled) == 0) return;
+    const auto [place, fresh] = drawn_.try_emplace({part.image, part.layer}, stream_.images[part.image]);
+    traces::Image& image = place->second;
+    if (fresh) image.texels.resize(traces::texel_bytes(image));
+    std::byte* at = image.texels.data();
+    for (std::uint32_t level = 0; level < part.level; ++level) at += traces::level_bytes(image, level);
     const std::size_t bytes = traces::format_bytes(image.format);
-    image.texels.resize(bytes * codes.size());
-    for (std::size_t i = 0; i < codes.size(); ++i)
-      std::memcpy(image.texels.data() + bytes * i, codes[i].word.data(), bytes);
+    for (std::size_t i = 0; i < codes.size(); ++i) std::memcpy(at + bytes * i, codes[i].word.data(), bytes);
   }
 
   /// The last pass's picture.
   void show() {
-    const traces::Index resolved = begun_->colors.at(0).resolve;
-    const ColorTarget& shown = resolved == traces::kNone ? *state_.colors[0] : colors_.at(resolved);
+    const traces::ImagePart resolved = begun_->colors.at(0).resolve_part();
+    const ColorTarget& shown = resolved.image == traces::kNone ? *state_.colors[0] : colors_.at(resolved);
     result_.color.clear();
     for (const PixelCode& code : shown.code) result_.color.push_back(to_bytes(shown.format, code));
     result_.color_linear = shown.linear;
@@ -281,11 +284,11 @@ class Renderer {
   bool all_passes_ = false;
   std::uint32_t passes_ = 0, pass_ = 0;
   const traces::BeginPass* begun_ = nullptr;
-  std::map<traces::Index, ColorTarget> colors_;
-  std::map<traces::Index, std::vector<double>> depths_;
-  std::map<traces::Index, std::vector<std::uint8_t>> stencils_;
+  std::map<traces::ImagePart, ColorTarget> colors_;
+  std::map<traces::ImagePart, std::vector<double>> depths_;
+  std::map<traces::ImagePart, std::vector<std::uint8_t>> stencils_;
   std::vector<KeptFragments> kept_;
-  std::map<traces::Index, traces::Image> drawn_;
+  DrawnLayers drawn_;
   std::map<traces::Index, ShaderProgram> programs_;
   Result result_;
 };

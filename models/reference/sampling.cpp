@@ -48,9 +48,10 @@ Texel mix(const Texel& a, const Texel& b, double t) {
 
 Texel sample_level(const TextureView& texture, std::uint32_t level, double u, double v,
                    traces::Filter filter) {
-  const auto extent = level_extent(*texture.image, level);
+  const auto extent = level_extent(texture, level);
   const auto texel = [&](std::int64_t i, std::int64_t j) {
-    return fetch_texel(*texture.image, level, wrapped(i, extent[0], texture.sampler->wrap_u),
+    return fetch_texel(*texture.image, texture.first_level + level,
+                       wrapped(i, extent[0], texture.sampler->wrap_u),
                        wrapped(j, extent[1], texture.sampler->wrap_v));
   };
   const double x = u * extent[0], y = v * extent[1];
@@ -85,6 +86,10 @@ std::array<std::uint32_t, 2> level_extent(const traces::Image& image, std::uint3
   return {std::max(1u, image.width >> l), std::max(1u, image.height >> l)};
 }
 
+std::array<std::uint32_t, 2> level_extent(const TextureView& texture, std::uint32_t level) {
+  return level_extent(*texture.image, texture.first_level + (level < texture.levels ? level : 0));
+}
+
 Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y) {
   std::size_t first = 0;
   for (std::uint32_t l = 0; l < level; ++l)
@@ -97,7 +102,7 @@ Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t
 }
 
 double base_lod(const TextureView& texture, std::array<double, 2> d_dx, std::array<double, 2> d_dy) {
-  const double w = texture.image->width, h = texture.image->height;
+  const auto [w, h] = level_extent(texture, 0);
   return std::log2(std::max(std::hypot(d_dx[0] * w, d_dx[1] * h), std::hypot(d_dy[0] * w, d_dy[1] * h)));
 }
 
@@ -110,10 +115,10 @@ Texel sample_texture(const TextureView& texture, double u, double v, double base
                                             : std::max(static_cast<double>(s.min_lod),
                                                        std::min(biased, static_cast<double>(s.max_lod)));
   // Kept within what has an effect before rounding: infinities do not round.
-  const double lambda = quantised(std::clamp(clamped, -1.0, static_cast<double>(texture.image->levels)),
+  const double lambda = quantised(std::clamp(clamped, -1.0, static_cast<double>(texture.levels)),
                                   texture.precision, &Precision::lod_bits);
   const traces::Filter filter = lambda <= 0 ? s.mag : s.min;
-  const double top = static_cast<double>(texture.image->levels - 1);
+  const double top = static_cast<double>(texture.levels - 1);
   const double level = std::clamp(lambda, 0.0, top);
   if (s.mip == traces::Filter::kNearest) {
     return sample_level(texture,

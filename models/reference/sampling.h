@@ -10,19 +10,21 @@ namespace quadrille::models::reference {
 
 using Texel = std::array<double, 4>;  ///< linear red, green, blue, alpha; or integers
 
-/// An image with the sampler it is read through. Borrowed from the stream. `precision` null: no quantisation.
+/// An image, of which some levels are seen, with the sampler it is read through. Borrowed from the stream.
+/// `precision` null: no quantisation.
 struct TextureView {
   const traces::Image* image = nullptr;
   const traces::Sampler* sampler = nullptr;
   const Precision* precision = nullptr;
+  std::uint32_t first_level = 0, levels = 1;
 };
 
 /// Decodes one texel of a level; x and y are inside it.
 [[nodiscard]] Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x,
                                 std::uint32_t y);
 
-/// log2 of the larger of the two footprint lengths, in texels of level 0. The derivatives are of normalised
-/// coordinates. Minus infinity where both are zero. [VK1.3 #textures-scale-factor]
+/// log2 of the larger of the two footprint lengths, in texels of the finest level. The derivatives are of
+/// normalised coordinates. Minus infinity where both are zero. [VK1.3 #textures-scale-factor]
 [[nodiscard]] double base_lod(const TextureView& texture, std::array<double, 2> d_dx,
                               std::array<double, 2> d_dy);
 
@@ -38,8 +40,10 @@ struct TextureView {
 /// The number, or 0 if it is not finite.
 [[nodiscard]] double finite_or_zero(double a);
 
-/// Extent (width, height) of a level; level 0 for one that the image lacks.
+/// Extent (width, height) of a level; of level 0 for one that the image lacks.
 [[nodiscard]] std::array<std::uint32_t, 2> level_extent(const traces::Image& image, std::uint32_t level);
+/// Of a level that the view sees, from 0; the finest for one that it does not.
+[[nodiscard]] std::array<std::uint32_t, 2> level_extent(const TextureView& texture, std::uint32_t level);
 
 /// The inverse of the sRGB encoding, [0, 1] to [0, 1]. [VK1.3 references Khronos Data Format #TRANSFER_SRGB]
 [[nodiscard]] double srgb_to_linear(double encoded);

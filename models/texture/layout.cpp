@@ -42,16 +42,32 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
   return layout;
 }
 
-TextureView view_of_surface(const SurfaceLayout& surface, Format format) {
-  TextureView view{surface.base, format, {}};
-  view.layout.tiling = Tiling::kSurface;
-  view.layout.width[0] = static_cast<std::int32_t>(surface.width);
-  view.layout.height[0] = static_cast<std::int32_t>(surface.height);
-  const std::uint32_t tile_texels = surface.plane_stride() / surface.pixel_bytes;
-  view.layout.tile_shift = std::countr_zero(tile_texels);
-  view.layout.pitch[0] = static_cast<std::int32_t>(surface.tiles_x * tile_texels);
-  view.layout.bytes = surface.bytes();
+TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format) {
+  const SurfaceLayout &finest = levels.front(), &coarsest = levels.back();
+  TextureView view{finest.base, format, {}};
+  TextureLayout& layout = view.layout;
+  layout.tiling = Tiling::kSurface;
+  layout.levels = static_cast<std::uint32_t>(levels.size());
+  const std::uint32_t tile_texels = finest.plane_stride() / finest.pixel_bytes;
+  layout.tile_shift = std::countr_zero(tile_texels);
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const SurfaceLayout& surface = levels[level];
+    layout.width[level] = static_cast<std::int32_t>(surface.width);
+    layout.height[level] = static_cast<std::int32_t>(surface.height);
+    layout.pitch[level] = static_cast<std::int32_t>(surface.tiles_x * tile_texels);
+    layout.first[level] = static_cast<std::int32_t>((surface.base - finest.base) / surface.pixel_bytes);
+  }
+  layout.bytes = coarsest.base + coarsest.bytes() - finest.base;
   return view;
+}
+
+TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::uint32_t count) {
+  TextureView part = view;
+  part.layout.levels = count;
+  for (auto* const by_level :
+       {&part.layout.width, &part.layout.height, &part.layout.pitch, &part.layout.first})
+    std::rotate(by_level->begin(), by_level->begin() + first, by_level->end());
+  return part;
 }
 
 TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width, std::uint32_t height,

@@ -52,7 +52,8 @@ struct TextureLayout {
   /// Index of a texel within the chain.
   [[nodiscard]] std::uint32_t texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
     if (tiling == Tiling::kSurface)
-      return surface_x_part(x) + surface_y_part_in_tile(y) + (y >> 3) * static_cast<std::uint32_t>(pitch[0]);
+      return static_cast<std::uint32_t>(first[level]) + surface_x_part(x) + surface_y_part_in_tile(y) +
+             (y >> 3) * static_cast<std::uint32_t>(pitch[level]);
     return static_cast<std::uint32_t>(first[level]) + x_part(x) + y_part_in_tile(y) +
            (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
   }
@@ -72,8 +73,11 @@ struct TextureView {
   }
 };
 
-/// An attachment as a sampler sees it: one level, where it was drawn.
-[[nodiscard]] TextureView view_of_surface(const SurfaceLayout& surface, Format format);
+/// An attachment as a sampler sees it: its levels, finest first, where they were drawn. They lie one behind
+/// the other, less than 2^31 texels apart.
+[[nodiscard]] TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format);
+/// So many levels of a view, from one on.
+[[nodiscard]] TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::uint32_t count);
 
 /// Allocates a texture of zeros, of 4 bytes a texel; `tile_level` and `tile_texture` bring its texels.
 [[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width,

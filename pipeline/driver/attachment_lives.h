@@ -1,8 +1,9 @@
-/// When the attachments of a stream hold something, and whether anyone reads it later: what a pass must leave
-/// in memory, and what a shader may sample.
+/// When the attachments of a stream hold something, level by level and layer by layer, and whether anyone
+/// reads it later: what a pass must leave in memory, and what a shader may sample.
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,20 +15,24 @@ class AttachmentLives {
  public:
   /// Of a validated stream.
   explicit AttachmentLives(const traces::CommandStream& stream);
-  /// May what pass `pass` leaves in the image be read by a later one: by loading it, or by sampling it
-  /// through any descriptor set that is bound then?
-  [[nodiscard]] bool read_after(traces::Index image, std::size_t pass) const;
-  /// Throws `UserError` unless a draw of pass `pass` may sample the image: it is a texture, or an attachment
-  /// of another pass that an earlier one has stored. `program` is named.
-  void check_sampled(traces::Index image, std::size_t pass, const std::string& program) const;
+  /// May what pass `pass` leaves there be read by a later one: by loading it, or by sampling it through any
+  /// descriptor set that is bound then?
+  [[nodiscard]] bool read_after(const traces::ImagePart& part, std::size_t pass) const;
+  /// Throws `UserError` unless a draw of pass `pass` may sample what is bound: a texture, or levels of an
+  /// attachment that earlier passes have stored and this one does not draw to. `program` is named.
+  void check_sampled(const traces::TextureDescriptor& bound, std::size_t pass,
+                     const std::string& program) const;
 
  private:
   struct Use {
     std::size_t pass = 0;
     bool attached = false, loads = false, stores = false;  ///< as an attachment; else: may be sampled
   };
+  void check_sampled(const traces::ImagePart& part, std::size_t pass, const std::string& program) const;
+  void note_sampled(const traces::TextureDescriptor& bound, std::size_t pass);
+
   const traces::CommandStream& stream_;
-  std::vector<std::vector<Use>> uses_;  ///< by image, in order
+  std::map<traces::ImagePart, std::vector<Use>> uses_;  ///< in order
 };
 
 }  // namespace quadrille::pipeline

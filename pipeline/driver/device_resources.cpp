@@ -7,6 +7,15 @@
 
 namespace quadrille::pipeline {
 
+namespace {
+
+models::SurfaceLayout level_surface(const traces::Image& image, std::uint32_t level) {
+  return models::surface_layout(traces::level_width(image, level), traces::level_height(image, level),
+                                image.samples, models::format_bytes(image.format));
+}
+
+}  // namespace
+
 DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory,
                                  TextureFills& fills)
     : stream_(stream),
@@ -20,10 +29,12 @@ DeviceResources::DeviceResources(const traces::CommandStream& stream, models::De
     bytes += (size + models::kLineBytes - 1) / models::kLineBytes * models::kLineBytes;
   };
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
-  for (const traces::Image& i : stream.images)
-    add(i.is_attachment()
-            ? models::surface_layout(i.width, i.height, i.samples, models::format_bytes(i.format)).bytes()
-            : models::make_texture_layout(i.width, i.height, i.levels).bytes);
+  for (const traces::Image& i : stream.images) {
+    if (!i.is_attachment()) add(models::make_texture_layout(i.width, i.height, i.levels).bytes);
+    else
+      for (std::uint32_t level = 0; level < i.levels; ++level)
+        add(i.layers * level_surface(i, level).bytes());
+  }
   memory.reserve(bytes);
 }
 
@@ -38,12 +49,21 @@ std::uint64_t DeviceResources::buffer(traces::Index index) {
   return *address;
 }
 
-const DeviceResources::Texture& DeviceResources::texture(traces::Index image) {
+DeviceResources::Texture DeviceResources::texture(const traces::TextureDescriptor& bound) {
+  const traces::Image& image = stream_.images[bound.image];
+  const std::uint32_t levels = traces::level_count(stream_, bound);
+  if (image.is_attachment()) {
+    const auto seen = layer(bound.image, bound.layer).subspan(bound.first_level, levels);
+    return {models::view_of_surfaces(seen, image.format), nullptr};
+  }
+  const Texture& whole = whole_texture(bound.image);
+  return {models::view_of_levels(whole.view, bound.first_level, levels), whole.fill};
+}
+
+const DeviceResources::Texture& DeviceResources::whole_texture(traces::Index image) {
   std::optional<Texture>& texture = textures_[image];
   if (!texture) {
     const traces::Image& i = stream_.images[image];
-    if (i.is_attachment())
-      return texture.emplace(Texture{models::view_of_surface(attachment(image), i.format), nullptr});
     const models::TextureView view = models::allocate_texture(memory_, i.format, i.width, i.height, i.levels);
     texture = {view, &fills_.add(i, view)};
     texture_bytes_ += view.layout.bytes;
@@ -51,14 +71,20 @@ const DeviceResources::Texture& DeviceResources::texture(traces::Index image) {
   return *texture;
 }
 
-const models::SurfaceLayout& DeviceResources::attachment(traces::Index image) {
-  std::optional<models::SurfaceLayout>& surface = surfaces_[image];
-  if (!surface) {
-    const traces::Image& i = stream_.images[image];
-    surface = models::allocate_surface(memory_, i.width, i.height, i.samples, models::format_bytes(i.format));
-    surface_bytes_ += surface->bytes();
+std::span<const models::SurfaceLayout> DeviceResources::layer(traces::Index index, std::uint32_t layer) {
+  std::vector<models::SurfaceLayout>& surfaces = surfaces_[index];
+  const traces::Image& image = stream_.images[index];
+  if (surfaces.empty()) {
+    surfaces.reserve(std::size_t{image.layers} * image.levels);
+    for (std::uint32_t l = 0; l < image.layers; ++l)
+      for (std::uint32_t level = 0; level < image.levels; ++level)
+        surfaces.push_back(surface(level_surface(image, level)));
   }
-  return *surface;
+  return std::span(surfaces).subspan(std::size_t{layer} * image.levels, image.levels);
+}
+
+const models::SurfaceLayout& DeviceResources::attachment(const traces::ImagePart& part) {
+  return layer(part.image, part.layer)[part.level];
 }
 
 models::SurfaceLayout DeviceResources::surface(const models::SurfaceLayout& wanted) {
@@ -71,7 +97,7 @@ models::SurfaceLayout DeviceResources::surface(const models::SurfaceLayout& want
 void DeviceResources::place_rest() {
   for (traces::Index i = 0; i < buffers_.size(); ++i) (void)buffer(i);
   for (traces::Index i = 0; i < textures_.size(); ++i) {
-    if (!stream_.images[i].is_attachment()) texture(i).fill->need();
+    if (!stream_.images[i].is_attachment()) whole_texture(i).fill->need();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "models/memory/device_memory.h"
@@ -27,10 +28,10 @@ class DeviceResources {
     models::TextureView view;
     models::TextureFill* fill = nullptr;
   };
-  /// For a sampler. An attachment lies where passes draw it.
-  [[nodiscard]] const Texture& texture(traces::Index image);
+  /// For a sampler: the levels that it sees. Those of an attachment lie where passes draw them.
+  [[nodiscard]] Texture texture(const traces::TextureDescriptor& bound);
   /// For a pass.
-  [[nodiscard]] const models::SurfaceLayout& attachment(traces::Index image);
+  [[nodiscard]] const models::SurfaceLayout& attachment(const traces::ImagePart& part);
   /// A surface that is no image of the stream.
   [[nodiscard]] models::SurfaceLayout surface(const models::SurfaceLayout& wanted);
   /// Places buffers and textures that nobody asked for, behind all else, so that no address depends on it,
@@ -46,12 +47,18 @@ class DeviceResources {
   [[nodiscard]] Unplaced unplaced_images() const;
 
  private:
+  /// A texture, with all its levels.
+  [[nodiscard]] const Texture& whole_texture(traces::Index image);
+  /// The levels of a layer of an attachment, finest first.
+  [[nodiscard]] std::span<const models::SurfaceLayout> layer(traces::Index index, std::uint32_t layer);
+
   const traces::CommandStream& stream_;
   models::DeviceMemory& memory_;
   TextureFills& fills_;
   std::vector<std::optional<std::uint64_t>> buffers_;
   std::vector<std::optional<Texture>> textures_;
-  std::vector<std::optional<models::SurfaceLayout>> surfaces_;  ///< by image
+  /// By image: the levels of its layers, those of a layer one behind the other; none: not placed.
+  std::vector<std::vector<models::SurfaceLayout>> surfaces_;
   std::uint64_t buffer_bytes_ = 0, texture_bytes_ = 0, surface_bytes_ = 0;
 };
 

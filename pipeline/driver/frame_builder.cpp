@@ -63,7 +63,8 @@ class FrameBuilder {
                           : models::encode_color(color.format, use.clear);
       if (use.resolve == traces::kNone) continue;
       hw::AttachmentState& resolve = pass.resolve[pass.colors - 1];
-      resolve = attachment({use.resolve, traces::LoadOp::kLoad, traces::StoreOp::kStore});
+      resolve = attachment({use.resolve, traces::LoadOp::kLoad, traces::StoreOp::kStore, use.resolve_level,
+                            use.resolve_layer});
       pass.resolved |= 1u << (pass.colors - 1);
     }
     pass.samples = static_cast<int>(stream_.images[c.first_image()].samples);
@@ -84,7 +85,7 @@ class FrameBuilder {
     if (!attached) return;
     const bool tests =
         std::ranges::any_of(out_.frame.draws_of(pass), [](const hw::DrawState& d) { return d.uses_depth(); });
-    const bool kept = lives_.read_after(begun_->depth.image, out_.frame.passes.size() - 1);
+    const bool kept = lives_.read_after(begun_->depth.part(), out_.frame.passes.size() - 1);
     if (tests || kept) {
       pass.has_depth = true;
       pass.depth = attachment(begun_->depth);
@@ -93,9 +94,10 @@ class FrameBuilder {
       pass.depth.clear = models::encode_depth(pass.depth.format, pass.clear_depth,
                                               clears ? begun_->depth.clear_stencil : std::uint8_t{0});
     } else {
-      out_.left_out.push_back({"depth surface", "no draw of the pass tests depth",
-                               fmt::format("{} bytes of device memory",
-                                           traces::texel_bytes(stream_.images[begun_->depth.image]))});
+      out_.left_out.push_back(
+          {"depth surface", "no draw of the pass tests depth",
+           fmt::format("{} bytes of device memory",
+                       traces::level_bytes(stream_.images[begun_->depth.image], begun_->depth.level))});
     }
   }
   /// Of the pass; kUndefined: it has no depth attachment.
@@ -105,7 +107,7 @@ class FrameBuilder {
   }
   hw::AttachmentState attachment(const traces::AttachmentUse& use) {
     return {
-        resources_.attachment(use.image), stream_.images[use.image].format, use.load, use.store, {}, true};
+        resources_.attachment(use.part()), stream_.images[use.image].format, use.load, use.store, {}, true};
   }
   void apply(const traces::BindPipeline& c) { pipeline_ = c.pipeline; }
   void apply(const traces::BindDescriptorSet& c) { sets_[c.set] = c.descriptors; }
@@ -276,11 +278,12 @@ class FrameBuilder {
                          models::name_of(use.texels), bound.image, image.name,
                          models::format_info(image.format).name,
                          models::name_of(models::number_kind(image.format)));
-      lives_.check_sampled(bound.image, out_.frame.passes.size() - 1, program.name);
+      lives_.check_sampled(bound, out_.frame.passes.size() - 1, program.name);
       out_.frame.passes.back().samples_attachments |= image.is_attachment();
-      const DeviceResources::Texture& texture = resources_.texture(bound.image);
+      const DeviceResources::Texture texture = resources_.texture(bound);
       states.push_back({texture.view, stream_.samplers[bound.sampler], texture.fill});
-      sizes.push_back({image.width, image.height, image.levels});
+      sizes.push_back({traces::level_width(image, bound.first_level),
+                       traces::level_height(image, bound.first_level), traces::level_count(stream_, bound)});
     }
   }
 

@@ -25,7 +25,7 @@ struct Entry {
   RecordPasses record_passes = nullptr;  ///< its frames have passes of their own
 };
 
-constexpr std::array<Entry, 15> kEntries{{
+constexpr std::array<Entry, 16> kEntries{{
     {{"triangle", "one triangle with a colour at each corner: the smallest frame that exercises every unit"},
      [](double) { return build_triangle(); }},
     {{"quad", "one textured quad in perspective: mip levels and filtering are seen at a glance"},
@@ -76,6 +76,12 @@ constexpr std::array<Entry, 15> kEntries{{
      [](double) { return build_rotunda(); },
      0,
      record_deferred},
+    {{"glow",
+      "the lamps of the columns by night, in and out of focus: mip levels and layers of an image, drawn each "
+      "from the one above"},
+     [](double) { return build_rotunda(); },
+     0,
+     record_glow},
     {{"blends",
       "a card of blending: six ways to mix, layers one by one and as a group, see-through textures both "
       "ways"},

@@ -4,11 +4,24 @@
 
 #include <glm/vec3.hpp>
 
-#include "scenes/passes/pass_recorder.h"
+#include <fmt/format.h>
+
+#include "scenes/passes/lamps.h"
 #include "scenes/passes/passes.h"
 #include "scenes/passes/sunlight.h"
 
 namespace quadrille::scenes {
+
+const std::string_view kSurfaceTextures = R"(
+layout(set = 1, binding = 0) uniform sampler2D colors;
+layout(set = 1, binding = 1) uniform sampler2D normals;
+layout(set = 1, binding = 2) uniform sampler2D depths;
+vec3 place(vec2 uv, float depth) {
+  vec4 p = frame.inverse_view_projection * vec4(uv * 2.0 - 1.0, depth, 1.0);
+  return p.xyz / p.w;
+}
+)";
+
 namespace {
 
 constexpr std::string_view kSurfaceFragment = R"(
@@ -19,16 +32,6 @@ layout(location = 1) out vec4 normal;
 void main() {
   color = vec4(albedo, 1.0);
   normal = vec4(0.5 + 0.5 * normalize(facing), 1.0);
-}
-)";
-/// What every light asks of the surfaces.
-constexpr std::string_view kSurfaces = R"(
-layout(set = 1, binding = 0) uniform sampler2D colors;
-layout(set = 1, binding = 1) uniform sampler2D normals;
-layout(set = 1, binding = 2) uniform sampler2D depths;
-vec3 place(vec2 uv, float depth) {
-  vec4 p = frame.inverse_view_projection * vec4(uv * 2.0 - 1.0, depth, 1.0);
-  return p.xyz / p.w;
 }
 )";
 constexpr std::string_view kSkyFragment = R"(
@@ -53,7 +56,7 @@ void main() {
                      gl_VertexIndex == 2 || gl_VertexIndex >= 4 ? 1.0 : -1.0);
   reach = sphere;
   glow = color;
-  vec3 at = sphere.xyz + 1.25 * sphere.w * (corner.x * frame.right.xyz + corner.y * frame.up.xyz);
+  vec3 at = sphere.xyz + @RADIUS@ * sphere.w * (corner.x * frame.right.xyz + corner.y * frame.up.xyz);
   gl_Position = frame.view_projection * vec4(at, 1.0);
 }
 )";
@@ -73,17 +76,13 @@ void main() {
 }
 )";
 
-struct LightInstance {
-  glm::vec4 sphere;  ///< centre and reach, metres
-  glm::vec3 color;
-};
+}  // namespace
 
-/// Lamps in two rings, over the floor and between the columns.
-std::vector<LightInstance> lamps() {
+std::vector<LampInstance> lamps() {
   constexpr int kLamps = 48;
   constexpr double kOuter = 5.1, kInner = 2.5;  // metres
   constexpr double kTurn = 2 * std::numbers::pi;
-  std::vector<LightInstance> all;
+  std::vector<LampInstance> all;
   all.reserve(kLamps);
   for (int i = 0; i < kLamps; ++i) {
     const double turns = static_cast<double>(i) / kLamps, hue = kTurn * 5 * turns;
@@ -97,46 +96,43 @@ std::vector<LightInstance> lamps() {
   return all;
 }
 
-traces::Index light_pipeline(PassRecorder& recorder) {
-  traces::Pipeline p = recorder.scene_pipeline("lights", {}, kLightVertex,
-                                               std::string(kSurfaces) + std::string(kLightFragment));
+traces::Pipeline lamp_pipeline(PassRecorder& recorder, const std::string& name, double radius,
+                               std::string_view fragment) {
+  std::string vertex(kLightVertex);
+  const std::string_view mark = "@RADIUS@";
+  vertex.replace(vertex.find(mark), mark.size(), fmt::format("{:.2f}", radius));
+  traces::Pipeline p =
+      recorder.scene_pipeline(name, {}, vertex, std::string(kSurfaceTextures) + std::string(fragment));
   p.depth = {};
-  p.bindings = {{0, sizeof(LightInstance), true}};
+  p.bindings = {{0, sizeof(LampInstance), true}};
   p.attributes = {{0, 0, traces::Format::kR32G32B32A32Float, 0},
                   {1, 0, traces::Format::kR32G32B32Float, sizeof(glm::vec4)}};
   p.blend[0].enable = true;
   p.blend[0].src_color = p.blend[0].dst_color = traces::BlendFactor::kOne;
   p.blend[0].src_alpha = p.blend[0].dst_alpha = traces::BlendFactor::kOne;
-  return recorder.add(std::move(p));
+  return p;
 }
 
-void draw_lights(PassRecorder& recorder, traces::Index pipeline, traces::Index surfaces) {
-  const std::vector<LightInstance> lights = lamps();
-  const traces::Index buffer = recorder.buffer("lights", lights.data(), lights.size() * sizeof lights[0]);
-  recorder.bind(pipeline, surfaces);
+void draw_lamps(PassRecorder& recorder, traces::Index pipeline, traces::Index set, const std::string& label) {
+  const std::vector<LampInstance> lights = lamps();
+  const traces::Index buffer = recorder.buffer(label, lights.data(), lights.size() * sizeof lights[0]);
+  recorder.bind(pipeline, set);
   traces::Draw draw;
   draw.count = 6;
   draw.instances = static_cast<std::uint32_t>(lights.size());
-  draw.label = "lights";
+  draw.label = label;
   recorder.stream().commands.emplace_back(traces::BindVertexBuffer{0, buffer, 0});
   recorder.stream().commands.emplace_back(draw);
 }
 
-}  // namespace
-
-traces::CommandStream record_deferred(const SceneData& scene, const SceneOptions& options) {
+LitSurfaces draw_lit_surfaces(PassRecorder& recorder, const SceneOptions& options) {
   using traces::Format;
-  refuse_other_pictures(scene, options);
-  PassRecorder recorder(scene, options);
-  recorder.set_frame(sunlit_frame(scene, recorder.view()));
   const auto attachment = [&](const char* name, Format format) {
     return recorder.attachment(name, format, options.width, options.height);
   };
   const traces::Index colors = attachment("colours", Format::kR8G8B8A8Unorm),
                       normals = attachment("normals", Format::kA2B10G10R10Unorm),
-                      depths = attachment("depths", options.depth_format),
-                      radiance = attachment("radiance", Format::kR16G16B16A16Float);
-
+                      depths = attachment("depths", options.depth_format);
   traces::BeginPass pass;
   pass.colors.resize(2);
   pass.colors[0].image = colors;
@@ -145,16 +141,27 @@ traces::CommandStream record_deferred(const SceneData& scene, const SceneOptions
   recorder.begin(pass);
   draw_surfaces(recorder, "surfaces", kSurfaceFragment);
   recorder.end();
+  return {depths, recorder.textures({colors, normals, depths})};
+}
 
-  const traces::Index set = recorder.textures({colors, normals, depths});
-  const traces::Index sky =
-      recorder.add(recorder.screen_pipeline("sky", std::string(kSurfaces) + std::string(kSkyFragment)));
-  const traces::Index lights = light_pipeline(recorder);
-  recorder.begin(cleared_pass(scene, radiance, traces::kNone));
+void draw_radiance(PassRecorder& recorder, traces::Index set) {
+  const traces::Index sky = recorder.add(
+      recorder.screen_pipeline("sky", std::string(kSurfaceTextures) + std::string(kSkyFragment)));
+  const traces::Index lights = recorder.add(lamp_pipeline(recorder, "lights", 1.25, kLightFragment));
   recorder.draw_screen(sky, set, "sky");
-  draw_lights(recorder, lights, set);
-  recorder.end();
+  draw_lamps(recorder, lights, set, "lights");
+}
 
+traces::CommandStream record_deferred(const SceneData& scene, const SceneOptions& options) {
+  refuse_other_pictures(scene, options);
+  PassRecorder recorder(scene, options);
+  recorder.set_frame(sunlit_frame(scene, recorder.view()));
+  const LitSurfaces surfaces = draw_lit_surfaces(recorder, options);
+  const traces::Index radiance =
+      recorder.attachment("radiance", traces::Format::kR16G16B16A16Float, options.width, options.height);
+  recorder.begin(cleared_pass(scene, radiance, traces::kNone));
+  draw_radiance(recorder, surfaces.set);
+  recorder.end();
   add_tone_pass(recorder, radiance, options);
   return recorder.finish();
 }

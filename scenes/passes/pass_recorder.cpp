@@ -116,11 +116,11 @@ void PassRecorder::set_frame(const PassFrame& frame) {
 }
 
 void PassRecorder::begin(const traces::BeginPass& pass) {
-  const traces::Image& image = stream_.images[pass.first_image()];
+  const traces::PassTarget target = traces::target_of(stream_, pass);
   stream_.commands.emplace_back(pass);
   stream_.commands.emplace_back(
-      traces::SetViewport{0, 0, static_cast<float>(image.width), static_cast<float>(image.height), 0, 1});
-  stream_.commands.emplace_back(traces::SetScissor{0, 0, image.width, image.height});
+      traces::SetViewport{0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1});
+  stream_.commands.emplace_back(traces::SetScissor{0, 0, target.width, target.height});
 }
 
 void PassRecorder::bind(Index pipeline, Index textures) {

@@ -16,6 +16,9 @@ using RecordPasses = traces::CommandStream (*)(const SceneData&, const SceneOpti
 [[nodiscard]] traces::CommandStream record_shadow(const SceneData& scene, const SceneOptions& options);
 /// Surfaces alone (colours, normals, depths); lights added up over what they reach; tones.
 [[nodiscard]] traces::CommandStream record_deferred(const SceneData& scene, const SceneOptions& options);
+/// The same lamps, seen themselves: the picture and what is bright of it are two layers of an image, of which
+/// each level is drawn from the one above; the last pass takes from them what is out of focus, and a glow.
+[[nodiscard]] traces::CommandStream record_glow(const SceneData& scene, const SceneOptions& options);
 /// The test card of blending (blend_card.h); what the scene holds is not drawn.
 [[nodiscard]] traces::CommandStream record_blends(const SceneData& scene, const SceneOptions& options);
 

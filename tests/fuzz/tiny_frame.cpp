@@ -16,7 +16,8 @@ constexpr std::uint64_t kMaxOverdraw = 1 << 20;  ///< pixels times triangles
 bool is_small(const traces::CommandStream& stream) {
   std::uint64_t pixels = 0;
   for (const traces::Image& image : stream.images) {
-    if (image.is_attachment()) pixels = std::max(pixels, std::uint64_t{image.width} * image.height);
+    if (image.is_attachment())
+      pixels = std::max(pixels, std::uint64_t{image.width} * image.height * image.layers);
   }
   const traces::StreamTotals totals = traces::stream_totals(stream);
   return pixels <= kMaxPixels && totals.vertices <= kMaxVertices &&

@@ -348,34 +348,38 @@ VkBuffer VulkanDevice::device_buffer(Cleanup& owner, std::span<const std::byte> 
   return made.buffer;
 }
 
-DeviceImage VulkanDevice::image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels,
-                                VkImageUsageFlags usage, VkImageAspectFlags aspect,
-                                std::uint32_t samples) const {
+VkImage VulkanDevice::image(Cleanup& owner, const ImageWish& wish) const {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;
-  info.format = format;
-  info.extent = {size.width, size.height, 1};
-  info.mipLevels = levels;
-  info.arrayLayers = 1;
-  info.samples = static_cast<VkSampleCountFlagBits>(samples);  // the bits are the counts
+  info.format = wish.format;
+  info.extent = {wish.size.width, wish.size.height, 1};
+  info.mipLevels = wish.levels;
+  info.arrayLayers = wish.layers;
+  info.samples = static_cast<VkSampleCountFlagBits>(wish.samples);  // the bits are the counts
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
-  info.usage = usage;
-  DeviceImage result;
-  require(vkCreateImage(device_, &info, nullptr, &result.image), "vkCreateImage");
+  info.usage = wish.usage;
+  VkImage result = VK_NULL_HANDLE;
+  require(vkCreateImage(device_, &info, nullptr, &result), "vkCreateImage");
   VkMemoryRequirements needs{};
-  vkGetImageMemoryRequirements(device_, result.image, &needs);
+  vkGetImageMemoryRequirements(device_, result, &needs);
   const VkDeviceMemory memory = allocate(owner, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-  owner.add([this, handle = result.image] { vkDestroyImage(device_, handle, nullptr); });
-  require(vkBindImageMemory(device_, result.image, memory, 0), "vkBindImageMemory");
-  VkImageViewCreateInfo view{};
-  view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-  view.image = result.image;
-  view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-  view.format = format;
-  view.subresourceRange = {aspect, 0, levels, 0, 1};
-  require(vkCreateImageView(device_, &view, nullptr, &result.view), "vkCreateImageView");
-  owner.add([this, handle = result.view] { vkDestroyImageView(device_, handle, nullptr); });
+  owner.add([this, result] { vkDestroyImage(device_, result, nullptr); });
+  require(vkBindImageMemory(device_, result, memory, 0), "vkBindImageMemory");
+  return result;
+}
+
+VkImageView VulkanDevice::view(Cleanup& owner, VkImage image, VkFormat format,
+                               const VkImageSubresourceRange& range) const {
+  VkImageViewCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+  info.image = image;
+  info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  info.format = format;
+  info.subresourceRange = range;
+  VkImageView result = VK_NULL_HANDLE;
+  require(vkCreateImageView(device_, &info, nullptr, &result), "vkCreateImageView");
+  owner.add([this, result] { vkDestroyImageView(device_, result, nullptr); });
   return result;
 }
 

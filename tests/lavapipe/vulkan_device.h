@@ -34,11 +34,6 @@ struct HostBuffer {
   void* mapped = nullptr;  ///< host-visible and coherent for as long as the buffer lives
 };
 
-struct DeviceImage {
-  VkImage image = VK_NULL_HANDLE;
-  VkImageView view = VK_NULL_HANDLE;
-};
-
 /// Which of the devices to open.
 struct DeviceWish {
   enum class Kind : std::uint8_t {
@@ -65,10 +60,17 @@ class VulkanDevice {
   /// A buffer in the device's own memory that holds `data`.
   [[nodiscard]] VkBuffer device_buffer(Cleanup& owner, std::span<const std::byte> data,
                                        VkBufferUsageFlags usage) const;
-  /// A 2D image with a view of all its levels that lives until `owner` ends.
-  [[nodiscard]] DeviceImage image(Cleanup& owner, VkFormat format, VkExtent2D size, std::uint32_t levels,
-                                  VkImageUsageFlags usage, VkImageAspectFlags aspect,
-                                  std::uint32_t samples = 1) const;
+  struct ImageWish {
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent2D size{};
+    std::uint32_t levels = 1, layers = 1, samples = 1;
+    VkImageUsageFlags usage = 0;
+  };
+  /// A 2D image that lives until `owner` ends.
+  [[nodiscard]] VkImage image(Cleanup& owner, const ImageWish& wish) const;
+  /// A 2D view of one of its layers, or of some levels of it.
+  [[nodiscard]] VkImageView view(Cleanup& owner, VkImage image, VkFormat format,
+                                 const VkImageSubresourceRange& range) const;
   /// A command buffer in the recording state that lives until `owner` ends.
   [[nodiscard]] VkCommandBuffer begin_commands(Cleanup& owner) const;
   /// Submits and waits. `commands` must have been ended.

@@ -5,8 +5,7 @@
 #include <cstring>
 
 #include "models/base/error.h"
-#include "models/rop/blend.h"
-#include "models/rop/depth_plane.h"
+#include "models/base/format.h"
 #include "tests/lavapipe/vulkan_enums.h"
 
 namespace quadrille::lavapipe {
@@ -21,8 +20,8 @@ Overloaded(Lambdas...) -> Overloaded<Lambdas...>;
 
 /// Makes everything before visible to everything after and moves the image to `to`. A whole-pipeline barrier:
 /// this is a ruler, not a race.
-void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
-                VkImageLayout to) {
+void transition(VkCommandBuffer commands, VkImage image, const VkImageSubresourceRange& range,
+                VkImageLayout from, VkImageLayout to) {
   VkImageMemoryBarrier barrier{};
   barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
   barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
@@ -31,7 +30,7 @@ void transition(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspe
   barrier.newLayout = to;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
   barrier.image = image;
-  barrier.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+  barrier.subresourceRange = range;
   vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
                        nullptr, 0, nullptr, 1, &barrier);
 }
@@ -55,14 +54,15 @@ VkAttachmentLoadOp vk_load(traces::LoadOp op) {
   return VK_ATTACHMENT_LOAD_OP_CLEAR;
 }
 
-/// What shows the colours, or what they are resolved to.
-traces::Index shown(const traces::ColorAttachmentUse& color) {
-  return color.resolve == traces::kNone ? color.image : color.resolve;
+/// Lavapipe resolves at the end of a pass to level 0 of layer 0, whatever the view says: not so a command.
+bool resolves_after(const traces::ColorAttachmentUse& use) {
+  return use.resolve != traces::kNone && (use.resolve_level > 0 || use.resolve_layer > 0);
 }
 
 VkImageUsageFlags usage_of(const traces::Image& image) {
   VkImageUsageFlags usage =
       image.is_attachment() ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if (image.levels > 1 || image.layers > 1) usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   if ((image.usage & traces::kSampled) != 0) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
   if ((image.usage & traces::kColorAttachment) != 0) usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   if ((image.usage & traces::kDepthAttachment) != 0) usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -96,14 +96,27 @@ void VulkanFrame::upload_images() {
     if ((source.usage & traces::kDepthAttachment) != 0) image.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
     image.all_aspects = image.aspect;
     if (models::has_stencil(source.format)) image.all_aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
-    image.device = device_.image(cleanup_, vk_format(source.format), {source.width, source.height},
-                                 source.levels, usage_of(source), image.aspect, source.samples);
-    if (!source.is_attachment()) upload_texels(source, image.device);
+    image.image = device_.image(cleanup_, {.format = vk_format(source.format),
+                                           .size = {source.width, source.height},
+                                           .levels = source.levels,
+                                           .layers = source.layers,
+                                           .samples = source.samples,
+                                           .usage = usage_of(source)});
+    if (!source.is_attachment()) upload_texels(source, image.image);
     images_.push_back(image);
   }
 }
 
-void VulkanFrame::upload_texels(const traces::Image& source, const DeviceImage& image) {
+VkImageView VulkanFrame::view_of(const traces::ImagePart& finest, std::uint32_t levels) {
+  VkImageView& view = views_[{finest, levels}];
+  const Image& image = images_[finest.image];
+  if (view == VK_NULL_HANDLE)
+    view = device_.view(cleanup_, image.image, vk_format(stream_.images[finest.image].format),
+                        {image.aspect, finest.level, levels, finest.layer, 1});
+  return view;
+}
+
+void VulkanFrame::upload_texels(const traces::Image& source, VkImage image) {
   Cleanup upload;
   const HostBuffer staging = device_.buffer(upload, source.texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   std::memcpy(staging.mapped, source.texels.data(), source.texels.size());
@@ -118,11 +131,11 @@ void VulkanFrame::upload_texels(const traces::Image& source, const DeviceImage& 
     levels.push_back(copy);
   }
   const VkCommandBuffer commands = device_.begin_commands(upload);
-  transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-  vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+  const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+  transition(commands, image, all, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  vkCmdCopyBufferToImage(commands, staging.buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                          static_cast<std::uint32_t>(levels.size()), levels.data());
-  transition(commands, image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+  transition(commands, image, all, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   device_.submit(commands);
@@ -191,24 +204,25 @@ void VulkanFrame::record() {
   for (const traces::ColorAttachmentUse& color : bound_.pass->colors)
     move(shown(color), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   if (bound_.pass->depth.image != traces::kNone)
-    move(bound_.pass->depth.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    move(bound_.pass->depth.part(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
   require(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 }
 
-void VulkanFrame::move(traces::Index index, VkImageLayout layout) {
-  Image& image = images_[index];
-  transition(commands_, image.device.image, image.all_aspects, image.layout, layout);
-  image.layout = layout;
+void VulkanFrame::move(const traces::ImagePart& part, VkImageLayout layout) {
+  const Image& image = images_[part.image];
+  VkImageLayout& now = layouts_[part];  // VK_IMAGE_LAYOUT_UNDEFINED at first
+  transition(commands_, image.image, {image.all_aspects, part.level, 1, part.layer, 1}, now, layout);
+  now = layout;
 }
 
 VkRenderingAttachmentInfo VulkanFrame::attach(const traces::AttachmentUse& use, VkImageLayout layout,
                                               const VkClearValue& clear) {
   // What it held is forgotten, also what an earlier submission left.
-  if (use.load != traces::LoadOp::kLoad) images_[use.image].layout = VK_IMAGE_LAYOUT_UNDEFINED;
-  move(use.image, layout);
+  if (use.load != traces::LoadOp::kLoad) layouts_[use.part()] = VK_IMAGE_LAYOUT_UNDEFINED;
+  move(use.part(), layout);
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  info.imageView = images_[use.image].device.view;
+  info.imageView = view_of(use.part(), 1);
   info.imageLayout = layout;
   info.loadOp = vk_load(use.load);
   info.storeOp =
@@ -227,11 +241,12 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
     if (integers) std::copy(use.clear_integers.begin(), use.clear_integers.end(), clear.color.uint32);
     else std::copy(use.clear.begin(), use.clear.end(), clear.color.float32);
     colors.push_back(attach(use, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, clear));
-    if (use.resolve == traces::kNone) continue;
-    images_[use.resolve].layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    move(use.resolve, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    if (resolves_after(use)) colors.back().storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    if (use.resolve == traces::kNone || resolves_after(use)) continue;
+    layouts_[use.resolve_part()] = VK_IMAGE_LAYOUT_UNDEFINED;
+    move(use.resolve_part(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     colors.back().resolveMode = integers ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT : VK_RESOLVE_MODE_AVERAGE_BIT;
-    colors.back().resolveImageView = images_[use.resolve].device.view;
+    colors.back().resolveImageView = view_of(use.resolve_part(), 1);
     colors.back().resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }
   VkRenderingAttachmentInfo depth{};
@@ -261,15 +276,30 @@ void VulkanFrame::end_pass() {
   finish_writes(commands_);
   if (queries_ != nullptr) queries_->end(commands_, passes_);
   ++passes_;
-  const auto make_readable = [this](traces::Index image) {
-    if ((stream_.images[image].usage & traces::kSampled) != 0)
-      move(image, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+  const auto make_readable = [this](const traces::ImagePart& part) {
+    if ((stream_.images[part.image].usage & traces::kSampled) != 0)
+      move(part, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   };
   for (const traces::ColorAttachmentUse& use : bound_.pass->colors) {
-    make_readable(use.image);
-    if (use.resolve != traces::kNone) make_readable(use.resolve);
+    if (resolves_after(use)) resolve(use);
+    make_readable(use.part());
+    if (use.resolve != traces::kNone) make_readable(use.resolve_part());
   }
-  if (bound_.pass->depth.image != traces::kNone) make_readable(bound_.pass->depth.image);
+  if (bound_.pass->depth.image != traces::kNone) make_readable(bound_.pass->depth.part());
+}
+
+void VulkanFrame::resolve(const traces::ColorAttachmentUse& use) {
+  const traces::ImagePart to = use.resolve_part();
+  const traces::Image& image = stream_.images[to.image];
+  layouts_[to] = VK_IMAGE_LAYOUT_UNDEFINED;
+  move(use.part(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+  move(to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  VkImageResolve region{};
+  region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, use.level, use.layer, 1};
+  region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, to.level, to.layer, 1};
+  region.extent = {traces::level_width(image, to.level), traces::level_height(image, to.level), 1};
+  vkCmdResolveImage(commands_, images_[use.image].image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                    images_[to.image].image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
 }
 
 void VulkanFrame::draw(const traces::Draw& draw) {
@@ -288,90 +318,6 @@ void VulkanFrame::draw(const traces::Draw& draw) {
     vkCmdDrawIndexed(commands_, draw.count, draw.instances, draw.first, draw.vertex_offset,
                      draw.first_instance);
   else vkCmdDraw(commands_, draw.count, draw.instances, draw.first, draw.first_instance);
-}
-
-namespace {
-
-/// The depth aspect as copies give it: floats, 16 bits, or 24 bits in the low part of 32. [VK1.3
-/// #copies-images]
-void read_depths(traces::Format format, const HostBuffer& copied, std::vector<float>& depths) {
-  const auto* const bytes = static_cast<const std::byte*>(copied.mapped);
-  for (std::size_t i = 0; i < depths.size(); ++i) {
-    std::uint32_t code = 0;
-    if (format == traces::Format::kD16Unorm) std::memcpy(&code, bytes + 2 * i, 2);
-    else std::memcpy(&code, bytes + 4 * i, 4);
-    if (format == traces::Format::kD24UnormS8Uint) code &= 0xffffffu;
-    depths[i] = models::decode_depth(format, {{code}});
-  }
-}
-
-}  // namespace
-
-void VulkanFrame::read_back_buffers(Rendered& result) const {
-  for (const traces::DescriptorSet& set : stream_.descriptor_sets) {
-    for (const traces::StorageBinding& bound : set.buffers) {
-      const std::size_t bytes = stream_.buffers[bound.buffer].data.size();
-      Cleanup scratch;
-      const HostBuffer copy = device_.buffer(scratch, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-      const VkCommandBuffer commands = device_.begin_commands(scratch);
-      const VkBufferCopy region{0, 0, bytes};
-      vkCmdCopyBuffer(commands, buffers_[bound.buffer], copy.buffer, 1, &region);
-      require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-      device_.submit(commands);
-      std::vector<std::byte>& data = result.buffers[bound.buffer];
-      data.resize(bytes);
-      std::memcpy(data.data(), copy.mapped, bytes);
-    }
-  }
-}
-
-std::vector<models::PixelCode> VulkanFrame::read_target(traces::Index index) const {
-  const traces::Image& image = stream_.images[index];
-  const std::size_t pixel_bytes = models::format_bytes(image.format);
-  std::vector<models::PixelCode> codes(std::size_t{image.width} * image.height);
-  Cleanup scratch;
-  const HostBuffer copied = copy_image(scratch, index, pixel_bytes);
-  for (std::size_t i = 0; i < codes.size(); ++i)
-    std::memcpy(codes[i].word.data(), static_cast<const std::byte*>(copied.mapped) + pixel_bytes * i,
-                pixel_bytes);
-  return codes;
-}
-
-HostBuffer VulkanFrame::copy_image(Cleanup& cleanup, traces::Index index, std::size_t pixel_bytes) const {
-  const traces::Image& source = stream_.images[index];
-  const HostBuffer target =
-      device_.buffer(cleanup, pixel_bytes * source.width * source.height, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-  const VkCommandBuffer commands = device_.begin_commands(cleanup);
-  VkBufferImageCopy copy{};
-  copy.imageExtent = {source.width, source.height, 1};
-  copy.imageSubresource = {images_[index].aspect, 0, 0, 1};
-  vkCmdCopyImageToBuffer(commands, images_[index].device.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                         target.buffer, 1, &copy);
-  require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-  device_.submit(commands);
-  return target;
-}
-
-Rendered VulkanFrame::read_back() const {
-  const traces::PassTarget source = traces::target_of(stream_, *bound_.pass);
-  Rendered result;
-  result.width = source.width;
-  result.height = source.height;
-  for (const traces::ColorAttachmentUse& color : bound_.pass->colors)
-    result.targets.push_back(read_target(shown(color)));
-  result.color.reserve(result.targets.at(0).size());
-  for (const models::PixelCode& code : result.targets[0])
-    result.color.push_back(models::to_rgba8(source.color, code));
-  // Depths of several samples cannot be copied.
-  const traces::Index depth = bound_.pass->depth.image;
-  if (depth != traces::kNone && stream_.images[depth].samples == 1) {
-    Cleanup scratch;
-    result.depth.resize(result.color.size());
-    read_depths(stream_.images[depth].format, copy_image(scratch, depth, 4), result.depth);
-  }
-  read_back_buffers(result);
-  if (queries_ == nullptr) result.queries = stream_queries_.results();
-  return result;
 }
 
 }  // namespace quadrille::lavapipe

@@ -13,6 +13,11 @@
 
 namespace quadrille::lavapipe {
 
+/// What shows the colours, or what they are resolved to.
+[[nodiscard]] inline traces::ImagePart shown(const traces::ColorAttachmentUse& color) {
+  return color.resolve == traces::kNone ? color.part() : color.resolve_part();
+}
+
 class VulkanFrame {
  public:
   /// Uploads and records. `device` and `stream` must outlive the frame, and so must `queries`, which are
@@ -33,10 +38,9 @@ class VulkanFrame {
     VkPipelineLayout layout = VK_NULL_HANDLE;
   };
   struct Image {
-    DeviceImage device;
+    VkImage image = VK_NULL_HANDLE;
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;       ///< that shaders and copies read
     VkImageAspectFlags all_aspects = VK_IMAGE_ASPECT_COLOR_BIT;  ///< that it has
-    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;            ///< at this point of the recording
   };
   /// Of the attachments of a pass: the colours, then depth; and their samples a pixel.
   struct PassFormats {
@@ -57,12 +61,14 @@ class VulkanFrame {
   void upload_buffers();
   void read_back_buffers(Rendered& result) const;
   /// What a colour image of the last pass holds, row by row.
-  [[nodiscard]] std::vector<models::PixelCode> read_target(traces::Index index) const;
-  /// Copies an image of the last pass, of so many bytes a pixel, and waits for it.
-  [[nodiscard]] HostBuffer copy_image(Cleanup& cleanup, traces::Index index, std::size_t pixel_bytes) const;
+  [[nodiscard]] std::vector<models::PixelCode> read_target(const traces::ImagePart& part) const;
+  /// Copies a level of an image of the last pass, of so many bytes a pixel, and waits for it.
+  [[nodiscard]] HostBuffer copy_image(Cleanup& cleanup, const traces::ImagePart& part,
+                                      std::size_t pixel_bytes) const;
   void upload_images();
   void create_samplers();
-  void upload_texels(const traces::Image& source, const DeviceImage& image);
+  void upload_texels(const traces::Image& source, VkImage image);
+  [[nodiscard]] VkImageView view_of(const traces::ImagePart& finest, std::uint32_t levels);
   void create_descriptor_sets();
 
   [[nodiscard]] SetShape shape_of(traces::Index set) const;
@@ -77,10 +83,11 @@ class VulkanFrame {
 
   void record();
   void begin_pass(const traces::BeginPass& pass);
-  void move(traces::Index index, VkImageLayout layout);
+  void move(const traces::ImagePart& part, VkImageLayout layout);
   [[nodiscard]] VkRenderingAttachmentInfo attach(const traces::AttachmentUse& use, VkImageLayout layout,
                                                  const VkClearValue& clear);
   void end_pass();
+  void resolve(const traces::ColorAttachmentUse& use);
   void draw(const traces::Draw& draw);
 
   const VulkanDevice& device_;
@@ -91,6 +98,8 @@ class VulkanFrame {
   std::uint32_t passes_ = 0;  ///< recorded
   std::vector<VkBuffer> buffers_;
   std::vector<Image> images_;
+  std::map<traces::ImagePart, VkImageLayout> layouts_;  ///< of attachments, at this point of the recording
+  std::map<std::pair<traces::ImagePart, std::uint32_t>, VkImageView> views_;  ///< and levels
   std::vector<VkSampler> samplers_;
   std::vector<VkDescriptorSet> descriptor_sets_;
   std::map<SetShape, VkDescriptorSetLayout> set_layouts_;

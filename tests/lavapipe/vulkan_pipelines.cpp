@@ -171,8 +171,10 @@ void VulkanFrame::create_descriptor_sets() {
     for (const auto& uniform : source.uniforms) write_block(uniform, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     for (const auto& buffer : source.buffers) write_block(buffer, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     for (const auto& texture : source.textures) {
-      const VkDescriptorImageInfo image{samplers_[texture.sampler], images_[texture.image].device.view,
-                                        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      const VkDescriptorImageInfo image{
+          samplers_[texture.sampler],
+          view_of({texture.image, texture.first_level, texture.layer}, traces::level_count(stream_, texture)),
+          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.dstBinding = texture.binding;
       write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
       write.pImageInfo = &image;

@@ -45,8 +45,8 @@ void check_scene(const std::string& scene, scenes::SceneOptions options = {}) {
 TEST_CASE("machine: built-in scenes equal the reference in given mode") {
   for (const char* scene :
        {"builtin:triangle", "builtin:quad", "builtin:cubes", "builtin:outlines", "builtin:shadow",
-        "builtin:deferred", "builtin:overdraw", "builtin:fill", "builtin:cycle", "builtin:flag",
-        "builtin:courtyard", "builtin:materials", "builtin:primitives", "builtin:glass"})
+        "builtin:deferred", "builtin:glow", "builtin:overdraw", "builtin:fill", "builtin:cycle",
+        "builtin:flag", "builtin:courtyard", "builtin:materials", "builtin:primitives", "builtin:glass"})
     check_scene(scene);
 }
 

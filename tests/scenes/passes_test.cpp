@@ -74,7 +74,7 @@ TEST_CASE("passes: the camera moves what they show") {
 }
 
 TEST_CASE("passes: other pictures and shaders are refused, a picture of triangles is one pass") {
-  for (const char* scene : {"builtin:shadow", "builtin:deferred"}) {
+  for (const char* scene : {"builtin:shadow", "builtin:deferred", "builtin:glow"}) {
     const auto refused = [&](const auto& change, const char* what) {
       SceneOptions options = small();
       change(options);

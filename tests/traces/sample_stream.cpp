@@ -87,6 +87,7 @@ void add_samples(CommandStream& s, BeginPass& pass, std::uint32_t samples) {
     return static_cast<Index>(s.images.size() - 1);
   };
   pass.colors[0].resolve = pass.colors[0].image;
+  pass.colors[0].resolve_layer = pass.colors[0].layer;
   pass.colors[0].image = add(pass.colors[0].image, kColorAttachment);
   pass.depth.image = add(pass.depth.image, kDepthAttachment);
 }
@@ -98,6 +99,9 @@ void random_commands(Dice& dice, CommandStream& s) {
                               dice.coin() ? Format::kR8G8B8A8Srgb : Format::kA2B10G10R10Unorm},
                              {dice.unit(), dice.unit(), dice.unit(), dice.unit()}, dice.unit());
   pass.colors[0].load = dice.coin() ? LoadOp::kClear : LoadOp::kDontCare;
+  const std::uint32_t layers = 1 + dice.below(3);
+  s.images[pass.colors[0].image].layers = layers;
+  pass.colors[0].layer = dice.below(layers);
   for (std::uint32_t& word : pass.colors[0].clear_integers) word = dice.below(256);
   pass.depth.store = dice.choice(StoreOp::kDiscard);
   s.images[pass.colors[0].image].usage |= kSampled;

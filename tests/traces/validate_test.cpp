@@ -1,10 +1,8 @@
 /// Each case damages one thing in a valid stream and asks for the refusal that names it.
 #include <catch2/catch.hpp>
-#include <functional>
 #include <limits>
 
-#include "models/base/error.h"
-#include "tests/traces/sample_stream.h"
+#include "tests/traces/defects.h"
 
 using namespace quadrille;
 using namespace quadrille::traces;
@@ -12,32 +10,6 @@ using namespace quadrille::traces;
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-struct Defect {
-  const char* message;  ///< a part of it
-  std::function<void(CommandStream&)> make;
-};
-
-template <class T>
-T& command(CommandStream& s, std::size_t at) {
-  return std::get<T>(s.commands[at]);
-}
-
-std::string refusal(const CommandStream& stream) {
-  try {
-    validate(stream);
-  } catch (const UserError& error) { return error.what(); }
-  return "accepted";
-}
-
-void expect(const std::vector<Defect>& defects) {
-  for (const Defect& defect : defects) {
-    CommandStream stream = small_stream();
-    defect.make(stream);
-    CAPTURE(defect.message);
-    REQUIRE_THAT(refusal(stream), Catch::Contains(defect.message));
-  }
-}
 
 }  // namespace
 
@@ -230,44 +202,21 @@ TEST_CASE("validate: objects") {
        [](auto& s) { s.images[0].format = Format::kB8G8R8A8Unorm; }},
       {"image 1 'colour': usage 0x0 is not a set", [](auto& s) { s.images[1].usage = 0; }},
       {"image 1 'colour': usage 0x8 is not a set", [](auto& s) { s.images[1].usage = 8; }},
-      {"image 1 'colour': an attachment has one level", [](auto& s) { s.images[1].levels = 2; }},
-      {"image 1 'colour': an attachment has one level",
-       [](auto& s) { s.images[1].texels.resize(std::size_t{4} * 64 * 32); }},
-  });
-}
-
-TEST_CASE("validate: samples a pixel, and what they are resolved to") {
-  const auto four = [](auto& s) { use_samples(s, 4); };
-  CommandStream good = small_stream();
-  four(good);
-  validate(good);
-  const auto begin = [](auto& s) -> BeginPass& { return command<BeginPass>(s, 0); };
-  expect({
-      {"3 samples a pixel; 1, 2, 4 and 8 are possible", [](auto& s) { s.images[1].samples = 3; }},
-      {"image 0 'white': only an attachment that is not sampled has 4 samples",
-       [](auto& s) { s.images[0].samples = 4; }},
-      {"depth attachment: image 2 of 1 samples a pixel beside one of 4",
+      {"image 1 'colour': 8 mip levels; 64x32 allows 1..7", [](auto& s) { s.images[1].levels = 8; }},
+      {"image 0 'white': 2 layers; 1..1 are possible", [](auto& s) { s.images[0].layers = 2; }},
+      {"image 1 'colour': 0 layers; 1..256 are possible", [](auto& s) { s.images[1].layers = 0; }},
+      {"image 1 'colour': 257 layers", [](auto& s) { s.images[1].layers = 257; }},
+      {"levels 2+0 of image 0 'white', which has 2",
+       [](auto& s) { s.descriptor_sets[0].textures[0].first_level = 2; }},
+      {"levels 1+2 of image 0 'white', which has 2",
        [](auto& s) {
-         s.images[1].usage = kColorAttachment;
-         s.images[1].samples = 4;
+         s.descriptor_sets[0].textures[0].first_level = 1;
+         s.descriptor_sets[0].textures[0].levels = 2;
        }},
-      {"resolve attachment: image 99 does not exist",
-       [=](auto& s) {
-         four(s);
-         begin(s).colors[0].resolve = 99;
-       }},
-      {"several samples a pixel are resolved to a colour attachment of one",
-       [=](auto& s) { begin(s).colors[0].resolve = 1; }},
-      {"differ in size or format",
-       [=](auto& s) {
-         four(s);
-         s.images[begin(s).colors[0].resolve].height += 1;
-       }},
-      {"resolves the samples of its first colours nowhere",
-       [=](auto& s) {
-         four(s);
-         begin(s).colors[0].resolve = kNone;
-       }},
+      {"layer 1 of image 0 'white', which has 1",
+       [](auto& s) { s.descriptor_sets[0].textures[0].layer = 1; }},
+      {"image 1 'colour': an attachment brings no texels",
+       [](auto& s) { s.images[1].texels.resize(std::size_t{4} * 64 * 32); }},
   });
 }
 
