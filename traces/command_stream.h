@@ -161,6 +161,9 @@ struct Pipeline {
   /// Fragments are put over the colours by their depths, not in the order of drawing: of passes that keep
   /// them (`BeginPass::transparency`). Blending is `models::is_over`, and no depth is written.
   bool order_independent = false;
+  /// Viewports and scissors that its draws have, 1..`models::kMaxViewports`. The vertex shader says by
+  /// gl_ViewportIndex which one a primitive takes; of a number that there is not, the first.
+  std::uint32_t viewports = 1;
   friend bool operator==(const Pipeline&, const Pipeline&) = default;
 };
 
@@ -262,11 +265,13 @@ struct PushConstants {
 };
 struct SetViewport {
   float x = 0, y = 0, width = 0, height = 0, min_depth = 0, max_depth = 1;
+  std::uint32_t index = 0;
   friend bool operator==(const SetViewport&, const SetViewport&) = default;
 };
 struct SetScissor {
   std::int32_t x = 0, y = 0;
   std::uint32_t width = 0, height = 0;
+  std::uint32_t index = 0;
   friend bool operator==(const SetScissor&, const SetScissor&) = default;
 };
 /// Indexed when `indexed`: `first` is the first index, `vertex_offset` is added to each; otherwise `first` is

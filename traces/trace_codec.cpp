@@ -100,6 +100,7 @@ void transfer(A& a, Pipeline& v) {
   numbers(a, v.sample_shading, v.alpha_to_coverage, v.sample_mask);
   transfer_tests(a, v);
   if (a.version() >= 5) numbers(a, v.order_independent);
+  if (a.version() >= 6) numbers(a, v.viewports);
 }
 
 template <class A>
@@ -182,10 +183,12 @@ void fields(A& a, PushConstants& v) {
 template <class A>
 void fields(A& a, SetViewport& v) {
   numbers(a, v.x, v.y, v.width, v.height, v.min_depth, v.max_depth);
+  if (a.version() >= 8) numbers(a, v.index);
 }
 template <class A>
 void fields(A& a, SetScissor& v) {
   numbers(a, v.x, v.y, v.width, v.height);
+  if (a.version() >= 8) numbers(a, v.index);
 }
 template <class A>
 void fields(A& a, Draw& v) {

@@ -40,10 +40,10 @@ inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"IMGS", 4},
                                                    {"SAMP", 1},
                                                    {"SHAD", 1},
-                                                   {"PIPE", 5},
+                                                   {"PIPE", 6},
                                                    {"DESC", 3},
                                                    {"TARG", 0},
-                                                   {"CMDS", 7}}};
+                                                   {"CMDS", 8}}};
 
 [[nodiscard]] std::vector<std::byte> encode_chunk(const CommandStream& stream, Chunk chunk);
 

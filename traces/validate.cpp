@@ -190,6 +190,9 @@ void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::
   check_primitives(pipeline, index);
   check_tests(pipeline, index);
   check_order_independent(pipeline, index);
+  if (pipeline.viewports == 0 || pipeline.viewports > models::kMaxViewports)
+    throw user_error("pipeline {} '{}': {} viewports; 1..{} are possible", index, pipeline.name,
+                     pipeline.viewports, models::kMaxViewports);
   for (const BlendState& blend : pipeline.blend) {
     if (blend.write_mask > 0xf)
       throw user_error("pipeline {} '{}': write mask {:#x} has bits beyond rgba", index, pipeline.name,

@@ -218,30 +218,39 @@ void CommandWalk::visit(const SetViewport& c) {
   }
   if (!within(c.min_depth, 0, 1) || !within(c.max_depth, 0, 1))
     throw user_error("command {}: viewport depth {}..{} is outside 0..1", at_, c.min_depth, c.max_depth);
-  viewport_ = c;
+  check_index(c.index, "viewport");
+  viewports_[c.index] = true;
+}
+
+void CommandWalk::check_index(std::uint32_t index, const char* what) const {
+  if (index >= models::kMaxViewports)
+    throw user_error("command {}: {} {} is set; there are {}", at_, what, index, models::kMaxViewports);
 }
 
 void CommandWalk::visit(const SetScissor& c) {
   if (c.x < 0 || c.y < 0) throw user_error("command {}: scissor corner {},{} is negative", at_, c.x, c.y);
-  scissor_ = c;
+  check_index(c.index, "scissor");
+  scissors_[c.index] = c;
 }
 
-void CommandWalk::check_scissor() const {
-  const std::uint64_t right = static_cast<std::uint64_t>(scissor_->x) + scissor_->width;
-  const std::uint64_t bottom = static_cast<std::uint64_t>(scissor_->y) + scissor_->height;
+void CommandWalk::check_scissor(const SetScissor& scissor) const {
+  const std::uint64_t right = static_cast<std::uint64_t>(scissor.x) + scissor.width;
+  const std::uint64_t bottom = static_cast<std::uint64_t>(scissor.y) + scissor.height;
   if (right > target_.width || bottom > target_.height) {
-    throw user_error("command {}: draw with scissor {},{} {}x{} outside the target of {}x{}", at_,
-                     scissor_->x, scissor_->y, scissor_->width, scissor_->height, target_.width,
-                     target_.height);
+    throw user_error("command {}: draw with scissor {},{} {}x{} outside the target of {}x{}", at_, scissor.x,
+                     scissor.y, scissor.width, scissor.height, target_.width, target_.height);
   }
 }
 
 void CommandWalk::check_draw_state() const {
   if (pass_ == nullptr) throw user_error("command {}: draw outside a render pass", at_);
   if (pipeline_ == kNone) throw user_error("command {}: draw without a pipeline", at_);
-  if (!viewport_) throw user_error("command {}: draw without a viewport", at_);
-  if (!scissor_) throw user_error("command {}: draw without a scissor", at_);
-  check_scissor();
+  for (std::uint32_t i = 0; i < stream_.pipelines[pipeline_].viewports; ++i) {
+    const std::string number = i == 0 ? std::string() : fmt::format(" {}", i);
+    if (!viewports_[i]) throw user_error("command {}: draw without a viewport{}", at_, number);
+    if (!scissors_[i]) throw user_error("command {}: draw without a scissor{}", at_, number);
+    check_scissor(*scissors_[i]);
+  }
   const DepthState& depth = stream_.pipelines[pipeline_].depth;
   if ((depth.test || depth.write) && pass_->depth.image == kNone) {
     throw user_error("command {}: draw with depth test or write into a target without depth", at_);

@@ -54,7 +54,8 @@ class CommandWalk {
   void check_draw_state() const;
   void check_integers() const;
   void check_draw_order();
-  void check_scissor() const;
+  void check_scissor(const SetScissor& scissor) const;
+  void check_index(std::uint32_t index, const char* what) const;
   void count_vertices(const Draw& draw);
   /// None: all its indices only end strips.
   [[nodiscard]] std::optional<VertexRange> vertex_range(const Draw& draw);
@@ -76,8 +77,8 @@ class CommandWalk {
   QueryWalk queries_;
   std::array<VertexStream, kMaxVertexBindings> vertex_streams_;
   BindIndexBuffer indices_;
-  std::optional<SetViewport> viewport_;
-  std::optional<SetScissor> scissor_;
+  std::array<bool, models::kMaxViewports> viewports_{};  ///< that are set
+  std::array<std::optional<SetScissor>, models::kMaxViewports> scissors_;
   std::map<std::tuple<Index, std::uint64_t, IndexType, std::uint32_t, bool>,
            /// scanned once
            std::pair<std::uint32_t, std::uint32_t>>

@@ -84,9 +84,8 @@ struct DrawState {
   ProgramState vertex, fragment;
   // Fixed function.
   models::PrimitiveState primitives;
-  models::Viewport viewport;
-  models::ClipState clip;
-  models::SetupState setup;
+  /// by viewport; what set-up's states say of anything but place and depths is the same in all
+  std::vector<models::ViewState> views = std::vector<models::ViewState>(1);
   models::DepthStencilState depth_stencil;
   std::array<models::BlendState, models::kMaxColorAttachments> blend;  ///< by colour attachment
   models::BlendShared blend_shared;
@@ -116,13 +115,14 @@ struct DrawState {
   [[nodiscard]] const ProgramState& stage(models::ShaderStage stage) const {
     return stage == models::ShaderStage::kVertex ? vertex : fragment;
   }
+  [[nodiscard]] const models::SetupState& setup() const { return views.front().setup; }
   [[nodiscard]] int varyings() const { return static_cast<int>(vertex.program->varyings.size()); }
   [[nodiscard]] bool smooth_lines() const {
-    return setup.line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
+    return setup().line_mode == models::LineMode::kSmooth && primitives.pieces() == models::PieceKind::kLine;
   }
   /// Its fragments have to meet stored depths or stencil values.
   [[nodiscard]] bool uses_depth() const { return depth_stencil.tests(); }
-  [[nodiscard]] const models::SampleGrid& samples() const { return setup.samples; }
+  [[nodiscard]] const models::SampleGrid& samples() const { return setup().samples; }
   [[nodiscard]] bool covers(int sample) const { return (sample_mask >> sample & 1u) != 0; }
   /// What is shaded may have fewer samples than were covered.
   [[nodiscard]] bool limits_coverage() const {

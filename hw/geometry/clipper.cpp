@@ -59,7 +59,7 @@ void Clipper::take_primitive(Tick now) {
   const PrimitiveToken& token = primitive_in.front();
   const DrawState& draw = frame_.draw(token.part.draw());
   read_vertices(token, draw);
-  models::clip_primitive(vertices_, draw.primitives, draw.clip, draw.setup, draw.viewport, clipped_);
+  models::clip_primitive(vertices_, draw.primitives, draw.views, clipped_);
   stats_.working_for(token.part.draw());
   tally(draw);
   spend(now, cost(draw));
@@ -103,7 +103,7 @@ std::uint32_t Clipper::engines_of(const PrimitiveToken& token, const models::Cli
   if (screen_.engines == 1) return 1;
   const DrawState& draw = frame_.draw(token.part.draw());
   const PassState& pass = frame_.pass_of(token.part.draw());
-  const std::int32_t reach = models::piece_reach(piece, draw.primitives.pieces(), draw.setup);
+  const std::int32_t reach = models::piece_reach(piece, draw.primitives.pieces(), draw.setup());
   return models::engines_touched(piece.vertices, reach, frame_.precision.subpixel_bits, pass.width,
                                  pass.height, screen_, turn_++);
 }

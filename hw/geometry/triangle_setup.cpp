@@ -87,7 +87,7 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   TriangleSlot& slot = triangles_[sequence_];
   stats_.working_for(token.part.draw());
   ++stats_.triangles;
-  switch (models::setup_piece(piece, draw.primitives, draw.setup, slot.setup)) {
+  switch (models::setup_piece(piece, draw.primitives, draw.views[piece.viewport].setup, slot.setup)) {
     case models::SetupOutcome::kKept: break;
     case models::SetupOutcome::kCulledFace: ++stats_.culled; return false;
     case models::SetupOutcome::kZeroArea: ++stats_.zero_area; return false;
@@ -98,7 +98,7 @@ bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   const models::PieceKind kind = draw.primitives.pieces();
   if (kind == models::PieceKind::kLine) ++stats_.lines;
   if (kind == models::PieceKind::kPoint) ++stats_.points;
-  if (draw.smooth_lines()) slot.line = models::piece_coverage(piece, draw.setup);
+  if (draw.smooth_lines()) slot.line = models::piece_coverage(piece, draw.setup());
   slot.draw = token.part.draw();
   slot.primitive = token.primitive;
   slot.instance = batches_[token.corner[0].slot].inputs.instance_index[token.corner[0].lane];

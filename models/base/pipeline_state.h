@@ -39,6 +39,9 @@ enum class LineMode : std::uint8_t {
 inline constexpr float kMinLineWidth = 1, kMaxLineWidth = 64;
 inline constexpr float kMinPointSize = 1, kMaxPointSize = 256;
 
+/// Of a pipeline. [VK1.3 limit maxViewports]
+inline constexpr std::uint32_t kMaxViewports = 16;
+
 /// [VK1.3 #primsrast-polygons-basic]
 enum class CullMode : std::uint8_t { kNone, kFront, kBack };
 /// By the signed area in framebuffer coordinates, y down.

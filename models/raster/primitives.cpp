@@ -8,9 +8,14 @@ namespace {
 /// One primitive on its way to its pieces.
 class Work {
  public:
-  Work(const PrimitiveVertices& vertices, const PrimitiveState& state, const ClipState& clip,
-       const SetupState& setup, const Viewport& viewport, ClippedPrimitive& out)
-      : vertices_(vertices), state_(state), clip_(clip), setup_(setup), viewport_(viewport), out_(out) {}
+  Work(const PrimitiveVertices& vertices, const PrimitiveState& state, const ViewState& view,
+       ClippedPrimitive& out)
+      : vertices_(vertices),
+        state_(state),
+        clip_(view.clip),
+        setup_(view.setup),
+        viewport_(view.viewport),
+        out_(out) {}
 
   void run() {
     out_.count = out_.cuts = 0;
@@ -114,9 +119,12 @@ class Work {
 
 }  // namespace
 
-void clip_primitive(const PrimitiveVertices& vertices, const PrimitiveState& state, const ClipState& clip,
-                    const SetupState& setup, const Viewport& viewport, ClippedPrimitive& out) {
-  Work(vertices, state, clip, setup, viewport, out).run();
+void clip_primitive(const PrimitiveVertices& vertices, const PrimitiveState& state,
+                    std::span<const ViewState> views, ClippedPrimitive& out) {
+  const std::size_t view = vertices.viewport < views.size() ? vertices.viewport : 0;
+  Work(vertices, state, views[view], out).run();
+  for (int i = 0; i < out.count; ++i)
+    out.pieces[static_cast<std::size_t>(i)].viewport = static_cast<std::uint8_t>(view);
 }
 
 namespace {

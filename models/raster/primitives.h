@@ -11,7 +11,9 @@
 #include "models/raster/triangle_setup.h"
 
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <span>
 
 namespace quadrille::models {
 
@@ -36,6 +38,7 @@ struct PrimitiveState {
   PolygonMode polygon_mode = PolygonMode::kFill;
   int clip_distances = 0, cull_distances = 0;  ///< that the vertex program writes
   bool point_size = false;                     ///< it writes that too; else a point is 1 pixel
+  bool viewport_index = false;                 ///< and that; else all take the first viewport
   /// What the draw rasterises.
   [[nodiscard]] PieceKind pieces() const {
     if (assembled != PieceKind::kTriangle || polygon_mode == PolygonMode::kFill) return assembled;
@@ -51,6 +54,8 @@ struct PrimitiveVertices {
   std::array<glm::vec4, 3> position;
   std::array<float, 3> point_size{1, 1, 1};
   UserDistances user{0, 0};
+  /// that the provoking vertex asks for, which is the first
+  std::uint32_t viewport = 0;
 };
 
 /// What is set up: three vertices of a triangle, two of a line or one of a point.
@@ -59,6 +64,7 @@ struct ClippedPiece {
   std::array<glm::vec2, 3> weights;  ///< of the primitive's second and third vertex
   float point_size = 1;
   bool front = true;  ///< of a line or point of a triangle
+  std::uint8_t viewport = 0;
 };
 
 /// All pieces of one primitive.
@@ -80,8 +86,9 @@ void read_vertices(const PrimitiveState& state, int first_extra, const Output& o
     if (state.point_size) vertices.point_size[i] = output(i, first_extra);
   }
   const int distances = state.clip_distances + state.cull_distances;
-  if (distances == 0) return;
   const int first = first_extra + (state.point_size ? 1 : 0);
+  if (state.viewport_index) vertices.viewport = std::bit_cast<std::uint32_t>(output(0, first + distances));
+  if (distances == 0) return;
   vertices.user = UserDistances(state.clip_distances, state.cull_distances);
   for (std::size_t i = 0; i < corners; ++i) {
     for (int d = 0; d < distances; ++d)
@@ -89,10 +96,18 @@ void read_vertices(const PrimitiveState& state, int first_extra, const Output& o
   }
 }
 
-/// Clips a primitive and moves what is left to the window. `setup`: for the facing of triangles that are not
-/// filled.
-void clip_primitive(const PrimitiveVertices& vertices, const PrimitiveState& state, const ClipState& clip,
-                    const SetupState& setup, const Viewport& viewport, ClippedPrimitive& out);
+/// What a viewport and its scissor mean for the clipper and for set-up.
+struct ViewState {
+  Viewport viewport;
+  ClipState clip;
+  SetupState setup;
+};
+
+/// Clips a primitive and moves what is left to the window. `views` are the draw's, one at least, of which
+/// `vertices.viewport` names one; a number beyond them names the first. Set-up's state is for the facing of
+/// triangles that are not filled.
+void clip_primitive(const PrimitiveVertices& vertices, const PrimitiveState& state,
+                    std::span<const ViewState> views, ClippedPrimitive& out);
 
 /// Sets up one piece of a draw.
 [[nodiscard]] SetupOutcome setup_piece(const ClippedPiece& piece, const PrimitiveState& state,

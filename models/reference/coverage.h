@@ -21,6 +21,7 @@ enum class Shape : std::uint8_t { kTriangle, kLine, kPoint };
 /// corners repeat the last one. The first three members are the *original* primitive's, for its attributes.
 struct WindowTriangle {
   std::uint32_t instance = 0, primitive = 0;
+  std::uint32_t viewport = 0;
   std::array<std::uint32_t, 3> vertices{};  ///< distinct vertices (ShadedVertices) in assembly order
   Shape shape = Shape::kTriangle;
   LineMode line_mode = LineMode::kBresenham;

@@ -124,10 +124,15 @@ void Decoder::builtin(std::uint32_t which, Slot slot, std::uint32_t cells, bool 
     case spv::BuiltInSamplePosition: b.sample_position = slot, program_.by_sample = true; return;
     case spv::BuiltInSampleMask: (input ? b.sample_mask_in : b.sample_mask) = slot; return;
     case spv::BuiltInClipDistance: b.clip_distance = slot, b.clip_distances = cells; return;
+    case spv::BuiltInViewportIndex:
+      if (input) unsupported("gl_ViewportIndex in a fragment shader");
+      b.viewport_index = slot;
+      return;
     case spv::BuiltInCullDistance: b.cull_distance = slot, b.cull_distances = cells; return;
     default:
       unsupported(
-          "a built-in other than Position, PointSize, ClipDistance, CullDistance, VertexIndex, "
+          "a built-in other than Position, PointSize, ViewportIndex, ClipDistance, CullDistance, "
+          "VertexIndex, "
           "InstanceIndex, "
           "FragCoord, FrontFacing, PrimitiveId, PointCoord, SampleId, SamplePosition, SampleMask and "
           "FragDepth");

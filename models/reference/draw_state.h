@@ -52,8 +52,8 @@ struct DrawState {
   std::map<std::uint32_t, VertexBuffer> vertex_buffers;
   traces::BindIndexBuffer index_buffer;
   std::vector<std::byte> push_constants = std::vector<std::byte>(traces::kMaxPushConstantBytes);
-  traces::SetViewport viewport;
-  traces::SetScissor scissor;
+  std::array<traces::SetViewport, kMaxViewports> viewports;
+  std::array<traces::SetScissor, kMaxViewports> scissors;
   const traces::Draw* draw = nullptr;
   std::uint32_t number = 0;  ///< of the draw in the stream, from 0
 };

@@ -87,8 +87,8 @@ class BandWorker {
  private:
   using Depths = std::array<std::array<double, 8>, kLanes>;  ///< by pixel and sample
 
-  [[nodiscard]] bool in_bounds(int x, int y) const {
-    const PixelBounds& b = work_.bounds;
+  [[nodiscard]] bool in_bounds(const WindowTriangle& t, int x, int y) const {
+    const PixelBounds& b = work_.bounds[t.viewport];
     return x >= b.first_x && x <= b.last_x && y >= b.first_y && y <= b.last_y;
   }
 
@@ -99,7 +99,7 @@ class BandWorker {
     for (int lane = 0; lane < kLanes; ++lane) {
       const int px = x + (lane & 1), py = y + (lane >> 1);
       places[static_cast<std::size_t>(lane)] = locate_sample(t, {px, py});
-      if (in_bounds(px, py)) cover(t, places[static_cast<std::size_t>(lane)], quad, lane);
+      if (in_bounds(t, px, py)) cover(t, places[static_cast<std::size_t>(lane)], quad, lane);
     }
     if (!any(quad.covered)) return;
     if (by_sample()) return draw_samples(t, quad);
@@ -193,7 +193,7 @@ class BandWorker {
     Depths depth{};
     for (std::size_t lane = 0; lane < kLanes; ++lane)
       for (std::uint32_t s = 0; s < state_.samples; ++s)
-        depth[lane][s] = tests_.final_depth(quad.sample_z[lane][s], bias_ != 0);
+        depth[lane][s] = tests_.final_depth(quad.sample_z[lane][s], bias_ != 0, t.viewport);
     const bool early = program_ != nullptr && program_->early_fragment_tests;
     const bool shader_depth = program_ != nullptr && program_->builtins.frag_depth != kNoSlot && !early;
     const bool late =
@@ -205,7 +205,7 @@ class BandWorker {
       if (shader_depth) {
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
           const double z = lanes_.at(program_->builtins.frag_depth)->f(static_cast<int>(lane));
-          depth[lane].fill(tests_.final_depth(z, false));
+          depth[lane].fill(tests_.final_depth(z, false, t.viewport));
         }
       }
       note_discards(quad);

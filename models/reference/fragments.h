@@ -18,7 +18,7 @@ struct FragmentWork {
   const BoundShader* fragment_shader = nullptr;  ///< null: the pipeline has none; depth alone is written
   const ShadedVertices* vertices = nullptr;
   std::span<const WindowTriangle> triangles;  ///< in the order to draw
-  PixelBounds bounds;
+  DrawBounds bounds;
   bool float_depth = false;  ///< mode *given*: a depth is rounded to float32 before it is tested
   int threads = 1;
 };

@@ -232,6 +232,13 @@ WindowTriangle blank(const traces::Pipeline& pipeline) {
   return t;
 }
 
+/// That the provoking vertex chooses, which is the first; the first viewport if there is none of its number.
+std::uint32_t viewport_of(const DrawState& state, const ShadedVertices& vertices, const WindowTriangle& t) {
+  if (vertices.viewport.empty()) return 0;
+  const std::uint32_t chosen = vertices.viewport[t.vertices[0]];
+  return chosen < state.pipeline->viewports ? chosen : 0;
+}
+
 /// One primitive in mode *ideal*, from its vertices to what is drawn of it.
 class Projection {
  public:
@@ -294,7 +301,7 @@ class Projection {
   [[nodiscard]] WindowTriangle placed(const std::array<const Corner*, 3>& corners) const {
     WindowTriangle t = blank_;
     for (std::size_t i = 0; i < 3; ++i) {
-      project(state_.viewport, corners[i]->clip, t, i);
+      project(state_.viewports[blank_.viewport], corners[i]->clip, t, i);
       t.barycentric[i] = {corners[i]->b1, corners[i]->b2};
     }
     find_screen_barycentric(clip_, t);
@@ -318,21 +325,22 @@ class Projection {
 }  // namespace
 
 std::vector<WindowTriangle> clip_and_project(const DrawState& state, const ShadedVertices& vertices,
-                                             std::uint32_t instance, const PixelBounds& bounds) {
+                                             std::uint32_t instance, const DrawBounds& bounds) {
   std::vector<WindowTriangle> out;
   const auto primitives = assemble(state.pipeline->topology, state.draw->count, vertices.breaks);
   WindowTriangle t = blank(*state.pipeline);
   t.instance = instance;
   for (std::uint32_t primitive = 0; primitive < primitives.size(); ++primitive) {
     t.primitive = primitive, t.vertices = distinct_of(vertices, primitives[primitive]);
-    Projection(state, vertices, bounds, t, out).run();
+    t.viewport = viewport_of(state, vertices, t);
+    Projection(state, vertices, bounds[t.viewport], t, out).run();
   }
   return out;
 }
 
 std::vector<WindowTriangle> take_given(const DrawState& state, const ShadedVertices& vertices,
                                        std::span<const GivenTriangle> given, int subpixel_bits,
-                                       const PixelBounds& bounds) {
+                                       const DrawBounds& bounds) {
   constexpr std::int64_t kLimit = std::int64_t{1} << 60;
   std::vector<WindowTriangle> out;
   const auto primitives = assemble(state.pipeline->topology, state.draw->count, vertices.breaks);
@@ -344,6 +352,7 @@ std::vector<WindowTriangle> take_given(const DrawState& state, const ShadedVerti
     WindowTriangle t = blank(*state.pipeline);
     t.instance = g.instance, t.primitive = g.primitive,
     t.vertices = distinct_of(vertices, primitives[g.primitive]);
+    t.viewport = viewport_of(state, vertices, t);
     t.exact = true, t.subpixel_bits = subpixel_bits;
     t.fixed_x = g.x, t.fixed_y = g.y, t.z = g.z, t.inv_w = g.inv_w, t.barycentric = g.barycentric;
     t.point_size = g.point_size, t.front = g.front;
@@ -354,7 +363,7 @@ std::vector<WindowTriangle> take_given(const DrawState& state, const ShadedVerti
       t.x[i] = static_cast<double>(g.x[i]) * scale, t.y[i] = static_cast<double>(g.y[i]) * scale;
     }
     find_screen_barycentric(corners_of(vertices, t.vertices), t);
-    if (finish(*state.pipeline, bounds, t)) out.push_back(t);
+    if (finish(*state.pipeline, bounds[t.viewport], t)) out.push_back(t);
   }
   return out;
 }

@@ -24,16 +24,19 @@ struct PixelBounds {
   int first_x = 0, first_y = 0, last_x = -1, last_y = -1;
 };
 
+/// By viewport of the draw.
+using DrawBounds = std::vector<PixelBounds>;
+
 /// Mode *ideal*: clips to 0 <= z <= w (unless depth is clamped) and w >= `kMinW`, cuts what is `kReach` view
 /// volumes aside, projects, culls. [VK1.3 #vertexpostproc-clipping]
 [[nodiscard]] std::vector<WindowTriangle> clip_and_project(const DrawState& state,
                                                            const ShadedVertices& vertices,
-                                                           std::uint32_t instance, const PixelBounds& bounds);
+                                                           std::uint32_t instance, const DrawBounds& bounds);
 
 /// Mode *given*: the machine's triangles of one instance, with the original primitives they come from. Throws
 /// `UserError` for one that the draw does not have.
 [[nodiscard]] std::vector<WindowTriangle> take_given(const DrawState& state, const ShadedVertices& vertices,
                                                      std::span<const GivenTriangle> given, int subpixel_bits,
-                                                     const PixelBounds& bounds);
+                                                     const DrawBounds& bounds);
 
 }  // namespace quadrille::models::reference

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
@@ -197,10 +198,10 @@ class Renderer {
     std::copy(c.data.begin(), c.data.end(),
               state_.push_constants.begin() + static_cast<std::ptrdiff_t>(c.offset));
   }
-  void execute(const traces::SetViewport& c) { state_.viewport = c, has_viewport_ = true; }
+  void execute(const traces::SetViewport& c) { state_.viewports[c.index] = c, has_viewport_ = true; }
   void execute(const traces::BeginQuery&) {}
   void execute(const traces::EndQuery&) {}
-  void execute(const traces::SetScissor& c) { state_.scissor = c, has_scissor_ = true; }
+  void execute(const traces::SetScissor& c) { state_.scissors[c.index] = c, has_scissor_ = true; }
 
   void execute(const traces::Draw& draw) {
     state_.draw = &draw;
@@ -217,8 +218,9 @@ class Renderer {
 
   void draw_instances() {
     FragmentWork work;
-    work.bounds = bounds();
-    if (work.bounds.first_x > work.bounds.last_x || work.bounds.first_y > work.bounds.last_y) return;
+    for (std::uint32_t i = 0; i < state_.pipeline->viewports; ++i) work.bounds.push_back(bounds(i));
+    const auto none = [](const PixelBounds& b) { return b.first_x > b.last_x || b.first_y > b.last_y; };
+    if (std::ranges::all_of(work.bounds, none)) return;
     const Precision* precision = options_.mode == Mode::kGiven ? &options_.precision : nullptr;
     const BoundShader vertex_shader = bind_shader(program(state_.pipeline->vertex_shader), state_, precision);
     BoundShader fragment_shader;
@@ -259,15 +261,35 @@ class Renderer {
                : programs_.emplace(shader, decode_shader(stream_.shaders[shader])).first->second;
   }
 
-  /// Target, scissor and the region asked for.
-  [[nodiscard]] PixelBounds bounds() const {
+  /// Does the draw rasterise points? They are drawn whole if their centre is in the view volume.
+  [[nodiscard]] bool draws_points() const {
+    using traces::Topology;
+    const traces::Pipeline& p = *state_.pipeline;
+    const bool triangles = p.topology != Topology::kPointList && p.topology != Topology::kLineList &&
+                           p.topology != Topology::kLineStrip;
+    return triangles ? p.polygon_mode == traces::PolygonMode::kPoint : p.topology == Topology::kPointList;
+  }
+
+  /// To the pixels whose centre is in a viewport: at its sides what is drawn is not cut before.
+  static void limit(const traces::SetViewport& v, PixelBounds& b) {
+    const auto first = [](double edge) { return static_cast<int>(std::ceil(edge - 0.5)); };
+    const double left = v.x, right = left + static_cast<double>(v.width), y0 = v.y,
+                 y1 = y0 + static_cast<double>(v.height);
+    b.first_x = std::max(b.first_x, first(left)), b.last_x = std::min(b.last_x, first(right) - 1);
+    b.first_y = std::max(b.first_y, first(std::min(y0, y1)));
+    b.last_y = std::min(b.last_y, first(std::max(y0, y1)) - 1);
+  }
+
+  /// Target, scissor, viewport and the region asked for.
+  [[nodiscard]] PixelBounds bounds(std::uint32_t viewport) const {
+    const traces::SetScissor& s = state_.scissors[viewport];
     const auto clamp = [](std::int64_t a, std::int64_t high) {
       return static_cast<int>(std::clamp<std::int64_t>(a, 0, high));
     };
-    const traces::SetScissor& s = state_.scissor;
     const std::int64_t width = result_.width, height = result_.height;
     PixelBounds b{clamp(s.x, width), clamp(s.y, height), clamp(std::int64_t{s.x} + s.width, width) - 1,
                   clamp(std::int64_t{s.y} + s.height, height) - 1};
+    if (!draws_points()) limit(state_.viewports[viewport], b);
     if (options_.region && pass_ == passes_) {
       const PixelRect& r = *options_.region;
       b.first_x = std::max(b.first_x, clamp(r.x, width)), b.first_y = std::max(b.first_y, clamp(r.y, height));

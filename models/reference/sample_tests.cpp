@@ -37,8 +37,9 @@ double SampleTests::bias_of(const WindowTriangle& t) const {
   return clamp < 0 ? std::max(offset, clamp) : offset;
 }
 
-double SampleTests::final_depth(double z, bool biased) const {
-  const double low = state_.viewport.min_depth, high = state_.viewport.max_depth;
+double SampleTests::final_depth(double z, bool biased, std::uint32_t viewport) const {
+  const traces::SetViewport& v = state_.viewports[viewport];
+  const double low = v.min_depth, high = v.max_depth;
   if (state_.pipeline->depth_clamp) z = std::clamp(z, std::min(low, high), std::max(low, high));
   if (biased) z = std::clamp(z, 0.0, 1.0);
   if (float_depth_) z = static_cast<double>(static_cast<float>(z));

@@ -20,7 +20,7 @@ class SampleTests {
   [[nodiscard]] double bias_of(const WindowTriangle& triangle) const;
   /// A depth as it is tested: clamped where the pipeline says so, and as the attachment holds it. One that
   /// was moved by a bias ends at 0 and 1.
-  [[nodiscard]] double final_depth(double z, bool biased) const;
+  [[nodiscard]] double final_depth(double z, bool biased, std::uint32_t viewport) const;
   /// Depth bounds, then stencil, then depth [VK1.3 #fragops]; writes what a sample leaves behind that passes
   /// or fails, and notes how near the decision of depth was.
   bool test_and_write(bool front, std::size_t place, double depth);

@@ -116,6 +116,7 @@ struct BuiltinSlots {
   Slot point_size = kNoSlot, point_coord = kNoSlot, sample_id = kNoSlot, sample_position = kNoSlot;
   Slot sample_mask_in = kNoSlot, sample_mask = kNoSlot;  ///< read, written
   Slot clip_distance = kNoSlot, cull_distance = kNoSlot;
+  Slot viewport_index = kNoSlot;
   std::uint32_t clip_distances = 0, cull_distances = 0;  ///< as declared
 };
 

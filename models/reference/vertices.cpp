@@ -176,6 +176,7 @@ class VertexWorker {
   void store_extras(std::size_t vertex, int lane) {
     const BuiltinSlots& b = program_.builtins;
     if (b.point_size != kNoSlot) out_.point_size[vertex] = lanes_.cells[b.point_size].f(lane);
+    if (b.viewport_index != kNoSlot) out_.viewport[vertex] = lanes_.cells[b.viewport_index].u(lane);
     if (out_.distances.empty()) return;
     for (std::uint32_t i = 0; i < b.clip_distances; ++i)
       out_.distances[vertex].push_back(lanes_.cells[b.clip_distance + i].f(lane));
@@ -220,6 +221,7 @@ ShadedVertices shade_vertices(const DrawState& state, const BoundShader& shader,
   out.outputs.resize(distinct.size() * out.ports);
   const BuiltinSlots& b = shader.program->builtins;
   if (b.point_size != kNoSlot) out.point_size.resize(distinct.size());
+  if (b.viewport_index != kNoSlot) out.viewport.resize(distinct.size());
   if (b.clip_distances + b.cull_distances > 0) out.distances.resize(distinct.size());
   out.clip_distances = b.clip_distances;
   const std::vector<AttributeFeed> feeds = attribute_feeds(state, *shader.program);

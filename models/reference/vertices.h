@@ -20,6 +20,7 @@ struct ShadedVertices {
   std::vector<std::uint32_t> sequence;  ///< draw order -> distinct vertex
   std::vector<std::uint32_t> breaks;    ///< positions at which a strip or fan ends; in order
   std::vector<double> point_size;       ///< by distinct vertex; empty: none is written
+  std::vector<std::uint32_t> viewport;  ///< likewise
   /// by distinct vertex: clip distances, then cull distances
   std::vector<std::vector<double>> distances;
   std::size_t clip_distances = 0;

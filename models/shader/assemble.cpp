@@ -149,6 +149,7 @@ class Assembler {
     program_.extras.point_size = at_most(0, "point_size", 1) != 0;
     program_.extras.clip_distances = at_most(1, "clip", kMaxUserDistances);
     program_.extras.cull_distances = at_most(2, "cull", kMaxUserDistances);
+    program_.extras.viewport_index = at_most(3, "viewport", 1) != 0;
   }
 
   /// The value of word `i`, which must read `name=number`.

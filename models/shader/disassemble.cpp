@@ -57,8 +57,8 @@ std::string header_text(const Program& p) {
   for (const Interpolation mode : p.varyings)
     text += fmt::format(".varying {}\n", kInterpolationNames[static_cast<std::size_t>(mode)]);
   if (p.extras.count() > 0)
-    text += fmt::format(".extras point_size={} clip={} cull={}\n", p.extras.point_size ? 1 : 0,
-                        p.extras.clip_distances, p.extras.cull_distances);
+    text += fmt::format(".extras point_size={} clip={} cull={} viewport={}\n", p.extras.point_size ? 1 : 0,
+                        p.extras.clip_distances, p.extras.cull_distances, p.extras.viewport_index ? 1 : 0);
   return text;
 }
 

@@ -232,7 +232,10 @@ struct ConstantLayout {
 struct VertexExtras {
   bool point_size = false;
   std::uint8_t clip_distances = 0, cull_distances = 0;  ///< together at most 8
-  [[nodiscard]] int count() const { return (point_size ? 1 : 0) + clip_distances + cull_distances; }
+  bool viewport_index = false;
+  [[nodiscard]] int count() const {
+    return (point_size ? 1 : 0) + clip_distances + cull_distances + (viewport_index ? 1 : 0);
+  }
   friend bool operator==(const VertexExtras&, const VertexExtras&) = default;
 };
 

@@ -52,6 +52,7 @@ models::VertexExtras extras_of(const ScalarShader& vertex) {
   for (const ScalarInstruction& i : vertex.code) {
     if (i.op != Op::kOutput || i.imm < kRawPointSize) continue;
     if (i.imm == kRawPointSize) extras.point_size = true;
+    else if (i.imm == kRawViewportIndex) extras.viewport_index = true;
     else if (i.imm < kRawCullDistance)
       up_to(extras.clip_distances, static_cast<std::uint16_t>(i.imm - kRawClipDistance));
     else up_to(extras.cull_distances, static_cast<std::uint16_t>(i.imm - kRawCullDistance));

@@ -219,6 +219,7 @@ class Encoder {
               cull = clip + linkage_.extras.clip_distances;
     if (raw == kRawPointSize) return static_cast<std::uint16_t>(extra);
     if (raw < kRawCullDistance) return static_cast<std::uint16_t>(clip + (raw - kRawClipDistance));
+    if (raw == kRawViewportIndex) return static_cast<std::uint16_t>(cull + linkage_.extras.cull_distances);
     return static_cast<std::uint16_t>(cull + (raw - kRawCullDistance));
   }
 

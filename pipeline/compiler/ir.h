@@ -53,7 +53,8 @@ inline constexpr std::uint32_t kMaxAttributeLocations = 32;
 inline constexpr std::uint16_t kRawPointSize = models::kFirstVaryingOutput + 4 * kMaxLocations;
 inline constexpr std::uint16_t kRawClipDistance = kRawPointSize + 1;
 inline constexpr std::uint16_t kRawCullDistance = kRawClipDistance + models::kMaxUserDistances;
-inline constexpr std::uint16_t kRawOutputsEnd = kRawCullDistance + models::kMaxUserDistances;
+inline constexpr std::uint16_t kRawViewportIndex = kRawCullDistance + models::kMaxUserDistances;
+inline constexpr std::uint16_t kRawOutputsEnd = kRawViewportIndex + 1;
 
 /// One shader between lowering and emission. Slots are raw: kInput and kInterp name 4 * location + component
 /// (or a system value), kOutput names the ISA's output slot, with varyings at kFirstVaryingOutput + 4 *

@@ -111,6 +111,7 @@ Lowering::Slot Lowering::built_in_slot(std::int64_t built_in, std::uint32_t comp
     case spv::BuiltInPointSize: return vertex && output ? use(kRawPointSize) : slot;
     case spv::BuiltInClipDistance: return vertex && output ? distance(kRawClipDistance) : slot;
     case spv::BuiltInCullDistance: return vertex && output ? distance(kRawCullDistance) : slot;
+    case spv::BuiltInViewportIndex: return vertex && output ? use(kRawViewportIndex) : slot;
     case spv::BuiltInVertexIndex: return vertex ? system(SystemValue::kVertexIndex) : slot;
     case spv::BuiltInInstanceIndex: return vertex ? system(SystemValue::kInstanceIndex) : slot;
     case spv::BuiltInFragCoord: return vertex ? slot : system(SystemValue::kFragCoordX);
@@ -164,7 +165,7 @@ void Lowering::store_output(const Pointer& p, std::uint32_t place, Value v, cons
   const Slot& slot = slots_[p.variable].at(place);
   if (slot.kind == Slot::Kind::kRefused)
     throw unsupported(i, fmt::format("output {} (only colour locations 0 to 7, gl_FragDepth, gl_SampleMask, "
-                                     "gl_Position, gl_PointSize, clip and cull "
+                                     "gl_Position, gl_PointSize, gl_ViewportIndex, clip and cull "
                                      "distances and varyings are written)",
                                      module_.name(p.variable)));
   build_.effect(Op::kOutput, v, slot.imm);

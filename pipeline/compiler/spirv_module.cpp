@@ -29,7 +29,9 @@ bool harmless_capability(std::uint32_t capability) {
          capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry ||
          capability == spv::CapabilityClipDistance || capability == spv::CapabilityCullDistance ||
          capability == spv::CapabilityDemoteToHelperInvocation ||
-         capability == spv::CapabilityDrawParameters ||
+         capability == spv::CapabilityDrawParameters || capability == spv::CapabilityMultiViewport ||
+         capability == spv::CapabilityShaderViewportIndex ||
+         capability == spv::CapabilityShaderViewportIndexLayerEXT ||
          capability == spv::CapabilityVariablePointersStorageBuffer;
 }
 

@@ -119,7 +119,8 @@ bool is_outside(const hw::DrawState& draw, BoxFinder& boxes) {
   if (models::writes_buffers(*draw.vertex.program)) return false;
   ProgramInputs inputs{draw.vertex.constants, [&](std::size_t row) { return boxes.bounds(draw, row); }, {}};
   if (draw.instances == 1) inputs.instance = draw.first_instance;
-  return outside_one_plane(position_bounds(*draw.vertex.program, inputs), draw.clip.depth_clamp);
+  return outside_one_plane(position_bounds(*draw.vertex.program, inputs),
+                           draw.views.front().clip.depth_clamp);
 }
 
 }  // namespace

@@ -8,8 +8,12 @@ namespace quadrille::pipeline {
 namespace {
 
 models::PrimitiveState primitives(const traces::Pipeline& pipeline, const models::Program& vertex) {
-  return {models::assembled_kind(pipeline.topology), pipeline.polygon_mode, vertex.extras.clip_distances,
-          vertex.extras.cull_distances, vertex.extras.point_size};
+  return {models::assembled_kind(pipeline.topology),
+          pipeline.polygon_mode,
+          vertex.extras.clip_distances,
+          vertex.extras.cull_distances,
+          vertex.extras.point_size,
+          vertex.extras.viewport_index};
 }
 
 /// What depths of a format are apart; 0 for floats, or without an attachment.
@@ -59,20 +63,27 @@ void check_programs(const traces::Pipeline& pipeline, const hw::PassState& pass,
         program.name, pipeline.name);
 }
 
-void set_raster(const FixedFunctionInputs& in, hw::DrawState& draw) {
+models::ViewState view(const FixedFunctionInputs& in, const models::Viewport& viewport,
+                       const models::PixelRect& scissor, bool points) {
   const traces::Pipeline& pipeline = in.pipeline;
-  draw.primitives = primitives(pipeline, *draw.vertex.program);
-  // A point whose centre is in the view volume is drawn whole.
+  const models::PixelRect rect = models::drawable_rect(viewport, scissor, in.pass.width, in.pass.height);
+  return {
+      viewport,
+      models::make_clip_state(viewport, pipeline.depth_clamp, in.subpixel_bits),
+      // A point whose centre is in the view volume is drawn whole.
+      {pipeline.cull, pipeline.front, points ? scissor : rect, in.subpixel_bits, viewport.min_depth,
+       viewport.max_depth, pipeline.line_mode, pipeline.line_width,
+       models::sample_grid(in.pass.samples, in.subpixel_bits), pipeline.depth_bias, depth_step(in.depth)}};
+}
+
+void set_raster(const FixedFunctionInputs& in, hw::DrawState& draw) {
+  draw.primitives = primitives(in.pipeline, *draw.vertex.program);
   const bool points = draw.primitives.pieces() == models::PieceKind::kPoint;
-  const models::PixelRect rect =
-      models::drawable_rect(in.viewport, in.scissor, in.pass.width, in.pass.height);
-  draw.viewport = in.viewport;
-  draw.clip = models::make_clip_state(in.viewport, pipeline.depth_clamp, in.subpixel_bits);
-  draw.setup = {
-      pipeline.cull,       pipeline.front,        points ? in.scissor : rect,
-      in.subpixel_bits,    in.viewport.min_depth, in.viewport.max_depth,
-      pipeline.line_mode,  pipeline.line_width,   models::sample_grid(in.pass.samples, in.subpixel_bits),
-      pipeline.depth_bias, depth_step(in.depth)};
+  draw.views.clear();
+  // A program that does not choose one draws to the first.
+  const std::uint32_t views = draw.primitives.viewport_index ? in.pipeline.viewports : 1;
+  for (std::uint32_t i = 0; i < views; ++i)
+    draw.views.push_back(view(in, in.viewports[i], in.scissors[i], points));
 }
 
 /// Components of the pass's attachments that the program writes; a second colour goes to none.

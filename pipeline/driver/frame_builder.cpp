@@ -73,8 +73,8 @@ class FrameBuilder {
           c.depth.load == traces::LoadOp::kClear ? models::round_depth(depth_format(), c.depth.clear) : 0;
     pass.first_draw = hw::DrawId(out_.frame.draws.size());
     out_.frame.passes.push_back(pass);
-    scissor_ = {0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)};
-    viewport_ = {0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1};
+    scissors_.fill({0, 0, static_cast<std::int32_t>(target.width), static_cast<std::int32_t>(target.height)});
+    viewports_.fill({0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0, 1});
   }
   void apply(const traces::EndPass&) {
     hw::PassState& pass = out_.frame.passes.back();
@@ -118,11 +118,11 @@ class FrameBuilder {
     std::copy(c.data.begin(), c.data.end(), push_.begin() + c.offset);
   }
   void apply(const traces::SetViewport& c) {
-    viewport_ = {c.x, c.y, c.width, c.height, c.min_depth, c.max_depth};
+    viewports_[c.index] = {c.x, c.y, c.width, c.height, c.min_depth, c.max_depth};
   }
   void apply(const traces::SetScissor& c) {
-    scissor_ = {c.x, c.y, c.x + static_cast<std::int32_t>(c.width),
-                c.y + static_cast<std::int32_t>(c.height)};
+    scissors_[c.index] = {c.x, c.y, c.x + static_cast<std::int32_t>(c.width),
+                          c.y + static_cast<std::int32_t>(c.height)};
   }
   void apply(const traces::BeginQuery& c) { queries_.begin(c, out_.frame.draws.size()); }
   void apply(const traces::EndQuery& c) { queries_.end(c, out_.frame.draws.size()); }
@@ -136,7 +136,7 @@ class FrameBuilder {
     draw.fragment.program = &programs.fragment;
     geometry(c, pipeline, draw);
     attributes(pipeline, programs.integer_inputs, draw);
-    set_fixed_function({pipeline, out_.frame.passes.back(), depth_format(), viewport_, scissor_,
+    set_fixed_function({pipeline, out_.frame.passes.back(), depth_format(), viewports_, scissors_,
                         out_.frame.precision.subpixel_bits},
                        draw);
     draw.counts_samples = queries_.counts_samples();
@@ -318,8 +318,8 @@ class FrameBuilder {
   std::map<std::uint32_t, traces::BindVertexBuffer> vertex_buffers_;
   traces::BindIndexBuffer index_buffer_;
   std::vector<std::byte> push_;
-  models::Viewport viewport_;
-  models::PixelRect scissor_;
+  std::array<models::Viewport, models::kMaxViewports> viewports_;
+  std::array<models::PixelRect, models::kMaxViewports> scissors_;
   Index pipeline_ = kNone;
   const traces::BeginPass* begun_ = nullptr;
   AttachmentLives lives_;

@@ -171,8 +171,7 @@ class FunctionalRenderer {
     };
     models::read_vertices(draw_->primitives, models::first_extra_output(*draw_->vertex.program), output,
                           vertices_);
-    models::clip_primitive(vertices_, draw_->primitives, draw_->clip, draw_->setup, draw_->viewport,
-                           clipped_);
+    models::clip_primitive(vertices_, draw_->primitives, draw_->views, clipped_);
     switch (clipped_.outcome) {
       case models::ClipOutcome::kRejected: ++counts_.fates.off_screen; return;
       case models::ClipOutcome::kNotFinite: ++counts_.fates.not_finite; return;
@@ -187,7 +186,7 @@ class FunctionalRenderer {
     // Quads that wait in the warp still need their triangles' slots.
     if (warp_.quads > 0 && sequence_ - warp_.quad[0].triangle >= kTriangles) shade();
     hw::TriangleSlot& slot = triangles_[sequence_];
-    switch (models::setup_piece(piece, draw_->primitives, draw_->setup, slot.setup)) {
+    switch (models::setup_piece(piece, draw_->primitives, draw_->views[piece.viewport].setup, slot.setup)) {
       case models::SetupOutcome::kCulledFace: ++counts_.fates.culled; return;
       case models::SetupOutcome::kZeroArea: ++counts_.fates.no_area; return;
       case models::SetupOutcome::kOffscreen: ++counts_.fates.off_screen; return;
@@ -195,7 +194,7 @@ class FunctionalRenderer {
       case models::SetupOutcome::kKept: ++counts_.fates.rasterised; break;
     }
     if (observer_) observer_({warp_.draw, instance_, triangle.primitive, piece});
-    if (draw_->smooth_lines()) slot.line = models::piece_coverage(piece, draw_->setup);
+    if (draw_->smooth_lines()) slot.line = models::piece_coverage(piece, draw_->setup());
     slot.draw = warp_.draw;
     slot.primitive = triangle.primitive;
     slot.instance = draw_->first_instance + instance_;

@@ -223,6 +223,8 @@ void VulkanDevice::create_device() {
   }
   const bool has_u8_indices = extensions.contains(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
   if (has_u8_indices) enabled.push_back(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
+  if (extensions.contains(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME))
+    enabled.push_back(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME);
   VkPhysicalDeviceFeatures present{};
   vkGetPhysicalDeviceFeatures(physical_, &present);
   VkPhysicalDeviceIndexTypeUint8FeaturesEXT u8_indices{};
@@ -249,7 +251,8 @@ void VulkanDevice::create_device() {
   features.features.shaderCullDistance = present.shaderCullDistance;
   features.features.sampleRateShading = present.sampleRateShading;
   features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
-  features.features.geometryShader = present.geometryShader;      // gl_PrimitiveID in a fragment shader
+  features.features.multiViewport = present.multiViewport;
+  features.features.geometryShader = present.geometryShader;  // gl_PrimitiveID in a fragment shader
   features.features.robustBufferAccess = present.robustBufferAccess;
   features.features.fragmentStoresAndAtomics = present.fragmentStoresAndAtomics;
   features.features.vertexPipelineStoresAndAtomics = present.vertexPipelineStoresAndAtomics;

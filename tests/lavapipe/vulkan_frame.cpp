@@ -187,11 +187,11 @@ void VulkanFrame::record() {
       },
       [commands](const traces::SetViewport& c) {
         const VkViewport viewport{c.x, c.y, c.width, c.height, c.min_depth, c.max_depth};
-        vkCmdSetViewport(commands, 0, 1, &viewport);
+        vkCmdSetViewport(commands, c.index, 1, &viewport);
       },
       [commands](const traces::SetScissor& c) {
         const VkRect2D scissor{{c.x, c.y}, {c.width, c.height}};
-        vkCmdSetScissor(commands, 0, 1, &scissor);
+        vkCmdSetScissor(commands, c.index, 1, &scissor);
       },
       [this](const traces::Draw& c) { draw(c); },
       [this](const traces::BeginQuery& c) {

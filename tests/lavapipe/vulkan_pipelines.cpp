@@ -258,7 +258,7 @@ VkPipeline VulkanFrame::create_pipeline(const traces::Pipeline& pipeline, const 
   assembly.primitiveRestartEnable = pipeline.primitive_restart ? VK_TRUE : VK_FALSE;
   VkPipelineViewportStateCreateInfo viewport{};
   viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-  viewport.viewportCount = viewport.scissorCount = 1;
+  viewport.viewportCount = viewport.scissorCount = pipeline.viewports;
   VkPipelineRasterizationStateCreateInfo raster = raster_state(pipeline);
   VkPipelineRasterizationLineStateCreateInfoEXT lines{};
   lines.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT;

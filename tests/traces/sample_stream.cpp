@@ -71,6 +71,7 @@ Pipeline random_pipeline(Dice& dice) {
                 dice.choice(BlendOp::kMax),
                 dice.choice(BlendOp::kMax),
                 static_cast<std::uint8_t>(dice.below(16))};
+  p.viewports = 1 + dice.below(2);
   p.sample_shading = dice.coin();
   p.alpha_to_coverage = dice.coin();
   p.sample_mask = dice.coin() ? dice.below(256) : ~0u;
@@ -110,6 +111,8 @@ void random_commands(Dice& dice, CommandStream& s) {
   c.emplace_back(
       SetViewport{-dice.unit(), dice.unit(), 1 + dice.unit(), -1 - dice.unit(), dice.unit(), dice.unit()});
   c.emplace_back(SetScissor{0, 0, 1, 1});
+  c.emplace_back(SetViewport{dice.unit(), dice.unit(), 1 + dice.unit(), 1, 0, dice.unit(), 1});
+  c.emplace_back(SetScissor{0, 0, 1, 0, 1});
   c.emplace_back(BindVertexBuffer{0, 0, 4 * dice.below(4)});
   c.emplace_back(BindVertexBuffer{3, 0, 0});
   const auto type = dice.choice(IndexType::kUint32);

@@ -273,6 +273,16 @@ TEST_CASE("validate: passes and bound state") {
        [](auto& s) {
          s.commands[6] = BindIndexBuffer{1, 1, IndexType::kUint16};
        }},
+      {"pipeline 0 'p': 0 viewports; 1..16 are possible", [](auto& s) { s.pipelines[0].viewports = 0; }},
+      {"pipeline 0 'p': 17 viewports", [](auto& s) { s.pipelines[0].viewports = 17; }},
+      {"command 8: draw without a viewport 1", [](auto& s) { s.pipelines[0].viewports = 2; }},
+      {"command 8: draw without a scissor 1",
+       [](auto& s) {
+         s.pipelines[0].viewports = 2;
+         s.commands[4] = SetViewport{0, 0, 8, 8, 0, 1, 1};
+       }},
+      {"command 1: viewport 16 is set; there are 16", [](auto& s) { command<SetViewport>(s, 1).index = 16; }},
+      {"command 2: scissor 16 is set", [](auto& s) { command<SetScissor>(s, 2).index = 16; }},
       {"viewport", [](auto& s) { command<SetViewport>(s, 1).x = kNan; }},
       {"viewport", [](auto& s) { command<SetViewport>(s, 1).width = kNan; }},
       {"viewport", [](auto& s) { command<SetViewport>(s, 1).height = 0; }},

@@ -35,10 +35,10 @@ struct ClipBench final : Bench {
     pass.width = pass.height = 64;
     frame.passes = {pass};
     DrawState draw;
-    draw.viewport = {0, 0, 64, 64, 0, 1};
-    draw.clip = models::make_clip_state(draw.viewport, false, 8);
+    draw.views[0].viewport = {0, 0, 64, 64, 0, 1};
+    draw.views[0].clip = models::make_clip_state(draw.views[0].viewport, false, 8);
     draw.primitives = s.state;
-    draw.setup.cull = s.cull;
+    draw.views[0].setup.cull = s.cull;
     draw.vertex.program = &program;
     frame.draws = {draw};
     batches[0].outputs.resize(4);

@@ -29,9 +29,9 @@ struct SetupBench final : Bench {
     DrawState draw;
     program.varyings.resize(1);
     draw.vertex.program = &program;
-    draw.setup.cull = models::CullMode::kBack;
+    draw.views[0].setup.cull = models::CullMode::kBack;
     draw.primitives = s.primitives;
-    draw.setup.scissor = {0, 0, 64, 64};
+    draw.views[0].setup.scissor = {0, 0, 64, 64};
     frame.draws = {draw};
     batches[0].outputs.resize(5);
     for (std::size_t lane = 0; lane < 3; ++lane)

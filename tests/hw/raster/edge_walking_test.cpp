@@ -76,7 +76,7 @@ struct WalkBench final : Bench {
     DrawState draw;
     draw.fragment.program = &program;
     draw.depth_stencil.depth_test = draw.depth_stencil.depth_write = true;
-    draw.setup.samples = models::sample_grid(s.samples, 8);
+    draw.views[0].setup.samples = models::sample_grid(s.samples, 8);
     frame.draws.push_back(draw);
   }
   /// The tile's coverage, as its token names it.

@@ -37,7 +37,7 @@ struct FineBench final : Bench {
     all.fill(~std::uint64_t{0});
     QUADRILLE_CHECK(walked.put(part) == kFirstWalked && walked.put(all) == kFirstWalked + 1, "other places");
     frame.draws.resize(1);
-    frame.draws[0].setup.samples = models::sample_grid(s.samples, 8);
+    frame.draws[0].views[0].setup.samples = models::sample_grid(s.samples, 8);
     params.quads_per_clk.set(s.rate);
     params.tiles_per_clk.set(s.tiles_per_clk);
     unit = std::make_unique<FineRaster>("unit", context({.partitions = s.partitions}), params, store, walked);

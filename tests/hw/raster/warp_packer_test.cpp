@@ -22,7 +22,7 @@ struct PackerBench final : Bench {
       : Bench(driver, v), warps(static_cast<std::size_t>(s.slots)) {
     frame.draws.resize(16);
     for (DrawState& draw : frame.draws) {
-      draw.setup.samples = quadrille::models::sample_grid(s.samples, 8);
+      draw.views[0].setup.samples = quadrille::models::sample_grid(s.samples, 8);
       draw.by_sample = s.by_sample;
     }
     params.quads_per_clk.set(s.rate);

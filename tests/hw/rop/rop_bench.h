@@ -52,7 +52,7 @@ struct RopBench final : Bench {
     }
     pass.colors = s.colors;
     pass.samples = s.samples;
-    draw.setup.samples = models::sample_grid(s.samples, 8);
+    draw.views[0].setup.samples = models::sample_grid(s.samples, 8);
     if (s.transparency.mode != models::Transparency::kNone) keep_fragments(s, pass, draw);
     frame.passes = {pass};
     frame.draws = {draw};

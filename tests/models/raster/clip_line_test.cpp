@@ -5,8 +5,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 using namespace quadrille::models;
 
@@ -149,7 +152,8 @@ TEST_CASE("clip_primitive: cull distances drop what lies outside of one plane wi
     vertices.user = UserDistances(0, 2);
     for (std::size_t i = 0; i < 3; ++i) vertices.user.set(i, 0, first[i]), vertices.user.set(i, 1, second[i]);
     ClippedPrimitive out;
-    clip_primitive(vertices, {.assembled = kind, .cull_distances = 2}, state(), {}, kViewport, out);
+    const ViewState view{kViewport, state(), {}};
+    clip_primitive(vertices, {.assembled = kind, .cull_distances = 2}, std::span(&view, 1), out);
     return out.outcome;
   };
   CHECK(outcome({-1, -1, -1}, {1, 1, 1}, PieceKind::kTriangle) == ClipOutcome::kRejected);
@@ -167,7 +171,8 @@ TEST_CASE("clip_primitive: a triangle's edges and corners carry its facing and t
     SetupState setup;
     setup.front = front;
     setup.cull = cull;
-    clip_primitive(vertices, {.polygon_mode = mode, .point_size = true}, state(), setup, kViewport, out);
+    const ViewState view{kViewport, state(), setup};
+    clip_primitive(vertices, {.polygon_mode = mode, .point_size = true}, std::span(&view, 1), out);
     return out.outcome;
   };
   REQUIRE(clipped(PolygonMode::kLine, FrontFace::kClockwise, CullMode::kNone) == ClipOutcome::kInside);
@@ -184,4 +189,32 @@ TEST_CASE("clip_primitive: a triangle's edges and corners carry its facing and t
   CHECK(clipped(PolygonMode::kPoint, FrontFace::kCounterClockwise, CullMode::kBack) == ClipOutcome::kCulled);
   vertices.position[2] = vertices.position[1];
   CHECK(clipped(PolygonMode::kLine, FrontFace::kClockwise, CullMode::kNone) == ClipOutcome::kCulled);
+}
+
+TEST_CASE(
+    "clip_primitive: a piece carries the viewport that its first vertex chose, and none of an earlier one") {
+  PrimitiveVertices vertices;
+  vertices.position = {glm::vec4(0, 0, 0.5F, 1), glm::vec4(0.5F, 0, 0.5F, 1), glm::vec4(0, 0.5F, 0.5F, 1)};
+  const auto output = [&](std::size_t corner, int slot) {
+    if (slot < 4) return vertices.position[corner][slot];
+    return std::bit_cast<float>(corner == 0 ? 1u : 7u);
+  };
+  const PrimitiveState state{.viewport_index = true};
+  const Viewport other{8, 0, 8, 8, 0, 1};
+  const std::array<ViewState, 2> views{ViewState{kViewport, make_clip_state(kViewport, false, 8), {}},
+                                       ViewState{other, make_clip_state(other, false, 8), {}}};
+  read_vertices(state, 4, output, vertices);
+  CHECK(vertices.viewport == 1);
+  ClippedPrimitive out;
+  clip_primitive(vertices, state, views, out);
+  REQUIRE(out.count == 1);
+  CHECK(out.pieces[0].viewport == 1);
+  CHECK(out.pieces[0].vertices[0].x == 12 * 256);  // the middle of the second one
+  vertices.viewport = 2;
+  clip_primitive(vertices, state, views, out);
+  CHECK(out.pieces[0].viewport == 0);
+  vertices.viewport = 1;
+  clip_primitive(vertices, state, views, out);
+  clip_primitive(vertices, state, std::span(views).first(1), out);
+  CHECK(out.pieces[0].viewport == 0);
 }

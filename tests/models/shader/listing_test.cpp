@@ -50,6 +50,7 @@ TEST_CASE("listing: a vertex program with every directive reads back") {
   CHECK(p.textures[0] == TextureBinding{1, 3});
   CHECK(p.textures[1] == TextureBinding{1, 4, NumberKind::kUint});
   CHECK(p.color_kinds[2] == NumberKind::kSint);
+  CHECK(assemble(".extras point_size=1 clip=2 cull=0 viewport=1\nend\n", "vertex").extras.count() == 4);
   CHECK(p.vertex_inputs[0] == VertexInputUse{4, 2});
   CHECK(p.varyings == std::vector<Interpolation>{Interpolation::kFlat, Interpolation::kLinear});
   CHECK(assemble(disassemble(p), "vertex") == p);
@@ -87,6 +88,7 @@ TEST_CASE("listing: a mistake is reported with its line") {
   starts(".texture set=0 binding=0 short\nend\n", "shader:1: numbers must be one of: float uint sint");
   starts(".color location=8 uint\nend\n", "shader:1: location is 8; legal: at most 7");
   starts(".stage geometry\nend\n", "shader:1: stage must be one of: vertex fragment");
+  starts(".extras point_size=0 clip=0 cull=0 viewport=2\nend\n", "shader:1: viewport is 2; legal: at most 1");
   starts(".varying smooth\nend\n", "shader:1: interpolation must be one of");
   starts(".flags fast\nend\n", "shader:1: unknown flag 'fast'");
   starts(".texture set=0\nend\n", "shader:1: expected 'binding=NUMBER'");

@@ -231,6 +231,27 @@ TEST_CASE("compiler: a program says what it writes to each location, and what it
   CHECK(models::assemble(models::disassemble(p.fragment), "f").color_kinds == p.fragment.color_kinds);
 }
 
+TEST_CASE("compiler: the number of a viewport is the last output of a vertex, and fragments do not read it") {
+  const auto vertex = vertex_spirv(
+      "#version 450\n#extension GL_ARB_shader_viewport_layer_array : require\nlayout(location=0) in vec2 p;\n"
+      "out float gl_ClipDistance[2];\n"
+      "void main() { gl_Position = vec4(p, 0, 1); gl_ViewportIndex = int(p.x); gl_ClipDistance[0] = p.x; "
+      "gl_ClipDistance[1] = p.y; }");
+  const auto fragment =
+      fragment_spirv("#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(1); }");
+  const models::Program p = compile_pipeline(vertex, "v", fragment, "f").vertex;
+  CHECK(p.extras == models::VertexExtras{false, 2, 0, true});
+  const int last = models::first_extra_output(p) + 2;
+  CHECK(models::vertex_outputs(p) == last + 1);
+  CHECK(std::ranges::count_if(p.code, [&](const models::Instruction& i) {
+          return i.op == models::Op::kOutput && i.imm == last;
+        }) == 1);
+  CHECK(models::assemble(models::disassemble(p), "v") == p);
+  const auto reads = fragment_spirv(
+      "#version 450\nlayout(location=0) out vec4 c; void main() { c = vec4(gl_ViewportIndex); }");
+  CHECK_THROWS_WITH(compile_pipeline(vertex, "v", reads, "f.frag"), Catch::Contains("gl_ViewportIndex"));
+}
+
 TEST_CASE(
     "specialisation constants may be floats and vectors chosen by others, and what is computed of them") {
   const std::string declarations =
