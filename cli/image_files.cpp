@@ -7,11 +7,14 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <new>
+#include <utility>
 
 #include "cli/process.h"
 #include "models/base/error.h"
 #include "models/rop/srgb.h"
 #include "scenes/image/image_io.h"
+#include "scenes/image/plain_image.h"
 #include "traces/whole_file.h"
 
 namespace quadrille::cli {
@@ -69,6 +72,13 @@ std::vector<std::uint32_t> grey_of(const std::vector<float>& depth) {
   out.reserve(depth.size());
   for (const float d : depth) out.push_back(kOpaque | 0x010101u * unorm((farthest - d) / range));
   return out;
+}
+
+std::vector<std::byte> encoded(std::uint32_t width, std::uint32_t height,
+                               const std::vector<std::uint32_t>& rgba) {
+  std::optional<std::vector<std::byte>> file = scenes::encode_plain_png(bytes_of(width, height, rgba));
+  if (!file) throw std::bad_alloc();  // nothing else fails there
+  return std::move(*file);
 }
 
 std::string joined(const std::vector<std::string>& extensions) {
@@ -145,6 +155,15 @@ void write_depth(const std::string& path, const pipeline::FrameImage& image) {
   } else {
     scenes::save_png(path, bytes_of(image.width, image.height, grey_of(image.depth)));
   }
+}
+
+std::vector<std::byte> color_png(const pipeline::FrameImage& image) {
+  return encoded(image.width, image.height, with_alpha(image.color, false));
+}
+
+std::vector<std::byte> depth_png(const pipeline::FrameImage& image) {
+  return image.depth.empty() ? std::vector<std::byte>()
+                             : encoded(image.width, image.height, grey_of(image.depth));
 }
 
 CodedImage read_coded(const std::string& path) {

@@ -30,6 +30,9 @@ void write_color(const std::string& path, const pipeline::FrameImage& image, boo
 /// Writes the depths: an .exr holds them as they are, a .png shows them as grey, the nearest white, the
 /// farthest black.
 void write_depth(const std::string& path, const pipeline::FrameImage& image);
+/// The same two pictures as files of PNG in memory; `depth_png` is empty where there are no depths.
+[[nodiscard]] std::vector<std::byte> color_png(const pipeline::FrameImage& image);
+[[nodiscard]] std::vector<std::byte> depth_png(const pipeline::FrameImage& image);
 
 /// A picture as 8-bit RGBA, red in the low byte. Linear values of an .exr are encoded as sRGB, so that it
 /// compares with a .png of the same frame.

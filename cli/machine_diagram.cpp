@@ -55,17 +55,6 @@ const char* arrow(LinkWay way) {
   return "";
 }
 
-int count_of(Stands stands, const pipeline::GpuParams& gpu) {
-  switch (stands) {
-    case Stands::kOnce: return 1;
-    case Stands::kEngine: return gpu.engines;
-    case Stands::kPartition: return gpu.partitions;
-    case Stands::kCore: return gpu.cores;
-    case Stands::kChannel: return gpu.channels;
-  }
-  return 0;
-}
-
 Stands stands_of(std::string_view kind) {
   return std::ranges::find(pipeline::planned_units(), kind, &PlannedUnit::kind)->stands;
 }

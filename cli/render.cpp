@@ -22,6 +22,8 @@ void add_render(CLI::App& app, Command& chosen) {
       the table of figures alone
   quadrille render helmet.gltf --out helmet.png --stats helmet.json
       with the picture and all figures as JSON
+  quadrille render helmet.gltf --report helmet.html
+      where the time went, as a page for a browser
   quadrille render city.gltf --eye 10,4,0 --at 0,2,0 --fidelity functional --out view.png
       no machine, only the picture: the fast way to look for a view
   quadrille render walk.glb --time 0.4 --out step.png

@@ -10,6 +10,7 @@
 #include "models/base/error.h"
 #include "models/base/say.h"
 #include "pipeline/driver/host_cost.h"
+#include "pipeline/report/page.h"
 #include "pipeline/report/report.h"
 #include "scenes/image/image_io.h"
 
@@ -73,6 +74,12 @@ void RenderJob::add_to(CLI::App& command) {
                       "table; tiles: counts by squares of "
                       "the screen, in --stats. Same picture, same cycles")
           ->type_name("draws,tiles"),
+      command
+          .add_option(
+              "--report", report,
+              "writes all figures with the picture as a page for a browser, in one file that needs no "
+              "network (docs/report.md); --detail draws,tiles is part of it")
+          ->type_name("F.html"),
       units_option_};
   command.add_flag("--alpha", alpha,
                    "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
@@ -89,7 +96,8 @@ void RenderJob::check_outputs() const {
   check("--out", out, {".png", ".exr"});
   check("--depth", depth, {".exr", ".png"});
   if (stats) check_json_output("--stats", *stats);
-  check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}});
+  if (report) check_output("--report", *report, {".html"});
+  check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}, {"--report", report}});
 }
 
 void RenderJob::check_options_meant() const {
@@ -101,6 +109,8 @@ void RenderJob::check_options_meant() const {
   }
   if (frames.wanted() && units_option_->count() > 0)
     throw user_error("--units: with --frames each frame is one row; --stats has the figures of every unit");
+  if (frames.wanted() && report)
+    throw user_error("--report: a page is of one frame; leave --frames or --report out");
 }
 
 std::int64_t RenderJob::window_cycles() const {
@@ -113,7 +123,7 @@ std::int64_t RenderJob::window_cycles() const {
 }
 
 pipeline::DetailOptions RenderJob::details() const {
-  pipeline::DetailOptions chosen;
+  pipeline::DetailOptions chosen{.draws = report.has_value(), .tiles = report.has_value()};
   if (!detail) return chosen;
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());
@@ -123,7 +133,8 @@ pipeline::DetailOptions RenderJob::details() const {
     (word == "draws" ? chosen.draws : chosen.tiles) = true;
     at = end + 1;
   }
-  if (chosen.tiles && !stats) throw user_error("--detail: tiles are in the JSON alone; add --stats F.json");
+  if (chosen.tiles && !stats && !report)
+    throw user_error("--detail: tiles are in the JSON alone; add --stats F.json");
   if (frames.wanted() && !stats)
     throw user_error("--detail: with --frames each frame is one row; add --stats F.json for its details");
   return chosen;
@@ -178,6 +189,13 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
   return frame;
 }
 
+void RenderJob::write_figures(const pipeline::ReportSubject& subject,
+                              const pipeline::FrameImage& image) const {
+  const std::string json = pipeline::report_json(subject);
+  if (report) write_text(*report, pipeline::report_page(subject, json, {color_png(image), depth_png(image)}));
+  if (stats) write_text(*stats, json);
+}
+
 int RenderJob::run_one(const Setting& setting) const {
   const Stopwatch load;
   Progress progress;
@@ -189,7 +207,7 @@ int RenderJob::run_one(const Setting& setting) const {
   pipeline::Figures& figures = frame.figures;
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
-  if (stats) write_text(*stats, pipeline::report_json(subject));
+  if (stats || report) write_figures(subject, frame.image);
   Tables(!quiet, stats)
       .print(pipeline::report_table(subject,
                                     units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));

@@ -10,6 +10,7 @@
 #include "cli/scene_arguments.h"
 #include "hw/base/clock.h"
 #include "pipeline/render.h"
+#include "pipeline/report/report.h"
 
 namespace quadrille::cli {
 
@@ -17,7 +18,7 @@ struct RenderJob {
   SceneArguments scene;
   MachineArguments machine;
   FrameArguments frames;  ///< of `render` alone
-  std::optional<std::string> out, depth, stats, max_cycles, window;
+  std::optional<std::string> out, depth, stats, report, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
   std::optional<std::string> detail;  ///< words, with commas between them
   bool alpha = false, quiet = false;
@@ -54,6 +55,8 @@ struct RenderJob {
   /// Draws a frame and writes its pictures.
   [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting,
                                              const Outputs& outputs) const;
+  /// Writes the documents that were asked for.
+  void write_figures(const pipeline::ReportSubject& subject, const pipeline::FrameImage& image) const;
   [[nodiscard]] int run_one(const Setting& setting) const;
   [[nodiscard]] int run_frames(const Setting& setting) const;
 

@@ -1,5 +1,7 @@
 #include "pipeline/machine/planned_links.h"
 
+#include "pipeline/machine/machine_config.h"
+
 #include <algorithm>
 #include <set>
 
@@ -85,6 +87,17 @@ const std::vector<std::string_view>& kinds_downstream() {
     return found;
   }();
   return order;
+}
+
+int count_of(Stands stands, const GpuParams& gpu) {
+  switch (stands) {
+    case Stands::kOnce: return 1;
+    case Stands::kEngine: return gpu.engines;
+    case Stands::kPartition: return gpu.partitions;
+    case Stands::kCore: return gpu.cores;
+    case Stands::kChannel: return gpu.channels;
+  }
+  return 0;
 }
 
 }  // namespace quadrille::pipeline

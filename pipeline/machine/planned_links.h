@@ -27,6 +27,9 @@ struct PlannedUnit {
 };
 /// In the plan's order.
 [[nodiscard]] const std::vector<PlannedUnit>& planned_units();
+struct GpuParams;
+/// How many units of a kind a machine has.
+[[nodiscard]] int count_of(Stands stands, const GpuParams& gpu);
 
 /// Kinds of units from up- to downstream: work comes to a unit from those before it. Where ways part, the
 /// units on a way listed earlier come before those on a later one. Where a way leads back (the cores shade

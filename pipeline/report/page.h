@@ -1,0 +1,41 @@
+/// The figures of a frame as a page that a browser shows: one file that needs nothing else, not even a
+/// network.
+///
+/// The page is a program of its own (pipeline/report/page/, built by npm and part of this program). It is
+/// handed data as JSON and shows them; nothing is counted or computed for it here. docs/report.md explains
+/// it.
+#pragma once
+
+#include "pipeline/report/report.h"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace quadrille::pipeline {
+
+/// Pictures of the frame as files of PNG; an empty one is not shown.
+struct PagePictures {
+  std::vector<std::byte> frame, depth;
+};
+
+/// The page of a frame. `figures_json` is what `report_json` made of the same frame.
+[[nodiscard]] std::string report_page(const ReportSubject& subject, std::string_view figures_json,
+                                      const PagePictures& pictures);
+/// The page of two frames beside each other, from two documents of figures.
+[[nodiscard]] std::string comparison_page(std::string_view title, std::string_view a_json,
+                                          std::string_view b_json, std::string_view comparison_json);
+
+/// What the page knows of a machine beyond its figures: kinds of units and the links between them, as the
+/// machine plan has them, and unit, legal values and reason of every parameter.
+[[nodiscard]] std::string plan_json(const MachineConfig& machine);
+
+/// A JSON document as it may stand between the tags of a script: without the spaces between its words, and
+/// with no character that a reader of HTML or JavaScript would take for the end of anything. It reads back
+/// as the same document.
+[[nodiscard]] std::string json_for_script(std::string_view json);
+/// A text as it may stand in HTML, between tags or quotes.
+[[nodiscard]] std::string text_for_html(std::string_view text);
+
+}  // namespace quadrille::pipeline

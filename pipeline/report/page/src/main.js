@@ -1,0 +1,13 @@
+// Shows what the program put into the page: the figures of a frame, or two of them beside each other.
+import 'tabulator-tables/dist/css/tabulator.min.css';
+import './style.css';
+import { block } from './data.js';
+import { charts } from './chart.js';
+import { tables } from './grid.js';
+import { showReport } from './report.js';
+import { startTheme } from './theme.js';
+
+startTheme();
+const figures = block('figures');
+if (figures) showReport(figures, block('plan'), block('pictures'));
+window.quadrille = { figures, charts, tables };

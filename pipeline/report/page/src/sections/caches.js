@@ -1,0 +1,48 @@
+// Look-ups of every cache: hits, lines on their way, misses.
+import { chart, tip } from '../chart.js';
+import { counted, kindsOf } from '../data.js';
+import { h } from '../dom.js';
+import { integer, number, percent, ratio, words } from '../format.js';
+import { section, table } from '../layout.js';
+import { counter, explained, term } from '../terms.js';
+import { colour } from '../theme.js';
+
+/** The L2 cache counts under names without the prefix that first-level caches have. */
+function look([kind, units]) {
+  const prefix = kind === 'l2' ? '' : 'cache_';
+  const of = (name) => counted(units, prefix + name);
+  return { kind, prefix, name: units.length > 1 ? `${words(kind)} x${units.length}` : words(kind), requests: of('requests'), hits: of('hits'), merged: of('merged'), misses: of('misses') };
+}
+
+const isCache = ([kind, units]) => (kind === 'l2' ? 'hits' : 'cache_hits') in units[0][1].counters;
+
+export function caches({ figures, order }) {
+  const rows = kindsOf(figures, order).filter(isCache).map(look).filter((r) => r.requests > 0);
+  if (rows.length === 0) return null;
+  const parts = [['hits', 'busy'], ['merged', 'waiting'], ['misses', 'blocked']];
+  const made = chart('caches-chart', 36 * rows.length + 70, 'Look-ups of every cache: hits, merged, misses', (basics) => ({
+    ...basics,
+    grid: { left: 120, right: 24, top: 34, bottom: 26 },
+    legend: { ...basics.legend, top: 0, left: 0 },
+    tooltip: {
+      ...basics.tooltip, trigger: 'axis', axisPointer: { type: 'shadow' },
+      formatter: ([{ dataIndex }]) => {
+        const r = rows[dataIndex];
+        return tip(r.name, [['look-ups', integer(r.requests)], ...parts.map(([name, c]) => [name, `${integer(r[name])} · ${percent(r[name] / r.requests)}`, colour(c)])]);
+      },
+    },
+    xAxis: { ...basics.axis, type: 'value', max: 1, axisLabel: { ...basics.axis.axisLabel, formatter: (v) => `${Math.round(100 * v)} %` } },
+    yAxis: { ...basics.axis, type: 'category', inverse: true, data: rows.map((r) => r.name), axisLabel: { ...basics.axis.axisLabel, color: colour('ink') }, splitLine: { show: false } },
+    series: parts.map(([name, c]) => ({ name, type: 'bar', stack: 'look-ups', barWidth: '60%', itemStyle: { color: colour(c) }, data: rows.map((r) => r[name] / r.requests) })),
+  }));
+  const column = (name) => ({ title: name, number: true, of: (r) => number(r[name]) });
+  return section('caches', 'Caches',
+    ['Each distinct line of a request is looked up once. ', term('merged', 'Merged'), ' look-ups found their line on the way already; hit rates by texel or by quad, as other tools give them, are higher.'],
+    h('div', { class: 'halves' }, made.host, table('caches-table', [
+      { title: 'cache', of: (r) => r.name },
+      { title: 'look-ups', number: true, of: (r) => [number(r.requests)] },
+      column('hits'), column('merged'), column('misses'),
+      { title: explained('hit', 'Hits of all look-ups'), number: true, of: (r) => percent(ratio(r.hits, r.requests)) },
+      { title: 'definition', of: (r) => counter(figures, r.kind, `${r.prefix}hits`, 'hits') },
+    ], rows)));
+}
