@@ -15,6 +15,7 @@ inline constexpr int kDone = 0, kFailed = 1, kUserError = 2, kInternalError = 3;
 using Command = std::function<int()>;
 
 void add_render(CLI::App& app, Command& chosen);
+void add_compare(CLI::App& app, Command& chosen);
 void add_diff(CLI::App& app, Command& chosen);
 void add_experiment(CLI::App& app, Command& chosen);
 void add_describe(CLI::App& app, Command& chosen);

@@ -31,6 +31,7 @@ constexpr const char* kExamples = R"(Examples:
   quadrille render helmet.gltf --size 1280x720 --machine large --set gpu.cores=8 --stats helmet.json
   quadrille describe texture        parameters and counters of the texture unit
   quadrille diff a.png b.png        how far apart two pictures are
+  quadrille compare a.json b.json   what differs between two frames
   quadrille accuracy builtin:courtyard      what speed costs in truth: windows and precisions
   quadrille trace record helmet.gltf -o helmet.qtrace
   quadrille stability --quick       frames and machines at the edge of what is possible
@@ -116,6 +117,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(0, 1);  // none is refused below, after an unknown word was named
   Command chosen;
   add_render(app, chosen);
+  add_compare(app, chosen);
   add_diff(app, chosen);
   add_describe(app, chosen);
   add_trace(app, chosen);

@@ -144,11 +144,8 @@ std::string report_page(const ReportSubject& subject, std::string_view figures_j
                  {"pictures", shown.dump()}});
 }
 
-std::string comparison_page(std::string_view title, std::string_view a_json, std::string_view b_json,
-                            std::string_view comparison_json) {
-  return filled(title, {{"figures-a", json_for_script(a_json)},
-                        {"figures-b", json_for_script(b_json)},
-                        {"comparison", json_for_script(comparison_json)}});
+std::string comparison_page(std::string_view title, std::string_view comparison_json) {
+  return filled(title, {{"comparison", json_for_script(comparison_json)}});
 }
 
 }  // namespace quadrille::pipeline

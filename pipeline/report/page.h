@@ -23,9 +23,8 @@ struct PagePictures {
 /// The page of a frame. `figures_json` is what `report_json` made of the same frame.
 [[nodiscard]] std::string report_page(const ReportSubject& subject, std::string_view figures_json,
                                       const PagePictures& pictures);
-/// The page of two frames beside each other, from two documents of figures.
-[[nodiscard]] std::string comparison_page(std::string_view title, std::string_view a_json,
-                                          std::string_view b_json, std::string_view comparison_json);
+/// The page of two frames beside each other (comparison.h).
+[[nodiscard]] std::string comparison_page(std::string_view title, std::string_view comparison_json);
 
 /// What the page knows of a machine beyond its figures: kinds of units and the links between them, as the
 /// machine plan has them, and unit, legal values and reason of every parameter.

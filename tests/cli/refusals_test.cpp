@@ -28,7 +28,8 @@ TEST_CASE("a wrong command line is refused in one line") {
 TEST_CASE("a name that is nearly one is refused with the one that may be meant") {
   refused({"rende", "builtin:triangle"},
           {"quadrille: unknown subcommand 'rende'; did you mean 'render'?; see quadrille --help"});
-  refused({"builtin:triangle", "rende"}, {"unknown subcommand 'builtin:triangle'; there are render, diff, "});
+  refused({"builtin:triangle", "rende"},
+          {"unknown subcommand 'builtin:triangle'; there are render, compare, diff, "});
   refused({"trace", "recrod", "builtin:triangle"},
           {"unknown subcommand 'recrod'; did you mean 'record'?; see quadrille trace --help"});
   render_refused({"--sizes", "3x3"},

@@ -3,11 +3,14 @@ import 'tabulator-tables/dist/css/tabulator.min.css';
 import './style.css';
 import { block } from './data.js';
 import { charts } from './chart.js';
+import { showComparison } from './comparison.js';
 import { tables } from './grid.js';
 import { showReport } from './report.js';
 import { startTheme } from './theme.js';
 
 startTheme();
 const figures = block('figures');
+const comparison = block('comparison');
 if (figures) showReport(figures, block('plan'), block('pictures'));
-window.quadrille = { figures, charts, tables };
+if (comparison) showComparison(comparison);
+window.quadrille = { figures, comparison, charts, tables };
