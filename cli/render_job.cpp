@@ -10,6 +10,7 @@
 #include "models/base/error.h"
 #include "models/base/say.h"
 #include "pipeline/driver/host_cost.h"
+#include "pipeline/report/flat_figures.h"
 #include "pipeline/report/page.h"
 #include "pipeline/report/report.h"
 #include "scenes/image/image_io.h"
@@ -39,6 +40,8 @@ void RenderJob::add_to(CLI::App& command) {
                   "writes all figures as JSON (docs/figures.md); - is standard output, and the table then "
                   "goes to standard error")
       ->type_name("F.json|-");
+  command.add_option("--csv", csv, "writes the same figures as a flat table: path, value, unit")
+      ->type_name("F.csv");
   command
       .add_option("--fidelity", fidelity,
                   "exact: the machine, cycle by cycle; functional: the same picture without time")
@@ -96,8 +99,10 @@ void RenderJob::check_outputs() const {
   check("--out", out, {".png", ".exr"});
   check("--depth", depth, {".exr", ".png"});
   if (stats) check_json_output("--stats", *stats);
+  if (csv) check_output("--csv", *csv, {".csv"});
   if (report) check_output("--report", *report, {".html"});
-  check_distinct({{"--out", out}, {"--depth", depth}, {"--stats", stats}, {"--report", report}});
+  check_distinct(
+      {{"--out", out}, {"--depth", depth}, {"--stats", stats}, {"--csv", csv}, {"--report", report}});
 }
 
 void RenderJob::check_options_meant() const {
@@ -109,8 +114,8 @@ void RenderJob::check_options_meant() const {
   }
   if (frames.wanted() && units_option_->count() > 0)
     throw user_error("--units: with --frames each frame is one row; --stats has the figures of every unit");
-  if (frames.wanted() && report)
-    throw user_error("--report: a page is of one frame; leave --frames or --report out");
+  if (frames.wanted() && (report || csv))
+    throw user_error("{0}: it is of one frame; leave --frames or {0} out", report ? "--report" : "--csv");
 }
 
 std::int64_t RenderJob::window_cycles() const {
@@ -133,7 +138,7 @@ pipeline::DetailOptions RenderJob::details() const {
     (word == "draws" ? chosen.draws : chosen.tiles) = true;
     at = end + 1;
   }
-  if (chosen.tiles && !stats && !report)
+  if (chosen.tiles && !stats && !csv && !report)
     throw user_error("--detail: tiles are in the JSON alone; add --stats F.json");
   if (frames.wanted() && !stats)
     throw user_error("--detail: with --frames each frame is one row; add --stats F.json for its details");
@@ -193,6 +198,7 @@ void RenderJob::write_figures(const pipeline::ReportSubject& subject,
                               const pipeline::FrameImage& image) const {
   const std::string json = pipeline::report_json(subject);
   if (report) write_text(*report, pipeline::report_page(subject, json, {color_png(image), depth_png(image)}));
+  if (csv) write_text(*csv, pipeline::figures_csv(json));
   if (stats) write_text(*stats, json);
 }
 
@@ -207,7 +213,7 @@ int RenderJob::run_one(const Setting& setting) const {
   pipeline::Figures& figures = frame.figures;
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
-  if (stats || report) write_figures(subject, frame.image);
+  if (stats || csv || report) write_figures(subject, frame.image);
   Tables(!quiet, stats)
       .print(pipeline::report_table(subject,
                                     units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
