@@ -12,6 +12,7 @@
 #include "cli/counter_catalogue.h"
 #include "cli/machine_arguments.h"
 #include "cli/machine_diagram.h"
+#include "cli/vendor_counters.h"
 #include "models/base/error.h"
 #include "models/base/near_name.h"
 
@@ -19,13 +20,14 @@ namespace quadrille::cli {
 namespace {
 
 struct DescribeArguments {
-  std::optional<std::string> what, name;
+  std::optional<std::string> what, name, as;
   bool markdown = false, json = false, toml = false, diagram = false;
   std::string only = "all";
   MachineArguments machine;
 };
 
-constexpr std::string_view kMachine = "machine";  // as WHAT: every parameter of the machine that NAME is
+constexpr std::string_view kCounters = "counters";  // as WHAT: every counter
+constexpr std::string_view kMachine = "machine";    // as WHAT: every parameter of the machine that NAME is
 
 /// Counters of a kind of unit.
 using DescribedUnit = std::pair<std::string, std::vector<const hw::Statistic*>>;
@@ -51,9 +53,11 @@ class Description {
       throw user_error("describe: --diagram draws a whole machine: 'describe machine --diagram'");
     if (arguments.name) machine.machine = *arguments.name;
     machine.apply(config_);
-    const bool parameters = arguments.only != "counters",
+    const bool all_counters = arguments.what == kCounters;
+    const bool parameters = arguments.only != "counters" && !all_counters,
                counters = arguments.only != "parameters" && !whole_machine && !arguments.toml;
-    select(whole_machine || !arguments.what ? "" : *arguments.what, parameters, counters);
+    const bool everything = whole_machine || all_counters || !arguments.what;
+    select(everything ? "" : *arguments.what, parameters, counters);
   }
 
   [[nodiscard]] const std::vector<pipeline::DescribedGroup>& groups() const { return groups_; }
@@ -245,6 +249,12 @@ std::string toml(const Description& d) {
 }
 
 int run_describe(const DescribeArguments& arguments) {
+  if (arguments.as) {
+    if (arguments.what != kCounters)
+      throw user_error("describe: --as names counters: 'describe counters --as {}'", *arguments.as);
+    fmt::print("{}", vendor_table(*arguments.as, arguments.markdown));
+    return kDone;
+  }
   const Description description(arguments);
   if (arguments.diagram) {
     fmt::print("{}", machine_diagram(description.machine()));
@@ -265,7 +275,7 @@ void add_describe(CLI::App& app, Command& chosen) {
   command->add_option("WHAT", arguments->what,
                       "a unit, gpu, link or one link such as link.core_to_texture; one parameter or counter, "
                       "with its group or without; "
-                      "machine: all parameters of the machine NAME (default: all)");
+                      "machine: all parameters of the machine NAME; counters: all counters (default: all)");
   command->add_option("NAME", arguments->name, "with machine: which one, as --machine takes it");
   command->add_option("--only", arguments->only, "one half of it")
       ->check(CLI::IsMember({"all", "parameters", "counters"}))
@@ -283,6 +293,13 @@ void add_describe(CLI::App& app, Command& chosen) {
       ->excludes(markdown_flag)
       ->excludes(json_flag)
       ->excludes(toml_flag);
+  command
+      ->add_option(
+          "--as", arguments->as,
+          "with counters: those that a profiler of real GPUs has too, under its names, and what differs")
+      ->check(CLI::IsMember(profiler_words()))
+      ->excludes(json_flag)
+      ->excludes(toml_flag);
   arguments->machine.add_to(*command);
   command->footer(R"(Examples:
   quadrille describe texture
@@ -292,6 +309,7 @@ void add_describe(CLI::App& app, Command& chosen) {
       a whole machine, to write into a file of your own
   quadrille describe machine small --diagram
   quadrille describe gpu --machine large
+  quadrille describe counters --as nsight
   quadrille describe --only parameters --markdown)");
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_describe(*arguments); }; });
 }
