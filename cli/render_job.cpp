@@ -10,6 +10,7 @@
 #include "models/base/error.h"
 #include "models/base/say.h"
 #include "pipeline/driver/host_cost.h"
+#include "pipeline/report/draws_by_square.h"
 #include "pipeline/report/flat_figures.h"
 #include "pipeline/report/page.h"
 #include "pipeline/report/report.h"
@@ -194,10 +195,14 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
   return frame;
 }
 
-void RenderJob::write_figures(const pipeline::ReportSubject& subject,
+void RenderJob::write_figures(const pipeline::ReportSubject& subject, const traces::CommandStream& stream,
                               const pipeline::FrameImage& image) const {
   const std::string json = pipeline::report_json(subject);
-  if (report) write_text(*report, pipeline::report_page(subject, json, {color_png(image), depth_png(image)}));
+  if (report) {
+    const pipeline::PagePictures pictures{color_png(image), depth_png(image),
+                                          pipeline::draws_by_square(stream, subject.machine.precision())};
+    write_text(*report, pipeline::report_page(subject, json, pictures));
+  }
   if (csv) write_text(*csv, pipeline::figures_csv(json));
   if (stats) write_text(*stats, json);
 }
@@ -213,7 +218,7 @@ int RenderJob::run_one(const Setting& setting) const {
   pipeline::Figures& figures = frame.figures;
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
-  if (stats || csv || report) write_figures(subject, frame.image);
+  if (stats || csv || report) write_figures(subject, loaded.stream, frame.image);
   Tables(!quiet, stats)
       .print(pipeline::report_table(subject,
                                     units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));

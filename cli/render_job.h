@@ -56,7 +56,8 @@ struct RenderJob {
   [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting,
                                              const Outputs& outputs) const;
   /// Writes the documents that were asked for.
-  void write_figures(const pipeline::ReportSubject& subject, const pipeline::FrameImage& image) const;
+  void write_figures(const pipeline::ReportSubject& subject, const traces::CommandStream& stream,
+                     const pipeline::FrameImage& image) const;
   [[nodiscard]] int run_one(const Setting& setting) const;
   [[nodiscard]] int run_frames(const Setting& setting) const;
 

@@ -10,18 +10,6 @@ namespace {
 
 std::string kind_of(const hw::Unit& unit) { return std::string(without_number(unit.name())); }
 
-hw::ScreenCells screen_of(const hw::Frame& frame) {
-  hw::ScreenCells screen;
-  if (frame.passes.empty()) return screen;
-  const hw::PassState& shown = frame.passes.back();
-  const auto cells = [&](std::uint32_t tiles) { return (tiles + screen.tiles - 1) / screen.tiles; };
-  screen.first_draw = shown.first_draw;
-  screen.draws = shown.draws;
-  screen.columns = cells(shown.color[0].surface.tiles_x);
-  screen.rows = cells(shown.color[0].surface.tiles_y);
-  return screen;
-}
-
 /// Gives what a unit names of its counters to the log that keeps them.
 class Columns final : public hw::Details {
  public:
@@ -53,8 +41,20 @@ class Columns final : public hw::Details {
 
 }  // namespace
 
+hw::ScreenCells screen_cells(const hw::Frame& frame) {
+  hw::ScreenCells screen;
+  if (frame.passes.empty()) return screen;
+  const hw::PassState& shown = frame.passes.back();
+  const auto cells = [&](std::uint32_t tiles) { return (tiles + screen.tiles - 1) / screen.tiles; };
+  screen.first_draw = shown.first_draw;
+  screen.draws = shown.draws;
+  screen.columns = cells(shown.color[0].surface.tiles_x);
+  screen.rows = cells(shown.color[0].surface.tiles_y);
+  return screen;
+}
+
 DetailLog::DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted)
-    : machine_(machine), frame_(frame), screen_(screen_of(frame.frame)) {
+    : machine_(machine), frame_(frame), screen_(screen_cells(frame.frame)) {
   detail_.wanted = wanted;
   for (const hw::Unit* unit : machine.units())
     if (unit->stats() != nullptr) add(*unit);

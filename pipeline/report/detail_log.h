@@ -12,6 +12,9 @@
 
 namespace quadrille::pipeline {
 
+/// The squares in which the figures count by part of the screen: of the pass that is shown.
+[[nodiscard]] hw::ScreenCells screen_cells(const hw::Frame& frame);
+
 class DetailLog {
  public:
   /// Gives every unit of the machine a log. Before the run; the machine lives longer than this or is not run

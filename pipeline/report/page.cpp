@@ -141,7 +141,8 @@ std::string report_page(const ReportSubject& subject, std::string_view figures_j
   return filled(subject.figures.scene + " - Quadrille",
                 {{"figures", json_for_script(figures_json)},
                  {"plan", json_for_script(plan_json(subject.machine))},
-                 {"pictures", shown.dump()}});
+                 {"pictures", shown.dump()},
+                 {"squares", Json(pictures.draws).dump()}});
 }
 
 std::string comparison_page(std::string_view title, std::string_view comparison_json) {

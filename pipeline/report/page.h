@@ -9,15 +9,18 @@
 #include "pipeline/report/report.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace quadrille::pipeline {
 
-/// Pictures of the frame as files of PNG; an empty one is not shown.
+/// What the page shows beside the figures.
 struct PagePictures {
-  std::vector<std::byte> frame, depth;
+  std::vector<std::byte> frame, depth;  ///< files of PNG; an empty one is not shown
+  /// as `draws_by_square` lists them
+  std::vector<std::vector<std::uint32_t>> draws;
 };
 
 /// The page of a frame. `figures_json` is what `report_json` made of the same frame.

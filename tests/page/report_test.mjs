@@ -117,9 +117,28 @@ test('heat maps: every map is the figures, and the square under pointer or keys 
   await page.keyboard.press('ArrowLeft');
   assert.deepEqual(await read(), Object.fromEntries(keys.map((key) => [key, tiles[key][at + tiles.width - 1]])));
 
+  const here = () => page.locator('#draws-here').getAttribute('data-draws');
+  const { squares } = await page.evaluate(() => ({ squares: window.quadrille.squares }));
+  assert.equal(squares.length, tiles.width * tiles.height);
+  assert.deepEqual(await here(), squares[at + tiles.width - 1].join(' '));
+  await page.locator('#draws-here a').first().click();
+  assert.match(await page.locator('#draw-name').textContent(), new RegExp(`^${squares[at + tiles.width - 1][0]}: `));
+
   await page.locator('#picture [role="radio"][data-value="depth"]').click();
   const size = await page.locator('#frame-picture').evaluate((image) => image.decode().then(() => [image.naturalWidth, image.naturalHeight]));
   assert.deepEqual(size, [330, 180]);
+  await page.done();
+});
+
+test('a square with fragments has draws that cover it, and only those with covered fragments are named', async () => {
+  const page = await open(made.page);
+  const squares = await page.evaluate(() => window.quadrille.squares);
+  for (const [at, here] of squares.entries()) {
+    assert.ok(here.length > 0 || tiles.fragments_shaded[at] + tiles.fragments_killed_early[at] === 0, `square ${at}`);
+    assert.deepEqual(here, [...new Set(here)].sort((a, b) => a - b));
+  }
+  const named = new Set(squares.flat());
+  for (const [i, draw] of draws.entries()) if (draw.fragments.covered > 0) assert.ok(named.has(i), draw.label);
   await page.done();
 });
 

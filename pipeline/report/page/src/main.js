@@ -11,6 +11,6 @@ import { startTheme } from './theme.js';
 startTheme();
 const figures = block('figures');
 const comparison = block('comparison');
-if (figures) showReport(figures, block('plan'), block('pictures'));
+if (figures) showReport(figures, block('plan'), block('pictures'), block('squares'));
 if (comparison) showComparison(comparison);
-window.quadrille = { figures, comparison, charts, tables };
+window.quadrille = { figures, squares: block('squares'), comparison, charts, tables };

@@ -28,8 +28,8 @@ export function machineName({ name, base, changed }) {
   return count === 0 ? own : `${own}, ${count} parameter${count === 1 ? '' : 's'} changed`;
 }
 
-export function showReport(figures, plan, pictures) {
-  const known = { figures, plan, pictures, order: plan.units.map((unit) => unit.kind) };
+export function showReport(figures, plan, pictures, squares) {
+  const known = { figures, plan, pictures, squares, order: plan.units.map((unit) => unit.kind) };
   const { frame } = figures;
   const subtitle = `${frame.width} x ${frame.height} · machine ${machineName(figures.machine)} · ${figures.fidelity}` +
     (figures.window_cycles > 0 ? ` (window of ${figures.window_cycles} cycles)` : '');

@@ -39,10 +39,9 @@ export function caches({ figures, order }) {
   return section('caches', 'Caches',
     ['Each distinct line of a request is looked up once. ', term('merged', 'Merged'), ' look-ups found their line on the way already; hit rates by texel or by quad, as other tools give them, are higher.'],
     h('div', { class: 'halves' }, made.host, table('caches-table', [
-      { title: 'cache', of: (r) => r.name },
+      { title: 'cache', of: (r) => counter(figures, r.kind, `${r.prefix}hits`, r.name) },
       { title: 'look-ups', number: true, of: (r) => [number(r.requests)] },
       column('hits'), column('merged'), column('misses'),
       { title: explained('hit', 'Hits of all look-ups'), number: true, of: (r) => percent(ratio(r.hits, r.requests)) },
-      { title: 'definition', of: (r) => counter(figures, r.kind, `${r.prefix}hits`, 'hits') },
     ], rows)));
 }

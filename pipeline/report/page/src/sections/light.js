@@ -1,7 +1,7 @@
 // How near each resource and each draw is to the best that this machine can do.
 import { chart, PALETTE, tip } from '../chart.js';
 import { h } from '../dom.js';
-import { decimal, integer, percent, short } from '../format.js';
+import { integer, percent, short } from '../format.js';
 import { panel, section } from '../layout.js';
 import { colour } from '../theme.js';
 import { term } from '../terms.js';
@@ -71,5 +71,5 @@ export function light({ figures }) {
       panel('By resource', resources(figures).host,
         full.length > 0 && h('p', { class: 'soft' }, term('full', 'Places that were all taken'), ': ', full.map(([name, part]) => `${name} ${percent(part)}`).join(' · '))),
       figures.draws?.length > 0 && panel('By draw', byDraw(figures).host,
-        h('p', { class: 'soft' }, `Draws on the dashed line are as fast as their busiest unit allows; below it they wait. ${decimal(figures.draws.length)} draws; the wheel zooms.`))));
+        h('p', { class: 'soft' }, `Draws on the dashed line are as fast as their busiest unit allows; below it they wait. ${integer(figures.draws.length)} draws; the wheel zooms.`))));
 }

@@ -24,6 +24,22 @@ function pixelsOf(tiles, frame, at) {
   return Math.max(0, Math.min(side, frame.width - x)) * Math.max(0, Math.min(side, frame.height - y));
 }
 
+/** The draws that cover a sample of the square, the first few by name; a click leads to all that is known of one. */
+function drawsHere(draws, here) {
+  if (!here || !draws) return null;
+  const shown = here.slice(0, 14);
+  const link = (i) => h('li', null, h('a', { href: '#draws', title: draws[i].label, onclick: () => {
+    const pick = document.getElementById('draw');
+    pick.value = i;
+    pick.dispatchEvent(new Event('change'));
+  } }, `${i}: ${draws[i].label}`));
+  return [
+    h('h3', null, explained(`Draws: ${integer(here.length)}`, 'Draws of this pass that cover a sample of the square, before any test, in the order of the commands. Found by drawing the frame once more without time.')),
+    h('ul', { class: 'here', id: 'draws-here', 'data-draws': here.join(' ') }, shown.map(link)),
+    here.length > shown.length && h('p', { class: 'soft' }, `and ${integer(here.length - shown.length)} more`),
+  ];
+}
+
 /** What the square under the pointer holds. */
 function readout(tiles, frame, keys, at) {
   const x = (at % tiles.width) * tiles.tile_pixels;
@@ -102,7 +118,7 @@ function scale() {
   };
 }
 
-export function picture({ figures, pictures }) {
+export function picture({ figures, pictures, squares }) {
   const { frame, tiles } = figures;
   const keys = tiles ? Object.keys(tiles).filter((key) => Array.isArray(tiles[key])) : [];
   const state = { shown: 'frame', strength: 0.75, at: 0 };
@@ -118,7 +134,7 @@ export function picture({ figures, pictures }) {
     marker.style.cssText = `left:${(100 * (at % tiles.width) * side) / frame.width}%; top:${(100 * Math.floor(at / tiles.width) * side) / frame.height}%;` +
       `width:${(100 * side) / frame.width}%; height:${(100 * side) / frame.height}%`;
     marker.hidden = false;
-    info.replaceChildren(...readout(tiles, frame, keys, at).filter(Boolean));
+    info.replaceChildren(...[readout(tiles, frame, keys, at), drawsHere(figures.draws, squares?.[at])].flat().filter(Boolean));
   };
   const map = tiles ? heatMap(tiles, frame, state, look) : null;
   const show = (value) => {
