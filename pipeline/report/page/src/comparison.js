@@ -1,5 +1,6 @@
 // The page of two frames: what differs, the largest first.
 import { chart, tip } from './chart.js';
+import { greatest } from './data.js';
 import { choice, h } from './dom.js';
 import { brief, bytes, decimal, integer, number, percent, ratio, words } from './format.js';
 import { grid, numberColumn, textColumn } from './grid.js';
@@ -133,7 +134,7 @@ function tiles(c) {
   const total = h('p', { id: 'tiles-total' });
   const made = chart('tiles-chart', 100, 'Difference by squares of the screen', (basics) => {
     const { squares } = counts[state.shown];
-    const most = Math.max(1, ...squares.map(Math.abs));
+    const most = greatest(squares.map(Math.abs), 1);
     return {
       ...basics, aria: { enabled: false }, grid: { left: 0, top: 0, right: 0, bottom: 0 },
       xAxis: { type: 'category', show: false, data: Array.from({ length: width }, (_, i) => i) },

@@ -24,6 +24,10 @@ export const STATES = ['busy', 'waiting', 'starved', 'blocked', 'idle'];
 
 export const sum = (values) => values.reduce((total, value) => total + value, 0);
 
+/** The least and the greatest of a list of any length, or what is given with it. */
+export const least = (values, start = Infinity) => values.reduce((a, b) => Math.min(a, b), start);
+export const greatest = (values, start = -Infinity) => values.reduce((a, b) => Math.max(a, b), start);
+
 /** Sum of a counter over units. */
 export const counted = (units, name) => sum(units.map(([, unit]) => unit.counters[name] ?? 0));
 

@@ -1,5 +1,6 @@
 // The frame, its depth, and heat maps over it: where on the screen the work was.
 import { chart, CIVIDIS, tip } from '../chart.js';
+import { greatest } from '../data.js';
 import { choice, h } from '../dom.js';
 import { bytes, decimal, integer, number, percent, ratio } from '../format.js';
 import { section } from '../layout.js';
@@ -63,7 +64,7 @@ function heatMap(tiles, frame, state, hovered) {
   const made = chart('heat-map', 100, 'Heat map over the picture: counts by squares of the screen', (basics) => {
     const key = state.shown;
     const counts = tiles[key] ?? [];
-    const most = Math.max(1, ...counts);
+    const most = greatest(counts, 1);
     return {
       ...basics,
       // A canvas of thousands of squares needs no description of each.
@@ -111,7 +112,7 @@ function scale() {
     show(key, tiles) {
       const outside = tiles.outside_tiles[key] ?? 0;
       const all = tiles[key].reduce((a, b) => a + b, 0);
-      most.replaceChildren(number(Math.max(0, ...tiles[key]), formatOf(key)), ' a square');
+      most.replaceChildren(number(greatest(tiles[key], 0), formatOf(key)), ' a square');
       total.replaceChildren(number(all, formatOf(key)), ' in all squares',
         outside > 0 ? `, ${formatOf(key)(outside)} that have no place on the screen` : '');
     },
