@@ -18,6 +18,7 @@ using pipeline::Stands;
 const char* stands_text(Stands stands) {
   switch (stands) {
     case Stands::kOnce: return "once";
+    case Stands::kFrontEnd: return "once a geometry front end";
     case Stands::kEngine: return "once a raster engine";
     case Stands::kPartition: return "once a partition";
     case Stands::kCore: return "once a core";

@@ -77,8 +77,8 @@ class FifoInGroup {
 
   std::vector<std::unique_ptr<FifoIn<T>>> ports_;
   /// A bit an input: set when it gets a first token, cleared when it is found empty. Links point at them; the
-  /// widest machine has 194 clients of an L2 slice.
-  mutable std::array<std::uint64_t, 4> marks_{};
+  /// widest machine has 273 clients of an L2 slice.
+  mutable std::array<std::uint64_t, 5> marks_{};
 };
 
 }  // namespace quadrille::hw

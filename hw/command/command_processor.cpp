@@ -18,6 +18,10 @@ CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const UnitConte
   for (int i = 0; i < context.machine.partitions; ++i) {
     retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply);
   }
+  for (int f = 0; f < context.machine.front_ends; ++f) {
+    const std::string port = context.machine.front_ends == 1 ? "draw_out" : fmt::format("draw_out_{}", f);
+    draw_out.push_back(std::make_unique<FifoOut<DrawToken>>(*this, port.c_str()));
+  }
   retired_at_.resize(frame_.draws.size());
   if (frame_.passes.empty()) step_ = Step::kDone;
 }
@@ -29,15 +33,25 @@ std::string CommandProcessor::state_text() const {
 
 Wake CommandProcessor::retire_wake() const { return retire_in.earliest(); }
 
+Wake CommandProcessor::draw_wake() const {
+  Wake wake(free_);
+  for (const auto& out : draw_out) wake.output(*out);
+  return wake;
+}
+
+void CommandProcessor::send(Tick now, const DrawToken& token) {
+  for (const auto& out : draw_out) out->push(now, token);
+}
+
 Wake CommandProcessor::issue_wake() const {
   switch (step_) {
     case Step::kDraw:
       if (culls()) return Wake(free_);
       if (all_in_flight()) return Wake::never(retire_in[0]);
-      return Wake(free_).output(draw_out);
+      return draw_wake();
     case Step::kPassBegin:
     case Step::kDrawEnd:
-    case Step::kPassEnd: return Wake(free_).output(draw_out);
+    case Step::kPassEnd: return draw_wake();
     case Step::kWaitFlush: return Wake::never(retire_in[0]);
     case Step::kScan: return Wake(free_).output(scan_out);
     case Step::kWaitScan: return Wake().input(scan_done_in);
@@ -76,7 +90,7 @@ void CommandProcessor::issue(Tick now) {
   switch (step_) {
     case Step::kPassBegin:
       quiet_log_.add(quiet_since_, now);
-      draw_out.push(now, {TokenKind::kPassBegin, PassId(pass_)});
+      send(now, {TokenKind::kPassBegin, PassId(pass_)});
       ++stats_.passes;
       step_ = pass.draws > 0 ? Step::kDraw : Step::kPassEnd;
       break;
@@ -86,7 +100,7 @@ void CommandProcessor::issue(Tick now) {
         next_draw(pass);
         return;
       }
-      draw_out.push(now, {TokenKind::kWork, DrawId(draw_)});
+      send(now, {TokenKind::kWork, DrawId(draw_)});
       ++stats_.draws;
       sent_.push_back(draw_);
       issued_at_.push_back(now);
@@ -95,11 +109,11 @@ void CommandProcessor::issue(Tick now) {
       step_ = Step::kDrawEnd;
       return;
     case Step::kDrawEnd:
-      draw_out.push(now, {TokenKind::kDrawEnd, DrawId(draw_)});
+      send(now, {TokenKind::kDrawEnd, DrawId(draw_)});
       next_draw(pass);
       break;
     case Step::kPassEnd:
-      draw_out.push(now, {TokenKind::kPassEnd, PassId(pass_)});
+      send(now, {TokenKind::kPassEnd, PassId(pass_)});
       step_ = Step::kWaitFlush;
       break;
     case Step::kScan:

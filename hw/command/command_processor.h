@@ -3,7 +3,7 @@
 ///
 /// In    retire_in[p]  draw retired in partition p, or pass flushed there
 ///       scan_done_in  the image was read
-/// Out   draw_out      draws and pass boundaries, in order
+/// Out   draw_out[f]   draws and pass boundaries, in order, to each geometry front end
 ///       scan_out      show a pass's target
 /// Time  `draw_clk` cycles a draw; waits while `draws_in_flight` draws are not retired everywhere; a pass
 ///       ends when all partitions have flushed. With `cull_draws` a draw that the driver has found outside of
@@ -50,7 +50,7 @@ class CommandProcessor final : public Unit {
 
   FifoInGroup<RetireToken> retire_in;
   FifoIn<ReleaseToken> scan_done_in{*this, "scan_done_in", LinkRole::kReply};
-  FifoOut<DrawToken> draw_out{*this, "draw_out"};
+  std::vector<std::unique_ptr<FifoOut<DrawToken>>> draw_out;
   FifoOut<ScanToken> scan_out{*this, "scan_out"};
 
   [[nodiscard]] Wake next() const override;
@@ -81,6 +81,9 @@ class CommandProcessor final : public Unit {
     kDone
   };
   [[nodiscard]] Wake issue_wake() const;
+  /// When every front end can take a token.
+  [[nodiscard]] Wake draw_wake() const;
+  void send(Tick now, const DrawToken& token);
   /// The next draw is dropped.
   [[nodiscard]] bool culls() const { return params_.cull_draws && frame_.draw(DrawId(draw_)).outside_view; }
   /// The next draw is sent, and as many are under way as may be.

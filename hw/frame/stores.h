@@ -26,6 +26,7 @@ struct BatchSlot {
     std::uint32_t primitive;
   };
   std::vector<Triangle> triangles;
+  bool ends_range = false;  ///< the next front end goes on with the draw
 };
 
 using models::ClippedPiece;

@@ -5,6 +5,7 @@
 /// no other channel:
 ///   kDrawEnd   the last token of a draw            kPassEnd  the last token of a pass: flush
 ///   kBatchEnd  the last triangle of a vertex batch (its slot may be reused)
+///   kRangeEnd  the same, and what follows in the draw comes from the next geometry front end
 ///   kSync      all tiles of the triangles before `sequence` have passed (their slots may be reused once
 ///   retired)
 #pragma once
@@ -23,7 +24,7 @@ using models::PartitionId;
 using models::PassId;
 using models::WarpSlotId;
 
-enum class TokenKind : std::uint8_t { kWork, kBatchEnd, kDrawEnd, kPassBegin, kPassEnd, kSync };
+enum class TokenKind : std::uint8_t { kWork, kBatchEnd, kDrawEnd, kPassBegin, kPassEnd, kSync, kRangeEnd };
 
 /// What a token is a part of: a draw, or, of one that begins or ends a pass, the pass.
 class FramePart {
@@ -78,7 +79,7 @@ struct VertexDoneToken {
 struct PrimitiveToken {
   TokenKind kind = TokenKind::kWork;
   FramePart part;
-  std::uint32_t slot = 0;       ///< kBatchEnd: batch
+  std::uint32_t slot = 0;       ///< kBatchEnd, kRangeEnd: batch
   std::uint32_t primitive = 0;  ///< 0-based in the draw's instance
   models::VertexPlace corner[3] = {};
 };
@@ -87,7 +88,7 @@ struct PrimitiveToken {
 struct ClippedToken {
   TokenKind kind = TokenKind::kWork;
   FramePart part;
-  std::uint32_t slot = 0;  ///< kBatchEnd: batch
+  std::uint32_t slot = 0;  ///< kBatchEnd, kRangeEnd: batch
   std::uint32_t primitive = 0;
   models::VertexPlace corner[3] = {};
   std::uint32_t piece = 0;  ///< slot in the ring of clipped pieces

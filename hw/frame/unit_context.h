@@ -13,8 +13,9 @@ namespace quadrille::hw {
 struct MachineCounts {
   int cores = 1;
   int partitions = 1;
-  int channels = 1;  ///< of memory, each with a slice of the L2 cache
-  int engines = 1;   ///< of set-up and rasterisation; partitions are a multiple of them
+  int channels = 1;    ///< of memory, each with a slice of the L2 cache
+  int engines = 1;     ///< of set-up and rasterisation; partitions are a multiple of them
+  int front_ends = 1;  ///< of geometry: vertex fetch, primitive assembly, clipper
   [[nodiscard]] int partitions_of_engine() const { return partitions / engines; }
   [[nodiscard]] models::ScreenShare screen() const {
     return {static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(engines)};
@@ -27,8 +28,8 @@ struct UnitContext {
   const Frame& frame;
   models::DeviceMemory& memory;
   MachineCounts machine;
-  /// of the unit among those of its kind: 0 where it stands once, else that of its core, partition, engine or
-  /// channel
+  /// of the unit among those of its kind: 0 where it stands once, else that of its core, partition, engine,
+  /// front end or channel
   int number = 0;
 
   /// Of a unit that stands once a partition.

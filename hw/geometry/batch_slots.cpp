@@ -2,8 +2,8 @@
 
 namespace quadrille::hw {
 
-BatchSlots::BatchSlots(std::uint64_t slots) : last_use_(slots, 0) {
-  for (std::uint64_t i = slots; i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
+BatchSlots::BatchSlots(std::uint32_t first, std::uint32_t slots) : first_(first), last_use_(slots, 0) {
+  for (std::uint32_t i = slots; i-- > 0;) free_.push_back(first + i);
 }
 
 std::uint32_t BatchSlots::take() {
@@ -17,7 +17,7 @@ std::uint32_t BatchSlots::take() {
 
 void BatchSlots::sweep(const models::VertexReuse& reuse) {
   std::erase_if(held_, [&](std::uint32_t slot) {
-    if (last_use_[slot] > released_ || reuse.remembers(slot)) return false;
+    if (last_use_[slot - first_] > released_ || reuse.remembers(slot)) return false;
     free_.push_back(slot);
     return true;
   });

@@ -61,7 +61,8 @@ void PrimitiveAssembly::emit(Tick now) {
     ++stats_.triangles;
     return;
   }
-  primitive_out.push(now, {TokenKind::kBatchEnd, head.part, head.slot, 0, {}});
+  primitive_out.push(
+      now, {batch.ends_range ? TokenKind::kRangeEnd : TokenKind::kBatchEnd, head.part, head.slot, 0, {}});
   ++stats_.batches;
   stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
   shaded_[head.slot] = false;

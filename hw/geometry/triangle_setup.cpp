@@ -9,6 +9,12 @@
 
 namespace quadrille::hw {
 
+namespace {
+
+bool ends_batch(TokenKind kind) { return kind == TokenKind::kBatchEnd || kind == TokenKind::kRangeEnd; }
+
+}  // namespace
+
 TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context,
                                      const Params& params, const Stores& stores)
     : Unit(name, Kind::kChooser, context.clock),
@@ -20,6 +26,14 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitCon
       retired_by_(static_cast<std::size_t>(context.machine.partitions_of_engine())),
       rate_(context.clock) {
   add_initiation_rate("rate");
+  for (int f = 0; f < context.machine.front_ends; ++f) {
+    const auto name_of = [&](const char* port) {
+      return context.machine.front_ends == 1 ? std::string(port) : fmt::format("{}_{}", port, f);
+    };
+    clipped_in.add(*this, name_of("clipped_in").c_str());
+    release_out.push_back(
+        std::make_unique<FifoOut<ReleaseToken>>(*this, name_of("release_out").c_str(), LinkRole::kReply));
+  }
   add_places("triangle_slots", [this] { return sequence_ - retired_ >= triangles_.size(); });
   for (int i = 0; i < context.machine.partitions_of_engine(); ++i) {
     sync_in.add(*this, fmt::format("sync_in_{}", i).c_str(), LinkRole::kReply);
@@ -32,10 +46,10 @@ std::string TriangleSetupUnit::state_text() const {
 
 Wake TriangleSetupUnit::work_wake() const {
   if (sequence_ - retired_ >= triangles_.size()) return Wake::never(sync_in[0]);
-  Wake wake = Wake(free_).input(clipped_in);
-  if (clipped_in.ready() == kNever) return wake;
-  return clipped_in.front().kind == TokenKind::kBatchEnd ? wake.output(release_out)
-                                                         : wake.output(triangle_out);
+  const FifoIn<ClippedToken>& in = clipped_in[turn_];
+  Wake wake = Wake(free_).input(in);
+  if (in.ready() == kNever) return wake;
+  return ends_batch(in.front().kind) ? wake.output(*release_out[turn_]) : wake.output(triangle_out);
 }
 
 Wake TriangleSetupUnit::next() const { return Wake::sooner(work_wake(), sync_in.earliest()); }
@@ -55,18 +69,20 @@ void TriangleSetupUnit::take_syncs(Tick now) {
 }
 
 void TriangleSetupUnit::work(Tick now) {
-  const ClippedToken token = clipped_in.pop(now);
+  const ClippedToken token = clipped_in[turn_].pop(now);
   std::int64_t cost = WorkRate::cost(params_.culled_per_clk);
   if (token.kind == TokenKind::kWork) {
     if (set_up(now, token)) cost = this->cost(frame_.draw(token.part.draw()));
-  } else if (token.kind == TokenKind::kBatchEnd) {
-    release_out.push(now, {token.slot, 0});
+  } else if (ends_batch(token.kind)) {
+    release_out[turn_]->push(now, {token.slot, 0});
   } else {
     triangle_out.push(now, {token.kind, token.part, sequence_});
   }
   if (token.kind != TokenKind::kWork) {
     stats_.working_for(token.part.draw());
     cost = std::min(cost, WorkRate::kCycle);
+    if (token.kind == TokenKind::kRangeEnd || token.kind == TokenKind::kDrawEnd)
+      turn_ = turn_ + 1 == clipped_in.size() ? 0 : turn_ + 1;
   }
   free_ = rate_.charge(now, cost);
   occupy(now, rate_.cycles());
@@ -83,7 +99,7 @@ std::int64_t TriangleSetupUnit::cost(const DrawState& draw) const {
 
 bool TriangleSetupUnit::set_up(Tick now, const ClippedToken& token) {
   const DrawState& draw = frame_.draw(token.part.draw());
-  const ClippedPiece& piece = pieces_[token.piece];
+  const ClippedPiece& piece = (*pieces_[turn_])[token.piece];
   TriangleSlot& slot = triangles_[sequence_];
   stats_.working_for(token.part.draw());
   ++stats_.triangles;

@@ -1,13 +1,16 @@
 /// Set-up: edge functions, bounds and planes of each triangle, line and point, culling, and the triangle
 /// store that bounds how far geometry runs ahead.
 ///
-/// In    clipped_in    primitives with window positions; boundaries
+/// In    clipped_in[f] primitives with window positions from geometry front end f; boundaries
 ///       sync_in[p]    triangles before a sequence number are retired in partition p
 /// Out   triangle_out  kept primitives and boundaries
-///       release_out   a vertex batch may be reused
+///       release_out[f] a vertex batch of front end f may be reused
 /// Time  `drawn_per_clk` triangles, `lines_per_clk` lines and `points_per_clk` points a cycle that are kept,
 ///       `culled_per_clk` that are not; a boundary takes the place of a culled one, a cycle at most; waits
 ///       while the triangle store is full
+///
+/// Front ends take ranges of a draw in turn, so set-up takes what one sends until its range or the draw ends,
+/// and then what the next one sends: primitives keep the order of the draw.
 #pragma once
 
 #include "hw/base/fifo_group.h"
@@ -72,16 +75,16 @@ class TriangleSetupUnit final : public Unit {
   /// What the unit reads, and the ring of triangles that it fills.
   struct Stores {
     const Store<BatchSlot>& batches;
-    const Store<ClippedPiece>& pieces;
+    std::vector<const Store<ClippedPiece>*> pieces;  ///< by front end
     TriangleStore& triangles;
   };
   TriangleSetupUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
                     const Stores& stores);
 
-  FifoIn<ClippedToken> clipped_in{*this, "clipped_in"};
+  FifoInGroup<ClippedToken> clipped_in;
   FifoInGroup<ReleaseToken> sync_in;
   FifoOut<TriangleToken> triangle_out{*this, "triangle_out"};
-  FifoOut<ReleaseToken> release_out{*this, "release_out", LinkRole::kReply};
+  std::vector<std::unique_ptr<FifoOut<ReleaseToken>>> release_out;
 
   [[nodiscard]] Wake next() const override;
   void act(Tick now) override;
@@ -103,12 +106,13 @@ class TriangleSetupUnit final : public Unit {
   const Params& params_;
   const Frame& frame_;
   const Store<BatchSlot>& batches_;
-  const Store<ClippedPiece>& pieces_;
+  const std::vector<const Store<ClippedPiece>*> pieces_;
   TriangleStore& triangles_;
   Stats stats_;
   std::uint64_t sequence_ = 0;             ///< of the next kept triangle
   std::uint64_t retired_ = 0;              ///< triangles before this are retired everywhere
   std::vector<std::uint64_t> retired_by_;  ///< by partition of the engine
+  std::size_t turn_ = 0;                   ///< the front end whose range it is
   WorkRate rate_;
   Tick free_ = 0;
 };

@@ -8,6 +8,17 @@
 
 namespace quadrille::hw {
 
+namespace {
+
+/// Front ends have equal parts of the store, one behind the other.
+BatchSlots slots_of(const UnitContext& context, const Store<BatchSlot>& batches) {
+  const auto slots =
+      static_cast<std::uint32_t>(batches.size()) / static_cast<std::uint32_t>(context.machine.front_ends);
+  return {static_cast<std::uint32_t>(context.number) * slots, slots};
+}
+
+}  // namespace
+
 VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
                          Store<BatchSlot>& batches)
     : Unit(name, Kind::kChooser, context.clock),
@@ -19,7 +30,10 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& contex
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses),
       reuse_(params.reuse.value().make({params.batch_vertices, params.reuse_entries})),
-      slots_(batches.size()) {
+      shares_(static_cast<std::uint32_t>(context.number),
+              static_cast<std::uint32_t>(context.machine.front_ends),
+              static_cast<std::uint32_t>(params.range_primitives.value())),
+      slots_(slots_of(context, batches)) {
   for (int e = 0; e < context.machine.engines; ++e) {
     const std::string port = context.machine.engines == 1 ? "release_in" : fmt::format("release_in_{}", e);
     release_in.add(*this, port.c_str(), LinkRole::kReply);
@@ -87,7 +101,7 @@ void VertexFetch::build(Tick now) {
   stats_.working_for(token.part.draw());
   if (token.kind == TokenKind::kWork) {
     start_draw(token.part.draw());
-  } else {
+  } else if (token.kind == TokenKind::kDrawEnd ? shares_.ends_draw() : shares_.has_turn()) {
     pending_.push_back({token.kind, token.part, 0, 0, now});
   }
   free_ = after(now, 1);
@@ -96,10 +110,23 @@ void VertexFetch::build(Tick now) {
 
 void VertexFetch::start_draw(DrawId draw) {
   draw_ = draw;
-  instance_ = 0;
   passed_.clear();
-  start_instance();
-  drawing_ = frame_.draw(draw).instances > 0 && primitive_left();
+  const DrawState& state = frame_.draw(draw);
+  shares_.start_draw(state.instances, models::primitive_count(state.topology, state.count), !state.restarts);
+  instance_ = kNoInstance;
+  drawing_ = start_range();
+}
+
+bool VertexFetch::start_range() {
+  if (shares_.done()) return false;
+  if (shares_.instance() != instance_) {
+    instance_ = shares_.instance();
+    start_instance();
+  }
+  range_end_ = shares_.end();
+  if (!primitive_left()) return false;
+  walk_.skip_to(shares_.first());
+  return true;
 }
 
 void VertexFetch::start_instance() {
@@ -109,6 +136,7 @@ void VertexFetch::start_instance() {
 }
 
 bool VertexFetch::primitive_left() {
+  if (walk_.primitive() >= range_end_) return false;
   const DrawState& draw = frame_.draw(draw_);
   return walk_.look([&](std::uint32_t position) { return is_restart(draw, device_, position); },
                     [&](std::uint32_t position) { passed_.push_back(position); });
@@ -211,14 +239,15 @@ void VertexFetch::form_batch(Tick now) {
   }
   fetch_attributes(batch);
   batch.inputs.attributes = batch.attributes.data();
-  if (!primitive_left()) {
-    drawing_ = ++instance_ < draw.instances;
-    if (drawing_) start_instance();
-    drawing_ = drawing_ && primitive_left();
+  const bool range_done = !primitive_left();
+  batch.ends_range = range_done && shares_.hands_on();
+  if (range_done) {
+    shares_.advance();
+    drawing_ = start_range();
   }
   fetch_passed();
   // One slot is for the next batch, whatever is remembered.
-  reuse_->limit_slots(static_cast<int>(batches_.size()) - 1);
+  reuse_->limit_slots(static_cast<int>(slots_.size()) - 1);
   slots_.sweep(*reuse_);
   stats_.indices += indices_;
   stats_.vertices += static_cast<std::uint64_t>(batch.lanes);

@@ -1,5 +1,5 @@
 /// Vertex fetch: reads indices and attributes through its cache, finds reused vertices, and forms batches of
-/// up to 32 vertices to shade.
+/// up to 32 vertices to shade. Of several geometry front ends each takes its ranges of every draw.
 ///
 /// In    draw_in        draws and pass boundaries
 ///       release_in[e]  engine e is done with the oldest batch
@@ -13,6 +13,9 @@
 /// (models/geometry/post_transform.h). Under the FIFO the outputs of a batch stay in its slot while a vertex
 /// of it is remembered or a primitive on its way names one; the oldest are forgotten rather than that they
 /// hold the last slot.
+///
+/// Front ends share draws by ranges of `range_primitives` (models/geometry/primitive_shares.h). Each gets all
+/// draws, finds its ranges by arithmetic, and sends the marks between draws if it is its turn.
 ///
 /// A primitive's indices are looked up one by one, shared ones of a strip or fan again. A special index
 /// (primitive restart) costs a look-up like any other.
@@ -28,6 +31,7 @@
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 #include "models/geometry/post_transform.h"
+#include "models/geometry/primitive_shares.h"
 #include "models/geometry/primitive_walk.h"
 
 namespace quadrille::hw {
@@ -72,6 +76,15 @@ class VertexFetch final : public Unit {
         "vertex",
         {3, 1024},
         "Vertices that the FIFO of reuse=fifo holds; no use otherwise. [G: as many as a batch]",
+        Effect::kTradeOff};
+    Param<int> range_primitives{
+        *this,
+        "range_primitives",
+        128,
+        "primitive",
+        {1, 1 << 20},
+        "Primitives in a row that one of several geometry front ends takes before the next one does; no use "
+        "with one. [G: four batches, so that few vertices are shaded twice]",
         Effect::kTradeOff};
     Param<int> cache_lines{*this,  "cache_lines", 128,
                            "line", {1, 1 << 16},  "Lines of 128 bytes in the vertex cache. [G: 16 KiB]"};
@@ -132,7 +145,9 @@ class VertexFetch final : public Unit {
   void leave(Tick now);
   void start_draw(DrawId draw);
   void start_instance();
-  /// Is there another primitive in this instance?
+  /// Goes to the next range of this front end. Is there one with a primitive?
+  bool start_range();
+  /// Is there another primitive in this range?
   [[nodiscard]] bool primitive_left();
   void form_batch(Tick now);
   /// Takes primitives into the batch while they fit.
@@ -157,11 +172,14 @@ class VertexFetch final : public Unit {
   L1Cache cache_;
   std::unique_ptr<models::VertexReuse> reuse_;
 
+  static constexpr std::uint32_t kNoInstance = ~std::uint32_t{0};
   bool drawing_ = false;
   DrawId draw_;
-  std::uint32_t instance_ = 0;
+  std::uint32_t instance_ = kNoInstance;
   models::PrimitiveWalk walk_;         ///< at the next primitive to take
   std::vector<std::uint32_t> passed_;  ///< positions of special indices that no batch has paid for
+  models::PrimitiveShares shares_;
+  std::uint32_t range_end_ = 0;  ///< the primitive behind the last one of the range
   BatchSlots slots_;
   WaitingQueue<Pending> pending_;
   std::vector<Line> lines_;       ///< look-ups of the newest batch

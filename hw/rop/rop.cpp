@@ -65,7 +65,8 @@ Wake Rop::outputs_of(const Entry& entry, Wake wake) const {
     case TokenKind::kDrawEnd: return wake.output(retire_out);
     case TokenKind::kPassEnd: return wake.output(late_out);
     case TokenKind::kPassBegin:
-    case TokenKind::kBatchEnd: return wake;
+    case TokenKind::kBatchEnd:
+    case TokenKind::kRangeEnd: return wake;
   }
   return wake;
 }
@@ -293,7 +294,8 @@ void Rop::retire_boundary(Tick now, const Entry& entry) {
       return;
     case TokenKind::kSync: sync_out.push(now, {0, entry.token.sync}); return;
     case TokenKind::kWork:
-    case TokenKind::kBatchEnd: return;
+    case TokenKind::kBatchEnd:
+    case TokenKind::kRangeEnd: return;
   }
 }
 

@@ -54,6 +54,7 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
       frame_(context.frame),
       slots_(stores.slots),
       batches_(stores.batches),
+      batches_of_front_end_(stores.batches.size() / static_cast<std::uint64_t>(context.machine.front_ends)),
       warps_(stores.warps),
       triangles_(stores.triangles),
       fragment_rows_(hungriest_fragment_program(context.frame)),
@@ -71,6 +72,11 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
   });
   add_places("warp_slots", [this] { return kept_out(true); });
   add_places("register_rows", [this] { return kept_out(false); });
+  for (int f = 0; f < context.machine.front_ends; ++f) {
+    const std::string port = context.machine.front_ends == 1 ? "vertex_out" : fmt::format("vertex_out_{}", f);
+    vertex_out.push_back(
+        std::make_unique<FifoOut<VertexDoneToken>>(*this, port.c_str(), LinkRole::kFlow, kVertexStream));
+  }
   for (std::size_t p = 0; p < warps_.size(); ++p) {
     fragment_out.push_back(std::make_unique<FifoOut<FragmentDoneToken>>(
         *this, fmt::format("fragment_out_{}", p).c_str(), LinkRole::kFlow, kFragmentStream));
@@ -130,6 +136,10 @@ Wake ShaderCore::simd_wake() const {
   return Wake(first == Simd::kNever ? kNever : clock().edge(first));
 }
 
+FifoOut<VertexDoneToken>& ShaderCore::vertex_out_for(const CoreSlot& slot) const {
+  return *vertex_out[static_cast<std::size_t>(slot.batch / batches_of_front_end_)];
+}
+
 Wake ShaderCore::completion_wake(const Completion& done) const {
   Wake wake(done.at);
   const CoreSlot& slot = slots_[done.slot];
@@ -139,7 +149,7 @@ Wake ShaderCore::completion_wake(const Completion& done) const {
     return wake;
   }
   return slot.stage == models::ShaderStage::kVertex
-             ? wake.output(vertex_out)
+             ? wake.output(vertex_out_for(slot))
              : Wake(std::max(done.at, export_free_)).output(*fragment_out[slot.partition.index()]);
 }
 
@@ -330,7 +340,7 @@ void ShaderCore::complete(Tick now, const Completion& done) {
 void ShaderCore::retire(Tick now, std::uint32_t index) {
   CoreSlot& slot = slots_[index];
   if (slot.stage == models::ShaderStage::kVertex) {
-    vertex_out.push(now, {slot.batch});
+    vertex_out_for(slot).push(now, {slot.batch});
   } else {
     WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
     work.alive = work.covered & ~slot.warp.killed;

@@ -3,7 +3,7 @@
 ///
 /// In    vertex_in, fragment_in    warps to run
 ///       texture_in, storage_in    the requests of a warp have been answered
-/// Out   vertex_out                batch shaded
+/// Out   vertex_out[f]             batch of geometry front end f shaded
 ///       fragment_out[p]           fragment warp shaded
 ///       texture_out, storage_out  a clause's texture and storage requests
 /// Time  an instruction holds its SIMD for 32 / simd_lanes cycles (32 / sfu_lanes for special functions), and
@@ -130,7 +130,7 @@ class ShaderCore final : public Unit {
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
   FifoIn<VertexWarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
   FifoIn<FragmentWarpToken> fragment_in{*this, "fragment_in", LinkRole::kFlow, kFragmentStream};
-  FifoOut<VertexDoneToken> vertex_out{*this, "vertex_out", LinkRole::kFlow, kVertexStream};
+  std::vector<std::unique_ptr<FifoOut<VertexDoneToken>>> vertex_out;
   std::vector<std::unique_ptr<FifoOut<FragmentDoneToken>>> fragment_out;
   /// absent when no program of the frame reads a texture
   std::unique_ptr<FifoOut<TextureToken>> texture_out;
@@ -167,6 +167,7 @@ class ShaderCore final : public Unit {
   [[nodiscard]] Wake vertex_wake() const;
   [[nodiscard]] Wake fragment_wake() const;
   [[nodiscard]] Wake issue_wake() const;
+  [[nodiscard]] FifoOut<VertexDoneToken>& vertex_out_for(const CoreSlot& slot) const;
   [[nodiscard]] Wake completion_wake(const Completion& done) const;
   [[nodiscard]] const Completion* next_completion(Wake& wake) const;
   void accept_vertex(Tick now);
@@ -192,6 +193,7 @@ class ShaderCore final : public Unit {
   const Frame& frame_;
   Store<CoreSlot>& slots_;
   Store<BatchSlot>& batches_;
+  const std::uint64_t batches_of_front_end_;
   std::vector<WarpStore*> warps_;
   std::vector<const TriangleStore*> triangles_;  ///< by raster engine
   const int fragment_rows_;                      ///< registers of the hungriest fragment program

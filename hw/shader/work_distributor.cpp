@@ -17,8 +17,12 @@ WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const UnitContext
   for (int p = 0; p < context.machine.partitions; ++p) {
     fragment_in.add(*this, fmt::format("fragment_in_{}", p).c_str(), LinkRole::kFlow, kFragmentStream);
   }
-  for (int i = 0; i <= context.machine.partitions; ++i)
+  for (int i = 0; i < context.machine.partitions + context.machine.front_ends; ++i)
     load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
+  for (int f = 0; f < context.machine.front_ends; ++f) {
+    const std::string port = context.machine.front_ends == 1 ? "vertex_in" : fmt::format("vertex_in_{}", f);
+    vertex_in.add(*this, port.c_str(), LinkRole::kFlow, kVertexStream);
+  }
   for (int c = 0; c < context.machine.cores; ++c) {
     vertex_out.push_back(std::make_unique<FifoOut<VertexWarpToken>>(
         *this, fmt::format("vertex_out_{}", c).c_str(), LinkRole::kFlow, kVertexStream));
@@ -41,8 +45,9 @@ const FifoOut<Token>& WorkDistributor::first_with_room(const Outputs<Token>& out
 }
 
 Wake WorkDistributor::vertex_wake() const {
-  const Wake wake = Wake(vertex_free_).input(vertex_in);
-  return vertex_in.ready() == kNever ? wake : Wake(wake).output(first_with_room(vertex_out));
+  Wake first = vertex_in.earliest(Wake(vertex_free_));
+  if (first.at() == kNever) return first;
+  return first.output(first_with_room(vertex_out));
 }
 
 Wake WorkDistributor::fragment_wake() const {
@@ -66,12 +71,19 @@ Wake WorkDistributor::next() const {
 
 void WorkDistributor::act(Tick now) {
   load_in.take_ready(now, [&](std::size_t, const ReleaseToken& done) { --loads_[done.slot]; });
-  if (vertex_wake().at() <= now) {
-    hand_out(now, vertex_in, vertex_out, choose(now, vertex_out, vertex_turn_), vertex_turn_);
+  if (vertex_wake().at() <= now) hand_out_vertices(now);
+  if (fragment_wake().at() <= now) hand_out_fragments(now);
+}
+
+void WorkDistributor::hand_out_vertices(Tick now) {
+  vertex_in.visit_holding(front_end_turn_, [&](std::size_t f, FifoIn<VertexWarpToken>& in) {
+    if (!in.ready_at(now)) return false;
+    hand_out(now, in, vertex_out, choose(now, vertex_out, vertex_turn_), vertex_turn_);
     vertex_free_ = after(now, 1);
     ++stats_.vertex_warps;
-  }
-  if (fragment_wake().at() <= now) hand_out_fragments(now);
+    front_end_turn_ = (f + 1) % vertex_in.size();
+    return true;
+  });
 }
 
 void WorkDistributor::hand_out_fragments(Tick now) {

@@ -1,12 +1,12 @@
 /// Work distributor: hands vertex batches and fragment warps to the cores.
 ///
-/// In    vertex_in        batches to shade
+/// In    vertex_in[f]     batches to shade, from geometry front end f
 ///       fragment_in[p]   warps from the packer of partition p
-///       load_in[p]       a warp of a core is done: from the ROP of partition p; the last from primitive
-///                        assembly
+///       load_in[p]       a warp of a core is done: from the ROP of partition p; the last ones from the
+///                        primitive assemblies
 /// Out   vertex_out[c]    to core c
 ///       fragment_out[c]  to core c
-/// Time  one vertex and one fragment warp a cycle; partitions take turns
+/// Time  one vertex and one fragment warp a cycle; front ends and partitions take turns
 ///
 /// `policy` says who gets a warp: cores in turn; fragments by where they are on the screen; or the core with
 /// the fewest warps, sent and not reported done, which is what is known here of its load. A core is skipped
@@ -45,9 +45,9 @@ class WorkDistributor final : public Unit {
   WorkDistributor(sc_core::sc_module_name name, const UnitContext& context, const Params& params);
 
   static constexpr int kVertexStream = 1, kFragmentStream = 2;
-  FifoIn<VertexWarpToken> vertex_in{*this, "vertex_in", LinkRole::kFlow, kVertexStream};
+  FifoInGroup<VertexWarpToken> vertex_in;      ///< by geometry front end
   FifoInGroup<FragmentWarpToken> fragment_in;  ///< by partition
-  FifoInGroup<ReleaseToken> load_in;           ///< `slot` is the core
+  FifoInGroup<ReleaseToken> load_in;           ///< partitions, then front ends; `slot` is the core
   template <class Token>
   using Outputs = std::vector<std::unique_ptr<FifoOut<Token>>>;  ///< by core
   Outputs<VertexWarpToken> vertex_out;
@@ -70,13 +70,14 @@ class WorkDistributor final : public Unit {
   [[nodiscard]] std::size_t choose(Tick now, const Outputs<Token>& outputs, std::size_t turn) const;
   template <class Token>
   void hand_out(Tick now, FifoIn<Token>& in, Outputs<Token>& outputs, std::size_t core, std::size_t& turn);
+  void hand_out_vertices(Tick now);
   void hand_out_fragments(Tick now);
 
   std::unique_ptr<Distribution> distribution_;
   bool by_place_;
   Stats stats_;
   std::vector<int> loads_;  ///< by core: warps sent and not reported done
-  std::size_t partition_turn_ = 0, vertex_turn_ = 0, fragment_turn_ = 0;
+  std::size_t front_end_turn_ = 0, partition_turn_ = 0, vertex_turn_ = 0, fragment_turn_ = 0;
   Tick vertex_free_ = 0, fragment_free_ = 0;
 };
 

@@ -43,9 +43,11 @@ class PrimitiveWalk {
   }
   /// Number of the primitive within the instance; a restart does not begin anew.
   [[nodiscard]] std::uint32_t primitive() const { return primitive_; }
-  void advance() {
-    ++in_run_;
-    ++primitive_;
+  void advance() { skip_to(primitive_ + 1); }
+  /// Goes on to a primitive of the run that was looked at.
+  void skip_to(std::uint32_t primitive) {
+    in_run_ += primitive - primitive_;
+    primitive_ = primitive;
   }
 
  private:

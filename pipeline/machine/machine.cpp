@@ -60,10 +60,11 @@ Machine::~Machine() {
 
 // One piece being written and one being read beyond what the link holds.
 Machine::Stores::Stores(const MachineConfig& config)
-    : batches(static_cast<std::size_t>(config.vertex_fetch.batch_slots.value())) {
+    : batches(static_cast<std::size_t>(config.vertex_fetch.batch_slots.value() * config.gpu.front_ends)) {
   for (int e = 0; e < config.gpu.engines; ++e) {
-    pieces.push_back(std::make_unique<hw::Store<hw::ClippedPiece>>(
-        static_cast<std::size_t>(config.link.clipper_to_setup.depth.value()) + 2));
+    for (int f = 0; f < config.gpu.front_ends; ++f)
+      pieces.push_back(std::make_unique<hw::Store<hw::ClippedPiece>>(
+          static_cast<std::size_t>(config.link.clipper_to_setup.depth.value()) + 2));
     triangles.push_back(std::make_unique<hw::TriangleStore>(
         static_cast<std::size_t>(config.triangle_setup.triangle_slots.value()) + 1));
     walked.push_back(std::make_unique<hw::WalkedStore>(
@@ -134,6 +135,7 @@ void Machine::list_clients() {
 int Machine::count(Stands stands) const {
   switch (stands) {
     case Stands::kOnce: return 1;
+    case Stands::kFrontEnd: return config_.gpu.front_ends;
     case Stands::kEngine: return config_.gpu.engines;
     case Stands::kPartition: return config_.gpu.partitions;
     case Stands::kCore: return config_.gpu.cores;
@@ -143,7 +145,8 @@ int Machine::count(Stands stands) const {
 }
 
 std::string Machine::name_of(std::string_view kind, Stands stands, int i) const {
-  const bool alone = stands == Stands::kOnce || (stands == Stands::kEngine && config_.gpu.engines == 1);
+  const bool alone = stands == Stands::kOnce || (stands == Stands::kEngine && config_.gpu.engines == 1) ||
+                     (stands == Stands::kFrontEnd && config_.gpu.front_ends == 1);
   return alone ? std::string(kind) : fmt::format("{}_{}", kind, i);
 }
 
@@ -160,8 +163,8 @@ bool Machine::builds(Needed needed) const {
 void Machine::create_units(std::uint64_t order) {
   const Maker maker(*this);
   std::vector<std::function<std::unique_ptr<hw::Unit>()>> makers;
-  for (const Stands stands :
-       {Stands::kOnce, Stands::kEngine, Stands::kPartition, Stands::kCore, Stands::kChannel}) {
+  for (const Stands stands : {Stands::kOnce, Stands::kFrontEnd, Stands::kEngine, Stands::kPartition,
+                              Stands::kCore, Stands::kChannel}) {
     for (int i = 0; i < count(stands); ++i) {
       visit_unit_kinds([&]<class Unit>() {
         if (UnitKind<Unit>::stands != stands || !builds(UnitKind<Unit>::needed)) return;

@@ -66,11 +66,12 @@ class Machine {
   struct Stores {
     explicit Stores(const MachineConfig& config);
     hw::Store<hw::BatchSlot> batches;
-    std::vector<std::unique_ptr<hw::Store<hw::ClippedPiece>>> pieces;  ///< by raster engine
-    std::vector<std::unique_ptr<hw::TriangleStore>> triangles;         ///< by raster engine
-    std::vector<std::unique_ptr<hw::WalkedStore>> walked;              ///< by raster engine
-    std::vector<std::unique_ptr<hw::WarpStore>> warps;                 ///< by partition
-    std::vector<std::unique_ptr<hw::Store<hw::CoreSlot>>> cores;       ///< by core
+    std::vector<std::unique_ptr<hw::Store<hw::ClippedPiece>>>
+        pieces;                                                 ///< by raster engine, and of it by front end
+    std::vector<std::unique_ptr<hw::TriangleStore>> triangles;  ///< by raster engine
+    std::vector<std::unique_ptr<hw::WalkedStore>> walked;       ///< by raster engine
+    std::vector<std::unique_ptr<hw::WarpStore>> warps;          ///< by partition
+    std::vector<std::unique_ptr<hw::Store<hw::CoreSlot>>> cores;  ///< by core
   };
   class Maker;
   class Wiring;

@@ -40,6 +40,15 @@ struct GpuParams : hw::ParamGroup {
                          {1, 16},
                          "Raster engines, each with set-up, coarse and fine rasteriser, for an equal part of "
                          "the screen partitions, which are a multiple of them. [G: as small GPUs]"};
+  hw::Param<int> front_ends{
+      *this,
+      "front_ends",
+      1,
+      "front end",
+      {1, 16},
+      "Geometry front ends, each with vertex fetch, primitive assembly and clipper. They share each draw by "
+      "vertex_fetch.range_primitives, so batches at the ends of ranges are less full. [G: as small GPUs]",
+      hw::Effect::kTradeOff};
   hw::Param<int> channels{*this,     "channels", 2,
                           "channel", {1, 64},    "Memory channels, each with an L2 slice. [G]"};
   hw::Param<double> clock_mhz{*this,

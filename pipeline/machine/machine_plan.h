@@ -33,9 +33,9 @@
 // frames need it.
 #define QUADRILLE_UNITS(unit)                                                            \
   unit(command_processor,  hw::CommandProcessor,  kOnce,      kByAllFrames)              \
-  unit(vertex_fetch,       hw::VertexFetch,       kOnce,      kByAllFrames)              \
-  unit(primitive_assembly, hw::PrimitiveAssembly, kOnce,      kByAllFrames)              \
-  unit(clipper,            hw::Clipper,           kOnce,      kByAllFrames)              \
+  unit(vertex_fetch,       hw::VertexFetch,       kFrontEnd,  kByAllFrames)              \
+  unit(primitive_assembly, hw::PrimitiveAssembly, kFrontEnd,  kByAllFrames)              \
+  unit(clipper,            hw::Clipper,           kFrontEnd,  kByAllFrames)              \
   unit(triangle_setup,     hw::TriangleSetupUnit, kEngine,    kByAllFrames)              \
   unit(coarse_raster,      hw::CoarseRaster,      kEngine,    kByAllFrames)              \
   unit(fine_raster,        hw::FineRaster,        kEngine,    kByAllFrames)              \
@@ -138,9 +138,9 @@
 
 namespace quadrille::pipeline {
 
-/// How often a kind of unit stands in a machine: once, or once a raster engine, partition, core or channel.
-/// Of several, each carries its number in its name.
-enum class Stands : std::uint8_t { kOnce, kEngine, kPartition, kCore, kChannel };
+/// How often a kind of unit stands in a machine: once, or once a geometry front end, raster engine,
+/// partition, core or channel. Of several, each carries its number in its name.
+enum class Stands : std::uint8_t { kOnce, kFrontEnd, kEngine, kPartition, kCore, kChannel };
 /// Which frames need a kind of unit, or its links to memory; a machine leaves out what its frame does not
 /// need.
 enum class Needed : std::uint8_t {

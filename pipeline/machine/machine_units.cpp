@@ -25,15 +25,19 @@ Machine::Maker::Made<hw::PrimitiveAssembly> Machine::Maker::make(Kind<hw::Primit
 Machine::Maker::Made<hw::Clipper> Machine::Maker::make(Kind<hw::Clipper> /*kind*/, const char* name,
                                                        int i) const {
   std::vector<hw::Store<hw::ClippedPiece>*> pieces;
-  for (const auto& of_engine : s_.pieces) pieces.push_back(of_engine.get());
+  pieces.reserve(at(c_.gpu.engines));
+  for (int e = 0; e < c_.gpu.engines; ++e) pieces.push_back(&pieces_between(i, e));
   return std::make_unique<hw::Clipper>(name, context(i), c_.clipper, s_.batches, std::move(pieces));
 }
 
 Machine::Maker::Made<hw::TriangleSetupUnit> Machine::Maker::make(Kind<hw::TriangleSetupUnit> /*kind*/,
                                                                  const char* name, int i) const {
+  std::vector<const hw::Store<hw::ClippedPiece>*> pieces;
+  pieces.reserve(at(c_.gpu.front_ends));
+  for (int f = 0; f < c_.gpu.front_ends; ++f) pieces.push_back(&pieces_between(f, i));
   return std::make_unique<hw::TriangleSetupUnit>(
       name, context(i), c_.triangle_setup,
-      hw::TriangleSetupUnit::Stores{s_.batches, *s_.pieces[at(i)], *s_.triangles[at(i)]});
+      hw::TriangleSetupUnit::Stores{s_.batches, std::move(pieces), *s_.triangles[at(i)]});
 }
 
 Machine::Maker::Made<hw::CoarseRaster> Machine::Maker::make(Kind<hw::CoarseRaster> /*kind*/, const char* name,

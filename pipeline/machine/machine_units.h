@@ -27,8 +27,12 @@ class Machine::Maker {
     return {clock,
             m_.frame_.frame,
             m_.frame_.memory,
-            {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels, c_.gpu.engines},
+            {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels, c_.gpu.engines, c_.gpu.front_ends},
             number};
+  }
+
+  [[nodiscard]] hw::Store<hw::ClippedPiece>& pieces_between(int front_end, int engine) const {
+    return *s_.pieces[static_cast<std::size_t>(engine * c_.gpu.front_ends + front_end)];
   }
 
   /// Those of a partition come from its engine.

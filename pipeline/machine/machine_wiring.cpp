@@ -28,12 +28,12 @@ template <class T>
 hw::FifoIn<T>& port_for(const hw::FifoInGroup<T>& group, std::size_t i) {
   return group[i];
 }
-/// The port for a unit that stands once at a unit that stands once: of a group the last one, behind those for
-/// kinds that stand more often.
+/// The port for a kind of unit whose ports are the last ones of the group, behind those for kinds that stand
+/// more often: the `from_end`-th from its end, 1 the last.
 template <class Port>
-auto& port_for_single(Port& port) {
+auto& port_from_end(Port& port, std::size_t from_end) {
   if constexpr (std::is_base_of_v<hw::PortBase, Port>) return port_for(port, 0);
-  else return port_for(port, port.size() - 1);
+  else return port_for(port, port.size() - from_end);
 }
 
 /// "vertex" of the input "vertex_in".
@@ -62,11 +62,18 @@ void Machine::Wiring::link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, cons
   m_.link_keys_.push_back(fmt::format("link.{}", of.name));
 }
 
+std::string Machine::Wiring::front_end_path(const std::string& path, std::size_t front_end, Stands other,
+                                            std::size_t i) const {
+  return m_.name_of(m_.name_of(path, other, static_cast<int>(i)), Stands::kFrontEnd,
+                    static_cast<int>(front_end));
+}
+
 void Machine::Wiring::wire() {
   const auto wire_all = [this](Stands stands) {
     for (int i = 0; i < m_.count(stands); ++i) wire_units(stands, static_cast<std::size_t>(i));
   };
   wire_all(Stands::kOnce);
+  wire_all(Stands::kFrontEnd);
   wire_all(Stands::kEngine);
   wire_all(Stands::kPartition);
   wire_all(Stands::kCore);
@@ -98,14 +105,31 @@ void Machine::Wiring::wire_one(const LinkParams& of, Stands stands, std::size_t 
       return alone ? std::string(of.name) : fmt::format("{}_{}", of.name, flow_of(input));
     };
     if constexpr (kFrom == Stands::kOnce && kTo == Stands::kOnce) {
-      auto& input = port_for_single(m_.one<To>().*Wire::input);
-      link(port_for_single(m_.one<From>().*Wire::output), input, of, path(input));
+      auto& input = port_from_end(m_.one<To>().*Wire::input, 1);
+      link(port_from_end(m_.one<From>().*Wire::output, 1), input, of, path(input));
     } else if constexpr (kFrom == Stands::kCore && kTo == Stands::kPartition) {
       for (std::size_t p = 0; p < m_.all<To>().size(); ++p) {
         auto& input = port_for(m_.all<To>()[p]->*Wire::input, i);
         link(port_for(m_.all<From>()[i]->*Wire::output, p), input, of,
              fmt::format("{}_{}_{}", path(input), i, p));
       }
+    } else if constexpr (kFrom == Stands::kFrontEnd && kTo != Stands::kFrontEnd && kTo != Stands::kOnce) {
+      for (std::size_t f = 0; f < m_.all<From>().size(); ++f) {
+        auto& input = port_for(m_.all<To>()[i]->*Wire::input, f);
+        link(port_for(m_.all<From>()[f]->*Wire::output, i), input, of,
+             front_end_path(path(input), f, kTo, i));
+      }
+    } else if constexpr (kTo == Stands::kFrontEnd && kFrom != Stands::kFrontEnd && kFrom != Stands::kOnce) {
+      for (std::size_t f = 0; f < m_.all<To>().size(); ++f) {
+        auto& input = port_for(m_.all<To>()[f]->*Wire::input, i);
+        link(port_for(m_.all<From>()[i]->*Wire::output, f), input, of,
+             front_end_path(path(input), f, kFrom, i));
+      }
+    } else if constexpr (kFrom == Stands::kFrontEnd && kTo == Stands::kOnce) {
+      // Of a group, front ends have the last ports, behind kinds that stand more often.
+      auto& input = port_from_end(m_.one<To>().*Wire::input, m_.all<From>().size() - i);
+      link(port_for(m_.all<From>()[i]->*Wire::output, 0), input, of,
+           m_.name_of(path(input), stands, static_cast<int>(i)));
     } else if constexpr (kFrom == Stands::kEngine && kTo == Stands::kPartition) {
       const std::size_t engines = m_.all<From>().size();
       auto& input = port_for(m_.all<To>()[i]->*Wire::input, 0);

@@ -2,7 +2,8 @@
 ///
 /// How often the kinds of both ends stand says how many links a wire is. Units of kinds that stand equally
 /// often are linked in pairs, by their numbers; a unit that stands once has a port for each of the others; a
-/// core has a port for each partition and a partition one for each core. Clients of the L2 cache have a port
+/// core has a port for each partition and a partition one for each core, and so have geometry front ends and
+/// cores, and front ends and raster engines. Clients of the L2 cache have a port
 /// for each slice.
 #pragma once
 
@@ -25,6 +26,9 @@ class Machine::Wiring {
   template <class Wire>
   void wire_one(const LinkParams& of, Stands stands, std::size_t i, bool alone);
   void wire_clients();
+  /// Of a link between a geometry front end and unit `i` of another kind.
+  [[nodiscard]] std::string front_end_path(const std::string& path, std::size_t front_end, Stands other,
+                                           std::size_t i) const;
   /// A link of a class from port to port, called `path`.
   template <class Token>
   void link(hw::FifoOut<Token>& from, hw::FifoIn<Token>& to, const LinkParams& of, const std::string& path);

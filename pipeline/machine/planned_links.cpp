@@ -92,6 +92,7 @@ const std::vector<std::string_view>& kinds_downstream() {
 int count_of(Stands stands, const GpuParams& gpu) {
   switch (stands) {
     case Stands::kOnce: return 1;
+    case Stands::kFrontEnd: return gpu.front_ends;
     case Stands::kEngine: return gpu.engines;
     case Stands::kPartition: return gpu.partitions;
     case Stands::kCore: return gpu.cores;

@@ -19,7 +19,8 @@ class Squares {
   void note(const RasterizedPiece& p) {
     const hw::DrawState& draw = frame_.draws[p.draw.index()];
     models::TriangleSetup setup;
-    const auto outcome = models::setup_piece(p.piece, draw.primitives, draw.setup, setup);
+    const auto outcome =
+        models::setup_piece(p.piece, draw.primitives, draw.views[p.piece.viewport].setup, setup);
     if (outcome != models::SetupOutcome::kKept) return;
     models::TileWalk walk(setup, draw.samples());
     models::TileHit tile;

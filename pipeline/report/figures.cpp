@@ -139,12 +139,12 @@ std::uint64_t memory_bytes(const Figures& figures) {
 namespace {
 
 Fates fates_of(const Machine& m) {
-  const hw::Clipper::Stats& clipper = *m.one<hw::Clipper>().stats();
+  using Clipper = hw::Clipper;
   using SetUp = hw::TriangleSetupUnit;
   using Depth = hw::DepthUnit::Stats;
-  return {.off_screen = clipper.rejected.value() + sum<SetUp>(m, &SetUp::Stats::offscreen),
-          .not_finite = clipper.not_finite.value(),
-          .culled = clipper.culled.value() + sum<SetUp>(m, &SetUp::Stats::culled),
+  return {.off_screen = sum<Clipper>(m, &Clipper::Stats::rejected) + sum<SetUp>(m, &SetUp::Stats::offscreen),
+          .not_finite = sum<Clipper>(m, &Clipper::Stats::not_finite),
+          .culled = sum<Clipper>(m, &Clipper::Stats::culled) + sum<SetUp>(m, &SetUp::Stats::culled),
           .no_area = sum<SetUp>(m, &SetUp::Stats::zero_area),
           .no_sample = sum<SetUp>(m, &SetUp::Stats::no_sample),
           .rasterised = sum<SetUp>(m, &SetUp::Stats::kept),
@@ -165,7 +165,7 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame, std::optiona
   f.frame.clock_mhz = static_cast<double>(m.clock().frequency_hz()) * 1e-6;
   const hw::CommandProcessor::Stats& commands = *m.one<hw::CommandProcessor>().stats();
   f.frame.draws = commands.draws.value() + commands.draws_culled.value();
-  f.frame.triangles = m.one<hw::PrimitiveAssembly>().stats()->triangles.value();
+  f.frame.triangles = sum<hw::PrimitiveAssembly>(m, &hw::PrimitiveAssembly::Stats::triangles);
   f.frame.vertices = sum<hw::ShaderCore>(m, &Core::vertices);
   f.frame.fragments_covered = sum<hw::FineRaster>(m, &hw::FineRaster::Stats::fragments);
   f.frame.fragments_shaded = sum<hw::ShaderCore>(m, &Core::fragments);

@@ -97,10 +97,10 @@ const Experiment kExperiments[] = {
      {},
      "960x540"},
     {"engines",
-     "Raster engines and cores",
+     "Raster engines, geometry front ends and cores",
      "Nothing is published to compare with: a bound of our own, 1.5 times from 16 to 64 cores.",
-     "Scenes on machines of 16, 32 and 64 cores with 1, 2 and 4 raster engines; 16 memory channels and 16 "
-     "screen partitions on each.",
+     "Scenes on machines of 16, 32 and 64 cores with 1, 2 and 4 raster engines, and with 2 and 4 geometry "
+     "front ends beside four engines; 16 memory channels and 16 screen partitions on each.",
      &engines,
      {"builtin:courtyard", "builtin:cubes"},
      "960x540"},

@@ -92,6 +92,7 @@ const std::vector<Tight>& tight_grounds() {
       {"depth.", with(kNarrowMemory, {"depth.cache_lines=8", "depth.cache_ways=2", "depth.cache_misses=1",
                                       "depth.tiles_in_flight=2"})},
       {"vertex_fetch.reuse_entries", {"vertex_fetch.reuse=fifo"}},
+      {"vertex_fetch.range_primitives", with(kFastGeometry, {"gpu.front_ends=2"})},
       {"work_distributor.block_tiles", {"work_distributor.policy=tile"}},
       {"clipper.", kFastGeometry},
       {"primitive_assembly.", kFastGeometry},

@@ -76,6 +76,8 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.memory.queue_depth.set(random.pick({1, 8}));
   config.coarse_raster.hiz.set(random.chance(0.7));
   config.coarse_raster.hiz_min.set(random.chance(0.5));
+  config.gpu.front_ends.set(random.pick({1, 1, 2, 3, 4}));
+  config.vertex_fetch.range_primitives.set(random.pick({1, 2, 31, 32, 256}));
   const int engines = random.pick({1, 2, 3, 4});
   config.gpu.engines.set(config.gpu.partitions % engines == 0 ? engines : 1);
 }

@@ -38,7 +38,7 @@ struct CommandBench final : Bench {
     feed(unit->retire_in[1], s.retire_1);
     feed(unit->scan_done_in, s.scan_done);
     issued = &drain<DrawToken>(
-        unit->draw_out,
+        *unit->draw_out[0],
         [](const DrawToken& t) {
           const bool pass = t.kind == TokenKind::kPassBegin || t.kind == TokenKind::kPassEnd;
           return 100 * static_cast<unsigned>(t.kind) + (pass ? t.part.pass().index() : t.part.draw().index());

@@ -9,7 +9,7 @@ using namespace quadrille::hw;
 TEST_CASE(
     "batch_slots: a slot is free again when its batch is released, and when the last batch that names it "
     "is") {
-  BatchSlots slots(3);
+  BatchSlots slots(0, 3);
   const std::unique_ptr<models::VertexReuse> made = models::kBatchReuse.make({});
   const models::VertexReuse& reuse = *made;
   const std::uint32_t first = slots.take(), second = slots.take();
@@ -29,7 +29,7 @@ TEST_CASE(
 }
 
 TEST_CASE("batch_slots: a slot is kept while its vertices may be named again") {
-  BatchSlots slots(2);
+  BatchSlots slots(0, 2);
   const std::unique_ptr<models::VertexReuse> made = models::kFifoReuse.make({32, 4});
   models::VertexReuse& reuse = *made;
   reuse.start_batch(slots.take());

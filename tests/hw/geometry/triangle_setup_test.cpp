@@ -15,6 +15,7 @@ namespace {
 struct SetupBench final : Bench {
   struct Setup {
     std::vector<Timed<ClippedToken>> pieces;
+    std::vector<Timed<ClippedToken>> second_front_end{};  ///< its pieces; empty: there is one
     std::vector<Timed<ReleaseToken>> sync_0{}, sync_1{};
     double drawn_per_clk = 1, culled_per_clk = 1, lines_per_clk = 0.5, points_per_clk = 1;
     models::PrimitiveState primitives{};
@@ -46,10 +47,19 @@ struct SetupBench final : Bench {
     params.culled_per_clk.set(s.culled_per_clk);
     params.lines_per_clk.set(s.lines_per_clk);
     params.points_per_clk.set(s.points_per_clk);
-    unit = std::make_unique<TriangleSetupUnit>("unit", context({.partitions = 2}), params,
-                                               TriangleSetupUnit::Stores{batches, pieces, triangles});
+    const int front_ends = s.second_front_end.empty() ? 1 : 2;
+    unit = std::make_unique<TriangleSetupUnit>(
+        "unit", context({.partitions = 2, .front_ends = front_ends}), params,
+        TriangleSetupUnit::Stores{
+            batches, std::vector<const Store<ClippedPiece>*>(static_cast<std::size_t>(front_ends), &pieces),
+            triangles});
     add(*unit);
-    feed(unit->clipped_in, s.pieces);
+    feed(unit->clipped_in[0], s.pieces);
+    if (front_ends == 2) {
+      feed(unit->clipped_in[1], s.second_front_end);
+      released_second =
+          &drain<ReleaseToken>(*unit->release_out[1], [](const ReleaseToken& t) { return t.slot; });
+    }
     feed(unit->sync_in[0], s.sync_0);
     feed(unit->sync_in[1], s.sync_1);
     kept = &drain<TriangleToken>(
@@ -58,7 +68,7 @@ struct SetupBench final : Bench {
           return t.kind == TokenKind::kWork ? t.triangle : 900u + static_cast<unsigned>(t.kind);
         },
         s.pace, s.out);
-    released = &drain<ReleaseToken>(unit->release_out, [](const ReleaseToken& t) { return t.slot; });
+    released = &drain<ReleaseToken>(*unit->release_out[0], [](const ReleaseToken& t) { return t.slot; });
   }
   void piece(std::uint64_t slot, glm::ivec2 a, glm::ivec2 b, glm::ivec2 c) {
     pieces[slot].vertices = {models::WindowVertex{a.x, a.y, 0.5f, 1}, models::WindowVertex{b.x, b.y, 0.5f, 1},
@@ -73,6 +83,7 @@ struct SetupBench final : Bench {
   std::unique_ptr<TriangleSetupUnit> unit;
   StubSink<TriangleToken>* kept = nullptr;
   StubSink<ReleaseToken>* released = nullptr;
+  StubSink<ReleaseToken>* released_second = nullptr;
 };
 
 ClippedToken piece(std::uint32_t i) {
@@ -120,6 +131,31 @@ TEST_CASE(
     for (const std::uint32_t kind : {1u, 2u, 3u, 4u})
       CHECK(last_of(kind, kCount, other, rate) == Approx(kCount / rate).epsilon(0.02));
   }
+}
+
+TEST_CASE("triangle_setup: of two front ends the ranges are taken in turn, whichever comes first") {
+  // The second front end is ready at once, the first one late: what is kept still has the draw's order. The
+  // draw's end passes the turn on too.
+  const auto named = [](std::uint32_t primitive) {
+    ClippedToken token = piece(0);
+    token.primitive = primitive;
+    return token;
+  };
+  const SetupBench::Setup s{
+      .pieces = {{50, named(0)},
+                 {51, boundary(TokenKind::kRangeEnd)},
+                 {52, named(2)},
+                 {53, boundary(TokenKind::kBatchEnd)},
+                 {54, boundary(TokenKind::kDrawEnd)}},
+      .second_front_end = {{0, named(1)}, {0, boundary(TokenKind::kRangeEnd)}, {0, named(3)}}};
+  const auto text = run<SetupBench>(s, [](const SetupBench& b) {
+    std::string order;
+    for (const auto& [cycle, token] : b.kept->got)
+      order +=
+          token.kind == TokenKind::kWork ? fmt::format("{} ", b.triangles[token.triangle].primitive) : "end ";
+    return fmt::format("{}released {} and {}", order, b.released->got.size(), b.released_second->got.size());
+  });
+  CHECK(text == "0 1 2 end 3 released 2 and 1");
 }
 
 TEST_CASE("triangle_setup: n lines or points take n over their rate, and are counted") {

@@ -25,6 +25,8 @@ struct FetchBench final : Bench {
     std::uint32_t slots = 8;
     std::vector<Timed<ReleaseToken>> releases{};
     std::vector<Timed<ReleaseToken>> second_engine{};  ///< its releases; empty: there is one engine
+    int front_ends = 1, front_end = 0, range_primitives = 128;
+    std::uint32_t instances = 1;
     Pace pace{};
   };
   FetchBench(Driver& driver, const contract::Variation& v, const Setup& s)
@@ -53,11 +55,16 @@ struct FetchBench final : Bench {
       for (std::size_t i = 0; i < s.indices.size(); ++i)
         device.store(draw.index_address + 2 * i, s.indices[i]);
     }
+    draw.instances = s.instances;
     frame.draws = {draw};
+    params.range_primitives.set(s.range_primitives);
     params.indices_per_clk.set(s.indices_per_clk);
     params.attributes_per_clk.set(s.attributes_per_clk);
     unit = std::make_unique<VertexFetch>(
-        "unit", context({.partitions = 2, .engines = s.second_engine.empty() ? 1 : 2}), params, batches);
+        "unit",
+        context({.partitions = 2, .engines = s.second_engine.empty() ? 1 : 2, .front_ends = s.front_ends},
+                s.front_end),
+        params, batches);
     add(*unit);
     feed(unit->draw_in, {{0, {TokenKind::kPassBegin, PassId(0)}},
                          {0, {TokenKind::kWork, DrawId(0)}},
@@ -237,6 +244,42 @@ TEST_CASE("vertex_fetch: without a free slot the next batch waits for a release"
     return late;
   });
   CHECK(text == "before before after ");
+}
+
+namespace {
+
+/// Batches of a front end: its slot, and of each primitive the number; the marks that it sends.
+std::string batches_of(int front_end, std::uint32_t triangles, std::uint32_t instances) {
+  return run<FetchBench>({.triangles = triangles,
+                          .slots = 16,
+                          .front_ends = 2,
+                          .front_end = front_end,
+                          .range_primitives = 3,
+                          .instances = instances},
+                         [](const FetchBench& b) {
+                           std::string text;
+                           for (const auto& [cycle, token] : b.sink->got) {
+                             if (token.kind != TokenKind::kWork) {
+                               text += token.kind == TokenKind::kDrawEnd ? "end " : "begin ";
+                               continue;
+                             }
+                             const BatchSlot& batch = b.batches[token.slot];
+                             text += fmt::format("{}@{}[", batch.inputs.instance_index[0], token.slot / 8);
+                             for (const BatchSlot::Triangle& t : batch.triangles)
+                               text += fmt::format("{}", t.primitive);
+                             text += batch.ends_range ? "> " : "] ";
+                           }
+                           return text;
+                         });
+}
+
+}  // namespace
+
+TEST_CASE("vertex_fetch: two front ends share each instance by ranges, and slots by halves") {
+  CHECK(batches_of(0, 8, 1) == "begin 0@0[012> 0@0[67] end ");
+  CHECK(batches_of(1, 8, 1) == "0@1[345> ");
+  CHECK(batches_of(0, 4, 2) == "begin 0@0[012> 1@0[012> ");
+  CHECK(batches_of(1, 4, 2) == "0@1[3> 1@1[3] end ");
 }
 
 TEST_CASE("vertex_fetch: the contract") {

@@ -74,7 +74,7 @@ struct CoreBench final : Bench {
     feed(unit->vertex_in, s.vertex);
     feed(unit->fragment_in, s.fragment);
     vertex_done = &drain<VertexDoneToken>(
-        unit->vertex_out, [](const VertexDoneToken& t) { return t.slot; }, s.pace, s.out);
+        *unit->vertex_out[0], [](const VertexDoneToken& t) { return t.slot; }, s.pace, s.out);
     fragment_done = &drain<FragmentDoneToken>(
         *unit->fragment_out[0], [](const FragmentDoneToken& t) { return t.slot.index(); }, s.pace, s.out);
     if (!s.textured) return;

@@ -27,7 +27,7 @@ struct DistributorBench final : Bench {
     unit = std::make_unique<WorkDistributor>(
         "unit", context({.cores = static_cast<int>(s.cores.size()), .partitions = 2}), params);
     add(*unit);
-    feed(unit->vertex_in, s.vertex);
+    feed(unit->vertex_in[0], s.vertex);
     feed(unit->fragment_in[0], s.fragment_0);
     feed(unit->fragment_in[1], s.fragment_1);
     feed(unit->load_in[0], s.done);
