@@ -116,6 +116,7 @@ const std::vector<Case>& catalogue() {
     add_edge_cases(cases);
     add_range_cases(cases);
     add_value_cases(cases);
+    add_format_cases(cases);
     add_target_cases(cases);
     add_machine_cases(cases);
     return cases;

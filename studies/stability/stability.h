@@ -65,6 +65,7 @@ void check_always(const Observed& observed, Findings& findings);
 void add_edge_cases(std::vector<Case>& cases);     ///< clipping, coverage, shared edges
 void add_range_cases(std::vector<Case>& cases);    ///< depth ranges, worlds, distances
 void add_value_cases(std::vector<Case>& cases);    ///< NaN, infinity, denormals
+void add_format_cases(std::vector<Case>& cases);   ///< limits of the formats of attachments
 void add_target_cases(std::vector<Case>& cases);   ///< sizes, nothing at all, very much
 void add_machine_cases(std::vector<Case>& cases);  ///< extreme machines
 

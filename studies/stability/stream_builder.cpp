@@ -62,12 +62,14 @@ traces::Image checks() {
 }  // namespace
 
 StreamBuilder::StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, bool depth,
-                             float clear_depth) {
+                             float clear_depth)
+    : StreamBuilder(std::move(name), width, height, traces::Format::kR8G8B8A8Unorm,
+                    depth ? traces::Format::kD32Float : traces::Format::kUndefined, clear_depth) {}
+
+StreamBuilder::StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height,
+                             traces::Format color, traces::Format depth, float clear_depth) {
   stream_.name = std::move(name);
-  pass_ = traces::make_pass(stream_,
-                            {width, height, traces::Format::kR8G8B8A8Unorm,
-                             depth ? traces::Format::kD32Float : traces::Format::kUndefined},
-                            {0, 0, 0, 0}, clear_depth);
+  pass_ = traces::make_pass(stream_, {width, height, color, depth}, {0, 0, 0, 0}, clear_depth);
   const traces::Index image = append(stream_.images, checks());
   traces::Sampler sampler;
   sampler.max_lod = 0;
@@ -115,9 +117,13 @@ StreamBuilder& StreamBuilder::state(const DrawState& state) {
                   {2, 0, traces::Format::kR32G32Float, offsetof(Corner, uv)}};
   p.cull = state.cull;
   p.depth = state.depth;
-  if (state.paint == Paint::kCount) {
+  if (state.paint == Paint::kCount || state.mix == Mix::kAdd) {
     p.blend[0].enable = true;
     p.blend[0].dst_color = p.blend[0].dst_alpha = traces::BlendFactor::kOne;
+  } else if (state.mix == Mix::kOver) {
+    p.blend[0].enable = true;
+    p.blend[0].src_color = traces::BlendFactor::kSrcAlpha;
+    p.blend[0].dst_color = traces::BlendFactor::kOneMinusSrcAlpha;
   }
   commands_.emplace_back(traces::BindPipeline{append(stream_.pipelines, p)});
   commands_.emplace_back(traces::BindDescriptorSet{0, 0});

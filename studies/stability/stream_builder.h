@@ -33,8 +33,16 @@ enum class Paint : std::uint8_t {
   kCount     ///< adds 1/255 to red: the target counts how often each pixel was covered
 };
 
+/// How a fragment joins what is there.
+enum class Mix : std::uint8_t {
+  kReplace,
+  kAdd,  ///< the sum, alpha too
+  kOver  ///< by its alpha
+};
+
 struct DrawState {
   Paint paint = Paint::kColor;
+  Mix mix = Mix::kReplace;
   traces::DepthState depth{};
   traces::CullMode cull = traces::CullMode::kNone;
 };
@@ -44,6 +52,9 @@ class StreamBuilder {
   /// A target of RGBA8 UNORM, cleared to `clear` and `clear_depth`.
   StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, bool depth = false,
                 float clear_depth = 1);
+  /// A target of other formats, cleared to 0 and depth 1; no depths if undefined.
+  StreamBuilder(std::string name, std::uint32_t width, std::uint32_t height, traces::Format color,
+                traces::Format depth, float clear_depth = 1);
   /// Viewport and scissor of the draws that follow. Two areas, since a scissor may be smaller than its
   /// viewport.
   StreamBuilder& area(const Area& viewport, const Area& scissor);
