@@ -14,6 +14,7 @@
 #include "pipeline/report/flat_figures.h"
 #include "pipeline/report/page.h"
 #include "pipeline/report/report.h"
+#include "pipeline/report/timeline.h"
 #include "scenes/image/image_io.h"
 
 namespace quadrille::cli {
@@ -76,14 +77,21 @@ void RenderJob::add_to(CLI::App& command) {
           .add_option("--detail", detail,
                       "draws: what each draw did, how long it took and what limited it, in --stats and as a "
                       "table; tiles: counts by squares of "
-                      "the screen, in --stats. Same picture, same cycles")
-          ->type_name("draws,tiles"),
+                      "the screen, in --stats; timeline: use of every resource over the frame, in --stats. "
+                      "Same picture, same cycles")
+          ->type_name("draws,tiles,timeline"),
       command
           .add_option(
               "--report", report,
               "writes all figures with the picture as a page for a browser, in one file that needs no "
-              "network (docs/report.md); --detail draws,tiles is part of it")
+              "network (docs/report.md); --detail draws,tiles,timeline is part of it")
           ->type_name("F.html"),
+      command
+          .add_option(
+              "--timeline", timeline,
+              "writes the frame over time as a trace for Perfetto: .pftrace as TrackEvent protobuf, "
+              ".json as Chrome's trace events; each draw in flight, the use of every unit's resources")
+          ->type_name("F.pftrace|F.json"),
       units_option_};
   command.add_flag("--alpha", alpha,
                    "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
@@ -102,8 +110,13 @@ void RenderJob::check_outputs() const {
   if (stats) check_json_output("--stats", *stats);
   if (csv) check_output("--csv", *csv, {".csv"});
   if (report) check_output("--report", *report, {".html"});
-  check_distinct(
-      {{"--out", out}, {"--depth", depth}, {"--stats", stats}, {"--csv", csv}, {"--report", report}});
+  if (timeline) check_output("--timeline", *timeline, {".pftrace", ".json"});
+  check_distinct({{"--out", out},
+                  {"--depth", depth},
+                  {"--stats", stats},
+                  {"--csv", csv},
+                  {"--report", report},
+                  {"--timeline", timeline}});
 }
 
 void RenderJob::check_options_meant() const {
@@ -115,8 +128,10 @@ void RenderJob::check_options_meant() const {
   }
   if (frames.wanted() && units_option_->count() > 0)
     throw user_error("--units: with --frames each frame is one row; --stats has the figures of every unit");
-  if (frames.wanted() && (report || csv))
-    throw user_error("{0}: it is of one frame; leave --frames or {0} out", report ? "--report" : "--csv");
+  if (frames.wanted() && (report || csv || timeline))
+    throw user_error("{0}: it is of one frame; leave --frames or {0} out", report ? "--report"
+                                                                           : csv  ? "--csv"
+                                                                                  : "--timeline");
 }
 
 std::int64_t RenderJob::window_cycles() const {
@@ -129,18 +144,20 @@ std::int64_t RenderJob::window_cycles() const {
 }
 
 pipeline::DetailOptions RenderJob::details() const {
-  pipeline::DetailOptions chosen{.draws = report.has_value(), .tiles = report.has_value()};
+  pipeline::DetailOptions chosen{
+      .draws = report || timeline, .tiles = report.has_value(), .timeline = report.has_value()};
   if (!detail) return chosen;
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());
     const std::string word = detail->substr(at, end - at);
-    if (word != "draws" && word != "tiles")
-      throw user_error("--detail: {} not in {{draws,tiles}}", word.empty() ? "an empty word" : word);
-    (word == "draws" ? chosen.draws : chosen.tiles) = true;
+    if (word != "draws" && word != "tiles" && word != "timeline")
+      throw user_error("--detail: {} not in {{draws,tiles,timeline}}", word.empty() ? "an empty word" : word);
+    (word == "draws" ? chosen.draws : word == "tiles" ? chosen.tiles : chosen.timeline) = true;
     at = end + 1;
   }
-  if (chosen.tiles && !stats && !csv && !report)
-    throw user_error("--detail: tiles are in the JSON alone; add --stats F.json");
+  if ((chosen.tiles || chosen.timeline) && !stats && !csv && !report)
+    throw user_error("--detail: {} in the JSON alone; add --stats F.json",
+                     chosen.tiles ? "tiles are" : "the timeline is");
   if (frames.wanted() && !stats)
     throw user_error("--detail: with --frames each frame is one row; add --stats F.json for its details");
   return chosen;
@@ -205,6 +222,9 @@ void RenderJob::write_figures(const pipeline::ReportSubject& subject, const trac
   }
   if (csv) write_text(*csv, pipeline::figures_csv(json));
   if (stats) write_text(*stats, json);
+  if (timeline)
+    write_text(*timeline, timeline->ends_with(".json") ? pipeline::timeline_trace_json(subject)
+                                                       : pipeline::timeline_protobuf(subject));
 }
 
 int RenderJob::run_one(const Setting& setting) const {
@@ -218,7 +238,7 @@ int RenderJob::run_one(const Setting& setting) const {
   pipeline::Figures& figures = frame.figures;
   note_host(figures, load_s);
   const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
-  if (stats || csv || report) write_figures(subject, loaded.stream, frame.image);
+  if (stats || csv || report || timeline) write_figures(subject, loaded.stream, frame.image);
   Tables(!quiet, stats)
       .print(pipeline::report_table(subject,
                                     units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));

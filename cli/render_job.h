@@ -18,7 +18,7 @@ struct RenderJob {
   SceneArguments scene;
   MachineArguments machine;
   FrameArguments frames;  ///< of `render` alone
-  std::optional<std::string> out, depth, stats, csv, report, max_cycles, window;
+  std::optional<std::string> out, depth, stats, csv, report, timeline, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
   std::optional<std::string> detail;  ///< words, with commas between them
   bool alpha = false, quiet = false;

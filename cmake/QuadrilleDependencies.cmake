@@ -6,6 +6,7 @@ find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(Protobuf REQUIRED)  # timelines for Perfetto
 find_package(TinyGLTF REQUIRED)
 find_package(meshoptimizer REQUIRED)
 pkg_check_modules(DRACO REQUIRED IMPORTED_TARGET draco)

@@ -134,6 +134,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   timer.stop(host);
   host.build_s = build_s;
   out.figures = collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt);
+  out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;
   note_pending(frame, out.figures.left_out);

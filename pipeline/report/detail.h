@@ -17,9 +17,11 @@
 
 namespace quadrille::pipeline {
 
-/// Which details of a frame are kept and reported. Neither changes a pixel or a cycle.
+/// Which details of a frame are kept and reported. None changes a pixel or a cycle.
 struct DetailOptions {
   bool draws = false, tiles = false;
+  bool timeline = false;  ///< is there anyway, and is only reported
+  /// Something is kept that is not there anyway.
   [[nodiscard]] bool any() const { return draws || tiles; }
 };
 

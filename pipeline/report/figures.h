@@ -115,7 +115,8 @@ struct Figures {
   /// how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
   std::int64_t window_cycles = 0;
   FrameFigures frame;
-  double slice_cycles = 0;  ///< of the GPU clock; 0: there are no slices
+  double slice_cycles = 0;       ///< of the GPU clock; 0: there are no slices
+  bool report_timeline = false;  ///< the JSON has the slices of every resource
   std::vector<UnitFigures> units;
   std::vector<LinkFigures> links;
   std::vector<ClientFigures> bandwidth;

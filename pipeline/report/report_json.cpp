@@ -3,9 +3,11 @@
 #include "pipeline/report/notes.h"
 #include "pipeline/report/report.h"
 #include "pipeline/report/sensitivity.h"
+#include "pipeline/report/timeline.h"
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <map>
 
 namespace quadrille::pipeline {
@@ -173,6 +175,23 @@ Json tiles_json(const TileFigures& tiles) {
   return all;
 }
 
+/// A ten-thousandth is far below what a slice can tell.
+double rounded(double share) { return std::round(share * 1e4) / 1e4; }
+
+Json timeline_json(const Timeline& line) {
+  Json units = Json::object();
+  for (const UnitCurves& unit : line.units) {
+    Json curves = Json::object();
+    for (const ResourceCurve& curve : unit.resources) {
+      Json share = Json::array();
+      for (const double value : curve.share) share.push_back(rounded(value));
+      curves[curve.resource] = std::move(share);
+    }
+    units[unit.unit] = std::move(curves);
+  }
+  return {{"slice_cycles", line.slice_cycles}, {"slices", line.slices}, {"units", std::move(units)}};
+}
+
 /// Adds what was asked for.
 void add_detail(Json& document, const std::optional<Detail>& detail) {
   if (!detail) return;
@@ -260,6 +279,7 @@ std::string report_json(const ReportSubject& s) {
                    {"left_out", std::move(left_out)}};
   add_queries(document, f.queries);
   add_detail(document, f.detail);
+  if (f.report_timeline) document["timeline"] = timeline_json(timeline_of(f));
   document["host"] = host_json(f);
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -286,3 +286,21 @@ TEST_CASE("details of draws and tiles add up to the frame, in JSON and table, an
   CHECK_THAT(render(folder, "builtin:overdraw", {}).out, !Catch::Contains("DRAWS"));
   CHECK_FALSE(stats(folder, "builtin:triangle", {"--detail", "draws"}).contains("tiles"));
 }
+
+TEST_CASE("a timeline is written in both formats, tells the same, and changes no figure") {
+  const ScratchFolder folder;
+  const json plain = stats(folder, "builtin:overdraw", {"--out", "a.png"});
+  json timed = stats(folder, "builtin:overdraw",
+                     {"--out", "b.png", "--detail", "timeline", "--timeline", "t.pftrace"});
+  require_equal_pictures(folder, "a.png", "b.png");
+  CHECK(timed.at("units") == plain.at("units"));
+  CHECK_FALSE(plain.contains("timeline"));
+  const json& line = timed.at("timeline");
+  CHECK(line.at("units").size() == timed.at("units").size());
+  CHECK(line.at("units").at("core_0").at("issue").size() == line.at("slices").get<std::size_t>());
+  render(folder, "builtin:overdraw", {"--timeline", "t.json"});
+  const json events = json::parse(folder.read("t.json")).at("traceEvents");
+  const auto draws = std::ranges::count_if(events, [](const json& e) { return e.at("ph") == "X"; });
+  CHECK(draws == 16);
+  CHECK(folder.read("t.pftrace").size() > 10000);
+}

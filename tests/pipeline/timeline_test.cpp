@@ -1,0 +1,89 @@
+/// The timeline: its slices add up to the figures, draws keep to rows, and both formats of traces say the
+/// same.
+#include "pipeline/report/timeline.h"
+#include "scenes/scene.h"
+#include "tests/pipeline/machine_specimen.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <set>
+
+using namespace quadrille;
+using namespace quadrille::pipeline;
+
+namespace {
+
+/// Two units over 1000 cycles in slices of 400, the second one on a clock of half the rate; three draws.
+Figures two_units() {
+  Figures f;
+  f.scene = "a \"scene\"";
+  f.frame.cycles = 1000;
+  f.slice_cycles = 400;
+  UnitFigures fast, slow;
+  fast.path = "core_0";
+  fast.cycles = 1000;
+  fast.resources.push_back({"issue", "", hw::Resource::Kind::kRate, 500, {100, 500, 500}});
+  fast.resources.push_back({"warp_slots", "", hw::Resource::Kind::kPlaces, 300, {0, 200, 300}});
+  slow.path = "memory_0";
+  slow.cycles = 500;
+  slow.resources.push_back({"bus", "", hw::Resource::Kind::kRate, 200, {100, 200, 200}});
+  f.units = {fast, slow};
+  Detail detail;
+  detail.wanted.draws = true;
+  const auto draw = [](const char* label, std::int64_t issued, std::int64_t retired) {
+    DrawFigures d;
+    d.label = label;
+    d.issued = issued;
+    d.retired = retired;
+    d.counts[0] = 7;
+    return d;
+  };
+  detail.draws = {draw("first", 0, 500), draw("", 100, 900), draw("third", 500, 1000)};
+  f.detail = detail;
+  return f;
+}
+
+}  // namespace
+
+TEST_CASE("timeline: shares of each slice are of its own length, on the unit's clock") {
+  const Figures figures = two_units();
+  const Timeline line = timeline_of(figures);
+  REQUIRE(line.slices == 3);
+  CHECK(line.length_of(0) == 400);
+  CHECK(line.length_of(2) == 200);
+  REQUIRE(line.units.size() == 2);
+  const auto& issue = line.units[0].resources[0].share;
+  CHECK(issue == std::vector<double>{0.25, 1, 0});
+  CHECK(line.units[0].resources[1].share == std::vector<double>{0, 0.5, 0.5});
+  CHECK(line.units[1].resources[0].share == std::vector<double>{0.5, 0.5, 0});
+}
+
+TEST_CASE("timeline: a draw takes the first row that is free") {
+  const Figures figures = two_units();
+  const Timeline line = timeline_of(figures);
+  REQUIRE(line.draw_rows.size() == 2);
+  CHECK(line.draw_rows[0].size() == 2);
+  CHECK(line.draw_rows[0][1].draw == 2);
+  CHECK(line.draw_rows[1][0].draw == 1);
+}
+
+TEST_CASE("timeline: a frame without units has none") {
+  CHECK(timeline_of(Figures{}).units.empty());
+  CHECK(timeline_of(Figures{}).slices == 0);
+}
+
+TEST_CASE("timeline: the JSON has each counter at each slice's begin and 0 at the end, and each draw whole") {
+  const Figures figures = two_units();
+  const MachineConfig machine;
+  const auto document = nlohmann::json::parse(timeline_trace_json({figures, machine, 8, 8}));
+  std::vector<double> issue;
+  std::set<std::string> draws;
+  for (const auto& event : document["traceEvents"]) {
+    if (event["ph"] == "C" && event["name"] == "core_0 issue: used") issue.push_back(event["args"]["%"]);
+    if (event["ph"] == "X")
+      draws.insert(event["name"].get<std::string>() + " " + std::to_string(event["dur"].get<double>()));
+  }
+  CHECK(issue == std::vector<double>{25, 100, 0, 0});
+  CHECK(draws == std::set<std::string>{"draw 1 0.800000", "first 0.500000", "third 0.500000"});
+}
