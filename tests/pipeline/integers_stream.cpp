@@ -184,6 +184,7 @@ class Maker {
 
   Index triangles(int count) {
     std::vector<std::array<float, 4>> corners;
+    corners.reserve(3 * static_cast<std::size_t>(count));
     for (int i = 0; i < 3 * count; ++i)
       corners.push_back({random_.real(-1, 1), random_.real(-1, 1), random_.real(0, 1), 1});
     std::vector<std::byte> bytes(corners.size() * sizeof corners[0]);

@@ -129,6 +129,7 @@ class Maker {
 
   Index vertices(int triangles) {
     std::vector<Vertex> all;
+    all.reserve(3 * static_cast<std::size_t>(triangles));
     for (int i = 0; i < 3 * triangles; ++i)
       all.push_back({{random_.real(-1, 1), random_.real(-1, 1), random_.real(0, 1), 1},
                      {random_.real(0, 1), random_.real(0, 1), random_.real(0, 1), 1}});
