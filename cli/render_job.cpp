@@ -214,6 +214,10 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
 
 void RenderJob::write_figures(const pipeline::ReportSubject& subject, const traces::CommandStream& stream,
                               const pipeline::FrameImage& image) const {
+  if (timeline)
+    write_text(*timeline, timeline->ends_with(".json") ? pipeline::timeline_trace_json(subject)
+                                                       : pipeline::timeline_protobuf(subject));
+  if (!report && !csv && !stats) return;
   const std::string json = pipeline::report_json(subject);
   if (report) {
     const pipeline::PagePictures pictures{color_png(image), depth_png(image),
@@ -222,9 +226,6 @@ void RenderJob::write_figures(const pipeline::ReportSubject& subject, const trac
   }
   if (csv) write_text(*csv, pipeline::figures_csv(json));
   if (stats) write_text(*stats, json);
-  if (timeline)
-    write_text(*timeline, timeline->ends_with(".json") ? pipeline::timeline_trace_json(subject)
-                                                       : pipeline::timeline_protobuf(subject));
 }
 
 int RenderJob::run_one(const Setting& setting) const {

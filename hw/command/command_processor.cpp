@@ -19,7 +19,7 @@ CommandProcessor::CommandProcessor(sc_core::sc_module_name name, const UnitConte
     retire_in.add(*this, fmt::format("retire_in_{}", i).c_str(), LinkRole::kReply);
   }
   for (int f = 0; f < context.machine.front_ends; ++f) {
-    const std::string port = context.machine.front_ends == 1 ? "draw_out" : fmt::format("draw_out_{}", f);
+    const std::string port = context.front_end_port("draw_out", f);
     draw_out.push_back(std::make_unique<FifoOut<DrawToken>>(*this, port.c_str()));
   }
   retired_at_.resize(frame_.draws.size());

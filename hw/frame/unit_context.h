@@ -7,6 +7,11 @@
 #include "models/memory/device_memory.h"
 #include "models/raster/engine.h"
 
+#include <fmt/format.h>
+
+#include <string>
+#include <string_view>
+
 namespace quadrille::hw {
 
 /// How often units stand that others have a port or a part for.
@@ -22,6 +27,12 @@ struct MachineCounts {
   }
 };
 
+/// Name of a unit's port for number `i` of `count` units of another kind: where one stands alone, without the
+/// number.
+[[nodiscard]] inline std::string port_name(std::string_view name, std::size_t i, std::size_t count) {
+  return count == 1 ? std::string(name) : fmt::format("{}_{}", name, i);
+}
+
 /// Given to a unit's constructor. What it refers to outlives the unit.
 struct UnitContext {
   const Clock& clock;  ///< the unit's own
@@ -31,6 +42,11 @@ struct UnitContext {
   /// of the unit among those of its kind: 0 where it stands once, else that of its core, partition, engine,
   /// front end or channel
   int number = 0;
+
+  /// Name of its port for geometry front end `f`.
+  [[nodiscard]] std::string front_end_port(std::string_view name, int f) const {
+    return port_name(name, static_cast<std::size_t>(f), static_cast<std::size_t>(machine.front_ends));
+  }
 
   /// Of a unit that stands once a partition.
   [[nodiscard]] PartitionId partition() const { return PartitionId(number); }

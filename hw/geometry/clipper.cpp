@@ -20,7 +20,7 @@ Clipper::Clipper(sc_core::sc_module_name name, const UnitContext& context, const
       rate_(context.clock) {
   add_initiation_rate("rate");
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const std::string port = pieces_.size() == 1 ? "clipped_out" : fmt::format("clipped_out_{}", i);
+    const std::string port = port_name("clipped_out", i, pieces_.size());
     clipped_out.push_back(std::make_unique<FifoOut<ClippedToken>>(*this, port.c_str()));
   }
 }

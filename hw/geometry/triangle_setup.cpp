@@ -27,12 +27,9 @@ TriangleSetupUnit::TriangleSetupUnit(sc_core::sc_module_name name, const UnitCon
       rate_(context.clock) {
   add_initiation_rate("rate");
   for (int f = 0; f < context.machine.front_ends; ++f) {
-    const auto name_of = [&](const char* port) {
-      return context.machine.front_ends == 1 ? std::string(port) : fmt::format("{}_{}", port, f);
-    };
-    clipped_in.add(*this, name_of("clipped_in").c_str());
-    release_out.push_back(
-        std::make_unique<FifoOut<ReleaseToken>>(*this, name_of("release_out").c_str(), LinkRole::kReply));
+    clipped_in.add(*this, context.front_end_port("clipped_in", f).c_str());
+    release_out.push_back(std::make_unique<FifoOut<ReleaseToken>>(
+        *this, context.front_end_port("release_out", f).c_str(), LinkRole::kReply));
   }
   add_places("triangle_slots", [this] { return sequence_ - retired_ >= triangles_.size(); });
   for (int i = 0; i < context.machine.partitions_of_engine(); ++i) {

@@ -35,7 +35,7 @@ VertexFetch::VertexFetch(sc_core::sc_module_name name, const UnitContext& contex
               static_cast<std::uint32_t>(params.range_primitives.value())),
       slots_(slots_of(context, batches)) {
   for (int e = 0; e < context.machine.engines; ++e) {
-    const std::string port = context.machine.engines == 1 ? "release_in" : fmt::format("release_in_{}", e);
+    const std::string port = port_name("release_in", static_cast<std::size_t>(e), released_by_.size());
     release_in.add(*this, port.c_str(), LinkRole::kReply);
   }
   add_initiation_rate("rates");

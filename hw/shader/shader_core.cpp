@@ -73,7 +73,7 @@ ShaderCore::ShaderCore(sc_core::sc_module_name name, const UnitContext& context,
   add_places("warp_slots", [this] { return kept_out(true); });
   add_places("register_rows", [this] { return kept_out(false); });
   for (int f = 0; f < context.machine.front_ends; ++f) {
-    const std::string port = context.machine.front_ends == 1 ? "vertex_out" : fmt::format("vertex_out_{}", f);
+    const std::string port = context.front_end_port("vertex_out", f);
     vertex_out.push_back(
         std::make_unique<FifoOut<VertexDoneToken>>(*this, port.c_str(), LinkRole::kFlow, kVertexStream));
   }

@@ -20,7 +20,7 @@ WorkDistributor::WorkDistributor(sc_core::sc_module_name name, const UnitContext
   for (int i = 0; i < context.machine.partitions + context.machine.front_ends; ++i)
     load_in.add(*this, fmt::format("load_in_{}", i).c_str(), LinkRole::kReply);
   for (int f = 0; f < context.machine.front_ends; ++f) {
-    const std::string port = context.machine.front_ends == 1 ? "vertex_in" : fmt::format("vertex_in_{}", f);
+    const std::string port = context.front_end_port("vertex_in", f);
     vertex_in.add(*this, port.c_str(), LinkRole::kFlow, kVertexStream);
   }
   for (int c = 0; c < context.machine.cores; ++c) {

@@ -4,6 +4,7 @@
 #include "pipeline/machine/machine.h"
 #include "pipeline/report/figures.h"
 #include "pipeline/report/report.h"
+#include "scenes/scene.h"
 #include "tests/hw/base/strict_driver.h"
 #include "tests/hw/contract.h"
 #include "tests/pipeline/machine_specimen.h"
@@ -81,6 +82,23 @@ PlanRun run_plan(const Settings& settings, bool strict, const traces::CommandStr
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) read_line(line, run);
   return run;
+}
+
+std::string faults_on(const Settings& settings, const traces::CommandStream& stream) {
+  const PlanRun run = run_plan(settings, false, stream);
+  std::string faults = run.failure;
+  for (const std::string& law : run.broken) faults += law + '\n';
+  if (faults.empty() && run.digest != functional_digest(stream)) faults = "another picture";
+  return faults;
+}
+
+traces::CommandStream small_scene(const char* name) {
+  scenes::SceneOptions options;
+  options.width = 96;
+  options.height = 54;
+  traces::CommandStream stream = scenes::load_scene(name, options);
+  traces::validate(stream);
+  return stream;
 }
 
 }  // namespace quadrille::pipeline::test

@@ -30,5 +30,10 @@ struct PlanRun {
 /// unless `settings` say more, so that set-up has to be told what is retired.
 [[nodiscard]] PlanRun run_plan(const Settings& settings, bool strict = false,
                                const traces::CommandStream& stream = plan_frame());
+/// What is wrong with a run of the frame, which should end, keep all laws and draw what the functional
+/// rendering draws; empty: nothing.
+[[nodiscard]] std::string faults_on(const Settings& settings, const traces::CommandStream& stream);
+/// A built-in scene at 96x54, validated.
+[[nodiscard]] traces::CommandStream small_scene(const char* name);
 
 }  // namespace quadrille::pipeline::test
