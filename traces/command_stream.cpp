@@ -6,10 +6,10 @@
 namespace quadrille::traces {
 
 std::uint32_t level_width(const Image& image, std::uint32_t level) {
-  return std::max(1u, image.width >> level);
+  return level < 32 ? std::max(1u, image.width >> level) : 1;
 }
 std::uint32_t level_height(const Image& image, std::uint32_t level) {
-  return std::max(1u, image.height >> level);
+  return level < 32 ? std::max(1u, image.height >> level) : 1;
 }
 
 std::uint64_t level_bytes(const Image& image, std::uint32_t level) {

@@ -122,6 +122,8 @@ void CommandWalk::visit(const BeginPass& c) {
   if (c.first_image() == kNone) throw user_error("command {}: a render pass without attachments", at_);
   if (c.first_image() >= stream_.images.size())
     throw user_error("command {}: image {} does not exist", at_, c.first_image());
+  if (c.depth.image != kNone && c.depth.image >= stream_.images.size())
+    throw user_error("command {}: depth attachment: image {} does not exist", at_, c.depth.image);
   target_ = target_of(stream_, c);
   samples_ = stream_.images[c.first_image()].samples;
   attached_.clear();

@@ -114,6 +114,11 @@ TexelColors fetch_colors(const std::array<std::int32_t, 8>& texel, const std::by
 
 /// Any format, by its row of the table: all channels are numbers. Channels that it lacks are 0, alpha is 1.
 LaneColor filter_any(const TexturePlan::Footprint& f, const std::byte* base, const FormatInfo& format) {
+  // Bits, which arithmetic would change where they look like a NaN; their filter is always nearest.
+  if (number_kind(format.numeric) != NumberKind::kFloat) {
+    const TexelColors texel = fetch_colors(f.texel[0], base, format);
+    return {{texel[0], texel[1], texel[2], texel[3]}};
+  }
   const __m256 scale = _mm256_set1_ps(1.0f / 256.0f);
   const auto weight = [scale](const std::array<std::int32_t, 8>& frac) {
     return _mm256_mul_ps(_mm256_cvtepi32_ps(load_lanes(frac.data())), scale);

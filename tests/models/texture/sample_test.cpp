@@ -123,6 +123,22 @@ TEST_CASE("sample: agrees with a sampler written in double for every size and st
   CHECK(static_cast<double>(close) > 0.997 * static_cast<double>(lanes));
 }
 
+TEST_CASE("sample: integers that look like signalling NaNs keep every bit") {
+  RandomSource random(113);
+  for (const std::uint32_t value : {0x7f800001u, 0xffabcdefu, 0x7fbfffffu, 0x80000000u}) {
+    PlainTexture texture{Format::kR32Uint, 8, 8, 1, {}};
+    texture.texels.resize(4 * 64);
+    for (std::size_t i = 0; i < 64; ++i) std::memcpy(texture.texels.data() + 4 * i, &value, 4);
+    DeviceMemory memory;
+    const TextureView view = upload(memory, texture);
+    const SamplerState nearest{Filter::kNearest, Filter::kNearest, Filter::kNearest};
+    const TextureRequest request = random_request(random, 8, 8);
+    const auto rgba = sampled(view, nearest, request, memory);
+    for (std::size_t lane = 0; lane < kWarpLanes; ++lane)
+      if ((request.active >> lane & 1) != 0) CHECK(std::bit_cast<std::uint32_t>(rgba[0][lane]) == value);
+  }
+}
+
 TEST_CASE("sample: a constant texture filters to itself") {
   RandomSource random(112);
   for (int round = 0; round < 300; ++round) {
