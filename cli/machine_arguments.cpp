@@ -1,6 +1,12 @@
 #include "cli/machine_arguments.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "models/base/error.h"
+#include "pipeline/machine/machine_plan.h"
 
 namespace quadrille::cli {
 
@@ -28,6 +34,12 @@ void MachineArguments::apply(pipeline::MachineConfig& config) const {
     config.set(setting.substr(0, equals), setting.substr(equals + 1), "--set");
   }
   config.check();
+}
+
+void check_unit_kind(std::string_view flag, std::string_view kind) {
+  constexpr auto kKinds = pipeline::unit_kind_names();
+  if (std::ranges::find(kKinds, kind) == kKinds.end())
+    throw user_error("{}: no unit is called '{}'; there are {}", flag, kind, fmt::join(kKinds, ", "));
 }
 
 }  // namespace quadrille::cli

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/machine/machine_config.h"
@@ -18,5 +19,8 @@ struct MachineArguments {
   /// Loads the machine, then applies the settings. Throws `UserError` naming the file or the setting.
   void apply(pipeline::MachineConfig& config) const;
 };
+
+/// Throws `UserError` naming `flag` unless units of that kind exist ("texture").
+void check_unit_kind(std::string_view flag, std::string_view kind);
 
 }  // namespace quadrille::cli

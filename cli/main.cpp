@@ -123,6 +123,7 @@ int run(int argc, char** argv) {
   add_trace(app, chosen);
   add_accuracy(app, chosen);
   add_leave_out(app, chosen);
+  add_why(app, chosen);
   add_lists(app, chosen);
   add_stability(app, chosen);
   add_experiment(app, chosen);

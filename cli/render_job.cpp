@@ -21,6 +21,7 @@ namespace quadrille::cli {
 namespace {
 
 constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
+constexpr double kMostFaster = 100;
 constexpr std::int64_t kMaxWindow = 1'000'000;  // cycles: far beyond what any frame gains by
 
 void note_host(pipeline::Figures& figures, double load_s) {
@@ -92,6 +93,11 @@ void RenderJob::add_to(CLI::App& command) {
               "writes the frame over time as a trace for Perfetto: .pftrace as TrackEvent protobuf, "
               ".json as Chrome's trace events; each draw in flight, the use of every unit's resources")
           ->type_name("F.pftrace|F.json"),
+      command
+          .add_option("--faster", faster,
+                      "makes all units of a kind so many times as fast, 1 to 100, in all that they do; "
+                      "quadrille why tries every kind (docs/why.md)")
+          ->type_name("UNIT=TIMES"),
       units_option_};
   command.add_flag("--alpha", alpha,
                    "keeps the alpha that the frame stored (otherwise pictures are written opaque)");
@@ -163,6 +169,18 @@ pipeline::DetailOptions RenderJob::details() const {
   return chosen;
 }
 
+std::vector<std::pair<std::string, double>> RenderJob::faster_kinds() const {
+  std::vector<std::pair<std::string, double>> kinds;
+  for (const std::string& text : faster) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::string kind = text.substr(0, equals);
+    check_unit_kind("--faster", kind);
+    if (equals == text.size()) throw user_error("--faster: how many times as fast? for example {}=1.1", kind);
+    kinds.emplace_back(kind, parse_number(text.substr(equals + 1), "--faster", 1, kMostFaster));
+  }
+  return kinds;
+}
+
 RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) const {
   const hw::Clock clock(static_cast<std::int64_t>(config.gpu.clock_mhz * 1e6));
   hw::RunLimits limits;
@@ -171,7 +189,7 @@ RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) con
     // beyond that it is later than time goes
     if (cycles < hw::kNever / (clock.period() + 1)) limits.max_time = clock.edge(cycles);
   }
-  return {config, std::move(limits), clock, clock.edge(window_cycles()), details()};
+  return {config, std::move(limits), clock, clock.edge(window_cycles()), details(), faster_kinds()};
 }
 
 int RenderJob::run() {
@@ -199,7 +217,8 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
   const pipeline::MachineOptions options{
       .driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
       .window = setting.window,
-      .leave_out = leave_out == "auto"};
+      .leave_out = leave_out == "auto",
+      .faster = setting.faster};
   pipeline::RenderedFrame frame =
       fidelity == "functional"
           ? pipeline::render_functional_frame(stream, setting.config.precision())

@@ -21,6 +21,7 @@ struct RenderJob {
   std::optional<std::string> out, depth, stats, csv, report, timeline, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
   std::optional<std::string> detail;  ///< words, with commas between them
+  std::vector<std::string> faster;    ///< "texture=1.1"
   bool alpha = false, quiet = false;
 
   /// Adds every option but those of the scene.
@@ -37,6 +38,7 @@ struct RenderJob {
     hw::Clock clock;
     hw::Tick window = 0;
     pipeline::DetailOptions detail;
+    std::vector<std::pair<std::string, double>> faster = {};  ///< kinds of units, how many times
   };
   /// Where one frame's files go.
   struct Outputs {
@@ -51,6 +53,8 @@ struct RenderJob {
   [[nodiscard]] std::int64_t window_cycles() const;
   /// Throws `UserError` for a word that is none, and for details that nothing would show.
   [[nodiscard]] pipeline::DetailOptions details() const;
+  /// Throws `UserError` for a unit that there is none of.
+  [[nodiscard]] std::vector<std::pair<std::string, double>> faster_kinds() const;
   [[nodiscard]] Setting setting(const pipeline::MachineConfig& config) const;
   /// Draws a frame and writes its pictures.
   [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting,

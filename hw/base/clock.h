@@ -22,7 +22,7 @@ inline constexpr Tick kNever = std::numeric_limits<Tick>::max();
 /// reduced denominator, after seconds of device time) 128-bit arithmetic takes over.
 class Clock {
  public:
-  explicit Clock(std::int64_t frequency_hz = 1'000'000'000) : hz_(frequency_hz) {
+  explicit Clock(std::int64_t frequency_hz = 1'000'000'000) : hz_(frequency_hz), domain_hz_(frequency_hz) {
     QUADRILLE_CHECK(frequency_hz > 0 && frequency_hz <= kFemto, "clock frequency {} Hz", frequency_hz);
     whole_ = kFemto / hz_;
     per_tick_ = static_cast<double>(hz_) / static_cast<double>(kFemto);
@@ -34,7 +34,15 @@ class Clock {
     }
   }
 
+  /// A clock of the same domain whose cycles are all equal and `times` as short, to a femtosecond. Its edges
+  /// are no edges of the domain's; what passes between them waits for none.
+  [[nodiscard]] Clock faster(double times) const;
+
   [[nodiscard]] std::int64_t frequency_hz() const { return hz_; }
+  /// Nothing needs a synchroniser between the two.
+  [[nodiscard]] bool same_domain(const Clock& other) const { return domain_hz_ == other.domain_hz_; }
+  /// Is it a faster clock of a domain? Its owner's actions need not lie on edges.
+  [[nodiscard]] bool free_running() const { return free_running_; }
   /// Every cycle has the same whole number of femtoseconds: `period()`.
   [[nodiscard]] bool uniform() const { return fraction_ == 0; }
   /// Femtoseconds of a cycle, rounded down.
@@ -68,7 +76,8 @@ class Clock {
   // out of line, to keep the common case short
   [[nodiscard]] Tick after_uneven(Tick t, std::int64_t cycles) const;
   static constexpr std::int64_t kFemto = 1'000'000'000'000'000;
-  std::int64_t hz_;
+  std::int64_t hz_, domain_hz_;
+  bool free_running_ = false;
   Tick whole_ = 0;  ///< whole femtoseconds of the period
   /// the rest of the period in units of 2^-64 fs, rounded up; 0 for a uniform clock
   std::uint64_t fraction_ = 0;

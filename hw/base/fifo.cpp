@@ -32,7 +32,7 @@ void FifoBase::bind_consumer(Unit& unit) {
   consumer_ = &unit;
 }
 
-bool FifoBase::crosses_clocks() const { return !(producer_->clock() == consumer_->clock()); }
+bool FifoBase::crosses_clocks() const { return !producer_->clock().same_domain(consumer_->clock()); }
 
 void FifoBase::elaborate() {
   QUADRILLE_CHECK(producer_ != nullptr && consumer_ != nullptr, "link {} lacks a producer or a consumer",
@@ -47,7 +47,8 @@ void FifoBase::elaborate() {
   // n cycles from any edge on take at least edge(n): floor(a + b) >= floor(a) + floor(b).
   forward_ = to.edge(spec_.latency);
   credit_ = from.edge(spec_.credit_latency);
-  if (from == to && from.uniform()) {
+  // also where one of them is a faster clock of the domain: nothing waits for an edge there
+  if (!crosses_clocks() && from.uniform() && to.uniform()) {
     forward_step_ = forward_;
     credit_step_ = credit_;
   }

@@ -37,12 +37,28 @@ Machine::Machine(const MachineConfig& config, DeviceFrame& frame, const MachineO
   check_registers();
   if (options.external_driver == nullptr) own_driver_ = make_driver(options);
   driver_ = options.external_driver != nullptr ? options.external_driver : own_driver_.get();
+  make_faster(options.faster);
   leave_out(options.leave_out);
   list_clients();
   create_units(options.module_order);
   Wiring(*this).wire();
   // No draw in flight makes the drawing units idle; scan-out and memory may still have work.
   for (hw::Unit* unit : driver_->units()) unit->set_quiet_log(quiet_);
+}
+
+// Beside a faster unit all clocks have cycles of equal length: then nothing has to wait for an edge.
+void Machine::make_faster(const std::vector<std::pair<std::string, double>>& faster) {
+  if (faster.empty()) return;
+  clock_ = clock_.faster(1);
+  memory_clock_ = memory_clock_.faster(1);
+  for (const auto& [kind, times] : faster)
+    faster_.insert_or_assign(
+        kind, (kind == UnitKind<hw::MemoryChannel>::name ? memory_clock_ : clock_).faster(times));
+}
+
+const hw::Clock& Machine::clock_of_kind(std::string_view kind, const hw::Clock& domain) const {
+  const auto found = faster_.find(kind);
+  return found == faster_.end() ? domain : found->second;
 }
 
 // SystemC searches for what is destroyed: for a port from the latest to the first, for a link from the first

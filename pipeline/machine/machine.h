@@ -9,6 +9,7 @@
 #include "pipeline/driver/frame_builder.h"
 #include "pipeline/machine/machine_config.h"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -25,6 +26,9 @@ struct MachineOptions {
   /// seed: in which order modules are created and handed to the driver; figures must not depend on it
   std::uint64_t module_order = 0;
   bool leave_out = true;  ///< do not build what the frame does not need
+  /// kinds of units ("texture"), and how many times as fast as the machine has them they do all that they do:
+  /// a clock of their own, without synchronisers (docs/why.md)
+  std::vector<std::pair<std::string, double>> faster = {};
   /// add the units to this driver instead of an own one; its owner runs it
   hw::Driver* external_driver = nullptr;
 };
@@ -77,6 +81,9 @@ class Machine {
   class Wiring;
 
   void check_registers() const;
+  void make_faster(const std::vector<std::pair<std::string, double>>& faster);
+  /// The clock of a kind of units: that of its domain, or a faster one.
+  [[nodiscard]] const hw::Clock& clock_of_kind(std::string_view kind, const hw::Clock& domain) const;
   /// Last tick at which anything moved.
   [[nodiscard]] hw::Tick quiet_end() const;
   void leave_out(bool wanted);
@@ -91,6 +98,7 @@ class Machine {
   const MachineConfig& config_;
   DeviceFrame& frame_;
   hw::Clock clock_, memory_clock_;
+  std::map<std::string, hw::Clock, std::less<>> faster_;  ///< by kind of unit
   hw::QuietLog quiet_;
   std::vector<LeftOut> left_out_;
   /// texture and load-store units are built; depth units are linked to memory

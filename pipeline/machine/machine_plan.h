@@ -23,6 +23,7 @@
 #include "hw/shader/work_distributor.h"
 #include "hw/texture/texture_unit.h"
 
+#include <array>
 #include <string_view>
 #include <type_traits>
 
@@ -164,6 +165,13 @@ struct UnitKind;
   };
 QUADRILLE_UNITS(QUADRILLE_KIND)
 #undef QUADRILLE_KIND
+
+/// The names of all kinds of units, in the order of the pipeline.
+[[nodiscard]] constexpr auto unit_kind_names() {
+#define QUADRILLE_NAME(path, type, how_often, frames) std::string_view(#path),
+  return std::to_array({QUADRILLE_UNITS(QUADRILLE_NAME)});
+#undef QUADRILLE_NAME
+}
 
 /// Calls `visit.operator()<Unit>()` for each kind of unit, in the order of the pipeline.
 template <class Visit>

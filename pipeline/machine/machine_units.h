@@ -22,9 +22,13 @@ class Machine::Maker {
 #undef QUADRILLE_MAKE
 
  private:
-  [[nodiscard]] hw::UnitContext context(int number) const { return context(number, m_.clock_); }
-  [[nodiscard]] hw::UnitContext context(int number, const hw::Clock& clock) const {
-    return {clock,
+  template <class Unit>
+  [[nodiscard]] hw::UnitContext context(Kind<Unit> kind, int number) const {
+    return context(kind, number, m_.clock_);
+  }
+  template <class Unit>
+  [[nodiscard]] hw::UnitContext context(Kind<Unit> /*kind*/, int number, const hw::Clock& clock) const {
+    return {m_.clock_of_kind(UnitKind<Unit>::name, clock),
             m_.frame_.frame,
             m_.frame_.memory,
             {c_.gpu.cores, c_.gpu.partitions, c_.gpu.channels, c_.gpu.engines, c_.gpu.front_ends},

@@ -25,6 +25,18 @@ TEST_CASE("a wrong command line is refused in one line") {
   refused({"diff", "a.png"}, {"B"});
 }
 
+TEST_CASE("a faster unit has to exist, and to be faster") {
+  render_refused({"--faster", "shader=2"}, {"--faster: no unit is called 'shader'", "command_processor, "});
+  render_refused({"--faster", "core"}, {"--faster: how many times as fast? for example core=1.1"});
+  render_refused({"--faster", "core=0.5"}, {"--faster", "1..100"});
+  render_refused({"--faster", "core=fast"}, {"--faster", "fast"});
+  render_refused({"--faster", "core=2", "--fidelity", "functional"},
+                 {"--faster: a functional run has no units"});
+  refused({"why", "builtin:triangle", "--units", "core,texure"}, {"--units: no unit is called 'texure'"});
+  refused({"why", "builtin:triangle", "--jobs", "0"}, {"--jobs"});
+  refused({"why"}, {"SCENE"});
+}
+
 TEST_CASE("a name that is nearly one is refused with the one that may be meant") {
   refused({"rende", "builtin:triangle"},
           {"quadrille: unknown subcommand 'rende'; did you mean 'render'?; see quadrille --help"});

@@ -50,4 +50,18 @@ TEST_CASE("clock: a second of a clock has as many edges as its frequency says, s
   }
 }
 
+TEST_CASE("clock: a faster clock has equal cycles, of its domain and of no other") {
+  const Clock clock(1'755'000'000);
+  const Clock same = clock.faster(1), faster = clock.faster(1.1);
+  CHECK(same.period() == 569'801);  // of 569,800.57 fs
+  CHECK(faster.period() == 518'001);
+  CHECK(faster.uniform());
+  CHECK(faster.free_running());
+  CHECK_FALSE(clock.free_running());
+  CHECK(faster.same_domain(clock));
+  CHECK_FALSE(faster.same_domain(Clock(1'000'000'000)));
+  CHECK(faster.after(1234, 3) == 1234 + 3 * 518'001);  // wherever it begins
+  CHECK(Clock(1'000'000'000).faster(100).period() == 10'000);
+}
+
 TEST_CASE("clock: never stays never") { CHECK(Clock(1'755'000'000).align(kNever) == kNever); }
