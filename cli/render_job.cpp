@@ -176,6 +176,8 @@ std::vector<std::pair<std::string, double>> RenderJob::faster_kinds() const {
     const std::string kind = text.substr(0, equals);
     check_unit_kind("--faster", kind);
     if (equals == text.size()) throw user_error("--faster: how many times as fast? for example {}=1.1", kind);
+    if (std::ranges::find(kinds, kind, [](const auto& given) { return given.first; }) != kinds.end())
+      throw user_error("--faster: {} is given twice", kind);
     kinds.emplace_back(kind, parse_number(text.substr(equals + 1), "--faster", 1, kMostFaster));
   }
   return kinds;

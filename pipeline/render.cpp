@@ -140,6 +140,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   note_pending(frame, out.figures.left_out);
   out.figures.order_dependent = frame.order_dependent();
   out.figures.scene = stream.name;
+  out.figures.faster = options.faster;
   if (options.window > 0) {
     out.figures.fidelity = "approximate";
     out.figures.window_cycles = machine.clock().edges_before(options.window);

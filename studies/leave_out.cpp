@@ -1,7 +1,5 @@
 #include "studies/leave_out.h"
 
-#include <xxhash.h>
-
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,6 +10,7 @@
 #include "pipeline/render.h"
 #include "pipeline/report/report.h"
 #include "studies/child_run.h"
+#include "studies/image_hash.h"
 
 namespace quadrille::studies {
 namespace {
@@ -19,12 +18,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kLongestRunSeconds = 3600;
-
-std::string image_hash(const pipeline::FrameImage& image) {
-  const std::uint64_t color = XXH3_64bits(image.color.data(), image.color.size() * sizeof(image.color[0]));
-  const std::uint64_t depth = XXH3_64bits(image.depth.data(), image.depth.size() * sizeof(image.depth[0]));
-  return fmt::format("{}x{} {:016x} {:016x}", image.width, image.height, color, depth);
-}
 
 /// In the child: the whole way from the file to the figures, as one line of JSON.
 std::string run_once(const LeaveOutScene& scene, const pipeline::MachineConfig& machine, bool leave_out) {

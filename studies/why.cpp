@@ -1,7 +1,5 @@
 #include "studies/why.h"
 
-#include <xxhash.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,6 +14,7 @@
 #include "pipeline/report/report.h"
 #include "studies/child_run.h"
 #include "studies/experiments/experiment.h"
+#include "studies/image_hash.h"
 
 namespace quadrille::studies {
 namespace {
@@ -33,7 +32,7 @@ struct Variant {
 
 struct RunResult {
   std::int64_t cycles = 0;
-  std::string image;  ///< hash of the colours
+  std::string image;  ///< hash of colours and depths
 };
 
 /// In the child: its machine is changed.
@@ -47,12 +46,8 @@ pipeline::RenderedFrame drawn(const traces::CommandStream& stream, pipeline::Mac
   return frame;
 }
 
-std::string hash_of(const pipeline::FrameImage& image) {
-  return fmt::format("{:016x}", XXH3_64bits(image.color.data(), image.color.size() * sizeof(image.color[0])));
-}
-
 Json result_json(const pipeline::RenderedFrame& frame) {
-  return {{"cycles", frame.figures.frame.cycles}, {"image", hash_of(frame.image)}};
+  return {{"cycles", frame.figures.frame.cycles}, {"image", image_hash(frame.image)}};
 }
 
 /// The machine as it is: its use, and what the report of the run expects.
@@ -94,6 +89,7 @@ class Measurement {
     result.scene = stream_.name;
     result.cycles = base.at("cycles").get<std::int64_t>();
     result.limit = base.at("limit").get<std::string>();
+    check_kinds(base);
     list_units(base, result);
     list_doubled(base, result);
     const std::vector<RunResult> runs = run_all(base.at("image").get<std::string>());
@@ -102,6 +98,11 @@ class Measurement {
   }
 
  private:
+  void check_kinds(const Json& base) const {
+    for (const std::string& kind : setting_.kinds)
+      if (!base.at("units").contains(kind))
+        throw user_error("--units: {} needs no {}, so none can be faster", stream_.name, kind);
+  }
   void list_units(const Json& base, WhyResult& result) {
     // The clocks of a machine with faster units are equal to a femtosecond; so are those of its ruler.
     variants_.push_back({"equal clocks", {{"command_processor", 1}}, {}});

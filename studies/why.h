@@ -52,7 +52,8 @@ struct WhySetting {
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 };
 
-/// `machine` is changed in the runs' own processes alone. Throws `UserError` with what a run was refused for;
+/// `machine` is changed in the runs' own processes alone. Throws `UserError` with what a run was refused for,
+/// or for a kind of which the frame needs none;
 /// `std::runtime_error` when one failed, or drew another picture than the machine as it is.
 [[nodiscard]] WhyResult measure_why(const traces::CommandStream& stream, pipeline::MachineConfig& machine,
                                     const WhySetting& setting);

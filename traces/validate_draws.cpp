@@ -56,9 +56,13 @@ void CommandWalk::run() {
   if (last_->colors.empty()) throw user_error("commands: the last render pass has no colours to show");
 }
 
+void CommandWalk::check_exists(std::uint32_t image, const char* what) const {
+  if (image >= stream_.images.size())
+    throw user_error("command {}: {}: image {} does not exist", at_, what, image);
+}
+
+/// Of a pass whose images exist.
 void CommandWalk::check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what) {
-  if (use.image >= stream_.images.size())
-    throw user_error("command {}: {}: image {} does not exist", at_, what, use.image);
   const Image& image = stream_.images[use.image];
   if ((image.usage & usage) == 0)
     throw user_error("command {}: {}: image {} '{}' is not for that use", at_, what, use.image, image.name);
@@ -87,8 +91,6 @@ void CommandWalk::check_part(const ImagePart& part, const char* what) {
 
 void CommandWalk::check_resolve(const ColorAttachmentUse& color) {
   constexpr const char* kWhat = "resolve attachment";
-  if (color.resolve >= stream_.images.size())
-    throw user_error("command {}: {}: image {} does not exist", at_, kWhat, color.resolve);
   const Image &from = stream_.images[color.image], &to = stream_.images[color.resolve];
   if ((to.usage & kColorAttachment) == 0 || to.samples != 1 || from.samples == 1)
     throw user_error(
@@ -120,10 +122,11 @@ void CommandWalk::visit(const BeginPass& c) {
     throw user_error("command {}: {} colour attachments; at most {} are possible", at_, c.colors.size(),
                      kMaxColorAttachments);
   if (c.first_image() == kNone) throw user_error("command {}: a render pass without attachments", at_);
-  if (c.first_image() >= stream_.images.size())
-    throw user_error("command {}: image {} does not exist", at_, c.first_image());
-  if (c.depth.image != kNone && c.depth.image >= stream_.images.size())
-    throw user_error("command {}: depth attachment: image {} does not exist", at_, c.depth.image);
+  for (const ColorAttachmentUse& color : c.colors) {
+    check_exists(color.image, "colour attachment");
+    if (color.resolve != kNone) check_exists(color.resolve, "resolve attachment");
+  }
+  if (c.depth.image != kNone) check_exists(c.depth.image, "depth attachment");
   target_ = target_of(stream_, c);
   samples_ = stream_.images[c.first_image()].samples;
   attached_.clear();

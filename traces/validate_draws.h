@@ -48,6 +48,7 @@ class CommandWalk {
   void visit(const EndQuery& c) { queries_.end(c, at_, pass_ != nullptr); }
 
   void check_resolve(const ColorAttachmentUse& color);
+  void check_exists(std::uint32_t image, const char* what) const;
   void check_attachment(const AttachmentUse& use, ImageUsage usage, const char* what);
   void check_part(const ImagePart& part, const char* what);
   void check_transparency(const BeginPass& pass) const;

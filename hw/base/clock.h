@@ -41,10 +41,11 @@ class Clock {
   [[nodiscard]] std::int64_t frequency_hz() const { return hz_; }
   /// Nothing needs a synchroniser between the two.
   [[nodiscard]] bool same_domain(const Clock& other) const { return domain_hz_ == other.domain_hz_; }
-  /// Is it a faster clock of a domain? Its owner's actions need not lie on edges.
-  [[nodiscard]] bool free_running() const { return free_running_; }
   /// Every cycle has the same whole number of femtoseconds: `period()`.
   [[nodiscard]] bool uniform() const { return fraction_ == 0; }
+  /// Is every span between actions of its owner a whole number of cycles? Not where the clock is a faster one
+  /// of its domain: there, actions need not lie on edges.
+  [[nodiscard]] bool spans_are_cycles() const { return uniform() && !free_running_; }
   /// Femtoseconds of a cycle, rounded down.
   [[nodiscard]] Tick period() const { return whole_; }
 
@@ -69,7 +70,6 @@ class Clock {
   }
   /// Edges in [from, to).
   [[nodiscard]] std::int64_t cycles(Tick from, Tick to) const;
-  friend bool operator==(const Clock& a, const Clock& b) { return a.hz_ == b.hz_; }
 
  private:
   __extension__ using Wide = unsigned __int128;

@@ -89,10 +89,6 @@ void Unit::close(Tick end, Tick reachable_until) {
   idle_ += span(accounted_, last_edge);
   accounted_ = last_edge;
   total_ = clock_.edges_before(end);
-  if (clock_.free_running())  // its spans lie between edges: what rounding each of them leaves is idle
-    idle_ +=
-        (total_ - busy_cycles() - waiting_cycles() - starved_cycles() - blocked_cycles() - idle_cycles()) *
-        clock_.period();
   finish_stats(end);
   const std::int64_t busy = busy_cycles(), waiting = waiting_cycles(), starved = starved_cycles(),
                      blocked = blocked_cycles(), idle = idle_cycles();

@@ -175,7 +175,7 @@ class Unit : public sc_core::sc_module {
   [[nodiscard]] Tick last_action() const { return last_action_; }
   /// A span of this unit's accounts in cycles.
   [[nodiscard]] std::int64_t to_cycles(std::int64_t span) const {
-    return clock_.uniform() ? span / clock_.period() : span;
+    return clock_.spans_are_cycles() ? span / clock_.period() : span;
   }
 
  protected:
@@ -214,10 +214,10 @@ class Unit : public sc_core::sc_module {
   }
 
  private:
-  /// Accounts are kept in spans: ticks where all cycles are equal (no division on the way), cycles elsewhere.
-  /// Both arguments are edges.
+  /// Accounts are kept in spans: ticks where every span is a number of cycles (no division on the way), cycles
+  /// elsewhere: those that begin in the span.
   [[nodiscard]] std::int64_t span(Tick from, Tick to) const {
-    return clock_.uniform() ? to - from : clock_.cycles(from, to);
+    return clock_.spans_are_cycles() ? to - from : clock_.cycles(from, to);
   }
   void charge_gap(const Wake& wake) {
     if (wake.waited_until() > accounted_) charge_wait(wake.waited_until(), wake.cause());

@@ -60,9 +60,17 @@ Json subject(const std::string& file, const Json& d) {
           {"limit", d["limit"]["text"]}};
 }
 
+/// Of the machine, and how many times as fast as it some of its units ran.
+Json parameters_of(const Json& document) {
+  Json all = document["machine"]["parameters"];
+  for (const auto& [kind, times] : document.value("faster", Json::object()).items())
+    all["faster." + kind] = times;
+  return all;
+}
+
 Json parameters(const Json& a, const Json& b) {
   Json all = Json::array();
-  const Json &of_a = a["machine"]["parameters"], &of_b = b["machine"]["parameters"];
+  const Json of_a = parameters_of(a), of_b = parameters_of(b);
   for (const auto& [path, value] : of_a.items()) {
     const Json other = of_b.contains(path) ? of_b[path] : Json(nullptr);
     if (value != other) all.push_back({{"path", path}, {"a", value}, {"b", other}});

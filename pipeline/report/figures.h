@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace quadrille::pipeline {
@@ -114,6 +115,8 @@ struct Figures {
   std::string scene, fidelity = "exact";
   /// how far beyond the exact bound units were simulated ahead; above 0 the cycles are approximate
   std::int64_t window_cycles = 0;
+  /// Kinds of units that ran faster than the machine has them, and how many times.
+  std::vector<std::pair<std::string, double>> faster;
   FrameFigures frame;
   double slice_cycles = 0;       ///< of the GPU clock; 0: there are no slices
   bool report_timeline = false;  ///< the JSON has the slices of every resource

@@ -45,6 +45,8 @@ std::vector<std::string> notes_on(const Figures& figures) {
         fmt::format("program {}: its outputs depend on what atomic operations returned, so on the "
                     "order of warps; timing may change what it draws",
                     program));
+  for (const auto& [kind, times] : figures.faster)
+    notes.push_back(fmt::format("{}: {:g} times as fast as the machine has it", kind, times));
   return notes;
 }
 

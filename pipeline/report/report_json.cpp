@@ -44,6 +44,12 @@ Json frame_json(const ReportSubject& s) {
           {"memory_bytes", if_timed(s.figures, memory_bytes(s.figures))}};
 }
 
+Json faster_json(const Figures& f) {
+  Json faster = Json::object();
+  for (const auto& [kind, times] : f.faster) faster[kind] = times;
+  return faster;
+}
+
 Json unit_json(const UnitFigures& u) {
   Json waits = Json::object(), counters = Json::object();
   for (const WaitFigure& w : u.waits) waits[w.port] = w.cycles;
@@ -264,19 +270,13 @@ std::string report_json(const ReportSubject& s) {
     bandwidth[c.name] = {{"read_bytes", c.read_bytes}, {"write_bytes", c.write_bytes}};
   for (const LeftOut& l : f.left_out)
     left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
-  Json document = {{"schema", kFiguresSchema},
-                   {"scene", f.scene},
-                   {"fidelity", f.fidelity},
-                   {"window_cycles", f.window_cycles},
-                   {"machine", Json::parse(machine_json(s.machine))},
-                   {"frame", frame_json(s)},
-                   {"notes", notes_on(f)},
-                   {"units", std::move(units)},
-                   {"counter_definitions", definitions_json(f)},
-                   {"limit", limit_json(f)},
-                   {"bandwidth", std::move(bandwidth)},
-                   {"checks", checks_json(f)},
-                   {"left_out", std::move(left_out)}};
+  Json document = {{"schema", kFiguresSchema},  {"scene", f.scene},
+                   {"fidelity", f.fidelity},    {"window_cycles", f.window_cycles},
+                   {"faster", faster_json(f)},  {"machine", Json::parse(machine_json(s.machine))},
+                   {"frame", frame_json(s)},    {"notes", notes_on(f)},
+                   {"units", std::move(units)}, {"counter_definitions", definitions_json(f)},
+                   {"limit", limit_json(f)},    {"bandwidth", std::move(bandwidth)},
+                   {"checks", checks_json(f)},  {"left_out", std::move(left_out)}};
   add_queries(document, f.queries);
   add_detail(document, f.detail);
   if (f.report_timeline) document["timeline"] = timeline_json(timeline_of(f));

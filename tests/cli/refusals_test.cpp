@@ -30,9 +30,12 @@ TEST_CASE("a faster unit has to exist, and to be faster") {
   render_refused({"--faster", "core"}, {"--faster: how many times as fast? for example core=1.1"});
   render_refused({"--faster", "core=0.5"}, {"--faster", "1..100"});
   render_refused({"--faster", "core=fast"}, {"--faster", "fast"});
+  render_refused({"--faster", "core=2", "--faster", "core=3"}, {"--faster: core is given twice"});
   render_refused({"--faster", "core=2", "--fidelity", "functional"},
                  {"--faster: a functional run has no units"});
   refused({"why", "builtin:triangle", "--units", "core,texure"}, {"--units: no unit is called 'texure'"});
+  refused({"why", "builtin:triangle", "--size", "16x16", "--units", "texture"},
+          {"--units: builtin:triangle needs no texture, so none can be faster"});
   refused({"why", "builtin:triangle", "--jobs", "0"}, {"--jobs"});
   refused({"why"}, {"SCENE"});
 }

@@ -66,12 +66,12 @@ void DramController::update() const {
   for (PseudoChannel& channel : parts_->all) next_ = std::min(next_, channel.next(now_));
 }
 
-void DramController::step_channels(Cycle now, std::vector<DramDone>& done) {
+void DramController::step_channels(Cycle now, std::vector<DramDone>& done, const Trace& trace) {
   const std::size_t count = parts_->all.size();
   std::size_t p = turn_;
   for (std::size_t i = 0; i < count; ++i, p = p + 1 < count ? p + 1 : 0) {
     if (parts_->all[p].next(now) > now) continue;
-    parts_->all[p].step(now, done, counts_, trace_);
+    parts_->all[p].step(now, done, counts_, trace);
     turn_ = p + 1 < count ? p + 1 : 0;
     if (!params_.timing.shared_commands) continue;
     for (std::size_t other = 0; other < count; ++other) parts_->all[other].replan();
@@ -80,22 +80,56 @@ void DramController::step_channels(Cycle now, std::vector<DramDone>& done) {
 
 void DramController::step(Cycle now, std::vector<DramDone>& done) {
   const std::size_t before = done.size();
-  step_channels(now, done);
+  step_channels(now, done, trace_);
   caught_up_ = now_ = now;
   fresh_ = false;
   for (std::size_t i = before; i < done.size(); ++i) --held_[done[i].write];
 }
 
-void DramController::catch_up(Cycle now) {
+void DramController::step_idle(Cycle end, const Trace& trace) {
   std::vector<DramDone> none;
   while (true) {
     Cycle at = kNever;
     for (PseudoChannel& channel : parts_->all) at = std::min(at, channel.next(caught_up_));
-    if (at >= now) break;
-    step_channels(at, none);
+    if (at >= end) break;
+    step_channels(at, none, trace);
     caught_up_ = at;
   }
-  caught_up_ = now;
+  caught_up_ = end;
+}
+
+std::vector<std::array<DramController::Cycle, 4>> DramController::idle_round(Cycle round) {
+  std::vector<std::array<Cycle, 4>> sent;
+  bool refreshes = true;
+  const Cycle begin = caught_up_;
+  step_idle(begin + round, [&](const DramCommand& c) {
+    refreshes &= c.kind == DramCommandKind::kRefresh || c.kind == DramCommandKind::kRefreshBank;
+    sent.push_back({c.cycle - begin, c.pseudo_channel, c.rank, c.bank_group * Cycle{1 << 16} + c.bank});
+  });
+  if (!refreshes) sent.clear();
+  return sent;
+}
+
+// What two equal rounds sent, when all rows are closed and no earlier command bounds another, all later ones
+// send.
+void DramController::skip_rounds(Cycle now) {
+  const Cycle round = parts_->all.front().refresh_round();
+  const Cycle settled = caught_up_ + params_.timing.longest() + (params_.timing.refresh_postpone + 2) * round;
+  if (round == 0 || trace_ || now < settled + 4 * round) return;
+  step_idle(settled, {});
+  const auto first = idle_round(round);
+  const std::size_t turn = turn_;
+  const auto second = idle_round(round);
+  if (first.empty() || first != second || turn_ != turn) return;
+  const Cycle rounds = (now - caught_up_) / round;
+  for (PseudoChannel& channel : parts_->all) channel.repeat_refreshes(rounds);
+  counts_.refreshes += static_cast<std::uint64_t>(rounds) * second.size();
+  caught_up_ += rounds * round;
+}
+
+void DramController::catch_up(Cycle now) {
+  skip_rounds(now);
+  step_idle(now, trace_);
 }
 
 std::int64_t DramController::charged(BusUse use) const {

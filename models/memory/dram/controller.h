@@ -18,6 +18,7 @@
 #include "models/memory/dram/scheduler.h"
 #include "models/memory/dram/write_drain.h"
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -62,6 +63,7 @@ struct DramCommandCounts {
 class DramController {
  public:
   using Cycle = std::int64_t;
+  using Trace = std::function<void(const DramCommand&)>;
   static constexpr Cycle kNever = INT64_MAX;
 
   explicit DramController(const DramControllerParams& params);
@@ -90,7 +92,7 @@ class DramController {
   [[nodiscard]] std::int64_t charged(BusUse use) const;
   [[nodiscard]] const DramCommandCounts& counts() const { return counts_; }
   /// Gets every command, in order of time for each pseudo-channel.
-  void set_trace(std::function<void(const DramCommand&)> trace) { trace_ = std::move(trace); }
+  void set_trace(Trace trace) { trace_ = std::move(trace); }
   [[nodiscard]] const DramTiming& timing() const { return params_.timing; }
 
  private:
@@ -98,9 +100,15 @@ class DramController {
   struct PseudoChannels;
   [[nodiscard]] int held() const { return held_[0] + held_[1]; }
   void update() const;
-  void step_channels(Cycle now, std::vector<DramDone>& done);
+  void step_channels(Cycle now, std::vector<DramDone>& done, const Trace& trace);
   /// Does what a controller without requests would have done before `now`.
   void catch_up(Cycle now);
+  /// The same, command by command.
+  void step_idle(Cycle end, const Trace& trace);
+  /// Once refresh repeats, leaves out the rounds of it that end before `now`.
+  void skip_rounds(Cycle now);
+  /// Commands of the next round of refresh, from its begin on; empty when others than refreshes were sent.
+  [[nodiscard]] std::vector<std::array<Cycle, 4>> idle_round(Cycle round);
 
   DramControllerParams params_;
   std::unique_ptr<DramMapping> mapping_;
@@ -112,7 +120,7 @@ class DramController {
   mutable bool fresh_ = true;  ///< next_ was found after the last change
   std::size_t turn_ = 0;       ///< who goes first where a command bus is shared
   DramCommandCounts counts_;
-  std::function<void(const DramCommand&)> trace_;
+  Trace trace_;
 };
 
 }  // namespace quadrille::models

@@ -136,4 +136,17 @@ void DramDevice::refresh_bank(std::uint32_t bank, Cycle at) {
   bound_activates(rank_of(bank));
 }
 
+// What columns and activations allow is long past, and stays so.
+void DramDevice::delay_refreshes(Cycle cycles) {
+  for (Bank& bank : banks_) {
+    bank.activate += cycles;
+    bank.refreshed += cycles;
+  }
+  for (Rank& rank : ranks_) {
+    rank.activate += cycles;
+    rank.refresh_bank += cycles;
+  }
+  for (std::uint32_t rank = 0; rank < ranks_.size(); ++rank) bound_activates(rank);
+}
+
 }  // namespace quadrille::models

@@ -64,6 +64,10 @@ class DramDevice {
   void refresh(std::uint32_t rank, Cycle at);
   void refresh_bank(std::uint32_t bank, Cycle at);
 
+  /// Rounds of the same refreshes went on for `cycles` more, without any other command: they ended so much
+  /// later.
+  void delay_refreshes(Cycle cycles);
+
   /// First cycle of the data of a column command at `at`.
   [[nodiscard]] Cycle data_start(bool write, Cycle at) const { return at + (write ? t_.t_cwl : t_.t_cas); }
   /// First column command that the row's activation allowed.

@@ -39,6 +39,15 @@ class DramController::PseudoChannel {
   }
   /// The command bus was used by another pseudo-channel.
   void replan() { stale_ = true; }
+  /// Cycles in which each bank is refreshed once; 0 without refresh.
+  [[nodiscard]] Cycle refresh_round() const { return refresh_.front().round(); }
+  /// So many more rounds like the latest went by without requests.
+  void repeat_refreshes(std::int64_t rounds) {
+    for (DramRefreshClock& clock : refresh_) clock.send_rounds(rounds);
+    device_.delay_refreshes(rounds * refresh_round());
+    refresh_quiet_until_ = 0;
+    stale_ = true;
+  }
   /// Sends at most one command a bus at `now`.
   void step(Cycle now, std::vector<DramDone>& done, DramCommandCounts& counts,
             const std::function<void(const DramCommand&)>& trace);

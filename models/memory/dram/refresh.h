@@ -22,6 +22,13 @@ class DramRefreshClock {
   [[nodiscard]] std::int64_t due_at() const { return due_at_; }
   /// Bank of the rank whose turn it is.
   [[nodiscard]] std::uint32_t bank() const { return bank_; }
+  /// Cycles after which all banks had their turn; 0 where there is no refresh.
+  [[nodiscard]] std::int64_t round() const { return per_bank_ ? interval_ * banks_ : interval_; }
+  /// Those of so many rounds were sent.
+  void send_rounds(std::int64_t rounds) {
+    due_at_ += rounds * round();
+    must_at_ += rounds * round();
+  }
   void send() {
     due_at_ += interval_;
     must_at_ += interval_;

@@ -2,6 +2,9 @@
 /// of the JEDEC standards, which define them; the values of each kind are in configs/memory/.
 #pragma once
 
+#include <cstdint>
+#include <initializer_list>
+
 namespace quadrille::models {
 
 enum class DramRefresh { kNone, kAllBank, kPerBank };
@@ -23,6 +26,15 @@ struct DramTiming {
 
   [[nodiscard]] int all_banks() const { return ranks * banks; }
   [[nodiscard]] int group_banks() const { return banks / bank_groups; }
+  /// No command bounds another one for more cycles than this. A refresh does, where it is longer.
+  [[nodiscard]] std::int64_t longest() const {
+    std::int64_t sum = t_burst;
+    for (const int time :
+         {t_rcd,   t_rcd_wr, t_rp, t_ras,   t_rc,    t_cas, t_cwl, t_ccd_s, t_ccd_l,   t_rrd_s,
+          t_rrd_l, t_faw,    t_wr, t_wtr_s, t_wtr_l, t_rtp, t_rtw, t_rtrs,  act_slots, column_slots})
+      sum += time;
+    return sum;
+  }
   [[nodiscard]] int row_bursts() const { return row_bytes / burst_bytes; }
 };
 
