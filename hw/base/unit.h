@@ -214,8 +214,8 @@ class Unit : public sc_core::sc_module {
   }
 
  private:
-  /// Accounts are kept in spans: ticks where every span is a number of cycles (no division on the way), cycles
-  /// elsewhere: those that begin in the span.
+  /// Accounts are kept in spans: ticks where every span is a number of cycles (no division on the way), and
+  /// elsewhere the cycles that begin in the span.
   [[nodiscard]] std::int64_t span(Tick from, Tick to) const {
     return clock_.spans_are_cycles() ? to - from : clock_.cycles(from, to);
   }

@@ -63,8 +63,8 @@ Json subject(const std::string& file, const Json& d) {
 /// Of the machine, and how many times as fast as it some of its units ran.
 Json parameters_of(const Json& document) {
   Json all = document["machine"]["parameters"];
-  for (const auto& [kind, times] : document.value("faster", Json::object()).items())
-    all["faster." + kind] = times;
+  const Json faster = document.value("faster", Json::object());
+  for (const auto& [kind, times] : faster.items()) all["faster." + kind] = times;
   return all;
 }
 

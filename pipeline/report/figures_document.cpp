@@ -130,6 +130,7 @@ nlohmann::ordered_json read_figures(const std::string& file, std::string_view te
                                    kFiguresSchema));
   document.at("scene").text();
   document.at("fidelity").text();
+  if (document.has("faster")) document.at("faster").numbers();
   check_machine(document.at("machine"));
   check_frame(document);
   check_units(document.at("units"));

@@ -113,5 +113,7 @@ class Readings {
 [[nodiscard]] Result depth_precision(const Setting& setting);
 [[nodiscard]] Result blend_drift(const Setting& setting);
 [[nodiscard]] Result transparency(const Setting& setting);
+[[nodiscard]] Result texture_cache(const Setting& setting);
+[[nodiscard]] Result texture_latency(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

@@ -185,6 +185,12 @@ TEST_CASE("experiments: ten thousand blended layers drift no further than roundi
   check_holds(result.verdicts);
 }
 
+TEST_CASE("experiments: places between addresses and filter hide latency as arithmetic predicts", "[slow]") {
+  const Result result = texture_latency(sized(256, 128));
+  CHECK(result.verdicts.size() == 55);
+  check_holds(result.verdicts);
+}
+
 TEST_CASE("experiments: order-independent transparency reaches the exact picture", "[slow]") {
   const Result result = transparency(sized(160, 100));
   CHECK(result.verdicts.size() == 20);
