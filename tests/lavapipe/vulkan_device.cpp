@@ -225,6 +225,8 @@ void VulkanDevice::create_device() {
   if (has_u8_indices) enabled.push_back(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
   if (extensions.contains(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME))
     enabled.push_back(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME);
+  if (extensions.contains(VK_KHR_SAMPLER_MIRROR_CLAMP_TO_EDGE_EXTENSION_NAME))
+    enabled.push_back(VK_KHR_SAMPLER_MIRROR_CLAMP_TO_EDGE_EXTENSION_NAME);
   VkPhysicalDeviceFeatures present{};
   vkGetPhysicalDeviceFeatures(physical_, &present);
   VkPhysicalDeviceIndexTypeUint8FeaturesEXT u8_indices{};
@@ -370,6 +372,12 @@ VkImage VulkanDevice::image(Cleanup& owner, const ImageWish& wish) const {
   owner.add([this, result] { vkDestroyImage(device_, result, nullptr); });
   require(vkBindImageMemory(device_, result, memory, 0), "vkBindImageMemory");
   return result;
+}
+
+bool VulkanDevice::samples(VkFormat format) const {
+  VkFormatProperties properties{};
+  vkGetPhysicalDeviceFormatProperties(physical_, format, &properties);
+  return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0;
 }
 
 VkImageView VulkanDevice::view(Cleanup& owner, VkImage image, VkFormat format,

@@ -55,6 +55,9 @@ class VulkanDevice {
   [[nodiscard]] const DeviceInfo& info() const { return info_; }
   [[nodiscard]] const std::vector<std::string>& messages() const { return messages_; }
 
+  /// Can shaders sample images of this format?
+  [[nodiscard]] bool samples(VkFormat format) const;
+
   /// A buffer of at least `bytes` (and never none) that lives until `owner` ends.
   [[nodiscard]] HostBuffer buffer(Cleanup& owner, VkDeviceSize bytes, VkBufferUsageFlags usage) const;
   /// A buffer in the device's own memory that holds `data`.

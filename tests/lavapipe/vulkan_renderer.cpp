@@ -7,6 +7,7 @@
 
 #include "models/base/error.h"
 #include "tests/lavapipe/vulkan_device.h"
+#include "tests/lavapipe/vulkan_enums.h"
 #include "tests/lavapipe/vulkan_frame.h"
 
 namespace quadrille::lavapipe {
@@ -20,6 +21,9 @@ VulkanRenderer::VulkanRenderer(bool validate) : state_(std::make_unique<State>(v
 VulkanRenderer::~VulkanRenderer() = default;
 
 const DeviceInfo& VulkanRenderer::info() const { return state_->device.info(); }
+bool VulkanRenderer::samples(traces::Format format) const {
+  return state_->device.samples(vk_format(format));
+}
 const std::vector<std::string>& VulkanRenderer::validation_messages() const {
   return state_->device.messages();
 }

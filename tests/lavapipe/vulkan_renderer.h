@@ -68,6 +68,8 @@ class VulkanRenderer {
   VulkanRenderer& operator=(const VulkanRenderer&) = delete;
 
   [[nodiscard]] const DeviceInfo& info() const;
+  /// Can shaders sample images of this format?
+  [[nodiscard]] bool samples(traces::Format format) const;
 
   /// Executes a stream that `traces::validate` accepts and reads the attachments of its last pass back.
   /// Throws `UserError` for what the device cannot do (push constants beyond its limit) and for Vulkan's own
