@@ -15,6 +15,7 @@ void add_render(CLI::App& app, Command& chosen) {
   job->scene.add_queries_to(*command);
   job->scene.add_formats_to(*command);
   job->scene.add_transparency_to(*command);
+  job->scene.add_capture_to(*command);
   job->add_to(*command);
   job->frames.add_to(*command);
   command->footer(R"(Examples:
@@ -38,6 +39,8 @@ void add_render(CLI::App& app, Command& chosen) {
       as a lecture draws it: lit at the vertices
   quadrille render cube.gltf --frag toon.frag --out toon.png
       with a fragment shader of your own
+  quadrille render game.gfxr --out game.png
+      a frame of any program, captured with gfxreconstruct (docs/real_frames.md)
 Files are checked before the simulation starts, and appear whole or not at all.)");
   command->callback([job, &chosen] { chosen = [job] { return job->run(); }; });
 }

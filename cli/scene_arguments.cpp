@@ -14,6 +14,7 @@
 #include "scenes/builtin/builtin.h"
 #include "scenes/image/image_io.h"
 #include "scenes/scene.h"
+#include "traces/capture/import.h"
 #include "traces/trace_file.h"
 
 namespace quadrille::cli {
@@ -126,8 +127,9 @@ glm::vec3 parse_point(std::string_view text, std::string_view flag) {
 
 void SceneArguments::add_to(CLI::App& command) {
   command
-      .add_option("SCENE", scene,
-                  "a .gltf or .glb file, a .qtrace file, or builtin:NAME (quadrille scenes lists them)")
+      .add_option(
+          "SCENE", scene,
+          "a .gltf or .glb file, a .qtrace or .gfxr file, or builtin:NAME (quadrille scenes lists them)")
       ->required();
   add_view_to(command, "1920x1080");
 }
@@ -273,10 +275,16 @@ void SceneArguments::use_samples(traces::CommandStream& stream) const {
 }
 
 void SceneArguments::add_trace_to(CLI::App& command) {
-  command.add_option("TRACE", scene, "a .qtrace file")->required();
+  command.add_option("TRACE", scene, "a .qtrace or .gfxr file")->required();
 }
 
-bool SceneArguments::is_trace() const { return extension_of(scene) == ".qtrace"; }
+void SceneArguments::add_capture_to(CLI::App& command) {
+  command.add_flag("--skip-unsupported", skip_unsupported,
+                   "of a .gfxr file: draws without the commands that are not supported, and says which");
+}
+
+bool SceneArguments::is_capture() const { return extension_of(scene) == ".gfxr"; }
+bool SceneArguments::is_trace() const { return extension_of(scene) == ".qtrace" || is_capture(); }
 
 scenes::SceneOptions SceneArguments::options() const {
   scenes::SceneOptions options;
@@ -320,6 +328,8 @@ scenes::SceneOptions SceneArguments::options() const {
 
 void SceneArguments::check() const {
   if (samples) (void)parse_samples(*samples);
+  if (skip_unsupported && !is_capture())
+    throw user_error("--skip-unsupported: {} is no capture; it is for .gfxr files", scene);
   if (supersample && (samples ? parse_samples(*samples) == 1 : !is_trace()))
     throw user_error("--supersample: one sample a pixel is shaded once anyway; add --samples 2, 4 or 8");
   if (is_trace()) {
@@ -339,8 +349,9 @@ void SceneArguments::check() const {
   const std::string extension = extension_of(scene);
   if (scene.starts_with("builtin:") || extension == ".gltf" || extension == ".glb") return;
   throw user_error(
-      "{}: not a scene; legal are .gltf, .glb and .qtrace files and builtin:NAME (quadrille scenes lists the "
-      "names){}",
+      "{}: not a scene; legal are .gltf, .glb, .qtrace and .gfxr files and builtin:NAME (quadrille scenes "
+      "lists "
+      "the names){}",
       scene, scenes::meant_builtin(scene.substr(scene.rfind(':') + 1)));
 }
 
@@ -373,9 +384,20 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
   return loaded;
 }
 
+SceneArguments::Loaded SceneArguments::load_capture() const {
+  capture::Import import = capture::import_capture(scene, {.skip_unsupported = skip_unsupported});
+  Loaded loaded{std::move(import.stream), {}};
+  for (const auto& [reason, count] : import.skipped) {
+    fmt::print(stderr, "{}: left out, {} times: {}\n", scene, count, reason);
+    loaded.left_out.push_back({"commands of the capture", "not supported: " + reason,
+                               fmt::format("drawing them, {} times; the picture lacks them", count)});
+  }
+  return loaded;
+}
+
 SceneArguments::Loaded SceneArguments::load() const {
   if (is_trace()) {
-    Loaded loaded{traces::read_trace(scene), {}};
+    Loaded loaded = is_capture() ? load_capture() : Loaded{traces::read_trace(scene), {}};
     use_samples(loaded.stream);
     use_queries(loaded.stream);
     return loaded;

@@ -16,13 +16,14 @@
 namespace quadrille::cli {
 
 struct SceneArguments {
-  std::string scene;  ///< .gltf, .glb, .qtrace or builtin:NAME
+  std::string scene;  ///< .gltf, .glb, .qtrace, .gfxr or builtin:NAME
   std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, shading, order,
       view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
   std::optional<std::string> transparency, transparency_layers;
   bool supersample = false;        ///< each sample is shaded for itself
   bool alpha_to_coverage = false;  ///< of masked materials; not of a trace
+  bool skip_unsupported = false;   ///< of a capture, draw without it
   bool queries = false;            ///< around every draw and pass
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
@@ -44,6 +45,8 @@ struct SceneArguments {
   void add_samples_to(CLI::App& command);
   /// Adds --queries, for a command that draws or records.
   void add_queries_to(CLI::App& command);
+  /// Adds --skip-unsupported, for a command that draws or imports.
+  void add_capture_to(CLI::App& command);
   /// Adds SCENE alone, for a trace, which has its view and shaders in it.
   void add_trace_to(CLI::App& command);
   /// Checks everything that needs no file to be read. Throws `UserError` naming the flag.
@@ -57,6 +60,8 @@ struct SceneArguments {
   };
   /// One frame of a scene that is open, with what did not have to be done for it.
   [[nodiscard]] Loaded record(scenes::Scene& file, const scenes::Moment& moment) const;
+  /// Loads the frame of a capture. Throws `UserError`.
+  [[nodiscard]] Loaded load_capture() const;
   /// Loads the scene or trace. Throws `UserError`.
   [[nodiscard]] Loaded load() const;
   /// Lets the passes of a stream have the wished samples, and shade by sample if wished. Throws `UserError`.
@@ -65,7 +70,9 @@ struct SceneArguments {
   void use_queries(traces::CommandStream& stream) const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.
   [[nodiscard]] traces::CommandStream load_visibility() const;
+  /// Of a file that holds a frame's commands: a trace of ours, or a capture.
   [[nodiscard]] bool is_trace() const;
+  [[nodiscard]] bool is_capture() const;
   /// Throws `UserError` naming the flag.
   [[nodiscard]] models::TransparencyState parse_transparency() const;
   /// The options as the scene library takes them. Throws `UserError` naming the flag.

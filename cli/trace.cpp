@@ -8,6 +8,7 @@
 #include "cli/process.h"
 #include "cli/render_job.h"
 #include "models/base/error.h"
+#include "traces/capture/import.h"
 #include "traces/trace_file.h"
 
 namespace quadrille::cli {
@@ -35,19 +36,42 @@ void add_record(CLI::App& trace, Command& chosen) {
   });
 }
 
+void add_import(CLI::App& trace, Command& chosen) {
+  CLI::App* command =
+      trace.add_subcommand("import", "Makes a trace of the frame that a file of gfxreconstruct holds.");
+  const auto scene = std::make_shared<SceneArguments>();
+  const auto file = std::make_shared<std::string>();
+  command->add_option("CAPTURE", scene->scene, "a .gfxr file")->required();
+  scene->add_capture_to(*command);
+  command->add_option("-o,--out", *file, "the trace to write")->type_name("F.qtrace")->required();
+  command->callback([=, &chosen] {
+    chosen = [=] {
+      if (!scene->is_capture())
+        throw user_error("{}: not a capture; the name has to end in .gfxr", scene->scene);
+      check_output("--out", *file, {".qtrace"});
+      Progress progress;
+      progress.show(fmt::format("importing {}", scene->scene));
+      traces::write_trace(scene->load().stream, *file);
+      return kDone;
+    };
+  });
+}
+
 /// A trace by its name; a scene is refused here, since it would be recorded unseen.
 void require_trace(const SceneArguments& scene) {
-  if (!scene.is_trace()) throw user_error("{}: not a trace; the name has to end in .qtrace", scene.scene);
+  if (!scene.is_trace())
+    throw user_error("{}: not a trace; the name has to end in .qtrace or .gfxr", scene.scene);
 }
 
 void add_info(CLI::App& trace, Command& chosen) {
-  CLI::App* command = trace.add_subcommand("info", "Says what a trace holds.");
+  CLI::App* command = trace.add_subcommand("info", "Says what a trace or a capture holds.");
   const auto scene = std::make_shared<SceneArguments>();
   scene->add_trace_to(*command);
   command->callback([=, &chosen] {
     chosen = [=] {
       require_trace(*scene);
-      fmt::print("{}", traces::trace_info(scene->load().stream));
+      if (scene->is_capture()) fmt::print("{}", capture::capture_info(scene->scene));
+      else fmt::print("{}", traces::trace_info(scene->load().stream));
       return kDone;
     };
   });
@@ -58,6 +82,7 @@ void add_replay(CLI::App& trace, Command& chosen) {
       trace.add_subcommand("replay", "Renders a trace: the same as quadrille render F.qtrace.");
   const auto job = std::make_shared<RenderJob>();
   job->scene.add_trace_to(*command);
+  job->scene.add_capture_to(*command);
   job->add_to(*command);
   command->callback([=, &chosen] {
     chosen = [=] {
@@ -73,14 +98,16 @@ void add_trace(CLI::App& app, Command& chosen) {
   CLI::App* command = app.add_subcommand("trace", "Records, inspects and replays the commands of a frame.");
   command->require_subcommand(0, 1);
   command->callback([&chosen] {
-    if (!chosen) throw CLI::RequiredError("record, info or replay");
+    if (!chosen) throw CLI::RequiredError("record, import, info or replay");
   });
   command->footer(R"(Examples:
   quadrille trace record city.gltf --camera 2 -o city.qtrace
+  quadrille trace import game.gfxr -o game.qtrace
   quadrille trace info city.qtrace
   quadrille trace replay city.qtrace --machine large --out city.png
 A trace is self-contained: buffers, textures, shaders, size and view are in it (docs/trace_format.md).)");
   add_record(*command, chosen);
+  add_import(*command, chosen);
   add_info(*command, chosen);
   add_replay(*command, chosen);
 }

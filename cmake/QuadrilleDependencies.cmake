@@ -11,6 +11,7 @@ find_package(TinyGLTF REQUIRED)
 find_package(meshoptimizer REQUIRED)
 pkg_check_modules(DRACO REQUIRED IMPORTED_TARGET draco)
 find_package(zstd REQUIRED)
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)  # captures of gfxreconstruct
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)

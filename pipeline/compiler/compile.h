@@ -24,7 +24,7 @@ struct CompiledPipeline {
   std::uint32_t integer_inputs = 0;  ///< bit i: the vertex shader declares input location i as integers
 };
 
-/// Compiles and links two SPIR-V modules (entry point "main"; Vulkan 1.1 environment; specialisation
+/// Compiles and links two SPIR-V modules (entry point "main"; Vulkan 1.3 environment; specialisation
 /// constants take their defaults). Only where `points` are drawn does the vertex program write their size.
 /// The names are used in listings and errors. Deterministic, and programs for another `target` compute the
 /// same. Throws `UserError` (one line: shader name, place if known, what is not legal or not supported) for

@@ -32,7 +32,11 @@ bool harmless_capability(std::uint32_t capability) {
          capability == spv::CapabilityDrawParameters || capability == spv::CapabilityMultiViewport ||
          capability == spv::CapabilityShaderViewportIndex ||
          capability == spv::CapabilityShaderViewportIndexLayerEXT ||
-         capability == spv::CapabilityVariablePointersStorageBuffer;
+         capability == spv::CapabilityVariablePointersStorageBuffer ||
+         // Which accesses of memory others see is asked of buffers that several invocations write: those obey
+         // stricter rules here.
+         capability == spv::CapabilityVulkanMemoryModel ||
+         capability == spv::CapabilityVulkanMemoryModelDeviceScope;
 }
 
 }  // namespace

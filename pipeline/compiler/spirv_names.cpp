@@ -22,7 +22,7 @@ std::vector<std::string> disassemble(const Words& instructions) {
   constexpr std::uint32_t kVersion = 0x00010300, kBound = 0x3fffff;
   Words module{spv::MagicNumber, kVersion, 0, kBound, 0};
   module.insert(module.end(), instructions.begin(), instructions.end());
-  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
+  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
   tools.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
   std::string text;
   if (!tools.Disassemble(module, &text, SPV_BINARY_TO_TEXT_OPTION_NO_HEADER)) return {};

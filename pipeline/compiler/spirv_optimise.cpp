@@ -18,7 +18,7 @@
 namespace quadrille::pipeline {
 namespace {
 
-constexpr spv_target_env kEnvironment = SPV_ENV_VULKAN_1_1;
+constexpr spv_target_env kEnvironment = SPV_ENV_VULKAN_1_3;
 
 /// The first line of the first message, which names the instruction and the rule.
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -37,6 +37,7 @@ void validate(std::span<const std::uint32_t> words, std::string_view shader) {
         if (message.empty()) message = fmt::format("{} (word {})", first_line(text), position.index);
       });
   spvtools::ValidatorOptions options;
+  options.SetScalarBlockLayout(true);  // blocks are read word by word, whatever their alignment
   if (!tools.Validate(words.data(), words.size(), options))
     throw user_error("{}: not valid SPIR-V: {}", shader, message);
 }

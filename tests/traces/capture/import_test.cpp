@@ -1,0 +1,127 @@
+/// What a capture becomes, on captures made here.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "models/base/error.h"
+#include "models/precision.h"
+#include "pipeline/render.h"
+#include "tests/traces/capture/small_capture.h"
+#include "traces/capture/import.h"
+
+namespace quadrille::capture {
+namespace {
+
+Import import(const SmallCapture& wish, const ImportOptions& options = {}) {
+  return import_capture("small.gfxr", small_capture(wish), options);
+}
+
+std::vector<std::uint32_t> picture(const traces::CommandStream& stream) {
+  return pipeline::render_functional_frame(stream, models::Precision{}).image.color;
+}
+
+constexpr std::uint32_t kBlue = 0xffff0000;
+constexpr std::uint32_t kTriangle = 0xff3264c8;  // kTexel, red in the low byte
+
+std::string refusal(const SmallCapture& wish) {
+  try {
+    (void)import(wish);
+  } catch (const UserError& error) { return error.what(); }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("capture: a frame of one triangle is the picture that its commands draw") {
+  const std::vector<std::uint32_t> pixels = picture(import({}).stream);
+  REQUIRE(pixels.size() == 256);
+  // The triangle covers what is left of the diagonal from the upper left to the lower right corner.
+  for (std::uint32_t y = 0; y < 16; ++y) {
+    for (std::uint32_t x = 0; x < 16; ++x) {
+      if (x == y) continue;  // centres on the edge
+      CAPTURE(x, y);
+      REQUIRE(pixels[y * 16 + x] == (x < y ? kTriangle : kBlue));
+    }
+  }
+}
+
+TEST_CASE("capture: blocks of LZ4 and Zstandard hold the same frame as plain ones") {
+  const traces::CommandStream plain = import({}).stream;
+  CHECK(import({.packing = Packing::kLz4}).stream == plain);
+  CHECK(import({.packing = Packing::kZstd}).stream == plain);
+}
+
+TEST_CASE("capture: an entry point of any name is called main in the stream") {
+  const Import named = import({.entry = "draw_it"});
+  CHECK(picture(named.stream) == picture(import({}).stream));
+}
+
+TEST_CASE("capture: a clip space of -w to w moves depths to the middle of what 0 to w gives") {
+  const auto depths = [](bool negative) {
+    traces::CommandStream stream = import({.negative_one_to_one = negative}).stream;
+    traces::Image depth;
+    depth.format = traces::Format::kD32Float;
+    depth.width = depth.height = 16;
+    depth.usage = traces::kDepthAttachment;
+    stream.images.push_back(depth);
+    for (traces::Command& command : stream.commands) {
+      auto* begin = std::get_if<traces::BeginPass>(&command);
+      if (begin != nullptr) begin->depth.image = static_cast<traces::Index>(stream.images.size() - 1);
+    }
+    for (traces::Pipeline& pipeline : stream.pipelines)
+      pipeline.depth = {true, true, traces::CompareOp::kLess};
+    traces::validate(stream);
+    return pipeline::render_functional_frame(stream, models::Precision{}).image.depth;
+  };
+  CHECK(depths(false)[12 * 16 + 2] == 0.25f);
+  CHECK(depths(true)[12 * 16 + 2] == 0.625f);  // (0.25 + 1) / 2
+}
+
+TEST_CASE("capture: a command that is not supported is named with its count") {
+  const SmallCapture wish{.extra_command = "CmdDrawMeshTasksEXT"};
+  CHECK_THAT(refusal(wish), Catch::Contains("not supported: vkCmdDrawMeshTasksEXT (x1)"));
+  const Import skipped = import(wish, {.skip_unsupported = true});
+  REQUIRE(skipped.skipped.size() == 1);
+  CHECK(skipped.skipped.begin()->first == "vkCmdDrawMeshTasksEXT");
+  CHECK(picture(skipped.stream) == picture(import({}).stream));
+}
+
+TEST_CASE("capture: a draw that needs what the machine lacks is left out if that is wished") {
+  const SmallCapture wish{.sampler_compares = true};
+  CHECK_THAT(refusal(wish), Catch::Contains("vkCmdDraw: a sampler with comparison is not supported (x1)"));
+  const std::vector<std::uint32_t> pixels = picture(import(wish, {.skip_unsupported = true}).stream);
+  CHECK(std::ranges::all_of(pixels, [](std::uint32_t pixel) { return pixel == kBlue; }));
+}
+
+TEST_CASE("capture: a barrier is no command that could be missed") {
+  CHECK(import({.extra_command = "CmdPipelineBarrier2"}).skipped.empty());
+}
+
+TEST_CASE("capture: a file that ends anywhere is refused with its name and a place") {
+  const std::vector<std::byte> whole = small_capture({.packing = Packing::kZstd});
+  for (std::size_t size = 0; size < whole.size(); size += 7) {
+    CAPTURE(size);
+    const std::vector<std::byte> part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    REQUIRE_THROWS_AS(import_capture("part.gfxr", part), UserError);
+  }
+}
+
+TEST_CASE("capture: a byte that is changed leads to a frame or a refusal of one line") {
+  const std::vector<std::byte> whole = small_capture();
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < whole.size(); at += 3) {
+    std::vector<std::byte> changed = whole;
+    changed[at] ^= std::byte{0xff};
+    try {
+      (void)import_capture("changed.gfxr", changed);
+    } catch (const UserError& error) {
+      ++refused;
+      CAPTURE(at, error.what());
+      REQUIRE(std::string(error.what()).starts_with("changed.gfxr: "));
+      REQUIRE(std::string(error.what()).find('\n') == std::string::npos);
+    }
+  }
+  CHECK(refused > whole.size() / 30);
+}
+
+}  // namespace quadrille::capture

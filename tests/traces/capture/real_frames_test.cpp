@@ -1,0 +1,76 @@
+/// Frames of real programs beside what lavapipe drew of them. They are not part of the project; the tests pass
+/// by where the captures are not there.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "models/precision.h"
+#include "pipeline/render.h"
+#include "scenes/image/image_io.h"
+#include "tests/traces/capture/capture_folder.h"
+#include "traces/capture/import.h"
+#include "traces/trace_file.h"
+
+namespace quadrille::capture {
+namespace {
+
+/// Pixels of a frame that differ from the picture by more than 2 of 255 in a colour.
+std::size_t pixels_apart(const std::vector<std::uint32_t>& ours, const scenes::Rgba8Image& theirs) {
+  std::size_t apart = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    bool far = false;
+    for (std::size_t c = 0; c < 3; ++c)
+      far = far || std::abs(static_cast<int>(ours[i] >> (8 * c) & 0xff) - int{theirs.pixels[4 * i + c]}) > 2;
+    apart += far ? 1 : 0;
+  }
+  return apart;
+}
+
+struct Frame {
+  const char* name;
+  std::uint64_t draws;
+  std::size_t apart;  ///< pixels of 120000 that may be more than 2 of 255 apart
+};
+// 99.9 % of the pixels are all but 120.
+constexpr Frame kFrames[] = {{"gm_buffer_map", 1, 120},
+                             {"gm_build", 1, 120},
+                             {"gm_bump_height", 1, 120},
+                             {"gm_bump_normals", 1, 120},
+                             {"gm_conditionals_f", 1, 120},
+                             {"gm_desktop_blur", 14, 120},
+                             {"gm_ideas", 227, 120},
+                             {"gm_jellyfish", 2, 120},
+                             {"gm_loop", 1, 120},
+                             {"gm_shading_phong", 1, 120},
+                             {"gm_shadow", 3, 120},
+                             {"gm_texture_mipmap", 1, 120},
+                             {"vkcube", 1, 120}};
+
+}  // namespace
+
+TEST_CASE("capture: frames of real programs are what lavapipe draws of them") {
+  const auto folder = capture_folder();
+  if (!folder) return;
+  for (const Frame& frame : kFrames) {
+    CAPTURE(frame.name);
+    const std::string path = (*folder / frame.name).string();
+    const Import import = import_capture(path + ".gfxr");
+    CHECK(traces::stream_totals(import.stream).draws == frame.draws);
+    const pipeline::FrameImage image =
+        pipeline::render_functional_frame(import.stream, models::Precision{}).image;
+    const scenes::Rgba8Image theirs = scenes::load_image(path + ".png");
+    REQUIRE(image.width == theirs.width);
+    REQUIRE(image.height == theirs.height);
+    CHECK(pixels_apart(image.color, theirs) <= frame.apart);
+  }
+}
+
+TEST_CASE("capture: a trace that was imported holds the frame of its capture") {
+  const auto folder = capture_folder();
+  if (!folder) return;
+  const Import import = import_capture((*folder / "vkcube.gfxr").string());
+  CHECK(traces::decode_trace(traces::encode_trace(import.stream), "trace") == import.stream);
+}
+
+}  // namespace quadrille::capture

@@ -1,0 +1,19 @@
+/// A capture of one frame of 16x16 pixels, made here: a triangle over the lower left half, in the colour that a
+/// texture of one texel has.
+#pragma once
+
+#include "tests/traces/capture/capture_writer.h"
+
+namespace quadrille::capture {
+
+struct SmallCapture {
+  Packing packing = Packing::kPlain;
+  bool negative_one_to_one = false;     ///< with depths of -1 .. 1, as OpenGL has
+  const char* entry = "main";           ///< of both shaders
+  const char* extra_command = nullptr;  ///< a command without a meaning here, by name, within the pass
+  bool sampler_compares = false;
+};
+[[nodiscard]] std::vector<std::byte> small_capture(const SmallCapture& wish = {});
+inline constexpr std::uint8_t kTexel[4] = {200, 100, 50, 255};
+
+}  // namespace quadrille::capture

@@ -1,0 +1,116 @@
+/// The GPU's side of a capture: takes what the frame submits, walks the command buffers as a queue would, and
+/// writes the command stream of this program.
+///
+/// Vulkan binds state piece by piece; the stream's pipelines, descriptor sets and buffers are fixed. So each
+/// draw is put together from what is bound when it comes, and equal pieces are one object of the stream. What
+/// cannot be expressed is counted by its reason, and `unsupported` names it.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "traces/capture/device.h"
+#include "traces/capture/raster_state.h"
+#include "traces/capture/stream_tables.h"
+
+namespace quadrille::capture {
+
+/// What is bound in a command buffer.
+struct BoundState {
+  struct VertexBuffer {
+    Handle buffer = 0;
+    std::uint64_t offset = 0;
+    std::optional<std::uint32_t> stride;  ///< where the command says it
+  };
+  struct Set {
+    Handle set = 0;                      ///< whose descriptors count when it is drawn
+    Descriptors pushed;                  ///< where none is bound
+    std::vector<std::uint32_t> offsets;  ///< dynamic ones, by binding and element
+  };
+  const PipelineObject* pipeline = nullptr;
+  RasterState fixed, dynamic;
+  std::map<std::uint32_t, VertexBuffer> vertex_buffers;
+  Handle index_buffer = 0;
+  std::uint64_t index_offset = 0;
+  traces::IndexType index_type = traces::IndexType::kUint16;
+  std::map<std::uint32_t, Set> sets;
+  std::vector<std::byte> constants;  ///< pushed, from byte 0 on
+};
+
+class FrameRecorder {
+ public:
+  explicit FrameRecorder(Device& device) : device_(device), tables_(device) {}
+  /// QueueSubmit or QueueSubmit2.
+  void submit(const Call& call);
+  /// QueuePresentKHR: which image is shown.
+  void present(const Call& call);
+  [[nodiscard]] bool presented() const { return presented_ != 0; }
+  /// What could not be expressed, with how often.
+  [[nodiscard]] const std::map<std::string, std::size_t>& unsupported() const { return unsupported_; }
+  /// The frame. Its last pass draws to what is shown. Throws `UserError` if there is none.
+  [[nodiscard]] traces::CommandStream take();
+
+ private:
+  /// An attachment of a pass that is about to begin.
+  struct PassTarget {
+    Handle view = 0, resolve = 0;
+    traces::LoadOp load = traces::LoadOp::kLoad;
+    traces::StoreOp store = traces::StoreOp::kStore;
+    std::array<std::uint32_t, 4> clear{};  ///< bits
+  };
+  struct DrawRange {
+    bool indexed = false;
+    std::uint32_t count = 0, first = 0;
+    std::int32_t vertex_offset = 0;
+  };
+
+  void run(Handle command_buffer);
+  void run(const Call& call, BoundState& bound);
+  bool bind(const Call& call, BoundState& bound);
+  bool change_pass(const Call& call);
+  bool draw(const Call& call, const BoundState& bound);
+  bool label(const Call& call);
+
+  void bind_sets(const Value& call, BoundState& bound);
+  void bind_vertex_buffers(const Value& call, BoundState& bound);
+  void push_constants(const Value& call, BoundState& bound);
+
+  void begin_rendering(const Value& info);
+  void begin_render_pass(const Value& info);
+  void begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth);
+  void end_pass();
+  void clear_attachments(const Value& call);
+  void attach(traces::AttachmentUse& use, const PassTarget& target);
+
+  void draw_one(const BoundState& bound, const DrawRange& range, const Value& call);
+  [[nodiscard]] traces::Pipeline pipeline_of(const BoundState& bound, const RasterState& state);
+  [[nodiscard]] traces::Index stage_of(const Value& stage, bool negative_one_to_one);
+  void emit_sets(const BoundState& bound, const traces::Pipeline& pipeline);
+  void add_descriptor(traces::DescriptorSet& made, std::uint32_t binding, const Descriptor& from,
+                      std::uint32_t dynamic_offset);
+  void emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline, bool indexed);
+  void emit_window(const RasterState& state);
+  /// Adds the command if it changes what is bound in the stream.
+  template <class C>
+  void emit_change(std::uint32_t place, const C& command);
+
+  Device& device_;
+  StreamTables tables_;
+  std::map<std::string, std::size_t> unsupported_;
+  std::map<std::pair<std::size_t, std::uint32_t>, traces::Command> emitted_;  ///< by kind and place
+  std::vector<std::string> labels_;
+
+  traces::BeginPass pass_;
+  std::vector<Handle> pass_stores_;  ///< images that this pass leaves contents in
+  std::size_t begin_at_ = 0;         ///< of its command
+  bool in_pass_ = false, drew_ = false;
+  int depth_ = 0;  ///< of command buffers that execute others
+  std::uint32_t pass_width_ = 0, pass_height_ = 0;
+  Handle last_shown_ = 0;  ///< image of the latest pass's first colour
+  Handle presented_ = 0;
+};
+
+}  // namespace quadrille::capture

@@ -1,0 +1,215 @@
+/// Draws: a pipeline, descriptor sets and buffers of the stream from what is bound.
+#include <vulkan/vulkan_core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "models/base/error.h"
+#include "traces/capture/frame_recorder.h"
+#include "traces/capture/vulkan_names.h"
+
+namespace quadrille::capture {
+namespace {
+
+constexpr std::uint64_t kMaxUniformRange = 65536;
+
+std::map<std::uint32_t, std::uint32_t> constants_of(const Value& stage) {
+  std::map<std::uint32_t, std::uint32_t> constants;
+  if (stage["pSpecializationInfo"].null()) return constants;
+  const Value& info = stage["pSpecializationInfo"];
+  const std::span<const std::byte> data = info["pData"].bytes();
+  for (std::size_t i = 0; i < info["pMapEntries"].size(); ++i) {
+    const Value& entry = info["pMapEntries"].at(i);
+    const std::uint64_t offset = entry["offset"].u32(), size = entry["size"].u64();
+    if (size != sizeof(std::uint32_t) || offset > data.size() || size > data.size() - offset)
+      throw user_error("a specialisation constant of {} bytes at byte {} of {}", size, offset, data.size());
+    std::memcpy(&constants[entry["constantID"].u32()], data.data() + offset, sizeof(std::uint32_t));
+  }
+  return constants;
+}
+
+}  // namespace
+
+bool FrameRecorder::draw(const Call& call, const BoundState& bound) {
+  const Value& p = call.parameters;
+  if (call.name == "CmdDraw") {
+    draw_one(bound, {false, p["vertexCount"].u32(), p["firstVertex"].u32(), 0}, p);
+  } else if (call.name == "CmdDrawIndexed") {
+    draw_one(bound, {true, p["indexCount"].u32(), p["firstIndex"].u32(), p["vertexOffset"].i32()}, p);
+  } else if (call.name == "CmdDrawMultiEXT") {
+    for (std::size_t i = 0; i < p["pVertexInfo"].size(); ++i) {
+      const Value& one = p["pVertexInfo"].at(i);
+      draw_one(bound, {false, one["vertexCount"].u32(), one["firstVertex"].u32(), 0}, p);
+    }
+  } else if (call.name == "CmdDrawMultiIndexedEXT") {
+    for (std::size_t i = 0; i < p["pIndexInfo"].size(); ++i) {
+      const Value& one = p["pIndexInfo"].at(i);
+      const std::int32_t offset =
+          p["pVertexOffset"].null() ? one["vertexOffset"].i32() : p["pVertexOffset"].i32();
+      draw_one(bound, {true, one["indexCount"].u32(), one["firstIndex"].u32(), offset}, p);
+    }
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void FrameRecorder::draw_one(const BoundState& bound, const DrawRange& range, const Value& call) {
+  if (!in_pass_) throw user_error("outside a pass");
+  if (bound.pipeline == nullptr) throw user_error("without a pipeline");
+  const RasterState state = combined_state(*bound.pipeline->state, bound.fixed, bound.dynamic);
+  if (state.discard) return;
+  const traces::Pipeline pipeline = pipeline_of(bound, state);
+  emit_change(0, traces::BindPipeline{tables_.pipeline(pipeline)});
+  emit_window(state);
+  emit_buffers(bound, pipeline, range.indexed);
+  emit_sets(bound, pipeline);
+  if (!bound.constants.empty()) emit_change(0, traces::PushConstants{0, bound.constants});
+  traces::Draw made;
+  made.indexed = range.indexed;
+  made.count = range.count;
+  made.first = range.first;
+  made.vertex_offset = range.vertex_offset;
+  made.instances = call["instanceCount"].u32();
+  made.first_instance = call["firstInstance"].u32();
+  for (const std::string& label : labels_) made.label += (made.label.empty() ? "" : "/") + label;
+  tables_.stream.commands.emplace_back(std::move(made));
+  drew_ = true;
+}
+
+traces::Index FrameRecorder::stage_of(const Value& stage, bool negative_one_to_one) {
+  ShaderWish wish;
+  wish.entry = stage["pName"].text();
+  const bool vertex = stage["stage"].u32() == VK_SHADER_STAGE_VERTEX_BIT;
+  wish.stage = vertex ? traces::ShaderStage::kVertex : traces::ShaderStage::kFragment;
+  wish.constants = constants_of(stage);
+  wish.negative_one_to_one = vertex && negative_one_to_one;
+  return tables_.shader(stage["module"].u64(), wish);
+}
+
+traces::Pipeline FrameRecorder::pipeline_of(const BoundState& bound, const RasterState& state) {
+  traces::Pipeline made = state.pipeline;
+  const Value& stages = (*bound.pipeline->state)["pStages"];
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const Value& stage = stages.at(i);
+    const std::uint32_t bit = stage["stage"].u32();
+    if (bit == VK_SHADER_STAGE_VERTEX_BIT) made.vertex_shader = stage_of(stage, state.negative_one_to_one);
+    else if (bit == VK_SHADER_STAGE_FRAGMENT_BIT) made.fragment_shader = stage_of(stage, false);
+    else throw user_error("VkShaderStageFlagBits {:#x} is not supported", bit);
+  }
+  if (made.vertex_shader == traces::kNone || made.fragment_shader == traces::kNone)
+    throw user_error("a pipeline without a fragment shader is not supported");
+  if (state.stippled) throw user_error("stippled lines are not supported");
+  if (state.alpha_to_one) throw user_error("alpha to one is not supported");
+  if (models::is_list(made.topology)) made.primitive_restart = false;
+  for (std::size_t i = 0; i < made.blend.size(); ++i) {
+    if (i >= pass_.colors.size()) made.blend[i] = {};
+    else if (!state.color_write[i]) made.blend[i].write_mask = 0;
+  }
+  if (pass_.depth.image == traces::kNone) {
+    made.depth = {};
+    made.stencil = {};
+    made.depth_bounds = {};
+  }
+  made.viewports = static_cast<std::uint32_t>(std::max<std::size_t>(1, state.viewports.size()));
+  for (const auto& [number, source] : bound.vertex_buffers) {
+    const auto binding = std::ranges::find(made.bindings, number, &traces::VertexBinding::binding);
+    if (binding != made.bindings.end() && source.stride) binding->stride = *source.stride;
+  }
+  return made;
+}
+
+template <class C>
+void FrameRecorder::emit_change(std::uint32_t place, const C& command) {
+  const traces::Command wrapped = command;
+  const auto [entry, added] = emitted_.try_emplace({wrapped.index(), place}, wrapped);
+  if (!added && entry->second == wrapped) return;
+  entry->second = wrapped;
+  tables_.stream.commands.push_back(wrapped);
+}
+
+/// Vulkan lets a scissor reach beyond the target; what is beyond has no pixels.
+void FrameRecorder::emit_window(const RasterState& state) {
+  for (const traces::SetViewport& viewport : state.viewports) emit_change(viewport.index, viewport);
+  for (traces::SetScissor scissor : state.scissors) {
+    const auto clip = [](std::int32_t& begin, std::uint32_t& size, std::uint32_t side) {
+      const std::int64_t from = std::clamp<std::int64_t>(begin, 0, side);
+      const std::int64_t to = std::clamp<std::int64_t>(std::int64_t{begin} + size, from, side);
+      begin = static_cast<std::int32_t>(from);
+      size = static_cast<std::uint32_t>(to - from);
+    };
+    clip(scissor.x, scissor.width, pass_width_);
+    clip(scissor.y, scissor.height, pass_height_);
+    emit_change(scissor.index, scissor);
+  }
+}
+
+void FrameRecorder::emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline, bool indexed) {
+  for (const traces::VertexBinding& binding : pipeline.bindings) {
+    const auto source = bound.vertex_buffers.find(binding.binding);
+    if (source == bound.vertex_buffers.end() || source->second.buffer == 0)
+      throw user_error("without a vertex buffer at binding {}", binding.binding);
+    emit_change(binding.binding,
+                traces::BindVertexBuffer{binding.binding, tables_.buffer(source->second.buffer),
+                                         source->second.offset});
+  }
+  if (!indexed) return;
+  if (bound.index_buffer == 0) throw user_error("without an index buffer");
+  emit_change(
+      0, traces::BindIndexBuffer{tables_.buffer(bound.index_buffer), bound.index_offset, bound.index_type});
+}
+
+void FrameRecorder::emit_sets(const BoundState& bound, const traces::Pipeline& pipeline) {
+  std::map<std::uint32_t, traces::DescriptorSet> made;
+  for (const traces::Index shader : {pipeline.vertex_shader, pipeline.fragment_shader}) {
+    for (const auto& [set, binding] : tables_.facts(shader).bindings) {
+      const auto source = bound.sets.find(set);
+      if (source == bound.sets.end()) throw user_error("without descriptor set {}", set);
+      const Descriptors& all =
+          source->second.set != 0 ? device_.set(source->second.set) : source->second.pushed;
+      const auto found = all.find({binding, 0});
+      if (found == all.end()) throw user_error("without binding {} of descriptor set {}", binding, set);
+      const std::uint32_t offset = source->second.offsets.empty() ? 0 : source->second.offsets[0];
+      add_descriptor(made[set], binding, found->second, offset);
+    }
+  }
+  for (const auto& [set, descriptors] : made)
+    emit_change(set, traces::BindDescriptorSet{set, tables_.descriptors(descriptors)});
+}
+
+void FrameRecorder::add_descriptor(traces::DescriptorSet& made, std::uint32_t binding, const Descriptor& from,
+                                   std::uint32_t dynamic_offset) {
+  const auto has = [&](const auto& list) {
+    return std::ranges::any_of(list, [&](const auto& one) { return one.binding == binding; });
+  };
+  if (has(made.uniforms) || has(made.textures) || has(made.buffers)) return;  // both stages name it
+  const bool dynamic = from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC ||
+                       from.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
+  const bool uniform = from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER ||
+                       from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
+  if (uniform || from.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ||
+      from.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC) {
+    if (from.buffer == 0) throw user_error("binding {} is a buffer that is left out", binding);
+    const std::uint64_t size = object(device_.buffers, from.buffer, "buffer").size;
+    const std::uint64_t offset = from.offset + (dynamic ? dynamic_offset : 0);
+    if (offset > size)
+      throw user_error("binding {} begins at byte {} of a buffer of {}", binding, offset, size);
+    std::uint64_t range = from.range == VK_WHOLE_SIZE ? size - offset : from.range;
+    if (uniform) range = std::min(range, kMaxUniformRange);
+    const traces::Index buffer = tables_.buffer(from.buffer);
+    const auto begin = static_cast<std::uint32_t>(offset), bytes = static_cast<std::uint32_t>(range);
+    if (uniform) made.uniforms.push_back({binding, buffer, begin, bytes});
+    else made.buffers.push_back({binding, buffer, begin, bytes});
+  } else if (from.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
+    if (from.view == 0) throw user_error("binding {} is an image that is left out", binding);
+    traces::TextureDescriptor texture = tables_.texture(from.view);
+    texture.binding = binding;
+    texture.sampler = tables_.sampler(from.sampler);
+    made.textures.push_back(texture);
+  } else {
+    throw user_error("VkDescriptorType {} is not supported", from.type);
+  }
+}
+
+}  // namespace quadrille::capture

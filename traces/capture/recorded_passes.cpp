@@ -1,0 +1,181 @@
+/// Passes: attachments, what they begin with, and clears.
+#include <vulkan/vulkan_core.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "models/base/error.h"
+#include "traces/capture/frame_recorder.h"
+#include "traces/capture/vulkan_names.h"
+
+namespace quadrille::capture {
+namespace {
+
+std::array<std::uint32_t, 4> clear_bits(const Value& clear) {
+  std::array<std::uint32_t, 4> bits{};
+  for (std::size_t c = 0; c < 4 && c < clear["color"].size(); ++c) bits[c] = clear["color"].u32(c);
+  return bits;
+}
+
+void set_clear(traces::ColorAttachmentUse& use, const std::array<std::uint32_t, 4>& bits, bool integers) {
+  use.load = traces::LoadOp::kClear;
+  if (integers) use.clear_integers = bits;
+  else
+    for (std::size_t c = 0; c < 4; ++c) use.clear[c] = std::bit_cast<float>(bits[c]);
+}
+
+bool covers(const Value& area, std::uint32_t width, std::uint32_t height) {
+  return area["offset"]["x"].i32() == 0 && area["offset"]["y"].i32() == 0 &&
+         area["extent"]["width"].u32() >= width && area["extent"]["height"].u32() >= height;
+}
+
+}  // namespace
+
+bool FrameRecorder::change_pass(const Call& call) {
+  const Value& p = call.parameters;
+  if (call.name == "CmdBeginRendering") begin_rendering(p["pRenderingInfo"]);
+  else if (call.name == "CmdBeginRenderPass" || call.name == "CmdBeginRenderPass2")
+    begin_render_pass(p["pRenderPassBegin"]);
+  else if (call.name == "CmdEndRendering" || call.name == "CmdEndRenderPass" ||
+           call.name == "CmdEndRenderPass2")
+    end_pass();
+  else if (call.name == "CmdClearAttachments") clear_attachments(p);
+  else return false;
+  return true;
+}
+
+void FrameRecorder::begin_rendering(const Value& info) {
+  const auto target = [](const Value& from) {
+    PassTarget to;
+    to.view = from["imageView"].u64();
+    if (from["resolveMode"].u32() != VK_RESOLVE_MODE_NONE) to.resolve = from["resolveImageView"].u64();
+    to.load = load_of(from["loadOp"].u32());
+    to.store = store_of(from["storeOp"].u32());
+    to.clear = clear_bits(from["clearValue"]);
+    return to;
+  };
+  std::vector<PassTarget> colors;
+  for (std::size_t i = 0; i < info["pColorAttachments"].size(); ++i)
+    colors.push_back(target(info["pColorAttachments"].at(i)));
+  PassTarget depth, stencil;
+  if (!info["pDepthAttachment"].null()) depth = target(info["pDepthAttachment"]);
+  if (!info["pStencilAttachment"].null()) stencil = target(info["pStencilAttachment"]);
+  if (depth.view == 0) depth = stencil;
+  if (stencil.view != 0) {
+    depth.clear[1] = stencil.clear[1];
+    if (stencil.store == traces::StoreOp::kStore) depth.store = traces::StoreOp::kStore;
+  }
+  begin_pass(colors, depth);
+  if (!covers(info["renderArea"], pass_width_, pass_height_))
+    throw user_error("a pass that renders to a part of its attachments is not supported");
+}
+
+void FrameRecorder::begin_render_pass(const Value& info) {
+  const RenderPassObject& pass = object(device_.render_passes, info["renderPass"].u64(), "render pass");
+  const std::vector<Handle>& views = object(device_.framebuffers, info["framebuffer"].u64(), "framebuffer");
+  if (pass.subpasses != 1) throw user_error("a render pass of {} subpasses is not supported", pass.subpasses);
+  const auto target = [&](std::uint32_t number) {
+    PassTarget to;
+    if (number == RenderPassObject::kUnused) return to;
+    if (number >= pass.attachments.size() || number >= views.size())
+      throw user_error("attachment {} of a render pass that has {}", number, pass.attachments.size());
+    const PassAttachment& from = pass.attachments[number];
+    to.view = views[number];
+    to.load = load_of(from.load);
+    to.store = store_of(from.store);
+    if (number < info["pClearValues"].size()) to.clear = clear_bits(info["pClearValues"].at(number));
+    return to;
+  };
+  std::vector<PassTarget> colors;
+  for (std::size_t i = 0; i < pass.colors.size(); ++i) {
+    colors.push_back(target(pass.colors[i]));
+    if (i < pass.resolves.size()) colors.back().resolve = target(pass.resolves[i]).view;
+  }
+  begin_pass(colors, target(pass.depth));
+  if (!covers(info["renderArea"], pass_width_, pass_height_))
+    throw user_error("a pass that renders to a part of its attachments is not supported");
+}
+
+void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target) {
+  const ViewObject& view = object(device_.views, target.view, "image view");
+  use.image = tables_.attachment(view.image);
+  use.level = view.level;
+  use.layer = view.layer;
+  use.load = target.load;
+  use.store = target.store;
+  // What earlier frames left there is not known but where the capture brings it.
+  if (use.load == traces::LoadOp::kLoad && !tables_.stored(view.image)) use.load = traces::LoadOp::kDontCare;
+  if (use.store == traces::StoreOp::kStore) pass_stores_.push_back(view.image);
+  const traces::Image& image = tables_.stream.images[use.image];
+  pass_width_ = traces::level_width(image, use.level);
+  pass_height_ = traces::level_height(image, use.level);
+}
+
+void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth) {
+  if (in_pass_) end_pass();
+  pass_ = {};
+  pass_stores_.clear();
+  last_shown_ = 0;
+  for (const PassTarget& color : colors) {
+    if (color.view == 0)
+      throw user_error("a pass with a colour attachment that is left out is not supported");
+    traces::ColorAttachmentUse& use = pass_.colors.emplace_back();
+    attach(use, color);
+    const traces::Format format = tables_.stream.images[use.image].format;
+    if (use.load == traces::LoadOp::kClear) set_clear(use, color.clear, traces::is_integer_format(format));
+    Handle shown = object(device_.views, color.view, "image view").image;
+    if (color.resolve != 0) {
+      const ViewObject& view = object(device_.views, color.resolve, "image view");
+      use.resolve = tables_.attachment(view.image);
+      use.resolve_level = view.level;
+      use.resolve_layer = view.layer;
+      pass_stores_.push_back(view.image);
+      shown = view.image;
+    }
+    if (pass_.colors.size() == 1) last_shown_ = shown;
+  }
+  if (depth.view != 0) {
+    attach(pass_.depth, depth);
+    pass_.depth.clear = std::bit_cast<float>(depth.clear[0]);
+    pass_.depth.clear_stencil = static_cast<std::uint8_t>(depth.clear[1]);
+    if (pass_.depth.load == traces::LoadOp::kDontCare) pass_.depth.clear = 1;
+  }
+  in_pass_ = true;
+  drew_ = false;
+  begin_at_ = tables_.stream.commands.size();
+  tables_.stream.commands.emplace_back(pass_);
+}
+
+void FrameRecorder::end_pass() {
+  if (!in_pass_) return;
+  in_pass_ = false;
+  tables_.stream.commands.emplace_back(traces::EndPass{});
+  for (const Handle image : pass_stores_) tables_.note_stored(image);
+}
+
+/// A clear of everything before the first draw is how the pass begins.
+void FrameRecorder::clear_attachments(const Value& call) {
+  if (!in_pass_) throw user_error("outside a pass");
+  const Value& rects = call["pRects"];
+  if (drew_ || rects.size() != 1 || !covers(rects["rect"], pass_width_, pass_height_))
+    throw user_error("of a part of a pass, or behind a draw");
+  auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
+  const Value& attachments = call["pAttachments"];
+  for (std::size_t i = 0; i < attachments.size(); ++i) {
+    const Value& one = attachments.at(i);
+    const std::uint32_t aspect = one["aspectMask"].u32(), number = one["colorAttachment"].u32();
+    const std::array<std::uint32_t, 4> bits = clear_bits(one["clearValue"]);
+    if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && number < begin.colors.size()) {
+      const traces::Format format = tables_.stream.images[begin.colors[number].image].format;
+      set_clear(begin.colors[number], bits, traces::is_integer_format(format));
+    }
+    if ((aspect & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+      begin.depth.load = traces::LoadOp::kClear;
+      begin.depth.clear = std::bit_cast<float>(bits[0]);
+    }
+    if ((aspect & VK_IMAGE_ASPECT_STENCIL_BIT) != 0)
+      begin.depth.clear_stencil = static_cast<std::uint8_t>(bits[1]);
+  }
+}
+
+}  // namespace quadrille::capture

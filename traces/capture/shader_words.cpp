@@ -1,0 +1,259 @@
+/// Instructions are copied one by one; what is added stands before the functions and behind them.
+#include "traces/capture/shader_words.h"
+
+#include <cstring>
+#include <optional>
+
+#include "models/base/error.h"
+
+namespace quadrille::capture {
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+using Instruction = std::span<const std::uint32_t>;
+
+constexpr std::size_t kHeader = 5, kBound = 3;
+constexpr std::uint32_t kMaxBound = 1u << 22;  // [SPIRV §2.17: 0x3FFFFF]
+// Numbers of instructions and decorations. [SPIRV §3]
+enum Op : std::uint32_t {
+  kEntryPoint = 15,
+  kExecutionMode = 16,
+  kTypeInt = 21,
+  kTypeFloat = 22,
+  kTypeVector = 23,
+  kTypePointer = 32,
+  kConstant = 43,
+  kSpecTrue = 48,
+  kSpecFalse = 49,
+  kSpecConstant = 50,
+  kFunction = 54,
+  kFunctionEnd = 56,
+  kFunctionCall = 57,
+  kVariable = 59,
+  kLoad = 61,
+  kStore = 62,
+  kAccessChain = 65,
+  kDecorate = 71,
+  kMemberDecorate = 72,
+  kCompositeExtract = 81,
+  kCompositeInsert = 82,
+  kFAdd = 129,
+  kFMul = 133,
+  kLabel = 248,
+  kReturn = 253
+};
+constexpr std::uint32_t kSpecId = 1, kBuiltIn = 11, kFlat = 14, kBinding = 33, kDescriptorSet = 34,
+                        kPosition = 0, kOutput = 3, kHalf = 0x3f000000;
+
+std::uint32_t op_of(Instruction i) { return i[0] & 0xffff; }
+
+/// The words of a string from `first` on.
+std::string text_of(Instruction i, std::size_t first) {
+  std::string text;
+  for (std::size_t w = first; w < i.size(); ++w) {
+    for (int byte = 0; byte < 4; ++byte) {
+      const char c = static_cast<char>(i[w] >> (8 * byte) & 0xff);
+      if (c == 0) return text;
+      text += c;
+    }
+  }
+  throw user_error("a name in a shader has no end");
+}
+std::size_t text_words(const std::string& text) { return text.size() / 4 + 1; }
+
+void append(Words& words, std::uint32_t op, std::initializer_list<std::uint32_t> operands) {
+  words.push_back(static_cast<std::uint32_t>(operands.size() + 1) << 16 | op);
+  words.insert(words.end(), operands);
+}
+
+/// What has to be known before anything is written.
+struct Facts {
+  std::uint32_t entry = 0, function_type = 0, void_type = 0;
+  std::map<std::uint32_t, std::uint32_t> spec_numbers;  ///< by the constant's id
+  std::uint32_t position = 0;  ///< the variable, or the one of the block that it is a member of
+  std::optional<std::uint32_t> member;
+  std::uint32_t block = 0;  ///< the structure that has it as a member
+  std::uint32_t float_type = 0, vector_type = 0, pointer_type = 0, int_type = 0;
+};
+
+std::vector<Instruction> split(std::span<const std::uint32_t> words) {
+  if (words.size() < kHeader || words[kBound] >= kMaxBound)
+    throw user_error("a shader module has no SPIR-V header");
+  std::vector<Instruction> instructions;
+  for (std::size_t at = kHeader; at < words.size();) {
+    const std::size_t count = words[at] >> 16;
+    if (count == 0 || count > words.size() - at)
+      throw user_error("a shader module ends within an instruction");
+    instructions.push_back(words.subspan(at, count));
+    at += count;
+  }
+  return instructions;
+}
+
+class Module {
+ public:
+  Module(std::span<const std::uint32_t> words, const ShaderWish& wish)
+      : words_(words), wish_(wish), instructions_(split(words)) {
+    gather();
+  }
+
+  Words rewritten() {
+    Words out(words_.begin(), words_.begin() + kHeader);
+    bound_ = words_[kBound];
+    const bool moves = wish_.negative_one_to_one && facts_.position != 0;
+    const std::uint32_t main = moves ? bound_++ : facts_.entry;
+    bool before_functions = true;
+    for (const Instruction i : instructions_) {
+      if (before_functions && op_of(i) == kFunction && moves) declare(out);
+      before_functions = before_functions && op_of(i) != kFunction;
+      copy(out, i, main);
+    }
+    if (moves) add_main(out, main);
+    out[kBound] = bound_;
+    return out;
+  }
+
+ private:
+  [[nodiscard]] bool is_entry(Instruction i) const {
+    return i.size() > 3 && i[1] == (wish_.stage == traces::ShaderStage::kVertex ? 0u : 4u) &&
+           text_of(i, 3) == wish_.entry;
+  }
+
+  void gather() {
+    for (const Instruction i : instructions_)
+      if (op_of(i) == kEntryPoint && is_entry(i)) facts_.entry = i[2];
+    if (facts_.entry == 0) throw user_error("a shader module has no entry point '{}'", wish_.entry);
+    for (const Instruction i : instructions_) gather(i);
+    for (const Instruction i : instructions_) find_position(i);
+  }
+  void gather(Instruction i) {
+    const std::uint32_t op = op_of(i);
+    if (op == kFunction && i.size() == 5 && i[2] == facts_.entry) {
+      facts_.void_type = i[1];
+      facts_.function_type = i[4];
+    }
+    if (op == kDecorate && i.size() == 4 && i[2] == kSpecId) facts_.spec_numbers[i[1]] = i[3];
+    if (op == kDecorate && i.size() == 4 && i[2] == kBuiltIn && i[3] == kPosition) facts_.position = i[1];
+    if (op == kMemberDecorate && i.size() == 5 && i[3] == kBuiltIn && i[4] == kPosition) {
+      facts_.block = i[1];
+      facts_.member = i[2];
+    }
+    if (op == kTypeFloat && i.size() >= 3 && i[2] == 32) facts_.float_type = i[1];
+    if (op == kTypeInt && i.size() == 4 && i[2] == 32) facts_.int_type = i[1];
+    if (op == kTypeVector && i.size() == 4 && i[2] == facts_.float_type && i[3] == 4)
+      facts_.vector_type = i[1];
+    if (op == kTypePointer && i.size() == 4 && i[2] == kOutput) {
+      if (i[3] == facts_.vector_type) facts_.pointer_type = i[1];
+      if (facts_.block != 0 && i[3] == facts_.block) block_pointer_ = i[1];
+    }
+  }
+  void find_position(Instruction i) {
+    if (block_pointer_ != 0 && op_of(i) == kVariable && i.size() >= 4 && i[1] == block_pointer_)
+      facts_.position = i[2];
+  }
+
+  void copy(Words& out, Instruction i, std::uint32_t main) {
+    const std::uint32_t op = op_of(i);
+    if (op == kEntryPoint) {
+      if (is_entry(i)) copy_entry(out, i, main);
+    } else if (op == kExecutionMode) {
+      if (i.size() > 2 && i[1] == facts_.entry) {
+        out.insert(out.end(), i.begin(), i.end());
+        out[out.size() - i.size() + 1] = main;
+      }
+    } else if (op == kSpecTrue || op == kSpecFalse || op == kSpecConstant) {
+      copy_constant(out, i);
+    } else {
+      out.insert(out.end(), i.begin(), i.end());
+    }
+  }
+  void copy_entry(Words& out, Instruction i, std::uint32_t main) {
+    const Instruction interface = i.subspan(3 + text_words(wish_.entry));
+    out.push_back(static_cast<std::uint32_t>(5 + interface.size()) << 16 | kEntryPoint);
+    out.push_back(i[1]);
+    out.push_back(main);
+    out.push_back(0x6e69616d);  // "main"
+    out.push_back(0);
+    out.insert(out.end(), interface.begin(), interface.end());
+  }
+  void copy_constant(Words& out, Instruction i) {
+    const std::size_t at = out.size();
+    out.insert(out.end(), i.begin(), i.end());
+    if (i.size() < 3) return;
+    const auto number = facts_.spec_numbers.find(i[2]);
+    if (number == facts_.spec_numbers.end()) return;
+    const auto value = wish_.constants.find(number->second);
+    if (value == wish_.constants.end()) return;
+    if (op_of(i) == kSpecConstant && i.size() == 4) out[at + 3] = value->second;
+    else if (op_of(i) != kSpecConstant)
+      out[at] = (out[at] & ~0xffffu) | (value->second != 0 ? kSpecTrue : kSpecFalse);
+  }
+
+  /// The constants and types that `add_main` uses; a type may stand only once.
+  void declare(Words& out) {
+    if (facts_.float_type == 0 || facts_.vector_type == 0 || facts_.function_type == 0)
+      throw user_error("a shader module writes a position without the types of one");
+    half_ = bound_++;
+    append(out, kConstant, {facts_.float_type, half_, kHalf});
+    if (!facts_.member) return;
+    if (facts_.pointer_type == 0) {
+      facts_.pointer_type = bound_++;
+      append(out, kTypePointer, {facts_.pointer_type, kOutput, facts_.vector_type});
+    }
+    if (facts_.int_type == 0) {
+      facts_.int_type = bound_++;
+      append(out, kTypeInt, {facts_.int_type, 32, 1});
+    }
+    member_ = bound_++;
+    append(out, kConstant, {facts_.int_type, member_, *facts_.member});
+  }
+  void add_main(Words& out, std::uint32_t main) {
+    const auto fresh = [this] { return bound_++; };
+    append(out, kFunction, {facts_.void_type, main, 0, facts_.function_type});
+    append(out, kLabel, {fresh()});
+    append(out, kFunctionCall, {facts_.void_type, fresh(), facts_.entry});
+    std::uint32_t place = facts_.position;
+    if (facts_.member) {
+      place = fresh();
+      append(out, kAccessChain, {facts_.pointer_type, place, facts_.position, member_});
+    }
+    const std::uint32_t old = fresh(), z = fresh(), w = fresh(), sum = fresh(), half = fresh(),
+                        moved = fresh();
+    append(out, kLoad, {facts_.vector_type, old, place});
+    append(out, kCompositeExtract, {facts_.float_type, z, old, 2});
+    append(out, kCompositeExtract, {facts_.float_type, w, old, 3});
+    append(out, kFAdd, {facts_.float_type, sum, z, w});
+    append(out, kFMul, {facts_.float_type, half, sum, half_});
+    append(out, kCompositeInsert, {facts_.vector_type, moved, half, old, 2});
+    append(out, kStore, {place, moved});
+    append(out, kReturn, {});
+    append(out, kFunctionEnd, {});
+  }
+
+  std::span<const std::uint32_t> words_;
+  const ShaderWish& wish_;
+  std::vector<Instruction> instructions_;
+  Facts facts_;
+  std::uint32_t block_pointer_ = 0, bound_ = 0, half_ = 0, member_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> shader_words(std::span<const std::uint32_t> module, const ShaderWish& wish) {
+  return Module(module, wish).rewritten();
+}
+
+ShaderFacts shader_facts(std::span<const std::uint32_t> words) {
+  ShaderFacts facts;
+  std::map<std::uint32_t, std::uint32_t> sets, bindings;
+  for (const Instruction i : split(words)) {
+    if (op_of(i) != kDecorate || i.size() < 3) continue;
+    if (i[2] == kFlat) facts.flat_input = true;
+    if (i.size() == 4 && i[2] == kDescriptorSet) sets[i[1]] = i[3];
+    if (i.size() == 4 && i[2] == kBinding) bindings[i[1]] = i[3];
+  }
+  for (const auto& [id, binding] : bindings) facts.bindings.emplace(sets[id], binding);
+  return facts;
+}
+
+}  // namespace quadrille::capture

@@ -1,0 +1,37 @@
+/// What a capture's SPIR-V becomes before it is a shader of the stream: one entry point, called "main";
+/// specialisation constants with the pipeline's values; and depths from OpenGL's clip space into Vulkan's.
+/// [SPIRV §2.3]
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "traces/command_stream.h"
+
+namespace quadrille::capture {
+
+struct ShaderWish {
+  std::string entry = "main";
+  traces::ShaderStage stage = traces::ShaderStage::kVertex;
+  std::map<std::uint32_t, std::uint32_t> constants;  ///< by constant number: the bits of a 32-bit value
+  /// Clip space of its position is -w <= z <= w: behind its last instruction z becomes (z + w) / 2.
+  bool negative_one_to_one = false;
+};
+
+/// Throws `UserError` for a module without that entry point, or whose words do not form instructions.
+[[nodiscard]] std::vector<std::uint32_t> shader_words(std::span<const std::uint32_t> module,
+                                                      const ShaderWish& wish);
+
+/// What a draw has to know of a shader.
+struct ShaderFacts {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> bindings;  ///< set and binding of what it declares
+  bool flat_input = false;                                     ///< of the provoking vertex
+};
+[[nodiscard]] ShaderFacts shader_facts(std::span<const std::uint32_t> words);
+
+}  // namespace quadrille::capture

@@ -1,0 +1,118 @@
+#include "traces/capture/stream_tables.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include <algorithm>
+
+#include "models/base/error.h"
+#include "traces/capture/texels.h"
+#include "traces/capture/vulkan_names.h"
+
+namespace quadrille::capture {
+
+using traces::Index;
+
+namespace {
+
+template <class T>
+Index append(std::vector<T>& table, T value) {
+  table.push_back(std::move(value));
+  return static_cast<Index>(table.size() - 1);
+}
+
+/// The place of an equal element, or of a new one.
+template <class T>
+Index place(std::vector<T>& table, const T& value) {
+  const auto found = std::ranges::find(table, value);
+  if (found != table.end()) return static_cast<Index>(found - table.begin());
+  return append(table, value);
+}
+
+}  // namespace
+
+Index StreamTables::buffer(Handle handle) {
+  const BufferObject& object_of = object(device_.buffers, handle, "buffer");
+  const std::uint64_t version = device_.version(object_of);
+  const auto found = buffers_.find(handle);
+  if (found != buffers_.end() && found->second.version == version) return found->second.index;
+  traces::Buffer made{fmt::format("buffer {}", handle), device_.contents(object_of)};
+  if (found != buffers_.end() && stream.buffers[found->second.index].data == made.data) {
+    found->second.version = version;
+    return found->second.index;
+  }
+  const Index index = append(stream.buffers, std::move(made));
+  buffers_[handle] = {index, version};
+  return index;
+}
+
+Index StreamTables::attachment(Handle handle) {
+  if (const auto found = attachments_.find(handle); found != attachments_.end()) return found->second;
+  const ImageObject& from = object(device_.images, handle, "image");
+  traces::Image image;
+  image.name = fmt::format("image {}", handle);
+  image.format = image_format(from.format);
+  if (image.format == traces::Format::kUndefined || from.type != VK_IMAGE_TYPE_2D)
+    throw user_error("an attachment of {} is not supported", format_name(from.format));
+  image.width = from.width;
+  image.height = from.height;
+  image.levels = from.levels;
+  image.layers = from.layers;
+  image.samples = from.samples;
+  const bool depth = models::format_info(image.format).may(models::kDepthUse);
+  image.usage = depth ? traces::kDepthAttachment : traces::kColorAttachment;
+  if ((from.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0 && from.samples == 1) image.usage |= traces::kSampled;
+  return attachments_[handle] = append(stream.images, std::move(image));
+}
+
+traces::TextureDescriptor StreamTables::texture(Handle handle) {
+  const ViewObject& view = object(device_.views, handle, "image view");
+  if (view.type != VK_IMAGE_VIEW_TYPE_2D) throw user_error("VkImageViewType {} is not supported", view.type);
+  traces::TextureDescriptor made;
+  made.first_level = view.level;
+  made.levels = view.levels;
+  if (stored(view.image)) {
+    made.image = attachment(view.image);
+    made.layer = view.layer;
+  } else {
+    made.image = texels(view.image, view);
+  }
+  return made;
+}
+
+Index StreamTables::texels(Handle handle, const ViewObject& view) {
+  const ImageObject& from = object(device_.images, handle, "image");
+  const auto key = std::tuple(handle, from.writes, view.format, view.swizzle, view.layer);
+  if (const auto found = textures_.find(key); found != textures_.end()) return found->second;
+  traces::Image image;
+  image.name = fmt::format("image {}", handle);
+  image.format = expanded_format(view);
+  image.width = from.width;
+  image.height = from.height;
+  image.levels = from.levels;
+  image.texels = expanded_texels(from, view);
+  return textures_[key] = append(stream.images, std::move(image));
+}
+
+Index StreamTables::sampler(Handle handle) {
+  if (const auto found = samplers_.find(handle); found != samplers_.end()) return found->second;
+  const SamplerObject& from = object(device_.samplers, handle, "sampler");
+  if (!from.unsupported.empty()) throw user_error("a sampler with {} is not supported", from.unsupported);
+  return samplers_[handle] = append(stream.samplers, from.state);
+}
+
+Index StreamTables::shader(Handle module, const ShaderWish& wish) {
+  const auto key = std::tuple(module, wish.entry, wish.stage, wish.constants, wish.negative_one_to_one);
+  if (const auto found = shaders_.find(key); found != shaders_.end()) return found->second;
+  traces::Shader made{fmt::format("shader {}", module), wish.stage,
+                      shader_words(object(device_.modules, module, "shader module"), wish)};
+  facts_.push_back(shader_facts(made.spirv));
+  return shaders_[key] = append(stream.shaders, std::move(made));
+}
+
+Index StreamTables::pipeline(const traces::Pipeline& wanted) { return place(stream.pipelines, wanted); }
+
+Index StreamTables::descriptors(const traces::DescriptorSet& wanted) {
+  return place(stream.descriptor_sets, wanted);
+}
+
+}  // namespace quadrille::capture

@@ -1,0 +1,206 @@
+#include "traces/capture/vulkan_names.h"
+
+#include <vulkan/vulkan_core.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "models/base/error.h"
+
+namespace quadrille::capture {
+namespace {
+
+using traces::Format;
+
+/// Enumerations of the stream that count as Vulkan's do.
+template <class E>
+E same_number(std::uint32_t value, E last, const char* what) {
+  if (value > static_cast<std::uint32_t>(last)) throw user_error("{} {} is not supported", what, value);
+  return static_cast<E>(value);
+}
+
+struct FormatRow {
+  VkFormat vulkan;
+  Format ours;
+};
+/// What attributes and images both have, or images alone.
+constexpr FormatRow kImageFormats[] = {
+    {VK_FORMAT_R8G8B8A8_UNORM, Format::kR8G8B8A8Unorm},
+    {VK_FORMAT_R8G8B8A8_SRGB, Format::kR8G8B8A8Srgb},
+    {VK_FORMAT_B8G8R8A8_UNORM, Format::kB8G8R8A8Unorm},
+    {VK_FORMAT_B8G8R8A8_SRGB, Format::kB8G8R8A8Srgb},
+    {VK_FORMAT_A2B10G10R10_UNORM_PACK32, Format::kA2B10G10R10Unorm},
+    {VK_FORMAT_R8_UNORM, Format::kR8Unorm},
+    {VK_FORMAT_R8G8_UNORM, Format::kR8G8Unorm},
+    {VK_FORMAT_R16_SFLOAT, Format::kR16Float},
+    {VK_FORMAT_R16G16_SFLOAT, Format::kR16G16Float},
+    {VK_FORMAT_R16G16B16A16_SFLOAT, Format::kR16G16B16A16Float},
+    {VK_FORMAT_R32_SFLOAT, Format::kR32Float},
+    {VK_FORMAT_R32G32_SFLOAT, Format::kR32G32Float},
+    {VK_FORMAT_R32G32B32A32_SFLOAT, Format::kR32G32B32A32Float},
+    {VK_FORMAT_B10G11R11_UFLOAT_PACK32, Format::kB10G11R11Ufloat},
+    {VK_FORMAT_R8_UINT, Format::kR8Uint},
+    {VK_FORMAT_R8_SINT, Format::kR8Sint},
+    {VK_FORMAT_R8G8_UINT, Format::kR8G8Uint},
+    {VK_FORMAT_R8G8_SINT, Format::kR8G8Sint},
+    {VK_FORMAT_R8G8B8A8_UINT, Format::kR8G8B8A8Uint},
+    {VK_FORMAT_R8G8B8A8_SINT, Format::kR8G8B8A8Sint},
+    {VK_FORMAT_R16_UINT, Format::kR16Uint},
+    {VK_FORMAT_R16_SINT, Format::kR16Sint},
+    {VK_FORMAT_R16G16_UINT, Format::kR16G16Uint},
+    {VK_FORMAT_R16G16_SINT, Format::kR16G16Sint},
+    {VK_FORMAT_R16G16B16A16_UINT, Format::kR16G16B16A16Uint},
+    {VK_FORMAT_R16G16B16A16_SINT, Format::kR16G16B16A16Sint},
+    {VK_FORMAT_R32_UINT, Format::kR32Uint},
+    {VK_FORMAT_R32_SINT, Format::kR32Sint},
+    {VK_FORMAT_R32G32_UINT, Format::kR32G32Uint},
+    {VK_FORMAT_R32G32_SINT, Format::kR32G32Sint},
+    {VK_FORMAT_R32G32B32A32_UINT, Format::kR32G32B32A32Uint},
+    {VK_FORMAT_R32G32B32A32_SINT, Format::kR32G32B32A32Sint},
+    {VK_FORMAT_D16_UNORM, Format::kD16Unorm},
+    {VK_FORMAT_D32_SFLOAT, Format::kD32Float},
+    // 24 bits of depth, whatever is done with the other eight
+    {VK_FORMAT_X8_D24_UNORM_PACK32, Format::kD24UnormS8Uint},
+    {VK_FORMAT_D24_UNORM_S8_UINT, Format::kD24UnormS8Uint},
+    {VK_FORMAT_D32_SFLOAT_S8_UINT, Format::kD32FloatS8Uint},
+};
+constexpr FormatRow kAttributeFormats[] = {
+    {VK_FORMAT_R32_SFLOAT, Format::kR32Float},
+    {VK_FORMAT_R32G32_SFLOAT, Format::kR32G32Float},
+    {VK_FORMAT_R32G32B32_SFLOAT, Format::kR32G32B32Float},
+    {VK_FORMAT_R32G32B32A32_SFLOAT, Format::kR32G32B32A32Float},
+    {VK_FORMAT_R8G8_UNORM, Format::kR8G8Unorm},
+    {VK_FORMAT_R8G8B8A8_UNORM, Format::kR8G8B8A8UnormVertex},
+    {VK_FORMAT_A8B8G8R8_UNORM_PACK32, Format::kR8G8B8A8UnormVertex},  // the same bytes
+    {VK_FORMAT_R16G16_UNORM, Format::kR16G16Unorm},
+    {VK_FORMAT_R16G16B16A16_UNORM, Format::kR16G16B16A16Unorm},
+    {VK_FORMAT_R8G8B8A8_SNORM, Format::kR8G8B8A8Snorm},
+    {VK_FORMAT_R16G16B16A16_SNORM, Format::kR16G16B16A16Snorm},
+    {VK_FORMAT_R8G8B8A8_UINT, Format::kR8G8B8A8Uint},
+    {VK_FORMAT_R16G16B16A16_UINT, Format::kR16G16B16A16Uint},
+};
+
+}  // namespace
+
+Format image_format(std::uint32_t format) {
+  const auto* row = std::ranges::find(kImageFormats, static_cast<VkFormat>(format), &FormatRow::vulkan);
+  return row == std::end(kImageFormats) ? Format::kUndefined : row->ours;
+}
+
+Format attribute_format(std::uint32_t format) {
+  const auto* row = std::ranges::find(kAttributeFormats, static_cast<VkFormat>(format), &FormatRow::vulkan);
+  if (row == std::end(kAttributeFormats))
+    throw user_error("a vertex attribute of {} is not supported", format_name(format));
+  return row->ours;
+}
+
+std::string format_name(std::uint32_t format) {
+  const Format known = image_format(format);
+  return known == Format::kUndefined ? fmt::format("VkFormat {}", format)
+                                     : fmt::format("VK_FORMAT_{}", models::format_info(known).name);
+}
+
+traces::Topology topology_of(std::uint32_t value) {
+  using traces::Topology;
+  constexpr std::array kTopologies{Topology::kPointList,    Topology::kLineList,      Topology::kLineStrip,
+                                   Topology::kTriangleList, Topology::kTriangleStrip, Topology::kTriangleFan};
+  if (value >= kTopologies.size()) throw user_error("VkPrimitiveTopology {} is not supported", value);
+  return kTopologies[value];
+}
+
+traces::CompareOp compare_of(std::uint32_t value) {
+  return same_number(value, traces::CompareOp::kAlways, "VkCompareOp");
+}
+traces::StencilOp stencil_op_of(std::uint32_t value) {
+  return same_number(value, traces::StencilOp::kDecrementWrap, "VkStencilOp");
+}
+traces::BlendFactor blend_factor_of(std::uint32_t value) {
+  return same_number(value, models::kLastBlendFactor, "VkBlendFactor");
+}
+traces::BlendOp blend_op_of(std::uint32_t value) {
+  return same_number(value, traces::BlendOp::kMax, "VkBlendOp");
+}
+traces::LogicOp logic_op_of(std::uint32_t value) {
+  return same_number(value, traces::LogicOp::kSet, "VkLogicOp");
+}
+traces::CullMode cull_of(std::uint32_t value) {
+  return same_number(value, traces::CullMode::kBack, "VkCullModeFlags (front and back)");
+}
+traces::PolygonMode polygon_mode_of(std::uint32_t value) {
+  return same_number(value, traces::PolygonMode::kPoint, "VkPolygonMode");
+}
+traces::IndexType index_type_of(std::uint32_t value) {
+  if (value == VK_INDEX_TYPE_UINT8_EXT) return traces::IndexType::kUint8;
+  if (value == VK_INDEX_TYPE_UINT16) return traces::IndexType::kUint16;
+  if (value == VK_INDEX_TYPE_UINT32) return traces::IndexType::kUint32;
+  throw user_error("VkIndexType {} is not supported", value);
+}
+
+/// What the device chooses is the rule for rectangles. [VK1.3 #primsrast-lines-basic]
+traces::LineMode line_mode_of(std::uint32_t value) {
+  switch (value) {
+    case VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT:
+    case VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT: return traces::LineMode::kRectangular;
+    case VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT: return traces::LineMode::kBresenham;
+    case VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT: return traces::LineMode::kSmooth;
+    default: throw user_error("VkLineRasterizationModeEXT {} is not supported", value);
+  }
+}
+
+traces::LoadOp load_of(std::uint32_t value) {
+  if (value == VK_ATTACHMENT_LOAD_OP_LOAD) return traces::LoadOp::kLoad;
+  return value == VK_ATTACHMENT_LOAD_OP_CLEAR ? traces::LoadOp::kClear : traces::LoadOp::kDontCare;
+}
+traces::StoreOp store_of(std::uint32_t value) {
+  return value == VK_ATTACHMENT_STORE_OP_STORE ? traces::StoreOp::kStore : traces::StoreOp::kDiscard;
+}
+
+namespace {
+
+traces::Wrap wrap_of(std::uint32_t value, std::string& unsupported) {
+  switch (value) {
+    case VK_SAMPLER_ADDRESS_MODE_REPEAT: return traces::Wrap::kRepeat;
+    case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT: return traces::Wrap::kMirroredRepeat;
+    case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE: return traces::Wrap::kClampToEdge;
+    default: unsupported = fmt::format("VkSamplerAddressMode {}", value); return traces::Wrap::kClampToEdge;
+  }
+}
+traces::Filter filter_of(std::uint32_t value, std::string& unsupported) {
+  if (value == VK_FILTER_NEAREST) return traces::Filter::kNearest;
+  if (value != VK_FILTER_LINEAR) unsupported = fmt::format("VkFilter {}", value);
+  return traces::Filter::kLinear;
+}
+
+}  // namespace
+
+SamplerObject sampler_of(const Value& info) {
+  SamplerObject made;
+  traces::Sampler& state = made.state;
+  state.mag = filter_of(info["magFilter"].u32(), made.unsupported);
+  state.min = filter_of(info["minFilter"].u32(), made.unsupported);
+  state.mip = info["mipmapMode"].u32() == VK_SAMPLER_MIPMAP_MODE_LINEAR ? traces::Filter::kLinear
+                                                                        : traces::Filter::kNearest;
+  state.wrap_u = wrap_of(info["addressModeU"].u32(), made.unsupported);
+  state.wrap_v = wrap_of(info["addressModeV"].u32(), made.unsupported);
+  state.lod_bias = info["mipLodBias"].f32();
+  state.min_lod = info["minLod"].f32();
+  state.max_lod = info["maxLod"].f32();
+  if (info["compareEnable"].flag()) made.unsupported = "comparison";
+  if (info["unnormalizedCoordinates"].flag()) made.unsupported = "unnormalised coordinates";
+  if (info.next(VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO) != nullptr)
+    made.unsupported = "a reduction mode";
+  return made;
+}
+
+bool changes_no_picture(std::string_view command) {
+  constexpr std::array<std::string_view, 12> kSilent{"CmdPipelineBarrier",     "CmdPipelineBarrier2",
+                                                     "CmdPipelineBarrier2KHR", "CmdSetEvent",
+                                                     "CmdResetEvent",          "CmdWaitEvents",
+                                                     "CmdWriteTimestamp",      "CmdResetQueryPool",
+                                                     "CmdSetLineStippleEXT",   "CmdSetPatchControlPointsEXT",
+                                                     "CmdSetDeviceMask",       "CmdWriteTimestamp2"};
+  return std::ranges::find(kSilent, command) != kSilent.end();
+}
+
+}  // namespace quadrille::capture
