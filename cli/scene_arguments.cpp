@@ -387,6 +387,7 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
 SceneArguments::Loaded SceneArguments::load_capture() const {
   capture::Import import = capture::import_capture(scene, {.skip_unsupported = skip_unsupported});
   Loaded loaded{std::move(import.stream), {}};
+  for (const std::string& note : import.notes) fmt::print(stderr, "{}: {}\n", scene, note);
   for (const auto& [reason, count] : import.skipped) {
     fmt::print(stderr, "{}: left out, {} times: {}\n", scene, count, reason);
     loaded.left_out.push_back({"commands of the capture", "not supported: " + reason,

@@ -9,6 +9,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct BoundState {
   std::vector<std::byte> constants;  ///< pushed, from byte 0 on
 };
 
+/// The words of a VkClearValue.
+[[nodiscard]] std::array<std::uint32_t, 4> clear_bits(const Value& clear);
+
 class FrameRecorder {
  public:
   explicit FrameRecorder(Device& device) : device_(device), tables_(device) {}
@@ -50,6 +54,8 @@ class FrameRecorder {
   [[nodiscard]] bool presented() const { return presented_ != 0; }
   /// What could not be expressed, with how often.
   [[nodiscard]] const std::map<std::string, std::size_t>& unsupported() const { return unsupported_; }
+  /// What is drawn without being known, a line each.
+  [[nodiscard]] const std::set<std::string>& notes() const { return tables_.notes(); }
   /// The frame. Its last pass draws to what is shown. Throws `UserError` if there is none.
   [[nodiscard]] traces::CommandStream take();
 
@@ -60,6 +66,15 @@ class FrameRecorder {
     traces::LoadOp load = traces::LoadOp::kLoad;
     traces::StoreOp store = traces::StoreOp::kStore;
     std::array<std::uint32_t, 4> clear{};  ///< bits
+  };
+  /// Pixels of a target.
+  struct Area {
+    std::int32_t x = 0, y = 0;
+    std::uint32_t width = 0, height = 0;
+  };
+  struct StoredPart {
+    Handle image = 0;
+    std::uint32_t level = 0, layer = 0;
   };
   struct DrawRange {
     bool indexed = false;
@@ -83,19 +98,34 @@ class FrameRecorder {
   void begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth);
   void end_pass();
   void clear_attachments(const Value& call);
+  void clear_at_begin(const Value& attachment);
+  void clear_area(const Value& attachment, const Value& rect);
+  void blit(const Value& call);
+  void blit_region(Handle source, Handle target, const Value& region, std::uint32_t filter);
+  void begin_blit(Handle target, std::uint32_t level, std::uint32_t layer);
+  void fill(traces::Pipeline pipeline, OwnShader fragment, const AreaConstants& constants, const Area& area,
+            const char* label);
   void attach(traces::AttachmentUse& use, const PassTarget& target);
 
   void draw_one(const BoundState& bound, const DrawRange& range, const Value& call);
+  /// Gives the draw indices of its own where its provoking vertex is the last, and that can be seen.
+  void turn_primitives(const BoundState& bound, traces::Pipeline& pipeline, traces::Draw& draw);
   [[nodiscard]] traces::Pipeline pipeline_of(const BoundState& bound, const RasterState& state);
   [[nodiscard]] traces::Index stage_of(const Value& stage, bool negative_one_to_one);
   void emit_sets(const BoundState& bound, const traces::Pipeline& pipeline);
   void add_descriptor(traces::DescriptorSet& made, std::uint32_t binding, const Descriptor& from,
                       std::uint32_t dynamic_offset);
-  void emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline, bool indexed);
+  void emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline);
   void emit_window(const RasterState& state);
   /// Adds the command if it changes what is bound in the stream.
   template <class C>
-  void emit_change(std::uint32_t place, const C& command);
+  void emit_change(std::uint32_t place, const C& command) {
+    const traces::Command wrapped = command;
+    const auto [entry, added] = emitted_.try_emplace({wrapped.index(), place}, wrapped);
+    if (!added && entry->second == wrapped) return;
+    entry->second = wrapped;
+    tables_.stream.commands.push_back(wrapped);
+  }
 
   Device& device_;
   StreamTables tables_;
@@ -104,8 +134,8 @@ class FrameRecorder {
   std::vector<std::string> labels_;
 
   traces::BeginPass pass_;
-  std::vector<Handle> pass_stores_;  ///< images that this pass leaves contents in
-  std::size_t begin_at_ = 0;         ///< of its command
+  std::vector<StoredPart> pass_stores_;  ///< that this pass leaves contents in
+  std::size_t begin_at_ = 0;             ///< of its command
   bool in_pass_ = false, drew_ = false;
   int depth_ = 0;  ///< of command buffers that execute others
   std::uint32_t pass_width_ = 0, pass_height_ = 0;

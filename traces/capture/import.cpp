@@ -81,6 +81,7 @@ Import import_frame(CaptureFile file, const ImportOptions& options) {
   if (!made.skipped.empty() && !options.skip_unsupported)
     throw user_error("{}: not supported: {}; --skip-unsupported draws without it", name,
                      counted(made.skipped));
+  made.notes = recorder.notes();
   try {
     made.stream = recorder.take();
     made.stream.name = name;
@@ -94,7 +95,7 @@ Import import_frame(CaptureFile file, const ImportOptions& options) {
 Import import_capture(const std::string& path, const ImportOptions& options) {
   return import_frame(CaptureFile(path), options);
 }
-Import import_capture(const std::string& name, std::vector<std::byte> bytes, const ImportOptions& options) {
+Import import_bytes(const std::string& name, std::vector<std::byte> bytes, const ImportOptions& options) {
   return import_frame(CaptureFile(name, std::move(bytes)), options);
 }
 

@@ -7,6 +7,7 @@
 
 #include "models/base/error.h"
 #include "traces/capture/frame_recorder.h"
+#include "traces/capture/provoking.h"
 #include "traces/capture/vulkan_names.h"
 
 namespace quadrille::capture {
@@ -60,12 +61,7 @@ void FrameRecorder::draw_one(const BoundState& bound, const DrawRange& range, co
   if (bound.pipeline == nullptr) throw user_error("without a pipeline");
   const RasterState state = combined_state(*bound.pipeline->state, bound.fixed, bound.dynamic);
   if (state.discard) return;
-  const traces::Pipeline pipeline = pipeline_of(bound, state);
-  emit_change(0, traces::BindPipeline{tables_.pipeline(pipeline)});
-  emit_window(state);
-  emit_buffers(bound, pipeline, range.indexed);
-  emit_sets(bound, pipeline);
-  if (!bound.constants.empty()) emit_change(0, traces::PushConstants{0, bound.constants});
+  traces::Pipeline pipeline = pipeline_of(bound, state);
   traces::Draw made;
   made.indexed = range.indexed;
   made.count = range.count;
@@ -74,8 +70,38 @@ void FrameRecorder::draw_one(const BoundState& bound, const DrawRange& range, co
   made.instances = call["instanceCount"].u32();
   made.first_instance = call["firstInstance"].u32();
   for (const std::string& label : labels_) made.label += (made.label.empty() ? "" : "/") + label;
+  if (state.last_vertex && tables_.facts(pipeline.fragment_shader).flat_input)
+    turn_primitives(bound, pipeline, made);
+  else if (made.indexed)
+    emit_change(
+        0, traces::BindIndexBuffer{tables_.buffer(bound.index_buffer), bound.index_offset, bound.index_type});
+  emit_change(0, traces::BindPipeline{tables_.pipeline(pipeline)});
+  emit_window(state);
+  emit_buffers(bound, pipeline);
+  emit_sets(bound, pipeline);
+  if (!bound.constants.empty()) emit_change(0, traces::PushConstants{0, bound.constants});
   tables_.stream.commands.emplace_back(std::move(made));
   drew_ = true;
+}
+
+void FrameRecorder::turn_primitives(const BoundState& bound, traces::Pipeline& pipeline, traces::Draw& draw) {
+  constexpr std::uint32_t kMostVertices = 1u << 26;  // [G: far beyond what flat shading is used for]
+  if (draw.count > kMostVertices)
+    throw user_error("a draw of {} vertices whose last ones provoke", draw.count);
+  std::vector<std::optional<std::uint32_t>> vertices(draw.indexed ? 0 : draw.count);
+  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = draw.first + static_cast<std::uint32_t>(i);
+  if (draw.indexed)
+    vertices = read_indices(device_.contents(object(device_.buffers, bound.index_buffer, "buffer")),
+                            bound.index_offset, bound.index_type, draw.first, draw.count,
+                            pipeline.primitive_restart);
+  else draw.vertex_offset = 0;
+  const std::vector<std::uint32_t> indices = turned_indices(pipeline.topology, vertices);
+  pipeline.topology = turned_topology(pipeline.topology);
+  pipeline.primitive_restart = false;
+  draw.indexed = true;
+  draw.first = 0;
+  draw.count = static_cast<std::uint32_t>(indices.size());
+  emit_change(0, traces::BindIndexBuffer{tables_.index_buffer(indices), 0, traces::IndexType::kUint32});
 }
 
 traces::Index FrameRecorder::stage_of(const Value& stage, bool negative_one_to_one) {
@@ -120,15 +146,6 @@ traces::Pipeline FrameRecorder::pipeline_of(const BoundState& bound, const Raste
   return made;
 }
 
-template <class C>
-void FrameRecorder::emit_change(std::uint32_t place, const C& command) {
-  const traces::Command wrapped = command;
-  const auto [entry, added] = emitted_.try_emplace({wrapped.index(), place}, wrapped);
-  if (!added && entry->second == wrapped) return;
-  entry->second = wrapped;
-  tables_.stream.commands.push_back(wrapped);
-}
-
 /// Vulkan lets a scissor reach beyond the target; what is beyond has no pixels.
 void FrameRecorder::emit_window(const RasterState& state) {
   for (const traces::SetViewport& viewport : state.viewports) emit_change(viewport.index, viewport);
@@ -145,7 +162,7 @@ void FrameRecorder::emit_window(const RasterState& state) {
   }
 }
 
-void FrameRecorder::emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline, bool indexed) {
+void FrameRecorder::emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline) {
   for (const traces::VertexBinding& binding : pipeline.bindings) {
     const auto source = bound.vertex_buffers.find(binding.binding);
     if (source == bound.vertex_buffers.end() || source->second.buffer == 0)
@@ -154,10 +171,6 @@ void FrameRecorder::emit_buffers(const BoundState& bound, const traces::Pipeline
                 traces::BindVertexBuffer{binding.binding, tables_.buffer(source->second.buffer),
                                          source->second.offset});
   }
-  if (!indexed) return;
-  if (bound.index_buffer == 0) throw user_error("without an index buffer");
-  emit_change(
-      0, traces::BindIndexBuffer{tables_.buffer(bound.index_buffer), bound.index_offset, bound.index_type});
 }
 
 void FrameRecorder::emit_sets(const BoundState& bound, const traces::Pipeline& pipeline) {
@@ -203,7 +216,7 @@ void FrameRecorder::add_descriptor(traces::DescriptorSet& made, std::uint32_t bi
     else made.buffers.push_back({binding, buffer, begin, bytes});
   } else if (from.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
     if (from.view == 0) throw user_error("binding {} is an image that is left out", binding);
-    traces::TextureDescriptor texture = tables_.texture(from.view);
+    traces::TextureDescriptor texture = tables_.texture(object(device_.views, from.view, "image view"));
     texture.binding = binding;
     texture.sampler = tables_.sampler(from.sampler);
     made.textures.push_back(texture);

@@ -11,12 +11,6 @@
 namespace quadrille::capture {
 namespace {
 
-std::array<std::uint32_t, 4> clear_bits(const Value& clear) {
-  std::array<std::uint32_t, 4> bits{};
-  for (std::size_t c = 0; c < 4 && c < clear["color"].size(); ++c) bits[c] = clear["color"].u32(c);
-  return bits;
-}
-
 void set_clear(traces::ColorAttachmentUse& use, const std::array<std::uint32_t, 4>& bits, bool integers) {
   use.load = traces::LoadOp::kClear;
   if (integers) use.clear_integers = bits;
@@ -31,6 +25,12 @@ bool covers(const Value& area, std::uint32_t width, std::uint32_t height) {
 
 }  // namespace
 
+std::array<std::uint32_t, 4> clear_bits(const Value& clear) {
+  std::array<std::uint32_t, 4> bits{};
+  for (std::size_t c = 0; c < 4 && c < clear["color"].size(); ++c) bits[c] = clear["color"].u32(c);
+  return bits;
+}
+
 bool FrameRecorder::change_pass(const Call& call) {
   const Value& p = call.parameters;
   if (call.name == "CmdBeginRendering") begin_rendering(p["pRenderingInfo"]);
@@ -40,6 +40,7 @@ bool FrameRecorder::change_pass(const Call& call) {
            call.name == "CmdEndRenderPass2")
     end_pass();
   else if (call.name == "CmdClearAttachments") clear_attachments(p);
+  else if (call.name == "CmdBlitImage") blit(p);
   else return false;
   return true;
 }
@@ -104,8 +105,9 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
   use.load = target.load;
   use.store = target.store;
   // What earlier frames left there is not known but where the capture brings it.
-  if (use.load == traces::LoadOp::kLoad && !tables_.stored(view.image)) use.load = traces::LoadOp::kDontCare;
-  if (use.store == traces::StoreOp::kStore) pass_stores_.push_back(view.image);
+  if (use.load == traces::LoadOp::kLoad && !tables_.stored_part(view.image, view.level, view.layer))
+    use.load = traces::LoadOp::kDontCare;
+  if (use.store == traces::StoreOp::kStore) pass_stores_.push_back({view.image, view.level, view.layer});
   const traces::Image& image = tables_.stream.images[use.image];
   pass_width_ = traces::level_width(image, use.level);
   pass_height_ = traces::level_height(image, use.level);
@@ -129,7 +131,7 @@ void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const Pass
       use.resolve = tables_.attachment(view.image);
       use.resolve_level = view.level;
       use.resolve_layer = view.layer;
-      pass_stores_.push_back(view.image);
+      pass_stores_.push_back({view.image, view.level, view.layer});
       shown = view.image;
     }
     if (pass_.colors.size() == 1) last_shown_ = shown;
@@ -150,32 +152,37 @@ void FrameRecorder::end_pass() {
   if (!in_pass_) return;
   in_pass_ = false;
   tables_.stream.commands.emplace_back(traces::EndPass{});
-  for (const Handle image : pass_stores_) tables_.note_stored(image);
+  for (const StoredPart& part : pass_stores_) tables_.note_stored(part.image, part.level, part.layer);
 }
 
 /// A clear of everything before the first draw is how the pass begins.
 void FrameRecorder::clear_attachments(const Value& call) {
   if (!in_pass_) throw user_error("outside a pass");
-  const Value& rects = call["pRects"];
-  if (drew_ || rects.size() != 1 || !covers(rects["rect"], pass_width_, pass_height_))
-    throw user_error("of a part of a pass, or behind a draw");
-  auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
-  const Value& attachments = call["pAttachments"];
+  const Value &rects = call["pRects"], &attachments = call["pAttachments"];
+  const bool at_begin = !drew_ && rects.size() == 1 && covers(rects.at(0)["rect"], pass_width_, pass_height_);
   for (std::size_t i = 0; i < attachments.size(); ++i) {
-    const Value& one = attachments.at(i);
-    const std::uint32_t aspect = one["aspectMask"].u32(), number = one["colorAttachment"].u32();
-    const std::array<std::uint32_t, 4> bits = clear_bits(one["clearValue"]);
-    if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && number < begin.colors.size()) {
-      const traces::Format format = tables_.stream.images[begin.colors[number].image].format;
-      set_clear(begin.colors[number], bits, traces::is_integer_format(format));
+    if (at_begin) {
+      clear_at_begin(attachments.at(i));
+      continue;
     }
-    if ((aspect & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
-      begin.depth.load = traces::LoadOp::kClear;
-      begin.depth.clear = std::bit_cast<float>(bits[0]);
-    }
-    if ((aspect & VK_IMAGE_ASPECT_STENCIL_BIT) != 0)
-      begin.depth.clear_stencil = static_cast<std::uint8_t>(bits[1]);
+    for (std::size_t r = 0; r < rects.size(); ++r) clear_area(attachments.at(i), rects.at(r)["rect"]);
   }
+}
+
+void FrameRecorder::clear_at_begin(const Value& attachment) {
+  auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
+  const std::uint32_t aspect = attachment["aspectMask"].u32(), number = attachment["colorAttachment"].u32();
+  const std::array<std::uint32_t, 4> bits = clear_bits(attachment["clearValue"]);
+  if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && number < begin.colors.size()) {
+    const traces::Format format = tables_.stream.images[begin.colors[number].image].format;
+    set_clear(begin.colors[number], bits, traces::is_integer_format(format));
+  }
+  if ((aspect & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+    begin.depth.load = traces::LoadOp::kClear;
+    begin.depth.clear = std::bit_cast<float>(bits[0]);
+  }
+  if ((aspect & VK_IMAGE_ASPECT_STENCIL_BIT) != 0)
+    begin.depth.clear_stencil = static_cast<std::uint8_t>(bits[1]);
 }
 
 }  // namespace quadrille::capture

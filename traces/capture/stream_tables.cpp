@@ -64,8 +64,12 @@ Index StreamTables::attachment(Handle handle) {
   return attachments_[handle] = append(stream.images, std::move(image));
 }
 
-traces::TextureDescriptor StreamTables::texture(Handle handle) {
-  const ViewObject& view = object(device_.views, handle, "image view");
+bool StreamTables::stored(Handle image) const {
+  const auto found = stored_.lower_bound({image, 0, 0});
+  return found != stored_.end() && std::get<0>(*found) == image;
+}
+
+traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
   if (view.type != VK_IMAGE_VIEW_TYPE_2D) throw user_error("VkImageViewType {} is not supported", view.type);
   traces::TextureDescriptor made;
   made.first_level = view.level;
@@ -74,22 +78,24 @@ traces::TextureDescriptor StreamTables::texture(Handle handle) {
     made.image = attachment(view.image);
     made.layer = view.layer;
   } else {
-    made.image = texels(view.image, view);
+    made.image = texels(view);
   }
   return made;
 }
 
-Index StreamTables::texels(Handle handle, const ViewObject& view) {
-  const ImageObject& from = object(device_.images, handle, "image");
-  const auto key = std::tuple(handle, from.writes, view.format, view.swizzle, view.layer);
+Index StreamTables::texels(const ViewObject& view) {
+  const ImageObject& from = object(device_.images, view.image, "image");
+  const auto key = std::tuple(view.image, from.writes, view.format, view.swizzle, view.layer);
   if (const auto found = textures_.find(key); found != textures_.end()) return found->second;
   traces::Image image;
-  image.name = fmt::format("image {}", handle);
+  image.name = fmt::format("image {}", view.image);
   image.format = expanded_format(view);
   image.width = from.width;
   image.height = from.height;
   image.levels = from.levels;
-  image.texels = expanded_texels(from, view);
+  bool missing = false;
+  image.texels = expanded_texels(from, view, missing);
+  if (missing) notes_.insert(image.name + " is sampled, but the capture does not hold all of it: zeros");
   return textures_[key] = append(stream.images, std::move(image));
 }
 
@@ -97,7 +103,23 @@ Index StreamTables::sampler(Handle handle) {
   if (const auto found = samplers_.find(handle); found != samplers_.end()) return found->second;
   const SamplerObject& from = object(device_.samplers, handle, "sampler");
   if (!from.unsupported.empty()) throw user_error("a sampler with {} is not supported", from.unsupported);
-  return samplers_[handle] = append(stream.samplers, from.state);
+  return samplers_[handle] = sampler(from.state);
+}
+
+Index StreamTables::sampler(const traces::Sampler& wanted) { return place(stream.samplers, wanted); }
+
+Index StreamTables::index_buffer(const std::vector<std::uint32_t>& indices) {
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(indices));
+  return append(stream.buffers, traces::Buffer{"turned indices", {bytes.begin(), bytes.end()}});
+}
+
+Index StreamTables::own(OwnShader which) {
+  if (const auto found = own_.find(which); found != own_.end()) return found->second;
+  const std::span<const std::uint32_t> words = own_shader(which);
+  const auto stage =
+      which == OwnShader::kArea ? traces::ShaderStage::kVertex : traces::ShaderStage::kFragment;
+  facts_.push_back(shader_facts(words));
+  return own_[which] = append(stream.shaders, traces::Shader{"fill", stage, {words.begin(), words.end()}});
 }
 
 Index StreamTables::shader(Handle module, const ShaderWish& wish) {

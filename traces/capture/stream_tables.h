@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "traces/capture/device.h"
+#include "traces/capture/own_shaders.h"
 #include "traces/capture/shader_words.h"
 
 namespace quadrille::capture {
@@ -26,18 +27,31 @@ class StreamTables {
   [[nodiscard]] traces::Index attachment(Handle image);
   /// What a shader samples through the view: the attachment, if a pass of this frame stored it, else the
   /// texels that the capture brings.
-  [[nodiscard]] traces::TextureDescriptor texture(Handle view);
+  [[nodiscard]] traces::TextureDescriptor texture(const ViewObject& view);
   [[nodiscard]] traces::Index sampler(Handle handle);
+  [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
   [[nodiscard]] traces::Index shader(Handle module, const ShaderWish& wish);
+  [[nodiscard]] traces::Index own(OwnShader which);
   [[nodiscard]] const ShaderFacts& facts(traces::Index shader) const { return facts_[shader]; }
   [[nodiscard]] traces::Index pipeline(const traces::Pipeline& wanted);
   [[nodiscard]] traces::Index descriptors(const traces::DescriptorSet& wanted);
 
-  void note_stored(Handle image) { stored_.insert(image); }
-  [[nodiscard]] bool stored(Handle image) const { return stored_.contains(image); }
+  /// Indices of a draw whose provoking vertex is the last: a buffer of 32-bit ones. Throws `UserError`.
+  [[nodiscard]] traces::Index index_buffer(const std::vector<std::uint32_t>& indices);
+
+  void note_stored(Handle image, std::uint32_t level, std::uint32_t layer) {
+    stored_.insert({image, level, layer});
+  }
+  [[nodiscard]] bool stored_part(Handle image, std::uint32_t level, std::uint32_t layer) const {
+    return stored_.contains({image, level, layer});
+  }
+  /// Is any part of it stored?
+  [[nodiscard]] bool stored(Handle image) const;
+  /// What the capture lacks and is taken to be zeros, a line each.
+  [[nodiscard]] const std::set<std::string>& notes() const { return notes_; }
 
  private:
-  [[nodiscard]] traces::Index texels(Handle image, const ViewObject& view);
+  [[nodiscard]] traces::Index texels(const ViewObject& view);
 
   const Device& device_;
   struct PlacedBuffer {
@@ -53,7 +67,9 @@ class StreamTables {
            traces::Index>
       shaders_;
   std::vector<ShaderFacts> facts_;  ///< by shader
-  std::set<Handle> stored_;
+  std::map<OwnShader, traces::Index> own_;
+  std::set<std::tuple<Handle, std::uint32_t, std::uint32_t>> stored_;  ///< image, level, layer
+  std::set<std::string> notes_;
 };
 
 }  // namespace quadrille::capture

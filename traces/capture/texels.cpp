@@ -112,15 +112,17 @@ traces::Format expanded_format(const ViewObject& view) {
   return srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm;
 }
 
-std::vector<std::byte> expanded_texels(const ImageObject& image, const ViewObject& view) {
+std::vector<std::byte> expanded_texels(const ImageObject& image, const ViewObject& view, bool& missing) {
   std::vector<std::byte> all;
   for (std::uint32_t level = 0; level < image.levels; ++level) {
     const Extent extent = level_extent(image, level);
     const std::size_t bytes = layer_bytes(view.format, extent), begin = bytes * view.layer;
     const std::vector<std::byte>& source = image.texels[level];
-    if (source.size() < begin + bytes)
-      throw user_error("a texture of {}x{} ({}) whose level {} the capture does not hold", image.width,
-                       image.height, format_name(view.format), level);
+    if (source.size() < begin + bytes) {
+      missing = true;
+      all.resize(all.size() + std::size_t{4} * extent.width * extent.height);
+      continue;
+    }
     const std::span<const std::byte> layer = std::span(source).subspan(begin, bytes);
     const PackedFormat* packed = packed_format(view.format);
     const std::vector<Texel> texels = packed != nullptr

@@ -12,10 +12,11 @@
 
 namespace quadrille::capture {
 
-/// All levels of a layer of an image, finest first, as R8G8B8A8 of the view's kind (UNORM or SRGB). Throws
-/// `UserError` for a format that cannot be expanded, or texels that are missing.
-[[nodiscard]] std::vector<std::byte> expanded_texels(const ImageObject& image, const ViewObject& view);
-/// Of the view's format. Throws `UserError` as above.
+/// All levels of a layer of an image, finest first, as R8G8B8A8 of the view's kind (UNORM or SRGB). Levels
+/// that the capture does not hold are zeros, and set `missing`.
+[[nodiscard]] std::vector<std::byte> expanded_texels(const ImageObject& image, const ViewObject& view,
+                                                     bool& missing);
+/// Of the view's format. Throws `UserError` for one that cannot be expanded.
 [[nodiscard]] traces::Format expanded_format(const ViewObject& view);
 
 }  // namespace quadrille::capture

@@ -10,7 +10,8 @@
 
 namespace quadrille::capture {
 
-/// Of an attachment, or of an image whose texels the stream brings as they are; `kUndefined` if there is none.
+/// Of an attachment, or of an image whose texels the stream brings as they are; `kUndefined` if there is
+/// none.
 [[nodiscard]] traces::Format image_format(std::uint32_t format);
 /// Throws `UserError`.
 [[nodiscard]] traces::Format attribute_format(std::uint32_t format);

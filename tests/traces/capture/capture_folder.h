@@ -1,5 +1,5 @@
-/// Where the captures lie that this project did not make: $QUADRILLE_CAPTURES, or ../shared/captures beside the
-/// source tree. Tests skip without them.
+/// Where the captures lie that this project did not make: $QUADRILLE_CAPTURES, or ../shared/captures beside
+/// the source tree. Tests skip without them.
 #pragma once
 
 #include <cstdlib>

@@ -13,7 +13,7 @@ namespace quadrille::capture {
 namespace {
 
 Import import(const SmallCapture& wish, const ImportOptions& options = {}) {
-  return import_capture("small.gfxr", small_capture(wish), options);
+  return import_bytes("small.gfxr", small_capture(wish), options);
 }
 
 std::vector<std::uint32_t> picture(const traces::CommandStream& stream) {
@@ -102,7 +102,7 @@ TEST_CASE("capture: a file that ends anywhere is refused with its name and a pla
   for (std::size_t size = 0; size < whole.size(); size += 7) {
     CAPTURE(size);
     const std::vector<std::byte> part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
-    REQUIRE_THROWS_AS(import_capture("part.gfxr", part), UserError);
+    REQUIRE_THROWS_AS(import_bytes("part.gfxr", part), UserError);
   }
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("capture: a byte that is changed leads to a frame or a refusal of one 
     std::vector<std::byte> changed = whole;
     changed[at] ^= std::byte{0xff};
     try {
-      (void)import_capture("changed.gfxr", changed);
+      (void)import_bytes("changed.gfxr", changed);
     } catch (const UserError& error) {
       ++refused;
       CAPTURE(at, error.what());

@@ -44,8 +44,8 @@ layout(location = 0) out vec4 color;
 void main() { color = texture(picture, vec2(0.5)); }
 )";
 
-/// The words with another name of the entry point; names of up to three letters take one word, as "main" takes
-/// two.
+/// The words with another name of the entry point, of four to seven letters, which takes as many words as
+/// "main" does.
 std::vector<std::uint32_t> renamed(std::vector<std::uint32_t> words, const std::string& entry) {
   if (entry == "main") return words;
   for (std::size_t at = 5; at < words.size(); at += words[at] >> 16) {

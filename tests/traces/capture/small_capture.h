@@ -1,5 +1,5 @@
-/// A capture of one frame of 16x16 pixels, made here: a triangle over the lower left half, in the colour that a
-/// texture of one texel has.
+/// A capture of one frame of 16x16 pixels, made here: a triangle over the lower left half, in the colour that
+/// a texture of one texel has.
 #pragma once
 
 #include "tests/traces/capture/capture_writer.h"

@@ -1,0 +1,26 @@
+/// Shaders of this program's own: a clear or a copy in the middle of a frame is a draw to the machine.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace quadrille::capture {
+
+enum class OwnShader : std::uint8_t {
+  kArea,   ///< vertices 0 to 2: a triangle over the whole viewport
+  kClear,  ///< one colour
+  kCopy    ///< what a texture (set 0, binding 0) holds
+};
+/// SPIR-V 1.0, entry point "main".
+[[nodiscard]] std::span<const std::uint32_t> own_shader(OwnShader which);
+
+/// Their push constants.
+struct AreaConstants {
+  std::array<float, 4> color{};
+  std::array<float, 4> source{};  ///< corner and size of what is copied, in coordinates of the texture
+  float depth = 0;
+};
+static_assert(sizeof(AreaConstants) == 36);
+
+}  // namespace quadrille::capture
