@@ -112,6 +112,8 @@ class FrameRecorder {
   void turn_primitives(const BoundState& bound, traces::Pipeline& pipeline, traces::Draw& draw);
   [[nodiscard]] traces::Pipeline pipeline_of(const BoundState& bound, const RasterState& state);
   [[nodiscard]] traces::Index stage_of(const Value& stage, bool negative_one_to_one);
+  /// Gives attributes that have to be expanded a binding of their own.
+  void expand_attributes(const BoundState& bound, const RasterState& state, traces::Pipeline& pipeline);
   void emit_sets(const BoundState& bound, const traces::Pipeline& pipeline);
   void add_descriptor(traces::DescriptorSet& made, std::uint32_t binding, const Descriptor& from,
                       std::uint32_t dynamic_offset);

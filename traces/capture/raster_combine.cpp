@@ -55,6 +55,7 @@ bool take_geometry(RasterState& to, const RasterState& from, std::uint32_t state
     case VK_DYNAMIC_STATE_VERTEX_INPUT_EXT:
       p.bindings = d.bindings;
       p.attributes = d.attributes;
+      to.expanded = from.expanded;
       return true;
     case VK_DYNAMIC_STATE_POLYGON_MODE_EXT: p.polygon_mode = d.polygon_mode; return true;
     case VK_DYNAMIC_STATE_DEPTH_CLAMP_ENABLE_EXT: p.depth_clamp = d.depth_clamp; return true;

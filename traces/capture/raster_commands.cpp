@@ -8,6 +8,7 @@
 #include <map>
 
 #include "models/base/error.h"
+#include "traces/capture/attributes.h"
 #include "traces/capture/vulkan_names.h"
 
 namespace quadrille::capture {
@@ -45,6 +46,7 @@ void set_stencil_op(RasterState& s, const Value& call) {
 void set_vertex_input(RasterState& s, const Value& call) {
   s.pipeline.bindings.clear();
   s.pipeline.attributes.clear();
+  s.expanded.clear();
   const Value& bindings = call["pVertexBindingDescriptions"];
   for (std::size_t i = 0; i < bindings.size(); ++i) {
     if (bindings.at(i)["inputRate"].u32() == VK_VERTEX_INPUT_RATE_INSTANCE &&
@@ -53,8 +55,7 @@ void set_vertex_input(RasterState& s, const Value& call) {
     s.pipeline.bindings.push_back(binding_of(bindings.at(i)));
   }
   const Value& attributes = call["pVertexAttributeDescriptions"];
-  for (std::size_t i = 0; i < attributes.size(); ++i)
-    s.pipeline.attributes.push_back(attribute_of(attributes.at(i)));
+  for (std::size_t i = 0; i < attributes.size(); ++i) add_attribute(s, attributes.at(i));
 }
 
 void set_sample_mask(RasterState& s, const Value& c) {
@@ -202,8 +203,16 @@ const std::map<std::string_view, Setter>& geometry() {
 traces::VertexBinding binding_of(const Value& d) {
   return {d["binding"].u32(), d["stride"].u32(), d["inputRate"].u32() == VK_VERTEX_INPUT_RATE_INSTANCE};
 }
-traces::VertexAttribute attribute_of(const Value& d) {
-  return {d["location"].u32(), d["binding"].u32(), attribute_format(d["format"].u32()), d["offset"].u32()};
+void add_attribute(RasterState& state, const Value& d) {
+  const std::uint32_t format = d["format"].u32(), location = d["location"].u32();
+  traces::Format fetched = attribute_format(format);
+  if (fetched == traces::Format::kUndefined) {
+    fetched = expanded_attribute_format(format);
+    state.expanded[location] = format;
+  }
+  if (fetched == traces::Format::kUndefined)
+    throw user_error("a vertex attribute of {} is not supported", format_name(format));
+  state.pipeline.attributes.push_back({location, d["binding"].u32(), fetched, d["offset"].u32()});
 }
 traces::FrontFace front_of(std::uint32_t value) {
   return value == VK_FRONT_FACE_CLOCKWISE ? traces::FrontFace::kClockwise

@@ -6,7 +6,8 @@
 namespace quadrille::capture {
 
 [[nodiscard]] traces::VertexBinding binding_of(const Value& description);
-[[nodiscard]] traces::VertexAttribute attribute_of(const Value& description);
+/// Adds it to the pipeline, and to what has to be expanded if its format is not one that is fetched.
+void add_attribute(RasterState& state, const Value& description);
 [[nodiscard]] traces::FrontFace front_of(std::uint32_t value);
 /// Factors and operations of a blend, whose members have the same names everywhere.
 void take_equation(traces::BlendState& blend, const Value& equation);

@@ -21,8 +21,7 @@ void fix_vertex_input(RasterState& state, const Value& input) {
   if (input.next(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_DIVISOR_STATE_CREATE_INFO_EXT) != nullptr)
     throw user_error("divisors of instances are not supported");
   const Value& attributes = input["pVertexAttributeDescriptions"];
-  for (std::size_t i = 0; i < attributes.size(); ++i)
-    state.pipeline.attributes.push_back(attribute_of(attributes.at(i)));
+  for (std::size_t i = 0; i < attributes.size(); ++i) add_attribute(state, attributes.at(i));
 }
 
 void fix_rasterization(RasterState& state, const Value& raster) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct RasterState {
   bool last_vertex = false;          ///< the last vertex of a primitive is the provoking one
   bool discard = false;              ///< nothing is rasterised
   bool alpha_to_one = false, stippled = false;
+  /// Formats of attributes that have to be expanded (attributes.h), VkFormat by location.
+  std::map<std::uint32_t, std::uint32_t> expanded;
   std::uint32_t samples = 1;
 };
 

@@ -75,9 +75,10 @@ void FrameRecorder::draw_one(const BoundState& bound, const DrawRange& range, co
   else if (made.indexed)
     emit_change(
         0, traces::BindIndexBuffer{tables_.buffer(bound.index_buffer), bound.index_offset, bound.index_type});
+  emit_buffers(bound, pipeline);
+  expand_attributes(bound, state, pipeline);
   emit_change(0, traces::BindPipeline{tables_.pipeline(pipeline)});
   emit_window(state);
-  emit_buffers(bound, pipeline);
   emit_sets(bound, pipeline);
   if (!bound.constants.empty()) emit_change(0, traces::PushConstants{0, bound.constants});
   tables_.stream.commands.emplace_back(std::move(made));
@@ -170,6 +171,30 @@ void FrameRecorder::emit_buffers(const BoundState& bound, const traces::Pipeline
     emit_change(binding.binding,
                 traces::BindVertexBuffer{binding.binding, tables_.buffer(source->second.buffer),
                                          source->second.offset});
+  }
+}
+
+void FrameRecorder::expand_attributes(const BoundState& bound, const RasterState& state,
+                                      traces::Pipeline& pipeline) {
+  constexpr std::uint32_t kBindings = 16;
+  for (traces::VertexAttribute& attribute : pipeline.attributes) {
+    const auto format = state.expanded.find(attribute.location);
+    if (format == state.expanded.end()) continue;
+    const auto from =
+        std::ranges::find(pipeline.bindings, attribute.binding, &traces::VertexBinding::binding);
+    if (from == pipeline.bindings.end()) throw user_error("binding {} is not described", attribute.binding);
+    std::uint32_t own = 0;
+    while (own < kBindings && std::ranges::find(pipeline.bindings, own, &traces::VertexBinding::binding) !=
+                                  pipeline.bindings.end())
+      ++own;
+    if (own == kBindings) throw user_error("too many vertex bindings, once attributes are expanded");
+    const BoundState::VertexBuffer& source = bound.vertex_buffers.at(attribute.binding);
+    const traces::Index buffer = tables_.expanded_attribute(
+        source.buffer, {format->second, source.offset + attribute.offset, from->stride});
+    pipeline.bindings.push_back({own, models::format_bytes(attribute.format), from->per_instance});
+    attribute.binding = own;
+    attribute.offset = 0;
+    emit_change(own, traces::BindVertexBuffer{own, buffer, 0});
   }
 }
 

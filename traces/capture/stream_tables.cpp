@@ -113,6 +113,14 @@ Index StreamTables::index_buffer(const std::vector<std::uint32_t>& indices) {
   return append(stream.buffers, traces::Buffer{"turned indices", {bytes.begin(), bytes.end()}});
 }
 
+Index StreamTables::expanded_attribute(Handle handle, const AttributeSource& source) {
+  const Index from = buffer(handle);
+  const auto key = std::tuple(from, source.format, source.offset, source.stride);
+  if (const auto found = expanded_.find(key); found != expanded_.end()) return found->second;
+  std::vector<std::byte> bytes = expanded_attributes(stream.buffers[from].data, source);
+  return expanded_[key] = append(stream.buffers, traces::Buffer{"expanded attributes", std::move(bytes)});
+}
+
 Index StreamTables::own(OwnShader which) {
   if (const auto found = own_.find(which); found != own_.end()) return found->second;
   const std::span<const std::uint32_t> words = own_shader(which);

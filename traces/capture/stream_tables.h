@@ -11,6 +11,7 @@
 #include <string>
 #include <tuple>
 
+#include "traces/capture/attributes.h"
 #include "traces/capture/device.h"
 #include "traces/capture/own_shaders.h"
 #include "traces/capture/shader_words.h"
@@ -36,6 +37,8 @@ class StreamTables {
   [[nodiscard]] traces::Index pipeline(const traces::Pipeline& wanted);
   [[nodiscard]] traces::Index descriptors(const traces::DescriptorSet& wanted);
 
+  /// A vertex attribute, expanded.
+  [[nodiscard]] traces::Index expanded_attribute(Handle buffer, const AttributeSource& source);
   /// Indices of a draw whose provoking vertex is the last: a buffer of 32-bit ones. Throws `UserError`.
   [[nodiscard]] traces::Index index_buffer(const std::vector<std::uint32_t>& indices);
 
@@ -67,6 +70,8 @@ class StreamTables {
            traces::Index>
       shaders_;
   std::vector<ShaderFacts> facts_;  ///< by shader
+  /// By the buffer's place in the stream, and the source.
+  std::map<std::tuple<traces::Index, std::uint32_t, std::uint64_t, std::uint32_t>, traces::Index> expanded_;
   std::map<OwnShader, traces::Index> own_;
   std::set<std::tuple<Handle, std::uint32_t, std::uint32_t>> stored_;  ///< image, level, layer
   std::set<std::string> notes_;

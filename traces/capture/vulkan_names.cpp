@@ -90,9 +90,7 @@ Format image_format(std::uint32_t format) {
 
 Format attribute_format(std::uint32_t format) {
   const auto* row = std::ranges::find(kAttributeFormats, static_cast<VkFormat>(format), &FormatRow::vulkan);
-  if (row == std::end(kAttributeFormats))
-    throw user_error("a vertex attribute of {} is not supported", format_name(format));
-  return row->ours;
+  return row == std::end(kAttributeFormats) ? Format::kUndefined : row->ours;
 }
 
 std::string format_name(std::uint32_t format) {

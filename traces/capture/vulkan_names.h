@@ -13,7 +13,7 @@ namespace quadrille::capture {
 /// Of an attachment, or of an image whose texels the stream brings as they are; `kUndefined` if there is
 /// none.
 [[nodiscard]] traces::Format image_format(std::uint32_t format);
-/// Throws `UserError`.
+/// Of what the vertex fetch reads; `kUndefined` if it is none of that.
 [[nodiscard]] traces::Format attribute_format(std::uint32_t format);
 /// "VK_FORMAT_..." of the formats that this program knows, else its number.
 [[nodiscard]] std::string format_name(std::uint32_t format);
