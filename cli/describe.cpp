@@ -9,12 +9,12 @@
 #include <set>
 
 #include "cli/command.h"
-#include "cli/counter_catalogue.h"
 #include "cli/machine_arguments.h"
 #include "cli/machine_diagram.h"
 #include "cli/vendor_counters.h"
 #include "models/base/error.h"
 #include "models/base/near_name.h"
+#include "pipeline/machine/counter_catalogue.h"
 
 namespace quadrille::cli {
 namespace {
@@ -36,7 +36,7 @@ using DescribedUnit = std::pair<std::string, std::vector<const hw::Statistic*>>;
 /// them exists.
 class Description {
  public:
-  explicit Description(const DescribeArguments& arguments) : units_(counter_catalogue()) {
+  explicit Description(const DescribeArguments& arguments) : units_(pipeline::counter_catalogue()) {
     MachineArguments machine = arguments.machine;
     const bool whole_machine = arguments.what == kMachine;
     if (arguments.name && !whole_machine)
@@ -87,7 +87,7 @@ class Description {
     for (const Asks asks : kWays) {
       for (const auto& [path, group] : config_.groups())
         exists |= take(group->params(), path, what, asks, parameters ? &groups_ : nullptr);
-      for (const UnitCounters& u : units_)
+      for (const pipeline::UnitCounters& u : units_)
         exists |=
             take(u.stats->all(), std::string(u.kind), what, asks, counters ? &described_units_ : nullptr);
       if (exists) return;
@@ -115,7 +115,7 @@ class Description {
       legal.insert(path.starts_with("link.") ? "link" : path);
       names.push_back(path);
     }
-    for (const UnitCounters& u : units_) {
+    for (const pipeline::UnitCounters& u : units_) {
       legal.insert(std::string(u.kind));
       names.emplace_back(u.kind);
       for (const hw::Statistic* c : u.stats->all()) names.push_back(fmt::format("{}.{}", u.kind, c->name()));
@@ -125,7 +125,7 @@ class Description {
   }
 
   pipeline::MachineConfig config_;
-  std::vector<UnitCounters> units_;
+  std::vector<pipeline::UnitCounters> units_;
   std::vector<pipeline::DescribedGroup> groups_;
   std::vector<DescribedUnit> described_units_;
 };

@@ -10,6 +10,7 @@
 #include "models/base/error.h"
 #include "models/base/say.h"
 #include "pipeline/driver/host_cost.h"
+#include "pipeline/render_by_draw.h"
 #include "pipeline/report/draws_by_square.h"
 #include "pipeline/report/flat_figures.h"
 #include "pipeline/report/page.h"
@@ -93,6 +94,11 @@ void RenderJob::add_to(CLI::App& command) {
               "writes the frame over time as a trace for Perfetto: .pftrace as TrackEvent protobuf, "
               ".json as Chrome's trace events; each draw in flight, the use of every unit's resources")
           ->type_name("F.pftrace|F.json"),
+      command
+          .add_option("--energy", energy,
+                      "estimates energy by unit and, with --detail draws or --report, by draw, and area: "
+                      "relative, with its range, from a file of costs (docs/energy.md)")
+          ->type_name("45nm|F.toml"),
       command
           .add_option("--faster", faster,
                       "makes all units of a kind so many times as fast, 1 to 100, in all that they do; "
@@ -191,7 +197,9 @@ RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) con
     // beyond that it is later than time goes
     if (cycles < hw::kNever / (clock.period() + 1)) limits.max_time = clock.edge(cycles);
   }
-  return {config, std::move(limits), clock, clock.edge(window_cycles()), details(), faster_kinds()};
+  Setting chosen{config, std::move(limits), clock, clock.edge(window_cycles()), details(), faster_kinds()};
+  if (energy) chosen.costs = pipeline::load_costs(*energy, config);
+  return chosen;
 }
 
 int RenderJob::run() {
@@ -206,8 +214,34 @@ int RenderJob::run() {
   return frames.wanted() ? run_frames(chosen) : run_one(chosen);
 }
 
-pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, const Setting& setting,
-                                        const Outputs& outputs) const {
+std::string RenderJob::DrawnJob::figures_json(const pipeline::MachineConfig& machine) const {
+  const std::string json =
+      pipeline::report_json({frame.figures, machine, frame.image.width, frame.image.height});
+  return energy ? pipeline::figures_with_energy(json, *energy) : json;
+}
+
+RenderJob::DrawnJob RenderJob::simulate(const traces::CommandStream& stream, const Setting& setting,
+                                        const hw::RunLimits& limits) const {
+  const pipeline::MachineOptions options{
+      .driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
+      .window = setting.window,
+      .leave_out = leave_out == "auto",
+      .faster = setting.faster};
+  const pipeline::MachineConfig& config = setting.config;
+  if (!setting.costs) return {pipeline::render_exact(stream, config, options, limits, setting.detail)};
+  if (!setting.detail.draws) {
+    DrawnJob drawn{pipeline::render_exact(stream, config, options, limits, setting.detail)};
+    drawn.energy = pipeline::energy_of(drawn.frame.figures, config, *setting.costs);
+    return drawn;
+  }
+  pipeline::CountersByDraw counters = pipeline::counters_of(*setting.costs);
+  DrawnJob drawn{pipeline::render_exact_by_draw(stream, config, options, limits, setting.detail, counters)};
+  drawn.energy = pipeline::energy_of(drawn.frame.figures, config, *setting.costs, &counters);
+  return drawn;
+}
+
+RenderJob::DrawnJob RenderJob::draw(const SceneArguments::Loaded& loaded, const Setting& setting,
+                                    const Outputs& outputs) const {
   const traces::CommandStream& stream = loaded.stream;
   const traces::PassTarget target = traces::shown_target(stream);
   if (depth && target.depth == traces::Format::kUndefined)
@@ -216,30 +250,27 @@ pipeline::RenderedFrame RenderJob::draw(const SceneArguments::Loaded& loaded, co
   progress.show("compiling shaders, building the machine");
   hw::RunLimits limits = setting.limits;
   limits.progress = [&](hw::Tick now) { progress.show_cycles(setting.clock.edges_before(now)); };
-  const pipeline::MachineOptions options{
-      .driver = driver == "native" ? pipeline::DriverKind::kNative : pipeline::DriverKind::kDispatcher,
-      .window = setting.window,
-      .leave_out = leave_out == "auto",
-      .faster = setting.faster};
-  pipeline::RenderedFrame frame =
-      fidelity == "functional"
-          ? pipeline::render_functional_frame(stream, setting.config.precision())
-          : pipeline::render_exact(stream, setting.config, options, limits, setting.detail);
-  std::vector<pipeline::LeftOut>& left_out_of_frame = frame.figures.left_out;
+  DrawnJob drawn = fidelity == "functional"
+                       ? DrawnJob{pipeline::render_functional_frame(stream, setting.config.precision())}
+                       : simulate(stream, setting, limits);
+  const pipeline::RenderedFrame& frame = drawn.frame;
+  std::vector<pipeline::LeftOut>& left_out_of_frame = drawn.frame.figures.left_out;
   left_out_of_frame.insert(left_out_of_frame.begin(), loaded.left_out.begin(), loaded.left_out.end());
   progress.show("writing");
   if (outputs.out) write_color(*outputs.out, frame.image, models::is_srgb_format(target.color), alpha);
   if (outputs.depth) write_depth(*outputs.depth, frame.image);
-  return frame;
+  return drawn;
 }
 
-void RenderJob::write_figures(const pipeline::ReportSubject& subject, const traces::CommandStream& stream,
-                              const pipeline::FrameImage& image) const {
+void RenderJob::write_figures(const DrawnJob& drawn, const Setting& setting,
+                              const traces::CommandStream& stream) const {
+  const pipeline::FrameImage& image = drawn.frame.image;
+  const pipeline::ReportSubject subject{drawn.frame.figures, setting.config, image.width, image.height};
   if (timeline)
     write_text(*timeline, timeline->ends_with(".json") ? pipeline::timeline_trace_json(subject)
                                                        : pipeline::timeline_protobuf(subject));
   if (!report && !csv && !stats) return;
-  const std::string json = pipeline::report_json(subject);
+  const std::string json = drawn.figures_json(setting.config);
   if (report) {
     const pipeline::PagePictures pictures{color_png(image), depth_png(image),
                                           pipeline::draws_by_square(stream, subject.machine.precision())};
@@ -256,14 +287,15 @@ int RenderJob::run_one(const Setting& setting) const {
   const SceneArguments::Loaded loaded = scene.load();
   const double load_s = load.seconds();
   progress.clear();
-  pipeline::RenderedFrame frame = draw(loaded, setting, {out, depth});
-  pipeline::Figures& figures = frame.figures;
+  DrawnJob drawn = draw(loaded, setting, {out, depth});
+  pipeline::Figures& figures = drawn.frame.figures;
   note_host(figures, load_s);
-  const pipeline::ReportSubject subject{figures, setting.config, frame.image.width, frame.image.height};
-  if (stats || csv || report || timeline) write_figures(subject, loaded.stream, frame.image);
-  Tables(!quiet, stats)
-      .print(pipeline::report_table(subject,
-                                    units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded));
+  if (stats || csv || report || timeline) write_figures(drawn, setting, loaded.stream);
+  const pipeline::UnitRows rows = units == "all" ? pipeline::UnitRows::kAll : pipeline::UnitRows::kFolded;
+  const pipeline::FrameImage& image = drawn.frame.image;
+  std::string table = pipeline::report_table({figures, setting.config, image.width, image.height}, rows);
+  if (drawn.energy) table += pipeline::energy_table(*drawn.energy, figures);
+  Tables(!quiet, stats).print(table);
   if (figures.checks_hold()) return kDone;
   say("quadrille: the figures contradict each other\n" + pipeline::failed_checks(figures));
   return kFailed;
@@ -275,10 +307,10 @@ int RenderJob::run_frames(const Setting& setting) const {
   };
   const auto draw_one = [&](const SceneArguments::Loaded& loaded, std::int64_t number) {
     const Stopwatch whole;
-    pipeline::RenderedFrame frame = draw(loaded, setting, {file(out, number), file(depth, number)});
-    note_host(frame.figures, 0);
-    frame.figures.host.wall_s = whole.seconds();
-    return pipeline::report_json({frame.figures, setting.config, frame.image.width, frame.image.height});
+    DrawnJob drawn = draw(loaded, setting, {file(out, number), file(depth, number)});
+    note_host(drawn.frame.figures, 0);
+    drawn.frame.figures.host.wall_s = whole.seconds();
+    return drawn.figures_json(setting.config);
   };
   if ((out && out->ends_with(".exr")) || (depth && depth->ends_with(".exr"))) scenes::open_image_module();
   const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();

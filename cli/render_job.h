@@ -10,6 +10,7 @@
 #include "cli/scene_arguments.h"
 #include "hw/base/clock.h"
 #include "pipeline/render.h"
+#include "pipeline/report/energy.h"
 #include "pipeline/report/report.h"
 
 namespace quadrille::cli {
@@ -21,6 +22,7 @@ struct RenderJob {
   std::optional<std::string> out, depth, stats, csv, report, timeline, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
   std::optional<std::string> detail;  ///< words, with commas between them
+  std::optional<std::string> energy;  ///< a file of costs, or its name
   std::vector<std::string> faster;    ///< "texture=1.1"
   bool alpha = false, quiet = false;
 
@@ -39,6 +41,7 @@ struct RenderJob {
     hw::Tick window = 0;
     pipeline::DetailOptions detail;
     std::vector<std::pair<std::string, double>> faster = {};  ///< kinds of units, how many times
+    std::optional<pipeline::CostFile> costs = {};             ///< of energy
   };
   /// Where one frame's files go.
   struct Outputs {
@@ -56,12 +59,21 @@ struct RenderJob {
   /// Throws `UserError` for a unit that there is none of.
   [[nodiscard]] std::vector<std::pair<std::string, double>> faster_kinds() const;
   [[nodiscard]] Setting setting(const pipeline::MachineConfig& config) const;
+  /// A frame, and the energy that it takes where that was asked for.
+  struct DrawnJob {
+    pipeline::RenderedFrame frame;
+    std::optional<pipeline::EnergyFigures> energy = {};
+    /// All figures as JSON.
+    [[nodiscard]] std::string figures_json(const pipeline::MachineConfig& machine) const;
+  };
   /// Draws a frame and writes its pictures.
-  [[nodiscard]] pipeline::RenderedFrame draw(const SceneArguments::Loaded& loaded, const Setting& setting,
-                                             const Outputs& outputs) const;
+  [[nodiscard]] DrawnJob draw(const SceneArguments::Loaded& loaded, const Setting& setting,
+                              const Outputs& outputs) const;
+  [[nodiscard]] DrawnJob simulate(const traces::CommandStream& stream, const Setting& setting,
+                                  const hw::RunLimits& limits) const;
   /// Writes the documents that were asked for.
-  void write_figures(const pipeline::ReportSubject& subject, const traces::CommandStream& stream,
-                     const pipeline::FrameImage& image) const;
+  void write_figures(const DrawnJob& drawn, const Setting& setting,
+                     const traces::CommandStream& stream) const;
   [[nodiscard]] int run_one(const Setting& setting) const;
   [[nodiscard]] int run_frames(const Setting& setting) const;
 

@@ -2,9 +2,11 @@
 
 #include <bit>
 #include <chrono>
+#include <numeric>
 
 #include "pipeline/driver/draw_culling.h"
 #include "pipeline/driver/host_cost.h"
+#include "pipeline/render_by_draw.h"
 #include "pipeline/report/detail_log.h"
 
 namespace quadrille::pipeline {
@@ -117,8 +119,19 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   return out;
 }
 
-RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config,
-                           const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail) {
+Check check_of(const CountersByDraw& counters) {
+  std::uint64_t sum = std::accumulate(counters.outside.begin(), counters.outside.end(), std::uint64_t{0});
+  for (const std::vector<std::uint64_t>& draw : counters.draws)
+    sum = std::accumulate(draw.begin(), draw.end(), sum);
+  return {"counters behind the energy, of draws and of none = of the units", "draws + outside_draws", "units",
+          sum, counters.total};
+}
+
+namespace {
+
+RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig& config,
+                       const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
+                       CountersByDraw* counters) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
@@ -126,7 +139,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
-  if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail);
+  if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, counters);
   const double build_s = seconds_since(start) - frame.fills.seconds();
   const RunTimer timer(frame.fills);
   machine.run(limits);
@@ -134,6 +147,7 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   timer.stop(host);
   host.build_s = build_s;
   out.figures = collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt);
+  if (counters != nullptr) out.figures.checks.push_back(check_of(*counters));
   out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;
@@ -149,6 +163,20 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   out.image = read_image(frame);
   out.buffers = read_buffers(frame);
   return out;
+}
+
+}  // namespace
+
+RenderedFrame render_exact(const traces::CommandStream& stream, const MachineConfig& config,
+                           const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail) {
+  return simulate(stream, config, options, limits, detail, nullptr);
+}
+
+RenderedFrame render_exact_by_draw(const traces::CommandStream& stream, const MachineConfig& config,
+                                   const MachineOptions& options, const hw::RunLimits& limits,
+                                   DetailOptions detail, CountersByDraw& counters) {
+  detail.draws = true;
+  return simulate(stream, config, options, limits, detail, &counters);
 }
 
 }  // namespace quadrille::pipeline

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "models/base/near_name.h"
+#include "pipeline/machine/config_files.h"
 #include "traces/whole_file.h"
 
 namespace quadrille::pipeline {
@@ -14,32 +15,6 @@ namespace quadrille::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 20;
-// bounds how deep a dotted key can nest tables, which are walked and freed by recursion
-constexpr std::size_t kMaxLineBytes = 1000;
-
-/// Folders that may hold the machines that come with the program, the likeliest first.
-std::vector<fs::path> config_folders() {
-  std::vector<fs::path> folders;
-  std::error_code error;
-  const fs::path exe = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(exe.parent_path().parent_path() / "share" / "quadrille" / "configs");
-  folders.emplace_back(QUADRILLE_CONFIG_DIR);
-  return folders;
-}
-
-void check_lines(std::string_view text, const std::string& file) {
-  std::size_t line = 1, begin = 0;
-  for (std::size_t i = 0; i <= text.size(); ++i) {
-    if (i < text.size() && text[i] != '\n') continue;
-    if (i - begin > kMaxLineBytes)
-      throw user_error("{}:{}: the line has {} bytes; at most {} are read", file, line, i - begin,
-                       kMaxLineBytes);
-    begin = i + 1;
-    ++line;
-  }
-}
 
 /// The value as `set` reads it. A word is in quotes, and nothing else is.
 std::string value_text(const toml::node& node, bool word, const std::string& where, const std::string& key) {
@@ -114,7 +89,7 @@ void apply(MachineConfig& config, const toml::table& table, const std::string& p
 /// may mend it.
 void apply_layers(MachineConfig& config, std::string_view text, const std::string& file,
                   const Layers& layers) {
-  check_lines(text, file);
+  check_config_lines(text, file);
   try {
     const toml::table table = toml::parse(text, file);
     if (const toml::node* base = table.get("base")) apply_base(config, *base, file, layers);
@@ -160,7 +135,7 @@ void load_layer(MachineConfig& config, const std::string& name_or_path, const La
   if (layers.names.size() > kMaxLayers)
     throw user_error("{} machines, each the base of another; at most {} are read", layers.names.size(),
                      kMaxLayers);
-  const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxFileBytes);
+  const std::vector<std::byte> bytes = traces::read_whole_file(path, kMaxConfigBytes);
   apply_layers(config, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path, layers);
   if (by_name) config.become_base(name_or_path);
 }
@@ -188,7 +163,7 @@ std::vector<std::string> machine_names() {
 
 std::vector<std::pair<std::string, std::string>> memory_kind_values(const std::string& kind) {
   const std::string file = file_of_memory(kind).string();
-  const std::vector<std::byte> bytes = traces::read_whole_file(file, kMaxFileBytes);
+  const std::vector<std::byte> bytes = traces::read_whole_file(file, kMaxConfigBytes);
   std::vector<std::pair<std::string, std::string>> values;
   try {
     const toml::table table =

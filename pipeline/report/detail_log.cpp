@@ -53,8 +53,9 @@ hw::ScreenCells screen_cells(const hw::Frame& frame) {
   return screen;
 }
 
-DetailLog::DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted)
-    : machine_(machine), frame_(frame), screen_(screen_cells(frame.frame)) {
+DetailLog::DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted,
+                     CountersByDraw* asked)
+    : machine_(machine), frame_(frame), asked_(asked), screen_(screen_cells(frame.frame)) {
   detail_.wanted = wanted;
   for (const hw::Unit* unit : machine.units())
     if (unit->stats() != nullptr) add(*unit);
@@ -70,9 +71,32 @@ void DetailLog::add(const hw::Unit& unit) {
   u.log = std::make_unique<hw::WorkLog>(static_cast<std::uint32_t>(frame_.frame.draws.size()), screen_);
   Columns columns(*u.log, u);
   unit.details(columns);
+  if (asked_ != nullptr) add_asked(u, kind);
   u.busy = u.log->by_draw(unit.busy_storage());
   unit.stats()->keep_log(*u.log);
   units_.push_back(std::move(u));
+}
+
+void DetailLog::add_asked(LoggedUnit& u, const std::string& kind) const {
+  for (std::size_t i = 0; i < asked_->asked.size(); ++i) {
+    if (asked_->asked[i].kind != kind) continue;
+    for (const hw::Counter* c : u.unit->stats()->counters())
+      if (c->name() == asked_->asked[i].counter) u.asked.push_back({i, u.log->by_draw(c->storage()), c});
+  }
+}
+
+void DetailLog::collect_asked() {
+  asked_->draws.assign(frame_.frame.draws.size(), std::vector<std::uint64_t>(asked_->asked.size()));
+  asked_->outside.assign(asked_->asked.size(), 0);
+  asked_->total = 0;
+  for (const LoggedUnit& u : units_) {
+    for (const Column& c : u.asked) {
+      for (std::uint32_t i = 0; i < asked_->draws.size(); ++i)
+        asked_->draws[i][c.count] += u.log->of_draw(c.column, hw::DrawId(i));
+      asked_->outside[c.count] += u.log->of_draw(c.column, hw::kNoDraw);
+      asked_->total += c.counter->value();
+    }
+  }
 }
 
 std::int64_t DetailLog::busy_of(const LoggedUnit& u, hw::DrawId id) {
@@ -140,6 +164,7 @@ Detail DetailLog::collect() {
     if (!u.shared) d.busy_total += u.unit->busy_cycles();
     if (u.own_busy) d.busy_total += static_cast<std::int64_t>(u.own_busy->counter->value());
   }
+  if (asked_ != nullptr) collect_asked();
   for (std::size_t i = 0; i < kTileCounts; ++i) d.tile_totals[i] = counted_elsewhere[i] ? others[i] : own[i];
   return d;
 }

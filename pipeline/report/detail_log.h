@@ -4,6 +4,7 @@
 
 #include "hw/base/work_log.h"
 #include "pipeline/machine/machine.h"
+#include "pipeline/report/counters_by_draw.h"
 #include "pipeline/report/detail.h"
 
 #include <memory>
@@ -18,8 +19,9 @@ namespace quadrille::pipeline {
 class DetailLog {
  public:
   /// Gives every unit of the machine a log. Before the run; the machine lives longer than this or is not run
-  /// any more.
-  DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted);
+  /// any more. `asked`: counters to keep by draw too; lives as long.
+  DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted,
+            CountersByDraw* asked = nullptr);
   /// After the run.
   [[nodiscard]] Detail collect();
 
@@ -32,6 +34,7 @@ class DetailLog {
     std::size_t kind = 0;
     std::unique_ptr<hw::WorkLog> log;
     std::vector<Column> draws, tiles;
+    std::vector<Column> asked;        ///< `count` is the place in `CountersByDraw::asked`
     std::vector<Column> tile_totals;  ///< by counters that are not kept by tile
     std::size_t busy = 0;             ///< column
     bool shared = false;              ///< several draws are in it at a time
@@ -45,6 +48,8 @@ class DetailLog {
 
  private:
   void add(const hw::Unit& unit);
+  void add_asked(LoggedUnit& unit, const std::string& kind) const;
+  void collect_asked();
   void collect_draw(const LoggedUnit& u, hw::DrawId id, DrawFigures& draw) const;
   void collect_tiles(const LoggedUnit& u, TileFigures& tiles) const;
   /// Cycles that a unit was busy for a draw; 0 where that is not known.
@@ -55,6 +60,7 @@ class DetailLog {
   const Machine& machine_;
   const DeviceFrame& frame_;
   Detail detail_;
+  CountersByDraw* asked_;
   hw::ScreenCells screen_;
   std::vector<LoggedUnit> units_;
 };

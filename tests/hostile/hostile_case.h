@@ -50,6 +50,7 @@ struct Group {
 [[nodiscard]] Group image_cases();
 [[nodiscard]] Group trace_cases();
 [[nodiscard]] Group machine_cases();
+[[nodiscard]] Group energy_cases();
 [[nodiscard]] Group flag_cases();
 [[nodiscard]] Group shader_cases();
 [[nodiscard]] Group output_cases();

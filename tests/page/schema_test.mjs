@@ -22,6 +22,8 @@ const RUNS = {
   'queries, and transparency in lists': ['builtin:glass', '--queries', '--transparency', 'abuffer', '--detail', 'draws,tiles'],
   'a k-buffer with samples': ['builtin:glass', '--transparency', 'kbuffer', '--samples', '4'],
   'several passes, every unit built': ['builtin:deferred', '--leave-out', 'none', '--detail', 'draws,tiles'],
+  'energy alone': ['builtin:triangle', '--energy', '45nm'],
+  'energy by draw': ['builtin:glass', '--energy', '45nm', '--detail', 'draws'],
   'no machine at all': ['builtin:quad', '--fidelity', 'functional', '--queries'],
 };
 

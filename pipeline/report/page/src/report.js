@@ -10,6 +10,7 @@ import { draws } from './sections/draws.js';
 import { bandwidth } from './sections/bandwidth.js';
 import { caches } from './sections/caches.js';
 import { dram } from './sections/dram.js';
+import { energy } from './sections/energy.js';
 import { machine } from './sections/machine.js';
 import { parameters } from './sections/parameters.js';
 import { leftOut } from './sections/left_out.js';
@@ -17,7 +18,7 @@ import { laws } from './sections/laws.js';
 import { host } from './sections/host.js';
 
 // A section takes all that is known and returns its element, or null where the figures have nothing for it.
-const SECTIONS = [overview, picture, units, timeline, light, draws, bandwidth, caches, dram, machine, parameters, leftOut, laws, host];
+const SECTIONS = [overview, picture, units, timeline, light, draws, bandwidth, caches, dram, energy, machine, parameters, leftOut, laws, host];
 
 /** How a scene is called in a heading: the last part of its path. */
 export const shortName = (scene) => scene.split('/').pop() || scene;

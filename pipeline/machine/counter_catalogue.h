@@ -7,7 +7,7 @@
 
 #include "hw/base/counter.h"
 
-namespace quadrille::cli {
+namespace quadrille::pipeline {
 
 struct UnitCounters {
   std::string_view kind;  ///< "coarse_raster"; a number follows in figures where a machine has several
@@ -17,4 +17,4 @@ struct UnitCounters {
 /// In the order of the pipeline.
 [[nodiscard]] std::vector<UnitCounters> counter_catalogue();
 
-}  // namespace quadrille::cli
+}  // namespace quadrille::pipeline

@@ -1,8 +1,8 @@
-#include "cli/counter_catalogue.h"
+#include "pipeline/machine/counter_catalogue.h"
 
 #include "pipeline/machine/machine_plan.h"
 
-namespace quadrille::cli {
+namespace quadrille::pipeline {
 namespace {
 
 /// The counters that a unit declares, and those of the parts it is made of, which register with its group.
@@ -27,10 +27,8 @@ std::shared_ptr<const hw::StatGroup> counters_of() {
 
 std::vector<UnitCounters> counter_catalogue() {
   std::vector<UnitCounters> all;
-  pipeline::visit_unit_kinds([&]<class Unit>() {
-    all.push_back({pipeline::UnitKind<Unit>::name, counters_of<Unit>()});
-  });
+  visit_unit_kinds([&]<class Unit>() { all.push_back({UnitKind<Unit>::name, counters_of<Unit>()}); });
   return all;
 }
 
-}  // namespace quadrille::cli
+}  // namespace quadrille::pipeline
