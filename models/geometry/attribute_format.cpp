@@ -24,12 +24,14 @@ void decode_components(const std::byte* source, int count, std::uint32_t out[4])
   }
 }
 
+/// Signed ones keep their sign in 32 bits; a component that lacks is 0, and the fourth 1.
 template <class T>
-void decode_integers(const std::byte* source, std::uint32_t out[4]) {
-  for (std::size_t i = 0; i < 4; ++i) {
+void decode_integers(const std::byte* source, std::size_t count, std::uint32_t out[4]) {
+  out[3] = 1;
+  for (std::size_t i = 0; i < count; ++i) {
     T value;
     std::memcpy(&value, source + i * sizeof(T), sizeof(T));
-    out[i] = value;
+    out[i] = static_cast<std::uint32_t>(value);
   }
 }
 
@@ -49,8 +51,16 @@ void decode_attribute(Format format, const std::byte* source, std::uint32_t out[
     case Format::kR16G16B16A16Unorm: return decode_components<std::uint16_t>(source, 4, out);
     case Format::kR8G8B8A8Snorm: return decode_components<std::int8_t>(source, 4, out);
     case Format::kR16G16B16A16Snorm: return decode_components<std::int16_t>(source, 4, out);
-    case Format::kR8G8B8A8Uint: return decode_integers<std::uint8_t>(source, out);
-    case Format::kR16G16B16A16Uint: return decode_integers<std::uint16_t>(source, out);
+    case Format::kR8G8B8A8Uint: return decode_integers<std::uint8_t>(source, 4, out);
+    case Format::kR8G8B8A8Sint: return decode_integers<std::int8_t>(source, 4, out);
+    case Format::kR16G16B16A16Uint: return decode_integers<std::uint16_t>(source, 4, out);
+    case Format::kR16G16B16A16Sint: return decode_integers<std::int16_t>(source, 4, out);
+    case Format::kR32Uint:
+    case Format::kR32Sint: return decode_integers<std::uint32_t>(source, 1, out);
+    case Format::kR32G32Uint:
+    case Format::kR32G32Sint: return decode_integers<std::uint32_t>(source, 2, out);
+    case Format::kR32G32B32A32Uint:
+    case Format::kR32G32B32A32Sint: return decode_integers<std::uint32_t>(source, 4, out);
     default: break;
   }
 }

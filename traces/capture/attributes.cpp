@@ -7,14 +7,12 @@
 #include <bit>
 #include <cstring>
 
-#include "models/base/error.h"
-
 namespace quadrille::capture {
 namespace {
 
 using traces::Format;
 
-enum class Kind : std::uint8_t { kUnorm, kSnorm, kUscaled, kSscaled, kHalf, kUint, kSint };
+enum class Kind : std::uint8_t { kUnorm, kSnorm, kUscaled, kSscaled, kHalf };
 
 struct Component {
   std::uint8_t shift = 0, bits = 0;
@@ -45,20 +43,12 @@ constexpr AttributeRow kRows[] = {
     {VK_FORMAT_R16G16_SSCALED, Kind::kSscaled, 4, 2, even(16)},
     {VK_FORMAT_R8G8B8A8_USCALED, Kind::kUscaled, 4, 4, even(8)},
     {VK_FORMAT_R8G8B8A8_SSCALED, Kind::kSscaled, 4, 4, even(8)},
-    {VK_FORMAT_R8_UINT, Kind::kUint, 1, 1, even(8)},
-    {VK_FORMAT_R8G8B8A8_SINT, Kind::kSint, 4, 4, even(8)},
-    {VK_FORMAT_R16_UINT, Kind::kUint, 2, 1, even(16)},
-    {VK_FORMAT_R16G16_UINT, Kind::kUint, 4, 2, even(16)},
-    {VK_FORMAT_R16G16B16A16_SINT, Kind::kSint, 8, 4, even(16)},
-    {VK_FORMAT_R32_UINT, Kind::kUint, 4, 1, even(32)},
-    {VK_FORMAT_R32_SINT, Kind::kSint, 4, 1, even(32)},
 };
 
 const AttributeRow* row_of(std::uint32_t format) {
   const auto* row = std::ranges::find(kRows, static_cast<VkFormat>(format), &AttributeRow::format);
   return row == std::end(kRows) ? nullptr : row;
 }
-bool integer(Kind kind) { return kind == Kind::kUint || kind == Kind::kSint; }
 
 /// A float of 16 bits. [VK1.3 #fundamentals-fp16]
 float from_half(std::uint32_t code) {
@@ -83,38 +73,20 @@ float number_of(Kind kind, std::uint64_t code, std::uint32_t bits) {
     case Kind::kSnorm: return std::max(static_cast<float>(signed_of(code, bits)) / most, -1.0f);
     case Kind::kUscaled: return static_cast<float>(code);
     case Kind::kSscaled: return static_cast<float>(signed_of(code, bits));
-    case Kind::kHalf: return from_half(static_cast<std::uint32_t>(code));
-    case Kind::kUint:
-    case Kind::kSint: break;
+    case Kind::kHalf: break;
   }
-  return 0;
-}
-
-template <class T>
-void put(std::vector<std::byte>& to, T value) {
-  const auto* from = reinterpret_cast<const std::byte*>(&value);
-  to.insert(to.end(), from, from + sizeof(T));
+  return from_half(static_cast<std::uint32_t>(code));
 }
 
 void expand(const AttributeRow& row, const std::byte* source, std::vector<std::byte>& to) {
   std::uint64_t word = 0;
   std::memcpy(&word, source, row.bytes);
-  for (std::uint32_t c = 0; c < (integer(row.kind) ? 4u : row.components); ++c) {
-    if (c >= row.components) {
-      put(to, static_cast<std::uint16_t>(c == 3 ? 1 : 0));
-      continue;
-    }
+  for (std::size_t c = 0; c < row.components; ++c) {
     const std::uint32_t bits = row.component[c].bits;
     const std::uint64_t code = word >> row.component[c].shift & ((std::uint64_t{1} << bits) - 1);
-    if (!integer(row.kind)) {
-      put(to, number_of(row.kind, code, bits));
-      continue;
-    }
-    const std::int64_t value =
-        row.kind == Kind::kSint ? signed_of(code, bits) : static_cast<std::int64_t>(code);
-    if (value < 0 || value > 0xffff)
-      throw user_error("a vertex attribute holds the integer {}; 0 to 65535 are supported", value);
-    put(to, static_cast<std::uint16_t>(value));
+    const float number = number_of(row.kind, code, bits);
+    const auto* from = reinterpret_cast<const std::byte*>(&number);
+    to.insert(to.end(), from, from + sizeof(number));
   }
 }
 
@@ -123,7 +95,6 @@ void expand(const AttributeRow& row, const std::byte* source, std::vector<std::b
 Format expanded_attribute_format(std::uint32_t format) {
   const AttributeRow* row = row_of(format);
   if (row == nullptr) return Format::kUndefined;
-  if (integer(row->kind)) return Format::kR16G16B16A16Uint;
   return row->components == 1   ? Format::kR32Float
          : row->components == 2 ? Format::kR32G32Float
                                 : Format::kR32G32B32A32Float;

@@ -20,8 +20,7 @@ struct AttributeSource {
   std::uint64_t offset = 0;  ///< of the first one
   std::uint32_t stride = 0;
 };
-/// As many as the buffer holds, one after the other. Throws `UserError` for an integer that the wider format
-/// does not hold.
+/// As many as the buffer holds, one after the other.
 [[nodiscard]] std::vector<std::byte> expanded_attributes(std::span<const std::byte> buffer,
                                                          const AttributeSource& source);
 

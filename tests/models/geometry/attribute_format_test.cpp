@@ -51,3 +51,13 @@ TEST_CASE("attribute_format: unsigned integers arrive as they are") {
   decode_attribute(Format::kR16G16B16A16Uint, std::as_bytes(std::span(bytes)).data() + 1, words.data());
   CHECK(words == std::array<std::uint32_t, 4>{256, 65408, 2, 65535});
 }
+
+TEST_CASE("attribute_format: signed integers keep their sign, and one component comes with 0 0 1") {
+  const std::array<std::int16_t, 4> halves{-1, 2, -32768, 32767};
+  std::array<std::uint32_t, 4> words{9, 9, 9, 9};
+  decode_attribute(Format::kR16G16B16A16Sint, std::as_bytes(std::span(halves)).data(), words.data());
+  CHECK(words == std::array<std::uint32_t, 4>{0xffffffffu, 2, 0xffff8000u, 32767});
+  const std::array<std::int32_t, 1> one{-7};
+  decode_attribute(Format::kR32Sint, std::as_bytes(std::span(one)).data(), words.data());
+  CHECK(words == std::array<std::uint32_t, 4>{0xfffffff9u, 0, 0, 1});
+}

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <limits>
 
-#include "models/base/error.h"
 #include "traces/capture/attributes.h"
 
 namespace quadrille::capture {
@@ -33,14 +32,6 @@ TEST_CASE("attributes: signed numbers of ten bits reach exactly -1 and 1, and so
   const auto made =
       values<float>(std::as_bytes(std::span(words)), {VK_FORMAT_A2B10G10R10_SNORM_PACK32, 0, 4});
   CHECK(made == std::vector<float>{1, -1, -1, 1, 0, 0, 0, -1});
-}
-
-TEST_CASE("attributes: integers become 16-bit ones, with 0 0 0 1 for what lacks; a negative one is refused") {
-  const std::int32_t words[] = {7, 65535, -1};
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(words));
-  CHECK(values<std::uint16_t>(bytes.first(8), {VK_FORMAT_R32_SINT, 0, 4}) ==
-        std::vector<std::uint16_t>{7, 0, 0, 1, 65535, 0, 0, 1});
-  CHECK_THROWS_AS(expanded_attributes(bytes, {VK_FORMAT_R32_SINT, 0, 4}), UserError);
 }
 
 TEST_CASE("attributes: a stride of 0 is one attribute, and a format that is unknown is none") {
