@@ -1,5 +1,5 @@
-/// Vertex attributes in formats that the vertex fetch does not read: expanded to one that it does, as a buffer
-/// of their own. (docs/deviations.md#D172)
+/// Vertex attributes in formats that the vertex fetch does not read: expanded to one that it does, as a
+/// buffer of their own. (docs/deviations.md#D172)
 #pragma once
 
 #include <cstddef>
