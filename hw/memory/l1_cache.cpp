@@ -26,8 +26,9 @@ std::uint8_t sectors_with_all(std::uint32_t words) {
 
 }  // namespace
 
-L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses)
-    : tags_(static_cast<std::uint32_t>(lines), static_cast<std::uint32_t>(ways)),
+L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses,
+                 const models::ReplacementPolicy& replacement)
+    : tags_(static_cast<std::uint32_t>(lines), static_cast<std::uint32_t>(ways), 1, replacement),
       misses_(tags_, static_cast<std::size_t>(misses)),
       group_(stats),
       stats_(stats) {}

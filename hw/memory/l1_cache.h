@@ -68,7 +68,8 @@ class L1Cache {
     kStall     ///< no way or no miss entry is free: try again after the next fill
   };
   /// `lines` of 128 bytes, `ways` a set, up to `misses` lines under way.
-  L1Cache(StatGroup& stats, int lines, int ways, int misses);
+  L1Cache(StatGroup& stats, int lines, int ways, int misses,
+          const models::ReplacementPolicy& replacement = models::kLruReplacement);
   /// From here on the cache may write: it marks its dirty lines as `owner`'s.
   void own_dirty_lines(models::DeviceMemory& memory, models::DeviceMemory::Owner owner) {
     memory_ = &memory;

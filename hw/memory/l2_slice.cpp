@@ -32,7 +32,7 @@ L2Slice::L2Slice(sc_core::sc_module_name name, const UnitContext& context, const
       params_(params),
       tags_(static_cast<std::uint32_t>(params.cache_lines.value()),
             static_cast<std::uint32_t>(params.cache_ways.value()),
-            static_cast<std::uint32_t>(context.machine.channels)),
+            static_cast<std::uint32_t>(context.machine.channels), params.replacement.value()),
       misses_(tags_, static_cast<std::size_t>(params.cache_misses.value())),
       parts_(static_cast<std::size_t>(tags_.slots()), 0),
       answers_(clients.size()),

@@ -34,6 +34,9 @@ class L2Slice final : public Unit {
     Param<int> cache_lines{*this,  "cache_lines", 4096,
                            "line", {1, 1 << 24},  "Lines of 128 bytes in a slice. [G: 512 KiB]"};
     Param<int> cache_ways{*this, "cache_ways", 16, "way", {1, 64}, "Associativity. [G]", Effect::kTradeOff};
+    PolicyParam<models::ReplacementPolicy> replacement{
+        *this, "replacement", models::replacement_policies(), models::kLruReplacement,
+        "Which line of a full set makes room. [G: as caches are modelled]"};
     Param<int> cache_misses{
         *this,  "cache_misses", 128,
         "line", {1, 65536},     "Lines under way to and from the channel. [G: bandwidth times latency]"};

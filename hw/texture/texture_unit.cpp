@@ -16,7 +16,7 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& contex
       device_(context.memory),
       slots_(slots),
       port_(*this, stats_, context.machine.channels),
-      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses),
+      cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, params.replacement.value()),
       encoded_(stats_) {
   cache_.read_encoded(device_.stored_lines(), encoded_);
   add_initiation_rate("address");

@@ -49,6 +49,9 @@ class TextureUnit final : public Unit {
                           {1, 64},
                           "Associativity of the first-level cache. [G]",
                           Effect::kTradeOff};
+    PolicyParam<models::ReplacementPolicy> replacement{
+        *this, "replacement", models::replacement_policies(), models::kLruReplacement,
+        "Which line of a full set makes room. [G: as caches are modelled]"};
     Param<int> cache_misses{*this,  "cache_misses", 64,
                             "line", {1, 4096},      "Lines under way. [G: bandwidth times latency]"};
   };

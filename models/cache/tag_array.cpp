@@ -12,19 +12,22 @@ namespace {
 
 /// Tag of a way that holds nothing: beyond every line of a 512 GiB device.
 constexpr std::uint32_t kFree = 0xffffffffu;
+constexpr std::uint32_t kMostWays = 64;  // as many as a set of bits holds
 
 }  // namespace
 
-TagArray::TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices)
+TagArray::TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices,
+                   const ReplacementPolicy& replacement)
     : sets_(ways == 0 ? 0 : lines / ways),
       ways_(ways),
       stride_((ways + 7) / 8 * 8),
       over_slices_(slices),
       over_sets_(std::max(sets_, 1u)) {
-  QUADRILLE_CHECK(ways > 0 && lines >= ways && lines % ways == 0, "{} lines of {} ways", lines, ways);
+  QUADRILLE_CHECK(ways > 0 && ways <= kMostWays && lines >= ways && lines % ways == 0, "{} lines of {} ways",
+                  lines, ways);
   tags_.assign(std::size_t{sets_} * stride_, kFree);
-  used_.assign(lines, 0);
   lines_.assign(lines, Line{});
+  replacement_ = replacement.make(sets_, ways_);
 }
 
 int TagArray::find(std::uint32_t line) const {
@@ -43,19 +46,27 @@ int TagArray::find(std::uint32_t line) const {
 
 int TagArray::lookup(std::uint32_t line) {
   const int slot = find(line);
-  if (slot != kNone) used_[static_cast<std::size_t>(slot)] = ++clock_;
+  if (slot != kNone) replacement_->used(static_cast<std::uint32_t>(slot));
   return slot;
+}
+
+std::uint32_t TagArray::way_for_new(std::uint32_t set) {
+  const std::uint32_t* const tags = tags_.data() + std::size_t{set} * stride_;
+  const Line* const lines = lines_.data() + std::size_t{set} * ways_;
+  std::uint64_t open = 0;
+  for (std::uint32_t way = 0; way < ways_; ++way) {
+    if (lines[way].pending != 0) continue;
+    if (tags[way] == kFree) return way;
+    open |= std::uint64_t{1} << way;
+  }
+  return open == 0 ? ways_ : replacement_->victim(set, open);
 }
 
 TagArray::Allocation TagArray::allocate(std::uint32_t line) {
   QUADRILLE_CHECK(line != kFree && find(line) == kNone, "line {} is held already", line);
   const std::uint32_t set = set_of(line);
   const std::size_t first = std::size_t{set} * ways_;
-  std::size_t chosen = ways_;
-  for (std::size_t way = 0; way < ways_; ++way) {
-    if (lines_[first + way].pending != 0) continue;
-    if (chosen == ways_ || used_[first + way] < used_[first + chosen]) chosen = way;
-  }
+  const std::uint32_t chosen = way_for_new(set);
   if (chosen == ways_) return {};
   std::uint32_t& tag = tags_[std::size_t{set} * stride_ + chosen];
   Line& held = lines_[first + chosen];
@@ -63,7 +74,7 @@ TagArray::Allocation TagArray::allocate(std::uint32_t line) {
                           {tag != kFree, held.line, held.dirty, held.valid}};
   tag = line;
   held = {line, 0, 0, 0};
-  used_[first + chosen] = ++clock_;
+  replacement_->placed(set * ways_ + chosen);
   return result;
 }
 
@@ -86,8 +97,8 @@ void TagArray::invalidate_all() {
     QUADRILLE_CHECK(line.dirty == 0 && line.pending == 0, "line {} is dirty {:#x} or pending {:#x}",
                     line.line, line.dirty, line.pending);
   std::ranges::fill(tags_, kFree);
-  std::ranges::fill(used_, 0);
   std::ranges::fill(lines_, Line{});
+  replacement_->forget();
 }
 
 std::uint32_t TagArray::dirty_count() const {

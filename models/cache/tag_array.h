@@ -1,5 +1,5 @@
-/// Tags of a set-associative cache with sectored lines and LRU replacement: which lines it holds, in what
-/// state. Data stay in `DeviceMemory`.
+/// Tags of a set-associative cache with sectored lines: which lines it holds, in what state. Data stay in
+/// `DeviceMemory`.
 ///
 /// A line (128 bytes) has four sectors of 32 bytes, each absent, pending (asked for), valid, or valid and
 /// dirty. A line with a pending sector is never a victim. Lines are spread over any number of sets by
@@ -7,9 +7,11 @@
 /// which it came, and strides of powers of two use all sets.
 #pragma once
 
+#include "models/cache/replacement.h"
 #include "models/memory/interleave.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace quadrille::models {
@@ -37,14 +39,15 @@ class TagArray {
 
   /// `lines` in all, `ways` a set; `lines` is a multiple of `ways`. A cache that sees the lines of one slice
   /// of `slices` spreads them by their numbers within the slice.
-  TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices = 1);
+  TagArray(std::uint32_t lines, std::uint32_t ways, std::uint32_t slices = 1,
+           const ReplacementPolicy& replacement = kLruReplacement);
 
   /// Slot that holds the line, or kNone. Does not change the order of replacement.
   [[nodiscard]] int find(std::uint32_t line) const;
-  /// The same, and makes it the most recently used.
+  /// The same, and counts as a use of it.
   int lookup(std::uint32_t line);
-  /// Takes a slot for a line that is not held: a free way or the least recently used one without a pending
-  /// sector. All its sectors are absent.
+  /// Takes a slot for a line that is not held: a free way, or one without a pending sector that the
+  /// replacement gives up. All its sectors are absent.
   Allocation allocate(std::uint32_t line);
 
   [[nodiscard]] const Line& at(int slot) const { return lines_[static_cast<std::size_t>(slot)]; }
@@ -68,6 +71,8 @@ class TagArray {
 
  private:
   [[nodiscard]] Line& state(int slot) { return lines_[static_cast<std::size_t>(slot)]; }
+  /// A way of the set for a new line; ways() if all are pending.
+  [[nodiscard]] std::uint32_t way_for_new(std::uint32_t set);
   [[nodiscard]] std::uint32_t set_of(std::uint32_t line) const {
     return over_sets_.member_of(over_slices_.index_of(line));
   }
@@ -75,9 +80,8 @@ class TagArray {
   std::uint32_t sets_, ways_, stride_;  // stride: ways rounded up to a vector of tags
   Interleave over_slices_, over_sets_;
   std::vector<std::uint32_t> tags_;  // sets x stride; kFree where no line is held
-  std::vector<std::uint64_t> used_;  // sets x ways: time of last use
   std::vector<Line> lines_;          // sets x ways
-  std::uint64_t clock_ = 0;
+  std::unique_ptr<Replacement> replacement_;
 };
 
 }  // namespace quadrille::models

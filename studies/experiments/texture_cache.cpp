@@ -15,6 +15,8 @@ constexpr std::array kKibibytes{1, 2, 4, 8, 16, 32, 64, 128};
 constexpr std::array kWays{1, 2, 4, 8, 16};
 constexpr std::array kOrders{"scan", "morton", "hilbert"};
 constexpr std::array kOrderedKibibytes{2, 8, 32};  ///< of the caches that the orders are compared with
+constexpr std::array kReplacements{"lru", "tree", "fifo", "random", "srrip"};
+constexpr std::array kReplacedKibibytes{4, 8, 16};  ///< of the caches that the policies are compared with
 constexpr int kLineBytes = 128, kUsualWays = 8;
 constexpr int kPublishedKnee = 16;  ///< KiB
 constexpr double kAtKnee = 0.95;    ///< of the bytes that the largest cache saves
@@ -32,6 +34,11 @@ std::vector<std::vector<std::string>> machines() {
   for (const int ways : kWays) all.push_back(cache(kPublishedKnee, ways));
   for (const int size : kOrderedKibibytes)
     for (const char* order : kOrders) all.push_back(cache(size, kUsualWays, order));
+  for (const int size : kReplacedKibibytes)
+    for (const char* replacement : kReplacements) {
+      all.push_back(cache(size, kUsualWays));
+      all.back().push_back(fmt::format("texture.replacement={}", replacement));
+    }
   all.emplace_back();
   return all;
 }
@@ -47,6 +54,8 @@ struct SceneReadings {
     for (double& bytes : by_ways) bytes = fetched(*next++);
     for (auto& orders : by_order)
       for (double& bytes : orders) bytes = fetched(*next++);
+    for (auto& policies : by_replacement)
+      for (double& bytes : policies) bytes = fetched(*next++);
     usual = next;
   }
   /// KiB of the smallest cache that saves nearly all that the largest saves.
@@ -60,6 +69,7 @@ struct SceneReadings {
   std::array<double, kKibibytes.size()> by_size{};
   std::array<double, kWays.size()> by_ways{};
   std::array<std::array<double, kOrders.size()>, kOrderedKibibytes.size()> by_order{};
+  std::array<std::array<double, kReplacements.size()>, kReplacedKibibytes.size()> by_replacement{};
   const Readings* usual = nullptr;  ///< the default machine
 };
 
@@ -119,6 +129,7 @@ Result texture_cache(const Setting& setting) {
   result.table = table_of("bytes a fragment, by size", kKibibytes, " KiB");
   result.table.head.insert(result.table.head.end(), {"no cache", "knee"});
   Table by_ways = table_of("16 KiB, by ways", kWays), by_order = table_of("by order of tiles", kOrders),
+        by_replacement = table_of("by replacement", kReplacements),
         rates{{"default machine", "look-ups that hit", "bytes of texels not fetched", "L2 requests that hit"},
               {}};
   std::string data, curves;
@@ -132,6 +143,9 @@ Result texture_cache(const Setting& setting) {
     for (std::size_t s = 0; s < kOrderedKibibytes.size(); ++s)
       by_order.rows.push_back(
           row_of(fmt::format("{}, {} KiB", name, kOrderedKibibytes[s]), scene.by_order[s]));
+    for (std::size_t s = 0; s < kReplacedKibibytes.size(); ++s)
+      by_replacement.rows.push_back(
+          row_of(fmt::format("{}, {} KiB", name, kReplacedKibibytes[s]), scene.by_replacement[s]));
     rates.rows.push_back(rates_of(name, *scene.usual));
     judge(name, scene, result);
     for (std::size_t s = 0; s < kKibibytes.size(); ++s)
@@ -140,7 +154,7 @@ Result texture_cache(const Setting& setting) {
     curves +=
         fmt::format("{}$d index {} using 1:2 with linespoints title {}", i > 0 ? ", " : "", i, quoted(name));
   }
-  result.further_tables = {by_ways, by_order, rates};
+  result.further_tables = {by_ways, by_order, by_replacement, rates};
   result.remarks = {
       "The knee is the smallest cache that saves 95 % of the bytes that 128 KiB save. It stands for all "
       "textures "

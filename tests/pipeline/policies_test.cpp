@@ -42,8 +42,8 @@ Settings narrow() {
           {"rop.cache_ways", "2"},
           {"depth.cache_lines", "4"},
           {"depth.cache_ways", "2"},
-          {"texture.cache_lines", "8"},
-          {"texture.cache_ways", "2"},
+          {"texture.cache_lines", "16"},
+          {"texture.cache_ways", "4"},
           {"memory.page_idle", "20"},
           {"memory.write_queue", "16"},
           {"l2.write_back_lines", "16"},
@@ -110,7 +110,8 @@ TEST_CASE("policies: each kind that a machine chooses from is listed, and each p
   }
   CHECK(kinds ==
         "vertex_fetch.reuse coarse_raster.order coarse_raster.traversal work_distributor.policy "
-        "core.scheduler l2.write_back memory.mapping memory.scheduler memory.write_drain memory.page ");
+        "core.scheduler texture.replacement l2.replacement l2.write_back memory.mapping memory.scheduler "
+        "memory.write_drain memory.page ");
 }
 
 TEST_CASE("policies: each differs from its neighbours in what the machine does, and in no pixel") {

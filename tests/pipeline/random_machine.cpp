@@ -46,6 +46,8 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.coarse_raster.rows_per_clk.set(1 + static_cast<int>(seed / 6 % 5));
   config.coarse_raster.segments_per_clk.set(1 + static_cast<int>(seed / 6 % 3));
   config.coarse_raster.walk_setup_clk.set(1 + static_cast<int>(seed / 6 % 4));
+  config.texture.replacement.set(*models::replacement_policies().all()[seed % 5]);
+  config.l2.replacement.set(*models::replacement_policies().all()[seed / 5 % 5]);
   config.depth.compression.set(static_cast<hw::DepthCompression>(seed % 3));
   config.rop.compression.set(static_cast<hw::ColorCompression>(seed / 2 % 3));
   config.vertex_fetch.reuse.set(
