@@ -6,8 +6,11 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "cli/command.h"
+#include "cli/film.h"
+#include "cli/image_files.h"
 #include "cli/process.h"
 #include "models/base/error.h"
 #include "models/base/say.h"
@@ -28,6 +31,8 @@ struct Plan {
   double start = 0, step = 0;  ///< seconds
   bool animated = false, orbit = false;
 
+  /// Of a film in which the animation goes as fast as it is meant to; of a turn, those of many films.
+  [[nodiscard]] double fps() const { return step > 0 ? 1 / step : 25; }
   [[nodiscard]] scenes::Moment moment(std::int64_t frame) const {
     scenes::Moment m{start + step * static_cast<double>(frame), std::nullopt};
     if (orbit) m.orbit = static_cast<double>(frame) / static_cast<double>(frames);
@@ -163,13 +168,33 @@ class DisplayQueue {
   int frames_ = 0;
 };
 
+/// A frame as it comes from its process: figures, a zero, and the picture.
+struct Drawn {
+  Json figures;
+  std::vector<std::byte> png;
+};
+
+std::string sent(const DrawnFrame& frame) {
+  std::string text = frame.figures_json;
+  text += '\0';
+  return text.append(reinterpret_cast<const char*>(frame.png.data()), frame.png.size());
+}
+
+Drawn received(const std::string& text) {
+  const std::size_t end = text.find('\0');
+  const auto png = std::as_bytes(std::span(text).subspan(end + 1));
+  return {Json::parse(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end)),
+          {png.begin(), png.end()}};
+}
+
 /// Frames as their processes end, in any order; rows are printed, and laws checked, in the frames' order.
 class Sequence {
  public:
-  Sequence(const Plan& plan, const Tables& tables) : plan_(plan), tables_(tables) {}
+  Sequence(const Plan& plan, const Tables& tables, const TakePicture& take)
+      : plan_(plan), tables_(tables), take_(take) {}
 
-  void add(std::int64_t number, Json figures) {
-    waiting_.emplace(number, std::move(figures));
+  void add(std::int64_t number, Drawn drawn) {
+    waiting_.emplace(number, std::move(drawn));
     while (!waiting_.empty() && waiting_.begin()->first == size()) {
       append(std::move(waiting_.begin()->second));
       waiting_.erase(waiting_.begin());
@@ -182,8 +207,10 @@ class Sequence {
   [[nodiscard]] int exit_code() const { return exit_code_; }
 
  private:
-  void append(Json figures) {
+  void append(Drawn drawn) {
     const std::int64_t number = size();
+    Json& figures = drawn.figures;
+    if (take_) take_(number, plan_.fps(), std::move(drawn.png));
     tables_.print(row(number, plan_, figures) + note_rows(figures["notes"]));
     if (const std::string broken = broken_laws(number, figures); !broken.empty()) {
       say(broken);
@@ -200,8 +227,9 @@ class Sequence {
 
   const Plan& plan_;
   const Tables& tables_;
+  const TakePicture& take_;
   DisplayQueue queue_;
-  std::map<std::int64_t, Json> waiting_;
+  std::map<std::int64_t, Drawn> waiting_;
   Json frames_ = Json::array();
   int exit_code_ = kDone;
 };
@@ -223,8 +251,19 @@ void FrameArguments::add_to(CLI::App& command) {
                    "with --frames: carries the camera once around the scene (the scene moves too if --time "
                    "or --animation is given)");
   command
+      .add_option("--film", film,
+                  "with --frames: makes a film of the frames, by ffmpeg, at the pace of the animation, or 25 "
+                  "frames a second of a turn")
+      ->type_name("F.mp4|F.gif");
+  command
       .add_option("--jobs", jobs, "with --frames: frames at a time, each in a process of its own (default 1)")
       ->type_name("N");
+}
+
+void FrameArguments::check_film() const {
+  if (!film) return;
+  check_output("--film", *film, {".mp4", ".gif"});
+  check_film_program();
 }
 
 int FrameArguments::job_count() const {
@@ -241,6 +280,7 @@ void FrameArguments::check() const {
   if (fps) throw user_error("--fps: goes with --frames");
   if (orbit) throw user_error("--orbit: goes with --frames");
   if (jobs) throw user_error("--jobs: goes with --frames");
+  if (film) throw user_error("--film: goes with --frames");
 }
 
 void check_pattern(std::string_view flag, const std::string& pattern) {
@@ -262,7 +302,8 @@ std::string numbered(const std::string& pattern, std::int64_t frame) {
 }
 
 SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames,
-                           const std::string& about, const Tables& tables, const DrawFrame& draw) {
+                           const std::string& about, const Tables& tables, const DrawFrame& draw,
+                           const TakePicture& take) {
   if (scene.is_trace()) throw user_error("--frames: {} is a trace, which holds one frame", scene.scene);
   scenes::SceneOptions options = scene.options();
   const bool moves = !frames.orbit || frames.fps || options.time || !options.animation.empty();
@@ -281,16 +322,16 @@ SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& fr
     (void)file.record(plan.moment(0));
     file.unpack_images();
   }
-  Sequence sequence(plan, tables);
+  Sequence sequence(plan, tables, take);
   std::vector<studies::ChildWork> works;
   works.reserve(static_cast<std::size_t>(plan.frames));
   for (std::int64_t i = 0; i < plan.frames; ++i)
-    works.push_back({[&, i] { return draw(scene.record(file, plan.moment(i)), i); }, {kNoLimit, 0}});
+    works.push_back({[&, i] { return sent(draw(scene.record(file, plan.moment(i)), i)); }, {kNoLimit, 0}});
   progress.show(fmt::format("frame 0 of {}", plan.frames));
   studies::run_in_children(works, frames.job_count(), [&](std::size_t i, const studies::ChildRun& run) {
-    Json figures = Json::parse(studies::output_of(run, fmt::format("frame {}", i)));
+    Drawn drawn = received(studies::output_of(run, fmt::format("frame {}", i)));
     progress.clear();
-    sequence.add(static_cast<std::int64_t>(i), std::move(figures));
+    sequence.add(static_cast<std::int64_t>(i), std::move(drawn));
     if (sequence.size() < plan.frames)
       progress.show(fmt::format("frame {} of {}", sequence.size(), plan.frames));
   });

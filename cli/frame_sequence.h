@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/process.h"
 #include "cli/scene_arguments.h"
@@ -15,12 +16,14 @@
 namespace quadrille::cli {
 
 struct FrameArguments {
-  std::optional<std::string> frames, fps, jobs;
+  std::optional<std::string> frames, fps, jobs, film;
   bool orbit = false;
 
   void add_to(CLI::App& command);
   /// Throws `UserError` for options that go with `--frames` alone.
   void check() const;
+  /// Throws `UserError` for a film that could not be written, or made.
+  void check_film() const;
   /// Processes at a time.
   [[nodiscard]] int job_count() const;
   [[nodiscard]] bool wanted() const { return frames.has_value(); }
@@ -32,9 +35,15 @@ struct FrameArguments {
 /// Throws `UserError` that starts with `flag` when a file's name has no `#`, or several runs of them.
 void check_pattern(std::string_view flag, const std::string& pattern);
 
-/// Draws frame `number` from its commands, writes its files, and returns its figures as JSON. Runs in the
-/// frame's own process.
-using DrawFrame = std::function<std::string(const SceneArguments::Loaded& frame, std::int64_t number)>;
+/// A frame that was drawn: its figures as JSON, and its picture as a file of PNG, empty unless it is wanted.
+struct DrawnFrame {
+  std::string figures_json;
+  std::vector<std::byte> png = {};
+};
+/// Draws frame `number` from its commands and writes its files. Runs in the frame's own process.
+using DrawFrame = std::function<DrawnFrame(const SceneArguments::Loaded& frame, std::int64_t number)>;
+/// Takes the picture of frame `number`, in the frames' order; `fps` are those of the film.
+using TakePicture = std::function<void(std::int64_t number, double fps, std::vector<std::byte> png)>;
 
 struct SequenceResult {
   int exit_code = 0;
@@ -45,6 +54,6 @@ struct SequenceResult {
 /// `UserError` that names the frame.
 [[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames,
                                          const std::string& about, const Tables& tables,
-                                         const DrawFrame& draw);
+                                         const DrawFrame& draw, const TakePicture& take = {});
 
 }  // namespace quadrille::cli

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/command.h"
+#include "cli/film.h"
 #include "cli/image_files.h"
 #include "cli/process.h"
 #include "models/base/error.h"
@@ -13,6 +14,7 @@
 #include "pipeline/render_by_draw.h"
 #include "pipeline/report/draws_by_square.h"
 #include "pipeline/report/flat_figures.h"
+#include "pipeline/report/frames_output.h"
 #include "pipeline/report/page.h"
 #include "pipeline/report/report.h"
 #include "pipeline/report/timeline.h"
@@ -128,7 +130,9 @@ void RenderJob::check_outputs() const {
                   {"--stats", stats},
                   {"--csv", csv},
                   {"--report", report},
-                  {"--timeline", timeline}});
+                  {"--timeline", timeline},
+                  {"--film", frames.film}});
+  frames.check_film();
 }
 
 void RenderJob::check_options_meant() const {
@@ -140,10 +144,8 @@ void RenderJob::check_options_meant() const {
   }
   if (frames.wanted() && units_option_->count() > 0)
     throw user_error("--units: with --frames each frame is one row; --stats has the figures of every unit");
-  if (frames.wanted() && (report || csv || timeline))
-    throw user_error("{0}: it is of one frame; leave --frames or {0} out", report ? "--report"
-                                                                           : csv  ? "--csv"
-                                                                                  : "--timeline");
+  if (frames.wanted() && timeline)
+    throw user_error("--timeline: it is of one frame; leave --frames or --timeline out");
 }
 
 std::int64_t RenderJob::window_cycles() const {
@@ -156,8 +158,8 @@ std::int64_t RenderJob::window_cycles() const {
 }
 
 pipeline::DetailOptions RenderJob::details() const {
-  pipeline::DetailOptions chosen{
-      .draws = report || timeline, .tiles = report.has_value(), .timeline = report.has_value()};
+  const bool page = report && !frames.wanted();  // that of several frames shows none
+  pipeline::DetailOptions chosen{.draws = page || timeline, .tiles = page, .timeline = page};
   if (!detail) return chosen;
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());
@@ -310,7 +312,9 @@ int RenderJob::run_frames(const Setting& setting) const {
     DrawnJob drawn = draw(loaded, setting, {file(out, number), file(depth, number)});
     note_host(drawn.frame.figures, 0);
     drawn.frame.figures.host.wall_s = whole.seconds();
-    return drawn.figures_json(setting.config);
+    const bool pictured = report || frames.film;
+    return DrawnFrame{drawn.figures_json(setting.config),
+                      pictured ? color_png(drawn.frame.image) : std::vector<std::byte>()};
   };
   if ((out && out->ends_with(".exr")) || (depth && depth->ends_with(".exr"))) scenes::open_image_module();
   const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();
@@ -318,7 +322,17 @@ int RenderJob::run_frames(const Setting& setting) const {
       setting.window > 0 ? fmt::format("approximate (window of {} cycles)", window_cycles()) : fidelity;
   const std::string about =
       fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.title(), how);
-  const SequenceResult result = draw_frames(scene, frames, about, Tables(!quiet, stats), draw_one);
+  std::optional<Film> film;
+  pipeline::FramePictures pictures;
+  const auto take = [&](std::int64_t number, double fps, std::vector<std::byte> png) {
+    if (frames.film && !film) film.emplace(*frames.film, fps);
+    if (film) film->add(png);
+    if (report) pictures.emplace_back(number, std::move(png));
+  };
+  const SequenceResult result = draw_frames(scene, frames, about, Tables(!quiet, stats), draw_one, take);
+  if (film) film->finish();
+  if (report) write_text(*report, pipeline::frames_page(result.json, pictures));
+  if (csv) write_text(*csv, pipeline::frames_csv(result.json));
   if (stats) write_text(*stats, result.json);
   return result.exit_code;
 }

@@ -1,5 +1,6 @@
 #include "pipeline/report/flat_figures.h"
 
+#include "pipeline/report/csv_field.h"
 #include "pipeline/report/report.h"
 
 #include <fmt/format.h>
@@ -10,14 +11,6 @@ namespace quadrille::pipeline {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A field: in quotes where it holds what would end it.
-std::string field(const std::string& text) {
-  if (text.find_first_of("\",\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + '"';
-}
 
 class Table {
  public:
@@ -39,7 +32,7 @@ class Table {
       const std::string shown = value.is_string() ? value.get<std::string>()
                                 : value.is_null() ? ""
                                                   : value.dump();
-      text_ += fmt::format("{},{},{}\r\n", field(path), field(shown), unit_of(path));
+      text_ += fmt::format("{},{},{}\r\n", csv_field(path), csv_field(shown), unit_of(path));
     }
   }
 
@@ -50,7 +43,7 @@ class Table {
     if (!path.starts_with(kUnits) || counters == std::string_view::npos) return "";
     const std::string kind(without_number(path.substr(kUnits.size(), counters - kUnits.size())));
     const std::string name(path.substr(counters + kCounters.size()));
-    return field(definitions_[kind][name]["unit"].get<std::string>());
+    return csv_field(definitions_[kind][name]["unit"].get<std::string>());
   }
 
   const Json& definitions_;

@@ -42,10 +42,6 @@ std::string base64(std::span<const std::byte> bytes) {
   return text;
 }
 
-std::string picture(std::span<const std::byte> png) {
-  return png.empty() ? "" : "data:image/png;base64," + base64(png);
-}
-
 /// A block of data, and the name under which the page looks for it.
 using Block = std::pair<std::string_view, std::string>;
 
@@ -77,6 +73,10 @@ std::string_view escape(std::string_view text) {
 }
 
 }  // namespace
+
+std::string png_data_uri(std::span<const std::byte> png) {
+  return png.empty() ? "" : "data:image/png;base64," + base64(png);
+}
 
 std::string json_for_script(std::string_view json) {
   std::string out;
@@ -137,12 +137,16 @@ std::string plan_json(const MachineConfig& machine) {
 
 std::string report_page(const ReportSubject& subject, std::string_view figures_json,
                         const PagePictures& pictures) {
-  const Json shown = {{"frame", picture(pictures.frame)}, {"depth", picture(pictures.depth)}};
+  const Json shown = {{"frame", png_data_uri(pictures.frame)}, {"depth", png_data_uri(pictures.depth)}};
   return filled(subject.figures.scene + " - Quadrille",
                 {{"figures", json_for_script(figures_json)},
                  {"plan", json_for_script(plan_json(subject.machine))},
                  {"pictures", shown.dump()},
                  {"squares", Json(pictures.draws).dump()}});
+}
+
+std::string page_of_frames(std::string_view title, std::string_view frames_json) {
+  return filled(std::string(title) + " - Quadrille", {{"frames", json_for_script(frames_json)}});
 }
 
 std::string comparison_page(std::string_view title, std::string_view comparison_json) {

@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,11 @@ struct PagePictures {
                                       const PagePictures& pictures);
 /// The page of two frames beside each other (comparison.h).
 [[nodiscard]] std::string comparison_page(std::string_view title, std::string_view comparison_json);
+
+/// The page of a row of frames (frames_output.h).
+[[nodiscard]] std::string page_of_frames(std::string_view title, std::string_view frames_json);
+/// A file of PNG as an address that holds it; empty for none.
+[[nodiscard]] std::string png_data_uri(std::span<const std::byte> png);
 
 /// What the page knows of a machine beyond its figures: kinds of units and the links between them, as the
 /// machine plan has them, and unit, legal values and reason of every parameter.

@@ -15,7 +15,6 @@ test('a place that cannot be, and options that a page does not go with, are refu
   mkdirSync(join(where, 'folder.html'));
   refused([...triangle, join(where, 'folder.html')], /--report: .*not a plain file/);
   refused([...triangle, join(where, 'x.html'), '--fidelity', 'functional'], /--report: a functional run has no units/);
-  refused([...triangle, join(where, 'x.html'), '--frames', '2'], /--report: it is of one frame/);
 });
 
 test('a page that does not fit on the disk leaves no file', () => {
