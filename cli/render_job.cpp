@@ -11,13 +11,14 @@
 #include "models/base/error.h"
 #include "models/base/say.h"
 #include "pipeline/driver/host_cost.h"
-#include "pipeline/render_by_draw.h"
 #include "pipeline/report/draws_by_square.h"
 #include "pipeline/report/flat_figures.h"
 #include "pipeline/report/frames_output.h"
+#include "pipeline/report/occupancy.h"
 #include "pipeline/report/page.h"
 #include "pipeline/report/report.h"
 #include "pipeline/report/timeline.h"
+#include "pipeline/watched_render.h"
 #include "scenes/image/image_io.h"
 
 namespace quadrille::cli {
@@ -217,8 +218,8 @@ int RenderJob::run() {
 }
 
 std::string RenderJob::DrawnJob::figures_json(const pipeline::MachineConfig& machine) const {
-  const std::string json =
-      pipeline::report_json({frame.figures, machine, frame.image.width, frame.image.height});
+  std::string json = pipeline::report_json({frame.figures, machine, frame.image.width, frame.image.height});
+  if (!kept.registers.empty()) json = pipeline::figures_with_kept(json, kept, machine);
   return energy ? pipeline::figures_with_energy(json, *energy) : json;
 }
 
@@ -230,15 +231,16 @@ RenderJob::DrawnJob RenderJob::simulate(const traces::CommandStream& stream, con
       .leave_out = leave_out == "auto",
       .faster = setting.faster};
   const pipeline::MachineConfig& config = setting.config;
-  if (!setting.costs) return {pipeline::render_exact(stream, config, options, limits, setting.detail)};
-  if (!setting.detail.draws) {
-    DrawnJob drawn{pipeline::render_exact(stream, config, options, limits, setting.detail)};
-    drawn.energy = pipeline::energy_of(drawn.frame.figures, config, *setting.costs);
-    return drawn;
-  }
-  pipeline::CountersByDraw counters = pipeline::counters_of(*setting.costs);
-  DrawnJob drawn{pipeline::render_exact_by_draw(stream, config, options, limits, setting.detail, counters)};
-  drawn.energy = pipeline::energy_of(drawn.frame.figures, config, *setting.costs, &counters);
+  if (!setting.costs && !setting.detail.any())
+    return {pipeline::render_exact(stream, config, options, limits, setting.detail)};
+  pipeline::KeptCounters kept;
+  if (setting.costs && setting.detail.draws) kept.by_draw = pipeline::counters_of(*setting.costs);
+  if (setting.detail.tiles) kept.by_square = pipeline::counters_by_square();
+  DrawnJob drawn{pipeline::render_exact_watched(stream, config, options, limits, setting.detail, kept)};
+  if (setting.costs)
+    drawn.energy = pipeline::energy_of(drawn.frame.figures, config, *setting.costs,
+                                       kept.by_draw.draws.empty() ? nullptr : &kept.by_draw);
+  drawn.kept = std::move(kept);
   return drawn;
 }
 

@@ -63,6 +63,7 @@ struct RenderJob {
   struct DrawnJob {
     pipeline::RenderedFrame frame;
     std::optional<pipeline::EnergyFigures> energy = {};
+    pipeline::KeptCounters kept = {};
     /// All figures as JSON.
     [[nodiscard]] std::string figures_json(const pipeline::MachineConfig& machine) const;
   };

@@ -6,8 +6,8 @@
 
 #include "pipeline/driver/draw_culling.h"
 #include "pipeline/driver/host_cost.h"
-#include "pipeline/render_by_draw.h"
 #include "pipeline/report/detail_log.h"
+#include "pipeline/watched_render.h"
 
 namespace quadrille::pipeline {
 
@@ -119,19 +119,30 @@ RenderedFrame render_functional_frame(const traces::CommandStream& stream, const
   return out;
 }
 
-Check check_of(const CountersByDraw& counters) {
-  std::uint64_t sum = std::accumulate(counters.outside.begin(), counters.outside.end(), std::uint64_t{0});
-  for (const std::vector<std::uint64_t>& draw : counters.draws)
-    sum = std::accumulate(draw.begin(), draw.end(), sum);
-  return {"counters behind the energy, of draws and of none = of the units", "draws + outside_draws", "units",
-          sum, counters.total};
+std::vector<Check> checks_of(const KeptCounters& kept) {
+  const auto sum = [](const std::vector<std::uint64_t>& counts) {
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  };
+  std::vector<Check> checks;
+  if (!kept.by_draw.asked.empty()) {
+    std::uint64_t draws = sum(kept.by_draw.outside);
+    for (const std::vector<std::uint64_t>& draw : kept.by_draw.draws) draws += sum(draw);
+    checks.push_back({"counters behind the energy, of draws and of none = of the units",
+                      "draws + outside_draws", "units", draws, kept.by_draw.total});
+  }
+  for (const CounterBySquare& c : kept.by_square)
+    checks.push_back({fmt::format("{} of tiles and of none = of the frame", c.key),
+                      fmt::format("tiles.{} + outside_tiles", c.key),
+                      fmt::format("{}.{}", c.asked.kind, c.asked.counter), sum(c.squares) + c.outside,
+                      c.total});
+  return checks;
 }
 
 namespace {
 
 RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig& config,
                        const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
-                       CountersByDraw* counters) {
+                       KeptCounters* kept) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
@@ -139,7 +150,7 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
   if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
-  if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, counters);
+  if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, kept);
   const double build_s = seconds_since(start) - frame.fills.seconds();
   const RunTimer timer(frame.fills);
   machine.run(limits);
@@ -147,7 +158,8 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
   timer.stop(host);
   host.build_s = build_s;
   out.figures = collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt);
-  if (counters != nullptr) out.figures.checks.push_back(check_of(*counters));
+  if (kept != nullptr && log)
+    for (Check& check : checks_of(*kept)) out.figures.checks.push_back(std::move(check));
   out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;
@@ -172,11 +184,10 @@ RenderedFrame render_exact(const traces::CommandStream& stream, const MachineCon
   return simulate(stream, config, options, limits, detail, nullptr);
 }
 
-RenderedFrame render_exact_by_draw(const traces::CommandStream& stream, const MachineConfig& config,
+RenderedFrame render_exact_watched(const traces::CommandStream& stream, const MachineConfig& config,
                                    const MachineOptions& options, const hw::RunLimits& limits,
-                                   DetailOptions detail, CountersByDraw& counters) {
-  detail.draws = true;
-  return simulate(stream, config, options, limits, detail, &counters);
+                                   const DetailOptions& detail, KeptCounters& kept) {
+  return simulate(stream, config, options, limits, detail, &kept);
 }
 
 }  // namespace quadrille::pipeline

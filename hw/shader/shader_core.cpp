@@ -300,7 +300,8 @@ void ShaderCore::issue(Tick now) {
   const std::uint32_t index = ready_.front().slot;
   ready_.pop_front();
   CoreSlot& slot = slots_[index];
-  stats_.working_for(slot.draw);
+  if (slot.stage == models::ShaderStage::kVertex) stats_.working_for(slot.draw);
+  else stats_.working_for(slot.draw, slot.tile_x, slot.tile_y);
   warp_clock_.restart(timing_of(*slot.warp.program), slot.warp.program->num_regs);
   const models::ClauseResult result = models::run_clause(slot.warp, warp_clock_);
   const models::ClauseCost& cost = result.cost;

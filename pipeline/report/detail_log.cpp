@@ -54,8 +54,8 @@ hw::ScreenCells screen_cells(const hw::Frame& frame) {
 }
 
 DetailLog::DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted,
-                     CountersByDraw* asked)
-    : machine_(machine), frame_(frame), asked_(asked), screen_(screen_cells(frame.frame)) {
+                     KeptCounters* kept)
+    : machine_(machine), frame_(frame), kept_(kept), screen_(screen_cells(frame.frame)) {
   detail_.wanted = wanted;
   for (const hw::Unit* unit : machine.units())
     if (unit->stats() != nullptr) add(*unit);
@@ -71,30 +71,54 @@ void DetailLog::add(const hw::Unit& unit) {
   u.log = std::make_unique<hw::WorkLog>(static_cast<std::uint32_t>(frame_.frame.draws.size()), screen_);
   Columns columns(*u.log, u);
   unit.details(columns);
-  if (asked_ != nullptr) add_asked(u, kind);
+  if (kept_ != nullptr) add_asked(u, kind);
   u.busy = u.log->by_draw(unit.busy_storage());
   unit.stats()->keep_log(*u.log);
   units_.push_back(std::move(u));
 }
 
 void DetailLog::add_asked(LoggedUnit& u, const std::string& kind) const {
-  for (std::size_t i = 0; i < asked_->asked.size(); ++i) {
-    if (asked_->asked[i].kind != kind) continue;
+  const auto each = [&](const AskedCounter& asked, const auto& keep) {
+    if (asked.kind != kind) return;
     for (const hw::Counter* c : u.unit->stats()->counters())
-      if (c->name() == asked_->asked[i].counter) u.asked.push_back({i, u.log->by_draw(c->storage()), c});
-  }
+      if (c->name() == asked.counter) keep(*c);
+  };
+  for (std::size_t i = 0; i < kept_->by_draw.asked.size(); ++i)
+    each(kept_->by_draw.asked[i], [&](const hw::Counter& c) {
+      u.asked.push_back({i, u.log->by_draw(c.storage()), &c});
+    });
+  for (std::size_t i = 0; i < kept_->by_square.size(); ++i)
+    each(kept_->by_square[i].asked, [&](const hw::Counter& c) {
+      u.asked_squares.push_back({i, u.log->by_cell(c.storage()), &c});
+    });
 }
 
 void DetailLog::collect_asked() {
-  asked_->draws.assign(frame_.frame.draws.size(), std::vector<std::uint64_t>(asked_->asked.size()));
-  asked_->outside.assign(asked_->asked.size(), 0);
-  asked_->total = 0;
+  CountersByDraw& kept = kept_->by_draw;
+  kept.draws.assign(frame_.frame.draws.size(), std::vector<std::uint64_t>(kept.asked.size()));
+  kept.outside.assign(kept.asked.size(), 0);
+  kept.total = 0;
   for (const LoggedUnit& u : units_) {
     for (const Column& c : u.asked) {
-      for (std::uint32_t i = 0; i < asked_->draws.size(); ++i)
-        asked_->draws[i][c.count] += u.log->of_draw(c.column, hw::DrawId(i));
-      asked_->outside[c.count] += u.log->of_draw(c.column, hw::kNoDraw);
-      asked_->total += c.counter->value();
+      for (std::uint32_t i = 0; i < kept.draws.size(); ++i)
+        kept.draws[i][c.count] += u.log->of_draw(c.column, hw::DrawId(i));
+      kept.outside[c.count] += u.log->of_draw(c.column, hw::kNoDraw);
+      kept.total += c.counter->value();
+    }
+  }
+  for (const hw::DrawState& draw : frame_.frame.draws)
+    kept_->registers.push_back({draw.vertex.program->num_regs, draw.fragment.program->num_regs});
+}
+
+void DetailLog::collect_squares() {
+  for (CounterBySquare& kept : kept_->by_square) kept.squares.assign(screen_.count(), 0);
+  for (const LoggedUnit& u : units_) {
+    for (const Column& c : u.asked_squares) {
+      CounterBySquare& kept = kept_->by_square[c.count];
+      for (std::uint32_t cell = 0; cell < screen_.count(); ++cell)
+        kept.squares[cell] += u.log->of_cell(c.column, cell);
+      kept.outside += u.log->of_cell(c.column, screen_.count());
+      kept.total += c.counter->value();
     }
   }
 }
@@ -164,7 +188,10 @@ Detail DetailLog::collect() {
     if (!u.shared) d.busy_total += u.unit->busy_cycles();
     if (u.own_busy) d.busy_total += static_cast<std::int64_t>(u.own_busy->counter->value());
   }
-  if (asked_ != nullptr) collect_asked();
+  if (kept_ != nullptr) {
+    collect_asked();
+    collect_squares();
+  }
   for (std::size_t i = 0; i < kTileCounts; ++i) d.tile_totals[i] = counted_elsewhere[i] ? others[i] : own[i];
   return d;
 }

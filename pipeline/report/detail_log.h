@@ -4,8 +4,8 @@
 
 #include "hw/base/work_log.h"
 #include "pipeline/machine/machine.h"
-#include "pipeline/report/counters_by_draw.h"
 #include "pipeline/report/detail.h"
+#include "pipeline/report/kept_counters.h"
 
 #include <memory>
 #include <optional>
@@ -19,9 +19,9 @@ namespace quadrille::pipeline {
 class DetailLog {
  public:
   /// Gives every unit of the machine a log. Before the run; the machine lives longer than this or is not run
-  /// any more. `asked`: counters to keep by draw too; lives as long.
+  /// any more. `kept`: what to keep beside it; lives as long.
   DetailLog(const Machine& machine, const DeviceFrame& frame, DetailOptions wanted,
-            CountersByDraw* asked = nullptr);
+            KeptCounters* kept = nullptr);
   /// After the run.
   [[nodiscard]] Detail collect();
 
@@ -34,7 +34,8 @@ class DetailLog {
     std::size_t kind = 0;
     std::unique_ptr<hw::WorkLog> log;
     std::vector<Column> draws, tiles;
-    std::vector<Column> asked;        ///< `count` is the place in `CountersByDraw::asked`
+    /// `count` is the place in `CountersByDraw::asked`, and in `KeptCounters::by_square`
+    std::vector<Column> asked, asked_squares;
     std::vector<Column> tile_totals;  ///< by counters that are not kept by tile
     std::size_t busy = 0;             ///< column
     bool shared = false;              ///< several draws are in it at a time
@@ -50,6 +51,7 @@ class DetailLog {
   void add(const hw::Unit& unit);
   void add_asked(LoggedUnit& unit, const std::string& kind) const;
   void collect_asked();
+  void collect_squares();
   void collect_draw(const LoggedUnit& u, hw::DrawId id, DrawFigures& draw) const;
   void collect_tiles(const LoggedUnit& u, TileFigures& tiles) const;
   /// Cycles that a unit was busy for a draw; 0 where that is not known.
@@ -60,7 +62,7 @@ class DetailLog {
   const Machine& machine_;
   const DeviceFrame& frame_;
   Detail detail_;
-  CountersByDraw* asked_;
+  KeptCounters* kept_;
   hw::ScreenCells screen_;
   std::vector<LoggedUnit> units_;
 };

@@ -6,8 +6,8 @@
 #pragma once
 
 #include "pipeline/report/costs.h"
-#include "pipeline/report/counters_by_draw.h"
 #include "pipeline/report/figures.h"
+#include "pipeline/report/kept_counters.h"
 
 #include <cstdint>
 #include <string>

@@ -93,7 +93,7 @@ test('draws: sums are those of the frame, and the table sorts, filters and tells
 test('heat maps: every map is the figures, and the square under pointer or keys is read out', async () => {
   const page = await open(made.page);
   const keys = Object.keys(tiles).filter((key) => Array.isArray(tiles[key]));
-  assert.equal(keys.length, 6);
+  assert.equal(keys.length, 8);
   for (const key of keys) {
     await page.locator(`#picture [role="radio"][data-value="${key}"]`).click();
     const shown = await page.evaluate(() => window.quadrille.charts.get('heat-map').instance.getOption().series[0].data);
@@ -104,6 +104,16 @@ test('heat maps: every map is the figures, and the square under pointer or keys 
   for (const [key, total] of [['fragments_shaded', frame.fragments_shaded], ['fragments_written', frame.fragments_written]])
     assert.equal(sum(tiles[key]) + tiles.outside_tiles[key], total);
 
+  await page.locator('#picture [role="radio"][data-value="quad_efficiency"]').click();
+  const parts = await page.evaluate(() => window.quadrille.charts.get('heat-map').instance.getOption().series[0].data);
+  for (const [at, [, , part]] of parts.entries())
+    if (tiles.quads[at] === 0) assert.equal(part, '-');
+    else near(part, tiles.fragments_shaded[at] / (4 * tiles.quads[at]));
+  near(await value(page, '#map-total .number'), sum(tiles.fragments_shaded) / (4 * sum(tiles.quads)));
+  assert.equal(4 * (sum(tiles.quads) + tiles.outside_tiles.quads), frame.executed_lanes);
+  const simds = sum(Object.entries(units).filter(([path]) => path.startsWith('core_')).map(([, u]) => u.counters.simd_busy));
+  assert.equal(sum(tiles.simd_cycles) + tiles.outside_tiles.simd_cycles, simds);
+
   // The last square of a row reaches beyond the picture.
   const canvas = page.locator('#canvas');
   await canvas.scrollIntoViewIfNeeded();
@@ -111,11 +121,12 @@ test('heat maps: every map is the figures, and the square under pointer or keys 
   await page.mouse.move(box.x + box.width * (321 / 330), box.y + box.height * (40 / 180));
   const at = tiles.width + Math.floor(321 / 32);
   const read = () => page.evaluate(() => Object.fromEntries([...document.querySelectorAll('#readout [data-key]')].map((row) => [row.dataset.key, Number(row.querySelector('[data-value]').dataset.value)])));
-  assert.deepEqual(await read(), Object.fromEntries(keys.map((key) => [key, tiles[key][at]])));
+  const held = (of) => ({ ...Object.fromEntries(keys.map((key) => [key, tiles[key][of]])), quad_efficiency: tiles.fragments_shaded[of] / (4 * tiles.quads[of]) });
+  assert.deepEqual(await read(), held(at));
   await canvas.focus();
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('ArrowLeft');
-  assert.deepEqual(await read(), Object.fromEntries(keys.map((key) => [key, tiles[key][at + tiles.width - 1]])));
+  assert.deepEqual(await read(), held(at + tiles.width - 1));
 
   const here = () => page.locator('#draws-here').getAttribute('data-draws');
   const { squares } = await page.evaluate(() => ({ squares: window.quadrille.squares }));

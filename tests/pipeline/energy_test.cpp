@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "models/base/error.h"
-#include "pipeline/render_by_draw.h"
+#include "pipeline/watched_render.h"
 #include "scenes/scene.h"
 #include "tests/hw/contract.h"
 
@@ -194,10 +194,10 @@ TEST_CASE("energy: of draws and of none is of the frame, and follows from its co
     MachineConfig machine;
     const CostFile costs = load_costs("45nm", machine);
     const traces::CommandStream stream = scenes::load_scene("builtin:glass", options);
-    CountersByDraw counters = counters_of(costs);
-    const RenderedFrame frame = render_exact_by_draw(stream, machine, {}, {}, {}, counters);
+    KeptCounters kept{counters_of(costs)};
+    const RenderedFrame frame = render_exact_watched(stream, machine, {}, {}, {.draws = true}, kept);
     if (!frame.figures.checks_hold()) said += "a law is broken; ";
-    const EnergyFigures e = energy_of(frame.figures, machine, costs, &counters);
+    const EnergyFigures e = energy_of(frame.figures, machine, costs, &kept.by_draw);
     const auto counter = [&](std::string_view kind, std::string_view name) {
       double sum = 0;
       for (const UnitFigures& unit : frame.figures.units)
@@ -235,11 +235,18 @@ TEST_CASE("energy: of draws and of none is of the frame, and follows from its co
   CHECK(problems == "");
 }
 
-TEST_CASE("energy: the law of counters by draw breaks when a draw loses what the units counted") {
-  CountersByDraw counters{{{"core", "instructions"}}, {{7}, {2}}, {1}, 10};
-  CHECK(check_of(counters).holds());
-  counters.draws[1][0] = 1;
-  CHECK_FALSE(check_of(counters).holds());
+TEST_CASE("energy: the laws of kept counters break when a draw or a square loses what the units counted") {
+  KeptCounters kept{{{{"core", "instructions"}}, {{7}, {2}}, {1}, 10},
+                    {{"quads", {"warp_packer", "quads"}, {3, 4}, 5, 12}}};
+  const auto broken = [&] {
+    return std::ranges::count_if(checks_of(kept), [](const Check& c) { return !c.holds(); });
+  };
+  CHECK(checks_of(kept).size() == 2);
+  CHECK(broken() == 0);
+  kept.by_draw.draws[1][0] = 1;
+  CHECK(broken() == 1);
+  kept.by_square[0].squares[0] = 2;
+  CHECK(broken() == 2);
 }
 
 TEST_CASE("energy: a wrong file is refused with its line and what is legal") {

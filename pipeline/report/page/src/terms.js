@@ -28,6 +28,8 @@ const TERMS = {
   limiter: 'The kind of unit with the most work for the draw; "latency" where that fills less than half of the time in flight.',
   share: "Work of the draw's limiting unit at its peak rates, as a part of the cycles in flight: how near the draw is to its speed of light.",
   'SIMDs held': 'Cycles in which the SIMD units of the cores computed for the draw, as a part of all their cycles while it was in flight.',
+  'most warps': "Warps of the draw's fragments that a core can hold at a time, if it holds no others.",
+  'kept out by': 'The parameter that allows no more of them: slots for warps, rows of registers, or the reorder buffers of the warp packers.',
   'least time': "GPU cycles that the draw's limiting unit needs for its work at peak rates.",
   texels: 'Texels read by the filters.',
   'cache misses': 'Look-ups of a line that had to ask the next level.',

@@ -17,7 +17,7 @@ function rowsOf(figures) {
     written: draw.fragments.written, texels: draw.texture.texels, misses: draw.texture.cache_misses,
     l2_bytes: sum(Object.entries(draw.bytes).filter(([name]) => name !== 'memory').map(([, n]) => n)), memory: draw.bytes.memory,
     limiter: draw.limiter.kind, unit: draw.limiter.unit, least: draw.limiter.work_cycles, share: draw.limiter.share,
-    simds: ratio(draw.busy.core ?? 0, simds * draw.cycles_in_flight), draw,
+    simds: ratio(draw.busy.core ?? 0, simds * draw.cycles_in_flight), most: draw.occupancy.fragment.most_warps, keeps: draw.occupancy.fragment.limit, draw,
   }));
 }
 
@@ -52,6 +52,8 @@ function columns(figures, rows) {
     numberColumn('L2 bytes', 'l2_bytes', integer, { width: 116, headerTooltip: 'Bytes asked of the L2 cache and written to it', ...added() }),
     numberColumn('memory bytes', 'memory', integer, { width: 130, headerTooltip: "Bytes read by the memory channels because of the draw's misses in the L2 cache", ...added() }),
     numberColumn('SIMDs held', 'simds', percent, { width: 112, headerFilter: false }),
+    numberColumn('most warps', 'most', integer, { width: 116, headerFilter: false }),
+    textColumn('kept out by', 'keeps', { width: 186 }),
     numberColumn('issued', 'issued', integer, { width: 106, headerFilter: false, headerTooltip: 'GPU cycle at which the command processor issued it' }),
   ];
   if (passes > 1) all.splice(2, 0, numberColumn('pass', 'pass', integer, { width: 64, headerFilterFunc: '=' }));
@@ -62,11 +64,12 @@ function columns(figures, rows) {
 function details({ draw, number: at }) {
   const kinds = Object.keys(draw.work).sort((a, b) => draw.work[b] - draw.work[a]);
   const counts = Object.entries(draw).filter(([, value]) => typeof value === 'object')
-    .filter(([group]) => !['busy', 'work', 'limiter'].includes(group))
+    .filter(([group]) => !['busy', 'work', 'limiter', 'occupancy'].includes(group))
     .flatMap(([group, of]) => Object.entries(of).map(([name, value]) => ({ name: `${words(group)}: ${words(name)}`, value })));
   return [
     h('h3', { id: 'draw-name' }, `${at}: ${draw.label}`),
     h('p', { class: 'soft' }, `issued at ${integer(draw.issued)}, retired at ${integer(draw.retired)}: ${integer(draw.cycles_in_flight)} cycles in flight`),
+    h('p', { class: 'soft', id: 'draw-occupancy' }, term('most warps', 'Warps that a core can hold'), `: ${integer(draw.occupancy.fragment.most_warps)} of its fragments (${draw.occupancy.fragment.limit}) or ${integer(draw.occupancy.vertex.most_warps)} of its vertices (${draw.occupancy.vertex.limit})`),
     h('div', { class: 'panels' },
       panel('Work by unit', table('draw-work', [
         { title: 'kind', of: (kind) => words(kind) },

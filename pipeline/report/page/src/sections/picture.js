@@ -12,8 +12,21 @@ const MAPS = {
   fragments_killed_early: { text: 'Depth kills', per: 'killed a pixel', what: 'Fragments that the depth test removed before they were shaded' },
   tiles_hidden: { text: 'Hi-Z kills', what: 'Tiles of 8x8 pixels of triangles that Hi-Z dropped. Nobody counted their fragments' },
   texture_cache_misses: { text: 'Texture misses', per: 'misses a pixel', what: 'Look-ups that missed the first-level texture cache' },
+  simd_cycles: { text: 'Cycles', per: 'cycles a pixel', what: 'Cycles in which SIMD units of the cores computed for fragment warps whose first quad lies in the square' },
+  quads: { text: 'Quads', per: 'quads a pixel', what: 'Quads of 2x2 pixels shaded in the square, each in four lanes' },
   bytes: { text: 'Bytes', per: 'bytes a pixel', what: 'Bytes of depth and colour between their units and the L2 cache', format: bytes },
 };
+/** Maps of parts, made of two counts. Where there is nothing to divide by there is no square. */
+const PARTS = {
+  quad_efficiency: {
+    text: 'Quad efficiency', of: ['fragments_shaded', 'quads'], times: 4,
+    what: 'Fragments shaded, as a part of the lanes of their quads: the others are helper lanes, which ran for derivatives alone',
+  },
+};
+Object.assign(MAPS, Object.fromEntries(Object.entries(PARTS).map(([key, part]) => [key, { ...part, format: percent }])));
+const partOf = (key, tiles, at) => ratio(tiles[PARTS[key].of[0]][at], PARTS[key].times * tiles[PARTS[key].of[1]][at]);
+/** What a map shows in each square. */
+const valuesOf = (key, tiles) => (PARTS[key] ? tiles.quads.map((_, at) => partOf(key, tiles, at)) : tiles[key] ?? []);
 const formatOf = (key) => MAPS[key]?.format ?? integer;
 const textOf = (key) => MAPS[key]?.text ?? key.replaceAll('_', ' ');
 
@@ -46,7 +59,7 @@ function readout(tiles, frame, keys, at) {
   const x = (at % tiles.width) * tiles.tile_pixels;
   const y = Math.floor(at / tiles.width) * tiles.tile_pixels;
   const pixels = pixelsOf(tiles, frame, at);
-  const value = (key) => tiles[key][at];
+  const value = (key) => (PARTS[key] ? partOf(key, tiles, at) : tiles[key][at]);
   const killed = ratio(value('fragments_killed_early') ?? 0, (value('fragments_killed_early') ?? 0) + (value('fragments_shaded') ?? 0));
   return [
     h('h3', null, `Square at ${x}, ${y}`),
@@ -63,8 +76,8 @@ function readout(tiles, frame, keys, at) {
 function heatMap(tiles, frame, state, hovered) {
   const made = chart('heat-map', 100, 'Heat map over the picture: counts by squares of the screen', (basics) => {
     const key = state.shown;
-    const counts = tiles[key] ?? [];
-    const most = greatest(counts, 1);
+    const counts = tiles[key] || PARTS[key] ? valuesOf(key, tiles) : [];
+    const most = PARTS[key] ? 1 : greatest(counts, 1);
     return {
       ...basics,
       // A canvas of thousands of squares needs no description of each.
@@ -89,7 +102,7 @@ function heatMap(tiles, frame, state, hovered) {
         type: 'heatmap', progressive: 0,
         itemStyle: { opacity: state.strength, borderWidth: 0 },
         emphasis: { itemStyle: { opacity: 1, borderColor: '#fff', borderWidth: 2 } },
-        data: counts.map((value, at) => [at % tiles.width, Math.floor(at / tiles.width), value]),
+        data: counts.map((value, at) => [at % tiles.width, Math.floor(at / tiles.width), Number.isNaN(value) ? '-' : value]),
       }],
     };
   });
@@ -110,6 +123,11 @@ function scale() {
   return {
     element: h('div', { class: 'scale' }, least, bar, most, total),
     show(key, tiles) {
+      if (PARTS[key]) {
+        const all = (name) => tiles[name].reduce((a, b) => a + b, 0);
+        most.replaceChildren(number(1, percent));
+        return total.replaceChildren(number(ratio(all(PARTS[key].of[0]), PARTS[key].times * all(PARTS[key].of[1])), percent), ' of all squares together');
+      }
       const outside = tiles.outside_tiles[key] ?? 0;
       const all = tiles[key].reduce((a, b) => a + b, 0);
       most.replaceChildren(number(greatest(tiles[key], 0), formatOf(key)), ' a square');
@@ -121,7 +139,8 @@ function scale() {
 
 export function picture({ figures, pictures, squares }) {
   const { frame, tiles } = figures;
-  const keys = tiles ? Object.keys(tiles).filter((key) => Array.isArray(tiles[key])) : [];
+  const counts = tiles ? Object.keys(tiles).filter((key) => Array.isArray(tiles[key])) : [];
+  const keys = [...counts, ...Object.keys(PARTS).filter((key) => PARTS[key].of.every((name) => counts.includes(name)))];
   const state = { shown: 'frame', strength: 0.75, at: 0 };
   const image = h('img', { id: 'frame-picture', alt: 'The frame that the machine drew', src: pictures.frame });
   const info = h('aside', { id: 'readout', 'aria-live': 'polite' });
