@@ -63,12 +63,14 @@ void RenderJob::add_to(CLI::App& command) {
   units_option_ = command.add_option("--units", units, "rows of the table: folded by kind, or all units")
                       ->check(CLI::IsMember({"folded", "all"}))
                       ->capture_default_str();
-  machine_options_ = {
+  driver_option_ =
       command
           .add_option("--driver", driver,
                       "how units are scheduled: dispatcher is faster, native is SystemC's own. Same cycles")
           ->check(CLI::IsMember({"dispatcher", "native"}))
-          ->capture_default_str(),
+          ->capture_default_str();
+  machine_options_ = {
+      driver_option_,
       command
           .add_option("--window", window,
                       "how many cycles units may be simulated ahead of the exact bound: 0 is exact, more is "
@@ -98,6 +100,12 @@ void RenderJob::add_to(CLI::App& command) {
               ".json as Chrome's trace events; each draw in flight, the use of every unit's resources")
           ->type_name("F.pftrace|F.json"),
       command
+          .add_option(
+              "--vcd", vcd,
+              "writes tokens in every link and actions of every unit as waves for GTKWave, by SystemC's "
+              "own tracing and scheduler; large: for short frames")
+          ->type_name("F.vcd"),
+      command
           .add_option("--energy", energy,
                       "estimates energy by unit and, with --detail draws or --report, by draw, and area: "
                       "relative, with its range, from a file of costs (docs/energy.md)")
@@ -126,12 +134,14 @@ void RenderJob::check_outputs() const {
   if (csv) check_output("--csv", *csv, {".csv"});
   if (report) check_output("--report", *report, {".html"});
   if (timeline) check_output("--timeline", *timeline, {".pftrace", ".json"});
+  if (vcd) check_output("--vcd", *vcd, {".vcd"});
   check_distinct({{"--out", out},
                   {"--depth", depth},
                   {"--stats", stats},
                   {"--csv", csv},
                   {"--report", report},
                   {"--timeline", timeline},
+                  {"--vcd", vcd},
                   {"--film", frames.film}});
   frames.check_film();
 }
@@ -147,6 +157,10 @@ void RenderJob::check_options_meant() const {
     throw user_error("--units: with --frames each frame is one row; --stats has the figures of every unit");
   if (frames.wanted() && timeline)
     throw user_error("--timeline: it is of one frame; leave --frames or --timeline out");
+  if (vcd && (window || (driver_option_->count() > 0 && driver == "dispatcher")))
+    throw user_error("--vcd: waves are written by SystemC's own scheduler; leave {} out",
+                     window ? "--window" : "--driver dispatcher");
+  if (vcd && frames.wanted()) throw user_error("--vcd: it is of one frame; leave --frames or --vcd out");
 }
 
 std::int64_t RenderJob::window_cycles() const {
@@ -231,12 +245,14 @@ RenderJob::DrawnJob RenderJob::simulate(const traces::CommandStream& stream, con
       .leave_out = leave_out == "auto",
       .faster = setting.faster};
   const pipeline::MachineConfig& config = setting.config;
-  if (!setting.costs && !setting.detail.any())
+  if (!setting.costs && !setting.detail.any() && !vcd)
     return {pipeline::render_exact(stream, config, options, limits, setting.detail)};
   pipeline::KeptCounters kept;
   if (setting.costs && setting.detail.draws) kept.by_draw = pipeline::counters_of(*setting.costs);
   if (setting.detail.tiles) kept.by_square = pipeline::counters_by_square();
-  DrawnJob drawn{pipeline::render_exact_watched(stream, config, options, limits, setting.detail, kept)};
+  DrawnJob drawn{
+      vcd ? pipeline::render_exact_with_waves(stream, config, options, limits, setting.detail, kept, *vcd)
+          : pipeline::render_exact_watched(stream, config, options, limits, setting.detail, kept)};
   if (setting.costs)
     drawn.energy = pipeline::energy_of(drawn.frame.figures, config, *setting.costs,
                                        kept.by_draw.draws.empty() ? nullptr : &kept.by_draw);

@@ -19,7 +19,7 @@ struct RenderJob {
   SceneArguments scene;
   MachineArguments machine;
   FrameArguments frames;  ///< of `render` alone
-  std::optional<std::string> out, depth, stats, csv, report, timeline, max_cycles, window;
+  std::optional<std::string> out, depth, stats, csv, report, timeline, vcd, max_cycles, window;
   std::string fidelity = "exact", leave_out = "auto", driver = "dispatcher", units = "folded";
   std::optional<std::string> detail;  ///< words, with commas between them
   std::optional<std::string> energy;  ///< a file of costs, or its name
@@ -79,6 +79,7 @@ struct RenderJob {
   [[nodiscard]] int run_frames(const Setting& setting) const;
 
   const CLI::Option* units_option_ = nullptr;
+  const CLI::Option* driver_option_ = nullptr;
   /// of the machine's units and cycles, which a functional run has none of
   std::vector<const CLI::Option*> machine_options_;
 };

@@ -2,10 +2,12 @@
 
 #include <bit>
 #include <chrono>
+#include <functional>
 #include <numeric>
 
 #include "pipeline/driver/draw_culling.h"
 #include "pipeline/driver/host_cost.h"
+#include "pipeline/machine/wave_file.h"
 #include "pipeline/report/detail_log.h"
 #include "pipeline/watched_render.h"
 
@@ -140,9 +142,15 @@ std::vector<Check> checks_of(const KeptCounters& kept) {
 
 namespace {
 
+/// Who looks at a machine before and after its run.
+struct RunWatch {
+  std::function<void(const Machine&)> begin;
+  std::function<void()> end;
+};
+
 RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig& config,
                        const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
-                       KeptCounters* kept) {
+                       KeptCounters* kept, const RunWatch& watch = {}) {
   RenderedFrame out;
   const auto start = Clock::now();
   DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
@@ -153,7 +161,9 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
   if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, kept);
   const double build_s = seconds_since(start) - frame.fills.seconds();
   const RunTimer timer(frame.fills);
+  if (watch.begin) watch.begin(machine);
   machine.run(limits);
+  if (watch.end) watch.end();
   HostFigures host;
   timer.stop(host);
   host.build_s = build_s;
@@ -188,6 +198,18 @@ RenderedFrame render_exact_watched(const traces::CommandStream& stream, const Ma
                                    const MachineOptions& options, const hw::RunLimits& limits,
                                    const DetailOptions& detail, KeptCounters& kept) {
   return simulate(stream, config, options, limits, detail, &kept);
+}
+
+RenderedFrame render_exact_with_waves(const traces::CommandStream& stream, const MachineConfig& config,
+                                      MachineOptions options, const hw::RunLimits& limits,
+                                      const DetailOptions& detail, KeptCounters& kept,
+                                      const std::string& vcd) {
+  hw::NativeDriver driver("native_driver");
+  options.external_driver = &driver;
+  std::optional<WaveFile> waves;
+  const RunWatch watch{[&](const Machine& machine) { waves.emplace(machine, driver, vcd); },
+                       [&] { waves->finish(); }};
+  return simulate(stream, config, options, limits, detail, &kept, watch);
 }
 
 }  // namespace quadrille::pipeline

@@ -4,6 +4,7 @@
 #include "pipeline/render.h"
 #include "pipeline/report/kept_counters.h"
 
+#include <string>
 #include <vector>
 
 namespace quadrille::pipeline {
@@ -14,6 +15,12 @@ namespace quadrille::pipeline {
                                                  const MachineConfig& config, const MachineOptions& options,
                                                  const hw::RunLimits& limits, const DetailOptions& detail,
                                                  KeptCounters& kept);
+/// The same by SystemC's own scheduler, with waves of links and units in the file `vcd`
+/// (pipeline/machine/wave_file.h). Throws `UserError` where that cannot be written.
+[[nodiscard]] RenderedFrame render_exact_with_waves(const traces::CommandStream& stream,
+                                                    const MachineConfig& config, MachineOptions options,
+                                                    const hw::RunLimits& limits, const DetailOptions& detail,
+                                                    KeptCounters& kept, const std::string& vcd);
 /// Those laws.
 [[nodiscard]] std::vector<Check> checks_of(const KeptCounters& kept);
 

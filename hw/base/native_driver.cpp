@@ -22,7 +22,10 @@ void NativeDriver::prepare() {
 void NativeDriver::step(std::size_t index) {
   Unit& unit = *units_[index];
   const Wake wake = unit.wake();
-  if (wake.at() == now()) unit.perform(wake);
+  if (wake.at() == now()) {
+    unit.perform(wake);
+    if (observer_) observer_(unit);
+  }
   unit.touch();
   wake_touched();
 }

@@ -4,6 +4,7 @@
 
 #include "hw/base/driver.h"
 
+#include <functional>
 #include <memory>
 
 namespace quadrille::hw {
@@ -11,6 +12,8 @@ namespace quadrille::hw {
 class NativeDriver final : public Driver {
  public:
   explicit NativeDriver(sc_core::sc_module_name name) : Driver(name) {}
+  /// Called after every action of a unit, at its time. Before the run.
+  void observe(std::function<void(const Unit&)> observer) { observer_ = std::move(observer); }
 
  private:
   void prepare() override;
@@ -19,6 +22,7 @@ class NativeDriver final : public Driver {
   [[nodiscard]] static Tick now();
 
   std::vector<std::unique_ptr<sc_core::sc_event>> events_;
+  std::function<void(const Unit&)> observer_;
 };
 
 }  // namespace quadrille::hw
