@@ -8,6 +8,7 @@
 #include "pipeline/driver/draw_culling.h"
 #include "pipeline/driver/host_cost.h"
 #include "pipeline/machine/wave_file.h"
+#include "pipeline/prepared_frame.h"
 #include "pipeline/report/detail_log.h"
 #include "pipeline/watched_render.h"
 
@@ -148,18 +149,21 @@ struct RunWatch {
   std::function<void()> end;
 };
 
-RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig& config,
-                       const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
-                       KeptCounters* kept, const RunWatch& watch = {}) {
+std::uint64_t memory_bytes_of(const MachineConfig& config) {
+  return static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20;
+}
+
+/// Simulates a frame that is built, which took `build_s`.
+RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const MachineConfig& config,
+                             const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
+                             KeptCounters* kept, double build_s, const RunWatch& watch = {}) {
   RenderedFrame out;
   const auto start = Clock::now();
-  DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
-  build_frame(stream, config.precision(), frame, options.leave_out, config.shader_target());
   if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
   if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, kept);
-  const double build_s = seconds_since(start) - frame.fills.seconds();
+  build_s += seconds_since(start);
   const RunTimer timer(frame.fills);
   if (watch.begin) watch.begin(machine);
   machine.run(limits);
@@ -175,7 +179,7 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
   out.figures.host = host;
   note_pending(frame, out.figures.left_out);
   out.figures.order_dependent = frame.order_dependent();
-  out.figures.scene = stream.name;
+  out.figures.scene = scene;
   out.figures.faster = options.faster;
   if (options.window > 0) {
     out.figures.fidelity = "approximate";
@@ -185,6 +189,16 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
   out.image = read_image(frame);
   out.buffers = read_buffers(frame);
   return out;
+}
+
+RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig& config,
+                       const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
+                       KeptCounters* kept, const RunWatch& watch = {}) {
+  const auto start = Clock::now();
+  DeviceFrame frame(memory_bytes_of(config));
+  build_frame(stream, config.precision(), frame, options.leave_out, config.shader_target());
+  const double build_s = seconds_since(start) - frame.fills.seconds();
+  return simulate_built(frame, stream.name, config, options, limits, detail, kept, build_s, watch);
 }
 
 }  // namespace
@@ -210,6 +224,33 @@ RenderedFrame render_exact_with_waves(const traces::CommandStream& stream, const
   const RunWatch watch{[&](const Machine& machine) { waves.emplace(machine, driver, vcd); },
                        [&] { waves->finish(); }};
   return simulate(stream, config, options, limits, detail, &kept, watch);
+}
+
+PreparedFrame::PreparedFrame(const traces::CommandStream& stream, const MachineConfig& config)
+    : stream_(stream), needs_(needs(config)), frame_(std::make_unique<DeviceFrame>(memory_bytes_of(config))) {
+  build_frame(stream, config.precision(), *frame_, true, config.shader_target());
+  for (const hw::DrawState& draw : frame_->frame.draws)
+    for (const hw::ProgramState* program : {&draw.vertex, &draw.fragment})
+      for (const hw::TextureState& texture : program->textures)
+        if (texture.fill != nullptr) texture.fill->need();
+}
+
+PreparedFrame::~PreparedFrame() = default;
+
+std::string PreparedFrame::needs(const MachineConfig& config) {
+  const models::Precision p = config.precision();
+  const ShaderTarget t = config.shader_target();
+  std::string text = fmt::format("{} {} {} {} {} {} {}", config.gpu.memory_mib.value(), p.subpixel_bits,
+                                 p.subtexel_bits, p.lod_bits, p.linear_log2, t.warp_slots, t.register_rows);
+  for (const models::IssueTiming::Class& c : t.timing.classes)
+    text += fmt::format(" {}/{}", c.issue, c.latency);
+  return text;
+}
+
+RenderedFrame PreparedFrame::render(const MachineConfig& config, const MachineOptions& options,
+                                    const hw::RunLimits& limits) {
+  QUADRILLE_CHECK(needs(config) == needs_, "a frame for {}, a machine of {}", needs_, needs(config));
+  return simulate_built(*frame_, stream_.name, config, options, limits, {}, nullptr, 0);
 }
 
 }  // namespace quadrille::pipeline
