@@ -39,12 +39,23 @@ Difference difference(VulkanRenderer& vulkan, const TextureCard& card, double to
   return found;
 }
 
-/// The driver decodes sRGB by a polynomial, and widens components of less than 8 bits to 8.
+/// Steps of 255 by which the driver is off; a signed one is two.
+double block_steps(traces::Format format) {
+  const bool is_signed = format == traces::Format::kBc4Snorm || format == traces::Format::kBc5Snorm;
+  return is_signed ? 2 * 255.0 / 127.0 : format < traces::Format::kBc3Unorm ? 1 : 2;
+}
+
+/// The driver decodes sRGB by a polynomial, widens components of less than 8 bits to 8, and decodes BC1 to BC5
+/// by reciprocals of few bits (block_codes_test.cpp).
 double tolerance_of(const TextureCard& card) {
-  const models::FormatInfo& format = models::format_info(card.image.format);
-  const bool narrow = format.numeric == models::Numeric::kUnorm && format.component[0].bits < 8;
-  const bool rounds = narrow || models::is_srgb_format(card.image.format);
-  return pipeline::test::card_tolerance(card) + (rounds ? 1.0 / 255.0 : 0.0);
+  using traces::Format;
+  const double ours = pipeline::test::card_tolerance(card);
+  const Format format = card.image.format;
+  if (format >= Format::kBc1RgbUnorm && format <= Format::kBc5Snorm)
+    return ours + block_steps(format) / 255.0;
+  const models::FormatInfo& info = models::format_info(format);
+  const bool narrow = info.numeric == models::Numeric::kUnorm && info.component[0].bits < 8;
+  return ours + (narrow || models::is_srgb_format(format) ? 1.0 / 255.0 : 0.0);
 }
 
 }  // namespace
