@@ -37,9 +37,9 @@ inline constexpr std::array<std::string_view, 2> kDrawOrderNames{"file", "painte
 inline constexpr std::array<std::string_view, 3> kTransparencyNames{"sorted", "abuffer", "kbuffer"};
 
 /// What of a frame the picture shows. The names are those of all but the first.
-enum class Showing : std::uint8_t { kColors, kDepth, kOverdraw, kUv, kNormal, kTriangle, kSamples };
-inline constexpr std::array<std::string_view, 6> kShowingNames{"depth",  "overdraw", "uv",
-                                                               "normal", "triangle", "samples"};
+enum class Showing : std::uint8_t { kColors, kDepth, kOverdraw, kUv, kNormal, kTriangle, kSamples, kLevel };
+inline constexpr std::array<std::string_view, 7> kShowingNames{"depth",    "overdraw", "uv",   "normal",
+                                                               "triangle", "samples",  "level"};
 
 /// The enumerator that `name` stands for in one of these lists, of which `first` is the first one's; `first`
 /// too for a name that is not in it.

@@ -64,6 +64,7 @@ bool wants_texture(const Material& m, std::size_t slot, ShaderSet set) {
   if (!has_layer(m.layers, static_cast<TextureSlot>(slot))) return false;
   if (set == ShaderSet::kUser) return true;
   if (set == ShaderSet::kMinimal) return false;
+  if (set == ShaderSet::kLevel) return base_color;
   if (shows_shape(set)) return base_color && m.alpha == AlphaMode::kMask;
   if (lights_by_phong(set)) return base_color;
   if (m.unlit) return base_color;
@@ -138,6 +139,7 @@ std::string_view set_define(ShaderSet set) {
     case ShaderSet::kNormal: return "SHOW_NORMAL";
     case ShaderSet::kTriangle: return "SHOW_TRIANGLE";
     case ShaderSet::kSamples: return "SHOW_SAMPLES";
+    case ShaderSet::kLevel: return "SHOW_LEVEL";
   }
   return {};
 }
@@ -217,6 +219,7 @@ ShaderSet shader_set(const SceneOptions& options) {
     case Showing::kNormal: return ShaderSet::kNormal;
     case Showing::kTriangle: return ShaderSet::kTriangle;
     case Showing::kSamples: return ShaderSet::kSamples;
+    case Showing::kLevel: return ShaderSet::kLevel;
   }
   switch (options.shading) {
     case Shading::kMinimal: return ShaderSet::kMinimal;

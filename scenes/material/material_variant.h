@@ -31,7 +31,8 @@ enum class ShaderSet : std::uint8_t {
   kUv,
   kNormal,
   kTriangle,
-  kSamples
+  kSamples,
+  kLevel
 };
 
 /// Is the surface lit by Blinn's and Phong's model?

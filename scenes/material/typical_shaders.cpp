@@ -118,9 +118,9 @@ std::vector<TypicalShader> typical_shaders() {
   View orthographic;
   orthographic.orthographic = true;
   const std::vector<ShaderSet> materials{ShaderSet::kMaterial},
-      plain{ShaderSet::kMinimal, ShaderSet::kFlat,   ShaderSet::kGouraud,
-            ShaderSet::kPhong,   ShaderSet::kDepth,  ShaderSet::kOverdraw,
-            ShaderSet::kUv,      ShaderSet::kNormal, ShaderSet::kTriangle};
+      plain{ShaderSet::kMinimal,  ShaderSet::kFlat,     ShaderSet::kGouraud, ShaderSet::kPhong,
+            ShaderSet::kDepth,    ShaderSet::kOverdraw, ShaderSet::kUv,      ShaderSet::kNormal,
+            ShaderSet::kTriangle, ShaderSet::kLevel};
   Collector lit(View{}, Light::Kind::kDirectional, materials);
   add_textured(lit);
   std::vector<TypicalShader> all = lit.take();

@@ -332,6 +332,27 @@ TEST_CASE("values: a picture of texture coordinates holds them") {
     }
 }
 
+TEST_CASE("values: a picture of levels has a colour for each halving of the texture, and grey beyond it") {
+  SceneData scene = square_scene(1);
+  const auto middle_of = [&](std::uint32_t side) {
+    Rgba8Image image{side, side, std::vector<std::uint8_t>(std::size_t{4} * side * side, 255)};
+    scene.materials[0].texture(TextureSlot::kBaseColor).image = add_image(scene, "grey", std::move(image));
+    return at(picture(scene, options_of(Showing::kLevel)), kSide / 2, kSide / 2);
+  };
+  const auto colour = [](double r, double g, double b) {
+    const auto byte = [](double v) { return static_cast<std::uint32_t>(std::lround(255 * v)); };
+    return byte(r) | byte(g) << 8 | byte(b) << 16 | 0xff000000u;
+  };
+  // the square fills the picture
+  CHECK(apart(middle_of(kSide), colour(0.9, 0.1, 0.1)) <= 3);
+  CHECK(apart(middle_of(2 * kSide), colour(0.9, 0.5, 0)) <= 3);
+  CHECK(apart(middle_of(4 * kSide), colour(0.9, 0.9, 0.1)) <= 3);
+  CHECK(apart(middle_of(8 * kSide), colour(0.1, 0.7, 0.1)) <= 3);
+  CHECK(apart(middle_of(kSide / 4), colour(0.5, 0.5, 0.5)) <= 3);
+  scene.materials[0].texture(TextureSlot::kBaseColor).image = -1;
+  CHECK(at(picture(scene, options_of(Showing::kLevel)), kSide / 2, kSide / 2) == colour(0, 0, 0.25));
+}
+
 TEST_CASE(
     "values: a picture of normals holds them in world space, from both sides and without any in the mesh") {
   const glm::dmat4 turn = glm::rotate(glm::dmat4(1), 0.5, glm::normalize(glm::dvec3(1, 2, 0)));

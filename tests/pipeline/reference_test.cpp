@@ -62,7 +62,7 @@ TEST_CASE("machine: the lectures' pipelines equal the reference in given mode") 
     painter.order = DrawOrder::kPainter;
     check_scene(scene, painter);
     for (const Showing shown : {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal,
-                                Showing::kTriangle, Showing::kSamples}) {
+                                Showing::kTriangle, Showing::kSamples, Showing::kLevel}) {
       SceneOptions options;
       options.shown = shown;
       check_scene(scene, options);

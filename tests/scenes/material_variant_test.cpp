@@ -117,7 +117,7 @@ TEST_CASE("material variants: the lectures' pipelines, and pictures of values, c
     compile_all(options, defines_for(0, 5, 2, false), 311);
   }
   for (const Showing shown : {Showing::kDepth, Showing::kOverdraw, Showing::kUv, Showing::kNormal,
-                              Showing::kTriangle, Showing::kSamples}) {
+                              Showing::kTriangle, Showing::kSamples, Showing::kLevel}) {
     SceneOptions options;
     options.shown = shown;
     compile_all(options, defines_for(1, 0, 0, false), 101);

@@ -86,7 +86,8 @@ TEST_CASE("shader pack: the lectures' pipelines need no compiler for a scene of 
       REQUIRE(compiled() == 0);
     }
     options.shading = Shading::kPbr;
-    for (const Showing shown : {Showing::kDepth, Showing::kUv, Showing::kNormal, Showing::kTriangle}) {
+    for (const Showing shown :
+         {Showing::kDepth, Showing::kUv, Showing::kNormal, Showing::kTriangle, Showing::kLevel}) {
       options.shown = shown;
       REQUIRE(compiled() == 0);
     }

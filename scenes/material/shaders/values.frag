@@ -1,5 +1,18 @@
 // Fragment shader of the pictures that show something else than colours (docs/lectures.md). The target is UNORM, so what is written here is what can be read
 // off the picture, in 255ths. The alpha test is the material's.
+
+#if defined(SHOW_LEVEL) && defined(BASE_COLOR_UV)
+// Red where level 0 is reduced to fit, one colour a level towards violet, grey where it is magnified.
+vec3 level_color(float level) {
+  const vec3 ramp[7] = vec3[](vec3(0.9, 0.1, 0.1), vec3(0.9, 0.5, 0.0), vec3(0.9, 0.9, 0.1), vec3(0.1, 0.7, 0.1), vec3(0.1, 0.7, 0.9),
+                              vec3(0.1, 0.2, 0.9), vec3(0.6, 0.1, 0.8));
+  vec3 color = level < 0.0 ? mix(vec3(0.5), ramp[0], max(level + 1.0, 0.0)) : ramp[6];
+  [[unroll]] for (int l = 0; l < 6; ++l)
+    if (level >= float(l) && level < float(l + 1)) color = mix(ramp[l], ramp[l + 1], level - float(l));
+  return color;
+}
+#endif
+
 void main() {
 #ifdef ALPHA_MASK
   alpha_test(read_base_color().a);
@@ -33,6 +46,16 @@ void main() {
   // The factor is odd, so that each of 2^24 numbers has its own colour, and that of the background is nobody's.
   uint code = (draw.first_triangle + uint(gl_PrimitiveID) + 1u) * 2654435761u;
   value = vec3(uvec3(code, code >> 8, code >> 16) & 255u) / 255.0;
+#endif
+#ifdef SHOW_LEVEL
+#ifdef BASE_COLOR_UV
+  // Of the longer side of a pixel's footprint: before limits of the sampler and of the chain. [VK1.3 #textures-level-of-detail-operation]
+  vec2 size = vec2(textureSize(base_color_texture, 0));
+  vec2 dx = dFdx(BASE_COLOR_UV) * size, dy = dFdy(BASE_COLOR_UV) * size;
+  value = level_color(0.5 * log2(max(max(dot(dx, dx), dot(dy, dy)), 1e-12)));
+#else
+  value.b = 0.25;
+#endif
 #endif
 #ifdef SHOW_SAMPLES
   // Dark blue where the primitive covers all samples of the pixel, else from red (one) to yellow.
