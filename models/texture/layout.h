@@ -8,8 +8,8 @@
 /// tiles of 8x8 pixels that are quad-major (memory/surface.h): x0 y0 x1 x2 y1 y2. Tiles are row by row. So an
 /// address is a sum of a part of x and one of y.
 ///
-/// A texture of compressed blocks lies as one whose texels were the blocks: a tile is 32x32 blocks. Its texels
-/// are counted 16 to a block, row by row, so an index is a block and a place in it.
+/// A texture of compressed blocks lies as one whose texels were the blocks: a tile is 32x32 blocks. Its
+/// texels are counted 16 to a block, row by row, so an index is a block and a place in it.
 #pragma once
 
 #include "models/base/format.h"

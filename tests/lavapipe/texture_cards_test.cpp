@@ -45,8 +45,8 @@ double block_steps(traces::Format format) {
   return is_signed ? 2 * 255.0 / 127.0 : format < traces::Format::kBc3Unorm ? 1 : 2;
 }
 
-/// The driver decodes sRGB by a polynomial, widens components of less than 8 bits to 8, and decodes BC1 to BC5
-/// by reciprocals of few bits (block_codes_test.cpp).
+/// The driver decodes sRGB by a polynomial, widens components of less than 8 bits to 8, and decodes BC1 to
+/// BC5 by reciprocals of few bits (block_codes_test.cpp).
 double tolerance_of(const TextureCard& card) {
   using traces::Format;
   const double ours = pipeline::test::card_tolerance(card);
