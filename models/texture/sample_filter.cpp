@@ -242,8 +242,12 @@ void filter_blocks(const TexturePlan& plan, const std::byte* base, std::array<La
     decode_block(code, {base + std::size_t{plan.blocks[i]} * info.bytes, info.bytes}, block);
     std::memcpy(texels.data() + i * block_texels, block.bytes.data(), block_texels);
   }
-  // Lanes that read nothing name the first texel.
-  if (plan.block_count == 0) std::fill_n(texels.begin(), block_texels, std::byte{0});
+  // Lanes that read nothing name the first texel, whose components that the format lacks are still read.
+  if (plan.block_count == 0) {
+    constexpr std::array<std::byte, kMaxBlockBytes> kZeros{};
+    decode_block(code, {kZeros.data(), info.bytes}, block);
+    std::memcpy(texels.data(), block.bytes.data(), block_texels);
+  }
   filter(plan, {texels.data(), decoded_format(plan.format), format_info(plan.format).channels}, rgba);
 }
 

@@ -55,7 +55,7 @@ std::int64_t slowest_of(const Json& frames) {
 class Row {
  public:
   void add(std::string_view text) { text_ += (text_.empty() ? "" : ",") + csv_field(std::string(text)); }
-  void add(const Json& value) {
+  void add_value(const Json& value) {
     add(value.is_string() ? value.get<std::string>() : value.is_null() ? std::string() : value.dump());
   }
   [[nodiscard]] std::string text() const { return text_ + "\r\n"; }
@@ -121,7 +121,8 @@ std::string frames_csv(std::string_view frames_json) {
     Json values = Json::object();
     visit_columns(frame, [&](const std::string& name, const Json& value) { values[name] = value; });
     Row row;
-    for (const std::string& name : columns) row.add(values.contains(name) ? values[name] : Json(nullptr));
+    for (const std::string& name : columns)
+      row.add_value(values.contains(name) ? values[name] : Json(nullptr));
     text += row.text();
   }
   return text;

@@ -218,6 +218,15 @@ const Experiment kExperiments[] = {
      &texture_latency,
      {},
      "256x128"},
+    {"texture-filters",
+     "Filtering rates",
+     "Reviews of cards (beyond3d): trilinear samples at half the rate of bilinear ones; texels of four "
+     "16-bit "
+     "floats at half the rate of four bytes, or at the full one, by generation.",
+     "Layers over the frame, each pixel one sample, on a machine whose filters are the limit.",
+     &texture_filters,
+     {},
+     "128x128"},
     {"units",
      "Every unit by itself",
      "Nothing is published to compare with: the ruler is arithmetic.",

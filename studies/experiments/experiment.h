@@ -115,5 +115,6 @@ class Readings {
 [[nodiscard]] Result transparency(const Setting& setting);
 [[nodiscard]] Result texture_cache(const Setting& setting);
 [[nodiscard]] Result texture_latency(const Setting& setting);
+[[nodiscard]] Result texture_filters(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

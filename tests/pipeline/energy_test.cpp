@@ -194,7 +194,7 @@ TEST_CASE("energy: of draws and of none is of the frame, and follows from its co
     MachineConfig machine;
     const CostFile costs = load_costs("45nm", machine);
     const traces::CommandStream stream = scenes::load_scene("builtin:glass", options);
-    KeptCounters kept{counters_of(costs)};
+    KeptCounters kept{counters_of(costs), {}, {}};
     const RenderedFrame frame = render_exact_watched(stream, machine, {}, {}, {.draws = true}, kept);
     if (!frame.figures.checks_hold()) said += "a law is broken; ";
     const EnergyFigures e = energy_of(frame.figures, machine, costs, &kept.by_draw);
@@ -237,7 +237,8 @@ TEST_CASE("energy: of draws and of none is of the frame, and follows from its co
 
 TEST_CASE("energy: the laws of kept counters break when a draw or a square loses what the units counted") {
   KeptCounters kept{{{{"core", "instructions"}}, {{7}, {2}}, {1}, 10},
-                    {{"quads", {"warp_packer", "quads"}, {3, 4}, 5, 12}}};
+                    {{"quads", {"warp_packer", "quads"}, {3, 4}, 5, 12}},
+                    {}};
   const auto broken = [&] {
     return std::ranges::count_if(checks_of(kept), [](const Check& c) { return !c.holds(); });
   };
