@@ -231,9 +231,9 @@ int RenderJob::run() {
   return frames.wanted() ? run_frames(chosen) : run_one(chosen);
 }
 
-std::string RenderJob::DrawnJob::figures_json(const pipeline::MachineConfig& machine) const {
-  std::string json = pipeline::report_json({frame.figures, machine, frame.image.width, frame.image.height});
-  if (!kept.registers.empty()) json = pipeline::figures_with_kept(json, kept, machine);
+std::string RenderJob::DrawnJob::figures_json(const pipeline::MachineConfig& config) const {
+  std::string json = pipeline::report_json({frame.figures, config, frame.image.width, frame.image.height});
+  if (!kept.registers.empty()) json = pipeline::figures_with_kept(json, kept, config);
   return energy ? pipeline::figures_with_energy(json, *energy) : json;
 }
 

@@ -65,7 +65,7 @@ struct RenderJob {
     std::optional<pipeline::EnergyFigures> energy = {};
     pipeline::KeptCounters kept = {};
     /// All figures as JSON.
-    [[nodiscard]] std::string figures_json(const pipeline::MachineConfig& machine) const;
+    [[nodiscard]] std::string figures_json(const pipeline::MachineConfig& config) const;
   };
   /// Draws a frame and writes its pictures.
   [[nodiscard]] DrawnJob draw(const SceneArguments::Loaded& loaded, const Setting& setting,

@@ -30,7 +30,8 @@ WaveFile::WaveFile(const Machine& machine, hw::NativeDriver& driver, const std::
   file_ = sc_core::sc_create_vcd_trace_file(part_.substr(0, part_.size() - kEnding.size()).c_str());
   file_->set_time_unit(1, sc_core::SC_FS);
   for (std::size_t i = 0; i < tokens_.size(); ++i) {
-    const int bits = std::bit_width(static_cast<unsigned>(machine.links()[i]->spec().depth));
+    const auto bits =
+        static_cast<int>(std::bit_width(static_cast<unsigned>(machine.links()[i]->spec().depth)));
     sc_core::sc_trace(file_, tokens_[i], "links." + machine.links()[i]->path(), bits);
   }
   for (std::size_t i = 0; i < machine.units().size(); ++i)
@@ -65,12 +66,13 @@ void WaveFile::close() {
   file_ = nullptr;
 }
 
-// SystemC does not say when it could not write. A disk that was full for it is full for the last line too,
-// which is the time of the end.
+// SystemC writes what an instant left when time goes on, and does not say when it could not write. A disk
+// that was full for it is full for the last line too.
 void WaveFile::finish() {
+  sc_core::sc_start(1, sc_core::SC_FS);
   close();
   std::ofstream file(part_, std::ios::app);
-  file << '#' << machine_.end() << '\n' << std::flush;
+  file << "$comment the frame ended a femtosecond before $end\n" << std::flush;
   if (!file) throw user_error("{}: cannot be written whole", path_);
   file.close();
   std::error_code failure;

@@ -39,6 +39,10 @@ Difference difference(VulkanRenderer& vulkan, const TextureCard& card, double to
   return found;
 }
 
+/// What a step of an sRGB code is at most in linear light: at white. [VK1.3 #textures-format-conversion]
+constexpr double kSteepestSrgb = 2.4 / 1.055;
+constexpr double kGreatestHalf = 65504;
+
 /// Steps of 255 by which the driver is off; a signed one is two.
 double block_steps(traces::Format format) {
   const bool is_signed = format == traces::Format::kBc4Snorm || format == traces::Format::kBc5Snorm;
@@ -51,11 +55,14 @@ double tolerance_of(const TextureCard& card) {
   using traces::Format;
   const double ours = pipeline::test::card_tolerance(card);
   const Format format = card.image.format;
+  // Their cards are of random blocks: halves of any size, and weights round as they do for numbers up to 1.
+  if (format == Format::kBc6hUfloat || format == Format::kBc6hSfloat) return ours * kGreatestHalf;
+  const bool srgb = models::is_srgb_format(format);
   if (format >= Format::kBc1RgbUnorm && format <= Format::kBc5Snorm)
-    return ours + block_steps(format) / 255.0;
+    return ours + (srgb ? kSteepestSrgb * block_steps(format) + 1 : block_steps(format)) / 255.0;
   const models::FormatInfo& info = models::format_info(format);
   const bool narrow = info.numeric == models::Numeric::kUnorm && info.component[0].bits < 8;
-  return ours + (narrow || models::is_srgb_format(format) ? 1.0 / 255.0 : 0.0);
+  return ours + (narrow || srgb ? 1.0 / 255.0 : 0.0);
 }
 
 }  // namespace
