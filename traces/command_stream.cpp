@@ -12,14 +12,19 @@ std::uint32_t level_height(const Image& image, std::uint32_t level) {
   return level < 32 ? std::max(1u, image.height >> level) : 1;
 }
 
+std::uint32_t level_depth(const Image& image, std::uint32_t level) {
+  return level < 32 ? std::max(1u, image.depth >> level) : 1;
+}
+
 std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
-  return std::uint64_t{format_bytes(image.format)} * level_width(image, level) * level_height(image, level);
+  return std::uint64_t{format_bytes(image.format)} * level_width(image, level) * level_height(image, level) *
+         level_depth(image, level);
 }
 
 std::uint64_t texel_bytes(const Image& image) {
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < image.levels; ++level) bytes += level_bytes(image, level);
-  return bytes;
+  return image.is_attachment() ? bytes : bytes * image.layers;
 }
 
 std::uint32_t level_count(const CommandStream& stream, const TextureDescriptor& texture) {
