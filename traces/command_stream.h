@@ -33,6 +33,7 @@ using models::BlendFactor;
 using models::BlendOp;
 using models::BlendShared;
 using models::BlendState;
+using models::BorderColor;
 using models::CompareOp;
 using models::CullMode;
 using models::DepthBias;

@@ -35,8 +35,9 @@ void transfer(A& a, Image& v) {
 template <class A>
 void transfer(A& a, Sampler& v) {
   for (Filter* filter : {&v.mag, &v.min, &v.mip}) a.choice(*filter, Filter::kLinear);
-  for (Wrap* wrap : {&v.wrap_u, &v.wrap_v}) a.choice(*wrap, Wrap::kClampToEdge);
+  for (Wrap* wrap : {&v.wrap_u, &v.wrap_v}) a.choice(*wrap, models::kLastWrap);
   numbers(a, v.lod_bias, v.min_lod, v.max_lod);
+  if (a.version() >= 2) a.choice(v.border, models::BorderColor::kOpaqueWhite);
 }
 
 template <class A>

@@ -38,7 +38,7 @@ struct ChunkInfo {
 inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"BUFS", 1},
                                                    {"IMGS", 4},
-                                                   {"SAMP", 1},
+                                                   {"SAMP", 2},
                                                    {"SHAD", 1},
                                                    {"PIPE", 6},
                                                    {"DESC", 3},

@@ -45,7 +45,7 @@ void check_usage(const Image& image, std::size_t index) {
   };
   if ((image.usage & kColorAttachment) != 0 && !format.may(models::kColorUse)) refuse("colour attachment");
   if ((image.usage & kDepthAttachment) != 0 && !format.may(models::kDepthUse)) refuse("depth attachment");
-  if (!image.is_attachment() && !format.may(models::kFileUse)) refuse("texture (R8G8B8A8 UNORM or SRGB)");
+  if (!image.is_attachment() && !format.may(models::kFileUse)) refuse("texture");
 }
 
 void check_samples(const Image& image, std::size_t index) {

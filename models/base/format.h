@@ -62,9 +62,28 @@ enum class Format : std::uint8_t {
   kR32G32Uint,
   kR32G32Sint,
   kR32G32B32A32Uint,
-  kR32G32B32A32Sint
+  kR32G32B32A32Sint,
+  // Textures.
+  kR8Snorm,
+  kR8Srgb,
+  kR8G8Snorm,
+  kR8G8Srgb,
+  kR16Unorm,
+  kR16Snorm,
+  kR16G16Snorm,
+  kR4G4Unorm,
+  kR4G4B4A4Unorm,
+  kB4G4R4A4Unorm,
+  kR5G6B5Unorm,
+  kB5G6R5Unorm,
+  kR5G5B5A1Unorm,
+  kB5G5R5A1Unorm,
+  kA1R5G5B5Unorm,
+  kA2R10G10B10Unorm,
+  kA2B10G10R10Uint,
+  kE5B9G9R9Ufloat
 };
-inline constexpr Format kLastFormat = Format::kR32G32B32A32Sint;
+inline constexpr Format kLastFormat = Format::kE5B9G9R9Ufloat;
 // clang-format on
 
 /// How the bits of a component stand for a number.
@@ -75,8 +94,11 @@ enum class Numeric : std::uint8_t {
   kSrgb,   ///< as kUnorm, and encoded by the sRGB transfer function
   kFloat,  ///< of 16 or 32 bits
   kUint,
-  kSint,   ///< two's complement
-  kUfloat  ///< of 10 or 11 bits: no sign, five bits of exponent [VK1.3 #fundamentals-fp11]
+  kSint,    ///< two's complement
+  kUfloat,  ///< of 10 or 11 bits: no sign, five bits of exponent [VK1.3 #fundamentals-fp11]
+  /// c 2^(e - 24), with an exponent for all components of a texel in the high five bits of its word [VK1.3
+  /// #textures-RGB-sexp]
+  kSharedExponent
 };
 
 /// Uses of a format, as bits.
@@ -142,7 +164,7 @@ enum class NumberKind : std::uint8_t { kFloat, kUint, kSint };
 /// Does an image of this format hold numbers outside 0..1 too?
 [[nodiscard]] inline bool is_float_format(Format format) {
   const Numeric numeric = format_info(format).numeric;
-  return numeric == Numeric::kFloat || numeric == Numeric::kUfloat;
+  return numeric == Numeric::kFloat || numeric == Numeric::kUfloat || numeric == Numeric::kSharedExponent;
 }
 [[nodiscard]] inline bool is_srgb_format(Format format) {
   return format_info(format).numeric == Numeric::kSrgb;

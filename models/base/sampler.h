@@ -7,14 +7,31 @@
 namespace quadrille::models {
 
 enum class Filter : std::uint8_t { kNearest, kLinear };
-enum class Wrap : std::uint8_t { kRepeat, kMirroredRepeat, kClampToEdge };
+enum class Wrap : std::uint8_t {
+  kRepeat,
+  kMirroredRepeat,
+  kClampToEdge,
+  kClampToBorder,     ///< beyond the image lies the border's colour
+  kMirrorClampToEdge  ///< mirrored once, then as kClampToEdge
+};
+inline constexpr Wrap kLastWrap = Wrap::kMirrorClampToEdge;
+
+/// What lies beyond an image. Of components that its format lacks it is what they always are; ones are
+/// integers where the format holds integers. [VK1.3 #textures-texel-replacement]
+enum class BorderColor : std::uint8_t { kTransparentBlack, kOpaqueBlack, kOpaqueWhite };
 
 struct SamplerState {
   Filter mag = Filter::kLinear, min = Filter::kLinear, mip = Filter::kLinear;
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
   float lod_bias = 0, min_lod = 0, max_lod = 1000;
+  BorderColor border = BorderColor::kTransparentBlack;
   friend bool operator==(const SamplerState&, const SamplerState&) = default;
 };
+
+/// Does it ask for what lies beyond the image?
+[[nodiscard]] constexpr bool has_border(const SamplerState& sampler) {
+  return sampler.wrap_u == Wrap::kClampToBorder || sampler.wrap_v == Wrap::kClampToBorder;
+}
 
 /// Sampler and shader bias together are limited to this. [VK1.3 limit maxSamplerLodBias]
 inline constexpr float kMaxLodBias = 16.0f;

@@ -105,8 +105,12 @@ double decode(const ComponentBits& component, const PixelCode& code) {
   const std::uint32_t bits = bits_of(component, code);
   if (is_float(component)) return decode_float(component, bits);
   if (component.numeric == Numeric::kUint) return bits;
-  if (component.numeric == Numeric::kSint)
-    return bits > most_of(component) / 2 ? bits - most_of(component) - 1 : bits;
+  const double as_signed = bits > most_of(component) / 2 ? bits - most_of(component) - 1 : bits;
+  if (component.numeric == Numeric::kSint) return as_signed;
+  if (component.numeric == Numeric::kSnorm)
+    return std::max(as_signed / (std::ldexp(1.0, component.bits - 1) - 1.0), -1.0);
+  if (component.numeric == Numeric::kSharedExponent)
+    return std::ldexp(bits, static_cast<int>(code.word[0] >> 27) - 24);
   return component.numeric == Numeric::kSrgb ? srgb_code_to_linear(bits) : bits / most_of(component);
 }
 

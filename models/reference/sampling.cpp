@@ -19,8 +19,10 @@ double quantised(double a, const Precision* precision, int Precision::*bits) {
   return std::floor(a * scale + 0.5) / scale;
 }
 
+constexpr std::int64_t kBeyondBorder = -1;
+
 /// The texel that an index outside [0, size) stands for. [VK1.3 #textures-wrapping-operation]
-std::uint32_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
+std::int64_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
   const auto modulo = [](std::int64_t a, std::int64_t b) { return ((a % b) + b) % b; };
   std::int64_t result = 0;
   switch (wrap) {
@@ -31,8 +33,22 @@ std::uint32_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
       break;
     }
     case traces::Wrap::kClampToEdge: result = std::clamp<std::int64_t>(i, 0, size - 1); break;
+    case traces::Wrap::kClampToBorder: result = i < 0 || i >= size ? kBeyondBorder : i; break;
+    case traces::Wrap::kMirrorClampToEdge: result = std::min(i >= 0 ? i : -(1 + i), size - 1); break;
   }
-  return static_cast<std::uint32_t>(result);
+  return result;
+}
+
+/// What lies beyond the image: of the components that its format has.
+Texel border_texel(const TextureView& texture) {
+  const std::size_t channels = models::format_info(texture.image->format).channels;
+  const models::BorderColor border = texture.sampler->border;
+  Texel texel{0, 0, 0, 1};
+  for (std::size_t c = 0; c < channels; ++c) {
+    const bool opaque = border != models::BorderColor::kTransparentBlack;
+    texel[c] = border == models::BorderColor::kOpaqueWhite || (opaque && c == 3) ? 1.0 : 0.0;
+  }
+  return texel;
 }
 
 /// floor as an integer; coordinates beyond any texture are kept within what the arithmetic holds.
@@ -50,9 +66,11 @@ Texel sample_level(const TextureView& texture, std::uint32_t level, double u, do
                    traces::Filter filter) {
   const auto extent = level_extent(texture, level);
   const auto texel = [&](std::int64_t i, std::int64_t j) {
-    return fetch_texel(*texture.image, texture.first_level + level,
-                       wrapped(i, extent[0], texture.sampler->wrap_u),
-                       wrapped(j, extent[1], texture.sampler->wrap_v));
+    const std::int64_t column = wrapped(i, extent[0], texture.sampler->wrap_u),
+                       row = wrapped(j, extent[1], texture.sampler->wrap_v);
+    if (column == kBeyondBorder || row == kBeyondBorder) return border_texel(texture);
+    return fetch_texel(*texture.image, texture.first_level + level, static_cast<std::uint32_t>(column),
+                       static_cast<std::uint32_t>(row));
   };
   const double x = u * extent[0], y = v * extent[1];
   if (filter == traces::Filter::kNearest) return texel(floor_index(x), floor_index(y));

@@ -91,11 +91,17 @@ inline __m128i to_half(__m128 v) {
 /// is negative is 0, what is finite and too large the greatest finite value. [VK1.3 #fundamentals-fp11]
 [[nodiscard]] std::uint32_t encode_ufloat(float value, int mantissa_bits);
 
-/// Its low bits, extended to 32 by zeros or by the sign.
+/// A power of two, of an exponent that a float can have.
+inline __m128 power_of_two(__m128i exponent) {
+  return _mm_castsi128_ps(_mm_slli_epi32(_mm_add_epi32(exponent, _mm_set1_epi32(127)), 23));
+}
+
+/// Its bits, extended to 32 by zeros or by the sign.
 inline __m128i decode_integer(__m128i word, const ComponentBits& component) {
   const __m128i high = _mm_sll_epi32(word, _mm_cvtsi32_si128(32 - component.bits - component.shift % 32));
   const __m128i down = _mm_cvtsi32_si128(32 - component.bits);
-  return component.numeric == Numeric::kSint ? _mm_sra_epi32(high, down) : _mm_srl_epi32(high, down);
+  const bool is_signed = component.numeric == Numeric::kSint || component.numeric == Numeric::kSnorm;
+  return is_signed ? _mm_sra_epi32(high, down) : _mm_srl_epi32(high, down);
 }
 
 inline __m128 decode_component(const QuadWords& quad, const ComponentBits& component) {
@@ -103,6 +109,11 @@ inline __m128 decode_component(const QuadWords& quad, const ComponentBits& compo
   if (component.numeric == Numeric::kFloat && component.bits == 32) return _mm_castsi128_ps(word);
   if (number_kind(component.numeric) != NumberKind::kFloat)
     return _mm_castsi128_ps(decode_integer(word, component));
+  if (component.numeric == Numeric::kSnorm) {
+    const __m128 most = _mm_set1_ps(static_cast<float>(most_of(component) / 2));
+    const __m128 value = _mm_div_ps(_mm_cvtepi32_ps(decode_integer(word, component)), most);
+    return _mm_max_ps(value, _mm_set1_ps(-1.0f));
+  }
   const __m128i code = _mm_and_si128(_mm_srl_epi32(word, _mm_cvtsi32_si128(component.shift % 32)),
                                      _mm_set1_epi32(static_cast<int>(most_of(component))));
   if (component.numeric == Numeric::kSrgb) return _mm_i32gather_ps(kSrgbToLinear.data(), code, 4);
@@ -110,6 +121,9 @@ inline __m128 decode_component(const QuadWords& quad, const ComponentBits& compo
   // As a half without a sign: the same exponent, and zeros behind the mantissa.
   if (component.numeric == Numeric::kUfloat)
     return from_half(_mm_sll_epi32(code, _mm_cvtsi32_si128(15 - component.bits)));
+  if (component.numeric == Numeric::kSharedExponent)
+    return _mm_mul_ps(_mm_cvtepi32_ps(code),
+                      power_of_two(_mm_sub_epi32(_mm_srli_epi32(word, 27), _mm_set1_epi32(24))));
   return _mm_div_ps(_mm_cvtepi32_ps(code), _mm_set1_ps(static_cast<float>(most_of(component))));
 }
 

@@ -14,7 +14,7 @@ struct AxisTexels {
 };
 
 /// Brings a finite coordinate (in texture sizes) to where one multiplication by the size cannot overflow,
-/// without changing the texels it selects: repeat to [0, 1], mirror to [0, 2], clamp to [-1, 2].
+/// without changing the texels it selects: repeat to [0, 1], mirror to [0, 2], others to [-1, 2].
 inline __m256 fold_coordinate(__m256 c, Wrap wrap) {
   switch (wrap) {
     case Wrap::kRepeat: return _mm256_sub_ps(c, _mm256_floor_ps(c));
@@ -22,12 +22,15 @@ inline __m256 fold_coordinate(__m256 c, Wrap wrap) {
       const __m256 periods = _mm256_floor_ps(_mm256_mul_ps(c, _mm256_set1_ps(0.5f)));
       return _mm256_sub_ps(c, _mm256_add_ps(periods, periods));
     }
-    case Wrap::kClampToEdge: break;
+    case Wrap::kClampToEdge:
+    case Wrap::kClampToBorder:
+    case Wrap::kMirrorClampToEdge: break;
   }
   return _mm256_min_ps(_mm256_max_ps(c, _mm256_set1_ps(-1.0f)), _mm256_set1_ps(2.0f));
 }
 
-/// Wraps a texel index that is at most one texel outside the range of folded coordinates.
+/// Wraps a texel index that is at most one texel outside the range of folded coordinates. One beyond a border
+/// becomes the texel at the edge, which is not read (`outside`).
 inline __m256i wrap_texel(__m256i i, __m256i size, Wrap wrap) {
   const __m256i zero = _mm256_setzero_si256(), one = _mm256_set1_epi32(1);
   switch (wrap) {
@@ -39,29 +42,42 @@ inline __m256i wrap_texel(__m256i i, __m256i size, Wrap wrap) {
       const __m256i mirrored = _mm256_sub_epi32(_mm256_add_epi32(size, size), _mm256_add_epi32(i, one));
       return _mm256_max_epi32(_mm256_min_epi32(i, mirrored), zero);
     }
-    case Wrap::kClampToEdge: break;
+    case Wrap::kMirrorClampToEdge:  // -1 - i where i is negative
+      return _mm256_min_epi32(_mm256_xor_si256(i, _mm256_srai_epi32(i, 31)), _mm256_sub_epi32(size, one));
+    case Wrap::kClampToEdge:
+    case Wrap::kClampToBorder: break;
   }
   return _mm256_max_epi32(_mm256_min_epi32(i, _mm256_sub_epi32(size, one)), zero);
 }
 
-/// Texels for linear filtering of a folded coordinate.
-inline AxisTexels linear_texels(__m256 folded, __m256i size, Wrap wrap, int subtexel_bits) {
+/// Lanes whose index is beyond the border.
+inline __m256i outside(__m256i i, __m256i size, Wrap wrap) {
+  if (wrap != Wrap::kClampToBorder) return _mm256_setzero_si256();
+  const __m256i inside =
+      _mm256_andnot_si256(_mm256_cmpgt_epi32(_mm256_setzero_si256(), i), _mm256_cmpgt_epi32(size, i));
+  return _mm256_xor_si256(inside, _mm256_set1_epi32(-1));
+}
+
+/// Texels for linear filtering of a folded coordinate, not yet wrapped.
+inline AxisTexels linear_texels(__m256 folded, __m256i size, int subtexel_bits) {
   const __m128i bits = _mm_cvtsi32_si128(subtexel_bits);
   const __m256 scale = _mm256_cvtepi32_ps(_mm256_sll_epi32(size, bits));
   const __m256i half = _mm256_set1_epi32((1 << subtexel_bits) >> 1);
   const __m256i fixed = _mm256_sub_epi32(_mm256_cvtps_epi32(_mm256_mul_ps(folded, scale)), half);
   const __m256i first = _mm256_sra_epi32(fixed, bits);
   const __m256i fraction = _mm256_and_si256(fixed, _mm256_set1_epi32((1 << subtexel_bits) - 1));
-  return {wrap_texel(first, size, wrap),
-          wrap_texel(_mm256_add_epi32(first, _mm256_set1_epi32(1)), size, wrap),
+  return {first, _mm256_add_epi32(first, _mm256_set1_epi32(1)),
           _mm256_sll_epi32(fraction, _mm_cvtsi32_si128(8 - subtexel_bits))};
 }
 
-/// The one texel for nearest filtering, twice, without weight for the second.
-inline AxisTexels nearest_texels(__m256 folded, __m256i size, Wrap wrap) {
+/// The one texel for nearest filtering, twice, without weight for the second; not yet wrapped.
+inline AxisTexels nearest_texels(__m256 folded, __m256i size) {
   const __m256i texel = _mm256_cvttps_epi32(_mm256_floor_ps(_mm256_mul_ps(folded, _mm256_cvtepi32_ps(size))));
-  const __m256i wrapped = wrap_texel(texel, size, wrap);
-  return {wrapped, wrapped, _mm256_setzero_si256()};
+  return {texel, texel, _mm256_setzero_si256()};
+}
+
+inline AxisTexels wrapped(const AxisTexels& texels, __m256i size, Wrap wrap) {
+  return {wrap_texel(texels.first, size, wrap), wrap_texel(texels.second, size, wrap), texels.weight};
 }
 
 /// `b` in the lanes of `mask`, else `a`.

@@ -10,14 +10,33 @@ namespace quadrille::models {
 namespace {
 
 /// Bytes of a level as it comes: without what tiling adds.
-std::uint64_t level_bytes(const TextureLayout& layout, std::uint32_t level) {
-  return 4 * static_cast<std::uint64_t>(layout.width[level]) *
+std::uint64_t level_bytes(const TextureView& view, std::uint32_t level) {
+  const TextureLayout& layout = view.layout;
+  return format_bytes(view.format) * static_cast<std::uint64_t>(layout.width[level]) *
          static_cast<std::uint64_t>(layout.height[level]);
+}
+
+/// Tiles rows of texels of a size that the compiler knows.
+template <std::size_t bytes>
+void tile_rows(const TextureLayout& layout, std::uint32_t level, const std::byte* source, std::byte* tiled) {
+  constexpr std::size_t kRun = 4 * bytes;  // a row of four texels is contiguous
+  const auto w = static_cast<std::uint32_t>(layout.width[level]),
+             h = static_cast<std::uint32_t>(layout.height[level]);
+  for (std::uint32_t y = 0; y < h; ++y) {
+    std::byte* const row = tiled + bytes * std::size_t{layout.texel_index(level, 0, y)};
+    std::uint32_t x = 0;
+    for (; x + 4 <= w; x += 4, source += kRun)
+      std::memcpy(row + bytes * std::size_t{TextureLayout::x_part(x)}, source, kRun);
+    const std::size_t rest = bytes * std::size_t{w - x};
+    std::memcpy(row + bytes * std::size_t{TextureLayout::x_part(x)}, source, rest);
+    source += rest;
+  }
 }
 
 }  // namespace
 
-TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels) {
+TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels,
+                                  std::uint32_t texel_bytes) {
   if (width < 1 || height < 1 || width > kMaxTextureSize || height > kMaxTextureSize) {
     throw user_error("texture of {} x {} texels: each side must be 1 to {}", width, height, kMaxTextureSize);
   }
@@ -28,6 +47,7 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
 
   TextureLayout layout;
   layout.levels = levels;
+  const std::uint32_t line_texels = static_cast<std::uint32_t>(kLineBytes) / texel_bytes;
   std::uint32_t next = 0;
   for (std::uint32_t level = 0; level < levels; ++level) {
     const std::uint32_t w = std::max(width >> level, 1u), h = std::max(height >> level, 1u);
@@ -35,10 +55,10 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
     layout.height[level] = static_cast<std::int32_t>(h);
     layout.pitch[level] = static_cast<std::int32_t>((w + 31) / 32 * 1024);
     layout.first[level] = static_cast<std::int32_t>(next);
-    next = layout.texel_index(level, w - 1, h - 1) / 32 * 32 +
-           32;  // ends with the line of its last texel, which has the highest index of all
+    // ends with the line of its last texel, which has the highest index of all
+    next = layout.texel_index(level, w - 1, h - 1) / line_texels * line_texels + line_texels;
   }
-  layout.bytes = 4 * std::uint64_t{next};
+  layout.bytes = std::uint64_t{texel_bytes} * next;
   return layout;
 }
 
@@ -72,42 +92,36 @@ TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::ui
 
 TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width, std::uint32_t height,
                              std::uint32_t levels) {
-  TextureView view{0, format, make_texture_layout(width, height, levels)};
+  TextureView view{0, format, make_texture_layout(width, height, levels, format_bytes(format))};
   view.base = memory.allocate(view.layout.bytes);
   return view;
 }
 
 void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level,
                 std::span<const std::byte> texels) {
-  constexpr std::size_t kRun = 16;  // a sector's row of four texels is contiguous
   const TextureLayout& layout = view.layout;
-  QUADRILLE_CHECK(level < layout.levels && texels.size() == level_bytes(layout, level),
+  QUADRILLE_CHECK(level < layout.levels && texels.size() == level_bytes(view, level),
                   "level {} of {} with {} bytes", level, layout.levels, texels.size());
   std::byte* const tiled = memory.write(view.base, layout.bytes).data();
-  const auto w = static_cast<std::uint32_t>(layout.width[level]),
-             h = static_cast<std::uint32_t>(layout.height[level]);
-  const std::byte* source = texels.data();
-  for (std::uint32_t y = 0; y < h; ++y) {
-    std::byte* const row = tiled + 4 * std::size_t{layout.texel_index(level, 0, y)};
-    std::uint32_t x = 0;
-    for (; x + 4 <= w; x += 4, source += kRun)
-      std::memcpy(row + 4 * std::size_t{TextureLayout::x_part(x)}, source, kRun);
-    const std::size_t rest = 4 * std::size_t{w - x};
-    std::memcpy(row + 4 * std::size_t{TextureLayout::x_part(x)}, source, rest);
-    source += rest;
+  switch (format_bytes(view.format)) {
+    case 1: return tile_rows<1>(layout, level, texels.data(), tiled);
+    case 2: return tile_rows<2>(layout, level, texels.data(), tiled);
+    case 4: return tile_rows<4>(layout, level, texels.data(), tiled);
+    case 8: return tile_rows<8>(layout, level, texels.data(), tiled);
+    default: return tile_rows<16>(layout, level, texels.data(), tiled);
   }
 }
 
 void tile_texture(DeviceMemory& memory, const TextureView& view, std::span<const std::byte> texels) {
   const TextureLayout& layout = view.layout;
   std::uint64_t expected = 0;
-  for (std::uint32_t level = 0; level < layout.levels; ++level) expected += level_bytes(layout, level);
+  for (std::uint32_t level = 0; level < layout.levels; ++level) expected += level_bytes(view, level);
   if (texels.size() != expected) {
     throw user_error("texture of {} x {} texels with {} levels: {} bytes of texels, {} are needed",
                      layout.width[0], layout.height[0], layout.levels, texels.size(), expected);
   }
   for (std::uint32_t level = 0; level < layout.levels; ++level) {
-    const std::uint64_t size = level_bytes(layout, level);
+    const std::uint64_t size = level_bytes(view, level);
     tile_level(memory, view, level, texels.first(size));
     texels = texels.subspan(size);
   }

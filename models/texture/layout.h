@@ -59,9 +59,10 @@ struct TextureLayout {
   }
 };
 
-/// Lays out a chain. Throws `UserError` for a size outside 1..16384 or more levels than the size has.
+/// Lays out a chain of texels of 1, 2, 4, 8 or 16 bytes. Each level begins with a line. Throws `UserError`
+/// for a size outside 1..16384 or more levels than the size has.
 [[nodiscard]] TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height,
-                                                std::uint32_t levels);
+                                                std::uint32_t levels, std::uint32_t texel_bytes = 4);
 
 /// A texture as a sampler sees it.
 struct TextureView {
@@ -79,7 +80,7 @@ struct TextureView {
 /// So many levels of a view, from one on.
 [[nodiscard]] TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::uint32_t count);
 
-/// Allocates a texture of zeros, of 4 bytes a texel; `tile_level` and `tile_texture` bring its texels.
+/// Allocates a texture of zeros; `tile_level` and `tile_texture` bring its texels.
 [[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width,
                                            std::uint32_t height, std::uint32_t levels);
 /// Tiles one level: rows top to bottom, tightly packed. Another number of texels than the level has is an

@@ -8,7 +8,7 @@
 /// #textures-level-of-detail-operation] Linear filtering takes texel coordinates to the nearest
 /// 2^-subtexel_bits; the integer part selects texels, the fraction weighs them. Nearest takes the floor of
 /// the unrounded coordinate. sRGB texels are decoded before they are filtered. [VK1.3
-/// #textures-texel-filtering] A coordinate, bias or level that is not finite counts as 0, for derivatives
+/// #textures-texel-filtering] A texel beyond the border is a colour that takes no read. A coordinate, bias or level that is not finite counts as 0, for derivatives
 /// too; no texel outside the texture is ever read.
 #pragma once
 
@@ -40,6 +40,8 @@ struct TexturePlan {
     alignas(32) std::array<std::array<std::int32_t, 8>, 4> texel;
     /// weights of the right and lower texels, 0..255 of 256
     alignas(32) std::array<std::int32_t, 8> frac_x, frac_y;
+    /// corners beyond the border, bit 8 * corner + lane: the texel is not read
+    std::uint32_t border = 0;
   };
   std::array<std::array<Footprint, 2>, kGroups> footprint;  ///< [group][finer, coarser level]
   alignas(32) std::array<float, kWarpLanes> level_weight;   ///< of the coarser level
@@ -49,13 +51,15 @@ struct TexturePlan {
   LaneMask active = 0;
   std::uint64_t base = 0;
   Format format = Format::kR8G8B8A8Unorm;
+  BorderColor border = BorderColor::kTransparentBlack;
 
   int line_count = 0;
   std::array<TextureLine, kMaxLines> lines;  ///< distinct, in order of first touch
   // Work, for the unit's timing and counters.
   /// quad x level filter operations: two for each of 8 bytes a texel, four for 16
   std::uint32_t bilinear_quads = 0;
-  std::uint32_t texels = 0;  ///< texels read by active lanes: 4 (linear) or 1 (nearest) a level
+  /// texels read by active lanes: 4 (linear) or 1 (nearest) a level, less those beyond the border
+  std::uint32_t texels = 0;
   std::uint32_t magnified_lanes = 0, minified_lanes = 0;
 };
 

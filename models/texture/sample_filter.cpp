@@ -5,6 +5,7 @@
 #include "models/texture/sample.h"
 
 #include <cstring>
+#include <utility>
 
 namespace quadrille::models {
 namespace {
@@ -20,12 +21,21 @@ struct Texels {
   __m256 weight_y;    ///< of the lower row, 256ths
 };
 
-Texels fetch(const TexturePlan::Footprint& f, const std::byte* base) {
+/// A border as RGBA8, which is the same with and without sRGB encoding.
+int border_code(BorderColor border) {
+  if (border == BorderColor::kOpaqueWhite) return -1;
+  return border == BorderColor::kOpaqueBlack ? static_cast<int>(0xff000000u) : 0;
+}
+
+Texels fetch(const TexturePlan::Footprint& f, const std::byte* base, BorderColor border) {
   Texels t;
   for (std::size_t i = 0; i < 4; ++i) {
     t.corner[i] =
         _mm256_i32gather_epi32(reinterpret_cast<const int*>(base), load_lanes(f.texel[i].data()), 4);
   }
+  for (std::size_t i = 0; f.border != 0 && i < 4; ++i)
+    t.corner[i] = _mm256_blendv_epi8(t.corner[i], _mm256_set1_epi32(border_code(border)),
+                                     lanes_of(f.border >> (8 * i)));
   t.frac_x = load_lanes(f.frac_x.data());
   t.weight_y = _mm256_cvtepi32_ps(load_lanes(f.frac_y.data()));
   return t;
@@ -98,9 +108,26 @@ struct TexelColors {
   [[nodiscard]] __m256 operator[](std::size_t c) const { return _mm256_set_m128(half[1][c], half[0][c]); }
 };
 
+/// Texels beyond the border: of the components that the format has.
+void put_border(std::uint32_t lanes, BorderColor border, const FormatInfo& format, TexelColors& colors) {
+  const bool integers = number_kind(format.numeric) != NumberKind::kFloat;
+  const __m128 one = integers ? _mm_castsi128_ps(_mm_set1_epi32(1)) : _mm_set1_ps(1.0f);
+  for (std::size_t half = 0; half < 2; ++half) {
+    const __m256i mask = lanes_of(lanes);
+    const __m128 beyond =
+        _mm_castsi128_ps(half == 0 ? _mm256_castsi256_si128(mask) : _mm256_extracti128_si256(mask, 1));
+    for (std::size_t c = 0; c < format.channels; ++c) {
+      const bool is_one =
+          border == BorderColor::kOpaqueWhite || (border == BorderColor::kOpaqueBlack && c == 3);
+      colors.half[half][c] = _mm_blendv_ps(colors.half[half][c], is_one ? one : _mm_setzero_ps(), beyond);
+    }
+  }
+}
+
 /// One of a footprint's corners, of any format.
-TexelColors fetch_colors(const std::array<std::int32_t, 8>& texel, const std::byte* base,
-                         const FormatInfo& format) {
+TexelColors fetch_colors(const TexturePlan& plan, const TexturePlan::Footprint& f, std::size_t corner,
+                         const std::byte* base, const FormatInfo& format) {
+  const std::array<std::int32_t, 8>& texel = f.texel[corner];
   TexelColors colors;
   for (std::size_t half = 0; half < 2; ++half) {
     alignas(16) std::array<std::byte, 64> quad{};
@@ -109,14 +136,17 @@ TexelColors fetch_colors(const std::array<std::int32_t, 8>& texel, const std::by
                   base + static_cast<std::size_t>(texel[4 * half + i]) * format.bytes, format.bytes);
     colors.half[half] = decode_quad(format, load_quad(quad.data(), format.bytes));
   }
+  if (const std::uint32_t beyond = f.border >> (8 * corner) & 0xff; beyond != 0)
+    put_border(beyond, plan.border, format, colors);
   return colors;
 }
 
 /// Any format, by its row of the table: all channels are numbers. Channels that it lacks are 0, alpha is 1.
-LaneColor filter_any(const TexturePlan::Footprint& f, const std::byte* base, const FormatInfo& format) {
+LaneColor filter_any(const TexturePlan& plan, const TexturePlan::Footprint& f, const std::byte* base) {
+  const FormatInfo& format = format_info(plan.format);
   // Bits, which arithmetic would change where they look like a NaN; their filter is always nearest.
   if (number_kind(format.numeric) != NumberKind::kFloat) {
-    const TexelColors texel = fetch_colors(f.texel[0], base, format);
+    const TexelColors texel = fetch_colors(plan, f, 0, base, format);
     return {{texel[0], texel[1], texel[2], texel[3]}};
   }
   const __m256 scale = _mm256_set1_ps(1.0f / 256.0f);
@@ -130,15 +160,21 @@ LaneColor filter_any(const TexturePlan::Footprint& f, const std::byte* base, con
     return _mm256_blendv_ps(mixed, a, _mm256_cmp_ps(w, _mm256_setzero_ps(), _CMP_EQ_OQ));
   };
   TexelColors corner[4];
-  for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(f.texel[i], base, format);
+  for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(plan, f, i, base, format);
   LaneColor color;
   for (std::size_t c = 0; c < 4; ++c)
     color.channel[c] = lerp(lerp(corner[0][c], corner[1][c], wx), lerp(corner[2][c], corner[3][c], wx), wy);
   return color;
 }
 
-/// Which of the ways above: the two for RGBA8 are the fast ones.
+/// Which of the ways above: the two for RGBA8 are the fast ones. Of BGRA8, red and blue are exchanged.
 enum class Way : std::uint8_t { kUnorm, kSrgb, kAny };
+
+bool is_bgra(Format format) { return format == Format::kB8G8R8A8Unorm || format == Format::kB8G8R8A8Srgb; }
+Way way_of(Format format) {
+  if (format == Format::kR8G8B8A8Unorm || format == Format::kB8G8R8A8Unorm) return Way::kUnorm;
+  return format == Format::kR8G8B8A8Srgb || format == Format::kB8G8R8A8Srgb ? Way::kSrgb : Way::kAny;
+}
 
 template <Way way>
 void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* base,
@@ -146,11 +182,11 @@ void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* b
   const auto filter = [&](std::size_t level) {
     const TexturePlan::Footprint& footprint = plan.footprint[group][level];
     if constexpr (way == Way::kSrgb) {
-      return filter_srgb(fetch(footprint, base));
+      return filter_srgb(fetch(footprint, base, plan.border));
     } else if constexpr (way == Way::kUnorm) {
-      return filter_unorm(fetch(footprint, base));
+      return filter_unorm(fetch(footprint, base, plan.border));
     } else {
-      return filter_any(footprint, base, format_info(plan.format));
+      return filter_any(plan, footprint, base);
     }
   };
   LaneColor color = filter(0);
@@ -162,6 +198,7 @@ void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* b
           color.channel[c], _mm256_mul_ps(_mm256_sub_ps(coarser.channel[c], color.channel[c]), weight));
     }
   }
+  if (way != Way::kAny && is_bgra(plan.format)) std::swap(color.channel[0], color.channel[2]);
   const __m256 one = _mm256_set1_ps(255.0f * 65536.0f);
   for (std::size_t c = 0; c < 4; ++c) {
     const bool number = way == Way::kAny || (way == Way::kSrgb && c < 3);
@@ -174,12 +211,13 @@ void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* b
 
 void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::array<LaneFloats, 4>& rgba) {
   const std::byte* const base = memory.data() + plan.base;
+  const Way way = way_of(plan.format);
   for (std::size_t group = 0; group < TexturePlan::kGroups; ++group) {
     if (plan.levels[group] == 0) {
       for (LaneFloats& channel : rgba) _mm256_storeu_ps(channel.data() + 8 * group, _mm256_setzero_ps());
-    } else if (plan.format == Format::kR8G8B8A8Srgb) {
+    } else if (way == Way::kSrgb) {
       filter_group<Way::kSrgb>(plan, group, base, rgba);
-    } else if (plan.format == Format::kR8G8B8A8Unorm) {
+    } else if (way == Way::kUnorm) {
       filter_group<Way::kUnorm>(plan, group, base, rgba);
     } else {
       filter_group<Way::kAny>(plan, group, base, rgba);

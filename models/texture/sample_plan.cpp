@@ -39,8 +39,9 @@ class LineCollector {
     plan_.line_count = 0;
   }
 
-  /// Adds the lines of one footprint, in order of corner and lane; lanes outside `used` touch nothing.
-  void add(const __m256i (&texel)[4], std::uint32_t used) {
+  /// Adds the lines of one footprint, in order of corner and lane; lanes outside `used` touch nothing, and so
+  /// do corners of `border`.
+  void add(const __m256i (&texel)[4], std::uint32_t used, std::uint32_t border) {
     const __m256i base_line = _mm256_set1_epi32(static_cast<int>(plan_.base / kLineBytes));
     const __m256i mask = lanes_of(used);
     __m256i line[4], sector[4];
@@ -52,7 +53,9 @@ class LineCollector {
       sector[corner] = _mm256_and_si256(_mm256_sllv_epi32(_mm256_set1_epi32(1), which), mask);
       _mm256_store_si256(reinterpret_cast<__m256i*>(numbers.data() + 8 * corner), line[corner]);
     }
-    std::uint32_t left = used * 0x01010101u;
+    for (std::size_t corner = 0; border != 0 && corner < 4; ++corner)
+      sector[corner] = _mm256_andnot_si256(lanes_of(border >> (8 * corner)), sector[corner]);
+    std::uint32_t left = used * 0x01010101u & ~border;
     while (left != 0) {
       const std::uint32_t number = numbers[static_cast<std::size_t>(std::countr_zero(left))];
       const __m256i wanted = _mm256_set1_epi32(static_cast<int>(number));
@@ -112,12 +115,25 @@ struct PlanContext {
   int subtexel_bits;
 };
 
-/// Texels along one axis; `nearest` names lanes whose filter is nearest.
-AxisTexels axis_texels(__m256 folded, __m256i size, Wrap wrap, int subtexel_bits, std::uint32_t nearest) {
-  if (nearest == 0) return linear_texels(folded, size, wrap, subtexel_bits);
-  const AxisTexels point = nearest_texels(folded, size, wrap);
+/// Texels along one axis, not yet wrapped; `nearest` names lanes whose filter is nearest.
+AxisTexels axis_texels(__m256 folded, __m256i size, int subtexel_bits, std::uint32_t nearest) {
+  if (nearest == 0) return linear_texels(folded, size, subtexel_bits);
+  const AxisTexels point = nearest_texels(folded, size);
   return nearest == 0xff ? point
-                         : select(linear_texels(folded, size, wrap, subtexel_bits), point, lanes_of(nearest));
+                         : select(linear_texels(folded, size, subtexel_bits), point, lanes_of(nearest));
+}
+
+/// Corners beyond the border, as `Footprint::border`.
+std::uint32_t beyond_border(const SamplerState& sampler, const LevelVectors& at, const AxisTexels& x,
+                            const AxisTexels& y) {
+  const __m256i column[2] = {outside(x.first, at.width, sampler.wrap_u),
+                             outside(x.second, at.width, sampler.wrap_u)};
+  const __m256i row[2] = {outside(y.first, at.height, sampler.wrap_v),
+                          outside(y.second, at.height, sampler.wrap_v)};
+  std::uint32_t corners = 0;
+  for (std::size_t corner = 0; corner < 4; ++corner)
+    corners |= bits_of(_mm256_or_si256(column[corner % 2], row[corner / 2])) << (8 * corner);
+  return corners;
 }
 
 /// Addresses of a group in one level. `folded_u`, `folded_v` are folded coordinates.
@@ -125,10 +141,11 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
                     std::uint32_t used, std::uint32_t nearest, TexturePlan::Footprint& out,
                     LineCollector& lines) {
   const LevelVectors at = level_vectors(context.view.layout, level, used);
-  const AxisTexels x =
-      axis_texels(folded_u, at.width, context.sampler.wrap_u, context.subtexel_bits, nearest);
-  const AxisTexels y =
-      axis_texels(folded_v, at.height, context.sampler.wrap_v, context.subtexel_bits, nearest);
+  const AxisTexels columns = axis_texels(folded_u, at.width, context.subtexel_bits, nearest),
+                   rows = axis_texels(folded_v, at.height, context.subtexel_bits, nearest);
+  const AxisTexels x = wrapped(columns, at.width, context.sampler.wrap_u),
+                   y = wrapped(rows, at.height, context.sampler.wrap_v);
+  out.border = has_border(context.sampler) ? beyond_border(context.sampler, at, columns, rows) : 0;
   const Tiling tiling = context.view.layout.tiling;
   const int shift = context.view.layout.tile_shift;
   const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, tiling, shift)),
@@ -139,14 +156,17 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
   for (std::size_t corner = 0; corner < 4; ++corner) store_lanes(out.texel[corner].data(), texel[corner]);
   store_lanes(out.frac_x.data(), x.weight);
   store_lanes(out.frac_y.data(), y.weight);
-  lines.add(texel, used);
+  lines.add(texel, used, out.border);
 }
 
-void count_work(TexturePlan& plan, std::uint32_t used, std::uint32_t nearest) {
+void count_work(TexturePlan& plan, std::uint32_t used, std::uint32_t nearest, std::uint32_t border) {
   const std::uint32_t passes = std::max(1u, format_bytes(plan.format) / 4);
   plan.bilinear_quads += passes * (((used & 0x0f) != 0 ? 1u : 0u) + ((used & 0xf0) != 0 ? 1u : 0u));
   plan.texels +=
       static_cast<std::uint32_t>(4 * std::popcount(used & ~nearest) + std::popcount(used & nearest));
+  if (border == 0) return;
+  plan.texels -= static_cast<std::uint32_t>(std::popcount(border & (used & ~nearest) * 0x01010101u) +
+                                            std::popcount(border & (used & nearest)));
 }
 
 }  // namespace
@@ -158,6 +178,7 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
   plan.active = request.active;
   plan.base = view.base;
   plan.format = view.format;
+  plan.border = sampler.border;
   plan.bilinear_quads = plan.texels = 0;
   alignas(32) LaneFloats u, v;
   for (std::size_t lane = 0; lane < kWarpLanes; lane += 8) {
@@ -183,7 +204,7 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
     const __m256 folded_v = fold_coordinate(_mm256_load_ps(v.data() + lane), sampler.wrap_v);
     const __m256i finer = load_lanes(levels.finer.data() + lane);
     plan_footprint(context, folded_u, folded_v, finer, active, nearest, plan.footprint[group][0], lines);
-    count_work(plan, active, nearest);
+    count_work(plan, active, nearest, plan.footprint[group][0].border);
     const __m256 weight = _mm256_load_ps(levels.weight.data() + lane);
     const __m256i mixed = _mm256_castps_si256(_mm256_cmp_ps(weight, _mm256_setzero_ps(), _CMP_GT_OQ));
     const std::uint32_t mixing = active & bits_of(mixed);
@@ -192,7 +213,7 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
     // + 1 where two levels are mixed: never beyond the last
     const __m256i coarser = _mm256_sub_epi32(finer, mixed);
     plan_footprint(context, folded_u, folded_v, coarser, mixing, nearest, plan.footprint[group][1], lines);
-    count_work(plan, mixing, nearest);
+    count_work(plan, mixing, nearest, plan.footprint[group][1].border);
   }
 }
 

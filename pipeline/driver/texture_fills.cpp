@@ -23,7 +23,8 @@ models::TextureFill& TextureFills::add(const traces::Image& image, const models:
     seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
     cpu_seconds_ += pipeline::cpu_seconds() - cpu;
   };
-  entries_.push_back({models::TextureFill(tile), traces::texel_bytes(image) / 4});
+  entries_.push_back(
+      {models::TextureFill(tile), traces::texel_bytes(image) / traces::format_bytes(image.format)});
   return entries_.back().fill;
 }
 

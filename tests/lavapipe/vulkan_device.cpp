@@ -225,6 +225,8 @@ void VulkanDevice::create_device() {
   if (has_u8_indices) enabled.push_back(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
   if (extensions.contains(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME))
     enabled.push_back(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME);
+  if (extensions.contains(VK_KHR_SAMPLER_MIRROR_CLAMP_TO_EDGE_EXTENSION_NAME))
+    enabled.push_back(VK_KHR_SAMPLER_MIRROR_CLAMP_TO_EDGE_EXTENSION_NAME);
   VkPhysicalDeviceFeatures present{};
   vkGetPhysicalDeviceFeatures(physical_, &present);
   VkPhysicalDeviceIndexTypeUint8FeaturesEXT u8_indices{};

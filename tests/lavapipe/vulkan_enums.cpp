@@ -51,6 +51,24 @@ VkFormat vk_format(traces::Format format) {
     case F::kR32G32Sint: return VK_FORMAT_R32G32_SINT;
     case F::kR32G32B32A32Uint: return VK_FORMAT_R32G32B32A32_UINT;
     case F::kR32G32B32A32Sint: return VK_FORMAT_R32G32B32A32_SINT;
+    case F::kR8Snorm: return VK_FORMAT_R8_SNORM;
+    case F::kR8Srgb: return VK_FORMAT_R8_SRGB;
+    case F::kR8G8Snorm: return VK_FORMAT_R8G8_SNORM;
+    case F::kR8G8Srgb: return VK_FORMAT_R8G8_SRGB;
+    case F::kR16Unorm: return VK_FORMAT_R16_UNORM;
+    case F::kR16Snorm: return VK_FORMAT_R16_SNORM;
+    case F::kR16G16Snorm: return VK_FORMAT_R16G16_SNORM;
+    case F::kR4G4Unorm: return VK_FORMAT_R4G4_UNORM_PACK8;
+    case F::kR4G4B4A4Unorm: return VK_FORMAT_R4G4B4A4_UNORM_PACK16;
+    case F::kB4G4R4A4Unorm: return VK_FORMAT_B4G4R4A4_UNORM_PACK16;
+    case F::kR5G6B5Unorm: return VK_FORMAT_R5G6B5_UNORM_PACK16;
+    case F::kB5G6R5Unorm: return VK_FORMAT_B5G6R5_UNORM_PACK16;
+    case F::kR5G5B5A1Unorm: return VK_FORMAT_R5G5B5A1_UNORM_PACK16;
+    case F::kB5G5R5A1Unorm: return VK_FORMAT_B5G5R5A1_UNORM_PACK16;
+    case F::kA1R5G5B5Unorm: return VK_FORMAT_A1R5G5B5_UNORM_PACK16;
+    case F::kA2R10G10B10Unorm: return VK_FORMAT_A2R10G10B10_UNORM_PACK32;
+    case F::kA2B10G10R10Uint: return VK_FORMAT_A2B10G10R10_UINT_PACK32;
+    case F::kE5B9G9R9Ufloat: return VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
   }
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }
@@ -68,8 +86,22 @@ VkSamplerAddressMode vk_wrap(traces::Wrap wrap) {
     case traces::Wrap::kRepeat: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
     case traces::Wrap::kMirroredRepeat: return VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
     case traces::Wrap::kClampToEdge: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    case traces::Wrap::kClampToBorder: return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER;
+    case traces::Wrap::kMirrorClampToEdge: return VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE;
   }
   QUADRILLE_CHECK(false, "wrap {}", static_cast<int>(wrap));
+}
+
+VkBorderColor vk_border(traces::BorderColor border, bool integers) {
+  switch (border) {
+    case traces::BorderColor::kTransparentBlack:
+      return integers ? VK_BORDER_COLOR_INT_TRANSPARENT_BLACK : VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK;
+    case traces::BorderColor::kOpaqueBlack:
+      return integers ? VK_BORDER_COLOR_INT_OPAQUE_BLACK : VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK;
+    case traces::BorderColor::kOpaqueWhite:
+      return integers ? VK_BORDER_COLOR_INT_OPAQUE_WHITE : VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
+  }
+  QUADRILLE_CHECK(false, "border {}", static_cast<int>(border));
 }
 
 VkPolygonMode vk_polygon_mode(traces::PolygonMode mode) {

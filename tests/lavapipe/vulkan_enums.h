@@ -12,6 +12,8 @@ namespace quadrille::lavapipe {
 [[nodiscard]] VkFilter vk_filter(traces::Filter filter);
 [[nodiscard]] VkSamplerMipmapMode vk_mip_mode(traces::Filter filter);
 [[nodiscard]] VkSamplerAddressMode vk_wrap(traces::Wrap wrap);
+/// `integers`: of an image that holds integers.
+[[nodiscard]] VkBorderColor vk_border(traces::BorderColor border, bool integers);
 [[nodiscard]] VkPrimitiveTopology vk_topology(traces::Topology topology);
 [[nodiscard]] VkPolygonMode vk_polygon_mode(traces::PolygonMode mode);
 [[nodiscard]] VkLineRasterizationModeEXT vk_line_mode(traces::LineMode mode);

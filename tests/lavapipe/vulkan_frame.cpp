@@ -76,7 +76,6 @@ VulkanFrame::VulkanFrame(const VulkanDevice& device, const traces::CommandStream
     : device_(device), stream_(stream), queries_(queries), stream_queries_(device, stream) {
   upload_buffers();
   upload_images();
-  create_samplers();
   create_descriptor_sets();
   record();
 }
@@ -102,7 +101,7 @@ void VulkanFrame::upload_images() {
                                            .layers = source.layers,
                                            .samples = source.samples,
                                            .usage = usage_of(source)});
-    if (!source.is_attachment()) upload_texels(source, image.image);
+    if (!source.is_attachment()) upload_texels(source, image);
     images_.push_back(image);
   }
 }
@@ -116,49 +115,58 @@ VkImageView VulkanFrame::view_of(const traces::ImagePart& finest, std::uint32_t 
   return view;
 }
 
-void VulkanFrame::upload_texels(const traces::Image& source, VkImage image) {
+void VulkanFrame::upload_texels(const traces::Image& source, const Image& image) {
   Cleanup upload;
-  const HostBuffer staging = device_.buffer(upload, source.texels.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-  std::memcpy(staging.mapped, source.texels.data(), source.texels.size());
+  // Each level begins at a multiple of 16 bytes, which is one of any format's texels.
+  const auto padded = [](std::uint64_t bytes) { return (bytes + 15) / 16 * 16; };
+  std::uint64_t bytes = 0;
+  for (std::uint32_t level = 0; level < source.levels; ++level)
+    bytes += padded(traces::level_bytes(source, level));
+  const HostBuffer staging = device_.buffer(upload, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   std::vector<VkBufferImageCopy> levels;
   VkDeviceSize offset = 0;
+  const std::byte* texels = source.texels.data();
   for (std::uint32_t level = 0; level < source.levels; ++level) {
+    const std::uint64_t size = traces::level_bytes(source, level);
+    std::memcpy(static_cast<std::byte*>(staging.mapped) + offset, texels, size);
     VkBufferImageCopy copy{};
     copy.bufferOffset = offset;
-    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, level, 0, 1};
-    copy.imageExtent = {std::max(1u, source.width >> level), std::max(1u, source.height >> level), 1};
-    offset += VkDeviceSize{4} * copy.imageExtent.width * copy.imageExtent.height;
+    copy.imageSubresource = {image.aspect, level, 0, 1};
+    copy.imageExtent = {traces::level_width(source, level), traces::level_height(source, level), 1};
     levels.push_back(copy);
+    texels += size;
+    offset += padded(size);
   }
   const VkCommandBuffer commands = device_.begin_commands(upload);
-  const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
-  transition(commands, image, all, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-  vkCmdCopyBufferToImage(commands, staging.buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+  const VkImageSubresourceRange all{image.all_aspects, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+  transition(commands, image.image, all, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                          static_cast<std::uint32_t>(levels.size()), levels.data());
-  transition(commands, image, all, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+  transition(commands, image.image, all, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
   require(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
   device_.submit(commands);
 }
 
-void VulkanFrame::create_samplers() {
-  for (const traces::Sampler& source : stream_.samplers) {
-    VkSamplerCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    info.magFilter = vk_filter(source.mag);
-    info.minFilter = vk_filter(source.min);
-    info.mipmapMode = vk_mip_mode(source.mip);
-    info.addressModeU = vk_wrap(source.wrap_u);
-    info.addressModeV = vk_wrap(source.wrap_v);
-    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
-    info.mipLodBias = source.lod_bias;
-    info.minLod = source.min_lod;
-    info.maxLod = source.max_lod;
-    VkSampler sampler = VK_NULL_HANDLE;
-    require(vkCreateSampler(device_.handle(), &info, nullptr, &sampler), "vkCreateSampler");
-    cleanup_.add([this, sampler] { vkDestroySampler(device_.handle(), sampler, nullptr); });
-    samplers_.push_back(sampler);
-  }
+VkSampler VulkanFrame::sampler_of(const SamplerKey& key) {
+  VkSampler& sampler = samplers_[key];
+  if (sampler != VK_NULL_HANDLE) return sampler;
+  const traces::Sampler& source = stream_.samplers[key.first];
+  VkSamplerCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+  info.magFilter = vk_filter(source.mag);
+  info.minFilter = vk_filter(source.min);
+  info.mipmapMode = vk_mip_mode(source.mip);
+  info.addressModeU = vk_wrap(source.wrap_u);
+  info.addressModeV = vk_wrap(source.wrap_v);
+  info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  info.borderColor = vk_border(source.border, key.second);
+  info.mipLodBias = source.lod_bias;
+  info.minLod = source.min_lod;
+  info.maxLod = source.max_lod;
+  require(vkCreateSampler(device_.handle(), &info, nullptr, &sampler), "vkCreateSampler");
+  cleanup_.add([this, made = sampler] { vkDestroySampler(device_.handle(), made, nullptr); });
+  return sampler;
 }
 
 void VulkanFrame::record() {

@@ -49,6 +49,8 @@ class VulkanFrame {
     friend auto operator<=>(const PassFormats&,
                             const PassFormats&) = default;  // NOLINT(modernize-use-nullptr)
   };
+  /// A sampler, and whether it is for images of integers, which its border must be one of.
+  using SamplerKey = std::pair<traces::Index, bool>;
   /// State that a stream sets piecemeal and Vulkan wants whole: a pipeline layout needs the shapes of all
   /// sets bound with it.
   struct Bound {
@@ -66,8 +68,8 @@ class VulkanFrame {
   [[nodiscard]] HostBuffer copy_image(Cleanup& cleanup, const traces::ImagePart& part,
                                       std::size_t pixel_bytes) const;
   void upload_images();
-  void create_samplers();
-  void upload_texels(const traces::Image& source, VkImage image);
+  [[nodiscard]] VkSampler sampler_of(const SamplerKey& key);
+  void upload_texels(const traces::Image& source, const Image& image);
   [[nodiscard]] VkImageView view_of(const traces::ImagePart& finest, std::uint32_t levels);
   void create_descriptor_sets();
 
@@ -100,7 +102,7 @@ class VulkanFrame {
   std::vector<Image> images_;
   std::map<traces::ImagePart, VkImageLayout> layouts_;  ///< of attachments, at this point of the recording
   std::map<std::pair<traces::ImagePart, std::uint32_t>, VkImageView> views_;  ///< and levels
-  std::vector<VkSampler> samplers_;
+  std::map<SamplerKey, VkSampler> samplers_;
   std::vector<VkDescriptorSet> descriptor_sets_;
   std::map<SetShape, VkDescriptorSetLayout> set_layouts_;
   std::map<SetShapes, VkPipelineLayout> pipeline_layouts_;

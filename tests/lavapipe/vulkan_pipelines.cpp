@@ -172,7 +172,7 @@ void VulkanFrame::create_descriptor_sets() {
     for (const auto& buffer : source.buffers) write_block(buffer, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     for (const auto& texture : source.textures) {
       const VkDescriptorImageInfo image{
-          samplers_[texture.sampler],
+          sampler_of({texture.sampler, traces::is_integer_format(stream_.images[texture.image].format)}),
           view_of({texture.image, texture.first_level, texture.layer}, traces::level_count(stream_, texture)),
           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.dstBinding = texture.binding;

@@ -35,11 +35,12 @@ SamplerState random_sampler(RandomSource& random) {
   SamplerState s{filter(),
                  filter(),
                  filter(),
-                 static_cast<Wrap>(random.integer(0, 2)),
-                 static_cast<Wrap>(random.integer(0, 2)),
+                 static_cast<Wrap>(random.integer(0, static_cast<int>(kLastWrap))),
+                 static_cast<Wrap>(random.integer(0, static_cast<int>(kLastWrap))),
                  0,
                  0,
-                 1000};
+                 1000,
+                 static_cast<BorderColor>(random.integer(0, 2))};
   if (random.integer(0, 2) == 0) s.lod_bias = random.real(-3, 3);
   if (random.integer(0, 2) == 0) s.min_lod = random.real(0, 2);
   if (random.integer(0, 2) == 0) s.max_lod = s.min_lod + random.real(0, 3);
@@ -150,7 +151,10 @@ TEST_CASE("sample: a constant texture filters to itself") {
     DeviceMemory memory;
     const TextureView view = upload(memory, texture);
     const TextureRequest request = random_request(random, 37, 64);
-    const auto rgba = sampled(view, random_sampler(random), request, memory);
+    SamplerState sampler = random_sampler(random);
+    for (Wrap* const wrap : {&sampler.wrap_u, &sampler.wrap_v})
+      if (*wrap == Wrap::kClampToBorder) *wrap = Wrap::kRepeat;
+    const auto rgba = sampled(view, sampler, request, memory);
     for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
       if ((request.active >> lane & 1) == 0) continue;
       for (std::size_t c = 0; c < 4; ++c) {
@@ -175,7 +179,8 @@ TEST_CASE("sample: the plan lists each touched line once with exactly the sector
     const TextureView view =
         upload(memory, random_texture(random, Format::kR8G8B8A8Unorm, width, height, true));
     const TextureRequest request = random_request(random, width, height);
-    plan_texture(view, random_sampler(random), request, {}, *plan);
+    const SamplerState sampler = random_sampler(random);
+    plan_texture(view, sampler, request, {}, *plan);
     std::map<std::uint32_t, std::uint32_t> expected;
     std::uint32_t quads = 0;
     for (std::size_t group = 0; group < 4; ++group) {
@@ -185,8 +190,10 @@ TEST_CASE("sample: the plan lists each touched line once with exactly the sector
           const std::size_t lane = 8 * group + i;
           if ((request.active >> lane & 1) == 0 || (level == 1 && plan->level_weight[lane] == 0.0f)) continue;
           used |= 1u << i;
-          for (const auto& corner : plan->footprint[group][level].texel) {
-            const std::uint64_t address = view.base + 4 * static_cast<std::uint64_t>(corner[i]);
+          const TexturePlan::Footprint& f = plan->footprint[group][level];
+          for (std::size_t corner = 0; corner < 4; ++corner) {
+            if ((f.border >> (8 * corner + i) & 1) != 0) continue;
+            const std::uint64_t address = view.base + 4 * static_cast<std::uint64_t>(f.texel[corner][i]);
             expected[static_cast<std::uint32_t>(address / 128)] |= 1u << (address / 32 % 4);
           }
         }
@@ -199,7 +206,7 @@ TEST_CASE("sample: the plan lists each touched line once with exactly the sector
       const TextureLine& line = plan->lines[static_cast<std::size_t>(i)];
       REQUIRE(expected.at(line.line) == line.sectors);
     }
-    if (request.active != 0)
+    if (request.active != 0 && !has_border(sampler))
       REQUIRE(plan->lines[0].line ==
               (view.base +
                4 * static_cast<std::uint64_t>(

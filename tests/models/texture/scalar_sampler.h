@@ -99,24 +99,33 @@ class ScalarSampler {
         return static_cast<std::int64_t>(m < n ? m : 2 * n - 1 - m);
       }
       case Wrap::kClampToEdge: return static_cast<std::int64_t>(std::clamp(texel, 0.0, n - 1));
+      case Wrap::kClampToBorder: return texel >= 0 && texel < n ? static_cast<std::int64_t>(texel) : kBeyond;
+      case Wrap::kMirrorClampToEdge:
+        return static_cast<std::int64_t>(std::min(texel < 0 ? -1 - texel : texel, n - 1));
     }
     return 0;
+  }
+
+  static constexpr std::int64_t kBeyond = -1;
+
+  [[nodiscard]] Color texel(std::uint32_t level, double x, double y) const {
+    const std::int64_t i = wrapped(x, texture_.level_width(level), sampler_.wrap_u),
+                       j = wrapped(y, texture_.level_height(level), sampler_.wrap_v);
+    if (i != kBeyond && j != kBeyond) return texture_.texel(level, i, j);
+    const double light = sampler_.border == BorderColor::kOpaqueWhite ? 1 : 0;
+    return {light, light, light, sampler_.border == BorderColor::kTransparentBlack ? 0.0 : 1.0};
   }
 
   [[nodiscard]] Color filtered(Filter filter, double u, double v, std::uint32_t level) const {
     const std::int64_t w = texture_.level_width(level), h = texture_.level_height(level);
     const double x = u * static_cast<double>(w), y = v * static_cast<double>(h);
-    if (filter == Filter::kNearest)
-      return texture_.texel(level, wrapped(std::floor(x), w, sampler_.wrap_u),
-                            wrapped(std::floor(y), h, sampler_.wrap_v));
+    if (filter == Filter::kNearest) return texel(level, std::floor(x), std::floor(y));
     const auto quantised = [&](double c) {
       return std::ldexp(std::nearbyint(std::ldexp(c, precision_.subtexel_bits)), -precision_.subtexel_bits) -
              0.5;
     };
     const double qx = quantised(x), qy = quantised(y), i = std::floor(qx), j = std::floor(qy);
-    const auto at = [&](double tx, double ty) {
-      return texture_.texel(level, wrapped(tx, w, sampler_.wrap_u), wrapped(ty, h, sampler_.wrap_v));
-    };
+    const auto at = [&](double tx, double ty) { return texel(level, tx, ty); };
     return mix(mix(at(i, j), at(i + 1, j), qx - i), mix(at(i, j + 1), at(i + 1, j + 1), qx - i), qy - j);
   }
 

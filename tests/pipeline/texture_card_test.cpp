@@ -1,0 +1,44 @@
+/// Textures of every format, filter, wrap and border: the machine's numbers beside the reference's, and the
+/// machine's laws.
+#include "tests/pipeline/texture_card.h"
+#include "studies/given_reference.h"
+#include "tests/pipeline/machine_specimen.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace quadrille;
+using namespace quadrille::pipeline::test;
+
+namespace {
+
+/// The largest difference of a component.
+double worst(const studies::MachineAndReference& pictures) {
+  double most = 0;
+  for (std::size_t i = 0; i < pictures.machine.linear.size(); ++i)
+    for (std::size_t c = 0; c < 4; ++c)
+      most = std::max(most, std::abs(static_cast<double>(pictures.machine.linear[i].at(c)) -
+                                     pictures.reference.color_linear.at(4 * i + c)));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("texture cards: every format has the reference's numbers with each filter and wrap") {
+  for (const TextureCard& card : format_cards()) {
+    const auto pictures = studies::render_with_reference(card_stream(card), {});
+    REQUIRE(pictures.machine.linear.size() == kCardSide * kCardSide);
+    INFO(name_of(card));
+    CHECK(worst(pictures) <= card_tolerance(card));
+  }
+}
+
+TEST_CASE("texture cards: random machines draw the functional run's pixels and keep all laws") {
+  const std::vector<TextureCard> cards = format_cards();
+  for (std::size_t i = 0; i < cards.size(); i += 11) {
+    INFO(name_of(cards[i]));
+    CHECK(machine_faults(card_stream(cards[i]), i + 1) == "");
+  }
+}
