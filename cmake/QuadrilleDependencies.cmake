@@ -27,3 +27,10 @@ find_package(glslang REQUIRED)
 add_library(quadrille_systemc INTERFACE)
 target_link_libraries(quadrille_systemc INTERFACE PkgConfig::SYSTEMC_PC)
 target_compile_definitions(quadrille_systemc INTERFACE SC_CPLUSPLUS=201703L SC_INCLUDE_DYNAMIC_PROCESSES)
+
+# Debian's libsquish.pc names a folder that does not exist.
+find_path(SQUISH_INCLUDE squish.h REQUIRED)
+find_library(SQUISH_LIBRARY squish REQUIRED)
+add_library(quadrille_squish INTERFACE)
+target_include_directories(quadrille_squish SYSTEM INTERFACE ${SQUISH_INCLUDE})
+target_link_libraries(quadrille_squish INTERFACE ${SQUISH_LIBRARY})
