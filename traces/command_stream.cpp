@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "models/texture/block/block_format.h"
+
 namespace quadrille::traces {
 
 std::uint32_t level_width(const Image& image, std::uint32_t level) {
@@ -13,7 +15,7 @@ std::uint32_t level_height(const Image& image, std::uint32_t level) {
 }
 
 std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
-  return std::uint64_t{format_bytes(image.format)} * level_width(image, level) * level_height(image, level);
+  return models::format_area_bytes(image.format, level_width(image, level), level_height(image, level));
 }
 
 std::uint64_t texel_bytes(const Image& image) {
@@ -77,6 +79,22 @@ void unpack(Image& image) {
   });
   image.texels = std::move(texels);
   image.packed = nullptr;
+}
+
+Image decompressed(const Image& image) {
+  if (!models::is_block_format(image.format)) return image;
+  Image plain = image;
+  plain.format = models::decoded_format(image.format);
+  plain.texels.clear();
+  std::span<const std::byte> blocks = image.texels;
+  for (std::uint32_t level = 0; level < image.levels; ++level) {
+    const std::uint64_t bytes = level_bytes(image, level);
+    const std::vector<std::byte> texels = models::decode_blocks(
+        image.format, level_width(image, level), level_height(image, level), blocks.first(bytes));
+    plain.texels.insert(plain.texels.end(), texels.begin(), texels.end());
+    blocks = blocks.subspan(bytes);
+  }
+  return plain;
 }
 
 }  // namespace quadrille::traces

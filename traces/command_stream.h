@@ -80,7 +80,8 @@ enum ImageUsage : std::uint8_t { kSampled = 1, kColorAttachment = 2, kDepthAttac
 inline constexpr std::uint8_t kAllUsages = kSampled | kColorAttachment | kDepthAttachment;
 
 /// A 2D image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
-/// first, rows top to bottom, tightly packed. Level i is max(1, width >> i) by max(1, height >> i). An
+/// first, rows top to bottom, tightly packed; of compressed formats rows of blocks, of which those at the
+/// right and lower edges may reach beyond the level. Level i is max(1, width >> i) by max(1, height >> i). An
 /// attachment has no texels: it holds what passes store, in each level of each layer.
 struct Image {
   std::string name;
@@ -109,6 +110,9 @@ struct ImagePart {
 [[nodiscard]] std::uint64_t texel_bytes(const Image& image);
 /// Puts the texels of a packed image into `texels`. Throws `UserError`.
 void unpack(Image& image);
+/// An image whose texels are there, with its blocks decoded where its format is a compressed one: as it is
+/// sampled, in the format that the texels then have.
+[[nodiscard]] Image decompressed(const Image& image);
 
 struct Shader {
   std::string name;

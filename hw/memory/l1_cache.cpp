@@ -40,25 +40,44 @@ L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::u
     ++stats_.hits;
     return Result::kHit;
   }
-  const bool encoded = stored_lines_ != nullptr && stored_lines_->is_encoded(line);
-  if (encoded) sectors = kAllSectors;
+  if (stored_lines_ == nullptr || !stored_lines_->is_encoded(line))
+    return ask(slot, line, sectors, waiter, port, nullptr);
+  const models::StoredLines::Place place = stored_lines_->place_of(line);
+  const std::uint64_t misses = stats_.misses.value();
+  const Result result = ask(slot, line, kAllSectors, waiter, port, &place);
+  if (stats_.misses.value() == misses) return result;
+  ++read_stats_->lines;
+  read_stats_->bytes += models::sector_bytes(place.sectors);
+  return result;
+}
+
+L1Cache::Result L1Cache::access_made(std::uint32_t line, const models::StoredLines::Place& from,
+                                     std::uint32_t waiter, MemoryPort& port) {
+  const int slot = tags_.lookup(line);
+  if (slot != models::TagArray::kNone && tags_.at(slot).valid == kAllSectors) {
+    ++stats_.requests;
+    ++stats_.hits;
+    return Result::kHit;
+  }
+  return ask(slot, line, kAllSectors, waiter, port, &from);
+}
+
+L1Cache::Result L1Cache::ask(int slot, std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter,
+                             MemoryPort& port, const models::StoredLines::Place* whole_from) {
   const auto asked = misses_.ask(slot, sectors, [&] { return place(line, port); });
   if (!asked) return Result::kStall;
   ++stats_.requests;
   ++(asked->missing != 0 ? stats_.misses : stats_.merged);
-  if (asked->missing != 0) fetch(line, asked->missing, asked->tag, encoded, port);
+  if (asked->missing != 0) fetch(line, asked->missing, asked->tag, port, whole_from);
   misses_.wait(asked->tag, waiter);
   return Result::kPending;
 }
 
-void L1Cache::fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag, bool encoded,
-                    MemoryPort& port) {
-  if (!encoded) return port.read(line, missing, tag);
-  const models::StoredLines::Place place = stored_lines_->place_of(line);
+void L1Cache::fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag, MemoryPort& port,
+                    const models::StoredLines::Place* whole_from) {
+  if (whole_from == nullptr) return port.read(line, missing, tag);
   expands_[tag] = true;
-  ++read_stats_->lines;
-  read_stats_->bytes += models::sector_bytes(place.sectors);
-  port.read(place.line, place.sectors, tag);
+  port.read(whole_from->line, whole_from->sectors, tag);
 }
 
 std::uint8_t L1Cache::arrived(const MemoryResponse& response) {

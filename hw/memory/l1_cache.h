@@ -87,6 +87,11 @@ class L1Cache {
 
   /// Looks up sectors of a line; asks for what is missing through `port`.
   Result access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter, MemoryPort& port);
+  /// The same for a whole line whose contents are made of some sectors of another, as decoded texels are of
+  /// compressed ones. Such lines have numbers of their own (`kMadeLines` and up). Needs `read_encoded`.
+  Result access_made(std::uint32_t line, const models::StoredLines::Place& from, std::uint32_t waiter,
+                     MemoryPort& port);
+  static constexpr std::uint32_t kMadeLines = 0x80000000u;
   /// Takes an answer in; calls `ready(waiter)` once for each pending access that is now complete.
   template <class F>
   void fill(const MemoryResponse& response, F&& ready) {
@@ -132,7 +137,10 @@ class L1Cache {
   void complete(int slot, std::uint8_t sectors);
   void write_back(int slot, Leaving leaving, MemoryPort& port);
   void send_back(const Leaving& leaving, MemoryPort& port);
-  void fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag, bool encoded, MemoryPort& port);
+  Result ask(int slot, std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter, MemoryPort& port,
+             const models::StoredLines::Place* whole_from);
+  void fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag, MemoryPort& port,
+             const models::StoredLines::Place* whole_from);
   /// The sectors that an answer brings: all of the line if its encoding was asked for.
   [[nodiscard]] std::uint8_t arrived(const MemoryResponse& response);
   void note_writer(int slot);

@@ -7,6 +7,14 @@
 #include <bit>
 
 namespace quadrille::hw {
+namespace {
+
+std::int64_t cycles_of(std::size_t work, int rate) {
+  return static_cast<std::int64_t>((work + static_cast<std::size_t>(rate) - 1) /
+                                   static_cast<std::size_t>(rate));
+}
+
+}  // namespace
 
 TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
                          Store<CoreSlot>& slots)
@@ -22,6 +30,9 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& contex
   add_initiation_rate("address");
   add_rate("filter", [this] {
     return static_cast<double>(stats_.bilinear_quads.value()) / params_.filter_quads_per_clk;
+  });
+  add_rate("decode", [this] {
+    return static_cast<double>(stats_.blocks_decoded.value()) / params_.decode_blocks_per_clk;
   });
   add_places("groups_in_flight",
              [this] { return groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()); });
@@ -85,20 +96,49 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
     // Values are the same whenever they are computed: textures do not change within a pass. Only presence in
     // the cache takes time.
     models::filter_texture(plan_, device_, slot.texels[static_cast<std::size_t>(i)]);
-    lines_.insert(lines_.end(), plan_.lines.begin(), plan_.lines.begin() + plan_.line_count);
+    add_look_ups(group);
     quads += plan_.bilinear_quads;
     ++stats_.requests;
     stats_.lanes += static_cast<std::uint64_t>(std::popcount(request.active));
     stats_.bilinear_quads += plan_.bilinear_quads;
     stats_.texels += plan_.texels;
   }
-  const auto per = [](std::size_t work, int rate) {
-    return static_cast<std::int64_t>((work + static_cast<std::size_t>(rate) - 1) /
-                                     static_cast<std::size_t>(rate));
-  };
-  address_cycles = std::max(
-      {std::int64_t{1}, per(quads, params_.address_quads_per_clk), per(lines_.size(), params_.tags_per_clk)});
-  group.filter_cycles = std::max<std::int64_t>(1, per(quads, params_.filter_quads_per_clk));
+  address_cycles = std::max({std::int64_t{1}, cycles_of(quads, params_.address_quads_per_clk),
+                             cycles_of(lines_.size(), params_.tags_per_clk)});
+  group.filter_cycles =
+      std::max({std::int64_t{1}, group.filter_cycles, cycles_of(quads, params_.filter_quads_per_clk)});
+}
+
+void TextureUnit::add_look_ups(Group& group) {
+  if (plan_.block_count == 0 || params_.blocks_held.value() == BlocksHeld::kCompressed) {
+    for (int i = 0; i < plan_.line_count; ++i)
+      lines_.push_back({plan_.lines[static_cast<std::size_t>(i)], {}});
+    decode(group, static_cast<std::uint32_t>(plan_.block_count));
+    return;
+  }
+  decoded_lines_.clear();
+  models::add_decoded_lines(plan_, decoded_lines_);
+  for (const models::DecodedLine& line : decoded_lines_) lines_.push_back({{}, line});
+}
+
+void TextureUnit::decode(Group& group, std::uint32_t blocks) {
+  if (blocks == 0) return;
+  group.blocks += blocks;
+  stats_.blocks_decoded += blocks;
+  group.filter_cycles = std::max(group.filter_cycles, cycles_of(group.blocks, params_.decode_blocks_per_clk));
+}
+
+L1Cache::Result TextureUnit::access(const LookUp& line) {
+  if (line.decoded.blocks == 0)
+    return cache_.access(line.line.line, static_cast<std::uint8_t>(line.line.sectors), groups_.newest(),
+                         port_);
+  const std::uint64_t misses = cache_.stats().misses.value();
+  const models::StoredLines::Place from{line.decoded.from.line,
+                                        static_cast<std::uint8_t>(line.decoded.from.sectors)};
+  const L1Cache::Result result =
+      cache_.access_made(L1Cache::kMadeLines | line.decoded.line, from, groups_.newest(), port_);
+  if (cache_.stats().misses.value() != misses) decode(groups_.back(), line.decoded.blocks);
+  return result;
 }
 
 void TextureUnit::begin_pass(PassId pass) {
@@ -129,8 +169,7 @@ void TextureUnit::take(Tick now) {
 
 void TextureUnit::look_up(Tick now) {
   for (; next_line_ < lines_.size(); ++next_line_) {
-    const models::TextureLine& line = lines_[next_line_];
-    switch (cache_.access(line.line, static_cast<std::uint8_t>(line.sectors), groups_.newest(), port_)) {
+    switch (access(lines_[next_line_])) {
       case L1Cache::Result::kHit: break;
       case L1Cache::Result::kPending: ++groups_.back().missing; break;
       case L1Cache::Result::kStall: stalled_ = true; return;
@@ -153,6 +192,7 @@ void TextureUnit::details(Details& details) const {
   details.by_draw(DrawCount::kTextureMisses, cache_.stats().misses);
   details.by_tile(TileCount::kTextureMisses, cache_.stats().misses);
   details.work({&stats_.bilinear_quads}, params_.filter_quads_per_clk);
+  details.work({&stats_.blocks_decoded}, params_.decode_blocks_per_clk);
   port_.details(details, DrawCount::kTextureBytes);
 }
 

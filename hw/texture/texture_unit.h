@@ -5,6 +5,7 @@
 /// Out   response_out  their texels are filtered, in order
 /// Mem   misses of the first-level cache, 128-byte lines in 32-byte sectors
 /// Time  addresses: `address_quads_per_clk` quads and level a cycle, `tags_per_clk` distinct lines a cycle;
+///       decoder: `decode_blocks_per_clk` blocks of compressed textures a cycle, beside the filter;
 ///       filter: `filter_quads_per_clk` bilinear quads a cycle. Requests wait in between for their lines, so
 ///       a miss delays but does not stop the look-ups behind it. [P: Igehy 1998, prefetching texture cache]
 #pragma once
@@ -18,6 +19,12 @@
 #include "hw/shader/core_slots.h"
 
 namespace quadrille::hw {
+
+/// What lines of compressed textures the first-level cache holds.
+enum class BlocksHeld : std::uint8_t {
+  kCompressed,  ///< as they lie in memory; blocks are decoded each time that a request reads them
+  kDecoded      ///< decoded when they come, so that a line holds fewer texels and a hit costs no decoding
+};
 
 class TextureUnit final : public Unit {
  public:
@@ -51,6 +58,21 @@ class TextureUnit final : public Unit {
                           Effect::kTradeOff};
     Param<int> cache_misses{*this,  "cache_misses", 64,
                             "line", {1, 4096},      "Lines under way. [G: bandwidth times latency]"};
+    Choice<BlocksHeld> blocks_held{
+        *this,
+        "blocks_held",
+        BlocksHeld::kCompressed,
+        {"compressed", "decoded"},
+        "What the first-level cache holds of compressed textures: blocks, decoded for every request that "
+        "reads "
+        "them, or decoded texels, which take two to eight times the room. [G: room]"};
+    Param<int> decode_blocks_per_clk{
+        *this,
+        "decode_blocks_per_clk",
+        8,
+        "block/clk",
+        {1, 64},
+        "Blocks of compressed textures decoded a cycle. [G: a quad may touch four, two quads a clock]"};
   };
   struct Stats : StatGroup {
     Counter groups{*this, "groups", "group", "Clauses' request groups taken in"};
@@ -61,6 +83,10 @@ class TextureUnit final : public Unit {
         "Bilinear quad operations, two a quad for a trilinear one; twice as many for texels "
         "of 8 bytes, four times for 16"};
     Counter texels{*this, "texels", "texel", "Texels read from the cache"};
+    Counter blocks_decoded{
+        *this, "blocks_decoded", "block",
+        "Blocks of compressed textures decoded: distinct ones of a request, or those of the "
+        "lines that were fetched"};
     Counter cache_emptied{
         *this, "cache_emptied", "time",
         "Times that the cache forgot all lines, since a pass samples what earlier ones drew"};
@@ -86,9 +112,15 @@ class TextureUnit final : public Unit {
  private:
   struct Group {
     TextureToken token;
-    int missing = 0;  ///< look-ups not complete
-    std::int64_t filter_cycles = 0;
+    int missing = 0;                 ///< look-ups not complete
+    std::int64_t filter_cycles = 0;  ///< of the filter, or of the decoder beside it if that takes longer
+    std::uint32_t blocks = 0;        ///< to decode
     Tick ready = 0;
+  };
+  /// A line of memory, or one of decoded texels: then `decoded.blocks` is not 0.
+  struct LookUp {
+    models::TextureLine line{};
+    models::DecodedLine decoded{};
   };
   [[nodiscard]] Wake address_wake() const;
   [[nodiscard]] Wake answer_wake() const;
@@ -96,6 +128,9 @@ class TextureUnit final : public Unit {
   void take(Tick now);
   void plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles);
   void look_up(Tick now);
+  void add_look_ups(Group& group);
+  void decode(Group& group, std::uint32_t blocks);
+  [[nodiscard]] L1Cache::Result access(const LookUp& line);
 
   const Params& params_;
   const Frame& frame_;
@@ -108,7 +143,8 @@ class TextureUnit final : public Unit {
   PassId pass_;  ///< of the latest request
   models::TexturePlan plan_;
   WaitingQueue<Group> groups_;
-  std::vector<models::TextureLine> lines_;  ///< look-ups of the newest group
+  std::vector<LookUp> lines_;  ///< look-ups of the newest group
+  std::vector<models::DecodedLine> decoded_lines_;
   std::size_t next_line_ = 0;
   bool stalled_ = false;
   Tick address_free_ = 0, filter_free_ = 0;

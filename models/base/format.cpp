@@ -48,6 +48,12 @@ constexpr std::array<ComponentBits, 4> packed(Place red, Place green, Place blue
   return components;
 }
 
+/// A texture of compressed blocks.
+constexpr FormatInfo blocks(std::string_view name, std::uint8_t bytes, std::uint8_t channels,
+                            Numeric numeric) {
+  return {name, bytes, channels, kTexture, numeric, {}, {}, 4};
+}
+
 /// By the value of `Format`.
 constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFormats{{
     {"UNDEFINED", 0, 0, 0, Numeric::kNone},
@@ -119,6 +125,22 @@ constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFor
      packed({20, 10}, {10, 10}, {0, 10}, {30, 2})},
     {"A2B10G10R10_UINT_PACK32", 4, 4, kTexture, Numeric::kUint, kTenTenTenTwoUint},
     {"E5B9G9R9_UFLOAT_PACK32", 4, 3, kTexture, Numeric::kSharedExponent, kNineNineNine},
+    blocks("BC1_RGB_UNORM_BLOCK", 8, 3, Numeric::kUnorm),
+    blocks("BC1_RGB_SRGB_BLOCK", 8, 3, Numeric::kSrgb),
+    blocks("BC1_RGBA_UNORM_BLOCK", 8, 4, Numeric::kUnorm),
+    blocks("BC1_RGBA_SRGB_BLOCK", 8, 4, Numeric::kSrgb),
+    blocks("BC2_UNORM_BLOCK", 16, 4, Numeric::kUnorm),
+    blocks("BC2_SRGB_BLOCK", 16, 4, Numeric::kSrgb),
+    blocks("BC3_UNORM_BLOCK", 16, 4, Numeric::kUnorm),
+    blocks("BC3_SRGB_BLOCK", 16, 4, Numeric::kSrgb),
+    blocks("BC4_UNORM_BLOCK", 8, 1, Numeric::kUnorm),
+    blocks("BC4_SNORM_BLOCK", 8, 1, Numeric::kSnorm),
+    blocks("BC5_UNORM_BLOCK", 16, 2, Numeric::kUnorm),
+    blocks("BC5_SNORM_BLOCK", 16, 2, Numeric::kSnorm),
+    blocks("BC6H_UFLOAT_BLOCK", 16, 3, Numeric::kUfloat),
+    blocks("BC6H_SFLOAT_BLOCK", 16, 3, Numeric::kFloat),
+    blocks("BC7_UNORM_BLOCK", 16, 4, Numeric::kUnorm),
+    blocks("BC7_SRGB_BLOCK", 16, 4, Numeric::kSrgb),
 }};
 
 }  // namespace

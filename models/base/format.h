@@ -81,9 +81,26 @@ enum class Format : std::uint8_t {
   kA1R5G5B5Unorm,
   kA2R10G10B10Unorm,
   kA2B10G10R10Uint,
-  kE5B9G9R9Ufloat
+  kE5B9G9R9Ufloat,
+  // Textures of compressed blocks.
+  kBc1RgbUnorm,
+  kBc1RgbSrgb,
+  kBc1RgbaUnorm,
+  kBc1RgbaSrgb,
+  kBc2Unorm,
+  kBc2Srgb,
+  kBc3Unorm,
+  kBc3Srgb,
+  kBc4Unorm,
+  kBc4Snorm,
+  kBc5Unorm,
+  kBc5Snorm,
+  kBc6hUfloat,
+  kBc6hSfloat,
+  kBc7Unorm,
+  kBc7Srgb
 };
-inline constexpr Format kLastFormat = Format::kE5B9G9R9Ufloat;
+inline constexpr Format kLastFormat = Format::kBc7Srgb;
 // clang-format on
 
 /// How the bits of a component stand for a number.
@@ -126,21 +143,31 @@ struct PixelCode {
 
 struct FormatInfo {
   std::string_view name;      ///< Vulkan's, without VK_FORMAT_
-  std::uint8_t bytes = 0;     ///< of a texel, pixel or attribute
+  std::uint8_t bytes = 0;     ///< of a texel, pixel or attribute; of a block where `block_side` is not 1
   std::uint8_t channels = 0;  ///< 1..4; those that lack read as (0, 0, 0, 1)
   std::uint8_t uses = 0;      ///< of `FormatUse`
   Numeric numeric = Numeric::kNone;
   /// Images: red, green, blue and alpha. Depth is red.
   std::array<ComponentBits, 4> component{};
   ComponentBits stencil{};
+  std::uint8_t block_side = 1;  ///< 4: texels come in compressed blocks of 4x4
   [[nodiscard]] constexpr bool may(FormatUse use) const { return (uses & use) != 0; }
 };
 
 [[nodiscard]] const FormatInfo& format_info(Format format);
 
 [[nodiscard]] inline bool has_stencil(Format format) { return format_info(format).stencil.bits != 0; }
-/// Bytes of a texel or of a vertex attribute; images have 1, 2, 4, 8 or 16.
+/// Bytes of a texel, of a vertex attribute, or of a block of a compressed format; images have 1, 2, 4, 8 or
+/// 16.
 [[nodiscard]] inline std::uint32_t format_bytes(Format format) { return format_info(format).bytes; }
+[[nodiscard]] inline bool is_block_format(Format format) { return format_info(format).block_side != 1; }
+/// Bytes of the texels of so many columns and rows: of whole blocks, where the format has blocks.
+[[nodiscard]] inline std::uint64_t format_area_bytes(Format format, std::uint32_t width,
+                                                     std::uint32_t height) {
+  const FormatInfo& info = format_info(format);
+  const std::uint64_t side = info.block_side;
+  return info.bytes * ((width + side - 1) / side) * ((height + side - 1) / side);
+}
 /// Components that an attribute of this format supplies (1..4).
 [[nodiscard]] inline int format_components(Format format) { return format_info(format).channels; }
 /// What a number is to a shader that reads or writes it. Of integers, registers hold the bits.

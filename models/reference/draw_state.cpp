@@ -54,8 +54,12 @@ TextureView texture_view(const ShaderProgram& program, const DrawState& state, c
     if (image->texels.empty())
       throw user_error("draw {}: shader '{}' samples image '{}' before a pass has drawn it", state.number,
                        program.name, image->name);
-    return {image, &state.stream->samplers[texture.sampler], precision, texture.first_level,
-            traces::level_count(*state.stream, texture)};
+    return {image,
+            &state.stream->samplers[texture.sampler],
+            precision,
+            texture.first_level,
+            traces::level_count(*state.stream, texture),
+            models::format_info(state.stream->images[texture.image].format).channels};
   }
   throw user_error("draw {}: shader '{}' uses texture (set {}, binding {}), which is not bound", state.number,
                    program.name, use.set, use.binding);

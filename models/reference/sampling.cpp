@@ -41,7 +41,8 @@ std::int64_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
 
 /// What lies beyond the image: of the components that its format has.
 Texel border_texel(const TextureView& texture) {
-  const std::size_t channels = models::format_info(texture.image->format).channels;
+  const std::size_t channels =
+      texture.channels != 0 ? texture.channels : models::format_info(texture.image->format).channels;
   const models::BorderColor border = texture.sampler->border;
   Texel texel{0, 0, 0, 1};
   for (std::size_t c = 0; c < channels; ++c) {

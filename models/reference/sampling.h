@@ -17,6 +17,8 @@ struct TextureView {
   const traces::Sampler* sampler = nullptr;
   const Precision* precision = nullptr;
   std::uint32_t first_level = 0, levels = 1;
+  /// components that a border colours; 0: those of the image's format
+  std::uint32_t channels = 0;
 };
 
 /// Decodes one texel of a level; x and y are inside it.

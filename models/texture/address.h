@@ -88,6 +88,10 @@ inline AxisTexels select(const AxisTexels& a, const AxisTexels& b, __m256i mask)
 
 /// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
 inline __m256i x_index(__m256i x, Tiling tiling, int tile_shift) {
+  if (tiling == Tiling::kBlocks)
+    return _mm256_or_si256(
+        _mm256_and_si256(x, _mm256_set1_epi32(3)),
+        _mm256_slli_epi32(x_index(_mm256_srli_epi32(x, 2), Tiling::kTexture, tile_shift), 4));
   const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
   if (tiling == Tiling::kSurface) {
     const __m256i low = _mm256_or_si256(field(1), _mm256_slli_epi32(field(6), 1));
@@ -98,6 +102,13 @@ inline __m256i x_index(__m256i x, Tiling tiling, int tile_shift) {
                          _mm256_slli_epi32(_mm256_srli_epi32(x, 5), 10));
 }
 inline __m256i y_index(__m256i y, __m256i pitch, Tiling tiling) {
+  if (tiling == Tiling::kBlocks) {
+    const __m256i in_block = _mm256_slli_epi32(_mm256_and_si256(y, _mm256_set1_epi32(3)), 2);
+    const __m256i in_tile =
+        y_index(_mm256_and_si256(_mm256_srli_epi32(y, 2), _mm256_set1_epi32(31)), pitch, Tiling::kTexture);
+    return _mm256_add_epi32(_mm256_or_si256(in_block, _mm256_slli_epi32(in_tile, 4)),
+                            _mm256_mullo_epi32(_mm256_srli_epi32(y, 7), pitch));
+  }
   const auto field = [y](int mask) { return _mm256_and_si256(y, _mm256_set1_epi32(mask)); };
   if (tiling == Tiling::kSurface) {
     const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 1), _mm256_slli_epi32(field(6), 3));

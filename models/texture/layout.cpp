@@ -12,8 +12,18 @@ namespace {
 /// Bytes of a level as it comes: without what tiling adds.
 std::uint64_t level_bytes(const TextureView& view, std::uint32_t level) {
   const TextureLayout& layout = view.layout;
-  return format_bytes(view.format) * static_cast<std::uint64_t>(layout.width[level]) *
-         static_cast<std::uint64_t>(layout.height[level]);
+  return format_area_bytes(view.format, static_cast<std::uint32_t>(layout.width[level]),
+                           static_cast<std::uint32_t>(layout.height[level]));
+}
+
+/// Tiles rows of blocks.
+void tile_blocks(const TextureLayout& layout, std::uint32_t level, std::size_t bytes, const std::byte* source,
+                 std::byte* tiled) {
+  const auto w = static_cast<std::uint32_t>(layout.width[level]),
+             h = static_cast<std::uint32_t>(layout.height[level]);
+  for (std::uint32_t y = 0; y < h; y += 4)
+    for (std::uint32_t x = 0; x < w; x += 4, source += bytes)
+      std::memcpy(tiled + bytes * (std::size_t{layout.texel_index(level, x, y)} / 16), source, bytes);
 }
 
 /// Tiles rows of texels of a size that the compiler knows.
@@ -35,8 +45,11 @@ void tile_rows(const TextureLayout& layout, std::uint32_t level, const std::byte
 
 }  // namespace
 
-TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels,
-                                  std::uint32_t texel_bytes) {
+namespace {
+
+/// `unit_bytes`: of a texel or of a block.
+TextureLayout make_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels,
+                          std::uint32_t unit_bytes, Tiling tiling) {
   if (width < 1 || height < 1 || width > kMaxTextureSize || height > kMaxTextureSize) {
     throw user_error("texture of {} x {} texels: each side must be 1 to {}", width, height, kMaxTextureSize);
   }
@@ -47,19 +60,34 @@ TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std
 
   TextureLayout layout;
   layout.levels = levels;
-  const std::uint32_t line_texels = static_cast<std::uint32_t>(kLineBytes) / texel_bytes;
+  layout.tiling = tiling;
+  const int shift = layout.block_shift();
+  const std::uint32_t line_texels = (static_cast<std::uint32_t>(kLineBytes) << 2 * shift) / unit_bytes;
   std::uint32_t next = 0;
   for (std::uint32_t level = 0; level < levels; ++level) {
     const std::uint32_t w = std::max(width >> level, 1u), h = std::max(height >> level, 1u);
     layout.width[level] = static_cast<std::int32_t>(w);
     layout.height[level] = static_cast<std::int32_t>(h);
-    layout.pitch[level] = static_cast<std::int32_t>((w + 31) / 32 * 1024);
+    const std::uint32_t tile = 32u << shift;
+    layout.pitch[level] = static_cast<std::int32_t>((w + tile - 1) / tile * tile * tile);
     layout.first[level] = static_cast<std::int32_t>(next);
     // ends with the line of its last texel, which has the highest index of all
     next = layout.texel_index(level, w - 1, h - 1) / line_texels * line_texels + line_texels;
   }
-  layout.bytes = std::uint64_t{texel_bytes} * next;
+  layout.bytes = std::uint64_t{unit_bytes} * next >> 2 * shift;
   return layout;
+}
+
+}  // namespace
+
+TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels,
+                                  std::uint32_t texel_bytes) {
+  return make_layout(width, height, levels, texel_bytes, Tiling::kTexture);
+}
+TextureLayout make_texture_layout(Format format, std::uint32_t width, std::uint32_t height,
+                                  std::uint32_t levels) {
+  return make_layout(width, height, levels, format_bytes(format),
+                     is_block_format(format) ? Tiling::kBlocks : Tiling::kTexture);
 }
 
 TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format) {
@@ -92,7 +120,7 @@ TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::ui
 
 TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width, std::uint32_t height,
                              std::uint32_t levels) {
-  TextureView view{0, format, make_texture_layout(width, height, levels, format_bytes(format))};
+  TextureView view{0, format, make_texture_layout(format, width, height, levels)};
   view.base = memory.allocate(view.layout.bytes);
   return view;
 }
@@ -103,6 +131,8 @@ void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t lev
   QUADRILLE_CHECK(level < layout.levels && texels.size() == level_bytes(view, level),
                   "level {} of {} with {} bytes", level, layout.levels, texels.size());
   std::byte* const tiled = memory.write(view.base, layout.bytes).data();
+  if (layout.tiling == Tiling::kBlocks)
+    return tile_blocks(layout, level, format_bytes(view.format), texels.data(), tiled);
   switch (format_bytes(view.format)) {
     case 1: return tile_rows<1>(layout, level, texels.data(), tiled);
     case 2: return tile_rows<2>(layout, level, texels.data(), tiled);

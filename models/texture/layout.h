@@ -7,6 +7,9 @@
 /// are, from the least: x0 x1 y0 x2 y1 x3 x4 y2 y3 y4. An attachment that is sampled lies as it was drawn, in
 /// tiles of 8x8 pixels that are quad-major (memory/surface.h): x0 y0 x1 x2 y1 y2. Tiles are row by row. So an
 /// address is a sum of a part of x and one of y.
+///
+/// A texture of compressed blocks lies as one whose texels were the blocks: a tile is 32x32 blocks. Its texels
+/// are counted 16 to a block, row by row, so an index is a block and a place in it.
 #pragma once
 
 #include "models/base/format.h"
@@ -23,7 +26,7 @@ namespace quadrille::models {
 inline constexpr std::uint32_t kMaxTextureLevels = 15;  ///< up to 16384 x 16384
 inline constexpr std::uint32_t kMaxTextureSize = 16384;
 
-enum class Tiling : std::uint8_t { kTexture, kSurface };
+enum class Tiling : std::uint8_t { kTexture, kSurface, kBlocks };
 
 /// Where the texels of a mip chain lie, in texels from its base. Arrays by level, padded for vector
 /// loads.
@@ -54,23 +57,34 @@ struct TextureLayout {
     if (tiling == Tiling::kSurface)
       return static_cast<std::uint32_t>(first[level]) + surface_x_part(x) + surface_y_part_in_tile(y) +
              (y >> 3) * static_cast<std::uint32_t>(pitch[level]);
+    if (tiling == Tiling::kBlocks)
+      return static_cast<std::uint32_t>(first[level]) + (x & 3) + ((y & 3) << 2) +
+             ((x_part(x >> 2) + y_part_in_tile(y >> 2)) << 4) +
+             (y >> 7) * static_cast<std::uint32_t>(pitch[level]);
     return static_cast<std::uint32_t>(first[level]) + x_part(x) + y_part_in_tile(y) +
            (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
   }
+  /// log2 of the texels along a side of a block: half of that of a block's texels
+  [[nodiscard]] constexpr int block_shift() const { return tiling == Tiling::kBlocks ? 2 : 0; }
 };
 
-/// Lays out a chain of texels of 1, 2, 4, 8 or 16 bytes. Each level begins with a line. Throws `UserError`
+/// Lays out a chain of texels of 1, 2, 4, 8 or 16 bytes, or as `format` has them. Each
+/// level begins with a line. Throws `UserError`
 /// for a size outside 1..16384 or more levels than the size has.
 [[nodiscard]] TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height,
                                                 std::uint32_t levels, std::uint32_t texel_bytes = 4);
+[[nodiscard]] TextureLayout make_texture_layout(Format format, std::uint32_t width, std::uint32_t height,
+                                                std::uint32_t levels);
 
 /// A texture as a sampler sees it.
 struct TextureView {
   std::uint64_t base = 0;  ///< address, aligned to a line
   Format format = Format::kR8G8B8A8Unorm;
   TextureLayout layout;
+  /// Of a texel, or of the first byte that may hold a part of it.
   [[nodiscard]] std::uint64_t texel_address(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
-    return base + std::uint64_t{format_bytes(format)} * layout.texel_index(level, x, y);
+    return base + (std::uint64_t{format_bytes(format)} * layout.texel_index(level, x, y) >>
+                   2 * layout.block_shift());
   }
 };
 

@@ -20,6 +20,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace quadrille::models {
 
@@ -29,14 +30,23 @@ struct TextureLine {
   std::uint32_t sectors = 0;  ///< bits 0..3
 };
 
+/// A line of decoded texels, as a cache holds them, and the sectors of the compressed line that they come of.
+struct DecodedLine {
+  std::uint32_t line = 0;  ///< the same for the same texels; below 2^31
+  TextureLine from;
+  std::uint32_t blocks = 0;  ///< that it is decoded from
+};
+
 /// Addresses and weights of one request; its memory is used again and again, nothing is allocated.
 struct TexturePlan {
   static constexpr int kGroups = 4;      ///< lanes in groups of 8
   static constexpr int kMaxLines = 256;  ///< 32 lanes x 2 levels x 4 texels
+  static constexpr int kMaxBlocks = kMaxLines;
 
   /// A group's texels in one mip level.
   struct Footprint {
-    /// index from the texture's base: (0,0) (1,0) (0,1) (1,1)
+    /// index from the texture's base: (0,0) (1,0) (0,1) (1,1). Of a block format: 16 times the place of the
+    /// block in `blocks`, and the texel in it; 0 for what is not read.
     alignas(32) std::array<std::array<std::int32_t, 8>, 4> texel;
     /// weights of the right and lower texels, 0..255 of 256
     alignas(32) std::array<std::int32_t, 8> frac_x, frac_y;
@@ -55,8 +65,12 @@ struct TexturePlan {
 
   int line_count = 0;
   std::array<TextureLine, kMaxLines> lines;  ///< distinct, in order of first touch
+  /// Of a block format: the distinct blocks that active lanes read, from the texture's base, in order of
+  /// first touch.
+  int block_count = 0;
+  std::array<std::uint32_t, kMaxBlocks> blocks;
   // Work, for the unit's timing and counters.
-  /// quad x level filter operations: two for each of 8 bytes a texel, four for 16
+  /// quad x level filter operations: two for each of 8 bytes a texel as it is filtered, four for 16
   std::uint32_t bilinear_quads = 0;
   /// texels read by active lanes: 4 (linear) or 1 (nearest) a level, less those beyond the border
   std::uint32_t texels = 0;
@@ -66,6 +80,10 @@ struct TexturePlan {
 /// Computes addresses and weights. The request's operation is kTexImplicit, kTexBias or kTexLod.
 void plan_texture(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
                   const Precision& precision, TexturePlan& plan);
+
+/// The distinct lines of 128 bytes of decoded texels that a plan of a block format reads, in order of first
+/// touch, to the end of `lines`.
+void add_decoded_lines(const TexturePlan& plan, std::vector<DecodedLine>& lines);
 
 /// Reads and filters the texels of a plan. Lanes that are not active receive unspecified finite values.
 void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::array<LaneFloats, 4>& rgba);

@@ -1,9 +1,11 @@
 /// The filter half of the texture unit: fetches the texels of a plan, decodes, weighs (sample.h).
 #include "models/rop/quad_codec.h"
 #include "models/rop/srgb.h"
+#include "models/texture/block/block_format.h"
 #include "models/texture/lanes.h"
 #include "models/texture/sample.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -21,20 +23,27 @@ struct Texels {
   __m256 weight_y;    ///< of the lower row, 256ths
 };
 
+/// Where the texels of a plan are, and their format: those of memory, or of decoded blocks.
+struct TexelSource {
+  const std::byte* base;
+  Format format;
+  std::size_t channels;  ///< that a border colours
+};
+
 /// A border as RGBA8, which is the same with and without sRGB encoding.
-int border_code(BorderColor border) {
+int border_code(BorderColor border, std::size_t channels) {
   if (border == BorderColor::kOpaqueWhite) return -1;
-  return border == BorderColor::kOpaqueBlack ? static_cast<int>(0xff000000u) : 0;
+  return border == BorderColor::kOpaqueBlack || channels < 4 ? static_cast<int>(0xff000000u) : 0;
 }
 
-Texels fetch(const TexturePlan::Footprint& f, const std::byte* base, BorderColor border) {
+Texels fetch(const TexturePlan::Footprint& f, const TexelSource& source, BorderColor border) {
   Texels t;
   for (std::size_t i = 0; i < 4; ++i) {
     t.corner[i] =
-        _mm256_i32gather_epi32(reinterpret_cast<const int*>(base), load_lanes(f.texel[i].data()), 4);
+        _mm256_i32gather_epi32(reinterpret_cast<const int*>(source.base), load_lanes(f.texel[i].data()), 4);
   }
   for (std::size_t i = 0; f.border != 0 && i < 4; ++i)
-    t.corner[i] = _mm256_blendv_epi8(t.corner[i], _mm256_set1_epi32(border_code(border)),
+    t.corner[i] = _mm256_blendv_epi8(t.corner[i], _mm256_set1_epi32(border_code(border, source.channels)),
                                      lanes_of(f.border >> (8 * i)));
   t.frac_x = load_lanes(f.frac_x.data());
   t.weight_y = _mm256_cvtepi32_ps(load_lanes(f.frac_y.data()));
@@ -109,14 +118,14 @@ struct TexelColors {
 };
 
 /// Texels beyond the border: of the components that the format has.
-void put_border(std::uint32_t lanes, BorderColor border, const FormatInfo& format, TexelColors& colors) {
-  const bool integers = number_kind(format.numeric) != NumberKind::kFloat;
+void put_border(std::uint32_t lanes, BorderColor border, const TexelSource& source, TexelColors& colors) {
+  const bool integers = number_kind(source.format) != NumberKind::kFloat;
   const __m128 one = integers ? _mm_castsi128_ps(_mm_set1_epi32(1)) : _mm_set1_ps(1.0f);
   for (std::size_t half = 0; half < 2; ++half) {
     const __m256i mask = lanes_of(lanes);
     const __m128 beyond =
         _mm_castsi128_ps(half == 0 ? _mm256_castsi256_si128(mask) : _mm256_extracti128_si256(mask, 1));
-    for (std::size_t c = 0; c < format.channels; ++c) {
+    for (std::size_t c = 0; c < source.channels; ++c) {
       const bool is_one =
           border == BorderColor::kOpaqueWhite || (border == BorderColor::kOpaqueBlack && c == 3);
       colors.half[half][c] = _mm_blendv_ps(colors.half[half][c], is_one ? one : _mm_setzero_ps(), beyond);
@@ -126,27 +135,27 @@ void put_border(std::uint32_t lanes, BorderColor border, const FormatInfo& forma
 
 /// One of a footprint's corners, of any format.
 TexelColors fetch_colors(const TexturePlan& plan, const TexturePlan::Footprint& f, std::size_t corner,
-                         const std::byte* base, const FormatInfo& format) {
+                         const TexelSource& source) {
+  const FormatInfo& format = format_info(source.format);
   const std::array<std::int32_t, 8>& texel = f.texel[corner];
   TexelColors colors;
   for (std::size_t half = 0; half < 2; ++half) {
     alignas(16) std::array<std::byte, 64> quad{};
     for (std::size_t i = 0; i < 4; ++i)
       std::memcpy(quad.data() + i * format.bytes,
-                  base + static_cast<std::size_t>(texel[4 * half + i]) * format.bytes, format.bytes);
+                  source.base + static_cast<std::size_t>(texel[4 * half + i]) * format.bytes, format.bytes);
     colors.half[half] = decode_quad(format, load_quad(quad.data(), format.bytes));
   }
   if (const std::uint32_t beyond = f.border >> (8 * corner) & 0xff; beyond != 0)
-    put_border(beyond, plan.border, format, colors);
+    put_border(beyond, plan.border, source, colors);
   return colors;
 }
 
 /// Any format, by its row of the table: all channels are numbers. Channels that it lacks are 0, alpha is 1.
-LaneColor filter_any(const TexturePlan& plan, const TexturePlan::Footprint& f, const std::byte* base) {
-  const FormatInfo& format = format_info(plan.format);
+LaneColor filter_any(const TexturePlan& plan, const TexturePlan::Footprint& f, const TexelSource& source) {
   // Bits, which arithmetic would change where they look like a NaN; their filter is always nearest.
-  if (number_kind(format.numeric) != NumberKind::kFloat) {
-    const TexelColors texel = fetch_colors(plan, f, 0, base, format);
+  if (number_kind(source.format) != NumberKind::kFloat) {
+    const TexelColors texel = fetch_colors(plan, f, 0, source);
     return {{texel[0], texel[1], texel[2], texel[3]}};
   }
   const __m256 scale = _mm256_set1_ps(1.0f / 256.0f);
@@ -160,7 +169,7 @@ LaneColor filter_any(const TexturePlan& plan, const TexturePlan::Footprint& f, c
     return _mm256_blendv_ps(mixed, a, _mm256_cmp_ps(w, _mm256_setzero_ps(), _CMP_EQ_OQ));
   };
   TexelColors corner[4];
-  for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(plan, f, i, base, format);
+  for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(plan, f, i, source);
   LaneColor color;
   for (std::size_t c = 0; c < 4; ++c)
     color.channel[c] = lerp(lerp(corner[0][c], corner[1][c], wx), lerp(corner[2][c], corner[3][c], wx), wy);
@@ -177,16 +186,16 @@ Way way_of(Format format) {
 }
 
 template <Way way>
-void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* base,
+void filter_group(const TexturePlan& plan, std::size_t group, const TexelSource& source,
                   std::array<LaneFloats, 4>& rgba) {
   const auto filter = [&](std::size_t level) {
     const TexturePlan::Footprint& footprint = plan.footprint[group][level];
     if constexpr (way == Way::kSrgb) {
-      return filter_srgb(fetch(footprint, base, plan.border));
+      return filter_srgb(fetch(footprint, source, plan.border));
     } else if constexpr (way == Way::kUnorm) {
-      return filter_unorm(fetch(footprint, base, plan.border));
+      return filter_unorm(fetch(footprint, source, plan.border));
     } else {
-      return filter_any(plan, footprint, base);
+      return filter_any(plan, footprint, source);
     }
   };
   LaneColor color = filter(0);
@@ -198,7 +207,7 @@ void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* b
           color.channel[c], _mm256_mul_ps(_mm256_sub_ps(coarser.channel[c], color.channel[c]), weight));
     }
   }
-  if (way != Way::kAny && is_bgra(plan.format)) std::swap(color.channel[0], color.channel[2]);
+  if (way != Way::kAny && is_bgra(source.format)) std::swap(color.channel[0], color.channel[2]);
   const __m256 one = _mm256_set1_ps(255.0f * 65536.0f);
   for (std::size_t c = 0; c < 4; ++c) {
     const bool number = way == Way::kAny || (way == Way::kSrgb && c < 3);
@@ -207,22 +216,43 @@ void filter_group(const TexturePlan& plan, std::size_t group, const std::byte* b
   }
 }
 
-}  // namespace
-
-void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::array<LaneFloats, 4>& rgba) {
-  const std::byte* const base = memory.data() + plan.base;
-  const Way way = way_of(plan.format);
+void filter(const TexturePlan& plan, const TexelSource& source, std::array<LaneFloats, 4>& rgba) {
+  const Way way = way_of(source.format);
   for (std::size_t group = 0; group < TexturePlan::kGroups; ++group) {
     if (plan.levels[group] == 0) {
       for (LaneFloats& channel : rgba) _mm256_storeu_ps(channel.data() + 8 * group, _mm256_setzero_ps());
     } else if (way == Way::kSrgb) {
-      filter_group<Way::kSrgb>(plan, group, base, rgba);
+      filter_group<Way::kSrgb>(plan, group, source, rgba);
     } else if (way == Way::kUnorm) {
-      filter_group<Way::kUnorm>(plan, group, base, rgba);
+      filter_group<Way::kUnorm>(plan, group, source, rgba);
     } else {
-      filter_group<Way::kAny>(plan, group, base, rgba);
+      filter_group<Way::kAny>(plan, group, source, rgba);
     }
   }
+}
+
+/// Decodes the blocks of a plan, and filters what they hold.
+void filter_blocks(const TexturePlan& plan, const std::byte* base, std::array<LaneFloats, 4>& rgba) {
+  alignas(32) std::array<std::byte, TexturePlan::kMaxBlocks * sizeof(BlockTexels)> texels;
+  const BlockCode code = block_code(plan.format);
+  const BlockCodeInfo& info = block_code_info(code);
+  const std::size_t block_texels = std::size_t{kBlockTexels} * info.decoded_bytes;
+  BlockTexels block;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plan.block_count); ++i) {
+    decode_block(code, {base + std::size_t{plan.blocks[i]} * info.bytes, info.bytes}, block);
+    std::memcpy(texels.data() + i * block_texels, block.bytes.data(), block_texels);
+  }
+  // Lanes that read nothing name the first texel.
+  if (plan.block_count == 0) std::fill_n(texels.begin(), block_texels, std::byte{0});
+  filter(plan, {texels.data(), decoded_format(plan.format), format_info(plan.format).channels}, rgba);
+}
+
+}  // namespace
+
+void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::array<LaneFloats, 4>& rgba) {
+  const std::byte* const base = memory.data() + plan.base;
+  if (is_block_format(plan.format)) return filter_blocks(plan, base, rgba);
+  filter(plan, {base, plan.format, format_info(plan.format).channels}, rgba);
 }
 
 }  // namespace quadrille::models

@@ -1,6 +1,7 @@
 /// The address half of the texture unit: levels, texel addresses and the cache lines they fall in (sample.h).
 #include "models/base/error.h"
 #include "models/texture/address.h"
+#include "models/texture/block/block_format.h"
 #include "models/texture/level_of_detail.h"
 #include "models/texture/sample.h"
 
@@ -35,7 +36,8 @@ LevelVectors level_vectors(const TextureLayout& layout, __m256i level, std::uint
 class LineCollector {
  public:
   explicit LineCollector(TexturePlan& plan)
-      : plan_(plan), texel_shift_(std::countr_zero(format_bytes(plan.format))) {
+      : plan_(plan),
+        texel_shift_(std::countr_zero(format_bytes(plan.format)) - (is_block_format(plan.format) ? 4 : 0)) {
     plan_.line_count = 0;
   }
 
@@ -103,9 +105,46 @@ class LineCollector {
   }
 
   TexturePlan& plan_;
-  int texel_shift_;                      // log2 of a texel's bytes
+  int texel_shift_;                      // log2 of a texel's bytes; -1 where a block of 16 has 8
   std::uint64_t seen_ = 0;               // buckets of which `latest_` is set
   std::array<std::uint8_t, 64> latest_;  // index of the line that a hash met last
+};
+
+/// Collects the distinct blocks of a request, and lets footprints name them by their places.
+class BlockCollector {
+ public:
+  explicit BlockCollector(TexturePlan& plan) : plan_(plan) {
+    plan_.block_count = 0;
+    if (is_block_format(plan.format)) place_.fill(kNone);
+  }
+  void add(TexturePlan::Footprint& footprint, std::uint32_t used) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const std::uint32_t read = used & ~(footprint.border >> (8 * corner));
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        std::int32_t& texel = footprint.texel[corner][lane];
+        texel = (read >> lane & 1) == 0
+                    ? 0
+                    : 16 * place_of(static_cast<std::uint32_t>(texel) >> 4) + (texel & 15);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint16_t kNone = 0xffff;
+  static constexpr std::size_t kPlaces = std::size_t{2} * TexturePlan::kMaxBlocks;
+
+  std::int32_t place_of(std::uint32_t block) {
+    std::size_t at = (block ^ block >> 9) % kPlaces;
+    while (place_[at] != kNone && plan_.blocks[place_[at]] != block) at = (at + 1) % kPlaces;
+    if (place_[at] == kNone) {
+      place_[at] = static_cast<std::uint16_t>(plan_.block_count);
+      plan_.blocks[static_cast<std::size_t>(plan_.block_count++)] = block;
+    }
+    return place_[at];
+  }
+
+  TexturePlan& plan_;
+  std::array<std::uint16_t, kPlaces> place_;  // by hash: index into the plan's blocks
 };
 
 /// What stays the same for all groups of a request.
@@ -139,7 +178,7 @@ std::uint32_t beyond_border(const SamplerState& sampler, const LevelVectors& at,
 /// Addresses of a group in one level. `folded_u`, `folded_v` are folded coordinates.
 void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v, __m256i level,
                     std::uint32_t used, std::uint32_t nearest, TexturePlan::Footprint& out,
-                    LineCollector& lines) {
+                    LineCollector& lines, BlockCollector& blocks) {
   const LevelVectors at = level_vectors(context.view.layout, level, used);
   const AxisTexels columns = axis_texels(folded_u, at.width, context.subtexel_bits, nearest),
                    rows = axis_texels(folded_v, at.height, context.subtexel_bits, nearest);
@@ -157,10 +196,11 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
   store_lanes(out.frac_x.data(), x.weight);
   store_lanes(out.frac_y.data(), y.weight);
   lines.add(texel, used, out.border);
+  if (tiling == Tiling::kBlocks) blocks.add(out, used);
 }
 
 void count_work(TexturePlan& plan, std::uint32_t used, std::uint32_t nearest, std::uint32_t border) {
-  const std::uint32_t passes = std::max(1u, format_bytes(plan.format) / 4);
+  const std::uint32_t passes = std::max(1u, format_bytes(decoded_format(plan.format)) / 4);
   plan.bilinear_quads += passes * (((used & 0x0f) != 0 ? 1u : 0u) + ((used & 0xf0) != 0 ? 1u : 0u));
   plan.texels +=
       static_cast<std::uint32_t>(4 * std::popcount(used & ~nearest) + std::popcount(used & nearest));
@@ -195,6 +235,7 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
 
   const PlanContext context{view, sampler, precision.subtexel_bits};
   LineCollector lines(plan);
+  BlockCollector blocks(plan);
   for (std::size_t group = 0; group < TexturePlan::kGroups; ++group) {
     const std::size_t lane = 8 * group;
     const std::uint32_t active = request.active >> lane & 0xff, nearest = nearest_lanes >> lane & 0xff;
@@ -203,7 +244,8 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
     const __m256 folded_u = fold_coordinate(_mm256_load_ps(u.data() + lane), sampler.wrap_u);
     const __m256 folded_v = fold_coordinate(_mm256_load_ps(v.data() + lane), sampler.wrap_v);
     const __m256i finer = load_lanes(levels.finer.data() + lane);
-    plan_footprint(context, folded_u, folded_v, finer, active, nearest, plan.footprint[group][0], lines);
+    plan_footprint(context, folded_u, folded_v, finer, active, nearest, plan.footprint[group][0], lines,
+                   blocks);
     count_work(plan, active, nearest, plan.footprint[group][0].border);
     const __m256 weight = _mm256_load_ps(levels.weight.data() + lane);
     const __m256i mixed = _mm256_castps_si256(_mm256_cmp_ps(weight, _mm256_setzero_ps(), _CMP_GT_OQ));
@@ -212,7 +254,8 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
     if (mixing == 0) continue;
     // + 1 where two levels are mixed: never beyond the last
     const __m256i coarser = _mm256_sub_epi32(finer, mixed);
-    plan_footprint(context, folded_u, folded_v, coarser, mixing, nearest, plan.footprint[group][1], lines);
+    plan_footprint(context, folded_u, folded_v, coarser, mixing, nearest, plan.footprint[group][1], lines,
+                   blocks);
     count_work(plan, mixing, nearest, plan.footprint[group][1].border);
   }
 }

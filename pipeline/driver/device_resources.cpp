@@ -31,7 +31,7 @@ DeviceResources::DeviceResources(const traces::CommandStream& stream, models::De
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
   for (const traces::Image& i : stream.images) {
     if (!i.is_attachment())
-      add(models::make_texture_layout(i.width, i.height, i.levels, models::format_bytes(i.format)).bytes);
+      add(models::make_texture_layout(i.format, i.width, i.height, i.levels).bytes);
     else
       for (std::uint32_t level = 0; level < i.levels; ++level)
         add(i.layers * level_surface(i, level).bytes());

@@ -68,6 +68,7 @@ const std::vector<Doubling>& doublings() {
        "quads addressed and tags looked up a cycle",
        {{"texture.address_quads_per_clk", 2}, {"texture.tags_per_clk", 2}}},
       {"texture.filter", "bilinear quads a cycle", {{"texture.filter_quads_per_clk", 2}}},
+      {"texture.decode", "blocks of textures decoded a cycle", {{"texture.decode_blocks_per_clk", 2}}},
       {"texture.groups_in_flight", "request groups of a texture unit", {{"texture.groups_in_flight", 2}}},
       {"texture.cache_misses", "misses of the texture caches under way", {{"texture.cache_misses", 2}}},
       {"rop.quads_per_clk", "quads a cycle of the ROPs", {{"rop.quads_per_clk", 2}}},

@@ -58,7 +58,8 @@ traces::CommandStream storage_stream(const Setting& setting) {
 
 /// What none of the scenes has: triangles beyond the guard band, many small ones, the same dropped by set-up,
 /// layers that lie behind each other, fragments that the shader drops, blended as floats, layers from back to
-/// front, lines within and beyond the guard band, points, storage buffers, and draws out of view.
+/// front, lines within and beyond the guard band, points, compressed textures, storage buffers, and draws out
+/// of view.
 std::vector<traces::CommandStream> own_streams(const Setting& setting) {
   using traces::Format;
   constexpr std::int32_t kBeyond = 100'000;  // pixels
@@ -81,6 +82,11 @@ std::vector<traces::CommandStream> own_streams(const Setting& setting) {
                               {.topology = traces::Topology::kLineList, .depth = true}));
   streams.push_back(stream_of(small, {.topology = traces::Topology::kLineList}));
   streams.push_back(stream_of(small, {.topology = traces::Topology::kPointList}));
+  const DrawTexture blocks{4 * setting.width, 4 * setting.height, 1, traces::Filter::kLinear,
+                           Format::kBc1RgbaUnorm};
+  streams.push_back(
+      stream_of(layers(setting.width, setting.height, 2, false),
+                {.fragment_shader = sampling_shader(blocks, {.right = 4, .down = 4}), .texture = blocks}));
   streams.push_back(storage_stream(setting));
   streams.push_back(stream_of(moved_right(small, 2 * setting.width), {.draws = kLayers}));
   return streams;

@@ -76,8 +76,7 @@ const char* fragment_shader_of(const DrawOptions& options) {
 }
 
 traces::TextureDescriptor add_texture(const DrawTexture& texture, traces::CommandStream& stream) {
-  traces::Image image{
-      "grey", traces::Format::kR8G8B8A8Unorm, texture.width, texture.height, texture.levels, {}, nullptr};
+  traces::Image image{"grey", texture.format, texture.width, texture.height, texture.levels, {}, nullptr};
   image.texels.assign(traces::texel_bytes(image), std::byte{0x80});
   stream.images.push_back(std::move(image));
   traces::Sampler sampler;

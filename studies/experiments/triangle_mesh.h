@@ -42,6 +42,7 @@ struct DrawTexture {
   std::uint32_t width = 0, height = 0;  ///< texels; 0: none
   std::uint32_t levels = 1;
   traces::Filter filter = traces::Filter::kNearest;  ///< within a level and between levels
+  traces::Format format = traces::Format::kR8G8B8A8Unorm;
 };
 
 struct DrawOptions {

@@ -194,6 +194,13 @@ void add_cores(Frames& frames, std::uint32_t width, std::uint32_t height) {
              {"texture.filter_quads_per_clk=1"}, [](const Work& w, const MachineConfig& m) {
                return 2 * w.quads / m.texture.filter_quads_per_clk / m.gpu.cores;
              });
+  const DrawTexture blocks{4 * width, 4 * height, 1, traces::Filter::kNearest, traces::Format::kBc1RgbaUnorm};
+  frames.add("texture", "every pixel a texel in a compressed block of its own, a block a cycle",
+             "quads x 4 blocks / decode_blocks_per_clk / cores", covered_frame(width, height, 32),
+             {.fragment_shader = sampling_shader(blocks, {.right = 4, .down = 4}), .texture = blocks},
+             {"texture.decode_blocks_per_clk=1"}, [](const Work& w, const MachineConfig& m) {
+               return 4 * w.quads / m.texture.decode_blocks_per_clk / m.gpu.cores;
+             });
 }
 
 /// A tile's first half, 8 x 4 pixels, is a warp.

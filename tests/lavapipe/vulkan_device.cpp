@@ -252,6 +252,7 @@ void VulkanDevice::create_device() {
   features.features.shaderClipDistance = present.shaderClipDistance;
   features.features.shaderCullDistance = present.shaderCullDistance;
   features.features.sampleRateShading = present.sampleRateShading;
+  features.features.textureCompressionBC = present.textureCompressionBC;
   features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
   features.features.multiViewport = present.multiViewport;
   features.features.geometryShader = present.geometryShader;  // gl_PrimitiveID in a fragment shader

@@ -69,6 +69,22 @@ VkFormat vk_format(traces::Format format) {
     case F::kA2R10G10B10Unorm: return VK_FORMAT_A2R10G10B10_UNORM_PACK32;
     case F::kA2B10G10R10Uint: return VK_FORMAT_A2B10G10R10_UINT_PACK32;
     case F::kE5B9G9R9Ufloat: return VK_FORMAT_E5B9G9R9_UFLOAT_PACK32;
+    case F::kBc1RgbUnorm: return VK_FORMAT_BC1_RGB_UNORM_BLOCK;
+    case F::kBc1RgbSrgb: return VK_FORMAT_BC1_RGB_SRGB_BLOCK;
+    case F::kBc1RgbaUnorm: return VK_FORMAT_BC1_RGBA_UNORM_BLOCK;
+    case F::kBc1RgbaSrgb: return VK_FORMAT_BC1_RGBA_SRGB_BLOCK;
+    case F::kBc2Unorm: return VK_FORMAT_BC2_UNORM_BLOCK;
+    case F::kBc2Srgb: return VK_FORMAT_BC2_SRGB_BLOCK;
+    case F::kBc3Unorm: return VK_FORMAT_BC3_UNORM_BLOCK;
+    case F::kBc3Srgb: return VK_FORMAT_BC3_SRGB_BLOCK;
+    case F::kBc4Unorm: return VK_FORMAT_BC4_UNORM_BLOCK;
+    case F::kBc4Snorm: return VK_FORMAT_BC4_SNORM_BLOCK;
+    case F::kBc5Unorm: return VK_FORMAT_BC5_UNORM_BLOCK;
+    case F::kBc5Snorm: return VK_FORMAT_BC5_SNORM_BLOCK;
+    case F::kBc6hUfloat: return VK_FORMAT_BC6H_UFLOAT_BLOCK;
+    case F::kBc6hSfloat: return VK_FORMAT_BC6H_SFLOAT_BLOCK;
+    case F::kBc7Unorm: return VK_FORMAT_BC7_UNORM_BLOCK;
+    case F::kBc7Srgb: return VK_FORMAT_BC7_SRGB_BLOCK;
   }
   QUADRILLE_CHECK(false, "format {}", static_cast<int>(format));
 }

@@ -44,6 +44,7 @@ Settings narrow() {
           {"depth.cache_ways", "2"},
           {"texture.cache_lines", "8"},
           {"texture.cache_ways", "2"},
+          {"texture.decode_blocks_per_clk", "1"},
           {"memory.page_idle", "20"},
           {"memory.write_queue", "16"},
           {"l2.write_back_lines", "16"},

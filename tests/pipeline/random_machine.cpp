@@ -47,6 +47,8 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.coarse_raster.segments_per_clk.set(1 + static_cast<int>(seed / 6 % 3));
   config.coarse_raster.walk_setup_clk.set(1 + static_cast<int>(seed / 6 % 4));
   config.depth.compression.set(static_cast<hw::DepthCompression>(seed % 3));
+  config.texture.blocks_held.set(static_cast<hw::BlocksHeld>(seed / 3 % 2));
+  config.texture.decode_blocks_per_clk.set(1 + static_cast<int>(seed % 8));
   config.rop.compression.set(static_cast<hw::ColorCompression>(seed / 2 % 3));
   config.vertex_fetch.reuse.set(
       *models::vertex_reuse_policies().all()[static_cast<std::size_t>(random.integer(0, 2))]);

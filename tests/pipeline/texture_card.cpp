@@ -54,6 +54,22 @@ models::PixelCode random_texel(RandomSource& random, Format format) {
   return code;
 }
 
+/// Blocks of chance; of floats in the mode of two ends of ten bits, below 2.
+void random_blocks(traces::Image& image, std::uint64_t seed) {
+  RandomSource random(seed);
+  for (std::byte& byte : image.texels) byte = static_cast<std::byte>(random.integer(0, 255));
+  const bool is_signed = image.format == Format::kBc6hSfloat;
+  if (!is_signed && image.format != Format::kBc6hUfloat) return;
+  constexpr std::uint32_t kTwoEnds = 3, kModeBits = 5, kEndBits = 10, kEnds = 6;
+  for (std::size_t at = 0; at < image.texels.size(); at += 16) {
+    std::uint64_t low = kTwoEnds;
+    for (std::uint32_t end = 0; end < kEnds; ++end)
+      low |= static_cast<std::uint64_t>(random.integer(0, is_signed ? 255 : 511))
+             << (kModeBits + kEndBits * end);
+    std::memcpy(image.texels.data() + at, &low, sizeof low);
+  }
+}
+
 const char* letter(Format format) {
   switch (traces::number_kind(format)) {
     case traces::NumberKind::kUint: return "u";
@@ -99,7 +115,6 @@ std::vector<std::byte> place_of(const TextureCard& card) {
 
 traces::Image card_image(Format format, std::uint32_t width, std::uint32_t height, std::uint32_t levels,
                          std::uint64_t seed) {
-  RandomSource random(seed);
   traces::Image image;
   image.name = "card";
   image.format = format;
@@ -107,6 +122,11 @@ traces::Image card_image(Format format, std::uint32_t width, std::uint32_t heigh
   image.height = height;
   image.levels = levels;
   image.texels.resize(traces::texel_bytes(image));
+  if (models::is_block_format(format)) {
+    random_blocks(image, seed);
+    return image;
+  }
+  RandomSource random(seed);
   const std::size_t bytes = models::format_bytes(format);
   for (std::size_t at = 0; at < image.texels.size(); at += bytes) {
     const models::PixelCode code = random_texel(random, format);

@@ -99,7 +99,7 @@ TEST_CASE("units: a unit of another rate than the arithmetic's fails, so each fr
       {"depth", {"depth.quads_per_clk=2"}},
       {"warp_packer", {"warp_packer.quads_per_clk=2"}},
       {"core", {"core.simd_lanes=16", "core.alu_clk=7", "core.export_bytes_per_clk=16"}},
-      {"texture", {"texture.filter_quads_per_clk=2"}},
+      {"texture", {"texture.filter_quads_per_clk=2", "texture.decode_blocks_per_clk=2"}},
       {"load_store", {"load_store.lines_per_clk=2"}},
       {"rop", {"rop.quads_per_clk=2"}},
       {"l2", {"gpu.channels=3"}},
