@@ -15,6 +15,7 @@ void add_render(CLI::App& app, Command& chosen) {
   job->scene.add_queries_to(*command);
   job->scene.add_formats_to(*command);
   job->scene.add_transparency_to(*command);
+  job->scene.add_compress_to(*command);
   job->add_to(*command);
   job->frames.add_to(*command);
   command->footer(R"(Examples:

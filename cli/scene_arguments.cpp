@@ -12,6 +12,7 @@
 #include "models/base/error.h"
 #include "models/raster/samples.h"
 #include "scenes/builtin/builtin.h"
+#include "scenes/image/compress.h"
 #include "scenes/image/image_io.h"
 #include "scenes/scene.h"
 #include "traces/trace_file.h"
@@ -223,6 +224,20 @@ void SceneArguments::use_queries(traces::CommandStream& stream) const {
   } catch (const UserError& error) { throw user_error("--queries: {}: {}", scene, error.what()); }
 }
 
+void SceneArguments::add_compress_to(CLI::App& command) {
+  command
+      .add_option("--compress", compress,
+                  "compress the textures on load, to see what that saves of bandwidth and costs in the "
+                  "picture: bc1: 8 bytes for 4x4 texels, alpha 0 or 1; bc3: 16 bytes")
+      ->check(one_of(scenes::kCompressionNames));
+}
+
+void SceneArguments::use_compression(traces::CommandStream& stream) const {
+  if (compress)
+    (void)scenes::compress_textures(
+        stream, *compress == "bc1" ? scenes::TextureCompression::kBc1 : scenes::TextureCompression::kBc3);
+}
+
 void SceneArguments::add_transparency_to(CLI::App& command) {
   command
       .add_option("--transparency", transparency,
@@ -358,6 +373,7 @@ traces::CommandStream SceneArguments::load_visibility() const {
 
 SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes::Moment& moment) const {
   Loaded loaded{file.record(moment), {}};
+  use_compression(loaded.stream);
   use_samples(loaded.stream);
   use_queries(loaded.stream);
   if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
@@ -376,6 +392,7 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
 SceneArguments::Loaded SceneArguments::load() const {
   if (is_trace()) {
     Loaded loaded{traces::read_trace(scene), {}};
+    use_compression(loaded.stream);
     use_samples(loaded.stream);
     use_queries(loaded.stream);
     return loaded;

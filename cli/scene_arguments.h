@@ -21,9 +21,10 @@ struct SceneArguments {
       view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
   std::optional<std::string> transparency, transparency_layers;
-  bool supersample = false;        ///< each sample is shaded for itself
-  bool alpha_to_coverage = false;  ///< of masked materials; not of a trace
-  bool queries = false;            ///< around every draw and pass
+  std::optional<std::string> compress;  ///< textures, of a scene or trace
+  bool supersample = false;             ///< each sample is shaded for itself
+  bool alpha_to_coverage = false;       ///< of masked materials; not of a trace
+  bool queries = false;                 ///< around every draw and pass
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
   bool leave_out = true;
@@ -40,6 +41,8 @@ struct SceneArguments {
   void add_formats_to(CLI::App& command);
   /// Adds --transparency and --transparency-layers, for such a command.
   void add_transparency_to(CLI::App& command);
+  /// Adds --compress, for a command that draws or records.
+  void add_compress_to(CLI::App& command);
   /// Adds --samples and what goes with it, for a command that draws or records.
   void add_samples_to(CLI::App& command);
   /// Adds --queries, for a command that draws or records.
@@ -61,6 +64,8 @@ struct SceneArguments {
   [[nodiscard]] Loaded load() const;
   /// Lets the passes of a stream have the wished samples, and shade by sample if wished. Throws `UserError`.
   void use_samples(traces::CommandStream& stream) const;
+  /// Compresses its textures if wished.
+  void use_compression(traces::CommandStream& stream) const;
   /// Puts queries around its draws and passes if wished. Throws `UserError`.
   void use_queries(traces::CommandStream& stream) const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.

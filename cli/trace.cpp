@@ -22,6 +22,7 @@ void add_record(CLI::App& trace, Command& chosen) {
   scene->add_queries_to(*command);
   scene->add_formats_to(*command);
   scene->add_transparency_to(*command);
+  scene->add_compress_to(*command);
   command->add_option("-o,--out", *file, "the trace to write")->type_name("F.qtrace")->required();
   command->callback([=, &chosen] {
     chosen = [=] {

@@ -145,6 +145,15 @@ const Experiment kExperiments[] = {
      &compression,
      {"builtin:courtyard", "builtin:flag"},
      "480x270"},
+    {"compressed-textures",
+     "Compressed textures",
+     "Nothing is published that could be compared byte for byte: the ruler is arithmetic.",
+     "A frame that shows every texel of a texture once, in each format, by one core: the bytes that its "
+     "texture unit asks for, beside those that a texel has. Then scenes on the default machine, with their "
+     "textures compressed on load by libsquish: what moves, and by how much textures and picture differ.",
+     &compressed_textures,
+     {"builtin:courtyard", "builtin:flag"},
+     "480x270"},
     {"traversal",
      "Traversal of triangles",
      "Lectures teach two ways (Papaioannou, Rasterization Architectures): edge walking is reasonably good "

@@ -108,6 +108,7 @@ class Readings {
 [[nodiscard]] Result formats(const Setting& setting);
 [[nodiscard]] Result color_writes(const Setting& setting);
 [[nodiscard]] Result compression(const Setting& setting);
+[[nodiscard]] Result compressed_textures(const Setting& setting);
 [[nodiscard]] Result traversal(const Setting& setting);
 [[nodiscard]] Result raster(const Setting& setting);
 [[nodiscard]] Result depth_precision(const Setting& setting);
