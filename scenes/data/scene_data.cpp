@@ -100,6 +100,12 @@ Bounds PlacedScene::bounds() const {
   return all;
 }
 
+SceneImage::SceneImage(std::string name, std::shared_ptr<const TextureFile> file)
+    : name_(std::move(name)),
+      size_({file->width, file->height}),
+      unpack_([file] { return finest_level(*file); }),
+      file_(file) {}
+
 SceneImage::Source SceneImage::source() const {
   if (!packed()) return [pixels = pixels_] { return pixels; };
   return [name = name_, size = size(), unpack = unpack_] {

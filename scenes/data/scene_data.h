@@ -24,6 +24,7 @@
 #include <glm/vec4.hpp>
 
 #include "scenes/image/image_io.h"
+#include "scenes/image/texture_file.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::scenes {
@@ -130,7 +131,11 @@ class SceneImage {
   /// none: they have to be unpacked to know it.
   SceneImage(std::string name, std::optional<Size> size, Unpack unpack)
       : name_(std::move(name)), size_(size), unpack_(std::move(unpack)) {}
+  /// Blocks with levels of their own. As a picture it is the finest level, decoded.
+  SceneImage(std::string name, std::shared_ptr<const TextureFile> file);
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// Null: levels are computed from the pixels.
+  [[nodiscard]] const std::shared_ptr<const TextureFile>& file() const { return file_; }
   [[nodiscard]] bool packed() const { return pixels_ == nullptr; }
   [[nodiscard]] bool knows_size() const { return size_.has_value(); }
   /// Unpacks the image where its size is not known otherwise. Not for two threads at a time.
@@ -151,6 +156,7 @@ class SceneImage {
   std::string name_;
   mutable std::optional<Size> size_;
   Unpack unpack_;
+  std::shared_ptr<const TextureFile> file_;
   mutable std::shared_ptr<const Rgba8Image> pixels_;  ///< null: packed
 };
 

@@ -7,6 +7,7 @@
 
 #include "models/base/error.h"
 #include "scenes/gltf/uri.h"
+#include "scenes/image/texture_file.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -36,7 +37,13 @@ SceneImage ImageReader::read(std::size_t index) {
   const std::string place = image_place(index);
   if (added) {
     encoded.bytes = std::make_shared<const std::vector<std::byte>>(fetch(index));
-    encoded.header = check_image_header(*encoded.bytes, place);
+    if (is_texture_file(*encoded.bytes)) {
+      encoded.file = std::make_shared<const TextureFile>(read_texture_file(*encoded.bytes, place));
+      encoded.header.width = encoded.file->width;
+      encoded.header.height = encoded.file->height;
+    } else {
+      encoded.header = check_image_header(*encoded.bytes, place);
+    }
     bytes_ += encoded.bytes->size();
   }
   // A few bytes can say that they are many pixels: what a scene may unpack grows with what it brings.
@@ -46,6 +53,7 @@ SceneImage ImageReader::read(std::size_t index) {
          fmt::format(
              "the images up to here are {} pixels in {} bytes of files; legal are {} and {} more a byte",
              pixels_, bytes_, kFreePixels, kPixelsAByte));
+  if (encoded.file != nullptr) return {image_name(index), encoded.file};
   return {image_name(index), picture_size(encoded.header),
           [bytes = encoded.bytes, place] { return decode_image(*bytes, place); }};
 }

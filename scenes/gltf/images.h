@@ -28,6 +28,7 @@ class ImageReader {
   struct Encoded {
     std::shared_ptr<const std::vector<std::byte>> bytes;
     ImageHeader header;
+    std::shared_ptr<const TextureFile> file{};  ///< of one with blocks and levels
   };
   [[noreturn]] void fail(std::size_t index, const std::string& reason) const;
   [[nodiscard]] std::string image_name(std::size_t index) const;

@@ -6,6 +6,7 @@
 
 #include "scenes/data/parallel.h"
 #include "scenes/image/mip_chain.h"
+#include "scenes/image/texture_file.h"
 #include "scenes/material/spirv_bindings.h"
 #include "scenes/record/recorder.h"
 #include "scenes/view/exposure.h"
@@ -65,6 +66,27 @@ bool is_srgb(std::size_t slot) {
          role == TextureSlot::kSpecularColor || role == TextureSlot::kSheenColor;
 }
 
+/// A texture with the levels of its file.
+traces::Image file_image(const SceneImage& source, bool srgb) {
+  const TextureFile& file = *source.file();
+  traces::Image image;
+  image.name = source.name();
+  image.format = with_encoding(file.format, srgb);
+  image.width = file.width;
+  image.height = file.height;
+  image.levels = file.levels;
+  image.packed = std::make_shared<const traces::UnpackTexels>(
+      [file = source.file(), image](const traces::LevelSink& sink) {
+        std::span<const std::byte> rest = file->texels;
+        for (std::uint32_t level = 0; level < file->levels; ++level) {
+          const std::uint64_t bytes = traces::level_bytes(image, level);
+          sink(level, rest.first(bytes));
+          rest = rest.subspan(bytes);
+        }
+      });
+  return image;
+}
+
 }  // namespace
 
 const Variant& Recorder::variant(const Primitive& primitive) {
@@ -98,6 +120,10 @@ void Recorder::add_textures(const std::vector<TextureKey>& keys) {
   unpack_images(keys);
   const std::size_t first = stream_.images.size();
   for (const TextureKey& key : keys) {
+    if (source(key).file() != nullptr) {
+      stream_.images.push_back(file_image(source(key), key.srgb));
+      continue;
+    }
     const SceneImage::Size size = source(key).size();
     const auto format = key.srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm;
     const auto packed = std::make_shared<const traces::UnpackTexels>(
@@ -122,7 +148,7 @@ void Recorder::unpack_images(const std::vector<TextureKey>& keys) {
   const std::vector<int> images(sources.begin(), sources.end());
   parallel_for(images.size(), [&](std::size_t i) {
     const SceneImage& image = scene_.images[static_cast<std::size_t>(images[i])];
-    if (!options_.keep_packed || !image.knows_size()) (void)image.pixels();
+    if (image.file() == nullptr && (!options_.keep_packed || !image.knows_size())) (void)image.pixels();
   });
 }
 
