@@ -24,6 +24,7 @@ void add_accuracy(CLI::App& app, Command& chosen);
 void add_leave_out(CLI::App& app, Command& chosen);
 void add_lists(CLI::App& app, Command& chosen);
 void add_why(CLI::App& app, Command& chosen);
+void add_explore(CLI::App& app, Command& chosen);
 void add_stability(CLI::App& app, Command& chosen);
 
 }  // namespace quadrille::cli

@@ -33,6 +33,7 @@ constexpr const char* kExamples = R"(Examples:
   quadrille diff a.png b.png        how far apart two pictures are
   quadrille compare a.json b.json   what differs between two frames
   quadrille accuracy builtin:courtyard      what speed costs in truth: windows and precisions
+  quadrille explore caches.toml     scenes on many machines, as a sweep file says
   quadrille trace record helmet.gltf -o helmet.qtrace
   quadrille stability --quick       frames and machines at the edge of what is possible
   quadrille experiment memory-scheduling    what others measured, on the simulated machine
@@ -124,6 +125,7 @@ int run(int argc, char** argv) {
   add_accuracy(app, chosen);
   add_leave_out(app, chosen);
   add_why(app, chosen);
+  add_explore(app, chosen);
   add_lists(app, chosen);
   add_stability(app, chosen);
   add_experiment(app, chosen);

@@ -12,6 +12,9 @@ find_package(meshoptimizer REQUIRED)
 pkg_check_modules(DRACO REQUIRED IMPORTED_TARGET draco)
 find_package(zstd REQUIRED)
 pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)  # captures of gfxreconstruct
+find_package(SQLite3 REQUIRED)  # results of sweeps
+find_package(muparser REQUIRED)  # their formulas
+find_package(OpenTURNS REQUIRED)  # their designs
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)

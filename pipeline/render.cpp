@@ -6,6 +6,7 @@
 
 #include "pipeline/driver/draw_culling.h"
 #include "pipeline/driver/host_cost.h"
+#include "pipeline/prepared_frame.h"
 #include "pipeline/render_by_draw.h"
 #include "pipeline/report/detail_log.h"
 
@@ -129,18 +130,21 @@ Check check_of(const CountersByDraw& counters) {
 
 namespace {
 
-RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig& config,
-                       const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
-                       CountersByDraw* counters) {
+std::uint64_t memory_bytes_of(const MachineConfig& config) {
+  return static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20;
+}
+
+/// Simulates a frame that is built, which took `build_s`.
+RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const MachineConfig& config,
+                             const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
+                             CountersByDraw* counters, double build_s) {
   RenderedFrame out;
   const auto start = Clock::now();
-  DeviceFrame frame(static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20);
-  build_frame(stream, config.precision(), frame, options.leave_out, config.shader_target());
   if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
   if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, counters);
-  const double build_s = seconds_since(start) - frame.fills.seconds();
+  build_s += seconds_since(start);
   const RunTimer timer(frame.fills);
   machine.run(limits);
   HostFigures host;
@@ -153,7 +157,7 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
   out.figures.host = host;
   note_pending(frame, out.figures.left_out);
   out.figures.order_dependent = frame.order_dependent();
-  out.figures.scene = stream.name;
+  out.figures.scene = scene;
   out.figures.faster = options.faster;
   if (options.window > 0) {
     out.figures.fidelity = "approximate";
@@ -163,6 +167,16 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
   out.image = read_image(frame);
   out.buffers = read_buffers(frame);
   return out;
+}
+
+RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig& config,
+                       const MachineOptions& options, const hw::RunLimits& limits, DetailOptions detail,
+                       CountersByDraw* counters) {
+  const auto start = Clock::now();
+  DeviceFrame frame(memory_bytes_of(config));
+  build_frame(stream, config.precision(), frame, options.leave_out, config.shader_target());
+  const double build_s = seconds_since(start) - frame.fills.seconds();
+  return simulate_built(frame, stream.name, config, options, limits, detail, counters, build_s);
 }
 
 }  // namespace
@@ -177,6 +191,33 @@ RenderedFrame render_exact_by_draw(const traces::CommandStream& stream, const Ma
                                    DetailOptions detail, CountersByDraw& counters) {
   detail.draws = true;
   return simulate(stream, config, options, limits, detail, &counters);
+}
+
+PreparedFrame::PreparedFrame(const traces::CommandStream& stream, const MachineConfig& config)
+    : stream_(stream), needs_(needs(config)), frame_(std::make_unique<DeviceFrame>(memory_bytes_of(config))) {
+  build_frame(stream, config.precision(), *frame_, true, config.shader_target());
+  for (const hw::DrawState& draw : frame_->frame.draws)
+    for (const hw::ProgramState* program : {&draw.vertex, &draw.fragment})
+      for (const hw::TextureState& texture : program->textures)
+        if (texture.fill != nullptr) texture.fill->need();
+}
+
+PreparedFrame::~PreparedFrame() = default;
+
+std::string PreparedFrame::needs(const MachineConfig& config) {
+  const models::Precision p = config.precision();
+  const ShaderTarget t = config.shader_target();
+  std::string text = fmt::format("{} {} {} {} {} {} {}", config.gpu.memory_mib.value(), p.subpixel_bits,
+                                 p.subtexel_bits, p.lod_bits, p.linear_log2, t.warp_slots, t.register_rows);
+  for (const models::IssueTiming::Class& c : t.timing.classes)
+    text += fmt::format(" {}/{}", c.issue, c.latency);
+  return text;
+}
+
+RenderedFrame PreparedFrame::render(const MachineConfig& config, const MachineOptions& options,
+                                    const hw::RunLimits& limits) {
+  QUADRILLE_CHECK(needs(config) == needs_, "a frame for {}, a machine of {}", needs_, needs(config));
+  return simulate_built(*frame_, stream_.name, config, options, limits, {}, nullptr, 0);
 }
 
 }  // namespace quadrille::pipeline

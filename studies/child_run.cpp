@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -80,7 +81,7 @@ void end_with(pid_t parent) {
 /// A child at work, and what it has sent so far.
 struct Child {
   pid_t pid = 0;
-  int pipe = -1;
+  int pipe = -1, log = -1;
   std::size_t number = 0;
   Clock::time_point start;
   ChildLimits limits;
@@ -90,7 +91,29 @@ struct Child {
   }
 };
 
+constexpr off_t kLogBytes = 64 << 10;
+
+/// A file without a name, which outlives the child that writes to it.
+int open_log() {
+  const int log = memfd_create("log", MFD_CLOEXEC);
+  if (log < 0) throw user_error("cannot start a run: {}", std::strerror(errno));
+  return log;
+}
+
+/// The end of it; closes it.
+std::string take_log(int log) {
+  if (log < 0) return {};
+  const off_t size = lseek(log, 0, SEEK_END);
+  std::string text(static_cast<std::size_t>(std::clamp<off_t>(size, 0, kLogBytes)), '\0');
+  const ssize_t got = pread(log, text.data(), text.size(), std::max<off_t>(0, size - kLogBytes));
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, got)));
+  close(log);
+  return text;
+}
+
 Child start_child(const ChildWork& work, std::size_t number) {
+  if (work.before) work.before();
+  const int log = work.limits.keep_log ? open_log() : -1;
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw user_error("cannot start a run: {}", std::strerror(errno));
   std::fflush(nullptr);  // what is buffered would be written twice
@@ -108,14 +131,16 @@ Child start_child(const ChildWork& work, std::size_t number) {
   if (pid < 0) {
     close(ends[0]);
     close(ends[1]);
+    if (log >= 0) close(log);
     throw user_error("cannot start a run: {}", std::strerror(reason));
   }
   if (pid == 0) {
     close(ends[0]);
+    if (log >= 0) dup2(log, STDERR_FILENO);
     work_and_exit(ends[1], work.work, work.limits);
   }
   close(ends[1]);
-  return {pid, ends[0], number, start, work.limits, {}};
+  return {pid, ends[0], log, number, start, work.limits, {}};
 }
 
 /// Takes what the child has sent; false once it has closed its end.
@@ -145,6 +170,7 @@ ChildRun finish_child(const Child& child, bool in_time, int signal = SIGKILL) {
   rusage usage{};
   while (wait4(child.pid, &status, 0, &usage) < 0 && errno == EINTR) {}
   ChildRun run;
+  run.log = take_log(child.log);
   run.wall_s = std::chrono::duration<double>(Clock::now() - child.start).count();
   run.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   run.peak_rss_mib = static_cast<double>(usage.ru_maxrss) / 1024.0;

@@ -27,11 +27,13 @@ struct ChildLimits {
   double seconds = 600;
   /// of address space; 0: no limit. (Sanitizers reserve terabytes: give none in a sanitized build.)
   std::uint64_t memory_bytes = 0;
+  bool keep_log = false;  ///< what it says on standard error goes to `ChildRun::log`
 };
 
 struct ChildRun {
   ChildEnd end = ChildEnd::kFailed;
   std::string output;  ///< what the work returned, or one line that says how it ended instead
+  std::string log;     ///< with `keep_log`: the last 64 KiB of it
   double wall_s = 0, cpu_s = 0;
   double peak_rss_mib = 0;  ///< of the child, with what it inherited resident
 };
@@ -49,6 +51,7 @@ struct ChildRun {
 struct ChildWork {
   std::function<std::string()> work;
   ChildLimits limits;
+  std::function<void()> before = {};  ///< called here, just before the fork: what the child is to inherit
 };
 /// Runs all works, up to `jobs` children at a time, in their order; `done(i, run)` is called here, as each
 /// ends.

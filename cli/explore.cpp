@@ -1,0 +1,204 @@
+/// `quadrille explore`: many machines draw many scenes, as a sweep file says.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "cli/command.h"
+#include "cli/image_files.h"
+#include "cli/process.h"
+#include "cli/scene_arguments.h"
+#include "models/base/error.h"
+#include "models/base/near_name.h"
+#include "models/base/say.h"
+#include "studies/explore/design.h"
+#include "studies/explore/explore_table.h"
+#include "studies/explore/version.h"
+
+namespace quadrille::cli {
+namespace {
+
+namespace explore = studies::explore;
+
+constexpr std::int64_t kMostJobs = 1024;
+
+struct ExploreArguments {
+  std::string sweep;
+  std::optional<std::string> out, csv, jobs;
+  bool dry_run = false, retry_failed = false, mix_versions = false;
+};
+
+/// The options of a [[scene]], by their keys.
+using TextOption = std::optional<std::string> SceneArguments::*;
+const std::map<std::string, TextOption>& text_options() {
+  static const std::map<std::string, TextOption> options{
+      {"size", &SceneArguments::size},
+      {"scene", &SceneArguments::scene_choice},
+      {"camera", &SceneArguments::camera},
+      {"eye", &SceneArguments::eye},
+      {"at", &SceneArguments::at},
+      {"time", &SceneArguments::time},
+      {"animation", &SceneArguments::animation},
+      {"exposure", &SceneArguments::exposure},
+      {"shading", &SceneArguments::shading},
+      {"order", &SceneArguments::order},
+      {"view", &SceneArguments::view},
+      {"color_format", &SceneArguments::color_format},
+      {"depth_format", &SceneArguments::depth_format},
+      {"vert", &SceneArguments::vert},
+      {"frag", &SceneArguments::frag},
+      {"samples", &SceneArguments::samples},
+      {"transparency", &SceneArguments::transparency},
+      {"transparency_layers", &SceneArguments::transparency_layers}};
+  return options;
+}
+const std::map<std::string, bool SceneArguments::*>& switches() {
+  static const std::map<std::string, bool SceneArguments::*> options{
+      {"supersample", &SceneArguments::supersample},
+      {"alpha_to_coverage", &SceneArguments::alpha_to_coverage}};
+  return options;
+}
+
+/// The arguments that `render` would have been given. Throws `UserError` with the line of the sweep.
+SceneArguments arguments_of(const explore::SceneEntry& entry) {
+  SceneArguments arguments;
+  arguments.scene = entry.scene;
+  for (const explore::Entry& option : entry.options) {
+    if (const auto text = text_options().find(option.key); text != text_options().end()) {
+      arguments.*text->second = option.value;
+    } else if (const auto flag = switches().find(option.key); flag != switches().end()) {
+      if (option.value != "true" && option.value != "false")
+        throw user_error("{}: {}: true or false is expected", option.where, option.key);
+      arguments.*flag->second = option.value == "true";
+    } else {
+      std::vector<std::string> legal{"file", "name"};
+      for (const auto& [key, unused] : text_options()) legal.push_back(key);
+      for (const auto& [key, unused] : switches()) legal.push_back(key);
+      throw user_error("{}: unknown key '{}'; a scene has {}{}", option.where, option.key,
+                       fmt::join(legal, ", "), did_you_mean(option.key, legal));
+    }
+  }
+  try {
+    arguments.check();
+    arguments.check_there();
+  } catch (const UserError& error) { throw user_error("{}: {}", entry.where, error.what()); }
+  return arguments;
+}
+
+/// How far the points are: a bar on a terminal, else a line now and then.
+class ProgressLine {
+ public:
+  void show(const explore::ExploreProgress& p) {
+    const std::string text =
+        fmt::format("{} of {} points{}, {:.0f} s left: {}", p.done, p.total,
+                    p.failed > 0 ? fmt::format(", {} failed", p.failed) : "", p.seconds_left, p.last);
+    if (isatty(STDERR_FILENO) == 1) {
+      constexpr std::size_t kWidth = 24;
+      const std::size_t full = kWidth * p.done / std::max<std::size_t>(1, p.total);
+      bar_.show(fmt::format("[{}{}] {}", std::string(full, '='), std::string(kWidth - full, ' '), text));
+    } else if (watch_.seconds() >= next_ || p.done == p.total) {
+      say(text + "\n");
+      next_ = watch_.seconds() + kSecondsBetweenLines;
+    }
+  }
+  void clear() { bar_.clear(); }
+  void show(const std::string& text) { bar_.show(text); }
+
+ private:
+  static constexpr double kSecondsBetweenLines = 5;
+  Progress bar_;
+  Stopwatch watch_;
+  double next_ = 0;
+};
+
+std::vector<explore::LoadedScene> loaded_scenes(const explore::Sweep& sweep, ProgressLine& progress) {
+  std::vector<SceneArguments> arguments;
+  for (const explore::SceneEntry& entry : sweep.scenes) arguments.push_back(arguments_of(entry));
+  std::vector<explore::LoadedScene> scenes;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    progress.show(fmt::format("loading {}", arguments[i].scene));
+    try {
+      scenes.push_back(explore::with_hash(sweep.scenes[i], arguments[i].load().stream));
+    } catch (const UserError& error) { throw user_error("{}: {}", sweep.scenes[i].where, error.what()); }
+  }
+  progress.clear();
+  return scenes;
+}
+
+int run_explore(const ExploreArguments& a) {
+  explore::ExploreSetting setting;
+  setting.jobs = static_cast<int>(a.jobs ? parse_whole(*a.jobs, "--jobs", 1, kMostJobs)
+                                         : std::max(1u, std::thread::hardware_concurrency()));
+  setting.retry_failed = a.retry_failed;
+  setting.mix_versions = a.mix_versions;
+  setting.version = explore::program_version(QUADRILLE_VERSION);
+  if (a.csv) check_output("--csv", *a.csv, {".csv"});
+  if (a.out) check_output("--out", *a.out, {".db"});
+  ProgressLine progress;
+  setting.progress = [&](const explore::ExploreProgress& p) { progress.show(p); };
+  const explore::Sweep sweep = explore::read_sweep(a.sweep);
+  const explore::Space space(sweep);
+  const std::vector<explore::LoadedScene> scenes = loaded_scenes(sweep, progress);
+  const explore::Plan plan = explore::planned(sweep, space);
+  if (plan.candidates.empty())
+    throw user_error("{}: no machine is left to draw with; {}", a.sweep,
+                     plan.excluded.empty() ? "" : plan.excluded.begin()->first);
+  const std::string out = a.out.value_or(std::filesystem::path(a.sweep).stem().string() + ".db");
+  // A dry run leaves nothing behind.
+  std::error_code unknown;
+  explore::Results results(a.dry_run && !std::filesystem::exists(out, unknown) ? "" : out);
+  explore::Exploration exploration(sweep, space, scenes, results, setting);
+  exploration.check_formulas(plan.candidates.front());
+  const std::string plan_text = explore::plan_table(sweep, plan, scenes.size());
+  if (a.dry_run) {
+    const explore::Measured measured = exploration.measure(plan.candidates);
+    Tables(true, std::nullopt)
+        .print(plan_text + explore::cost_table(measured, plan.candidates.size(),
+                                               exploration.known(plan.candidates), setting.jobs));
+    return kDone;
+  }
+  exploration.run(plan.candidates);
+  progress.clear();
+  if (a.csv) write_text(*a.csv, explore::points_csv(sweep, space, plan, exploration));
+  Tables(true, std::nullopt).print(plan_text + explore::result_table(sweep, plan, exploration));
+  return explore::failed_points(plan, exploration) == 0 ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_explore(CLI::App& app, Command& chosen) {
+  CLI::App* command =
+      app.add_subcommand("explore", "Draws scenes on many machines, as a sweep file says (docs/explore.md).");
+  const auto a = std::make_shared<ExploreArguments>();
+  command->add_option("SWEEP", a->sweep, "a .toml file: scenes, machines, what varies, objectives")
+      ->required()
+      ->type_name("SWEEP.toml");
+  command
+      ->add_option("--out", a->out,
+                   "the results, a file of SQLite; the same command goes on where it was ended (default: "
+                   "SWEEP.db here)")
+      ->type_name("F.db");
+  command->add_option("--csv", a->csv, "writes a line for each point: values, objectives, costs")
+      ->type_name("F.csv");
+  command
+      ->add_option("--jobs", a->jobs, "points at a time, each a process; else as many as the host has cores")
+      ->type_name("N");
+  command->add_flag(
+      "--dry-run", a->dry_run,
+      "says how many points there are, how long they take and how much disk, from a few that it "
+      "draws; saves nothing");
+  command->add_flag("--retry-failed", a->retry_failed, "draws points again that are known to have failed");
+  command->add_flag("--mix-versions", a->mix_versions,
+                    "adds to results of another version of the program; each point says which drew it");
+  command->footer(R"(Examples:
+  quadrille explore caches.toml --dry-run
+  quadrille explore caches.toml --jobs 2 --csv caches.csv
+Exit code: 0 all points done, 1 some failed (the table says why), 2 something given was wrong.)");
+  command->callback([a, &chosen] { chosen = [a] { return run_explore(*a); }; });
+}
+
+}  // namespace quadrille::cli
