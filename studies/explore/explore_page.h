@@ -1,0 +1,19 @@
+/// A sweep as a page that a browser shows (pipeline/report/page.h).
+#pragma once
+
+#include <string>
+
+#include "studies/explore/exploration.h"
+#include "studies/explore/results.h"
+
+namespace quadrille::studies::explore {
+
+/// What the page shows: machines with their objectives, the front, Sobol indices, pictures, failures.
+/// Throws `UserError`.
+[[nodiscard]] std::string sweep_json(const Sweep& sweep, const Plan& plan, const Exploration& exploration,
+                                     const Results& results);
+/// The page, one file that needs nothing else. Throws `UserError`.
+[[nodiscard]] std::string sweep_page(const Sweep& sweep, const Plan& plan, const Exploration& exploration,
+                                     const Results& results);
+
+}  // namespace quadrille::studies::explore
