@@ -29,7 +29,7 @@ std::string film_program() {
   const char* const path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string file = (folder.empty() ? "." : folder) + "/" + kProgram;
+    std::string file = (folder.empty() ? "." : folder) + "/" + kProgram;
     if (access(file.c_str(), X_OK) == 0 && std::filesystem::is_regular_file(file)) return file;
   }
   return "";
