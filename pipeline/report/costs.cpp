@@ -72,7 +72,7 @@ class Entry {
   }
   /// The text with the machine's word in the place of a parameter in braces: "dram_{memory.kind}".
   [[nodiscard]] std::string word(std::string_view key, const MachineConfig& machine) const {
-    const std::string given = text(key);
+    std::string given = text(key);
     const std::size_t open = given.find('{'), close = given.find('}');
     if (open == std::string::npos) return given;
     const hw::ParamBase* p = close == std::string::npos || close < open
