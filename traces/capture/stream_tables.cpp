@@ -51,14 +51,14 @@ Index StreamTables::attachment(Handle handle) {
   traces::Image image;
   image.name = fmt::format("image {}", handle);
   image.format = image_format(from.format);
-  if (image.format == traces::Format::kUndefined || from.type != VK_IMAGE_TYPE_2D)
+  const bool depth = models::format_info(image.format).may(models::kDepthUse);
+  if ((!depth && !models::format_info(image.format).may(models::kColorUse)) || from.type != VK_IMAGE_TYPE_2D)
     throw user_error("an attachment of {} is not supported", format_name(from.format));
   image.width = from.width;
   image.height = from.height;
   image.levels = from.levels;
   image.layers = from.layers;
   image.samples = from.samples;
-  const bool depth = models::format_info(image.format).may(models::kDepthUse);
   image.usage = depth ? traces::kDepthAttachment : traces::kColorAttachment;
   if ((from.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0 && from.samples == 1) image.usage |= traces::kSampled;
   return attachments_[handle] = append(stream.images, std::move(image));
@@ -89,12 +89,12 @@ Index StreamTables::texels(const ViewObject& view) {
   if (const auto found = textures_.find(key); found != textures_.end()) return found->second;
   traces::Image image;
   image.name = fmt::format("image {}", view.image);
-  image.format = expanded_format(view);
+  image.format = texture_format(view);
   image.width = from.width;
   image.height = from.height;
   image.levels = from.levels;
   bool missing = false;
-  image.texels = expanded_texels(from, view, missing);
+  image.texels = texture_texels(from, view, missing);
   if (missing) notes_.insert(image.name + " is sampled, but the capture does not hold all of it: zeros");
   return textures_[key] = append(stream.images, std::move(image));
 }

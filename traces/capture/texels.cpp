@@ -5,133 +5,180 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <functional>
+#include <span>
 
 #include "models/base/error.h"
-#include "traces/capture/block_texels.h"
+#include "models/rop/blend.h"
+#include "models/texture/block/block_format.h"
 #include "traces/capture/vulkan_names.h"
 
 namespace quadrille::capture {
 namespace {
 
-using Texel = std::array<std::uint8_t, 4>;
+using models::Format;
+using models::FormatInfo;
 
-/// A component of a texel in one word.
-struct Bits {
-  std::uint8_t shift = 0, count = 0;
-};
-/// A format of up to 32 bits a texel whose components are UNORM.
-struct PackedFormat {
-  VkFormat format;
-  std::uint8_t bytes;
-  std::array<Bits, 4> components;  ///< one of no bits reads as 0, or 1 if it is alpha
-  bool srgb = false;
-};
-constexpr PackedFormat kPacked[] = {
-    {VK_FORMAT_R8_UNORM, 1, {{{0, 8}, {}, {}, {}}}},
-    {VK_FORMAT_R8G8_UNORM, 2, {{{0, 8}, {8, 8}, {}, {}}}},
-    {VK_FORMAT_R8G8B8_UNORM, 3, {{{0, 8}, {8, 8}, {16, 8}, {}}}},
-    {VK_FORMAT_R8G8B8A8_UNORM, 4, {{{0, 8}, {8, 8}, {16, 8}, {24, 8}}}},
-    {VK_FORMAT_B8G8R8A8_UNORM, 4, {{{16, 8}, {8, 8}, {0, 8}, {24, 8}}}},
-    {VK_FORMAT_A8B8G8R8_UNORM_PACK32, 4, {{{0, 8}, {8, 8}, {16, 8}, {24, 8}}}},
-    {VK_FORMAT_R8G8B8A8_SRGB, 4, {{{0, 8}, {8, 8}, {16, 8}, {24, 8}}}, true},
-    {VK_FORMAT_B8G8R8A8_SRGB, 4, {{{16, 8}, {8, 8}, {0, 8}, {24, 8}}}, true},
-    {VK_FORMAT_R4G4B4A4_UNORM_PACK16, 2, {{{12, 4}, {8, 4}, {4, 4}, {0, 4}}}},
-    {VK_FORMAT_B4G4R4A4_UNORM_PACK16, 2, {{{4, 4}, {8, 4}, {12, 4}, {0, 4}}}},
-    {VK_FORMAT_A4R4G4B4_UNORM_PACK16, 2, {{{8, 4}, {4, 4}, {0, 4}, {12, 4}}}},
-    {VK_FORMAT_A4B4G4R4_UNORM_PACK16, 2, {{{0, 4}, {4, 4}, {8, 4}, {12, 4}}}},
-    {VK_FORMAT_R5G6B5_UNORM_PACK16, 2, {{{11, 5}, {5, 6}, {0, 5}, {}}}},
-    {VK_FORMAT_B5G6R5_UNORM_PACK16, 2, {{{0, 5}, {5, 6}, {11, 5}, {}}}},
-    {VK_FORMAT_R5G5B5A1_UNORM_PACK16, 2, {{{11, 5}, {6, 5}, {1, 5}, {0, 1}}}},
-    {VK_FORMAT_A1R5G5B5_UNORM_PACK16, 2, {{{10, 5}, {5, 5}, {0, 5}, {15, 1}}}},
-};
+using Bytes = std::vector<std::byte>;
 
-const PackedFormat* packed_format(std::uint32_t format) {
-  const auto* row = std::ranges::find(kPacked, static_cast<VkFormat>(format), &PackedFormat::format);
-  return row == std::end(kPacked) ? nullptr : row;
-}
-
-/// A UNORM number of so many bits as the nearest one of eight.
-std::uint8_t to_eight(std::uint32_t code, std::uint32_t bits) {
-  const std::uint32_t most = (1u << bits) - 1;
-  return static_cast<std::uint8_t>((code * 255 + most / 2) / most);
-}
-
-Texel unpack(const PackedFormat& format, const std::byte* source) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, source, format.bytes);
-  Texel texel{0, 0, 0, 255};
-  for (std::size_t c = 0; c < 4; ++c) {
-    const Bits bits = format.components[c];
-    if (bits.count > 0) texel[c] = to_eight(word >> bits.shift & ((1u << bits.count) - 1), bits.count);
+/// From alpha in front of four-bit components to alpha behind them.
+Bytes turned(std::span<const std::byte> texels) {
+  Bytes all(texels.begin(), texels.end());
+  for (std::size_t at = 0; at + 2 <= all.size(); at += 2) {
+    std::uint16_t word = 0;
+    std::memcpy(&word, &all[at], sizeof word);
+    word = static_cast<std::uint16_t>(word << 4 | word >> 12);
+    std::memcpy(&all[at], &word, sizeof word);
   }
-  return texel;
+  return all;
 }
 
-Texel swizzled(const Texel& texel, const std::array<std::uint32_t, 4>& swizzle) {
-  Texel out{};
-  for (std::size_t c = 0; c < 4; ++c) {
-    const std::uint32_t from = swizzle[c];
-    if (from == VK_COMPONENT_SWIZZLE_IDENTITY) out[c] = texel[c];
-    else if (from >= VK_COMPONENT_SWIZZLE_R && from <= VK_COMPONENT_SWIZZLE_A)
-      out[c] = texel[from - VK_COMPONENT_SWIZZLE_R];
-    else out[c] = from == VK_COMPONENT_SWIZZLE_ONE ? 255 : 0;
+/// An alpha of one behind three bytes.
+Bytes widened(std::span<const std::byte> texels) {
+  Bytes all;
+  all.reserve(texels.size() / 3 * 4);
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    all.push_back(texels[i]);
+    if (i % 3 == 2) all.push_back(std::byte{255});
+  }
+  return all;
+}
+
+/// Formats of Vulkan that the machine has in another order or size.
+struct OtherFormat {
+  VkFormat format;
+  std::size_t bytes;  ///< of a texel
+  Format ours;
+  Bytes (*as_ours)(std::span<const std::byte>);
+};
+constexpr OtherFormat kOthers[] = {
+    {VK_FORMAT_A4R4G4B4_UNORM_PACK16, 2, Format::kR4G4B4A4Unorm, turned},
+    {VK_FORMAT_A4B4G4R4_UNORM_PACK16, 2, Format::kB4G4R4A4Unorm, turned},
+    {VK_FORMAT_R8G8B8_UNORM, 3, Format::kR8G8B8A8Unorm, widened},
+};
+const OtherFormat* other_format(std::uint32_t format) {
+  const auto* row = std::ranges::find(kOthers, static_cast<VkFormat>(format), &OtherFormat::format);
+  return row == std::end(kOthers) ? nullptr : row;
+}
+
+/// Of the texels as they are, before the view exchanges components.
+Format own_format(std::uint32_t format) {
+  const OtherFormat* other = other_format(format);
+  return other != nullptr ? other->ours : image_format(format);
+}
+
+/// Which component of a texel, or a number (VkComponentSwizzle), the view shows as component `c`.
+std::uint32_t shown(const ViewObject& view, std::uint32_t c) {
+  return view.swizzle[c] == VK_COMPONENT_SWIZZLE_IDENTITY ? VK_COMPONENT_SWIZZLE_R + c : view.swizzle[c];
+}
+
+/// Does the view show each component as it is? What the format lacks is 0, and 1 as alpha.
+bool shows_all_as_they_are(const ViewObject& view, const FormatInfo& format) {
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const auto number =
+        static_cast<std::uint32_t>(c == 3 ? VK_COMPONENT_SWIZZLE_ONE : VK_COMPONENT_SWIZZLE_ZERO);
+    const std::uint32_t at = shown(view, c);
+    if (at != VK_COMPONENT_SWIZZLE_R + c && (c < format.channels || at != number)) return false;
+  }
+  return true;
+}
+
+/// Are all components bytes, so that exchanging them loses nothing?
+bool has_bytes(const FormatInfo& format) {
+  if (format.numeric != models::Numeric::kUnorm && format.numeric != models::Numeric::kSrgb) return false;
+  return std::ranges::all_of(std::span(format.component).first(format.channels),
+                             [](const models::ComponentBits& c) { return c.bits == 8; });
+}
+
+/// Exchanged components are bytes where they were, and floats elsewhere.
+Format exchanged_format(Format own) {
+  const FormatInfo& texels = models::format_info(models::decoded_format(own));
+  if (!has_bytes(texels)) return Format::kR32G32B32A32Float;
+  return texels.numeric == models::Numeric::kSrgb ? Format::kR8G8B8A8Srgb : Format::kR8G8B8A8Unorm;
+}
+
+template <class Number>
+std::array<Number, 4> exchanged(const std::array<Number, 4>& texel, Number one, const ViewObject& view) {
+  std::array<Number, 4> out{};
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const std::uint32_t at = shown(view, c);
+    if (at >= VK_COMPONENT_SWIZZLE_R && at <= VK_COMPONENT_SWIZZLE_A)
+      out[c] = texel[at - VK_COMPONENT_SWIZZLE_R];
+    else if (at == VK_COMPONENT_SWIZZLE_ONE) out[c] = one;
   }
   return out;
 }
 
-struct Extent {
-  std::uint32_t width, height;
-};
-Extent level_extent(const ImageObject& image, std::uint32_t level) {
-  return {std::max(1u, image.width >> level), std::max(1u, image.height >> level)};
+std::array<std::uint8_t, 4> bytes_of(const FormatInfo& format, const models::PixelCode& code) {
+  std::array<std::uint8_t, 4> bytes{0, 0, 0, 255};
+  for (std::size_t c = 0; c < format.channels; ++c)
+    bytes[c] = static_cast<std::uint8_t>(code.word[0] >> format.component[c].shift);
+  return bytes;
 }
 
-/// One layer of a level, row by row.
-std::vector<Texel> plain_texels(const PackedFormat& format, Extent extent,
-                                std::span<const std::byte> source) {
-  std::vector<Texel> texels(std::size_t{extent.width} * extent.height);
-  for (std::size_t i = 0; i < texels.size(); ++i)
-    texels[i] = unpack(format, source.data() + i * format.bytes);
-  return texels;
+template <class T>
+void append(std::vector<std::byte>& all, const std::array<T, 4>& texel) {
+  const auto bytes = std::as_bytes(std::span(texel));
+  all.insert(all.end(), bytes.begin(), bytes.end());
 }
 
-std::size_t layer_bytes(std::uint32_t format, Extent extent) {
-  if (const PackedFormat* packed = packed_format(format))
-    return std::size_t{extent.width} * extent.height * packed->bytes;
-  return block_bytes(format) * ((extent.width + 3) / 4) * ((extent.height + 3) / 4);
+/// Texels of one level of a layer, whose components the view exchanges.
+void append_exchanged(std::vector<std::byte>& all, Format format, std::span<const std::byte> texels,
+                      const ViewObject& view) {
+  const FormatInfo& info = models::format_info(format);
+  for (; !texels.empty(); texels = texels.subspan(info.bytes)) {
+    models::PixelCode code;
+    std::memcpy(code.word.data(), texels.data(), info.bytes);
+    if (has_bytes(info)) append(all, exchanged<std::uint8_t>(bytes_of(info, code), 255, view));
+    else append(all, exchanged<float>(models::decode_color(format, code), 1, view));
+  }
+}
+
+/// Appends one level of a layer.
+void append_level(Bytes& all, const ViewObject& view, std::uint32_t width, std::uint32_t height,
+                  std::span<const std::byte> layer) {
+  const OtherFormat* other = other_format(view.format);
+  Bytes texels = other != nullptr ? other->as_ours(layer) : Bytes(layer.begin(), layer.end());
+  const Format own = own_format(view.format);
+  if (shows_all_as_they_are(view, models::format_info(own))) {
+    all.insert(all.end(), texels.begin(), texels.end());
+    return;
+  }
+  if (models::is_block_format(own)) texels = models::decode_blocks(own, width, height, texels);
+  append_exchanged(all, models::decoded_format(own), texels, view);
+}
+
+std::size_t layer_bytes(std::uint32_t format, std::uint32_t width, std::uint32_t height) {
+  if (const OtherFormat* other = other_format(format)) return other->bytes * width * height;
+  return models::format_area_bytes(image_format(format), width, height);
 }
 
 }  // namespace
 
-traces::Format expanded_format(const ViewObject& view) {
-  const PackedFormat* packed = packed_format(view.format);
-  if (packed == nullptr && block_bytes(view.format) == 0)
+Format texture_format(const ViewObject& view) {
+  const Format own = own_format(view.format);
+  if (!models::format_info(own).may(models::kFileUse))
     throw user_error("a texture of {} is not supported", format_name(view.format));
-  const bool srgb = packed != nullptr ? packed->srgb : is_srgb_block(view.format);
-  return srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm;
+  if (shows_all_as_they_are(view, models::format_info(own))) return own;
+  if (models::number_kind(own) != models::NumberKind::kFloat ||
+      models::format_info(own).may(models::kDepthUse))
+    throw user_error("a view of {} that exchanges components is not supported", format_name(view.format));
+  return exchanged_format(own);
 }
 
-std::vector<std::byte> expanded_texels(const ImageObject& image, const ViewObject& view, bool& missing) {
-  std::vector<std::byte> all;
+std::vector<std::byte> texture_texels(const ImageObject& image, const ViewObject& view, bool& missing) {
+  const Format format = texture_format(view);
+  Bytes all;
   for (std::uint32_t level = 0; level < image.levels; ++level) {
-    const Extent extent = level_extent(image, level);
-    const std::size_t bytes = layer_bytes(view.format, extent), begin = bytes * view.layer;
-    const std::vector<std::byte>& source = image.texels[level];
+    const std::uint32_t width = std::max(1u, image.width >> level),
+                        height = std::max(1u, image.height >> level);
+    const std::size_t bytes = layer_bytes(view.format, width, height), begin = bytes * view.layer;
+    const Bytes& source = image.texels[level];
     if (source.size() < begin + bytes) {
       missing = true;
-      all.resize(all.size() + std::size_t{4} * extent.width * extent.height);
+      all.resize(all.size() + models::format_area_bytes(format, width, height));
       continue;
     }
-    const std::span<const std::byte> layer = std::span(source).subspan(begin, bytes);
-    const PackedFormat* packed = packed_format(view.format);
-    const std::vector<Texel> texels = packed != nullptr
-                                          ? plain_texels(*packed, extent, layer)
-                                          : block_texels(view.format, extent.width, extent.height, layer);
-    for (const Texel& texel : texels) {
-      const Texel out = swizzled(texel, view.swizzle);
-      for (const std::uint8_t c : out) all.push_back(std::byte{c});
-    }
+    append_level(all, view, width, height, std::span(source).subspan(begin, bytes));
   }
   return all;
 }

@@ -58,6 +58,46 @@ constexpr FormatRow kImageFormats[] = {
     {VK_FORMAT_R32G32_SINT, Format::kR32G32Sint},
     {VK_FORMAT_R32G32B32A32_UINT, Format::kR32G32B32A32Uint},
     {VK_FORMAT_R32G32B32A32_SINT, Format::kR32G32B32A32Sint},
+    {VK_FORMAT_A8B8G8R8_UNORM_PACK32, Format::kR8G8B8A8Unorm},  // the same bytes
+    {VK_FORMAT_A8B8G8R8_SRGB_PACK32, Format::kR8G8B8A8Srgb},
+    {VK_FORMAT_R8_SNORM, Format::kR8Snorm},
+    {VK_FORMAT_R8_SRGB, Format::kR8Srgb},
+    {VK_FORMAT_R8G8_SNORM, Format::kR8G8Snorm},
+    {VK_FORMAT_R8G8_SRGB, Format::kR8G8Srgb},
+    {VK_FORMAT_R8G8B8A8_SNORM, Format::kR8G8B8A8Snorm},
+    {VK_FORMAT_R16_UNORM, Format::kR16Unorm},
+    {VK_FORMAT_R16_SNORM, Format::kR16Snorm},
+    {VK_FORMAT_R16G16_UNORM, Format::kR16G16Unorm},
+    {VK_FORMAT_R16G16_SNORM, Format::kR16G16Snorm},
+    {VK_FORMAT_R16G16B16A16_UNORM, Format::kR16G16B16A16Unorm},
+    {VK_FORMAT_R16G16B16A16_SNORM, Format::kR16G16B16A16Snorm},
+    {VK_FORMAT_R4G4_UNORM_PACK8, Format::kR4G4Unorm},
+    {VK_FORMAT_R4G4B4A4_UNORM_PACK16, Format::kR4G4B4A4Unorm},
+    {VK_FORMAT_B4G4R4A4_UNORM_PACK16, Format::kB4G4R4A4Unorm},
+    {VK_FORMAT_R5G6B5_UNORM_PACK16, Format::kR5G6B5Unorm},
+    {VK_FORMAT_B5G6R5_UNORM_PACK16, Format::kB5G6R5Unorm},
+    {VK_FORMAT_R5G5B5A1_UNORM_PACK16, Format::kR5G5B5A1Unorm},
+    {VK_FORMAT_B5G5R5A1_UNORM_PACK16, Format::kB5G5R5A1Unorm},
+    {VK_FORMAT_A1R5G5B5_UNORM_PACK16, Format::kA1R5G5B5Unorm},
+    {VK_FORMAT_A2R10G10B10_UNORM_PACK32, Format::kA2R10G10B10Unorm},
+    {VK_FORMAT_A2B10G10R10_UINT_PACK32, Format::kA2B10G10R10Uint},
+    {VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, Format::kE5B9G9R9Ufloat},
+    {VK_FORMAT_BC1_RGB_UNORM_BLOCK, Format::kBc1RgbUnorm},
+    {VK_FORMAT_BC1_RGB_SRGB_BLOCK, Format::kBc1RgbSrgb},
+    {VK_FORMAT_BC1_RGBA_UNORM_BLOCK, Format::kBc1RgbaUnorm},
+    {VK_FORMAT_BC1_RGBA_SRGB_BLOCK, Format::kBc1RgbaSrgb},
+    {VK_FORMAT_BC2_UNORM_BLOCK, Format::kBc2Unorm},
+    {VK_FORMAT_BC2_SRGB_BLOCK, Format::kBc2Srgb},
+    {VK_FORMAT_BC3_UNORM_BLOCK, Format::kBc3Unorm},
+    {VK_FORMAT_BC3_SRGB_BLOCK, Format::kBc3Srgb},
+    {VK_FORMAT_BC4_UNORM_BLOCK, Format::kBc4Unorm},
+    {VK_FORMAT_BC4_SNORM_BLOCK, Format::kBc4Snorm},
+    {VK_FORMAT_BC5_UNORM_BLOCK, Format::kBc5Unorm},
+    {VK_FORMAT_BC5_SNORM_BLOCK, Format::kBc5Snorm},
+    {VK_FORMAT_BC6H_UFLOAT_BLOCK, Format::kBc6hUfloat},
+    {VK_FORMAT_BC6H_SFLOAT_BLOCK, Format::kBc6hSfloat},
+    {VK_FORMAT_BC7_UNORM_BLOCK, Format::kBc7Unorm},
+    {VK_FORMAT_BC7_SRGB_BLOCK, Format::kBc7Srgb},
     {VK_FORMAT_D16_UNORM, Format::kD16Unorm},
     {VK_FORMAT_D32_SFLOAT, Format::kD32Float},
     // 24 bits of depth, whatever is done with the other eight
@@ -169,7 +209,21 @@ traces::Wrap wrap_of(std::uint32_t value, std::string& unsupported) {
     case VK_SAMPLER_ADDRESS_MODE_REPEAT: return traces::Wrap::kRepeat;
     case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT: return traces::Wrap::kMirroredRepeat;
     case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE: return traces::Wrap::kClampToEdge;
+    case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER: return traces::Wrap::kClampToBorder;
+    case VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE: return traces::Wrap::kMirrorClampToEdge;
     default: unsupported = fmt::format("VkSamplerAddressMode {}", value); return traces::Wrap::kClampToEdge;
+  }
+}
+/// Only where a wrap asks for it: elsewhere programs leave anything there.
+models::BorderColor border_of(std::uint32_t value, std::string& unsupported) {
+  switch (value) {
+    case VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK:
+    case VK_BORDER_COLOR_INT_TRANSPARENT_BLACK: return models::BorderColor::kTransparentBlack;
+    case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
+    case VK_BORDER_COLOR_INT_OPAQUE_BLACK: return models::BorderColor::kOpaqueBlack;
+    case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE:
+    case VK_BORDER_COLOR_INT_OPAQUE_WHITE: return models::BorderColor::kOpaqueWhite;
+    default: unsupported = fmt::format("VkBorderColor {}", value); return {};
   }
 }
 traces::Filter filter_of(std::uint32_t value, std::string& unsupported) {
@@ -189,6 +243,7 @@ SamplerObject sampler_of(const Value& info) {
                                                                         : traces::Filter::kNearest;
   state.wrap_u = wrap_of(info["addressModeU"].u32(), made.unsupported);
   state.wrap_v = wrap_of(info["addressModeV"].u32(), made.unsupported);
+  if (models::has_border(state)) state.border = border_of(info["borderColor"].u32(), made.unsupported);
   state.lod_bias = info["mipLodBias"].f32();
   state.min_lod = info["minLod"].f32();
   state.max_lod = info["maxLod"].f32();
