@@ -97,6 +97,7 @@ class FrameRecorder {
   void begin_render_pass(const Value& info);
   void begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth);
   void end_pass();
+  void note_lacking_contents();
   void clear_attachments(const Value& call);
   void clear_at_begin(const Value& attachment);
   void clear_area(const Value& attachment, const Value& rect);
@@ -137,7 +138,9 @@ class FrameRecorder {
 
   traces::BeginPass pass_;
   std::vector<StoredPart> pass_stores_;  ///< that this pass leaves contents in
-  std::size_t begin_at_ = 0;             ///< of its command
+  /// Attachments that this pass would load, and whose contents the capture does not bring.
+  std::set<traces::Index> pass_lacks_;
+  std::size_t begin_at_ = 0;  ///< of its command
   bool in_pass_ = false, drew_ = false;
   int depth_ = 0;  ///< of command buffers that execute others
   std::uint32_t pass_width_ = 0, pass_height_ = 0;

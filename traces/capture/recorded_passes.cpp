@@ -105,8 +105,10 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
   use.load = target.load;
   use.store = target.store;
   // What earlier frames left there is not known but where the capture brings it.
-  if (use.load == traces::LoadOp::kLoad && !tables_.stored_part(view.image, view.level, view.layer))
+  if (use.load == traces::LoadOp::kLoad && !tables_.stored_part(view.image, view.level, view.layer)) {
     use.load = traces::LoadOp::kDontCare;
+    pass_lacks_.insert(use.image);
+  }
   if (use.store == traces::StoreOp::kStore) pass_stores_.push_back({view.image, view.level, view.layer});
   const traces::Image& image = tables_.stream.images[use.image];
   pass_width_ = traces::level_width(image, use.level);
@@ -117,6 +119,7 @@ void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const Pass
   if (in_pass_) end_pass();
   pass_ = {};
   pass_stores_.clear();
+  pass_lacks_.clear();
   last_shown_ = 0;
   for (const PassTarget& color : colors) {
     if (color.view == 0)
@@ -153,6 +156,20 @@ void FrameRecorder::end_pass() {
   in_pass_ = false;
   tables_.stream.commands.emplace_back(traces::EndPass{});
   for (const StoredPart& part : pass_stores_) tables_.note_stored(part.image, part.level, part.layer);
+  note_lacking_contents();
+}
+
+/// Of attachments that no clear at the pass's begin filled.
+void FrameRecorder::note_lacking_contents() {
+  const auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
+  const auto note = [&](const traces::AttachmentUse& use) {
+    if (use.load == traces::LoadOp::kDontCare && pass_lacks_.contains(use.image))
+      tables_.note_lacking(use.image,
+                           " begins with what an earlier frame left, which the capture does not hold: zeros, "
+                           "and depths of 1");
+  };
+  for (const traces::ColorAttachmentUse& color : begin.colors) note(color);
+  note(begin.depth);
 }
 
 /// A clear of everything before the first draw is how the pass begins.

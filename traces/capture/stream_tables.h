@@ -50,6 +50,9 @@ class StreamTables {
   }
   /// Is any part of it stored?
   [[nodiscard]] bool stored(Handle image) const;
+  void note_lacking(traces::Index image, std::string_view what) {
+    notes_.insert(stream.images[image].name + std::string(what));
+  }
   /// What the capture lacks and is taken to be zeros, a line each.
   [[nodiscard]] const std::set<std::string>& notes() const { return notes_; }
 

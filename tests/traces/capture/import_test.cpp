@@ -93,6 +93,13 @@ TEST_CASE("capture: a draw that needs what the machine lacks is left out if that
   CHECK(std::ranges::all_of(pixels, [](std::uint32_t pixel) { return pixel == kBlue; }));
 }
 
+TEST_CASE("capture: a pass that begins with an earlier frame's picture says that it is not there") {
+  CHECK(import({}).notes.empty());
+  const Import made = import({.loads = true});
+  REQUIRE(made.notes.size() == 1);
+  CHECK_THAT(*made.notes.begin(), Catch::Contains("begins with what an earlier frame left"));
+}
+
 TEST_CASE("capture: a barrier is no command that could be missed") {
   CHECK(import({.extra_command = "CmdPipelineBarrier2"}).skipped.empty());
 }

@@ -153,7 +153,9 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish) {
   };
   command("BeginCommandBuffer", {});
   const json clear{{"color", json::array({0, 0, 0x3f800000, 0x3f800000})}};  // blue
-  const json color{{"imageView", kShownView}, {"loadOp", VK_ATTACHMENT_LOAD_OP_CLEAR}, {"clearValue", clear}};
+  const json color{{"imageView", kShownView},
+                   {"loadOp", wish.loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR},
+                   {"clearValue", clear}};
   const json area{{"extent", {{"width", 16}, {"height", 16}}}};
   command("CmdBeginRendering",
           {{"pRenderingInfo",

@@ -12,6 +12,7 @@ struct SmallCapture {
   const char* entry = "main";           ///< of both shaders
   const char* extra_command = nullptr;  ///< a command without a meaning here, by name, within the pass
   bool sampler_compares = false;
+  bool loads = false;  ///< the pass begins with what was there
 };
 [[nodiscard]] std::vector<std::byte> small_capture(const SmallCapture& wish = {});
 inline constexpr std::uint8_t kTexel[4] = {200, 100, 50, 255};
