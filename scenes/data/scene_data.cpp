@@ -100,7 +100,7 @@ Bounds PlacedScene::bounds() const {
   return all;
 }
 
-SceneImage::SceneImage(std::string name, std::shared_ptr<const TextureFile> file)
+SceneImage::SceneImage(std::string name, const std::shared_ptr<const TextureFile>& file)
     : name_(std::move(name)),
       size_({file->width, file->height}),
       unpack_([file] { return decoded_level(*file, 0); }),

@@ -132,7 +132,7 @@ class SceneImage {
   SceneImage(std::string name, std::optional<Size> size, Unpack unpack)
       : name_(std::move(name)), size_(size), unpack_(std::move(unpack)) {}
   /// Blocks with levels of their own. As a picture it is the finest level, decoded.
-  SceneImage(std::string name, std::shared_ptr<const TextureFile> file);
+  SceneImage(std::string name, const std::shared_ptr<const TextureFile>& file);
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Null: levels are computed from the pixels.
   [[nodiscard]] const std::shared_ptr<const TextureFile>& file() const { return file_; }

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -48,6 +49,30 @@ void widen_to_rgba(const std::vector<std::uint8_t>& in, std::size_t channels, st
     out[o + 3] = channels == 4 ? in[i + 3] : channels == 2 ? in[i + 1] : std::uint8_t{255};
   }
 }
+
+/// A file in memory of which nothing before its beginning or behind its end can be read. OpenImageIO's own
+/// reader takes any place that a file names.
+class FileInMemory : public OIIO::Filesystem::IOMemReader {
+ public:
+  using IOMemReader::IOMemReader;
+  bool seek(std::int64_t offset) override { return lies_within(offset) && IOMemReader::seek(offset); }
+  std::size_t read(void* buffer, std::size_t count) override {
+    const std::size_t done = pread(buffer, count, m_pos);
+    m_pos += static_cast<std::int64_t>(done);
+    return done;
+  }
+  std::size_t pread(void* buffer, std::size_t count, std::int64_t offset) override {
+    if (!lies_within(offset)) return 0;
+    const std::size_t done = std::min(count, size() - static_cast<std::size_t>(offset));
+    if (done > 0) std::memcpy(buffer, m_buf.data() + offset, done);
+    return done;
+  }
+
+ private:
+  [[nodiscard]] bool lies_within(std::int64_t offset) const {
+    return offset >= 0 && static_cast<std::size_t>(offset) <= size();
+  }
+};
 
 /// While any thread decodes, standard error leads nowhere: libpng and others print lines of their own about
 /// damaged files, and our caller prints its own.
@@ -154,7 +179,7 @@ bool decode(const void* bytes, std::size_t size, const char* format, bool as_flo
   const QuietErrors quiet;
   if (!as_float && is_webp_with_alpha(bytes, size, format))
     return decode_webp(bytes, size, max_bytes, result);
-  OIIO::Filesystem::IOMemReader memory(const_cast<void*>(bytes), size);
+  FileInMemory memory(const_cast<void*>(bytes), size);
   OIIO::Filesystem::IOProxy* proxy = &memory;
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);

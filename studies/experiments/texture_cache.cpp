@@ -30,6 +30,8 @@ std::vector<std::string> cache(int kibibytes, int ways, const char* order = "sca
 /// The machines that each scene is drawn on, in the order of `SceneReadings`.
 std::vector<std::vector<std::string>> machines() {
   std::vector<std::vector<std::string>> all;
+  all.reserve(kKibibytes.size() + kWays.size() + kOrderedKibibytes.size() * kOrders.size() +
+              kReplacedKibibytes.size() * kReplacements.size() + 1);
   for (const int size : kKibibytes) all.push_back(cache(size, kUsualWays));
   for (const int ways : kWays) all.push_back(cache(kPublishedKnee, ways));
   for (const int size : kOrderedKibibytes)
