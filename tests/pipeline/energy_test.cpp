@@ -81,12 +81,12 @@ void require(const Range& r, double low, double typical, double high) {
 
 bool in_order(const Range& r) { return 0 <= r.low && r.low <= r.typical && r.typical <= r.high; }
 
-Figures counted(std::vector<std::pair<std::string, CounterFigure>> counters) {
+Figures counted(const std::vector<std::pair<std::string, CounterFigure>>& counters) {
   Figures f;
-  for (auto& [path, counter] : counters) {
+  for (const auto& [path, counter] : counters) {
     UnitFigures unit;
     unit.path = path;
-    unit.counters.push_back(std::move(counter));
+    unit.counters.push_back(counter);
     f.units.push_back(std::move(unit));
   }
   return f;

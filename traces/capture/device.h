@@ -26,7 +26,7 @@ class Device {
   [[nodiscard]] std::vector<std::byte> contents(const BufferObject& buffer) const;
   /// Changes whenever the memory of the buffer does.
   [[nodiscard]] std::uint64_t version(const BufferObject& buffer) const;
-  void write_buffer(Handle buffer, std::uint64_t offset, std::span<const std::byte> bytes);
+  void write_buffer(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);
 
   [[nodiscard]] Descriptors& set(Handle handle);
   void update(Descriptors& descriptors, const Value& write);
@@ -61,7 +61,7 @@ class Device {
   void allocate_sets(const Value& call);
   void update_sets(const Value& call);
   void copy_descriptors(const Value& copy);
-  void write_memory(Handle memory, std::uint64_t offset, std::span<const std::byte> bytes);
+  void write_memory(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);
   void write_image(const Block& block);
 };
 

@@ -28,14 +28,14 @@ struct RasterState {
 };
 
 /// What a VkGraphicsPipelineCreateInfo fixes; what it leaves to commands has any value. Throws `UserError`.
-[[nodiscard]] RasterState fixed_state(const Value& pipeline);
+[[nodiscard]] RasterState fixed_state(const Value& info);
 
 /// Carries out a command that sets dynamic state; false if it is another command. Throws `UserError`.
 bool set_dynamic_state(RasterState& dynamic, const Call& call);
 
 /// The state of a draw: what the pipeline fixes, and of what it leaves to commands what they set. Throws
 /// `UserError` for a dynamic state that this program does not know.
-[[nodiscard]] RasterState combined_state(const Value& pipeline, const RasterState& fixed,
+[[nodiscard]] RasterState combined_state(const Value& info, const RasterState& fixed,
                                          const RasterState& dynamic);
 
 }  // namespace quadrille::capture

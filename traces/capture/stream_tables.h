@@ -25,7 +25,7 @@ class StreamTables {
 
   [[nodiscard]] traces::Index buffer(Handle handle);
   /// The image as an attachment: it holds nothing until a pass stores it.
-  [[nodiscard]] traces::Index attachment(Handle image);
+  [[nodiscard]] traces::Index attachment(Handle handle);
   /// What a shader samples through the view: the attachment, if a pass of this frame stored it, else the
   /// texels that the capture brings.
   [[nodiscard]] traces::TextureDescriptor texture(const ViewObject& view);
@@ -38,7 +38,7 @@ class StreamTables {
   [[nodiscard]] traces::Index descriptors(const traces::DescriptorSet& wanted);
 
   /// A vertex attribute, expanded.
-  [[nodiscard]] traces::Index expanded_attribute(Handle buffer, const AttributeSource& source);
+  [[nodiscard]] traces::Index expanded_attribute(Handle handle, const AttributeSource& source);
   /// Indices of a draw whose provoking vertex is the last: a buffer of 32-bit ones. Throws `UserError`.
   [[nodiscard]] traces::Index index_buffer(const std::vector<std::uint32_t>& indices);
 
