@@ -24,7 +24,8 @@ struct PointKey {
   std::string scene;        ///< hash of the command stream
   std::string machine;      ///< hash of all parameters
   std::int64_t window = 0;  ///< cycles; 0: exact
-  friend auto operator<=>(const PointKey&, const PointKey&) = default;  // NOLINT(modernize-use-nullptr)
+  // NOLINTNEXTLINE(modernize-use-nullptr)
+  friend auto operator<=>(const PointKey&, const PointKey&) = default;
 };
 
 /// What is known of a point.
