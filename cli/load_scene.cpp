@@ -16,6 +16,7 @@ traces::CommandStream SceneArguments::load_visibility() const {
 SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes::Moment& moment) const {
   Loaded loaded{file.record(moment), {}};
   use_samples(loaded.stream);
+  use_anisotropy(loaded.stream);
   use_queries(loaded.stream);
   if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
   if (const std::size_t packed = file.unused_images(); packed > 0)
@@ -46,6 +47,7 @@ SceneArguments::Loaded SceneArguments::load() const {
   if (is_trace()) {
     Loaded loaded = is_capture() ? load_capture() : Loaded{traces::read_trace(scene), {}};
     use_samples(loaded.stream);
+    use_anisotropy(loaded.stream);
     use_queries(loaded.stream);
     return loaded;
   }

@@ -203,11 +203,21 @@ void SceneArguments::add_samples_to(CLI::App& command) {
                   "(default: 1, "
                   "or as the trace has them)")
       ->type_name("N");
+  command
+      .add_option("--anisotropy", anisotropy,
+                  "samples along the longer axis of a pixel's footprint, 1 to 16, that textures filtered "
+                  "between texels and levels take at most (default: 1, or as the trace has them)")
+      ->type_name("N");
   command.add_flag("--supersample", supersample,
                    "shades each sample for itself, where it lies, instead of each pixel once");
   command.add_flag("--alpha-to-coverage", alpha_to_coverage,
                    "the alpha of materials with an alpha test says which samples stay, so that their edges "
                    "are smoothed too");
+}
+
+void SceneArguments::use_anisotropy(traces::CommandStream& stream) const {
+  if (anisotropy)
+    traces::use_anisotropy(stream, static_cast<float>(parse_whole(*anisotropy, "--anisotropy", 1, 16)));
 }
 
 void SceneArguments::add_queries_to(CLI::App& command) {
@@ -326,6 +336,7 @@ scenes::SceneOptions SceneArguments::options() const {
 
 void SceneArguments::check() const {
   if (samples) (void)parse_samples(*samples);
+  if (anisotropy) (void)parse_whole(*anisotropy, "--anisotropy", 1, 16);
   if (skip_unsupported && !is_capture())
     throw user_error("--skip-unsupported: {} is no capture; it is for .gfxr files", scene);
   if (supersample && (samples ? parse_samples(*samples) == 1 : !is_trace()))

@@ -21,6 +21,7 @@ struct SceneArguments {
       view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
   std::optional<std::string> transparency, transparency_layers;
+  std::optional<std::string> anisotropy;
   bool supersample = false;        ///< each sample is shaded for itself
   bool alpha_to_coverage = false;  ///< of masked materials; not of a trace
   bool skip_unsupported = false;   ///< of a capture, draw without it
@@ -66,6 +67,7 @@ struct SceneArguments {
   [[nodiscard]] Loaded load() const;
   /// Lets the passes of a stream have the wished samples, and shade by sample if wished. Throws `UserError`.
   void use_samples(traces::CommandStream& stream) const;
+  void use_anisotropy(traces::CommandStream& stream) const;
   /// Puts queries around its draws and passes if wished. Throws `UserError`.
   void use_queries(traces::CommandStream& stream) const;
   /// The same frame in the colours of its triangles (`scenes::triangle_id_color`). Not of a trace.

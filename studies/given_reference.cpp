@@ -27,7 +27,8 @@ MachineAndReference render_with_reference(const traces::CommandStream& stream,
                                           const models::Precision& precision) {
   ref::Options options;
   options.mode = ref::Mode::kGiven;
-  options.precision = {precision.subpixel_bits, precision.subtexel_bits, precision.lod_bits};
+  options.precision = {precision.subpixel_bits, precision.subtexel_bits, precision.lod_bits,
+                       precision.ellipse_axis};
   const auto observe = [&](const pipeline::RasterizedPiece& t) { options.given.push_back(given(t)); };
   MachineAndReference both;
   both.machine = pipeline::render_functional_frame(stream, precision, observe).image;

@@ -14,14 +14,19 @@ std::uint32_t level_height(const Image& image, std::uint32_t level) {
   return level < 32 ? std::max(1u, image.height >> level) : 1;
 }
 
+std::uint32_t level_depth(const Image& image, std::uint32_t level) {
+  return level < 32 ? std::max(1u, image.depth >> level) : 1;
+}
+
 std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
-  return models::format_area_bytes(image.format, level_width(image, level), level_height(image, level));
+  return models::format_area_bytes(image.format, level_width(image, level), level_height(image, level)) *
+         level_depth(image, level);
 }
 
 std::uint64_t texel_bytes(const Image& image) {
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < image.levels; ++level) bytes += level_bytes(image, level);
-  return bytes;
+  return image.is_attachment() ? bytes : bytes * image.layers;
 }
 
 std::uint32_t level_count(const CommandStream& stream, const TextureDescriptor& texture) {
@@ -88,11 +93,14 @@ Image decompressed(const Image& image) {
   plain.texels.clear();
   std::span<const std::byte> blocks = image.texels;
   for (std::uint32_t level = 0; level < image.levels; ++level) {
-    const std::uint64_t bytes = level_bytes(image, level);
-    const std::vector<std::byte> texels = models::decode_blocks(
-        image.format, level_width(image, level), level_height(image, level), blocks.first(bytes));
-    plain.texels.insert(plain.texels.end(), texels.begin(), texels.end());
-    blocks = blocks.subspan(bytes);
+    const std::uint32_t width = level_width(image, level), height = level_height(image, level);
+    const std::uint64_t bytes = models::format_area_bytes(image.format, width, height);
+    for (std::uint32_t slice = 0; slice < level_depth(image, level) * image.layers; ++slice) {
+      const std::vector<std::byte> texels =
+          models::decode_blocks(image.format, width, height, blocks.first(bytes));
+      plain.texels.insert(plain.texels.end(), texels.begin(), texels.end());
+      blocks = blocks.subspan(bytes);
+    }
   }
   return plain;
 }

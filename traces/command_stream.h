@@ -20,6 +20,7 @@
 
 #include "models/base/attachment.h"
 #include "models/base/format.h"
+#include "models/base/image_view.h"
 #include "models/base/pipeline_state.h"
 #include "models/base/sampler.h"
 #include "traces/queries.h"
@@ -43,6 +44,7 @@ using models::Format;
 using models::format_bytes;
 using models::format_components;
 using models::FrontFace;
+using models::ImageKind;
 using models::is_integer_format;
 using models::kLastFormat;
 using models::kMaxColorAttachments;
@@ -60,6 +62,7 @@ using models::StoreOp;
 using models::Topology;
 using models::Transparency;
 using models::TransparencyState;
+using models::ViewKind;
 using models::Wrap;
 using Sampler = models::SamplerState;
 
@@ -79,10 +82,11 @@ using UnpackTexels = std::function<void(const LevelSink&)>;
 enum ImageUsage : std::uint8_t { kSampled = 1, kColorAttachment = 2, kDepthAttachment = 4 };
 inline constexpr std::uint8_t kAllUsages = kSampled | kColorAttachment | kDepthAttachment;
 
-/// A 2D image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
-/// first, rows top to bottom, tightly packed; of compressed formats rows of blocks, of which those at the
-/// right and lower edges may reach beyond the level. Level i is max(1, width >> i) by max(1, height >> i). An
-/// attachment has no texels: it holds what passes store, in each level of each layer.
+/// An image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
+/// first, in each level layer by layer or slice by slice, rows top to bottom, tightly packed; of compressed
+/// formats rows of blocks, of which those at the right and lower edges may reach beyond the level. Level i is
+/// max(1, width >> i) by max(1, height >> i), and so for the depth of a volume. An attachment is 2D and has no
+/// texels: it holds what passes store, in each level of each layer.
 struct Image {
   std::string name;
   Format format = Format::kR8G8B8A8Unorm;
@@ -92,20 +96,23 @@ struct Image {
   std::shared_ptr<const UnpackTexels> packed{};
   std::uint8_t usage = kSampled;  ///< of `ImageUsage`
   std::uint32_t samples = 1;      ///< a pixel: 1, 2, 4 or 8; of an attachment that is not sampled
-  std::uint32_t layers = 1;       ///< of an attachment: images of this size and as many levels
+  std::uint32_t layers = 1;       ///< images of this size and as many levels
+  ImageKind kind = ImageKind::k2D;
+  std::uint32_t depth = 1;  ///< of a volume
   [[nodiscard]] bool is_attachment() const { return (usage & (kColorAttachment | kDepthAttachment)) != 0; }
   friend bool operator==(const Image&, const Image&) = default;
 };
 /// Texels of a level.
 [[nodiscard]] std::uint32_t level_width(const Image& image, std::uint32_t level);
 [[nodiscard]] std::uint32_t level_height(const Image& image, std::uint32_t level);
+[[nodiscard]] std::uint32_t level_depth(const Image& image, std::uint32_t level);
 /// A level of a layer of an image, of which a pass may draw to one by itself.
 struct ImagePart {
   Index image = kNone;
   std::uint32_t level = 0, layer = 0;
   friend auto operator<=>(const ImagePart&, const ImagePart&) = default;  // NOLINT(modernize-use-nullptr)
 };
-/// Bytes of a level's texels, and of all levels' of a layer.
+/// Bytes of a level's texels of a layer, and of all that the image brings or, of an attachment, of a layer.
 [[nodiscard]] std::uint64_t level_bytes(const Image& image, std::uint32_t level);
 [[nodiscard]] std::uint64_t texel_bytes(const Image& image);
 /// Puts the texels of a packed image into `texels`. Throws `UserError`.
@@ -181,9 +188,18 @@ struct UniformBinding {
 struct TextureDescriptor {
   std::uint32_t binding = 0;
   Index image = kNone, sampler = kNone;
-  /// What is sampled: so many levels of one layer, from this one on, which is the finest. 0: all behind it.
+  /// What is sampled: so many levels, from this one on, which is the finest. 0: all behind it. Of an array or
+  /// a cube, so many layers from `layer` on; else that one.
   std::uint32_t first_level = 0, levels = 0, layer = 0;
+  ViewKind view = ViewKind::k2D;
+  std::uint32_t layers = 1;
   friend bool operator==(const TextureDescriptor&, const TextureDescriptor&) = default;
+};
+/// A sampler for textures that bring none (`TextureDescriptor::sampler` is `kNone`).
+struct SamplerDescriptor {
+  std::uint32_t binding = 0;
+  Index sampler = kNone;
+  friend bool operator==(const SamplerDescriptor&, const SamplerDescriptor&) = default;
 };
 /// A range of a buffer that programs may read and write.
 struct StorageBinding {
@@ -196,6 +212,7 @@ struct DescriptorSet {
   std::vector<UniformBinding> uniforms;
   std::vector<TextureDescriptor> textures;
   std::vector<StorageBinding> buffers{};
+  std::vector<SamplerDescriptor> samplers{};
   friend bool operator==(const DescriptorSet&, const DescriptorSet&) = default;
 };
 
@@ -336,6 +353,8 @@ struct PassTarget {
 void use_samples(CommandStream& stream, std::uint32_t samples);
 /// Lets every pipeline shade by sample: with several samples a pixel, full supersampling.
 void use_sample_shading(CommandStream& stream);
+/// Lets every sampler that filters between texels and levels take up to `samples` samples along an axis.
+void use_anisotropy(CommandStream& stream, float samples);
 
 inline constexpr std::uint32_t kMaxPushConstantBytes = 256;
 

@@ -81,4 +81,10 @@ void use_sample_shading(CommandStream& stream) {
   for (Pipeline& pipeline : stream.pipelines) pipeline.sample_shading = true;
 }
 
+void use_anisotropy(CommandStream& stream, float samples) {
+  for (Sampler& sampler : stream.samplers)
+    if (sampler.mag == Filter::kLinear && sampler.min == Filter::kLinear && sampler.mip == Filter::kLinear)
+      sampler.max_anisotropy = samples;
+}
+
 }  // namespace quadrille::traces

@@ -30,6 +30,9 @@ void transfer(A& a, Image& v) {
   if (a.version() >= 2) numbers(a, v.usage);
   if (a.version() >= 3) numbers(a, v.samples);
   if (a.version() >= 4) numbers(a, v.layers);
+  if (a.version() < 5) return;
+  a.choice(v.kind, ImageKind::k3D);
+  numbers(a, v.depth);
 }
 
 template <class A>
@@ -38,6 +41,10 @@ void transfer(A& a, Sampler& v) {
   for (Wrap* wrap : {&v.wrap_u, &v.wrap_v}) a.choice(*wrap, models::kLastWrap);
   numbers(a, v.lod_bias, v.min_lod, v.max_lod);
   if (a.version() >= 2) a.choice(v.border, models::BorderColor::kOpaqueWhite);
+  if (a.version() < 3) return;
+  a.choice(v.wrap_w, models::kLastWrap);
+  a.choice(v.compare, CompareOp::kAlways);
+  numbers(a, v.max_anisotropy);
 }
 
 template <class A>
@@ -110,9 +117,13 @@ void transfer(A& a, DescriptorSet& v) {
   a.table(v.textures, [&](TextureDescriptor& t) {
     numbers(a, t.binding, t.image, t.sampler);
     if (a.version() >= 3) numbers(a, t.first_level, t.levels, t.layer);
+    if (a.version() < 4) return;
+    a.choice(t.view, models::kLastViewKind);
+    numbers(a, t.layers);
   });
   if (a.version() >= 2)
     a.table(v.buffers, [&](StorageBinding& b) { numbers(a, b.binding, b.buffer, b.offset, b.range); });
+  if (a.version() >= 4) a.table(v.samplers, [&](SamplerDescriptor& s) { numbers(a, s.binding, s.sampler); });
 }
 
 template <class A>

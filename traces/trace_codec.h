@@ -37,11 +37,11 @@ struct ChunkInfo {
 };
 inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"BUFS", 1},
-                                                   {"IMGS", 4},
-                                                   {"SAMP", 2},
+                                                   {"IMGS", 5},
+                                                   {"SAMP", 3},
                                                    {"SHAD", 1},
                                                    {"PIPE", 6},
-                                                   {"DESC", 3},
+                                                   {"DESC", 4},
                                                    {"TARG", 0},
                                                    {"CMDS", 8}}};
 

@@ -16,6 +16,8 @@ namespace quadrille::traces {
 namespace {
 
 constexpr std::uint32_t kMaxSide = 16384;  // texels or pixels [VK1.3 #limits-maxImageDimension2D]
+constexpr std::uint32_t kMaxDepth = 2048;  // texels of a side of a volume
+constexpr std::uint64_t kMaxTexelBytes = std::uint64_t{1} << 33;
 constexpr std::uint32_t kMaxLayers = 256;  // [VK1.3 #limits-required: maxImageArrayLayers]
 // bindings and locations [VK1.3 #limits-required: maxVertexInputBindings]
 constexpr std::uint32_t kMaxVertexSlots = 16;
@@ -64,21 +66,41 @@ void check_texels(const Image& image, std::size_t index) {
   const std::uint64_t bytes = image.packed || image.is_attachment() ? 0 : texel_bytes(image);
   if (image.is_attachment() && (image.packed || !image.texels.empty()))
     throw user_error("image {} '{}': an attachment brings no texels", index, image.name);
-  const std::uint32_t most_layers = image.is_attachment() ? kMaxLayers : 1;
+  const std::uint32_t most_layers = image.kind == ImageKind::k3D ? 1 : kMaxLayers;
   if (image.layers == 0 || image.layers > most_layers)
-    throw user_error("image {} '{}': {} layers; 1..{} are possible (1 unless it is an attachment)", index,
-                     image.name, image.layers, most_layers);
+    throw user_error("image {} '{}': {} layers; 1..{} are possible (1 of a volume)", index, image.name,
+                     image.layers, most_layers);
   if (image.texels.size() != bytes) {
     throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index,
                      image.name, image.texels.size(), image.width, image.height, image.levels, bytes);
   }
 }
 
+void check_kind(const Image& image, std::size_t index) {
+  if (image.kind != ImageKind::k2D && image.is_attachment())
+    throw user_error("image {} '{}': an attachment that is not 2D", index, image.name);
+  const std::uint32_t most = image.kind == ImageKind::k3D ? kMaxDepth : 1;
+  if (image.depth == 0 || image.depth > most)
+    throw user_error("image {} '{}': depth {}; 1..{} are possible (1 unless it is a volume)", index,
+                     image.name, image.depth, most);
+  if (image.kind == ImageKind::k1D && image.height != 1)
+    throw user_error("image {} '{}': a line of texels with height {}; it must be 1", index, image.name,
+                     image.height);
+  if (image.kind == ImageKind::k3D && std::max(image.width, image.height) > kMaxDepth)
+    throw user_error("image {} '{}': a volume of {}x{}; each side must be 1..{}", index, image.name,
+                     image.width, image.height, kMaxDepth);
+  if (!image.is_attachment() && texel_bytes(image) > kMaxTexelBytes)
+    throw user_error("image {} '{}': {} bytes of texels; at most {} are possible", index, image.name,
+                     texel_bytes(image), kMaxTexelBytes);
+}
+
 void check_image(const Image& image, std::size_t index) {
   check_side("image", index, image.width, image.height);
+  check_kind(image, index);
   check_usage(image, index);
   check_samples(image, index);
-  const auto full_chain = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+  const auto full_chain =
+      static_cast<std::uint32_t>(std::bit_width(std::max({image.width, image.height, image.depth})));
   if (image.levels == 0 || image.levels > full_chain) {
     throw user_error("image {} '{}': {} mip levels; {}x{} allows 1..{}", index, image.name, image.levels,
                      image.width, image.height, full_chain);
@@ -94,6 +116,9 @@ void check_sampler(const Sampler& sampler, std::size_t index) {
     throw user_error("sampler {}: lod range {}..{} is not an interval", index, sampler.min_lod,
                      sampler.max_lod);
   }
+  if (!(sampler.max_anisotropy >= 1 && sampler.max_anisotropy <= models::kMaxAnisotropy))
+    throw user_error("sampler {}: {} samples along an axis; 1..{} are possible", index,
+                     sampler.max_anisotropy, models::kMaxAnisotropy);
 }
 
 void check_shader(const Shader& shader, std::size_t index) {
@@ -217,6 +242,26 @@ void check_block(const CommandStream& stream, std::size_t set, const Block& bloc
                      block.offset, kBlockAlignment);
 }
 
+/// [VK1.3 #resources-image-views-compatibility]
+void check_view_kind(const Image& image, const TextureDescriptor& t, std::size_t set) {
+  const std::string_view kind = models::kViewKindNames.at(static_cast<std::size_t>(t.view));
+  if (models::image_kind(t.view) != image.kind)
+    throw user_error("descriptor set {} binding {}: a view '{}' of image {} '{}', which is of another kind",
+                     set, t.binding, kind, t.image, image.name);
+  if (t.layers == 0 || t.layers > image.layers - t.layer)
+    throw user_error("descriptor set {} binding {}: layers {}+{} of image {} '{}', which has {}", set,
+                     t.binding, t.layer, t.layers, t.image, image.name, image.layers);
+  const bool fits = models::is_cube(t.view)    ? t.layers % models::kCubeFaces == 0
+                    : models::is_array(t.view) ? true
+                                               : t.layers == 1;
+  if (!fits || (t.view == ViewKind::kCube && t.layers != models::kCubeFaces))
+    throw user_error("descriptor set {} binding {}: {} layers in a view '{}'", set, t.binding, t.layers,
+                     kind);
+  if (models::is_cube(t.view) && image.width != image.height)
+    throw user_error("descriptor set {} binding {}: image {} '{}' of {}x{} texels as a cube", set, t.binding,
+                     t.image, image.name, image.width, image.height);
+}
+
 /// Levels and layer that are sampled are those of the image.
 void check_view(const CommandStream& stream, const TextureDescriptor& t, std::size_t set) {
   const Image& image = stream.images[t.image];
@@ -226,10 +271,12 @@ void check_view(const CommandStream& stream, const TextureDescriptor& t, std::si
   if (t.layer >= image.layers)
     throw user_error("descriptor set {} binding {}: layer {} of image {} '{}', which has {}", set, t.binding,
                      t.layer, t.image, image.name, image.layers);
+  check_view_kind(image, t, set);
 }
 
 /// Integers have no numbers between them. [VK1.3 #textures-texel-filtering]
 void check_filters(const CommandStream& stream, const TextureDescriptor& t, std::size_t set) {
+  if (t.sampler == kNone) return;
   const Image& image = stream.images[t.image];
   const Sampler& sampler = stream.samplers[t.sampler];
   if (!is_integer_format(image.format)) return;
@@ -261,10 +308,15 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
     if ((stream.images[t.image].usage & kSampled) == 0)
       throw user_error("descriptor set {} binding {}: image {} '{}' is not for sampling", set, t.binding,
                        t.image, stream.images[t.image].name);
-    if (t.sampler >= stream.samplers.size())
+    if (t.sampler >= stream.samplers.size() && t.sampler != kNone)
       throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
     check_view(stream, t, set);
     check_filters(stream, t, set);
+  }
+  for (const auto& s : descriptors.samplers) {
+    claim(s.binding);
+    if (s.sampler >= stream.samplers.size())
+      throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, s.binding, s.sampler);
   }
 }
 

@@ -2,6 +2,8 @@
 /// Values are those of trace files and never change.
 #pragma once
 
+#include "models/base/pipeline_state.h"
+
 #include <cstdint>
 
 namespace quadrille::models {
@@ -25,12 +27,22 @@ struct SamplerState {
   Wrap wrap_u = Wrap::kRepeat, wrap_v = Wrap::kRepeat;
   float lod_bias = 0, min_lod = 0, max_lod = 1000;
   BorderColor border = BorderColor::kTransparentBlack;
+  Wrap wrap_w = Wrap::kRepeat;  ///< of volumes
+  /// Operations that compare: reference `compare` texel, each texel before it is filtered.
+  CompareOp compare = CompareOp::kNever;
+  /// Samples along the longer axis of a pixel's footprint, at most; 1: the footprint counts as round.
+  float max_anisotropy = 1;
   friend bool operator==(const SamplerState&, const SamplerState&) = default;
 };
 
 /// Does it ask for what lies beyond the image?
 [[nodiscard]] constexpr bool has_border(const SamplerState& sampler) {
   return sampler.wrap_u == Wrap::kClampToBorder || sampler.wrap_v == Wrap::kClampToBorder;
+}
+inline constexpr float kMaxAnisotropy = 16.0f;
+/// Does it take several samples along an axis? With a nearest filter it does not.
+[[nodiscard]] constexpr bool is_anisotropic(const SamplerState& sampler) {
+  return sampler.max_anisotropy > 1 && sampler.mag == Filter::kLinear && sampler.min == Filter::kLinear;
 }
 
 /// Sampler and shader bias together are limited to this. [VK1.3 limit maxSamplerLodBias]

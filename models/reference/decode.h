@@ -16,10 +16,11 @@ namespace quadrille::models::reference {
 /// What an id stands for while decoding: cells holding a value, a place in memory (with a lane-varying
 /// offset, perhaps), or a texture.
 struct Value {
-  enum class Kind : std::uint8_t { kNone, kCells, kPointer, kTexture };
+  enum class Kind : std::uint8_t { kNone, kCells, kPointer, kTexture, kSampler };
   Kind kind = Kind::kNone;
-  Id type = 0;          ///< of the value, or of what is pointed to
-  Slot slot = kNoSlot;  ///< first cell; kTexture: index into `ShaderProgram::textures`
+  Id type = 0;  ///< of the value, or of what is pointed to
+  /// first cell; kTexture: index into `ShaderProgram::textures`; kSampler: its set, and `offset` its binding
+  Slot slot = kNoSlot;
   /// pointer: cell with the offset in cells, different for each lane; none: `kNoSlot`
   Slot offset = kNoSlot;
   bool read_only = false;  ///< pointer: to inputs or uniforms, which a load may name instead of copying
@@ -96,7 +97,12 @@ class Decoder {
   void arithmetic(Frame& frame, const SpirvInstruction& in, Handler handler,
                   std::span<const std::uint32_t> operands, bool n_from_result);
   [[nodiscard]] bool texture_instruction(Frame& frame, const SpirvInstruction& in);
-  void sample(Frame& frame, const SpirvInstruction& in, bool implicit);
+  /// An instruction on a texture: its operands from word `mask_at` on are optional ones.
+  void ask_texture(Frame& frame, const SpirvInstruction& in, TextureInstruction::Kind kind,
+                   std::size_t mask_at);
+  void image_operands(Frame& frame, const SpirvInstruction& in, std::size_t mask_at, TextureInstruction& ask);
+  void combine(Frame& frame, const SpirvInstruction& in);
+  void query(Frame& frame, const SpirvInstruction& in);
 
   // decode_glsl.cpp
   void glsl_instruction(Frame& frame, const SpirvInstruction& in);

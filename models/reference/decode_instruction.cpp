@@ -54,32 +54,4 @@ void Decoder::arithmetic(Frame& frame, const SpirvInstruction& in, Handler handl
   o.imm = {cells(in.type), first_type.kind == TypeKind::kMatrix ? cells(first_type.element) : n};
 }
 
-bool Decoder::texture_instruction(Frame& frame, const SpirvInstruction& in) {
-  switch (in.op) {
-    case spv::OpImageSampleImplicitLod: sample(frame, in, true); return true;
-    case spv::OpImageSampleExplicitLod: sample(frame, in, false); return true;
-    case spv::OpImage: frame.values[in.result] = value(frame, in.words[0]); return true;
-    case spv::OpImageQuerySizeLod:
-      emit(query_size, 2, define(frame, in).slot, {kNoSlot, value(frame, in.words[1]).slot}).imm[0] =
-          value(frame, in.words[0]).slot;
-      return true;
-    case spv::OpImageQueryLevels:
-      emit(query_levels, 1, define(frame, in).slot, {}).imm[0] = value(frame, in.words[0]).slot;
-      return true;
-    default: return false;
-  }
-}
-
-void Decoder::sample(Frame& frame, const SpirvInstruction& in, bool implicit) {
-  if (implicit && stage_ != traces::ShaderStage::kFragment)
-    unsupported("sampling with an implicit level of detail outside a fragment shader");
-  const std::uint32_t operands = in.words.size() > 2 ? in.words[2] : 0;
-  const std::uint32_t allowed = implicit ? spv::ImageOperandsBiasMask : spv::ImageOperandsLodMask;
-  if ((operands & ~allowed) != 0) unsupported("image operands other than bias and lod");
-  const Slot level = operands != 0 ? value(frame, in.words[3]).slot : kNoSlot;
-  const Slot dst = define(frame, in).slot;
-  emit(implicit ? sample_implicit : sample_explicit, 4, dst, {value(frame, in.words[1]).slot, level}).imm[0] =
-      value(frame, in.words[0]).slot;
-}
-
 }  // namespace quadrille::models::reference

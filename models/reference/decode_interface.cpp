@@ -65,11 +65,19 @@ void Decoder::variable(const SpirvInstruction& in) {
 }
 
 void Decoder::texture_variable(const SpirvInstruction& in, Value& v) {
-  if (module_.type(v.type).kind != TypeKind::kSampledImage)
-    unsupported("a descriptor that is not a combined image sampler or a uniform block");
+  const TypeKind kind = module_.type(v.type).kind;
+  const Decorations& place = module_.decorations[in.result];
+  if (kind == TypeKind::kSampler) {
+    v.kind = Value::Kind::kSampler;
+    v.slot = place.set;
+    v.offset = place.binding;
+    return;
+  }
+  if (kind != TypeKind::kSampledImage && kind != TypeKind::kImage)
+    unsupported("a descriptor that is not an image, a sampler, both in one, or a uniform block");
   v.kind = Value::Kind::kTexture;
   v.slot = static_cast<Slot>(program_.textures.size());
-  program_.textures.push_back({module_.decorations[in.result].set, module_.decorations[in.result].binding});
+  program_.textures.push_back({place.set, place.binding, kind == TypeKind::kImage});
 }
 
 /// Lists the scalars of an input or output. Each scalar or vector (so each column, array element and member)

@@ -63,7 +63,7 @@ void Decoder::dynamic_step(Value& pointer, Slot index, std::uint32_t count, std:
 }
 
 Value Decoder::load(const Value& pointer) {
-  if (pointer.kind == Value::Kind::kTexture) return pointer;
+  if (pointer.kind == Value::Kind::kTexture || pointer.kind == Value::Kind::kSampler) return pointer;
   if (pointer.read_only && pointer.offset == kNoSlot)
     return {Value::Kind::kCells, pointer.type, pointer.slot, kNoSlot, false};
   const Value result = new_value(pointer.type);

@@ -44,22 +44,42 @@ void set_uniform(Cell& cell, std::span<const std::byte> bytes, const UniformScal
   }
 }
 
+/// The texture's, or that at a binding of its own; any for one that is used without.
+const traces::Sampler* sampler_of(const ShaderProgram& program, const DrawState& state, const TextureUse& use,
+                                  const traces::TextureDescriptor& texture) {
+  static const traces::Sampler kAny{};
+  if (!use.separate) return &state.stream->samplers.at(texture.sampler);
+  if (use.sampler_binding == TextureUse{}.sampler_binding) return &kAny;
+  for (const traces::SamplerDescriptor& s : descriptor_set(program, state, use.sampler_set).samplers)
+    if (s.binding == use.sampler_binding) return &state.stream->samplers.at(s.sampler);
+  throw user_error("draw {}: shader '{}' uses sampler (set {}, binding {}), which is not bound", state.number,
+                   program.name, use.sampler_set, use.sampler_binding);
+}
+
 TextureView texture_view(const ShaderProgram& program, const DrawState& state, const TextureUse& use,
                          const Precision* precision) {
   for (const traces::TextureDescriptor& texture : descriptor_set(program, state, use.set).textures) {
     if (texture.binding != use.binding) continue;
-    const auto drawn = state.drawn->find({texture.image, texture.layer});
-    const traces::Image* const image =
-        drawn != state.drawn->end() ? &drawn->second : &state.stream->images[texture.image];
-    if (image->texels.empty())
-      throw user_error("draw {}: shader '{}' samples image '{}' before a pass has drawn it", state.number,
-                       program.name, image->name);
-    return {image,
-            &state.stream->samplers[texture.sampler],
-            precision,
-            texture.first_level,
-            traces::level_count(*state.stream, texture),
-            models::format_info(state.stream->images[texture.image].format).channels};
+    TextureView view;
+    const traces::Image& image = state.stream->images[texture.image];
+    const auto unpacked = state.unpacked->find(texture.image);
+    view.image = unpacked != state.unpacked->end() ? &unpacked->second : &image;
+    view.precision = precision;
+    view.first_level = texture.first_level;
+    view.levels = traces::level_count(*state.stream, texture);
+    view.channels = models::format_info(image.format).channels;
+    view.kind = texture.view;
+    view.first_layer = texture.layer;
+    view.layers = texture.layers;
+    for (std::uint32_t layer = 0; image.is_attachment() && layer < texture.layers; ++layer) {
+      const auto drawn = state.drawn->find({texture.image, texture.layer + layer});
+      if (drawn == state.drawn->end())
+        throw user_error("draw {}: shader '{}' samples image '{}' before a pass has drawn it", state.number,
+                         program.name, image.name);
+      view.drawn.push_back(&drawn->second);
+    }
+    view.sampler = sampler_of(program, state, use, texture);
+    return view;
   }
   throw user_error("draw {}: shader '{}' uses texture (set {}, binding {}), which is not bound", state.number,
                    program.name, use.set, use.binding);
@@ -71,6 +91,7 @@ Lanes BoundShader::lanes() const {
   Lanes lanes;
   lanes.cells = cells;
   lanes.textures = &textures;
+  lanes.instructions = &program->texture_instructions;
   return lanes;
 }
 

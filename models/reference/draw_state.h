@@ -35,6 +35,8 @@ using KeptFragments = std::vector<KeptFragment>;
 
 /// Layers of attachments, each with all its levels as texels.
 using DrawnLayers = std::map<std::pair<traces::Index, std::uint32_t>, traces::Image>;
+/// Images of compressed blocks, with their texels.
+using UnpackedImages = std::map<traces::Index, traces::Image>;
 
 struct DrawState {
   const traces::CommandStream* stream = nullptr;
@@ -47,6 +49,7 @@ struct DrawState {
   std::vector<KeptFragments>* kept = nullptr;
   /// what earlier passes have drawn, by image and layer, with texels, for samplers
   const DrawnLayers* drawn = nullptr;
+  const UnpackedImages* unpacked = nullptr;
   const traces::Pipeline* pipeline = nullptr;
   std::map<std::uint32_t, traces::Index> descriptor_sets;
   std::map<std::uint32_t, VertexBuffer> vertex_buffers;

@@ -37,9 +37,8 @@ void insert_dynamic(const Operation& o, Lanes& lanes);
 void kill_lanes(const Operation& o, Lanes& lanes);   ///< marks the running lanes as discarded
 void note_margin(const Operation& o, Lanes& lanes);  ///< lowers the discard margin to |src[0] - src[1]|
 
-// Textures: src[0] the coordinate pair, src[1] the bias or level (or none), imm[0] the texture.
-void sample_implicit(const Operation& o, Lanes& lanes);
-void sample_explicit(const Operation& o, Lanes& lanes);
+// Textures: imm[0] is the instruction of the program's list, or of queries the texture.
+void ask_texture_lanes(const Operation& o, Lanes& lanes);
 void query_size(const Operation& o, Lanes& lanes);  ///< src[1]: the level
 void query_levels(const Operation& o, Lanes& lanes);
 

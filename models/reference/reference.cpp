@@ -39,11 +39,11 @@ class Renderer {
       : stream_(stream), options_(options), all_passes_(reads_attachments(stream)) {
     state_.stream = &stream;
     state_.drawn = &drawn_;
+    state_.unpacked = &unpacked_;
     // Blocks are decoded by the machine's own code, which tests hold against decoders of others.
     for (traces::Index i = 0; i < stream.images.size(); ++i) {
       const traces::Image& image = stream.images[i];
-      if (models::is_block_format(image.format))
-        drawn_.emplace(std::pair{i, std::uint32_t{0}}, traces::decompressed(image));
+      if (models::is_block_format(image.format)) unpacked_.emplace(i, traces::decompressed(image));
     }
     for (const traces::Command& command : stream.commands)
       passes_ += std::holds_alternative<traces::BeginPass>(command) ? 1u : 0u;
@@ -317,6 +317,7 @@ class Renderer {
   std::map<traces::ImagePart, std::vector<std::uint8_t>> stencils_;
   std::vector<KeptFragments> kept_;
   DrawnLayers drawn_;
+  UnpackedImages unpacked_;
   std::map<traces::Index, ShaderProgram> programs_;
   Result result_;
 };

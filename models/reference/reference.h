@@ -29,6 +29,7 @@ struct Precision {
   int subpixel_bits = 8;  ///< of `GivenTriangle::x`, `y`
   int subtexel_bits = 8;  ///< of a texel coordinate, so of the bilinear weights
   int lod_bits = 8;       ///< of the level of detail, so of the weight between two mip levels
+  bool ellipse = false;   ///< anisotropic samples lie along the longer axis of the pixel's ellipse
 };
 
 /// A triangle, line or point in window space as the machine rasterised it (after clipping and snapping;

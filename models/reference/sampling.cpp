@@ -12,16 +12,14 @@ namespace {
 
 constexpr double kMaxBias = 16.0;
 
-/// Rounds to `bits` fractional bits where a precision is given.
+}  // namespace
+
 double quantised(double a, const Precision* precision, int Precision::*bits) {
   if (precision == nullptr) return a;
   const double scale = std::ldexp(1.0, precision->*bits);
   return std::floor(a * scale + 0.5) / scale;
 }
 
-constexpr std::int64_t kBeyondBorder = -1;
-
-/// The texel that an index outside [0, size) stands for. [VK1.3 #textures-wrapping-operation]
 std::int64_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
   const auto modulo = [](std::int64_t a, std::int64_t b) { return ((a % b) + b) % b; };
   std::int64_t result = 0;
@@ -40,10 +38,9 @@ std::int64_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
 }
 
 /// What lies beyond the image: of the components that its format has.
-Texel border_texel(const TextureView& texture) {
+Texel border_texel(const TextureView& texture, BorderColor border) {
   const std::size_t channels =
       texture.channels != 0 ? texture.channels : models::format_info(texture.image->format).channels;
-  const models::BorderColor border = texture.sampler->border;
   Texel texel{0, 0, 0, 1};
   for (std::size_t c = 0; c < channels; ++c) {
     const bool opaque = border != models::BorderColor::kTransparentBlack;
@@ -52,7 +49,6 @@ Texel border_texel(const TextureView& texture) {
   return texel;
 }
 
-/// floor as an integer; coordinates beyond any texture are kept within what the arithmetic holds.
 std::int64_t floor_index(double a) {
   return static_cast<std::int64_t>(std::floor(std::clamp(a, -1e15, 1e15)));
 }
@@ -63,15 +59,17 @@ Texel mix(const Texel& a, const Texel& b, double t) {
   return r;
 }
 
+namespace {
+
 Texel sample_level(const TextureView& texture, std::uint32_t level, double u, double v,
                    traces::Filter filter) {
   const auto extent = level_extent(texture, level);
   const auto texel = [&](std::int64_t i, std::int64_t j) {
     const std::int64_t column = wrapped(i, extent[0], texture.sampler->wrap_u),
                        row = wrapped(j, extent[1], texture.sampler->wrap_v);
-    if (column == kBeyondBorder || row == kBeyondBorder) return border_texel(texture);
-    return fetch_texel(*texture.image, texture.first_level + level, static_cast<std::uint32_t>(column),
-                       static_cast<std::uint32_t>(row));
+    if (column == kBeyondBorder || row == kBeyondBorder)
+      return border_texel(texture, texture.sampler->border);
+    return view_texel(texture, level, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row), 0);
   };
   const double x = u * extent[0], y = v * extent[1];
   if (filter == traces::Filter::kNearest) return texel(floor_index(x), floor_index(y));
@@ -120,22 +118,42 @@ Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t
   return load_color(image.format, code);
 }
 
+Texel view_texel(const TextureView& texture, std::uint32_t level, std::uint32_t x, std::uint32_t y,
+                 std::uint32_t slice) {
+  const std::uint32_t l = texture.first_level + level;
+  if (!texture.drawn.empty()) return fetch_texel(*texture.drawn.at(slice), l, x, y);
+  const traces::Image& image = *texture.image;
+  std::uint64_t at = 0;
+  for (std::uint32_t finer = 0; finer < l; ++finer) at += traces::level_bytes(image, finer) * image.layers;
+  const std::uint64_t bytes = traces::format_bytes(image.format);
+  const std::uint64_t row = traces::level_width(image, l), plane = row * traces::level_height(image, l);
+  at += bytes * ((texture.first_layer + slice) * plane + y * row + x);
+  PixelCode code;
+  std::memcpy(code.word.data(), image.texels.data() + at, bytes);
+  return load_color(image.format, code);
+}
+
 double base_lod(const TextureView& texture, std::array<double, 2> d_dx, std::array<double, 2> d_dy) {
   const auto [w, h] = level_extent(texture, 0);
   return std::log2(std::max(std::hypot(d_dx[0] * w, d_dx[1] * h), std::hypot(d_dy[0] * w, d_dy[1] * h)));
 }
 
-Texel sample_texture(const TextureView& texture, double u, double v, double base, double bias) {
+double final_lambda(const TextureView& texture, double base, double bias) {
   const traces::Sampler& s = *texture.sampler;
-  u = finite_or_zero(u), v = finite_or_zero(v);
   const double biased =
       base + std::clamp(static_cast<double>(s.lod_bias) + finite_or_zero(bias), -kMaxBias, kMaxBias);
   const double clamped = std::isnan(biased) ? 0.0
                                             : std::max(static_cast<double>(s.min_lod),
                                                        std::min(biased, static_cast<double>(s.max_lod)));
   // Kept within what has an effect before rounding: infinities do not round.
-  const double lambda = quantised(std::clamp(clamped, -1.0, static_cast<double>(texture.levels)),
-                                  texture.precision, &Precision::lod_bits);
+  return quantised(std::clamp(clamped, -1.0, static_cast<double>(texture.levels)), texture.precision,
+                   &Precision::lod_bits);
+}
+
+Texel sample_texture(const TextureView& texture, double u, double v, double base, double bias) {
+  const traces::Sampler& s = *texture.sampler;
+  u = finite_or_zero(u), v = finite_or_zero(v);
+  const double lambda = final_lambda(texture, base, bias);
   const traces::Filter filter = lambda <= 0 ? s.mag : s.min;
   const double top = static_cast<double>(texture.levels - 1);
   const double level = std::clamp(lambda, 0.0, top);

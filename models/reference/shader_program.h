@@ -39,6 +39,20 @@ struct alignas(32) Cell {
   void set_u(int lane, std::uint32_t value) { bits[static_cast<std::size_t>(lane)] = value; }
 };
 
+/// An instruction on a texture: what it asks, and the cells of its operands; `kNoSlot`: it has none of these.
+struct TextureInstruction {
+  enum class Kind : std::uint8_t { kSample, kFetch, kGather, kQueryLod };
+  Kind kind = Kind::kSample;
+  std::uint32_t texture = 0;
+  Slot coordinates = kNoSlot, reference = kNoSlot, bias = kNoSlot, level = kNoSlot, gradient_x = kNoSlot,
+       gradient_y = kNoSlot, offsets = kNoSlot;
+  bool projective = false;
+  std::uint32_t coordinate_cells = 2;
+  std::uint32_t component = 0;             ///< of a gather
+  std::array<std::int32_t, 3> offset{};    ///< constant
+  std::vector<std::int32_t> four_offsets;  ///< of a gather: eight numbers
+};
+
 /// The state of four lanes: their cells, who is running, who was discarded.
 struct Lanes {
   std::vector<Cell> cells;
@@ -48,6 +62,7 @@ struct Lanes {
   /// smallest |a - b| of a comparison that decided on a discard
   std::array<double, kLanes> discard_margin{};
   const std::vector<TextureView>* textures = nullptr;
+  const std::vector<TextureInstruction>* instructions = nullptr;
 
   [[nodiscard]] Cell* at(Slot slot) { return cells.data() + slot; }
 };
@@ -107,6 +122,8 @@ struct UniformScalar {
 
 struct TextureUse {
   std::uint32_t set = 0, binding = 0;
+  bool separate = false;  ///< its sampler is one of its own; all ones: it is used without
+  std::uint32_t sampler_set = 0, sampler_binding = 0xffffffffu;
 };
 
 /// First slots of the built-in variables the shader has; `kNoSlot` for those it lacks.
@@ -129,6 +146,7 @@ struct ShaderProgram {
   std::vector<Port> inputs, outputs;
   std::vector<UniformScalar> uniforms;
   std::vector<TextureUse> textures;
+  std::vector<TextureInstruction> texture_instructions;
   BuiltinSlots builtins;
   bool early_fragment_tests = false;
   bool discards = false;

@@ -175,14 +175,16 @@ class Reader {
       case spv::OpTypeFunction: t.kind = TypeKind::kFunction, t.element = w[0]; break;
       case spv::OpTypeImage:
         t.kind = TypeKind::kImage;
-        if (w[1] != spv::Dim2D || w[2] == 1 || w[3] != 0 || w[4] != 0 || w[5] != 1)
-          unsupported("an image other than a sampled, single-sample, non-array, non-shadow 2D image");
+        if ((w[1] != spv::Dim1D && w[1] != spv::Dim2D && w[1] != spv::Dim3D && w[1] != spv::DimCube) ||
+            w[4] != 0 || w[5] != 1)
+          unsupported("an image other than a sampled one of one sample, 1D, 2D, 3D or a cube, or an array");
         break;
+      case spv::OpTypeSampler: t.kind = TypeKind::kSampler; break;
       case spv::OpTypeSampledImage: t.kind = TypeKind::kSampledImage, t.element = w[0]; break;
       default:
         unsupported(
-            "a type that is not void, bool, int, float, vector, matrix, sized array, struct, pointer or "
-            "combined image sampler");
+            "a type that is not void, bool, int, float, vector, matrix, sized array, struct, pointer, "
+            "image, sampler or both in one");
         break;
     }
     inherit_problem(t, t.element);

@@ -35,6 +35,7 @@ enum class TypeKind : std::uint8_t {
   kStruct,
   kPointer,
   kImage,
+  kSampler,
   kSampledImage,
   kFunction,
   kUnsupported

@@ -71,8 +71,8 @@ class Assembler {
     else if (name == "regs") registers_ = static_cast<int>(count(words, kMaxRegisters));
     else if (name == "constants") program_.constants.words = count(words, kMaxConstantWords);
     else if (name == "flags") read_flags(words);
-    else if (name == "texture")
-      program_.textures.push_back({field(words, 0, "set"), field(words, 1, "binding"), kind(words, 2)});
+    else if (name == "texture") read_texture(words);
+    else if (name == "texop") read_texture_operation(words);
     else if (name == "color") read_color(words);
     else if (name == "buffer")
       program_.buffers.push_back({field(words, 0, "set"), field(words, 1, "binding")});
@@ -85,8 +85,8 @@ class Assembler {
     else if (name == "uniform") read_block(words, ConstantLayout::Source::kUniformBlock);
     else
       fail(
-          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture color "
-          "buffer input varying extras",
+          "unknown directive '.{}'; legal: stage regs flags constants literal push uniform texture texop "
+          "color buffer input varying extras",
           name);
   }
 
@@ -131,6 +131,52 @@ class Assembler {
   [[nodiscard]] NumberKind kind(const std::vector<std::string_view>& words, std::size_t i) const {
     if (words.size() <= i) return NumberKind::kFloat;
     return one_of<NumberKind>({words[i]}, kNumberKindNames, "numbers");
+  }
+
+  /// Numbers, kind of view and sampler follow in this order, each where it is not the usual one.
+  void read_texture(const std::vector<std::string_view>& words) {
+    TextureBinding t{field(words, 0, "set"), field(words, 1, "binding")};
+    std::size_t next = 2;
+    const auto is_one_of = [&](const auto& names) {
+      return next < words.size() && std::find(names.begin(), names.end(), words[next]) != names.end();
+    };
+    if (is_one_of(kNumberKindNames))
+      t.texels = one_of<NumberKind>({words[next++]}, kNumberKindNames, "numbers");
+    if (is_one_of(kViewKindNames)) t.view = one_of<ViewKind>({words[next++]}, kViewKindNames, "view");
+    if (next < words.size() && words[next] == "no-sampler") {
+      t.sampler_binding = kNoSampler;
+      ++next;
+    } else if (next < words.size()) {
+      t.sampler_set = field(words, next, "sampler-set");
+      t.sampler_binding = field(words, next + 1, "sampler-binding");
+      next += 2;
+    }
+    if (next != words.size()) fail("'{}' follows what says all of a texture", words[next]);
+    program_.textures.push_back(t);
+  }
+
+  void read_texture_operation(const std::vector<std::string_view>& words) {
+    if (words.size() != 9)
+      fail(
+          "a texture operation has 9 words: texture, what it asks, level, compare, offsets, component, x, y, "
+          "z");
+    TextureOperation o;
+    o.texture = small_field(words, 0, "texture");
+    o.ask = one_of<TextureAsk>({words[1]}, kTextureAskNames, "what a texture is asked");
+    o.level = one_of<LevelFrom>({words[2]}, kLevelFromNames, "level");
+    o.compare = field(words, 3, "compare") != 0;
+    o.offsets = field(words, 4, "offsets") != 0;
+    o.component = static_cast<std::uint8_t>(field(words, 5, "component") & 3u);
+    constexpr std::array<std::string_view, 3> kAxes{"x", "y", "z"};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      o.offset.at(axis) = offset_field(words[6 + axis], kAxes.at(axis));
+    program_.texture_operations.push_back(o);
+  }
+  [[nodiscard]] std::int8_t offset_field(std::string_view word, std::string_view axis) const {
+    const bool named = word.starts_with(axis) && word.substr(axis.size()).starts_with('=');
+    const auto value = named ? parse_integer<std::int8_t>(word.substr(axis.size() + 1)) : std::nullopt;
+    if (!value) fail("expected '{}=OFFSET' instead of '{}'", axis, word);
+    return *value;
   }
 
   void read_color(const std::vector<std::string_view>& words) {
@@ -229,7 +275,8 @@ class Assembler {
       highest_register_ = std::max(highest_register_, in.dst + info->destinations - 1);
     if (info->immediate != Immediate::kUnused) in.imm = read_immediate(trimmed(*next++), info->immediate);
     Operand* const operands[] = {&in.a, &in.b, &in.c};
-    for (int i = 0; i < info->sources; ++i) *operands[i] = read_operand(trimmed(*next++), i);
+    for (int i = 0; i < info->sources; ++i)
+      *operands[i] = read_operand(trimmed(*next++), i, operand_width(in.op));
     program_.code.push_back(in);
     lines_.push_back(line_);
   }
@@ -255,7 +302,8 @@ class Assembler {
     return *index;
   }
 
-  Operand read_operand(std::string_view text, int position) {
+  /// `width`: registers that one stands for.
+  Operand read_operand(std::string_view text, int position, int width) {
     if (const auto bits = parse_literal(text)) {
       numbers_.push_back({program_.code.size(), position});
       return {Operand::kConstant, 0, place_of(*bits)};
@@ -275,7 +323,7 @@ class Assembler {
     if (!index) fail("'{}' is no operand; legal: rN, cN, a number, with - and | | on rN and cN", text);
     operand.index = *index;
     if (operand.kind == Operand::kRegister)
-      highest_register_ = std::max(highest_register_, static_cast<int>(operand.index));
+      highest_register_ = std::max(highest_register_, operand.index + width - 1);
     return operand;
   }
 

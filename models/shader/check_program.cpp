@@ -60,8 +60,8 @@ class Checker {
       require(operand.kind == Operand::kRegister || operand.kind == Operand::kConstant,
               "'{}' lacks its operand {}", info.name, name);
       if (operand.kind == Operand::kRegister)
-        require(operand.index < program_.num_regs, "operand {} is r{}; the program has {} registers", name,
-                operand.index, program_.num_regs);
+        require(operand.index + operand_width(in.op) <= program_.num_regs,
+                "operand {} is r{}; the program has {} registers", name, operand.index, program_.num_regs);
       else
         require(operand.index < program_.constants.words, "operand {} is c{}; the constant file has {} words",
                 name, operand.index, program_.constants.words);
@@ -94,11 +94,26 @@ class Checker {
         require(in.imm < program_.textures.size(), "texture {} does not exist; the program has {}", in.imm,
                 program_.textures.size());
         break;
+      case Immediate::kTextureOperation: check_texture_operation(in); break;
       case Immediate::kBufferBinding:
         require(in.imm < program_.buffers.size(), "buffer {} does not exist; the program has {}", in.imm,
                 program_.buffers.size());
         break;
     }
+  }
+
+  void check_texture_operation(const Instruction& in) const {
+    const std::size_t count = program_.texture_operations.size();
+    require(in.imm < count, "texture operation {} does not exist; the program has {}", in.imm, count);
+    const TextureOperation& operation = program_.texture_operations[in.imm];
+    require(operation.texture < program_.textures.size(), "texture {} does not exist; the program has {}",
+            operation.texture, program_.textures.size());
+    const int words = word_count(operation, program_.textures[operation.texture].view);
+    require(words <= kMaxTextureWords, "a texture operation of {} words; legal: at most {}", words,
+            kMaxTextureWords);
+    const bool from_quad = operation.level == LevelFrom::kQuad || operation.level == LevelFrom::kBias;
+    require(from_quad == (in.op == Op::kTexOpQuad), "'{}' with a level of detail {}", op_name(in.op),
+            from_quad ? "from the quad" : "that is given");
   }
 
   void check_input(std::uint16_t slot) const {
@@ -123,7 +138,7 @@ class Checker {
   }
 
   void check_stage(const Instruction& in) const {
-    const bool implicit = in.op == Op::kTexImplicit || in.op == Op::kTexBias;
+    const bool implicit = takes_level_from_quad(in.op);
     const bool derivative = in.op >= Op::kDdxFine && in.op <= Op::kDdyCoarse;
     const bool needs_quads = implicit || derivative || in.op == Op::kInterp || in.op == Op::kKillIf;
     require(!needs_quads || stage_info(program_.stage).quads, "'{}' exists only in fragment shaders",

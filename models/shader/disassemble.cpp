@@ -34,6 +34,23 @@ std::string kind_text(NumberKind kind) {
   return fmt::format(" {}", kNumberKindNames[static_cast<std::size_t>(kind)]);
 }
 
+/// A combined plane is not mentioned.
+std::string view_text(const TextureBinding& t) {
+  std::string text;
+  if (t.view != ViewKind::k2D) text += fmt::format(" {}", kViewKindNames[static_cast<std::size_t>(t.view)]);
+  if (t.sampler_binding == kNoSampler) text += " no-sampler";
+  else if (t.sampler_binding != kCombined)
+    text += fmt::format(" sampler-set={} sampler-binding={}", t.sampler_set, t.sampler_binding);
+  return text;
+}
+
+std::string operation_text(const TextureOperation& o) {
+  return fmt::format(".texop texture={} {} {} compare={} offsets={} component={} x={} y={} z={}", o.texture,
+                     kTextureAskNames[static_cast<std::size_t>(o.ask)],
+                     kLevelFromNames[static_cast<std::size_t>(o.level)], o.compare ? 1 : 0, o.offsets ? 1 : 0,
+                     o.component, o.offset[0], o.offset[1], o.offset[2]);
+}
+
 std::string header_text(const Program& p) {
   std::string title = p.name;
   std::replace_if(
@@ -46,7 +63,9 @@ std::string header_text(const Program& p) {
   if (p.constants.words != 0) text += fmt::format(".constants {}\n", p.constants.words);
   for (const auto& range : p.constants.ranges) text += fmt::format("{}\n", range_text(range));
   for (const TextureBinding& t : p.textures)
-    text += fmt::format(".texture set={} binding={}{}\n", t.set, t.binding, kind_text(t.texels));
+    text +=
+        fmt::format(".texture set={} binding={}{}{}\n", t.set, t.binding, kind_text(t.texels), view_text(t));
+  for (const TextureOperation& o : p.texture_operations) text += fmt::format("{}\n", operation_text(o));
   for (std::size_t location = 0; location < p.color_kinds.size(); ++location)
     if (p.color_kinds[location] != NumberKind::kFloat)
       text += fmt::format(".color location={}{}\n", location, kind_text(p.color_kinds[location]));

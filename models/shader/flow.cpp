@@ -26,7 +26,8 @@ class Outstanding {
     if (changes_flow(in.op) || (is_request(in.op) && count_ == kMaxClauseRequests)) return true;
     const std::array<const Operand*, 3> operands{&in.a, &in.b, &in.c};
     for (unsigned i = 0; i < info.sources; ++i)
-      if (operands[i]->kind == Operand::kRegister && registers_[operands[i]->index]) return true;
+      if (operands[i]->kind == Operand::kRegister && reads_any(operands[i]->index, operand_width(in.op)))
+        return true;
     for (unsigned i = 0; i < info.destinations; ++i)
       if (registers_[in.dst + i]) return true;
     return false;
@@ -42,6 +43,12 @@ class Outstanding {
   }
 
  private:
+  [[nodiscard]] bool reads_any(std::size_t first, int count) const {
+    for (std::size_t r = first; r < first + static_cast<std::size_t>(count); ++r)
+      if (registers_[r]) return true;
+    return false;
+  }
+
   std::bitset<kMaxRegisters> registers_;
   int count_ = 0;
 };

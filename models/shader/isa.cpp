@@ -114,6 +114,10 @@ constexpr auto kOps = std::to_array<OpInfo>({
     texture(Op::kTexBias, "texbias", 3),
     texture(Op::kTexLod, "texlod", 3),
     {Op::kTexSize, "texsize", IssueClass::kConst, 1, 2, 0, false, Immediate::kTextureBinding},
+    {Op::kTexOp, "texop", kTexOp, 3, 4, 0, false, Immediate::kTextureOperation},
+    {Op::kTexOpQuad, "texopquad", kTexOp, 3, 4, 0, false, Immediate::kTextureOperation},
+    {Op::kTexDims, "texdims", IssueClass::kConst, 1, 4, 0, false, Immediate::kTextureBinding},
+    {Op::kPack, "pack", kAluOp, 3, 3, 7, false},
     storage(Op::kLoadBuffer, "ldbuf", 1, 1),
     storage(Op::kStoreBuffer, "stbuf", 2, 0),
     storage(Op::kAtomicAdd, "atomadd", 2, 1),
@@ -177,6 +181,24 @@ bool reads_coverage(const Program& program) {
     return i.op == Op::kInput && i.imm == static_cast<std::uint16_t>(SystemValue::kSampleMask);
   };
   return std::ranges::any_of(program.varyings, centroid) || std::ranges::any_of(program.code, asks);
+}
+
+TextureWords words_of(const TextureOperation& operation, ViewKind kind) {
+  int next = coordinate_count(kind);
+  TextureWords words;
+  if (operation.compare) words.reference = next++;
+  if (operation.level != LevelFrom::kQuad) words.level = next;
+  if (operation.level == LevelFrom::kGradients) next += 2 * place_dimensions(kind);
+  else if (operation.level != LevelFrom::kQuad) ++next;
+  if (operation.offsets) words.offset = next;
+  return words;
+}
+int word_count(const TextureOperation& operation, ViewKind kind) {
+  const int level = operation.level == LevelFrom::kQuad        ? 0
+                    : operation.level == LevelFrom::kGradients ? 2 * place_dimensions(kind)
+                                                               : 1;
+  return coordinate_count(kind) + (operation.compare ? 1 : 0) + level +
+         (operation.offsets ? place_dimensions(kind) : 0);
 }
 
 bool is_atomic(Op op) { return op >= Op::kAtomicAdd && op <= Op::kAtomicCompareExchange; }

@@ -9,6 +9,7 @@
 
 #include "models/base/attachment.h"
 #include "models/base/format.h"
+#include "models/base/image_view.h"
 #include "models/base/pipeline_state.h"
 
 #include <array>
@@ -119,6 +120,13 @@ enum class Op : std::uint8_t {
   kTexBias,
   kTexLod,
   kTexSize,  ///< dst, dst+1 = width, height (integers) of texture `imm` at level a
+  // All other operations on textures: `imm` = operation (`TextureOperation`). Its words come three to an
+  // operand: a register stands for itself and the two behind it; a constant for three times itself.
+  kTexOp,
+  kTexOpQuad,  ///< one that takes differences within the quad
+  /// dst .. dst+3 = width, height, depth or layers, and levels of texture `imm`, at level a
+  kTexDims,
+  kPack,  ///< dst, dst+1, dst+2 = a, b, c
   // Storage buffers: a = byte offset, a multiple of 4; `imm` = buffer binding. Atomic operations write what
   // the word was to dst.
   kLoadBuffer,   ///< dst = the word
@@ -239,11 +247,52 @@ struct VertexExtras {
   friend bool operator==(const VertexExtras&, const VertexExtras&) = default;
 };
 
+/// `TextureBinding::sampler_binding` of a texture that brings its sampler, and of one that is used without.
+inline constexpr std::uint32_t kCombined = 0xffffffffu, kNoSampler = 0xfffffffeu;
+
 struct TextureBinding {
   std::uint32_t set = 0, binding = 0;
   NumberKind texels = NumberKind::kFloat;  ///< what the program takes them for
+  ViewKind view = ViewKind::k2D;
+  std::uint32_t sampler_set = 0, sampler_binding = kCombined;  ///< of a sampler of its own
   friend bool operator==(const TextureBinding&, const TextureBinding&) = default;
 };
+
+/// What a kTexOp does with its texture.
+enum class TextureAsk : std::uint8_t {
+  kSample,    ///< the filtered texel
+  kFetch,     ///< a texel by its integer coordinates and level
+  kGather,    ///< a component of the four texels that a linear filter would take
+  kQueryLod,  ///< x: the level that would be read; y: the level of detail before it is limited to the levels
+};
+/// Where its level of detail comes from.
+enum class LevelFrom : std::uint8_t {
+  kQuad,      ///< differences within the quad
+  kBias,      ///< the same, and a bias
+  kLevel,     ///< given; of a fetch, an integer
+  kGradients  ///< derivatives of the coordinates along x, then along y
+};
+inline constexpr int kMaxTextureWords = 9;
+
+/// An operation on a texture. Its words are, in this order: coordinates, with the layer last; the reference
+/// to compare with; bias, level, or gradients; offsets.
+struct TextureOperation {
+  std::uint16_t texture = 0;  ///< index into `Program::textures`
+  TextureAsk ask = TextureAsk::kSample;
+  LevelFrom level = LevelFrom::kLevel;
+  bool compare = false;                 ///< a reference with each texel, by the sampler's comparison
+  bool offsets = false;                 ///< has words with offsets
+  std::uint8_t component = 0;           ///< that a gather takes
+  std::array<std::int8_t, 3> offset{};  ///< in texels, added to the coordinates; besides those of words
+  friend bool operator==(const TextureOperation&, const TextureOperation&) = default;
+};
+/// Words of an operation on a texture of this kind.
+[[nodiscard]] int word_count(const TextureOperation& operation, ViewKind kind);
+/// Places of the words behind the coordinates; -1: it has none of these.
+struct TextureWords {
+  int reference = -1, level = -1, offset = -1;
+};
+[[nodiscard]] TextureWords words_of(const TextureOperation& operation, ViewKind kind);
 
 /// A storage buffer.
 struct BufferBinding {
@@ -296,9 +345,10 @@ struct Program {
   std::vector<Instruction> code;  ///< ends with kEnd
   int num_regs = 0;
   ConstantLayout constants;
-  std::vector<TextureBinding> textures;       ///< kTex* imm indexes this
-  std::vector<BufferBinding> buffers;         ///< imm of storage operations indexes this
-  std::vector<VertexInputUse> vertex_inputs;  ///< vertex stage
+  std::vector<TextureBinding> textures;              ///< kTex* imm indexes this
+  std::vector<TextureOperation> texture_operations;  ///< imm of kTexOp indexes this
+  std::vector<BufferBinding> buffers;                ///< imm of storage operations indexes this
+  std::vector<VertexInputUse> vertex_inputs;         ///< vertex stage
   /// both stages of a pipeline hold the same list: scalar components, packed
   std::vector<Interpolation> varyings;
   VertexExtras extras;  ///< vertex stage
@@ -346,8 +396,18 @@ void prepare(const Program& program);
 [[nodiscard]] IssueClass issue_class(Op op);
 /// Number of source operands the operation reads (0..3).
 [[nodiscard]] int source_count(Op op);
-/// Number of consecutive registers written from `dst` (0, 1, 2 or 4).
+/// Number of consecutive registers written from `dst` (0 to 4).
 [[nodiscard]] int destination_count(Op op);
+/// Registers that each register operand stands for.
+[[nodiscard]] constexpr int operand_width(Op op) { return op == Op::kTexOp || op == Op::kTexOpQuad ? 3 : 1; }
+/// Is it a request to the texture unit?
+[[nodiscard]] constexpr bool is_texture_request(Op op) {
+  return (op >= Op::kTexImplicit && op <= Op::kTexLod) || op == Op::kTexOp || op == Op::kTexOpQuad;
+}
+/// Does it take its level of detail from differences within the quad?
+[[nodiscard]] constexpr bool takes_level_from_quad(Op op) {
+  return op == Op::kTexImplicit || op == Op::kTexBias || op == Op::kTexOpQuad;
+}
 
 /// One line an instruction; constants that are literals are printed with their value. `assemble` gives the
 /// same program back, provided that fields an instruction does not use are zero.

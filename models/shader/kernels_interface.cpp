@@ -163,12 +163,46 @@ void execute_texture(const DecodedInstruction& d, ExecutionContext& x) {
   request.active = warp.exec;
   request.op = d.op;
   request.binding = d.imm;
+  request.operation = nullptr;
   request.dst = static_cast<std::uint16_t>(d.dst / sizeof(RegisterRow));
   for (int g = 0; g < kWarpGroups; ++g) {
     store(request.u.data() + g * kGroupLanes, read_operand(d.a, (kConstants & 1u) != 0, x, g));
     store(request.v.data() + g * kGroupLanes, read_operand(d.b, (kConstants & 2u) != 0, x, g));
     store(request.lod.data() + g * kGroupLanes,
           d.op == Op::kTexImplicit ? Lanes(splat(0.0f)) : read_operand(d.c, (kConstants & 4u) != 0, x, g));
+  }
+}
+
+/// The same for an operation that the program lists: three words an operand.
+template <unsigned kConstants>
+void execute_texture_operation(const DecodedInstruction& d, ExecutionContext& x) {
+  Warp& warp = *x.warp;
+  TextureRequest& request = warp.textures[static_cast<std::size_t>(warp.texture_count++)];
+  request.active = warp.exec;
+  request.op = d.op;
+  request.operation = &warp.program->texture_operations[d.imm];
+  request.binding = request.operation->texture;
+  request.dst = static_cast<std::uint16_t>(d.dst / sizeof(RegisterRow));
+  const DecodedOperand* const operands[] = {&d.a, &d.b, &d.c};
+  for (unsigned word = 0; word < kMaxTextureWords; ++word) {
+    const bool constant = (kConstants >> (word / 3) & 1u) != 0;
+    DecodedOperand operand = *operands[word / 3];
+    if (!constant) operand.offset += word % 3 * static_cast<std::uint32_t>(sizeof(RegisterRow));
+    for (int g = 0; g < kWarpGroups; ++g)
+      store(request.word(word).data() + g * kGroupLanes, read_operand(operand, constant, x, g));
+  }
+}
+
+/// Three values side by side. All are read before one is written, since registers may be shared.
+template <unsigned kConstants, bool kMasked>
+void execute_pack(const DecodedInstruction& d, ExecutionContext& x) {
+  for (int g = 0; g < kWarpGroups; ++g) {
+    const Words a = read_operand(d.a, (kConstants & 1u) != 0, x, g),
+                b = read_operand(d.b, (kConstants & 2u) != 0, x, g),
+                c = read_operand(d.c, (kConstants & 4u) != 0, x, g);
+    write_group<kMasked>(x.regs + d.dst, g, a, x);
+    write_group<kMasked>(x.regs + d.dst + sizeof(RegisterRow), g, b, x);
+    write_group<kMasked>(x.regs + d.dst + 2 * sizeof(RegisterRow), g, c, x);
   }
 }
 
@@ -189,6 +223,25 @@ void execute_texture_size(const DecodedInstruction& d, ExecutionContext& x) {
   }
 }
 
+/// The same with its depth, or the layers, and the number of levels.
+template <bool kConstant, bool kMasked>
+void execute_texture_dims(const DecodedInstruction& d, ExecutionContext& x) {
+  const TextureSize& size = x.warp->texture_sizes[d.imm];
+  const Words last{_mm256_min_epi32(splat_word(size.levels - 1).v, splat_word(31).v)};
+  const Words one = splat_word(1);
+  for (int g = 0; g < kWarpGroups; ++g) {
+    const Words wanted = read_operand(d.a, kConstant, x, g);
+    const __m256i level = _mm256_min_epi32(_mm256_max_epi32(wanted.v, _mm256_setzero_si256()), last.v);
+    const auto shrunk = [&](std::uint32_t texels) {
+      return Words{_mm256_max_epu32(_mm256_srlv_epi32(splat_word(texels).v, level), one.v)};
+    };
+    const Words third = size.layers != 0 ? splat_word(size.layers) : shrunk(size.depth);
+    const Words values[] = {shrunk(size.width), shrunk(size.height), third, splat_word(size.levels)};
+    for (std::size_t k = 0; k < 4; ++k)
+      write_group<kMasked>(x.regs + d.dst + k * sizeof(RegisterRow), g, values[k], x);
+  }
+}
+
 /// Lanes that are discarded go on as helpers.
 template <bool kConstant>
 void execute_kill(const DecodedInstruction& d, ExecutionContext& x) {
@@ -205,6 +258,17 @@ Kernel texture_kernel(unsigned constants, std::integer_sequence<unsigned, kConst
   static constexpr DecodedInstruction::Execute kTable[] = {&execute_texture<kConstants>...};
   return {kTable[constants], kTable[constants]};
 }
+template <unsigned... kConstants>
+Kernel texture_operation_kernel(unsigned constants, std::integer_sequence<unsigned, kConstants...>) {
+  static constexpr DecodedInstruction::Execute kTable[] = {&execute_texture_operation<kConstants>...};
+  return {kTable[constants], kTable[constants]};
+}
+template <unsigned... kConstants>
+Kernel pack_kernel(unsigned constants, std::integer_sequence<unsigned, kConstants...>) {
+  static constexpr Kernel kTable[] = {
+      Kernel{&execute_pack<kConstants, false>, &execute_pack<kConstants, true>}...};
+  return kTable[constants];
+}
 
 }  // namespace
 
@@ -219,6 +283,12 @@ Kernel interface_kernel(const Program& program, const Instruction& instruction, 
   if (op == Op::kNop) return same(&execute_nothing);
   if (op == Op::kTexImplicit || op == Op::kTexBias || op == Op::kTexLod)
     return texture_kernel(shape.constants, std::make_integer_sequence<unsigned, 8>{});
+  if (op == Op::kTexOp || op == Op::kTexOpQuad)
+    return texture_operation_kernel(shape.constants, std::make_integer_sequence<unsigned, 8>{});
+  if (op == Op::kPack) return pack_kernel(shape.constants, std::make_integer_sequence<unsigned, 8>{});
+  if (op == Op::kTexDims)
+    return constant ? Kernel{&execute_texture_dims<true, false>, &execute_texture_dims<true, true>}
+                    : Kernel{&execute_texture_dims<false, false>, &execute_texture_dims<false, true>};
   if (op == Op::kLoadConst)
     return constant ? Kernel{&execute_load_const<true, false>, &execute_load_const<true, true>}
                     : Kernel{&execute_load_const<false, false>, &execute_load_const<false, true>};

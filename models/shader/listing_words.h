@@ -32,6 +32,8 @@ inline constexpr std::array<std::string_view, 14> kSystemValueNames{
     "sample_id",    "sample_x",       "sample_y",     "sample_mask"};
 
 inline constexpr std::array<std::string_view, 3> kNumberKindNames{"float", "uint", "sint"};
+inline constexpr std::array<std::string_view, 4> kTextureAskNames{"sample", "fetch", "gather", "lod"};
+inline constexpr std::array<std::string_view, 4> kLevelFromNames{"quad", "bias", "level", "gradients"};
 
 /// Prefix of the slot number of an immediate.
 constexpr std::string_view slot_prefix(Immediate immediate) {
@@ -42,6 +44,7 @@ constexpr std::string_view slot_prefix(Immediate immediate) {
     case Immediate::kOutputSlot: return "out";
     case Immediate::kConstantWord: return "c";
     case Immediate::kTextureBinding: return "t";
+    case Immediate::kTextureOperation: return "op";
     case Immediate::kBufferBinding: return "b";
   }
   return "";

@@ -14,6 +14,7 @@ enum class Immediate : std::uint8_t {
   kOutputSlot,
   kConstantWord,
   kTextureBinding,
+  kTextureOperation,
   kBufferBinding
 };
 

@@ -67,12 +67,21 @@ struct StorageRequest {
 
 /// One texture instruction of a warp, from its issue to its result.
 struct TextureRequest {
-  alignas(64) LaneFloats u, v, lod;  ///< `lod`: bias or explicit level, by `op`
+  alignas(64) LaneFloats u, v, lod;                   ///< `lod`: bias or explicit level, by `op`
+  std::array<LaneFloats, kMaxTextureWords - 3> more;  ///< further words of `operation`
   /// lanes that executed it (helpers included); u, v, lod hold all 32 lanes, so a quad's differences exist
   LaneMask active = 0;
   Op op = Op::kTexImplicit;
-  std::uint16_t binding = 0;  ///< index into Program::textures
+  const TextureOperation* operation = nullptr;  ///< of kTexOp and kTexOpQuad
+  std::uint16_t binding = 0;                    ///< index into Program::textures
   std::uint16_t dst = 0;
+  /// A word of `operation`: those of the coordinates come first.
+  [[nodiscard]] LaneFloats& word(std::size_t i) {
+    return i == 0 ? u : i == 1 ? v : i == 2 ? lod : more[i - 3];
+  }
+  [[nodiscard]] const LaneFloats& word(std::size_t i) const {
+    return i == 0 ? u : i == 1 ? v : i == 2 ? lod : more[i - 3];
+  }
 };
 
 inline constexpr int kMaxClauseRequests = 8;  ///< texture and storage instructions
@@ -90,9 +99,10 @@ struct ClauseCost {
   }
 };
 
-/// Size of a bound texture, for kTexSize.
+/// Size of a bound texture, for kTexSize and kTexDims.
 struct TextureSize {
   std::uint32_t width = 1, height = 1, levels = 1;
+  std::uint32_t depth = 1, layers = 0;  ///< layers of an array (of cubes: as many as cubes), else 0
 };
 
 /// One register of a warp, aligned to a host cache line.

@@ -13,17 +13,21 @@ namespace {
 std::uint64_t level_bytes(const TextureView& view, std::uint32_t level) {
   const TextureLayout& layout = view.layout;
   return format_area_bytes(view.format, static_cast<std::uint32_t>(layout.width[level]),
-                           static_cast<std::uint32_t>(layout.height[level]));
+                           static_cast<std::uint32_t>(layout.height[level])) *
+         static_cast<std::uint64_t>(layout.slices[level]);
 }
 
 /// Tiles rows of blocks.
 void tile_blocks(const TextureLayout& layout, std::uint32_t level, std::size_t bytes, const std::byte* source,
                  std::byte* tiled) {
   const auto w = static_cast<std::uint32_t>(layout.width[level]),
-             h = static_cast<std::uint32_t>(layout.height[level]);
-  for (std::uint32_t y = 0; y < h; y += 4)
-    for (std::uint32_t x = 0; x < w; x += 4, source += bytes)
-      std::memcpy(tiled + bytes * (std::size_t{layout.texel_index(level, x, y)} / 16), source, bytes);
+             h = static_cast<std::uint32_t>(layout.height[level]),
+             slices = static_cast<std::uint32_t>(layout.slices[level]);
+  for (std::uint32_t slice = 0; slice < slices; ++slice)
+    for (std::uint32_t y = 0; y < h; y += 4)
+      for (std::uint32_t x = 0; x < w; x += 4, source += bytes)
+        std::memcpy(tiled + bytes * (std::size_t{layout.texel_index(level, x, y, slice)} / 16), source,
+                    bytes);
 }
 
 /// Tiles rows of texels of a size that the compiler knows.
@@ -31,9 +35,10 @@ template <std::size_t bytes>
 void tile_rows(const TextureLayout& layout, std::uint32_t level, const std::byte* source, std::byte* tiled) {
   constexpr std::size_t kRun = 4 * bytes;  // a row of four texels is contiguous
   const auto w = static_cast<std::uint32_t>(layout.width[level]),
-             h = static_cast<std::uint32_t>(layout.height[level]);
-  for (std::uint32_t y = 0; y < h; ++y) {
-    std::byte* const row = tiled + bytes * std::size_t{layout.texel_index(level, 0, y)};
+             h = static_cast<std::uint32_t>(layout.height[level]),
+             slices = static_cast<std::uint32_t>(layout.slices[level]);
+  for (std::uint32_t line = 0; line < h * slices; ++line) {
+    std::byte* const row = tiled + bytes * std::size_t{layout.texel_index(level, 0, line % h, line / h)};
     std::uint32_t x = 0;
     for (; x + 4 <= w; x += 4, source += kRun)
       std::memcpy(row + bytes * std::size_t{TextureLayout::x_part(x)}, source, kRun);
@@ -48,12 +53,14 @@ void tile_rows(const TextureLayout& layout, std::uint32_t level, const std::byte
 namespace {
 
 /// `unit_bytes`: of a texel or of a block.
-TextureLayout make_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels,
-                          std::uint32_t unit_bytes, Tiling tiling) {
-  if (width < 1 || height < 1 || width > kMaxTextureSize || height > kMaxTextureSize) {
-    throw user_error("texture of {} x {} texels: each side must be 1 to {}", width, height, kMaxTextureSize);
-  }
-  const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
+TextureLayout make_layout(const TextureExtent& extent, std::uint32_t levels, std::uint32_t unit_bytes,
+                          Tiling tiling) {
+  const auto [width, height, depth, layers] = extent;
+  for (const std::uint32_t side : {width, height, depth, layers})
+    if (side < 1 || side > kMaxTextureSize)
+      throw user_error("texture of {} x {} x {} texels, {} layers: each must be 1 to {}", width, height,
+                       depth, layers, kMaxTextureSize);
+  const auto most = static_cast<std::uint32_t>(std::bit_width(std::max({width, height, depth})));
   if (levels < 1 || levels > most)
     throw user_error("texture of {} x {} texels with {} levels: it can have 1 to {}", width, height, levels,
                      most);
@@ -63,16 +70,24 @@ TextureLayout make_layout(std::uint32_t width, std::uint32_t height, std::uint32
   layout.tiling = tiling;
   const int shift = layout.block_shift();
   const std::uint32_t line_texels = (static_cast<std::uint32_t>(kLineBytes) << 2 * shift) / unit_bytes;
-  std::uint32_t next = 0;
+  std::uint64_t next = 0;
   for (std::uint32_t level = 0; level < levels; ++level) {
-    const std::uint32_t w = std::max(width >> level, 1u), h = std::max(height >> level, 1u);
+    const std::uint32_t w = std::max(width >> level, 1u), h = std::max(height >> level, 1u),
+                        slices = std::max(depth >> level, 1u) * layers;
     layout.width[level] = static_cast<std::int32_t>(w);
     layout.height[level] = static_cast<std::int32_t>(h);
     const std::uint32_t tile = 32u << shift;
     layout.pitch[level] = static_cast<std::int32_t>((w + tile - 1) / tile * tile * tile);
+    layout.slices[level] = static_cast<std::int32_t>(slices);
+    // A slice ends with the line of its last texel, which has the highest index of all.
+    const std::uint32_t slice =
+        layout.texel_index(level, w - 1, h - 1) / line_texels * line_texels + line_texels;
+    layout.slice_texels[level] = static_cast<std::int32_t>(slice);
     layout.first[level] = static_cast<std::int32_t>(next);
-    // ends with the line of its last texel, which has the highest index of all
-    next = layout.texel_index(level, w - 1, h - 1) / line_texels * line_texels + line_texels;
+    next += std::uint64_t{slice} * slices;
+    if (next >= std::uint64_t{1} << 31)
+      throw user_error("texture of {} x {} x {} texels, {} layers: it takes 2^31 texels and more", width,
+                       height, depth, layers);
   }
   layout.bytes = std::uint64_t{unit_bytes} * next >> 2 * shift;
   return layout;
@@ -80,47 +95,67 @@ TextureLayout make_layout(std::uint32_t width, std::uint32_t height, std::uint32
 
 }  // namespace
 
-TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height, std::uint32_t levels,
+TextureLayout make_texture_layout(const TextureExtent& extent, std::uint32_t levels,
                                   std::uint32_t texel_bytes) {
-  return make_layout(width, height, levels, texel_bytes, Tiling::kTexture);
+  return make_layout(extent, levels, texel_bytes, Tiling::kTexture);
 }
-TextureLayout make_texture_layout(Format format, std::uint32_t width, std::uint32_t height,
-                                  std::uint32_t levels) {
-  return make_layout(width, height, levels, format_bytes(format),
+TextureLayout make_texture_layout(Format format, const TextureExtent& extent, std::uint32_t levels) {
+  return make_layout(extent, levels, format_bytes(format),
                      is_block_format(format) ? Tiling::kBlocks : Tiling::kTexture);
 }
 
 TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format) {
-  const SurfaceLayout &finest = levels.front(), &coarsest = levels.back();
+  return view_of_surfaces(levels, static_cast<std::uint32_t>(levels.size()), format);
+}
+
+TextureView view_of_surfaces(std::span<const SurfaceLayout> layers, std::uint32_t levels, Format format) {
+  const SurfaceLayout &finest = layers.front(), &last = layers.back();
   TextureView view{finest.base, format, {}};
   TextureLayout& layout = view.layout;
   layout.tiling = Tiling::kSurface;
-  layout.levels = static_cast<std::uint32_t>(levels.size());
+  layout.levels = levels;
   const std::uint32_t tile_texels = finest.plane_stride() / finest.pixel_bytes;
   layout.tile_shift = std::countr_zero(tile_texels);
-  for (std::size_t level = 0; level < levels.size(); ++level) {
-    const SurfaceLayout& surface = levels[level];
+  const std::size_t count = layers.size() / levels;
+  const std::uint64_t apart = count > 1 ? layers[levels].base - finest.base : 0;
+  for (std::size_t layer = 0; layer < count; ++layer)
+    QUADRILLE_CHECK(layers[layer * levels].base == finest.base + layer * apart, "layer {} lies elsewhere",
+                    layer);
+  for (std::size_t level = 0; level < levels; ++level) {
+    const SurfaceLayout& surface = layers[level];
     layout.width[level] = static_cast<std::int32_t>(surface.width);
     layout.height[level] = static_cast<std::int32_t>(surface.height);
     layout.pitch[level] = static_cast<std::int32_t>(surface.tiles_x * tile_texels);
     layout.first[level] = static_cast<std::int32_t>((surface.base - finest.base) / surface.pixel_bytes);
+    layout.slices[level] = static_cast<std::int32_t>(count);
+    layout.slice_texels[level] = static_cast<std::int32_t>(apart / surface.pixel_bytes);
   }
-  layout.bytes = coarsest.base + coarsest.bytes() - finest.base;
+  layout.bytes = last.base + last.bytes() - finest.base;
   return view;
+}
+
+TextureView view_of_layers(const TextureView& view, std::uint32_t first, std::uint32_t count) {
+  TextureView part = view;
+  for (std::uint32_t level = 0; level < view.layout.levels; ++level) {
+    part.layout.first[level] += static_cast<std::int32_t>(first) * view.layout.slice_texels[level];
+    part.layout.slices[level] = static_cast<std::int32_t>(count);
+  }
+  return part;
 }
 
 TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::uint32_t count) {
   TextureView part = view;
-  part.layout.levels = count;
+  TextureLayout& layout = part.layout;
+  layout.levels = count;
   for (auto* const by_level :
-       {&part.layout.width, &part.layout.height, &part.layout.pitch, &part.layout.first})
+       {&layout.width, &layout.height, &layout.pitch, &layout.first, &layout.slices, &layout.slice_texels})
     std::rotate(by_level->begin(), by_level->begin() + first, by_level->end());
   return part;
 }
 
-TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width, std::uint32_t height,
+TextureView allocate_texture(DeviceMemory& memory, Format format, const TextureExtent& extent,
                              std::uint32_t levels) {
-  TextureView view{0, format, make_texture_layout(format, width, height, levels)};
+  TextureView view{0, format, make_texture_layout(format, extent, levels)};
   view.base = memory.allocate(view.layout.bytes);
   return view;
 }

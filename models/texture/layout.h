@@ -13,6 +13,7 @@
 #pragma once
 
 #include "models/base/format.h"
+#include "models/base/image_view.h"
 #include "models/memory/device_memory.h"
 #include "models/memory/surface.h"
 
@@ -28,14 +29,21 @@ inline constexpr std::uint32_t kMaxTextureSize = 16384;
 
 enum class Tiling : std::uint8_t { kTexture, kSurface, kBlocks };
 
+/// Texels of the finest level; a volume has one layer, all else a depth of 1.
+struct TextureExtent {
+  std::uint32_t width = 1, height = 1, depth = 1, layers = 1;
+};
+
 /// Where the texels of a mip chain lie, in texels from its base. Arrays by level, padded for vector
-/// loads.
+/// loads. The slices of a volume's level, or the layers of an array's, lie one behind the other.
 struct TextureLayout {
   Tiling tiling = Tiling::kTexture;
   std::uint32_t levels = 1;
   std::array<std::int32_t, 16> width{}, height{};  ///< texels
   std::array<std::int32_t, 16> pitch{};            ///< texels of one row of tiles
   std::array<std::int32_t, 16> first{};            ///< index of the level's first texel
+  std::array<std::int32_t, 16> slices{};           ///< or layers
+  std::array<std::int32_t, 16> slice_texels{};     ///< from a slice to the next
   std::uint64_t bytes = 0;                         ///< whole chain; a multiple of a line
   /// log2 of the texels from a tile of a surface to the next
   int tile_shift = 6;
@@ -53,34 +61,40 @@ struct TextureLayout {
     return (y & 1) << 1 | (y & 6) << 3;
   }
   /// Index of a texel within the chain.
-  [[nodiscard]] std::uint32_t texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
+  [[nodiscard]] std::uint32_t texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y,
+                                          std::uint32_t slice = 0) const {
+    const std::uint32_t start =
+        static_cast<std::uint32_t>(first[level]) + slice * static_cast<std::uint32_t>(slice_texels[level]);
     if (tiling == Tiling::kSurface)
-      return static_cast<std::uint32_t>(first[level]) + surface_x_part(x) + surface_y_part_in_tile(y) +
+      return start + surface_x_part(x) + surface_y_part_in_tile(y) +
              (y >> 3) * static_cast<std::uint32_t>(pitch[level]);
     if (tiling == Tiling::kBlocks)
-      return static_cast<std::uint32_t>(first[level]) + (x & 3) + ((y & 3) << 2) +
-             ((x_part(x >> 2) + y_part_in_tile(y >> 2)) << 4) +
+      return start + (x & 3) + ((y & 3) << 2) + ((x_part(x >> 2) + y_part_in_tile(y >> 2)) << 4) +
              (y >> 7) * static_cast<std::uint32_t>(pitch[level]);
-    return static_cast<std::uint32_t>(first[level]) + x_part(x) + y_part_in_tile(y) +
-           (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
+    return start + x_part(x) + y_part_in_tile(y) + (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
   }
   /// log2 of the texels along a side of a block: half of that of a block's texels
   [[nodiscard]] constexpr int block_shift() const { return tiling == Tiling::kBlocks ? 2 : 0; }
 };
 
-/// Lays out a chain of texels of 1, 2, 4, 8 or 16 bytes, or as `format` has them. Each
-/// level begins with a line. Throws `UserError`
-/// for a size outside 1..16384 or more levels than the size has.
-[[nodiscard]] TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height,
-                                                std::uint32_t levels, std::uint32_t texel_bytes = 4);
-[[nodiscard]] TextureLayout make_texture_layout(Format format, std::uint32_t width, std::uint32_t height,
+/// Lays out a chain of texels of 1, 2, 4, 8 or 16 bytes, or as `format` has them. Each level begins with a
+/// line. Throws `UserError` for a size outside 1..16384, more levels than the size has, or 2^31 texels and more.
+[[nodiscard]] TextureLayout make_texture_layout(const TextureExtent& extent, std::uint32_t levels,
+                                                std::uint32_t texel_bytes = 4);
+[[nodiscard]] TextureLayout make_texture_layout(Format format, const TextureExtent& extent,
                                                 std::uint32_t levels);
+/// Of a plane.
+[[nodiscard]] inline TextureLayout make_texture_layout(std::uint32_t width, std::uint32_t height,
+                                                       std::uint32_t levels, std::uint32_t texel_bytes = 4) {
+  return make_texture_layout(TextureExtent{width, height}, levels, texel_bytes);
+}
 
 /// A texture as a sampler sees it.
 struct TextureView {
   std::uint64_t base = 0;  ///< address, aligned to a line
   Format format = Format::kR8G8B8A8Unorm;
   TextureLayout layout;
+  ViewKind kind = ViewKind::k2D;
   /// Of a texel, or of the first byte that may hold a part of it.
   [[nodiscard]] std::uint64_t texel_address(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
     return base + (std::uint64_t{format_bytes(format)} * layout.texel_index(level, x, y) >>
@@ -91,13 +105,23 @@ struct TextureView {
 /// An attachment as a sampler sees it: its levels, finest first, where they were drawn. They lie one behind
 /// the other, less than 2^31 texels apart.
 [[nodiscard]] TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format);
+/// The same of several layers, one behind the other, each with so many levels. Neighbours are equally far
+/// apart.
+[[nodiscard]] TextureView view_of_surfaces(std::span<const SurfaceLayout> layers, std::uint32_t levels,
+                                           Format format);
+/// So many layers of a view, from one on.
+[[nodiscard]] TextureView view_of_layers(const TextureView& view, std::uint32_t first, std::uint32_t count);
 /// So many levels of a view, from one on.
 [[nodiscard]] TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::uint32_t count);
 
 /// Allocates a texture of zeros; `tile_level` and `tile_texture` bring its texels.
-[[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width,
-                                           std::uint32_t height, std::uint32_t levels);
-/// Tiles one level: rows top to bottom, tightly packed. Another number of texels than the level has is an
+[[nodiscard]] TextureView allocate_texture(DeviceMemory& memory, Format format, const TextureExtent& extent,
+                                           std::uint32_t levels);
+[[nodiscard]] inline TextureView allocate_texture(DeviceMemory& memory, Format format, std::uint32_t width,
+                                                  std::uint32_t height, std::uint32_t levels) {
+  return allocate_texture(memory, format, {width, height}, levels);
+}
+/// Tiles one level: rows top to bottom, slice by slice, tightly packed. Another number of texels than the level has is an
 /// internal error.
 void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level,
                 std::span<const std::byte> texels);

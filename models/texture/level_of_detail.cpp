@@ -79,16 +79,23 @@ __m256 group_lambda(const SamplerState& sampler, const TextureRequest& request, 
 
 }  // namespace
 
-LaneLevels lane_levels(const TextureLayout& layout, const SamplerState& sampler,
-                       const TextureRequest& request, const LaneFloats& u, const LaneFloats& v,
-                       const Precision& precision) {
+__m256 unit_log2(__m256 x, const Precision& precision) {
+  return precision.linear_log2 ? log2_piecewise_linear(x) : log2_positive(x);
+}
+
+__m256 biased_lambda(__m256 base, __m256 shader_bias, const SamplerState& sampler) {
+  const __m256 bias = _mm256_add_ps(_mm256_set1_ps(sampler.lod_bias), shader_bias);
+  const __m256 lambda = _mm256_add_ps(base, clamp(bias, -kMaxLodBias, kMaxLodBias));
+  return clamp(clamp(lambda, sampler.min_lod, sampler.max_lod), -128.0f, 128.0f);
+}
+
+LaneLevels levels_of(const TextureLayout& layout, const SamplerState& sampler, const LaneFloats& lambdas,
+                     const Precision& precision) {
   LaneLevels out;
-  const __m256 quads =
-      request.op == Op::kTexLod ? _mm256_setzero_ps() : quad_lambdas(layout, u, v, precision.linear_log2);
   const auto steps = static_cast<float>(1 << precision.lod_bits);
   const auto coarsest = static_cast<float>(layout.levels - 1);
   for (int group = 0; group < 4; ++group) {
-    const __m256 fixed = _mm256_mul_ps(group_lambda(sampler, request, quads, group), _mm256_set1_ps(steps));
+    const __m256 fixed = _mm256_mul_ps(_mm256_loadu_ps(lambdas.data() + 8 * group), _mm256_set1_ps(steps));
     const __m256 lambda = _mm256_mul_ps(_mm256_round_ps(fixed, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC),
                                         _mm256_set1_ps(1.0f / steps));
     const __m256 d = clamp(lambda, 0.0f, coarsest);
@@ -105,6 +112,17 @@ LaneLevels lane_levels(const TextureLayout& layout, const SamplerState& sampler,
     out.magnified |= static_cast<LaneMask>(_mm256_movemask_ps(magnified)) << (8 * group);
   }
   return out;
+}
+
+LaneLevels lane_levels(const TextureLayout& layout, const SamplerState& sampler,
+                       const TextureRequest& request, const LaneFloats& u, const LaneFloats& v,
+                       const Precision& precision) {
+  const __m256 quads =
+      request.op == Op::kTexLod ? _mm256_setzero_ps() : quad_lambdas(layout, u, v, precision.linear_log2);
+  alignas(32) LaneFloats lambda;
+  for (int group = 0; group < 4; ++group)
+    _mm256_store_ps(lambda.data() + 8 * group, group_lambda(sampler, request, quads, group));
+  return levels_of(layout, sampler, lambda, precision);
 }
 
 }  // namespace quadrille::models

@@ -7,6 +7,8 @@
 #include "models/shader/warp.h"
 #include "models/texture/layout.h"
 
+#include <immintrin.h>
+
 #include <array>
 #include <cstdint>
 
@@ -26,5 +28,14 @@ struct LaneLevels {
 [[nodiscard]] LaneLevels lane_levels(const TextureLayout& layout, const SamplerState& sampler,
                                      const TextureRequest& request, const LaneFloats& u, const LaneFloats& v,
                                      const Precision& precision);
+
+/// The same from each lane's level of detail, biased and limited, before it is rounded.
+[[nodiscard]] LaneLevels levels_of(const TextureLayout& layout, const SamplerState& sampler,
+                                   const LaneFloats& lambda, const Precision& precision);
+
+/// log2 of positive numbers, as the unit has it.
+[[nodiscard]] __m256 unit_log2(__m256 x, const Precision& precision);
+/// Bias, the sampler's with `shader_bias`, and the sampler's limits.
+[[nodiscard]] __m256 biased_lambda(__m256 base, __m256 shader_bias, const SamplerState& sampler);
 
 }  // namespace quadrille::models

@@ -38,9 +38,13 @@ struct DecodedLine {
 
 /// Addresses and weights of one request; its memory is used again and again, nothing is allocated.
 struct TexturePlan {
-  static constexpr int kGroups = 4;      ///< lanes in groups of 8
-  static constexpr int kMaxLines = 256;  ///< 32 lanes x 2 levels x 4 texels
+  static constexpr int kGroups = 4;  ///< lanes in groups of 8
+  /// footprints of a group: two levels of 16 samples, or of two slices
+  static constexpr int kMaxTaps = 32;
+  static constexpr int kMaxLines = kWarpLanes * kMaxTaps * 4;
   static constexpr int kMaxBlocks = kMaxLines;
+  /// of plans of one plane without anisotropy: 32 lanes x 2 levels x 4 texels
+  static constexpr int kPlainBlocks = kWarpLanes * 2 * 4;
 
   /// A group's texels in one mip level.
   struct Footprint {
@@ -51,9 +55,12 @@ struct TexturePlan {
     alignas(32) std::array<std::int32_t, 8> frac_x, frac_y;
     /// corners beyond the border, bit 8 * corner + lane: the texel is not read
     std::uint32_t border = 0;
+    /// corners beyond a corner of a cube, which have no texel: the mean of the other three
+    std::uint32_t missing = 0;
   };
-  std::array<std::array<Footprint, 2>, kGroups> footprint;  ///< [group][finer, coarser level]
-  alignas(32) std::array<float, kWarpLanes> level_weight;   ///< of the coarser level
+  /// [group][finer, coarser level]; of `operation` plans [group][level * taps + tap]
+  std::array<std::array<Footprint, kMaxTaps>, kGroups> footprint;
+  alignas(32) std::array<float, kWarpLanes> level_weight;  ///< of the coarser level
   /// levels a group reads: 0 (no lane active), 1 or 2
   std::array<std::uint8_t, kGroups> levels{};
   std::array<std::int32_t, kWarpLanes> finer_level;  ///< level a lane reads (the finer of two)
@@ -61,6 +68,21 @@ struct TexturePlan {
   std::uint64_t base = 0;
   Format format = Format::kR8G8B8A8Unorm;
   BorderColor border = BorderColor::kTransparentBlack;
+
+  // Of what operation_plan.cpp plans: several footprints a level, and what becomes of their texels.
+  bool general = false;
+  TextureAsk ask = TextureAsk::kSample;
+  ViewKind kind = ViewKind::k2D;
+  std::uint8_t component = 0;  ///< that a gather takes
+  bool compares = false;
+  CompareOp compare = CompareOp::kNever;
+  /// footprints of a level: samples along an axis, or slices
+  std::array<std::uint8_t, kGroups> taps{};
+  bool slices = false;                                    ///< taps are two slices of a volume
+  alignas(32) std::array<float, kWarpLanes> samples;      ///< taps that count for the lane
+  alignas(32) std::array<LaneFloats, 2> slice_weight;     ///< of the second slice, by level
+  alignas(32) LaneFloats reference;                       ///< to compare with
+  alignas(32) std::array<LaneFloats, 2> level_of_detail;  ///< what kQueryLod answers
 
   int line_count = 0;
   std::array<TextureLine, kMaxLines> lines;  ///< distinct, in order of first touch
@@ -76,9 +98,13 @@ struct TexturePlan {
   std::uint32_t magnified_lanes = 0, minified_lanes = 0;
 };
 
-/// Computes addresses and weights. The request's operation is kTexImplicit, kTexBias or kTexLod.
+/// Computes addresses and weights of any request.
 void plan_texture(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
                   const Precision& precision, TexturePlan& plan);
+
+/// The same for requests that are more than a plane sampled without anisotropy (operation_plan.cpp).
+void plan_operation(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
+                    const Precision& precision, TexturePlan& plan);
 
 /// The distinct lines of 128 bytes of decoded texels that a plan of a block format reads, in order of first
 /// touch, to the end of `lines`.

@@ -151,8 +151,62 @@ TexelColors fetch_colors(const TexturePlan& plan, const TexturePlan::Footprint& 
   return colors;
 }
 
+/// All ones in the lanes where `reference` compares so with the texel.
+__m256 passes(CompareOp op, __m256 reference, __m256 texel) {
+  switch (op) {
+    case CompareOp::kNever: break;
+    case CompareOp::kLess: return _mm256_cmp_ps(reference, texel, _CMP_LT_OQ);
+    case CompareOp::kEqual: return _mm256_cmp_ps(reference, texel, _CMP_EQ_OQ);
+    case CompareOp::kLessOrEqual: return _mm256_cmp_ps(reference, texel, _CMP_LE_OQ);
+    case CompareOp::kGreater: return _mm256_cmp_ps(reference, texel, _CMP_GT_OQ);
+    case CompareOp::kNotEqual: return _mm256_cmp_ps(reference, texel, _CMP_NEQ_UQ);
+    case CompareOp::kGreaterOrEqual: return _mm256_cmp_ps(reference, texel, _CMP_GE_OQ);
+    case CompareOp::kAlways: return _mm256_castsi256_ps(_mm256_set1_epi32(-1));
+  }
+  return _mm256_setzero_ps();
+}
+
+/// Depths become what their comparison gives: 1 or 0. A reference for a format of 0 to 1 is limited to that.
+void compare_corners(const TexturePlan& plan, std::size_t group, const FormatInfo& format,
+                     TexelColors (&corner)[4]) {
+  const __m256 one = _mm256_set1_ps(1.0f);
+  __m256 reference = _mm256_loadu_ps(plan.reference.data() + 8 * group);
+  if (format.numeric == Numeric::kUnorm)
+    reference = _mm256_min_ps(_mm256_max_ps(reference, _mm256_setzero_ps()), one);
+  for (TexelColors& texel : corner) {
+    const __m256 result = _mm256_and_ps(passes(plan.compare, reference, texel[0]), one);
+    texel.half[0][0] = _mm256_castps256_ps128(result);
+    texel.half[1][0] = _mm256_extractf128_ps(result, 1);
+  }
+}
+
+/// A corner that no face of the cube has is the mean of the other three, or of integers one of them.
+void fill_missing(std::uint32_t missing, bool integers, TexelColors (&corner)[4]) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::uint32_t lanes = missing >> (8 * i) & 0xff;
+    if (lanes == 0) continue;
+    const __m256i mask = lanes_of(lanes);
+    const __m128 masks[2] = {_mm_castsi128_ps(_mm256_castsi256_si128(mask)),
+                             _mm_castsi128_ps(_mm256_extracti128_si256(mask, 1))};
+    for (std::size_t half = 0; half < 2; ++half)
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto at = [&](std::size_t k) { return corner[(i + k) % 4].half[half][c]; };
+        const __m128 mean =
+            integers ? at(1) : _mm_div_ps(_mm_add_ps(_mm_add_ps(at(1), at(2)), at(3)), _mm_set1_ps(3.0f));
+        corner[i].half[half][c] = _mm_blendv_ps(at(0), mean, masks[half]);
+      }
+  }
+}
+
+/// Between a and b. What has no weight counts for nothing, also where it is infinite.
+__m256 lerp_lanes(__m256 a, __m256 b, __m256 w) {
+  const __m256 mixed = _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w));
+  return _mm256_blendv_ps(mixed, a, _mm256_cmp_ps(w, _mm256_setzero_ps(), _CMP_EQ_OQ));
+}
+
 /// Any format, by its row of the table: all channels are numbers. Channels that it lacks are 0, alpha is 1.
-LaneColor filter_any(const TexturePlan& plan, const TexturePlan::Footprint& f, const TexelSource& source) {
+LaneColor filter_any(const TexturePlan& plan, std::size_t group, const TexturePlan::Footprint& f,
+                     const TexelSource& source) {
   // Bits, which arithmetic would change where they look like a NaN; their filter is always nearest.
   if (number_kind(source.format) != NumberKind::kFloat) {
     const TexelColors texel = fetch_colors(plan, f, 0, source);
@@ -163,16 +217,14 @@ LaneColor filter_any(const TexturePlan& plan, const TexturePlan::Footprint& f, c
     return _mm256_mul_ps(_mm256_cvtepi32_ps(load_lanes(frac.data())), scale);
   };
   const __m256 wx = weight(f.frac_x), wy = weight(f.frac_y);
-  // A texel without weight counts for nothing, also where it is infinite.
-  const auto lerp = [](__m256 a, __m256 b, __m256 w) {
-    const __m256 mixed = _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w));
-    return _mm256_blendv_ps(mixed, a, _mm256_cmp_ps(w, _mm256_setzero_ps(), _CMP_EQ_OQ));
-  };
   TexelColors corner[4];
   for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(plan, f, i, source);
+  if (plan.general && plan.compares) compare_corners(plan, group, format_info(source.format), corner);
+  if (f.missing != 0) fill_missing(f.missing, false, corner);
   LaneColor color;
   for (std::size_t c = 0; c < 4; ++c)
-    color.channel[c] = lerp(lerp(corner[0][c], corner[1][c], wx), lerp(corner[2][c], corner[3][c], wx), wy);
+    color.channel[c] = lerp_lanes(lerp_lanes(corner[0][c], corner[1][c], wx),
+                                  lerp_lanes(corner[2][c], corner[3][c], wx), wy);
   return color;
 }
 
@@ -185,26 +237,62 @@ Way way_of(Format format) {
   return format == Format::kR8G8B8A8Srgb || format == Format::kB8G8R8A8Srgb ? Way::kSrgb : Way::kAny;
 }
 
+/// A cube's corners and comparisons are done with numbers, and so that no lane's way depends on another's, all
+/// of such plans is.
+Way way_of(const TexturePlan& plan, Format format) {
+  const bool numbers =
+      plan.general && (plan.compares || is_cube(plan.kind) || plan.ask != TextureAsk::kSample);
+  return numbers ? Way::kAny : way_of(format);
+}
+
+template <Way way>
+LaneColor filter_tap(const TexturePlan& plan, std::size_t group, std::size_t tap, const TexelSource& source) {
+  const TexturePlan::Footprint& footprint = plan.footprint[group][tap];
+  if constexpr (way == Way::kSrgb) return filter_srgb(fetch(footprint, source, plan.border));
+  else if constexpr (way == Way::kUnorm) return filter_unorm(fetch(footprint, source, plan.border));
+  else return filter_any(plan, group, footprint, source);
+}
+
+/// The mean of a level's samples along an axis, or what lies between its two slices.
+template <Way way>
+LaneColor filter_level(const TexturePlan& plan, std::size_t group, std::size_t level,
+                       const TexelSource& source) {
+  const std::size_t taps = plan.general ? plan.taps[group] : 1;
+  LaneColor color = filter_tap<way>(plan, group, level * taps, source);
+  if (taps == 1) return color;
+  if (plan.slices) {
+    const LaneColor behind = filter_tap<way>(plan, group, level * taps + 1, source);
+    const __m256 weight = _mm256_loadu_ps(plan.slice_weight[level].data() + 8 * group);
+    for (std::size_t c = 0; c < 4; ++c)
+      color.channel[c] = lerp_lanes(color.channel[c], behind.channel[c], weight);
+    return color;
+  }
+  const __m256 count = _mm256_loadu_ps(plan.samples.data() + 8 * group);
+  for (std::size_t tap = 1; tap < taps; ++tap) {
+    const LaneColor more = filter_tap<way>(plan, group, level * taps + tap, source);
+    const __m256 counts = _mm256_cmp_ps(_mm256_set1_ps(static_cast<float>(tap + 1)), count, _CMP_LE_OQ);
+    for (std::size_t c = 0; c < 4; ++c)
+      color.channel[c] =
+          _mm256_blendv_ps(color.channel[c], _mm256_add_ps(color.channel[c], more.channel[c]), counts);
+  }
+  for (std::size_t c = 0; c < 4; ++c) color.channel[c] = _mm256_div_ps(color.channel[c], count);
+  return color;
+}
+
 template <Way way>
 void filter_group(const TexturePlan& plan, std::size_t group, const TexelSource& source,
                   std::array<LaneFloats, 4>& rgba) {
-  const auto filter = [&](std::size_t level) {
-    const TexturePlan::Footprint& footprint = plan.footprint[group][level];
-    if constexpr (way == Way::kSrgb) {
-      return filter_srgb(fetch(footprint, source, plan.border));
-    } else if constexpr (way == Way::kUnorm) {
-      return filter_unorm(fetch(footprint, source, plan.border));
-    } else {
-      return filter_any(plan, footprint, source);
-    }
-  };
-  LaneColor color = filter(0);
+  LaneColor color = filter_level<way>(plan, group, 0, source);
   if (plan.levels[group] == 2) {
-    const LaneColor coarser = filter(1);
+    const LaneColor coarser = filter_level<way>(plan, group, 1, source);
     const __m256 weight = _mm256_load_ps(plan.level_weight.data() + 8 * group);
-    for (int c = 0; c < 4; ++c) {
-      color.channel[c] = _mm256_add_ps(
-          color.channel[c], _mm256_mul_ps(_mm256_sub_ps(coarser.channel[c], color.channel[c]), weight));
+    for (std::size_t c = 0; c < 4; ++c) {
+      if constexpr (way == Way::kAny) {
+        color.channel[c] = lerp_lanes(color.channel[c], coarser.channel[c], weight);
+      } else {
+        color.channel[c] = _mm256_add_ps(
+            color.channel[c], _mm256_mul_ps(_mm256_sub_ps(coarser.channel[c], color.channel[c]), weight));
+      }
     }
   }
   if (way != Way::kAny && is_bgra(source.format)) std::swap(color.channel[0], color.channel[2]);
@@ -216,11 +304,34 @@ void filter_group(const TexturePlan& plan, std::size_t group, const TexelSource&
   }
 }
 
+/// A component of the corners: lower left, lower right, upper right, upper left. [VK1.3 #textures-gather]
+void gather_group(const TexturePlan& plan, std::size_t group, const TexelSource& source,
+                  std::array<LaneFloats, 4>& rgba) {
+  const TexturePlan::Footprint& f = plan.footprint[group][0];
+  TexelColors corner[4];
+  for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(plan, f, i, source);
+  if (plan.compares) compare_corners(plan, group, format_info(source.format), corner);
+  if (f.missing != 0) fill_missing(f.missing, number_kind(source.format) != NumberKind::kFloat, corner);
+  constexpr std::size_t kOrder[4] = {2, 3, 1, 0};
+  const std::size_t component = plan.compares ? 0 : plan.component;
+  for (std::size_t k = 0; k < 4; ++k)
+    _mm256_storeu_ps(rgba[k].data() + 8 * group, corner[kOrder[k]][component]);
+}
+
+void answer_level(const TexturePlan& plan, std::array<LaneFloats, 4>& rgba) {
+  rgba = {};
+  rgba[0] = plan.level_of_detail[0];
+  rgba[1] = plan.level_of_detail[1];
+}
+
 void filter(const TexturePlan& plan, const TexelSource& source, std::array<LaneFloats, 4>& rgba) {
-  const Way way = way_of(source.format);
+  const bool gathers = plan.general && plan.ask == TextureAsk::kGather;
+  const Way way = way_of(plan, source.format);
   for (std::size_t group = 0; group < TexturePlan::kGroups; ++group) {
     if (plan.levels[group] == 0) {
       for (LaneFloats& channel : rgba) _mm256_storeu_ps(channel.data() + 8 * group, _mm256_setzero_ps());
+    } else if (gathers) {
+      gather_group(plan, group, source, rgba);
     } else if (way == Way::kSrgb) {
       filter_group<Way::kSrgb>(plan, group, source, rgba);
     } else if (way == Way::kUnorm) {
@@ -233,10 +344,13 @@ void filter(const TexturePlan& plan, const TexelSource& source, std::array<LaneF
 
 /// Decodes the blocks of a plan, and filters what they hold.
 void filter_blocks(const TexturePlan& plan, const std::byte* base, std::array<LaneFloats, 4>& rgba) {
-  alignas(32) std::array<std::byte, TexturePlan::kMaxBlocks * sizeof(BlockTexels)> texels;
+  // Kept from request to request: a plan may have thousands of blocks, and nearly all have few.
+  thread_local std::vector<std::byte> texels;
   const BlockCode code = block_code(plan.format);
   const BlockCodeInfo& info = block_code_info(code);
   const std::size_t block_texels = std::size_t{kBlockTexels} * info.decoded_bytes;
+  texels.resize(
+      std::max({texels.size(), block_texels, static_cast<std::size_t>(plan.block_count) * block_texels}));
   BlockTexels block;
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.block_count); ++i) {
     decode_block(code, {base + std::size_t{plan.blocks[i]} * info.bytes, info.bytes}, block);
@@ -254,6 +368,7 @@ void filter_blocks(const TexturePlan& plan, const std::byte* base, std::array<La
 }  // namespace
 
 void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::array<LaneFloats, 4>& rgba) {
+  if (plan.general && plan.ask == TextureAsk::kQueryLod) return answer_level(plan, rgba);
   const std::byte* const base = memory.data() + plan.base;
   if (is_block_format(plan.format)) return filter_blocks(plan, base, rgba);
   filter(plan, {base, plan.format, format_info(plan.format).channels}, rgba);

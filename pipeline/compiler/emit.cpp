@@ -122,14 +122,19 @@ class Encoder {
         linkage_(linkage),
         chosen_(best_order(shader, target)),
         constants_(shader, chosen_.code) {
-    std::set<std::uint16_t> inputs, textures, buffers;
+    std::set<std::uint16_t> inputs, textures, operations, buffers;
     for (const ScalarInstruction& i : chosen_.code) {
       if (i.op == Op::kInput && i.imm < models::kFirstSystemValue) inputs.insert(i.imm);
       if (names(i, models::Immediate::kTextureBinding)) textures.insert(i.imm);
+      if (names(i, models::Immediate::kTextureOperation)) {
+        operations.insert(i.imm);
+        textures.insert(shader.texture_operations[i.imm].texture);
+      }
       if (names(i, models::Immediate::kBufferBinding)) buffers.insert(i.imm);
     }
     inputs_ = pack(inputs);
     textures_ = pack(textures);
+    operations_ = pack(operations);
     buffers_ = pack(buffers);
   }
 
@@ -148,6 +153,11 @@ class Encoder {
       program.vertex_inputs.push_back(
           {static_cast<std::uint16_t>(raw / 4), static_cast<std::uint16_t>(raw % 4)});
     for (const auto& [raw, slot] : textures_) program.textures.push_back(shader_.textures[raw]);
+    for (const auto& [raw, slot] : operations_) {
+      program.texture_operations.push_back(shader_.texture_operations[raw]);
+      std::uint16_t& texture = program.texture_operations.back().texture;
+      texture = textures_.at(texture);
+    }
     for (const auto& [raw, slot] : buffers_) program.buffers.push_back(shader_.buffers[raw]);
     program.outputs_follow_atomics = outputs_follow_atomics(shader_);
     program.second_source = shader_.second_source;
@@ -163,8 +173,8 @@ class Encoder {
                               out.imm == models::kDepthOutput && !shader_.early_fragment_tests;
       program.writes_sample_mask |= shader_.stage == models::ShaderStage::kFragment &&
                                     out.op == Op::kOutput && out.imm == models::kSampleMaskOutput;
-      program.uses_derivatives |= (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) ||
-                                  out.op == Op::kTexImplicit || out.op == Op::kTexBias;
+      program.uses_derivatives |=
+          (out.op >= Op::kDdxFine && out.op <= Op::kDdyCoarse) || models::takes_level_from_quad(out.op);
       program.code.push_back(out);
     }
     if (const int depth = control_depth(program.code); depth > models::kMaxControlDepth)
@@ -202,6 +212,7 @@ class Encoder {
     if (i.op == Op::kInput && i.imm < models::kFirstSystemValue) return inputs_.at(i.imm);
     if (i.op == Op::kInterp) return linkage_.varyings.at(i.imm);
     if (names(i, models::Immediate::kTextureBinding)) return textures_.at(i.imm);
+    if (names(i, models::Immediate::kTextureOperation)) return operations_.at(i.imm);
     if (names(i, models::Immediate::kBufferBinding)) return buffers_.at(i.imm);
     if (i.op == Op::kOutput && shader_.stage == models::ShaderStage::kVertex) return vertex_output(i.imm);
     if (i.op == Op::kLoadConst) return constants_.word_of(i.c);
@@ -240,7 +251,7 @@ class Encoder {
   const Linkage& linkage_;
   OrderedCode chosen_;
   ConstantFile constants_;
-  std::map<std::uint16_t, std::uint16_t> inputs_, textures_, buffers_;
+  std::map<std::uint16_t, std::uint16_t> inputs_, textures_, operations_, buffers_;
 };
 
 }  // namespace

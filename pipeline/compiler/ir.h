@@ -66,6 +66,7 @@ struct ScalarShader {
   std::vector<bool> variable;  ///< by virtual register
   std::vector<ConstantBlock> blocks;
   std::vector<models::TextureBinding> textures;
+  std::vector<models::TextureOperation> texture_operations;
   std::vector<models::BufferBinding> buffers;               ///< storage buffers
   std::map<std::uint16_t, models::Interpolation> varyings;  ///< fragment: interpolation by raw slot
   /// vertex: bit i: input location i is of integers

@@ -44,8 +44,9 @@ class Liveness {
   /// read where the first of them is, because all are written late.
   template <class Visit>
   void for_each_use(std::size_t at, Visit visit) const {
+    const auto width = static_cast<std::uint32_t>(models::operand_width(code_[at].op));
     for (const Value& v : {code_[at].a, code_[at].b, code_[at].c})
-      if (v.is_register()) visit(v.bits);
+      for (std::uint32_t k = 0; v.is_register() && k < width; ++k) visit(v.bits + k);
     for (const std::uint32_t r : late_[at]) visit(r);
   }
 

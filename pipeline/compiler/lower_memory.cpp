@@ -188,6 +188,10 @@ void Lowering::load(const spirv::Instruction& i) {
     textures_[i.result] = texture->second;
     return;
   }
+  if (const auto sampler = samplers_.find(i.operands[0]); sampler != samplers_.end()) {
+    samplers_[i.result] = sampler->second;
+    return;
+  }
   const Pointer& p = pointer(i.operands[0], i);
   if (p.type != i.type) throw unsupported(i, "a load of another type than was declared");
   if (is_block(p.storage)) {

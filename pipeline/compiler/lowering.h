@@ -184,8 +184,25 @@ class Lowering {
   void declare_texture(const spirv::Variable& variable);
   /// Of a scalar type of an interface or texture.
   [[nodiscard]] models::NumberKind number_kind(Id scalar) const;
-  void sample(const spirv::Instruction& i, bool projective);
+  /// What an instruction says of an operation on a texture behind its coordinates.
+  struct ImageOperands {
+    Values bias, lod, gradients, offsets;     ///< those that there are
+    std::array<std::int8_t, 3> offset{};      ///< constant
+    std::vector<std::uint32_t> four_offsets;  ///< of a gather: eight words
+  };
+  [[nodiscard]] std::uint16_t texture_of(Id image, const spirv::Instruction& i) const;
+  [[nodiscard]] std::uint16_t texture_index(const models::TextureBinding& binding);
+  void combine(const spirv::Instruction& i);
+  [[nodiscard]] ImageOperands image_operands(const spirv::Instruction& i, std::size_t mask_at);
+  [[nodiscard]] std::array<std::int8_t, 3> constant_offset(Id id, const spirv::Instruction& i) const;
+  void sample(const spirv::Instruction& i);
+  void fetch(const spirv::Instruction& i);
+  void gather(const spirv::Instruction& i);
+  void query_lod(const spirv::Instruction& i);
   void image_size(const spirv::Instruction& i);
+  void image_levels(const spirv::Instruction& i);
+  /// Emits an operation: its four results.
+  Values ask(const spirv::Instruction& i, const models::TextureOperation& operation, const Values& words);
   void derivative(const spirv::Instruction& i);
 
   // glsl450.cpp
@@ -206,6 +223,7 @@ class Lowering {
   std::unordered_set<Id> read_outputs_;
   std::unordered_map<Id, std::uint16_t> buffers_;   ///< variable -> storage buffer
   std::unordered_map<Id, std::uint16_t> textures_;  ///< variable or loaded value -> binding
+  std::unordered_map<Id, std::pair<std::uint32_t, std::uint32_t>> samplers_;  ///< -> set and binding
   /// matrices that came as rows: loaded row-major, or a result of OpTranspose
   std::unordered_set<Id> transposed_;
   std::unordered_map<Id, Values> phis_, resolved_phis_;

@@ -107,7 +107,7 @@ bool differs_in_divergent_flow(const ScalarShader& shader) {
     if (i.op == Op::kEndIf || i.op == Op::kEndLoop) --depth;
     discarded = discarded || (i.op == Op::kKillIf && depth > 0);
     const bool differs =
-        (i.op >= Op::kDdxFine && i.op <= Op::kDdyCoarse) || i.op == Op::kTexImplicit || i.op == Op::kTexBias;
+        (i.op >= Op::kDdxFine && i.op <= Op::kDdyCoarse) || models::takes_level_from_quad(i.op);
     return differs && (depth > 0 || discarded);
   });
 }

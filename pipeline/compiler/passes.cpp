@@ -195,7 +195,7 @@ bool has_effect(Op op) {
   return is_control(op) || op == Op::kKillIf || op == Op::kOutput || op == Op::kEnd ||
          models::writes_buffer(op);
 }
-bool is_texture(Op op) { return op == Op::kTexImplicit || op == Op::kTexBias || op == Op::kTexLod; }
+bool is_texture(Op op) { return models::is_texture_request(op); }
 bool is_request(Op op) { return is_texture(op) || op == Op::kLoadBuffer; }
 
 void clean_up(ScalarShader& shader) {

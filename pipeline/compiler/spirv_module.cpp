@@ -24,8 +24,9 @@ std::uint32_t saturating_product(std::uint64_t a, std::uint64_t b) {
 
 bool harmless_capability(std::uint32_t capability) {
   return capability == spv::CapabilityMatrix || capability == spv::CapabilityShader ||
-         capability == spv::CapabilityImageQuery || capability == spv::CapabilityDerivativeControl ||
-         capability == spv::CapabilitySampleRateShading ||
+         capability == spv::CapabilityImageQuery || capability == spv::CapabilitySampled1D ||
+         capability == spv::CapabilitySampledCubeArray || capability == spv::CapabilityImageGatherExtended ||
+         capability == spv::CapabilityDerivativeControl || capability == spv::CapabilitySampleRateShading ||
          capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry ||
          capability == spv::CapabilityClipDistance || capability == spv::CapabilityCullDistance ||
          capability == spv::CapabilityDemoteToHelperInvocation ||
@@ -191,9 +192,8 @@ void Module::add_capability(std::uint32_t capability) {
   const std::string instead = instead_of_capability(capability);
   unsupported_capability = fmt::format(
       "capability {} is not supported ({})", capability_name(capability),
-      instead.empty()
-          ? "vertex and fragment shaders of 32-bit types with uniform blocks and 2D combined samplers are"
-          : instead);
+      instead.empty() ? "vertex and fragment shaders of 32-bit types with uniform blocks and textures are"
+                      : instead);
 }
 
 void Module::add_entry_point(const Instruction& instruction) {
@@ -288,10 +288,14 @@ void Module::add_type(const Instruction& instruction) {
       break;
     case spv::OpTypeImage:
       // Word order: sampled type, dimension, depth, arrayed, multisampled, sampled.
-      type.count =
-          operands[1] == spv::Dim2D && operands[3] == 0 && operands[4] == 0 && operands[5] == 1 ? 2 : 0;
+      type.kind = Type::Kind::kImage;
       type.element = operands[0];
+      type.dim = operands[1];
+      type.arrayed = operands[3] != 0;
+      type.multisampled = operands[4] != 0;
+      type.sampled = operands[5] == 1;
       break;
+    case spv::OpTypeSampler: type.kind = Type::Kind::kSampler; break;
     case spv::OpTypeSampledImage:
       type.kind = Type::Kind::kSampledImage;
       type.element = operands[0];

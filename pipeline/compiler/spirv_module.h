@@ -32,14 +32,19 @@ struct Type {
     kArray,  ///< of `count` elements; 0: as many as its buffer holds
     kStruct,
     kPointer,
+    kImage,
+    kSampler,
     kSampledImage,
     kOther
   };
   Kind kind = Kind::kOther;
   bool is_signed = false;
-  Id element = 0;             ///< component, column, array element, pointee or image
-  std::uint32_t count = 0;    ///< components, columns or array elements
-  std::vector<Id> members;    ///< struct
+  Id element = 0;           ///< component, column, array element, pointee or image
+  std::uint32_t count = 0;  ///< components, columns or array elements
+  std::vector<Id> members;  ///< struct
+  /// image: spv::Dim, and what OpTypeImage says of it; `element` is its sampled type
+  std::uint32_t dim = 0;
+  bool arrayed = false, multisampled = false, sampled = false;
   std::uint32_t scalars = 0;  ///< 32-bit scalars in a value of this type, flattened; 0 for what has none
 };
 

@@ -45,17 +45,9 @@ struct Advice {
   std::string_view name, advice;
 };
 constexpr auto kAdvice = std::to_array<Advice>({
-    {"OpImageFetch", "texelFetch; use textureLod at the texel's centre"},
-    {"OpImageGather", "textureGather; sample the four texels one by one"},
-    {"OpImageDrefGather", "textureGather of a shadow sampler; sample and compare in the shader"},
-    {"OpImageSampleDrefImplicitLod", "shadow sampler; sample and compare in the shader"},
-    {"OpImageSampleDrefExplicitLod", "shadow sampler; sample and compare in the shader"},
     {"OpImageRead", "imageLoad; use a sampler2D"},
     {"OpImageWrite", "imageStore; write to the colour output"},
-    {"OpImageQueryLevels", "textureQueryLevels; pass the number in a uniform block"},
-    {"OpImageQueryLod", "textureQueryLod; compute it from dFdx and dFdy"},
     {"OpImageQuerySize", "imageSize; use textureSize of a sampler2D"},
-    {"OpSampledImage", "separate texture and sampler; use a combined sampler2D"},
     {"OpBitCount", "bitCount; add up the bits with shifts and masks"},
     {"OpBitReverse", "bitfieldReverse; use shifts and masks"},
     {"OpBitFieldInsert", "bitfieldInsert; use shifts and masks"},
@@ -116,15 +108,12 @@ std::string instead_of_capability(std::uint32_t capability) {
     case spv::CapabilityStorageUniform16:
     case spv::CapabilityStorageInputOutput16: return "use 32-bit integers";
     case spv::CapabilityFloat16: return "use 32-bit floats";
-    case spv::CapabilitySampledCubeArray:
-    case spv::CapabilitySampled1D:
     case spv::CapabilitySampledBuffer:
     case spv::CapabilitySampledRect:
     case spv::CapabilityImage1D:
     case spv::CapabilityImageBuffer:
     case spv::CapabilityStorageImageExtendedFormats:
     case spv::CapabilityInputAttachment: return "use a sampler2D";
-    case spv::CapabilityImageGatherExtended: return "sample the texels one by one";
     case spv::CapabilityMinLod: return "use textureLod";
     case spv::CapabilityTessellation:
     case spv::CapabilityMultiViewport:

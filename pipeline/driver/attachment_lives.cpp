@@ -46,10 +46,11 @@ AttachmentLives::AttachmentLives(const traces::CommandStream& stream) : stream_(
 }
 
 void AttachmentLives::note_sampled(const traces::TextureDescriptor& bound, std::size_t pass) {
-  for (std::uint32_t l = 0; l < traces::level_count(stream_, bound); ++l) {
-    std::vector<Use>& uses = uses_[{bound.image, bound.first_level + l, bound.layer}];
-    if (uses.empty() || uses.back().pass != pass) uses.push_back({pass});
-  }
+  for (std::uint32_t layer = bound.layer; layer < bound.layer + bound.layers; ++layer)
+    for (std::uint32_t l = 0; l < traces::level_count(stream_, bound); ++l) {
+      std::vector<Use>& uses = uses_[{bound.image, bound.first_level + l, layer}];
+      if (uses.empty() || uses.back().pass != pass) uses.push_back({pass});
+    }
 }
 
 bool AttachmentLives::read_after(const traces::ImagePart& part, std::size_t pass) const {
@@ -64,8 +65,9 @@ bool AttachmentLives::read_after(const traces::ImagePart& part, std::size_t pass
 void AttachmentLives::check_sampled(const traces::TextureDescriptor& bound, std::size_t pass,
                                     const std::string& program) const {
   if (!stream_.images[bound.image].is_attachment()) return;
-  for (std::uint32_t l = 0; l < traces::level_count(stream_, bound); ++l)
-    check_sampled(traces::ImagePart{bound.image, bound.first_level + l, bound.layer}, pass, program);
+  for (std::uint32_t layer = bound.layer; layer < bound.layer + bound.layers; ++layer)
+    for (std::uint32_t l = 0; l < traces::level_count(stream_, bound); ++l)
+      check_sampled(traces::ImagePart{bound.image, bound.first_level + l, layer}, pass, program);
 }
 
 void AttachmentLives::check_sampled(const traces::ImagePart& part, std::size_t pass,

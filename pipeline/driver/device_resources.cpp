@@ -9,6 +9,10 @@ namespace quadrille::pipeline {
 
 namespace {
 
+models::TextureExtent extent_of(const traces::Image& image) {
+  return {image.width, image.height, image.depth, image.layers};
+}
+
 models::SurfaceLayout level_surface(const traces::Image& image, std::uint32_t level) {
   return models::surface_layout(traces::level_width(image, level), traces::level_height(image, level),
                                 image.samples, models::format_bytes(image.format));
@@ -30,7 +34,7 @@ DeviceResources::DeviceResources(const traces::CommandStream& stream, models::De
   };
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
   for (const traces::Image& i : stream.images) {
-    if (!i.is_attachment()) add(models::make_texture_layout(i.format, i.width, i.height, i.levels).bytes);
+    if (!i.is_attachment()) add(models::make_texture_layout(i.format, extent_of(i), i.levels).bytes);
     else
       for (std::uint32_t level = 0; level < i.levels; ++level)
         add(i.layers * level_surface(i, level).bytes());
@@ -53,18 +57,27 @@ DeviceResources::Texture DeviceResources::texture(const traces::TextureDescripto
   const traces::Image& image = stream_.images[bound.image];
   const std::uint32_t levels = traces::level_count(stream_, bound);
   if (image.is_attachment()) {
-    const auto seen = layer(bound.image, bound.layer).subspan(bound.first_level, levels);
-    return {models::view_of_surfaces(seen, image.format), nullptr};
+    (void)layer(bound.image, bound.layer);
+    const auto seen =
+        std::span(surfaces_[bound.image])
+            .subspan(std::size_t{bound.layer} * image.levels, std::size_t{bound.layers} * image.levels);
+    models::TextureView view = models::view_of_surfaces(seen, image.levels, image.format);
+    view = models::view_of_levels(view, bound.first_level, levels);
+    view.kind = bound.view;
+    return {view, nullptr};
   }
   const Texture& whole = whole_texture(bound.image);
-  return {models::view_of_levels(whole.view, bound.first_level, levels), whole.fill};
+  models::TextureView view = models::view_of_levels(whole.view, bound.first_level, levels);
+  if (image.kind != traces::ImageKind::k3D) view = models::view_of_layers(view, bound.layer, bound.layers);
+  view.kind = bound.view;
+  return {view, whole.fill};
 }
 
 const DeviceResources::Texture& DeviceResources::whole_texture(traces::Index image) {
   std::optional<Texture>& texture = textures_[image];
   if (!texture) {
     const traces::Image& i = stream_.images[image];
-    const models::TextureView view = models::allocate_texture(memory_, i.format, i.width, i.height, i.levels);
+    const models::TextureView view = models::allocate_texture(memory_, i.format, extent_of(i), i.levels);
     texture = {view, &fills_.add(i, view)};
     texture_bytes_ += view.layout.bytes;
   }

@@ -278,13 +278,43 @@ class FrameBuilder {
                          models::name_of(use.texels), bound.image, image.name,
                          models::format_info(image.format).name,
                          models::name_of(models::number_kind(image.format)));
+      if (bound.view != use.view)
+        throw user_error("{}: samples a view '{}' at set {}, binding {}, where one '{}' is bound",
+                         program.name, models::kViewKindNames.at(static_cast<std::size_t>(use.view)), use.set,
+                         use.binding, models::kViewKindNames.at(static_cast<std::size_t>(bound.view)));
       lives_.check_sampled(bound, out_.frame.passes.size() - 1, program.name);
       out_.frame.passes.back().samples_attachments |= image.is_attachment();
       const DeviceResources::Texture texture = resources_.texture(bound);
-      states.push_back({texture.view, stream_.samplers[bound.sampler], texture.fill});
+      states.push_back({texture.view, sampler(program, use, bound), texture.fill});
+      const std::uint32_t layers = models::is_array(bound.view) ? bound.layers : 0;
       sizes.push_back({traces::level_width(image, bound.first_level),
-                       traces::level_height(image, bound.first_level), traces::level_count(stream_, bound)});
+                       traces::level_height(image, bound.first_level), traces::level_count(stream_, bound),
+                       traces::level_depth(image, bound.first_level),
+                       models::is_cube(bound.view) ? layers / models::kCubeFaces : layers});
     }
+  }
+
+  /// The texture's own, or the one that the program names with it; any, if it is used without.
+  models::SamplerState sampler(const models::Program& program, const models::TextureBinding& use,
+                               const traces::TextureDescriptor& bound) {
+    if (use.sampler_binding == models::kNoSampler) return {};
+    traces::Index index = bound.sampler;
+    if (use.sampler_binding != models::kCombined) {
+      index = traces::kNone;
+      if (const auto set = sets_.find(use.sampler_set); set != sets_.end())
+        for (const traces::SamplerDescriptor& s : stream_.descriptor_sets[set->second].samplers)
+          if (s.binding == use.sampler_binding) index = s.sampler;
+    }
+    if (index == traces::kNone)
+      throw user_error("{}: no sampler is bound for the texture at set {}, binding {}", program.name, use.set,
+                       use.binding);
+    const models::SamplerState& state = stream_.samplers[index];
+    const bool linear = state.mag == models::Filter::kLinear || state.min == models::Filter::kLinear ||
+                        state.mip == models::Filter::kLinear;
+    if (linear && use.texels != models::NumberKind::kFloat)
+      throw user_error("{}: a texture of integers at set {}, binding {} with a linear filter", program.name,
+                       use.set, use.binding);
+    return state;
   }
 
   const traces::TextureDescriptor& texture(const models::Program& program, std::uint32_t set,

@@ -90,6 +90,14 @@ struct GpuParams : hw::ParamGroup {
       "",
       "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]",
       hw::Effect::kPicture};
+  hw::Param<bool> ellipse_axis{
+      *this,
+      "ellipse_axis",
+      false,
+      "",
+      "Anisotropic samples along the longer axis of a pixel's ellipse; else along its longer difference. [P: "
+      "Heckbert 1989]",
+      hw::Effect::kPicture};
 };
 
 /// How many tokens the producer of a link can have for it: what that does not reach, more depth or width does
@@ -192,7 +200,7 @@ class MachineConfig {
   /// Checks that hold between parameters.
   void check() const;
   [[nodiscard]] models::Precision precision() const {
-    return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2};
+    return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2, gpu.ellipse_axis};
   }
   /// What the shader compiler knows of the cores.
   [[nodiscard]] ShaderTarget shader_target() const {

@@ -256,6 +256,9 @@ void VulkanDevice::create_device() {
   features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
   features.features.multiViewport = present.multiViewport;
   features.features.geometryShader = present.geometryShader;  // gl_PrimitiveID in a fragment shader
+  features.features.imageCubeArray = present.imageCubeArray;
+  features.features.samplerAnisotropy = present.samplerAnisotropy;
+  features.features.shaderImageGatherExtended = present.shaderImageGatherExtended;
   features.features.robustBufferAccess = present.robustBufferAccess;
   features.features.fragmentStoresAndAtomics = present.fragmentStoresAndAtomics;
   features.features.vertexPipelineStoresAndAtomics = present.vertexPipelineStoresAndAtomics;
@@ -357,9 +360,10 @@ VkBuffer VulkanDevice::device_buffer(Cleanup& owner, std::span<const std::byte> 
 VkImage VulkanDevice::image(Cleanup& owner, const ImageWish& wish) const {
   VkImageCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-  info.imageType = VK_IMAGE_TYPE_2D;
+  info.flags = wish.may_be_cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
+  info.imageType = wish.type;
   info.format = wish.format;
-  info.extent = {wish.size.width, wish.size.height, 1};
+  info.extent = {wish.size.width, wish.size.height, wish.depth};
   info.mipLevels = wish.levels;
   info.arrayLayers = wish.layers;
   info.samples = static_cast<VkSampleCountFlagBits>(wish.samples);  // the bits are the counts
@@ -381,12 +385,12 @@ bool VulkanDevice::samples(VkFormat format) const {
   return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0;
 }
 
-VkImageView VulkanDevice::view(Cleanup& owner, VkImage image, VkFormat format,
+VkImageView VulkanDevice::view(Cleanup& owner, VkImage image, VkFormat format, VkImageViewType type,
                                const VkImageSubresourceRange& range) const {
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = image;
-  info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+  info.viewType = type;
   info.format = format;
   info.subresourceRange = range;
   VkImageView result = VK_NULL_HANDLE;

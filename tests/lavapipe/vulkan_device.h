@@ -68,11 +68,14 @@ class VulkanDevice {
     VkExtent2D size{};
     std::uint32_t levels = 1, layers = 1, samples = 1;
     VkImageUsageFlags usage = 0;
+    VkImageType type = VK_IMAGE_TYPE_2D;
+    std::uint32_t depth = 1;
+    bool may_be_cube = false;
   };
-  /// A 2D image that lives until `owner` ends.
+  /// An image that lives until `owner` ends.
   [[nodiscard]] VkImage image(Cleanup& owner, const ImageWish& wish) const;
-  /// A 2D view of one of its layers, or of some levels of it.
-  [[nodiscard]] VkImageView view(Cleanup& owner, VkImage image, VkFormat format,
+  /// A view of some of its levels and layers.
+  [[nodiscard]] VkImageView view(Cleanup& owner, VkImage image, VkFormat format, VkImageViewType type,
                                  const VkImageSubresourceRange& range) const;
   /// A command buffer in the recording state that lives until `owner` ends.
   [[nodiscard]] VkCommandBuffer begin_commands(Cleanup& owner) const;

@@ -120,6 +120,28 @@ VkBorderColor vk_border(traces::BorderColor border, bool integers) {
   QUADRILLE_CHECK(false, "border {}", static_cast<int>(border));
 }
 
+VkImageType vk_image_type(traces::ImageKind kind) {
+  switch (kind) {
+    case traces::ImageKind::k1D: return VK_IMAGE_TYPE_1D;
+    case traces::ImageKind::k2D: return VK_IMAGE_TYPE_2D;
+    case traces::ImageKind::k3D: return VK_IMAGE_TYPE_3D;
+  }
+  QUADRILLE_CHECK(false, "image kind {}", static_cast<int>(kind));
+}
+
+VkImageViewType vk_view_type(traces::ViewKind kind) {
+  switch (kind) {
+    case traces::ViewKind::k1D: return VK_IMAGE_VIEW_TYPE_1D;
+    case traces::ViewKind::k2D: return VK_IMAGE_VIEW_TYPE_2D;
+    case traces::ViewKind::k3D: return VK_IMAGE_VIEW_TYPE_3D;
+    case traces::ViewKind::kCube: return VK_IMAGE_VIEW_TYPE_CUBE;
+    case traces::ViewKind::k1DArray: return VK_IMAGE_VIEW_TYPE_1D_ARRAY;
+    case traces::ViewKind::k2DArray: return VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    case traces::ViewKind::kCubeArray: return VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+  }
+  QUADRILLE_CHECK(false, "view kind {}", static_cast<int>(kind));
+}
+
 VkPolygonMode vk_polygon_mode(traces::PolygonMode mode) {
   switch (mode) {
     case traces::PolygonMode::kFill: return VK_POLYGON_MODE_FILL;

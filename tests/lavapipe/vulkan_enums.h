@@ -14,6 +14,8 @@ namespace quadrille::lavapipe {
 [[nodiscard]] VkSamplerAddressMode vk_wrap(traces::Wrap wrap);
 /// `integers`: of an image that holds integers.
 [[nodiscard]] VkBorderColor vk_border(traces::BorderColor border, bool integers);
+[[nodiscard]] VkImageType vk_image_type(traces::ImageKind kind);
+[[nodiscard]] VkImageViewType vk_view_type(traces::ViewKind kind);
 [[nodiscard]] VkPrimitiveTopology vk_topology(traces::Topology topology);
 [[nodiscard]] VkPolygonMode vk_polygon_mode(traces::PolygonMode mode);
 [[nodiscard]] VkLineRasterizationModeEXT vk_line_mode(traces::LineMode mode);

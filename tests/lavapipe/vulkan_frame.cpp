@@ -59,6 +59,11 @@ bool resolves_after(const traces::ColorAttachmentUse& use) {
   return use.resolve != traces::kNone && (use.resolve_level > 0 || use.resolve_layer > 0);
 }
 
+bool may_be_cube(const traces::Image& image) {
+  return image.kind == traces::ImageKind::k2D && image.width == image.height &&
+         image.layers >= models::kCubeFaces && image.samples == 1;
+}
+
 VkImageUsageFlags usage_of(const traces::Image& image) {
   VkImageUsageFlags usage =
       image.is_attachment() ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -100,18 +105,22 @@ void VulkanFrame::upload_images() {
                                            .levels = source.levels,
                                            .layers = source.layers,
                                            .samples = source.samples,
-                                           .usage = usage_of(source)});
+                                           .usage = usage_of(source),
+                                           .type = vk_image_type(source.kind),
+                                           .depth = source.depth,
+                                           .may_be_cube = may_be_cube(source)});
     if (!source.is_attachment()) upload_texels(source, image);
     images_.push_back(image);
   }
 }
 
-VkImageView VulkanFrame::view_of(const traces::ImagePart& finest, std::uint32_t levels) {
-  VkImageView& view = views_[{finest, levels}];
+VkImageView VulkanFrame::view_of(const Seen& seen) {
+  VkImageView& view = views_[seen];
+  const auto& [finest, levels, kind, layers] = seen;
   const Image& image = images_[finest.image];
   if (view == VK_NULL_HANDLE)
     view = device_.view(cleanup_, image.image, vk_format(stream_.images[finest.image].format),
-                        {image.aspect, finest.level, levels, finest.layer, 1});
+                        vk_view_type(kind), {image.aspect, finest.level, levels, finest.layer, layers});
   return view;
 }
 
@@ -121,24 +130,26 @@ void VulkanFrame::upload_texels(const traces::Image& source, const Image& image)
   const auto padded = [](std::uint64_t bytes) { return (bytes + 15) / 16 * 16; };
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < source.levels; ++level)
-    bytes += padded(traces::level_bytes(source, level));
+    bytes += padded(traces::level_bytes(source, level) * source.layers);
   const HostBuffer staging = device_.buffer(upload, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
   std::vector<VkBufferImageCopy> levels;
   VkDeviceSize offset = 0;
   const std::byte* texels = source.texels.data();
   for (std::uint32_t level = 0; level < source.levels; ++level) {
-    const std::uint64_t size = traces::level_bytes(source, level);
+    const std::uint64_t size = traces::level_bytes(source, level) * source.layers;
     std::memcpy(static_cast<std::byte*>(staging.mapped) + offset, texels, size);
     VkBufferImageCopy copy{};
     copy.bufferOffset = offset;
-    copy.imageSubresource = {image.aspect, level, 0, 1};
-    copy.imageExtent = {traces::level_width(source, level), traces::level_height(source, level), 1};
+    copy.imageSubresource = {image.aspect, level, 0, source.layers};
+    copy.imageExtent = {traces::level_width(source, level), traces::level_height(source, level),
+                        traces::level_depth(source, level)};
     levels.push_back(copy);
     texels += size;
     offset += padded(size);
   }
   const VkCommandBuffer commands = device_.begin_commands(upload);
-  const VkImageSubresourceRange all{image.all_aspects, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+  const VkImageSubresourceRange all{image.all_aspects, 0, VK_REMAINING_MIP_LEVELS, 0,
+                                    VK_REMAINING_ARRAY_LAYERS};
   transition(commands, image.image, all, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
   vkCmdCopyBufferToImage(commands, staging.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                          static_cast<std::uint32_t>(levels.size()), levels.data());
@@ -159,7 +170,11 @@ VkSampler VulkanFrame::sampler_of(const SamplerKey& key) {
   info.mipmapMode = vk_mip_mode(source.mip);
   info.addressModeU = vk_wrap(source.wrap_u);
   info.addressModeV = vk_wrap(source.wrap_v);
-  info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+  info.addressModeW = vk_wrap(source.wrap_w);
+  info.compareEnable = source.compare != models::CompareOp::kNever ? VK_TRUE : VK_FALSE;
+  info.compareOp = vk_compare(source.compare);
+  info.anisotropyEnable = models::is_anisotropic(source) ? VK_TRUE : VK_FALSE;
+  info.maxAnisotropy = source.max_anisotropy;
   info.borderColor = vk_border(source.border, key.second);
   info.mipLodBias = source.lod_bias;
   info.minLod = source.min_lod;
@@ -230,7 +245,7 @@ VkRenderingAttachmentInfo VulkanFrame::attach(const traces::AttachmentUse& use, 
   move(use.part(), layout);
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  info.imageView = view_of(use.part(), 1);
+  info.imageView = view_of({use.part()});
   info.imageLayout = layout;
   info.loadOp = vk_load(use.load);
   info.storeOp =
@@ -254,7 +269,7 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
     layouts_[use.resolve_part()] = VK_IMAGE_LAYOUT_UNDEFINED;
     move(use.resolve_part(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     colors.back().resolveMode = integers ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT : VK_RESOLVE_MODE_AVERAGE_BIT;
-    colors.back().resolveImageView = view_of(use.resolve_part(), 1);
+    colors.back().resolveImageView = view_of({use.resolve_part()});
     colors.back().resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }
   VkRenderingAttachmentInfo depth{};

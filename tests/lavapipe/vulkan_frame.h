@@ -70,7 +70,15 @@ class VulkanFrame {
   void upload_images();
   [[nodiscard]] VkSampler sampler_of(const SamplerKey& key);
   void upload_texels(const traces::Image& source, const Image& image);
-  [[nodiscard]] VkImageView view_of(const traces::ImagePart& finest, std::uint32_t levels);
+  /// Levels and layers that a view sees.
+  struct Seen {
+    traces::ImagePart finest;
+    std::uint32_t levels = 1;
+    traces::ViewKind kind = traces::ViewKind::k2D;
+    std::uint32_t layers = 1;
+    friend auto operator<=>(const Seen&, const Seen&) = default;  // NOLINT(modernize-use-nullptr)
+  };
+  [[nodiscard]] VkImageView view_of(const Seen& seen);
   void create_descriptor_sets();
 
   [[nodiscard]] SetShape shape_of(traces::Index set) const;
@@ -101,7 +109,7 @@ class VulkanFrame {
   std::vector<VkBuffer> buffers_;
   std::vector<Image> images_;
   std::map<traces::ImagePart, VkImageLayout> layouts_;  ///< of attachments, at this point of the recording
-  std::map<std::pair<traces::ImagePart, std::uint32_t>, VkImageView> views_;  ///< and levels
+  std::map<Seen, VkImageView> views_;
   std::map<SamplerKey, VkSampler> samplers_;
   std::vector<VkDescriptorSet> descriptor_sets_;
   std::map<SetShape, VkDescriptorSetLayout> set_layouts_;

@@ -107,7 +107,10 @@ VulkanFrame::SetShape VulkanFrame::shape_of(traces::Index set) const {
   for (const auto& buffer : stream_.descriptor_sets[set].buffers)
     shape[buffer.binding] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   for (const auto& texture : stream_.descriptor_sets[set].textures)
-    shape[texture.binding] = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    shape[texture.binding] = texture.sampler == traces::kNone ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
+                                                              : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  for (const auto& sampler : stream_.descriptor_sets[set].samplers)
+    shape[sampler.binding] = VK_DESCRIPTOR_TYPE_SAMPLER;
   return shape;
 }
 
@@ -132,15 +135,17 @@ void VulkanFrame::create_descriptor_sets() {
   for (const auto& set : stream_.descriptor_sets) {
     uniforms += static_cast<std::uint32_t>(set.uniforms.size());
     buffers += static_cast<std::uint32_t>(set.buffers.size());
-    textures += static_cast<std::uint32_t>(set.textures.size());
+    textures += static_cast<std::uint32_t>(set.textures.size() + set.samplers.size());
   }
   const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniforms},
                                         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, buffers},
-                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures}};
+                                        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures},
+                                        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures},
+                                        {VK_DESCRIPTOR_TYPE_SAMPLER, textures}};
   VkDescriptorPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   info.maxSets = static_cast<std::uint32_t>(stream_.descriptor_sets.size()) + 1;
-  info.poolSizeCount = 2;
+  info.poolSizeCount = static_cast<std::uint32_t>(std::size(sizes));
   info.pPoolSizes = sizes;
   VkDescriptorPool pool = VK_NULL_HANDLE;
   require(vkCreateDescriptorPool(device_.handle(), &info, nullptr, &pool), "vkCreateDescriptorPool");
@@ -170,16 +175,28 @@ void VulkanFrame::create_descriptor_sets() {
     };
     for (const auto& uniform : source.uniforms) write_block(uniform, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     for (const auto& buffer : source.buffers) write_block(buffer, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-    for (const auto& texture : source.textures) {
-      const VkDescriptorImageInfo image{
-          sampler_of({texture.sampler, traces::is_integer_format(stream_.images[texture.image].format)}),
-          view_of({texture.image, texture.first_level, texture.layer}, traces::level_count(stream_, texture)),
-          VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-      write.dstBinding = texture.binding;
-      write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    const auto write_image = [&](std::uint32_t binding, VkDescriptorType type,
+                                 const VkDescriptorImageInfo& image) {
+      write.dstBinding = binding;
+      write.descriptorType = type;
       write.pImageInfo = &image;
       vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
+    };
+    for (const auto& texture : source.textures) {
+      const bool integers = traces::is_integer_format(stream_.images[texture.image].format);
+      const bool combined = texture.sampler != traces::kNone;
+      write_image(texture.binding,
+                  combined ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+                  {combined ? sampler_of({texture.sampler, integers}) : VK_NULL_HANDLE,
+                   view_of({{texture.image, texture.first_level, texture.layer},
+                            traces::level_count(stream_, texture),
+                            texture.view,
+                            texture.layers}),
+                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     }
+    for (const auto& sampler : source.samplers)
+      write_image(sampler.binding, VK_DESCRIPTOR_TYPE_SAMPLER,
+                  {sampler_of({sampler.sampler, false}), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED});
   }
 }
 

@@ -79,19 +79,62 @@ const char* letter(Format format) {
   return "";
 }
 
-std::string fragment(const TextureCard& card) {
-  const bool integers = traces::is_integer_format(card.image.format);
+constexpr std::array<std::string_view, 7> kGlslKinds{"2D",      "1D",      "3D",       "Cube",
+                                                     "1DArray", "2DArray", "CubeArray"};
+
+/// Declares `t` and the place that a picture shows.
+std::string declarations(const TextureCard& card) {
+  const std::string kind =
+      fmt::format("{}{}", kGlslKinds.at(static_cast<std::size_t>(card.view)), card.shadow ? "Shadow" : "");
+  const std::string l = letter(card.image.format);
+  std::string text = "#version 450\n";
+  if (card.separate)
+    text += fmt::format(
+        "#extension GL_EXT_samplerless_texture_functions : require\n"
+        "layout(set = 0, binding = 0) uniform {0}texture{1} image;\n"
+        "layout(set = 0, binding = 1) uniform sampler{2} state;\n#define t {0}sampler{3}(image, state)\n",
+        l, kGlslKinds.at(static_cast<std::size_t>(card.view)), card.shadow ? "Shadow" : "", kind);
+  else text += fmt::format("layout(set = 0, binding = 0) uniform {}sampler{} t;\n", l, kind);
+  return text + "layout(push_constant) uniform Place { vec2 step, first, size; };\n";
+}
+
+/// Directions towards nine squares, each a face and a little more.
+constexpr const char* kDirections = R"(
+vec3 direction(vec2 place) {
+  ivec2 cell = ivec2(place) / 16;
+  vec2 q = (mod(place, 16.0) - 8.0) / 7.13;
+  int face = (cell.x + 3 * cell.y) % 6;
+  return face == 0 ? vec3(1, -q.y, -q.x) : face == 1 ? vec3(-1, -q.y, q.x) : face == 2 ? vec3(q.x, 1, q.y)
+       : face == 3 ? vec3(q.x, -1, -q.y) : face == 4 ? vec3(q.x, -q.y, 1) : vec3(-q.x, -q.y, -1);
+}
+)";
+
+/// `o` becomes what is asked.
+std::string body(const TextureCard& card, std::string_view place) {
   const std::string shown =
-      integers ? fmt::format(
-                     "uvec4 v = uvec4({});\n  o = gl_FragCoord.x < {}.0 ? vec4(v & 0xffffu) : vec4(v >> 16);",
-                     card.sample, kCardSide / 2)
-               : fmt::format("o = {};", card.sample);
+      traces::is_integer_format(card.image.format)
+          ? fmt::format("uvec4 v = uvec4({});\n  o = {}.x < {}.0 ? vec4(v & 0xffffu) : vec4(v >> 16);",
+                        card.sample, place, kCardSide / 2)
+          : fmt::format("o = {};", card.sample);
   return fmt::format(
-      "#version 450\nlayout(location = 0) out vec4 o;\n"
-      "layout(set = 0, binding = 0) uniform {}sampler2D t;\n"
-      "layout(push_constant) uniform Place {{ vec2 step, first, size; }};\n"
-      "void main() {{\n  vec2 at = gl_FragCoord.xy * step + first, uv = at / size;\n  {}\n}}",
-      letter(card.image.format), shown);
+      "{}void main() {{\n  vec2 place = {};\n  vec2 at = place * step + first, uv = at / size;\n"
+      "  vec3 dir = direction(place);\n  {}\n",
+      kDirections, place, shown);
+}
+
+std::string vertex(const TextureCard& card) {
+  if (!card.in_vertex) return kVertex;
+  return declarations(card) + "layout(location = 0) out vec4 o;\n" +
+         body(card, "vec2(float(gl_VertexIndex) * 7.0 + 0.5, float(gl_VertexIndex) * 3.0 + 0.5)") +
+         "  gl_Position = vec4(vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2) * 2.0 - 1.0, 0.0, "
+         "1.0);\n}";
+}
+
+std::string fragment(const TextureCard& card) {
+  if (card.in_vertex)
+    return "#version 450\nlayout(location = 0) in vec4 v;\nlayout(location = 0) out vec4 o;\nvoid main() { o "
+           "= v; }";
+  return declarations(card) + "layout(location = 0) out vec4 o;\n" + body(card, "gl_FragCoord.xy") + "}";
 }
 
 Index add_shader(traces::CommandStream& stream, const std::string& source, traces::ShaderStage stage) {
@@ -115,11 +158,19 @@ std::vector<std::byte> place_of(const TextureCard& card) {
 
 traces::Image card_image(Format format, std::uint32_t width, std::uint32_t height, std::uint32_t levels,
                          std::uint64_t seed) {
+  return card_image(format, traces::ImageKind::k2D, {width, height, 1}, 1, levels, seed);
+}
+
+traces::Image card_image(Format format, traces::ImageKind kind, const std::array<std::uint32_t, 3>& size,
+                         std::uint32_t layers, std::uint32_t levels, std::uint64_t seed) {
   traces::Image image;
   image.name = "card";
   image.format = format;
-  image.width = width;
-  image.height = height;
+  image.kind = kind;
+  image.width = size[0];
+  image.height = size[1];
+  image.depth = size[2];
+  image.layers = layers;
   image.levels = levels;
   image.texels.resize(traces::texel_bytes(image));
   if (models::is_block_format(format)) {
@@ -143,9 +194,16 @@ traces::CommandStream card_stream(const TextureCard& card) {
   stream.images.push_back(card.image);
   stream.samplers = {card.sampler};
   stream.descriptor_sets.emplace_back();
-  stream.descriptor_sets[0].textures = {{0, static_cast<Index>(stream.images.size() - 1), 0}};
+  traces::TextureDescriptor bound;
+  bound.image = static_cast<Index>(stream.images.size() - 1);
+  bound.view = card.view;
+  bound.layer = card.first_layer;
+  bound.layers = card.layers;
+  if (card.separate) stream.descriptor_sets[0].samplers = {{1, 0}};
+  else bound.sampler = 0;
+  stream.descriptor_sets[0].textures = {bound};
   traces::Pipeline pipeline;
-  pipeline.vertex_shader = add_shader(stream, kVertex, traces::ShaderStage::kVertex);
+  pipeline.vertex_shader = add_shader(stream, vertex(card), traces::ShaderStage::kVertex);
   pipeline.fragment_shader = add_shader(stream, fragment(card), traces::ShaderStage::kFragment);
   stream.pipelines.push_back(pipeline);
   auto& c = stream.commands;
@@ -200,7 +258,8 @@ std::vector<TextureCard> format_cards() {
 }
 
 std::string name_of(const TextureCard& card) {
-  return fmt::format("{} {}x{} levels {} filter {} wrap {} {} border {}: {}",
+  return fmt::format("{} {} {}x{} levels {} filter {} wrap {} {} border {}: {}",
+                     models::kViewKindNames.at(static_cast<std::size_t>(card.view)),
                      models::format_info(card.image.format).name, card.image.width, card.image.height,
                      card.image.levels, static_cast<int>(card.sampler.mag),
                      static_cast<int>(card.sampler.wrap_u), static_cast<int>(card.sampler.wrap_v),
@@ -208,6 +267,7 @@ std::string name_of(const TextureCard& card) {
 }
 
 double card_tolerance(const TextureCard& card) {
+  if (card.tolerance >= 0) return card.tolerance;
   const models::FormatInfo& info = models::format_info(card.image.format);
   const bool wide = models::is_float_format(card.image.format) || info.numeric == Numeric::kSnorm;
   // A weight of 1/256 more or less, of texels that differ by the whole range.

@@ -42,3 +42,31 @@ TEST_CASE("texture cards: random machines draw the functional run's pixels and k
     CHECK(machine_faults(card_stream(cards[i]), i + 1) == "");
   }
 }
+
+TEST_CASE("texture cards: every operation on every kind of image has the reference's numbers") {
+  for (const TextureCard& card : operation_cards()) {
+    const auto pictures = studies::render_with_reference(card_stream(card), {});
+    INFO(name_of(card));
+    CHECK(worst(pictures) <= card_tolerance(card));
+  }
+}
+
+TEST_CASE("texture cards: samples along an axis are the reference's, by either axis") {
+  for (const bool ellipse : {false, true})
+    for (const TextureCard& card : anisotropy_cards()) {
+      models::Precision precision;
+      precision.ellipse_axis = ellipse;
+      const auto pictures = studies::render_with_reference(card_stream(card), precision);
+      INFO(name_of(card) << " up to " << card.sampler.max_anisotropy << (ellipse ? " ellipse" : ""));
+      CHECK(worst(pictures) <= 2.0 / 255.0);
+    }
+}
+
+TEST_CASE("texture cards: random machines draw the functional run's pixels of every operation") {
+  std::vector<TextureCard> cards = operation_cards();
+  for (const TextureCard& card : anisotropy_cards()) cards.push_back(card);
+  for (std::size_t i = 0; i < cards.size(); i += 9) {
+    INFO(name_of(cards[i]));
+    CHECK(machine_faults(card_stream(cards[i]), i + 1) == "");
+  }
+}

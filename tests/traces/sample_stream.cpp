@@ -184,7 +184,8 @@ CommandStream random_stream(std::uint32_t seed) {
   for (std::uint32_t i = 0; i < 1 + dice.below(3); ++i) s.images.push_back(random_image(dice));
   s.samplers = {{dice.choice(Filter::kLinear), dice.choice(Filter::kLinear), dice.choice(Filter::kLinear),
                  dice.choice(models::kLastWrap), dice.choice(models::kLastWrap), dice.unit(), dice.unit(),
-                 1 + dice.unit(), dice.choice(BorderColor::kOpaqueWhite)}};
+                 1 + dice.unit(), dice.choice(BorderColor::kOpaqueWhite), dice.choice(models::kLastWrap),
+                 dice.choice(CompareOp::kAlways), 1 + dice.unit()}};
   s.shaders = {{dice.name(), ShaderStage::kVertex, {kSpirvMagic, dice.below(9), 0, 0, dice.below(9)}},
                {"f", ShaderStage::kFragment, {kSpirvMagic, 1, 2, 3, 4}}};
   for (std::uint32_t i = 0; i < 1 + dice.below(4); ++i) s.pipelines.push_back(random_pipeline(dice));

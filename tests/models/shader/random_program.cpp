@@ -94,7 +94,8 @@ class Generator {
   [[nodiscard]] bool allowed(Op op) const {
     const bool quad =
         (op >= Op::kDdxFine && op <= Op::kDdyCoarse) || op == Op::kTexImplicit || op == Op::kTexBias;
-    return op != Op::kOutput && op_info(op).immediate != Immediate::kBufferBinding &&
+    return op != Op::kOutput && op_info(op).immediate != Immediate::kTextureOperation &&
+           op_info(op).immediate != Immediate::kBufferBinding &&
            (issue_class(op) != IssueClass::kControl || op == Op::kKillIf) &&
            (options_.quad_operations || !quad);
   }

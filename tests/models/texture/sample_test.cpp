@@ -273,7 +273,11 @@ TEST_CASE("sample: a quad's result does not depend on the other quads or on inac
   DeviceMemory memory;
   const TextureView view = upload(memory, texture);
   for (int round = 0; round < 2000; ++round) {
-    const SamplerState s = random_sampler(random);
+    SamplerState s = random_sampler(random);
+    if (round % 2 != 0) {  // samples along an axis, by quad
+      s.mag = s.min = Filter::kLinear;
+      s.max_anisotropy = random.real(1, 16);
+    }
     const TextureRequest r = random_request(random, 211, 130);
     TextureRequest moved = random_request(random, 211, 130);
     moved.op = r.op;
@@ -348,4 +352,36 @@ TEST_CASE("sample: work is counted by quad and level and texel") {
   plan_texture(view, nearest, r, {}, *plan);
   CHECK(plan->line_count == 0);
   CHECK(plan->bilinear_quads == 0);
+}
+
+TEST_CASE("sample: a footprint takes as many samples as it is longer than wide, in the level of its width") {
+  RandomSource random(118);
+  const PlainTexture texture = random_texture(random, Format::kR8G8B8A8Unorm, 64, 64, true);
+  DeviceMemory memory;
+  const TextureView view = upload(memory, texture);
+  auto plan = std::make_unique<TexturePlan>();
+  // texels along x and y, samples allowed; samples taken, level
+  for (const auto& [x, y, most, samples, level] : {std::tuple{8.0f, 1.0f, 16.0f, 8u, 0},
+                                                   {8.0f, 1.0f, 4.0f, 4u, 1},
+                                                   {2.0f, 32.0f, 16.0f, 16u, 1},
+                                                   {4.0f, 4.0f, 16.0f, 1u, 2},
+                                                   {0.5f, 0.1f, 16.0f, 1u, 0}}) {
+    TextureRequest r = random_request(random, 64, 64);
+    r.op = Op::kTexImplicit;
+    r.active = ~0u;
+    for (std::size_t lane = 0; lane < kWarpLanes; ++lane) {
+      r.u[lane] = static_cast<float>(lane % 2) * x / 64.0f;
+      r.v[lane] = static_cast<float>(lane / 2 % 2) * y / 64.0f;
+    }
+    SamplerState sampler;
+    sampler.max_anisotropy = most;
+    for (const bool ellipse : {false, true}) {
+      plan_texture(view, sampler, r, {.ellipse_axis = ellipse}, *plan);
+      INFO(x << " x " << y << " texels, at most " << most << " samples");
+      CHECK(plan->bilinear_quads == 8 * samples);
+      CHECK(plan->texels == 128 * samples);
+      CHECK(plan->finer_level[0] == level);
+      CHECK(plan->level_weight[0] == 0.0f);
+    }
+  }
 }

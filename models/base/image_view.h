@@ -1,0 +1,45 @@
+/// What an image is, and what a shader sees of it: lines, planes, volumes and cubes, and arrays of them.
+/// [VK1.3 #resources-images, #resources-image-views] Values are those of trace files and never change.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace quadrille::models {
+
+enum class ImageKind : std::uint8_t { k1D, k2D, k3D };
+enum class ViewKind : std::uint8_t { k2D, k1D, k3D, kCube, k1DArray, k2DArray, kCubeArray };
+inline constexpr ViewKind kLastViewKind = ViewKind::kCubeArray;
+inline constexpr std::array<std::string_view, 7> kViewKindNames{"2d",       "1d",       "3d",        "cube",
+                                                                "1d-array", "2d-array", "cube-array"};
+
+[[nodiscard]] constexpr bool is_array(ViewKind kind) { return kind >= ViewKind::k1DArray; }
+[[nodiscard]] constexpr bool is_cube(ViewKind kind) {
+  return kind == ViewKind::kCube || kind == ViewKind::kCubeArray;
+}
+/// Coordinates that say where in the image, without the layer; of a cube, a direction.
+[[nodiscard]] constexpr int place_dimensions(ViewKind kind) {
+  switch (kind) {
+    case ViewKind::k1D:
+    case ViewKind::k1DArray: return 1;
+    case ViewKind::k2D:
+    case ViewKind::k2DArray: return 2;
+    case ViewKind::k3D:
+    case ViewKind::kCube:
+    case ViewKind::kCubeArray: return 3;
+  }
+  return 2;
+}
+/// Coordinates with the layer.
+[[nodiscard]] constexpr int coordinate_count(ViewKind kind) {
+  return place_dimensions(kind) + (is_array(kind) ? 1 : 0);
+}
+/// The kind of an image that such a view can be of.
+[[nodiscard]] constexpr ImageKind image_kind(ViewKind kind) {
+  if (kind == ViewKind::k3D) return ImageKind::k3D;
+  return place_dimensions(kind) == 1 ? ImageKind::k1D : ImageKind::k2D;
+}
+inline constexpr std::uint32_t kCubeFaces = 6;
+
+}  // namespace quadrille::models
