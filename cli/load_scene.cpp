@@ -46,6 +46,7 @@ SceneArguments::Loaded SceneArguments::load_capture() const {
 SceneArguments::Loaded SceneArguments::load() const {
   if (is_trace()) {
     Loaded loaded = is_capture() ? load_capture() : Loaded{traces::read_trace(scene), {}};
+    cut(loaded.stream);
     use_samples(loaded.stream);
     use_anisotropy(loaded.stream);
     use_queries(loaded.stream);

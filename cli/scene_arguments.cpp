@@ -38,13 +38,6 @@ CLI::IsMember one_of(const std::array<std::string_view, n>& names) {
   return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
 }
 
-std::uint32_t parse_samples(std::string_view text) {
-  std::uint32_t count = 0;
-  if (!read_number(text, count) || !models::is_sample_count(count))
-    throw user_error("--samples: '{}' is not 1, 2, 4 or 8", text);
-  return count;
-}
-
 /// Formats of that use, by Vulkan's names.
 std::vector<std::string> format_names(models::FormatUse use) {
   std::vector<std::string> names;
@@ -215,11 +208,6 @@ void SceneArguments::add_samples_to(CLI::App& command) {
                    "are smoothed too");
 }
 
-void SceneArguments::use_anisotropy(traces::CommandStream& stream) const {
-  if (anisotropy)
-    traces::use_anisotropy(stream, static_cast<float>(parse_whole(*anisotropy, "--anisotropy", 1, 16)));
-}
-
 void SceneArguments::add_queries_to(CLI::App& command) {
   command.add_flag("--queries", queries,
                    "puts an occlusion query around every draw and one of pipeline statistics around every "
@@ -264,31 +252,8 @@ models::TransparencyState SceneArguments::parse_transparency() const {
                     parse_whole(layers, "--transparency-layers", 1, models::most_layers(mode)))};
 }
 
-void SceneArguments::use_samples(traces::CommandStream& stream) const {
-  if (supersample) traces::use_sample_shading(stream);
-  if (!samples) return;
-  try {
-    traces::use_samples(stream, parse_samples(*samples));
-  } catch (const UserError& error) { throw user_error("--samples: {}: {}", scene, error.what()); }
-  const auto keeps_one = [&](const traces::Command& command) {
-    const auto* const pass = std::get_if<traces::BeginPass>(&command);
-    return pass != nullptr && stream.images[pass->first_image()].samples == 1;
-  };
-  const auto kept = std::ranges::count_if(stream.commands, keeps_one);
-  if (kept > 0 && parse_samples(*samples) > 1)
-    fmt::print(stderr,
-               "{}: {} of its passes keep one sample a pixel: they load an attachment, or others read "
-               "their depth\n",
-               scene, kept);
-}
-
 void SceneArguments::add_trace_to(CLI::App& command) {
   command.add_option("TRACE", scene, "a .qtrace or .gfxr file")->required();
-}
-
-void SceneArguments::add_capture_to(CLI::App& command) {
-  command.add_flag("--skip-unsupported", skip_unsupported,
-                   "of a .gfxr file: draws without the commands that are not supported, and says which");
 }
 
 bool SceneArguments::is_capture() const { return extension_of(scene) == ".gfxr"; }
@@ -339,6 +304,7 @@ void SceneArguments::check() const {
   if (anisotropy) (void)parse_whole(*anisotropy, "--anisotropy", 1, 16);
   if (skip_unsupported && !is_capture())
     throw user_error("--skip-unsupported: {} is no capture; it is for .gfxr files", scene);
+  check_cut();
   if (supersample && (samples ? parse_samples(*samples) == 1 : !is_trace()))
     throw user_error("--supersample: one sample a pixel is shaded once anyway; add --samples 2, 4 or 8");
   if (is_trace()) {

@@ -22,10 +22,11 @@ struct SceneArguments {
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
   std::optional<std::string> transparency, transparency_layers;
   std::optional<std::string> anisotropy;
-  bool supersample = false;        ///< each sample is shaded for itself
-  bool alpha_to_coverage = false;  ///< of masked materials; not of a trace
-  bool skip_unsupported = false;   ///< of a capture, draw without it
-  bool queries = false;            ///< around every draw and pass
+  std::optional<std::string> last_pass, draws;  ///< that are kept of a trace or capture
+  bool supersample = false;                     ///< each sample is shaded for itself
+  bool alpha_to_coverage = false;               ///< of masked materials; not of a trace
+  bool skip_unsupported = false;                ///< of a capture, draw without it
+  bool queries = false;                         ///< around every draw and pass
 
   /// false: also load what no shader of the frame samples; set by the commands that offer it
   bool leave_out = true;
@@ -67,6 +68,9 @@ struct SceneArguments {
   [[nodiscard]] Loaded load() const;
   /// Lets the passes of a stream have the wished samples, and shade by sample if wished. Throws `UserError`.
   void use_samples(traces::CommandStream& stream) const;
+  void check_cut() const;
+  /// Of a trace or capture, what `--pass` and `--draws` keep.
+  void cut(traces::CommandStream& stream) const;
   void use_anisotropy(traces::CommandStream& stream) const;
   /// Puts queries around its draws and passes if wished. Throws `UserError`.
   void use_queries(traces::CommandStream& stream) const;
@@ -88,6 +92,8 @@ struct SceneArguments {
 [[nodiscard]] glm::vec3 parse_point(std::string_view text, std::string_view flag);
 /// A number within [least, most]. Throws `UserError` naming `flag`.
 [[nodiscard]] double parse_number(std::string_view text, std::string_view flag, double least, double most);
+/// 1, 2, 4 or 8. Throws `UserError`.
+[[nodiscard]] std::uint32_t parse_samples(std::string_view text);
 /// A whole number within [least, most]. Throws `UserError` naming `flag`.
 [[nodiscard]] std::int64_t parse_whole(std::string_view text, std::string_view flag, std::int64_t least,
                                        std::int64_t most);

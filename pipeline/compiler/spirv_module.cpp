@@ -34,6 +34,10 @@ bool harmless_capability(std::uint32_t capability) {
          capability == spv::CapabilityShaderViewportIndex ||
          capability == spv::CapabilityShaderViewportIndexLayerEXT ||
          capability == spv::CapabilityVariablePointersStorageBuffer ||
+         // Of arrays, which are refused where they are asked for if they are not supported.
+         capability == spv::CapabilityUniformBufferArrayDynamicIndexing ||
+         capability == spv::CapabilitySampledImageArrayDynamicIndexing ||
+         capability == spv::CapabilityStorageBufferArrayDynamicIndexing ||
          // Which accesses of memory others see is asked of buffers that several invocations write: those obey
          // stricter rules here.
          capability == spv::CapabilityVulkanMemoryModel ||

@@ -34,6 +34,7 @@ void replay(std::string_view name) {
 
 TEST_CASE("the corpus of scenes loads or is refused in one line") { replay("scene"); }
 TEST_CASE("the corpus of traces is read or refused in one line") { replay("trace"); }
+TEST_CASE("the corpus of captures is imported or refused in one line") { replay("capture"); }
 TEST_CASE("the corpus of machine files is applied or refused in one line") { replay("machine"); }
 TEST_CASE("the corpus of SPIR-V modules compiles or is refused in one line") { replay("spirv"); }
 TEST_CASE("the corpus of images is decoded or refused in one line") { replay("image"); }

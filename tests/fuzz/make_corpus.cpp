@@ -14,6 +14,7 @@
 #include "tests/fuzz/targets.h"
 #include "tests/scenes/gltf_builder.h"
 #include "tests/scenes/gltf_text.h"
+#include "tests/traces/capture/small_capture.h"
 #include "tests/traces/sample_stream.h"
 #include "traces/trace_file.h"
 #include "traces/whole_file.h"
@@ -246,6 +247,22 @@ void write_traces(const Corpus& corpus, const std::string& scene) {
   corpus.write("trace/kept.qtrace", traces::encode_trace(scenes::load_scene("builtin:glass", options)));
 }
 
+void write_captures(const Corpus& corpus) {
+  using capture::Packing;
+  corpus.write("capture/plain", capture::small_capture());
+  corpus.write("capture/lz4", capture::small_capture({.packing = Packing::kLz4}));
+  corpus.write("capture/zstd", capture::small_capture({.packing = Packing::kZstd}));
+  corpus.write("capture/loads", capture::small_capture({.negative_one_to_one = true, .loads = true}));
+  const nlohmann::json fill{{"dstBuffer", capture::kVertices}, {"dstOffset", 4}, {"size", 8}, {"data", 7}};
+  const nlohmann::json clear{
+      {"image", capture::kShown},
+      {"pColor", nlohmann::json::array({0, 1, 2, 3})},
+      {"pRanges", nlohmann::json::array({{{"aspectMask", 1}, {"levelCount", 1}, {"layerCount", 1}}})}};
+  corpus.write("capture/copies",
+               capture::small_capture(
+                   {.loads = true, .before = {{"CmdFillBuffer", fill}, {"CmdClearColorImage", clear}}}));
+}
+
 void write_images(const Corpus& corpus) {
   scenes::save_png(corpus.path("image/one.png"), checkers(1, 1));
   scenes::save_png(corpus.path("image/wide.png"), checkers(33, 2));
@@ -271,6 +288,7 @@ void write_all(const Corpus& corpus) {
   write_scenes(corpus);
   write_spirv(corpus, corpus.path("scene/rich.gltf"));
   write_traces(corpus, corpus.path("scene/rich.gltf"));
+  write_captures(corpus);
   write_images(corpus);
   write_machines(corpus);
 }

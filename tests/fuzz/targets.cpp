@@ -8,8 +8,9 @@
 namespace quadrille::fuzz {
 namespace {
 
-constexpr std::array<Target, 5> kTargets{{{"scene", run_scene, mutate_scene},
+constexpr std::array<Target, 6> kTargets{{{"scene", run_scene, mutate_scene},
                                           {"trace", run_trace, mutate_trace},
+                                          {"capture", run_capture, mutate_raw},
                                           {"machine", run_machine, mutate_raw},
                                           {"spirv", run_spirv, mutate_spirv},
                                           {"image", run_image, mutate_raw}}};
@@ -21,7 +22,8 @@ std::span<const Target> targets() { return kTargets; }
 const Target& target(std::string_view name) {
   const auto* const found = std::ranges::find(kTargets, name, &Target::name);
   if (found == kTargets.end())
-    throw user_error("target '{}' is unknown; there are scene, trace, machine, spirv and image", name);
+    throw user_error("target '{}' is unknown; there are scene, trace, capture, machine, spirv and image",
+                     name);
   return *found;
 }
 

@@ -30,6 +30,8 @@ void run_trace(Bytes bytes);
 void run_machine(Bytes bytes);
 /// A SPIR-V module: compiled as either stage, and decoded by the reference's interpreter.
 void run_spirv(Bytes bytes);
+/// A .gfxr file: its frame recorded, what is not supported left out, and drawn where it is small.
+void run_capture(Bytes bytes);
 /// An image file: decoded to bytes and to floats.
 void run_image(Bytes bytes);
 

@@ -49,6 +49,7 @@ struct Group {
 [[nodiscard]] Group large_scene_cases();
 [[nodiscard]] Group image_cases();
 [[nodiscard]] Group trace_cases();
+[[nodiscard]] Group capture_cases();
 [[nodiscard]] Group machine_cases();
 [[nodiscard]] Group energy_cases();
 [[nodiscard]] Group flag_cases();

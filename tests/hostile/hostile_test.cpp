@@ -26,6 +26,7 @@ TEST_CASE("glTF in numbers that nobody draws is drawn in time or refused in one 
 }
 TEST_CASE("hostile images are read or refused in one line", "[slow]") { run_group(image_cases()); }
 TEST_CASE("hostile traces are drawn or refused in one line") { run_group(trace_cases()); }
+TEST_CASE("hostile captures are drawn or refused in one line") { run_group(capture_cases()); }
 TEST_CASE("hostile machine files and settings are refused in one line") { run_group(machine_cases()); }
 TEST_CASE("hostile files of costs are read or refused in one line") { run_group(energy_cases()); }
 TEST_CASE("hostile flags are refused in one line") { run_group(flag_cases()); }

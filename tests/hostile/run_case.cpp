@@ -164,8 +164,8 @@ Case scene_case(const std::string& what, const std::string& text, const std::str
 }
 
 std::vector<Group (*)()> all_groups() {
-  return {scene_cases,  binary_scene_cases, large_scene_cases, image_cases,  trace_cases,  machine_cases,
-          energy_cases, flag_cases,         shader_cases,      output_cases, outside_cases};
+  return {scene_cases,   binary_scene_cases, large_scene_cases, image_cases,  trace_cases,  capture_cases,
+          machine_cases, energy_cases,       flag_cases,        shader_cases, output_cases, outside_cases};
 }
 
 }  // namespace quadrille::hostile

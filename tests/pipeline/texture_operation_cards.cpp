@@ -96,6 +96,21 @@ constexpr Asked kCompared[] = {
     {ViewKind::kCube, "vec4(texture(t, vec4(dir, 0.43)))"},
 };
 
+/// Of compressed blocks.
+struct AskedOfBlocks {
+  Asked asked;
+  Format format;
+};
+constexpr AskedOfBlocks kOfBlocks[] = {
+    {{ViewKind::kCube, "textureLod(t, dir, 1.3)"}, Format::kBc1RgbUnorm},
+    {{ViewKind::kCubeArray, "textureLod(t, vec4(dir, at.x * 0.12), 0.0)"}, Format::kBc3Unorm},
+    {{ViewKind::k2DArray, "texture(t, vec3(uv, at.x * 0.2 - 1.03))"}, Format::kBc7Unorm},
+    {{ViewKind::k2DArray, "texelFetch(t, ivec3(ivec2(at) & 7, int(gl_FragCoord.y) / 7), 1)"},
+     Format::kBc5Unorm},
+    {{ViewKind::k2D, "textureGatherOffset(t, uv, ivec2(3, -5), 1)"}, Format::kBc7Unorm},
+    {{ViewKind::k2D, "textureLodOffset(t, uv, 1.3, ivec2(-7, 5))"}, Format::kBc4Unorm},
+};
+
 TextureCard card_of(const Asked& asked, Format format, Filter filter, traces::Wrap wrap, std::uint64_t seed) {
   TextureCard card;
   card.view = asked.view;
@@ -135,6 +150,9 @@ std::vector<TextureCard> operation_cards() {
           cards.back().sampler.compare == models::CompareOp::kNotEqual)
         cards.back().sampler.compare = models::CompareOp::kLessOrEqual;
     }
+  for (const auto& [asked, format] : kOfBlocks)
+    for (const Filter filter : {Filter::kNearest, Filter::kLinear})
+      cards.push_back(card_of(asked, format, filter, traces::Wrap::kRepeat, cards.size()));
   TextureCard separate = card_of({ViewKind::k2D, "texture(t, uv)"}, Format::kR8G8B8A8Unorm, Filter::kLinear,
                                  traces::Wrap::kRepeat, 99);
   separate.separate = true;
@@ -163,8 +181,9 @@ std::vector<TextureCard> anisotropy_cards() {
     for (const char* sample :
          {"texture(t, vec2(uv.x * 0.3, uv.y * 6.0))", "texture(t, mat2(3.0, 2.1, 0.2, -0.31) * uv)",
           "textureGrad(t, uv, vec2(0.31, 0.12), vec2(0.02, 0.04))", "texture(t, uv * 0.1)"}) {
-      TextureCard card = card_of({ViewKind::k2D, sample}, Format::kR8G8B8A8Srgb, Filter::kLinear,
-                                 traces::Wrap::kRepeat, cards.size());
+      const Format format = cards.size() % 3 == 2 ? Format::kBc7Srgb : Format::kR8G8B8A8Srgb;
+      TextureCard card =
+          card_of({ViewKind::k2D, sample}, format, Filter::kLinear, traces::Wrap::kRepeat, cards.size());
       card.sampler.max_anisotropy = most;
       cards.push_back(card);
     }

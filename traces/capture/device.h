@@ -26,6 +26,10 @@ class Device {
   [[nodiscard]] std::vector<std::byte> contents(const BufferObject& buffer) const;
   /// Changes whenever the memory of the buffer does.
   [[nodiscard]] std::uint64_t version(const BufferObject& buffer) const;
+  void copy_buffer(Handle source, Handle target, const Value& region);
+  void fill_buffer(const Value& call);
+  void copy_to_image(Handle source, Handle target, const Value& region);
+  void copy_image(Handle source, Handle target, const Value& region);
   void write_buffer(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);
 
   [[nodiscard]] Descriptors& set(Handle handle);

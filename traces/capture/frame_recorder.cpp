@@ -45,8 +45,8 @@ void FrameRecorder::run(Handle command_buffer) {
 }
 
 void FrameRecorder::run(const Call& call, BoundState& bound) {
-  if (set_dynamic_state(bound.dynamic, call) || bind(call, bound) || change_pass(call) || draw(call, bound) ||
-      label(call))
+  if (set_dynamic_state(bound.dynamic, call) || bind(call, bound) || change_pass(call) || copy(call) ||
+      draw(call, bound) || label(call))
     return;
   if (call.name == "CmdExecuteCommands") {
     const Value& buffers = call.parameters["pCommandBuffers"];

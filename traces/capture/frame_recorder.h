@@ -43,6 +43,8 @@ struct BoundState {
 
 /// The words of a VkClearValue.
 [[nodiscard]] std::array<std::uint32_t, 4> clear_bits(const Value& clear);
+/// Makes the attachment begin with those bits: of integers, or of floats.
+void set_clear(traces::ColorAttachmentUse& use, const std::array<std::uint32_t, 4>& bits, bool integers);
 
 class FrameRecorder {
  public:
@@ -76,6 +78,13 @@ class FrameRecorder {
     Handle image = 0;
     std::uint32_t level = 0, layer = 0;
   };
+  /// An area of one image that is drawn to an area of another.
+  struct DrawnCopy {
+    StoredPart source, target;
+    std::array<float, 4> from{};  ///< corner and size, in texels; a size below zero turns it
+    Area to;
+    traces::Filter filter = traces::Filter::kNearest;
+  };
   struct DrawRange {
     bool indexed = false;
     std::uint32_t count = 0, first = 0;
@@ -103,6 +112,11 @@ class FrameRecorder {
   void clear_area(const Value& attachment, const Value& rect);
   void blit(const Value& call);
   void blit_region(Handle source, Handle target, const Value& region, std::uint32_t filter);
+  void draw_copy(const DrawnCopy& copy, const char* label);
+  void clear_image(const Value& call);
+  bool copy(const Call& call);
+  void copy_images(const Value& call);
+  void bring_contents(const StoredPart& part, bool stays);
   void begin_blit(Handle target, std::uint32_t level, std::uint32_t layer);
   void fill(traces::Pipeline pipeline, OwnShader fragment, const AreaConstants& constants, const Area& area,
             const char* label);

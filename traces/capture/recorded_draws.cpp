@@ -221,7 +221,8 @@ void FrameRecorder::add_descriptor(traces::DescriptorSet& made, std::uint32_t bi
   const auto has = [&](const auto& list) {
     return std::ranges::any_of(list, [&](const auto& one) { return one.binding == binding; });
   };
-  if (has(made.uniforms) || has(made.textures) || has(made.buffers)) return;  // both stages name it
+  if (has(made.uniforms) || has(made.textures) || has(made.buffers) || has(made.samplers))
+    return;  // both stages name it
   const bool dynamic = from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC ||
                        from.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
   const bool uniform = from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER ||
@@ -245,6 +246,13 @@ void FrameRecorder::add_descriptor(traces::DescriptorSet& made, std::uint32_t bi
     texture.binding = binding;
     texture.sampler = tables_.sampler(from.sampler);
     made.textures.push_back(texture);
+  } else if (from.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE) {
+    if (from.view == 0) throw user_error("binding {} is an image that is left out", binding);
+    traces::TextureDescriptor texture = tables_.texture(object(device_.views, from.view, "image view"));
+    texture.binding = binding;
+    made.textures.push_back(texture);
+  } else if (from.type == VK_DESCRIPTOR_TYPE_SAMPLER) {
+    made.samplers.push_back({binding, tables_.sampler(from.sampler)});
   } else {
     throw user_error("VkDescriptorType {} is not supported", from.type);
   }

@@ -8,6 +8,7 @@
 #include "models/base/error.h"
 #include "traces/capture/frame_recorder.h"
 #include "traces/capture/own_shaders.h"
+#include "traces/capture/texels.h"
 #include "traces/capture/vulkan_names.h"
 
 namespace quadrille::capture {
@@ -17,6 +18,29 @@ namespace {
 struct Span {
   float begin = 0, size = 0;
 };
+/// Of one level of one layer.
+ViewObject view_of_part(Handle handle, const ImageObject& image, std::uint32_t level, std::uint32_t layer) {
+  if (level >= image.levels || layer >= image.layers)
+    throw user_error("level {} of layer {} of an image that has {} and {}", level, layer, image.levels,
+                     image.layers);
+  ViewObject view;
+  view.image = handle;
+  view.type = VK_IMAGE_VIEW_TYPE_2D;
+  view.format = image.format;
+  view.aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+  view.level = level;
+  view.layer = layer;
+  return view;
+}
+
+traces::Sampler copying_sampler(traces::Filter filter) {
+  traces::Sampler sampler;
+  sampler.mag = sampler.min = filter;
+  sampler.mip = traces::Filter::kNearest;
+  sampler.wrap_u = sampler.wrap_v = traces::Wrap::kClampToEdge;
+  return sampler;
+}
+
 Span span_of(const Value& offsets, std::string_view axis) {
   const auto a = static_cast<float>(offsets.at(0)[axis].i32()),
              b = static_cast<float>(offsets.at(1)[axis].i32());
@@ -94,39 +118,85 @@ void FrameRecorder::blit_region(Handle source, Handle target, const Value& regio
   const Value &from = region["srcSubresource"], &to = region["dstSubresource"];
   if (from["aspectMask"].u32() != VK_IMAGE_ASPECT_COLOR_BIT || to["layerCount"].u32() != 1)
     throw user_error("of depths, or of several layers");
-  const ImageObject& image = object(device_.images, source, "image");
-  ViewObject view;
-  view.image = source;
-  view.type = VK_IMAGE_VIEW_TYPE_2D;
-  view.format = image.format;
-  view.aspect = VK_IMAGE_ASPECT_COLOR_BIT;
-  view.level = from["mipLevel"].u32();
-  view.layer = from["baseArrayLayer"].u32();
-  if (view.level >= image.levels || view.layer >= image.layers)
-    throw user_error("level {} of layer {} of an image that has {} and {}", view.level, view.layer,
-                     image.levels, image.layers);
-  traces::DescriptorSet set;
-  set.textures.push_back(tables_.texture(view));
-  traces::Sampler sampler;
-  sampler.mag = sampler.min = filter == VK_FILTER_LINEAR ? traces::Filter::kLinear : traces::Filter::kNearest;
-  sampler.mip = traces::Filter::kNearest;
-  sampler.wrap_u = sampler.wrap_v = traces::Wrap::kClampToEdge;
-  set.textures[0].sampler = tables_.sampler(sampler);
-
-  begin_blit(target, to["mipLevel"].u32(), to["baseArrayLayer"].u32());
   const Span x = span_of(region["srcOffsets"], "x"), y = span_of(region["srcOffsets"], "y");
   const Span to_x = span_of(region["dstOffsets"], "x"), to_y = span_of(region["dstOffsets"], "y");
   if (!(to_x.size > 0) || !(to_y.size > 0)) throw user_error("to an area with its corners turned");
+  DrawnCopy copy;
+  copy.source = {source, from["mipLevel"].u32(), from["baseArrayLayer"].u32()};
+  copy.target = {target, to["mipLevel"].u32(), to["baseArrayLayer"].u32()};
+  copy.from = {x.begin, y.begin, x.size, y.size};
+  copy.to = {static_cast<std::int32_t>(to_x.begin), static_cast<std::int32_t>(to_y.begin),
+             static_cast<std::uint32_t>(to_x.size), static_cast<std::uint32_t>(to_y.size)};
+  copy.filter = filter == VK_FILTER_LINEAR ? traces::Filter::kLinear : traces::Filter::kNearest;
+  draw_copy(copy, "blit");
+}
+
+void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
+  const ImageObject& image = object(device_.images, copy.source.image, "image");
+  const ViewObject view = view_of_part(copy.source.image, image, copy.source.level, copy.source.layer);
+  bring_contents(copy.target, true);
+  traces::DescriptorSet set;
+  set.textures.push_back(tables_.texture(view));
+  set.textures[0].sampler = tables_.sampler(copying_sampler(copy.filter));
+  begin_blit(copy.target.image, copy.target.level, copy.target.layer);
   const auto width = static_cast<float>(std::max(1u, image.width >> view.level));
   const auto height = static_cast<float>(std::max(1u, image.height >> view.level));
   AreaConstants constants;
-  constants.source = {x.begin / width, y.begin / height, x.size / width, y.size / height};
+  constants.source = {copy.from[0] / width, copy.from[1] / height, copy.from[2] / width,
+                      copy.from[3] / height};
   emit_change(0, traces::BindDescriptorSet{0, tables_.descriptors(set)});
-  fill({}, OwnShader::kCopy, constants,
-       {static_cast<std::int32_t>(to_x.begin), static_cast<std::int32_t>(to_y.begin),
-        static_cast<std::uint32_t>(to_x.size), static_cast<std::uint32_t>(to_y.size)},
-       "blit");
+  fill({}, OwnShader::kCopy, constants, copy.to, label);
   end_pass();
+}
+
+/// A pass for each level and layer, that clears it and draws nothing.
+void FrameRecorder::clear_image(const Value& call) {
+  if (in_pass_) throw user_error("within a pass");
+  const Handle target = call["image"].u64();
+  std::array<std::uint32_t, 4> bits{};
+  for (std::size_t c = 0; c < bits.size() && c < call["pColor"].size(); ++c) bits[c] = call["pColor"].u32(c);
+  const ImageObject& image = object(device_.images, target, "image");
+  for (std::size_t i = 0; i < call["pRanges"].size(); ++i) {
+    const Value& range = call["pRanges"].at(i);
+    const auto end = [](std::uint32_t first, std::uint32_t count, std::uint32_t all) {
+      return count > all || first > all - count ? all : first + count;
+    };
+    const std::uint32_t first_level = range["baseMipLevel"].u32(),
+                        first_layer = range["baseArrayLayer"].u32();
+    for (std::uint32_t l = first_level; l < end(first_level, range["levelCount"].u32(), image.levels); ++l)
+      for (std::uint32_t a = first_layer; a < end(first_layer, range["layerCount"].u32(), image.layers);
+           ++a) {
+        bring_contents({target, l, a}, false);
+        begin_blit(target, l, a);
+        auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
+        set_clear(begin.colors[0], bits,
+                  traces::is_integer_format(tables_.stream.images[begin.colors[0].image].format));
+        end_pass();
+      }
+  }
+}
+
+/// What an image holds before the frame first draws to a part of it: a pass for each level of each layer that
+/// the capture brings, the part itself only where something of it stays.
+void FrameRecorder::bring_contents(const StoredPart& part, bool stays) {
+  const ImageObject& image = object(device_.images, part.image, "image");
+  if (image.type != VK_IMAGE_TYPE_2D || image.samples != 1 || tables_.stored(part.image)) return;
+  if (!models::format_info(image_format(image.format)).may(models::kColorUse)) return;
+  for (std::uint32_t level = 0; level < image.levels; ++level)
+    for (std::uint32_t layer = 0; layer < image.layers; ++layer) {
+      const bool itself = level == part.level && layer == part.layer;
+      const ViewObject view = view_of_part(part.image, image, level, layer);
+      if ((itself && !stays) || !has_texels(image, view)) continue;
+      traces::DescriptorSet set;
+      set.textures.push_back(tables_.own_texels(view));
+      set.textures[0].sampler = tables_.sampler(copying_sampler(traces::Filter::kNearest));
+      begin_blit(part.image, level, layer);
+      emit_change(0, traces::BindDescriptorSet{0, tables_.descriptors(set)});
+      AreaConstants constants;
+      constants.source = {0, 0, 1, 1};
+      fill({}, OwnShader::kCopy, constants, {0, 0, pass_width_, pass_height_}, "contents from before");
+      end_pass();
+    }
 }
 
 void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t layer) {

@@ -11,13 +11,6 @@
 namespace quadrille::capture {
 namespace {
 
-void set_clear(traces::ColorAttachmentUse& use, const std::array<std::uint32_t, 4>& bits, bool integers) {
-  use.load = traces::LoadOp::kClear;
-  if (integers) use.clear_integers = bits;
-  else
-    for (std::size_t c = 0; c < 4; ++c) use.clear[c] = std::bit_cast<float>(bits[c]);
-}
-
 bool covers(const Value& area, std::uint32_t width, std::uint32_t height) {
   return area["offset"]["x"].i32() == 0 && area["offset"]["y"].i32() == 0 &&
          area["extent"]["width"].u32() >= width && area["extent"]["height"].u32() >= height;
@@ -31,6 +24,13 @@ std::array<std::uint32_t, 4> clear_bits(const Value& clear) {
   return bits;
 }
 
+void set_clear(traces::ColorAttachmentUse& use, const std::array<std::uint32_t, 4>& bits, bool integers) {
+  use.load = traces::LoadOp::kClear;
+  if (integers) use.clear_integers = bits;
+  else
+    for (std::size_t c = 0; c < 4; ++c) use.clear[c] = std::bit_cast<float>(bits[c]);
+}
+
 bool FrameRecorder::change_pass(const Call& call) {
   const Value& p = call.parameters;
   if (call.name == "CmdBeginRendering") begin_rendering(p["pRenderingInfo"]);
@@ -41,6 +41,7 @@ bool FrameRecorder::change_pass(const Call& call) {
     end_pass();
   else if (call.name == "CmdClearAttachments") clear_attachments(p);
   else if (call.name == "CmdBlitImage") blit(p);
+  else if (call.name == "CmdClearColorImage") clear_image(p);
   else return false;
   return true;
 }
@@ -117,6 +118,14 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
 
 void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth) {
   if (in_pass_) end_pass();
+  const auto bring = [&](Handle handle, bool stays) {
+    const ViewObject& view = object(device_.views, handle, "image view");
+    bring_contents({view.image, view.level, view.layer}, stays);
+  };
+  for (const PassTarget& color : colors) {
+    if (color.view != 0) bring(color.view, color.load == traces::LoadOp::kLoad);
+    if (color.resolve != 0) bring(color.resolve, false);
+  }
   pass_ = {};
   pass_stores_.clear();
   pass_lacks_.clear();

@@ -69,9 +69,18 @@ bool StreamTables::stored(Handle image) const {
   return found != stored_.end() && std::get<0>(*found) == image;
 }
 
-traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
-  if (view.type != VK_IMAGE_VIEW_TYPE_2D) throw user_error("VkImageViewType {} is not supported", view.type);
+traces::TextureDescriptor StreamTables::own_texels(const ViewObject& view) {
   traces::TextureDescriptor made;
+  made.first_level = view.level;
+  made.levels = view.levels;
+  made.image = texels(view);
+  return made;
+}
+
+traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
+  traces::TextureDescriptor made;
+  made.view = view_kind_of(view.type);
+  if (models::is_array(made.view) || models::is_cube(made.view)) made.layers = view.layers;
   made.first_level = view.level;
   made.levels = view.levels;
   if (stored(view.image)) {
@@ -85,7 +94,8 @@ traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
 
 Index StreamTables::texels(const ViewObject& view) {
   const ImageObject& from = object(device_.images, view.image, "image");
-  const auto key = std::tuple(view.image, from.writes, view.format, view.swizzle, view.layer);
+  const auto key =
+      std::tuple(view.image, from.writes, view.format, view.swizzle, std::pair(view.layer, view.layers));
   if (const auto found = textures_.find(key); found != textures_.end()) return found->second;
   traces::Image image;
   image.name = fmt::format("image {}", view.image);
@@ -93,6 +103,9 @@ Index StreamTables::texels(const ViewObject& view) {
   image.width = from.width;
   image.height = from.height;
   image.levels = from.levels;
+  image.kind = image_kind_of(from.type);
+  image.depth = from.depth;
+  image.layers = view.layers;
   bool missing = false;
   image.texels = texture_texels(from, view, missing);
   if (missing) notes_.insert(image.name + " is sampled, but the capture does not hold all of it: zeros");

@@ -48,6 +48,8 @@ class StreamTables {
   [[nodiscard]] bool stored_part(Handle image, std::uint32_t level, std::uint32_t layer) const {
     return stored_.contains({image, level, layer});
   }
+  /// A texture of the texels that the capture brings of the image, whatever passes have stored in it.
+  [[nodiscard]] traces::TextureDescriptor own_texels(const ViewObject& view);
   /// Is any part of it stored?
   [[nodiscard]] bool stored(Handle image) const;
   void note_lacking(traces::Index image, std::string_view what) {
@@ -66,7 +68,8 @@ class StreamTables {
   };
   std::map<Handle, PlacedBuffer> buffers_;
   std::map<Handle, traces::Index> attachments_, samplers_;
-  std::map<std::tuple<Handle, std::uint64_t, std::uint32_t, std::array<std::uint32_t, 4>, std::uint32_t>,
+  std::map<std::tuple<Handle, std::uint64_t, std::uint32_t, std::array<std::uint32_t, 4>,
+                      std::pair<std::uint32_t, std::uint32_t>>,
            traces::Index>
       textures_;
   std::map<std::tuple<Handle, std::string, traces::ShaderStage, std::map<std::uint32_t, std::uint32_t>, bool>,

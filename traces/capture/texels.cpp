@@ -133,7 +133,7 @@ void append_exchanged(std::vector<std::byte>& all, Format format, std::span<cons
   }
 }
 
-/// Appends one level of a layer.
+/// Appends one level of a layer, or a slice of it.
 void append_level(Bytes& all, const ViewObject& view, std::uint32_t width, std::uint32_t height,
                   std::span<const std::byte> layer) {
   const OtherFormat* other = other_format(view.format);
@@ -165,20 +165,37 @@ Format texture_format(const ViewObject& view) {
   return exchanged_format(own);
 }
 
+TexelBlock texel_block(std::uint32_t format) {
+  if (const OtherFormat* other = other_format(format)) return {1, other->bytes};
+  const Format ours = image_format(format);
+  if (ours == Format::kUndefined) throw user_error("a texture of {} is not supported", format_name(format));
+  return {models::is_block_format(ours) ? models::kBlockSide : 1u, models::format_bytes(ours)};
+}
+
+bool has_texels(const ImageObject& image, const ViewObject& view) {
+  const std::size_t bytes = layer_bytes(view.format, std::max(1u, image.width >> view.level),
+                                        std::max(1u, image.height >> view.level));
+  return image.texels[view.level].size() >= bytes * (view.layer + std::size_t{1});
+}
+
 std::vector<std::byte> texture_texels(const ImageObject& image, const ViewObject& view, bool& missing) {
   const Format format = texture_format(view);
   Bytes all;
   for (std::uint32_t level = 0; level < image.levels; ++level) {
     const std::uint32_t width = std::max(1u, image.width >> level),
-                        height = std::max(1u, image.height >> level);
-    const std::size_t bytes = layer_bytes(view.format, width, height), begin = bytes * view.layer;
+                        height = std::max(1u, image.height >> level),
+                        depth = std::max(1u, image.depth >> level);
+    const std::size_t bytes = layer_bytes(view.format, width, height);
     const Bytes& source = image.texels[level];
-    if (source.size() < begin + bytes) {
-      missing = true;
-      all.resize(all.size() + models::format_area_bytes(format, width, height));
-      continue;
+    for (std::uint32_t slice = 0; slice < depth * view.layers; ++slice) {
+      const std::size_t begin = bytes * (std::size_t{view.layer} * depth + slice);
+      if (source.size() < begin + bytes) {
+        missing = true;
+        all.resize(all.size() + models::format_area_bytes(format, width, height));
+        continue;
+      }
+      append_level(all, view, width, height, std::span(source).subspan(begin, bytes));
     }
-    append_level(all, view, width, height, std::span(source).subspan(begin, bytes));
   }
   return all;
 }

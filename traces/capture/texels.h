@@ -18,4 +18,14 @@ namespace quadrille::capture {
 /// Throws `UserError` for a view that the stream cannot bring texels for.
 [[nodiscard]] traces::Format texture_format(const ViewObject& view);
 
+/// Of a format of Vulkan: texels along a side of a block, 1 without blocks, and its bytes.
+struct TexelBlock {
+  std::uint32_t side = 1;
+  std::size_t bytes = 0;
+};
+/// Throws `UserError` for a format that is not known.
+[[nodiscard]] TexelBlock texel_block(std::uint32_t format);
+/// Does the capture bring the view's level of its layer?
+[[nodiscard]] bool has_texels(const ImageObject& image, const ViewObject& view);
+
 }  // namespace quadrille::capture

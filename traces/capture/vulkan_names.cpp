@@ -234,6 +234,29 @@ traces::Filter filter_of(std::uint32_t value, std::string& unsupported) {
 
 }  // namespace
 
+traces::ViewKind view_kind_of(std::uint32_t value) {
+  using traces::ViewKind;
+  switch (value) {
+    case VK_IMAGE_VIEW_TYPE_1D: return ViewKind::k1D;
+    case VK_IMAGE_VIEW_TYPE_2D: return ViewKind::k2D;
+    case VK_IMAGE_VIEW_TYPE_3D: return ViewKind::k3D;
+    case VK_IMAGE_VIEW_TYPE_CUBE: return ViewKind::kCube;
+    case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return ViewKind::k1DArray;
+    case VK_IMAGE_VIEW_TYPE_2D_ARRAY: return ViewKind::k2DArray;
+    case VK_IMAGE_VIEW_TYPE_CUBE_ARRAY: return ViewKind::kCubeArray;
+    default: throw user_error("VkImageViewType {} is not supported", value);
+  }
+}
+
+traces::ImageKind image_kind_of(std::uint32_t value) {
+  switch (value) {
+    case VK_IMAGE_TYPE_1D: return traces::ImageKind::k1D;
+    case VK_IMAGE_TYPE_2D: return traces::ImageKind::k2D;
+    case VK_IMAGE_TYPE_3D: return traces::ImageKind::k3D;
+    default: throw user_error("VkImageType {} is not supported", value);
+  }
+}
+
 SamplerObject sampler_of(const Value& info) {
   SamplerObject made;
   traces::Sampler& state = made.state;
@@ -243,11 +266,14 @@ SamplerObject sampler_of(const Value& info) {
                                                                         : traces::Filter::kNearest;
   state.wrap_u = wrap_of(info["addressModeU"].u32(), made.unsupported);
   state.wrap_v = wrap_of(info["addressModeV"].u32(), made.unsupported);
-  if (models::has_border(state)) state.border = border_of(info["borderColor"].u32(), made.unsupported);
+  state.wrap_w = wrap_of(info["addressModeW"].u32(), made.unsupported);
+  if (models::has_border(state) || state.wrap_w == models::Wrap::kClampToBorder)
+    state.border = border_of(info["borderColor"].u32(), made.unsupported);
   state.lod_bias = info["mipLodBias"].f32();
   state.min_lod = info["minLod"].f32();
   state.max_lod = info["maxLod"].f32();
-  if (info["compareEnable"].flag()) made.unsupported = "comparison";
+  if (info["compareEnable"].flag()) state.compare = compare_of(info["compareOp"].u32());
+  if (info["anisotropyEnable"].flag()) state.max_anisotropy = info["maxAnisotropy"].f32();
   if (info["unnormalizedCoordinates"].flag()) made.unsupported = "unnormalised coordinates";
   if (info.next(VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO) != nullptr)
     made.unsupported = "a reduction mode";

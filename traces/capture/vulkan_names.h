@@ -31,6 +31,9 @@ namespace quadrille::capture {
 [[nodiscard]] traces::LoadOp load_of(std::uint32_t value);
 [[nodiscard]] traces::StoreOp store_of(std::uint32_t value);
 
+[[nodiscard]] traces::ViewKind view_kind_of(std::uint32_t value);
+[[nodiscard]] traces::ImageKind image_kind_of(std::uint32_t value);
+
 /// A VkSamplerCreateInfo.
 [[nodiscard]] SamplerObject sampler_of(const Value& info);
 

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cstring>
 
 #include "models/base/error.h"
 #include "models/precision.h"
@@ -87,8 +88,9 @@ TEST_CASE("capture: a command that is not supported is named with its count") {
 }
 
 TEST_CASE("capture: a draw that needs what the machine lacks is left out if that is wished") {
-  const SmallCapture wish{.sampler_compares = true};
-  CHECK_THAT(refusal(wish), Catch::Contains("vkCmdDraw: a sampler with comparison is not supported (x1)"));
+  const SmallCapture wish{.sampler_counts_texels = true};
+  CHECK_THAT(refusal(wish),
+             Catch::Contains("vkCmdDraw: a sampler with unnormalised coordinates is not supported (x1)"));
   const std::vector<std::uint32_t> pixels = picture(import(wish, {.skip_unsupported = true}).stream);
   CHECK(std::ranges::all_of(pixels, [](std::uint32_t pixel) { return pixel == kBlue; }));
 }
@@ -98,6 +100,71 @@ TEST_CASE("capture: a pass that begins with an earlier frame's picture says that
   const Import made = import({.loads = true});
   REQUIRE(made.notes.size() == 1);
   CHECK_THAT(*made.notes.begin(), Catch::Contains("begins with what an earlier frame left"));
+}
+
+TEST_CASE("capture: copies in the frame change what its draws read") {
+  using nlohmann::json;
+  const json layer{{"aspectMask", 1}, {"layerCount", 1}};
+  const auto at = [](std::vector<std::uint32_t> pixels, std::size_t x, std::size_t y) {
+    return pixels.at(16 * y + x);
+  };
+  SECTION("a buffer's bytes as vertices") {
+    // The second corner to the upper right: the triangle covers the other half.
+    const float corner[2] = {1, -1};
+    std::vector<std::uint8_t> bytes(sizeof(corner));
+    std::memcpy(bytes.data(), corner, sizeof(corner));
+    const Import made = import(
+        {.before = {{"CmdUpdateBuffer",
+                     {{"dstBuffer", kVertices}, {"dstOffset", 0}, {"dataSize", 8}, {"pData", bytes}}},
+                    {"CmdCopyBuffer",
+                     {{"srcBuffer", kVertices},
+                      {"dstBuffer", kVertices},
+                      {"pRegions", json::array({{{"dstOffset", 8}, {"size", 8}}})}}},
+                    {"CmdFillBuffer",
+                     {{"dstBuffer", kVertices}, {"dstOffset", 0}, {"size", 8}, {"data", 0xbf800000u}}}}});
+    CHECK(at(picture(made.stream), 12, 3) == kTriangle);
+    CHECK(at(picture(made.stream), 3, 12) == kBlue);
+  }
+  SECTION("a buffer's bytes as a texel") {
+    const Import made = import(
+        {.before = {{"CmdCopyBufferToImage",
+                     {{"srcBuffer", kVertices},
+                      {"dstImage", kTexture},
+                      {"pRegions",
+                       json::array({{{"bufferOffset", 0},
+                                     {"imageSubresource", layer},
+                                     {"imageExtent", {{"width", 1}, {"height", 1}, {"depth", 1}}}}})}}}}});
+    CHECK(at(picture(made.stream), 3, 12) == 0xbf800000u);  // -1.0f
+  }
+  SECTION("a cleared image, and a texel drawn into it") {
+    const json clear{{"image", kShown},
+                     {"pColor", json::array({0, 0x3f800000, 0, 0x3f800000})},
+                     {"pRanges", json::array({{{"aspectMask", 1}, {"levelCount", 1}, {"layerCount", 1}}})}};
+    const json copy{{"srcImage", kTexture},
+                    {"dstImage", kShown},
+                    {"pRegions", json::array({{{"srcSubresource", layer},
+                                               {"dstSubresource", layer},
+                                               {"dstOffset", {{"x", 2}, {"y", 9}}},
+                                               {"extent", {{"width", 1}, {"height", 1}, {"depth", 1}}}}})}};
+    CHECK_THAT(refusal({.loads = true, .before = {{"CmdClearColorImage", clear}, {"CmdCopyImage", copy}}}),
+               Catch::Contains("vkCmdCopyImage: between formats"));
+    const Import made = import({.loads = true, .before = {{"CmdClearColorImage", clear}}});
+    CHECK(made.notes.empty());
+    CHECK(at(picture(made.stream), 12, 3) == 0xff00ff00u);
+    CHECK(at(picture(made.stream), 2, 9) == kTriangle);
+  }
+  SECTION("what lies beyond a buffer or an image") {
+    const json beyond{{"dstBuffer", kVertices}, {"dstOffset", 20}, {"size", 8}, {"data", 1}};
+    CHECK_THAT(refusal({.before = {{"CmdFillBuffer", beyond}}}),
+               Catch::Contains("vkCmdFillBuffer: of bytes 20+8 of a buffer of 24"));
+    const json wide{
+        {"srcBuffer", kVertices},
+        {"dstImage", kTexture},
+        {"pRegions", json::array({{{"imageSubresource", layer},
+                                   {"imageExtent", {{"width", 2}, {"height", 1}, {"depth", 1}}}}})}};
+    CHECK_THAT(refusal({.before = {{"CmdCopyBufferToImage", wide}}}),
+               Catch::Contains("of an area beyond the image"));
+  }
 }
 
 TEST_CASE("capture: a barrier is no command that could be missed") {

@@ -13,27 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-// Handles, each with a number of its own.
-enum : std::uint64_t {
-  kDevice = 1,
-  kSwapchain,
-  kShown,
-  kShownView,
-  kMemory,
-  kVertices,
-  kTexture,
-  kTextureView,
-  kSampler,
-  kSetLayout,
-  kLayout,
-  kSet,
-  kVertexModule,
-  kFragmentModule,
-  kPipeline,
-  kCommands,
-  kQueue
-};
-
 constexpr const char* kVertexShader = R"(#version 450
 layout(location = 0) in vec2 place;
 void main() { gl_Position = vec4(place, 0.25, 1.0); }
@@ -98,9 +77,10 @@ void add_objects(CaptureWriter& file, const SmallCapture& wish) {
                             {"pImage", kTexture}});
   file.init_image(kTexture, std::as_bytes(std::span(kTexel)));
   view(kTexture, VK_FORMAT_R8G8B8A8_UNORM, kTextureView);
-  file.call("CreateSampler",
-            {{"pCreateInfo", {{"maxLod", 1.0}, {"compareEnable", wish.sampler_compares ? 1 : 0}}},
-             {"pSampler", kSampler}});
+  file.call(
+      "CreateSampler",
+      {{"pCreateInfo", {{"maxLod", 1.0}, {"unnormalizedCoordinates", wish.sampler_counts_texels ? 1 : 0}}},
+       {"pSampler", kSampler}});
 }
 
 void add_descriptors(CaptureWriter& file) {
@@ -157,6 +137,7 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish) {
                    {"loadOp", wish.loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR},
                    {"clearValue", clear}};
   const json area{{"extent", {{"width", 16}, {"height", 16}}}};
+  for (const auto& [name, parameters] : wish.before) command(name, parameters);
   command("CmdBeginRendering",
           {{"pRenderingInfo",
             {{"renderArea", area}, {"layerCount", 1}, {"pColorAttachments", json::array({color})}}}});
