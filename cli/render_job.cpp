@@ -270,9 +270,19 @@ RenderJob::DrawnJob RenderJob::draw(const SceneArguments::Loaded& loaded, const 
   progress.show("compiling shaders, building the machine");
   hw::RunLimits limits = setting.limits;
   limits.progress = [&](hw::Tick now) { progress.show_cycles(setting.clock.edges_before(now)); };
-  DrawnJob drawn = fidelity == "functional"
-                       ? DrawnJob{pipeline::render_functional_frame(stream, setting.config.precision())}
-                       : simulate(stream, setting, limits);
+  DrawnJob drawn = [&] {
+    try {
+      return fidelity == "functional"
+                 ? DrawnJob{pipeline::render_functional_frame(stream, setting.config.precision())}
+                 : simulate(stream, setting, limits);
+    } catch (const UserError& error) {
+      // A shader of a trace or capture has a name of its own, and the file is what its user knows.
+      const std::string_view text = error.what();
+      if (!scene.is_trace() || text.starts_with("--") || text.find(scene.scene) != std::string_view::npos)
+        throw;
+      throw user_error("{}: {}", scene.scene, text);
+    }
+  }();
   const pipeline::RenderedFrame& frame = drawn.frame;
   std::vector<pipeline::LeftOut>& left_out_of_frame = drawn.frame.figures.left_out;
   left_out_of_frame.insert(left_out_of_frame.begin(), loaded.left_out.begin(), loaded.left_out.end());

@@ -11,8 +11,8 @@ struct Precision {
   /// the level of detail's log2 is linear between powers of two, as cheap hardware has it: up to 0.043 levels
   /// low
   bool linear_log2 = false;
-  /// Anisotropic samples lie along the longer axis of the ellipse that a round pixel covers [P: Heckbert 1989];
-  /// else along the longer of the pixel's two differences, as in Vulkan's equations
+  /// Anisotropic samples lie along the longer axis of the ellipse that a round pixel covers [P: Heckbert
+  /// 1989]; else along the longer of the pixel's two differences, as in Vulkan's equations
   bool ellipse_axis = false;
 };
 

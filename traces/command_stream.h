@@ -85,7 +85,7 @@ inline constexpr std::uint8_t kAllUsages = kSampled | kColorAttachment | kDepthA
 /// An image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
 /// first, in each level layer by layer or slice by slice, rows top to bottom, tightly packed; of compressed
 /// formats rows of blocks, of which those at the right and lower edges may reach beyond the level. Level i is
-/// max(1, width >> i) by max(1, height >> i), and so for the depth of a volume. An attachment is 2D and has no
+/// max(1, width >> i) by max(1, height >> i), and so for a volume's depth. An attachment is 2D and has no
 /// texels: it holds what passes store, in each level of each layer.
 struct Image {
   std::string name;

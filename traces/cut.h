@@ -11,8 +11,8 @@ namespace quadrille::traces {
 /// `UserError` for a number that is 0 or beyond the passes there are.
 void end_with_pass(CommandStream& stream, std::uint32_t last);
 
-/// Keeps the draws `first` to `last`, counted from 0 as in the figures; passes, clears and everything else stay.
-/// Throws `UserError` for an empty range or one beyond the draws there are.
+/// Keeps the draws `first` to `last`, counted from 0 as in the figures; passes and clears stay. Throws
+/// `UserError` for an empty range or one beyond the draws there are.
 void keep_draws(CommandStream& stream, std::uint32_t first, std::uint32_t last);
 
 }  // namespace quadrille::traces

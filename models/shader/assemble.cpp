@@ -146,12 +146,14 @@ class Assembler {
     if (next < words.size() && words[next] == "no-sampler") {
       t.sampler_binding = kNoSampler;
       ++next;
-    } else if (next < words.size()) {
+    } else if (next < words.size() && words[next].starts_with("sampler-set")) {
       t.sampler_set = field(words, next, "sampler-set");
       t.sampler_binding = field(words, next + 1, "sampler-binding");
       next += 2;
     }
-    if (next != words.size()) fail("'{}' follows what says all of a texture", words[next]);
+    if (next != words.size())
+      fail("'{}' is none of: {}; {}; no-sampler; sampler-set=NUMBER sampler-binding=NUMBER", words[next],
+           fmt::join(kNumberKindNames, " "), fmt::join(kViewKindNames, " "));
     program_.textures.push_back(t);
   }
 

@@ -78,7 +78,8 @@ struct TextureLayout {
 };
 
 /// Lays out a chain of texels of 1, 2, 4, 8 or 16 bytes, or as `format` has them. Each level begins with a
-/// line. Throws `UserError` for a size outside 1..16384, more levels than the size has, or 2^31 texels and more.
+/// line. Throws `UserError` for a size outside 1..16384, more levels than the size has, or 2^31 texels and
+/// more.
 [[nodiscard]] TextureLayout make_texture_layout(const TextureExtent& extent, std::uint32_t levels,
                                                 std::uint32_t texel_bytes = 4);
 [[nodiscard]] TextureLayout make_texture_layout(Format format, const TextureExtent& extent,
@@ -121,8 +122,8 @@ struct TextureView {
                                                   std::uint32_t height, std::uint32_t levels) {
   return allocate_texture(memory, format, {width, height}, levels);
 }
-/// Tiles one level: rows top to bottom, slice by slice, tightly packed. Another number of texels than the level has is an
-/// internal error.
+/// Tiles one level: rows top to bottom, slice by slice, tightly packed. Another number of texels than the
+/// level has is an internal error.
 void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t level,
                 std::span<const std::byte> texels);
 

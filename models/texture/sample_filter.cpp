@@ -237,7 +237,7 @@ Way way_of(Format format) {
   return format == Format::kR8G8B8A8Srgb || format == Format::kB8G8R8A8Srgb ? Way::kSrgb : Way::kAny;
 }
 
-/// A cube's corners and comparisons are done with numbers, and so that no lane's way depends on another's, all
+/// A cube's corners and comparisons are done with numbers. So that no lane's way depends on another's, all
 /// of such plans is.
 Way way_of(const TexturePlan& plan, Format format) {
   const bool numbers =

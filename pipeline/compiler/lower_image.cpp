@@ -1,4 +1,4 @@
-/// Textures and derivatives: which textures and samplers there are, and what is asked of them. [VK1.3 #textures]
+/// Textures and derivatives: which textures and samplers there are, what is asked of them. [VK1.3 #textures]
 ///
 /// What the ISA has an operation for (a plane, sampled by its level, a bias or the quad) takes that. All else
 /// becomes a kTexOp with its words packed three by three.
@@ -84,7 +84,7 @@ void Lowering::declare_texture(const spirv::Variable& variable) {
         module_.at_use(variable.id,
                        fmt::format("resource {} is not a sampler, a texture or both in one (of floats or "
                                    "integers, 1D, 2D, 3D, cube and arrays of them, of one sample), the "
-                                   "only kinds supported",
+                                   "only kinds supported; declare it as a sampler2D or the like",
                                    module_.name(variable.id))));
   models::TextureBinding binding{set, place, number_kind(image.element), *view};
   if (!combined) binding.sampler_binding = models::kNoSampler;

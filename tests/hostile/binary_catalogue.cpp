@@ -111,8 +111,6 @@ Group trace_cases() {
         group.cases.push_back(trace_case(fmt::format("{} word {} is {:#x}", name, at / 4, value),
                                          text_of(fuzz::put_trace_together(bad)), Expect::kEither,
                                          "functional"));
-        // what is wrong may be a shader of the trace, which has a name of its own
-        group.cases.back().culprit = "";
         if (at > 300) break;
       }
     }

@@ -26,7 +26,7 @@ struct TextureCard {
   traces::Sampler sampler;
   /// Pixel (i, j) lies at texel (i + 0.5) step + first of the finest level, along each axis.
   std::array<float, 2> step{0.5f, 0.5f}, first{0, 0};
-  /// GLSL that gives the texel of the sampler `t` at the coordinates `uv`; `at` are those in texels, and `dir`
+  /// GLSL that gives the texel of the sampler `t` at the coordinates `uv`; `at` are those in texels, `dir`
   /// are directions that meet every face of a cube, near its edges too.
   std::string sample = "texture(t, uv)";
   traces::ViewKind view = traces::ViewKind::k2D;

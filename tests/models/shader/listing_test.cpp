@@ -85,7 +85,7 @@ TEST_CASE("listing: a mistake is reported with its line") {
   starts("fadd c0, r1, r1\nend\n", "shader:1: the destination must be a register");
   starts("fadd r0, r1, q7\nend\n", "shader:1: 'q7' is no operand");
   starts(".colour\nend\n", "shader:1: unknown directive");
-  starts(".texture set=0 binding=0 short\nend\n", "shader:1: numbers must be one of: float uint sint");
+  starts(".texture set=0 binding=0 short\nend\n", "shader:1: 'short' is none of: float uint sint; 2d 1d 3d");
   starts(".color location=8 uint\nend\n", "shader:1: location is 8; legal: at most 7");
   starts(".stage geometry\nend\n", "shader:1: stage must be one of: vertex fragment");
   starts(".extras point_size=0 clip=0 cull=0 viewport=2\nend\n", "shader:1: viewport is 2; legal: at most 1");

@@ -1,4 +1,4 @@
-/// Captured frames beside what lavapipe drew of them: that of a small program of this project's own, and those
+/// Captured frames beside what lavapipe drew of them: that of a small program of this project's own, those
 /// of real programs, which are not part of the project; their tests pass by where the captures are not there.
 #include <catch2/catch.hpp>
 
