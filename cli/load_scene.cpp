@@ -17,6 +17,7 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
   Loaded loaded{file.record(moment), {}};
   use_samples(loaded.stream);
   use_anisotropy(loaded.stream);
+  use_compression(loaded.stream);
   use_queries(loaded.stream);
   if (exposure == "auto") fmt::print(stderr, "{}: exposure {:.4g}\n", scene, file.exposure());
   if (const std::size_t packed = file.unused_images(); packed > 0)
@@ -49,6 +50,7 @@ SceneArguments::Loaded SceneArguments::load() const {
     cut(loaded.stream);
     use_samples(loaded.stream);
     use_anisotropy(loaded.stream);
+    use_compression(loaded.stream);
     use_queries(loaded.stream);
     return loaded;
   }

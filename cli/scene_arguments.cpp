@@ -12,6 +12,7 @@
 #include "models/base/error.h"
 #include "models/raster/samples.h"
 #include "scenes/builtin/builtin.h"
+#include "scenes/image/compress.h"
 #include "scenes/image/image_io.h"
 #include "scenes/scene.h"
 
@@ -201,6 +202,11 @@ void SceneArguments::add_samples_to(CLI::App& command) {
                   "samples along the longer axis of a pixel's footprint, 1 to 16, that textures filtered "
                   "between texels and levels take at most (default: 1, or as the trace has them)")
       ->type_name("N");
+  command
+      .add_option("--compress", compress,
+                  "compresses the textures on load, to see what that saves of bandwidth and costs in the "
+                  "picture: bc1: 8 bytes for 4x4 texels, alpha 0 or 1; bc3: 16 bytes")
+      ->check(one_of(scenes::kCompressionNames));
   command.add_flag("--supersample", supersample,
                    "shades each sample for itself, where it lies, instead of each pixel once");
   command.add_flag("--alpha-to-coverage", alpha_to_coverage,

@@ -21,7 +21,7 @@ struct SceneArguments {
       view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
   std::optional<std::string> transparency, transparency_layers;
-  std::optional<std::string> anisotropy;
+  std::optional<std::string> anisotropy, compress;
   std::optional<std::string> last_pass, draws;  ///< that are kept of a trace or capture
   bool supersample = false;                     ///< each sample is shaded for itself
   bool alpha_to_coverage = false;               ///< of masked materials; not of a trace
@@ -71,6 +71,7 @@ struct SceneArguments {
   void check_cut() const;
   /// Of a trace or capture, what `--pass` and `--draws` keep.
   void cut(traces::CommandStream& stream) const;
+  void use_compression(traces::CommandStream& stream) const;
   void use_anisotropy(traces::CommandStream& stream) const;
   /// Puts queries around its draws and passes if wished. Throws `UserError`.
   void use_queries(traces::CommandStream& stream) const;

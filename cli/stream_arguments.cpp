@@ -7,6 +7,8 @@
 #include "cli/scene_arguments.h"
 #include "models/base/error.h"
 #include "models/raster/samples.h"
+#include "scenes/image/compress.h"
+#include "scenes/scene.h"
 #include "traces/cut.h"
 
 namespace quadrille::cli {
@@ -72,6 +74,12 @@ void SceneArguments::cut(traces::CommandStream& stream) const {
 void SceneArguments::use_anisotropy(traces::CommandStream& stream) const {
   if (anisotropy)
     traces::use_anisotropy(stream, static_cast<float>(parse_whole(*anisotropy, "--anisotropy", 1, 16)));
+}
+
+void SceneArguments::use_compression(traces::CommandStream& stream) const {
+  if (compress)
+    (void)scenes::compress_textures(
+        stream, scenes::named(scenes::kCompressionNames, *compress, scenes::TextureCompression::kBc1));
 }
 
 void SceneArguments::use_samples(traces::CommandStream& stream) const {

@@ -45,7 +45,9 @@ struct Box {
 
 Box box_of(const ImageObject& image, const LevelRows& rows, const Value& part, const Value& offset,
            const Value& extent) {
-  if (part["aspectMask"].u32() != VK_IMAGE_ASPECT_COLOR_BIT) throw user_error("of depths or stencil values");
+  const std::uint32_t aspect = part["aspectMask"].u32();
+  if (aspect != VK_IMAGE_ASPECT_COLOR_BIT && aspect != VK_IMAGE_ASPECT_DEPTH_BIT)
+    throw user_error("of stencil values");
   const auto place = [](const Value& number) {
     if (number.i32() < 0) throw user_error("from a place before the image begins");
     return static_cast<std::size_t>(number.i32());

@@ -20,6 +20,9 @@ bool FrameRecorder::copy(const Call& call) {
     if (tables_.stored(p["dstImage"].u64())) throw user_error("to an image that a pass has drawn to");
     for (std::size_t i = 0; i < p["pRegions"].size(); ++i)
       device_.copy_to_image(p["srcBuffer"].u64(), p["dstImage"].u64(), p["pRegions"].at(i));
+  } else if (call.name == "CmdCopyImageToBuffer") {
+    // The program reads it back, behind the frame; only a draw that used it would have to know.
+    tables_.note_read_back(p["dstBuffer"].u64());
   } else if (call.name == "CmdCopyImage") {
     copy_images(p);
   } else {

@@ -31,6 +31,7 @@ Index place(std::vector<T>& table, const T& value) {
 }  // namespace
 
 Index StreamTables::buffer(Handle handle) {
+  if (read_back_.contains(handle)) throw user_error("buffer {} holds what a pass drew", handle);
   const BufferObject& object_of = object(device_.buffers, handle, "buffer");
   const std::uint64_t version = device_.version(object_of);
   const auto found = buffers_.find(handle);

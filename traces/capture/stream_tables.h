@@ -48,6 +48,8 @@ class StreamTables {
   [[nodiscard]] bool stored_part(Handle image, std::uint32_t level, std::uint32_t layer) const {
     return stored_.contains({image, level, layer});
   }
+  /// The buffer holds what passes drew: no draw may use it.
+  void note_read_back(Handle buffer) { read_back_.insert(buffer); }
   /// A texture of the texels that the capture brings of the image, whatever passes have stored in it.
   [[nodiscard]] traces::TextureDescriptor own_texels(const ViewObject& view);
   /// Is any part of it stored?
@@ -80,6 +82,7 @@ class StreamTables {
   std::map<std::tuple<traces::Index, std::uint32_t, std::uint64_t, std::uint32_t>, traces::Index> expanded_;
   std::map<OwnShader, traces::Index> own_;
   std::set<std::tuple<Handle, std::uint32_t, std::uint32_t>> stored_;  ///< image, level, layer
+  std::set<Handle> read_back_;
   std::set<std::string> notes_;
 };
 

@@ -43,6 +43,19 @@ Bytes widened(std::span<const std::byte> texels) {
   return all;
 }
 
+/// Depths of 24 bits, whatever lies above them, as floats.
+Bytes floats_of_depths(std::span<const std::byte> texels) {
+  Bytes all(texels.begin(), texels.end());
+  for (std::size_t at = 0; at + 4 <= all.size(); at += 4) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, &all[at], sizeof word);
+    constexpr std::uint32_t kMost = 0xffffff;
+    const auto depth = static_cast<float>(static_cast<double>(word & kMost) / kMost);
+    std::memcpy(&all[at], &depth, sizeof depth);
+  }
+  return all;
+}
+
 /// Formats of Vulkan that the machine has in another order or size.
 struct OtherFormat {
   VkFormat format;
@@ -53,6 +66,8 @@ struct OtherFormat {
 constexpr OtherFormat kOthers[] = {
     {VK_FORMAT_A4R4G4B4_UNORM_PACK16, 2, Format::kR4G4B4A4Unorm, turned},
     {VK_FORMAT_A4B4G4R4_UNORM_PACK16, 2, Format::kB4G4R4A4Unorm, turned},
+    {VK_FORMAT_X8_D24_UNORM_PACK32, 4, Format::kD32Float, floats_of_depths},
+    {VK_FORMAT_D24_UNORM_S8_UINT, 4, Format::kD32Float, floats_of_depths},
     {VK_FORMAT_R8G8B8_UNORM, 3, Format::kR8G8B8A8Unorm, widened},
 };
 const OtherFormat* other_format(std::uint32_t format) {
@@ -159,8 +174,7 @@ Format texture_format(const ViewObject& view) {
   if (!models::format_info(own).may(models::kFileUse))
     throw user_error("a texture of {} is not supported", format_name(view.format));
   if (shows_all_as_they_are(view, models::format_info(own))) return own;
-  if (models::number_kind(own) != models::NumberKind::kFloat ||
-      models::format_info(own).may(models::kDepthUse))
+  if (models::number_kind(own) != models::NumberKind::kFloat)
     throw user_error("a view of {} that exchanges components is not supported", format_name(view.format));
   return exchanged_format(own);
 }
