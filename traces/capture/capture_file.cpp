@@ -20,7 +20,7 @@ constexpr std::uint32_t kFourCc = 0x52584647;  // "GFXR"
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{4} << 30;
 // What one block, and all of a file, may expand to: a bound on what a hostile file can ask for.
 constexpr std::uint64_t kMaxBlockBytes = std::uint64_t{1} << 30;
-constexpr std::uint64_t kMaxExpandedBytes = std::uint64_t{4} << 30;
+constexpr std::uint64_t kMaxExpandedBytes = std::uint64_t{8} << 30;
 constexpr std::uint32_t kMaxOptions = 64;
 constexpr std::uint32_t kCompressionOption = 1;
 constexpr std::uint32_t kPlain = 0, kLz4 = 1, kZstd = 3;

@@ -137,6 +137,11 @@ bool FrameRecorder::label(const Call& call) {
 
 traces::CommandStream FrameRecorder::take() {
   if (in_pass_) end_pass();
+  // What is shown was drawn earlier: a last pass, without a draw, makes it the picture.
+  if (presented_ != 0 && last_shown_ != presented_ && tables_.stored_part(presented_, 0, 0)) {
+    begin_blit(presented_, 0, 0);
+    end_pass();
+  }
   if (presented_ != 0 && last_shown_ != presented_)
     throw user_error("the last pass of the frame draws to image {}, and image {} is shown", last_shown_,
                      presented_);

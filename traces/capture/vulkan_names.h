@@ -37,7 +37,7 @@ namespace quadrille::capture {
 /// A VkSamplerCreateInfo.
 [[nodiscard]] SamplerObject sampler_of(const Value& info);
 
-/// A command that says when, not what: barriers, labels, stipples of lines that are not stippled.
+/// A command that changes nothing of the picture: barriers, queries, stipples of lines that are not stippled.
 [[nodiscard]] bool changes_no_picture(std::string_view command);
 
 }  // namespace quadrille::capture
