@@ -80,6 +80,11 @@ class Renderer {
     state_.samples = stream_.images[pass.first_image()].samples;
     const std::size_t pixels = std::size_t{target.width} * target.height, values = pixels * state_.samples;
     result_.width = target.width, result_.height = target.height;
+    for (std::uint32_t i = 0; i < kMaxViewports; ++i) {
+      state_.viewports[i] = {0, 0, static_cast<float>(target.width), static_cast<float>(target.height), 0,
+                             1, i};
+      state_.scissors[i] = {0, 0, target.width, target.height, i};
+    }
     state_.colors.clear();
     for (const traces::ColorAttachmentUse& use : pass.colors) {
       state_.colors.push_back(&colors_[use.part()]);
@@ -204,17 +209,15 @@ class Renderer {
     std::copy(c.data.begin(), c.data.end(),
               state_.push_constants.begin() + static_cast<std::ptrdiff_t>(c.offset));
   }
-  void execute(const traces::SetViewport& c) { state_.viewports[c.index] = c, has_viewport_ = true; }
+  void execute(const traces::SetViewport& c) { state_.viewports[c.index] = c; }
   void execute(const traces::BeginQuery&) {}
   void execute(const traces::EndQuery&) {}
-  void execute(const traces::SetScissor& c) { state_.scissors[c.index] = c, has_scissor_ = true; }
+  void execute(const traces::SetScissor& c) { state_.scissors[c.index] = c; }
 
   void execute(const traces::Draw& draw) {
     state_.draw = &draw;
     if (seen()) {
       if (state_.pipeline == nullptr) throw user_error("draw {}: no pipeline is bound", state_.number);
-      if (!has_viewport_ || !has_scissor_)
-        throw user_error("draw {}: no viewport or scissor is set", state_.number);
       if (draw.indexed && state_.index_buffer.buffer == traces::kNone)
         throw user_error("draw {}: no index buffer is bound", state_.number);
       draw_instances();
@@ -308,7 +311,6 @@ class Renderer {
   const traces::CommandStream& stream_;
   const Options& options_;
   DrawState state_;
-  bool has_viewport_ = false, has_scissor_ = false;
   bool all_passes_ = false;
   std::uint32_t passes_ = 0, pass_ = 0;
   const traces::BeginPass* begun_ = nullptr;

@@ -134,6 +134,13 @@ class FrameRecorder {
                       std::uint32_t dynamic_offset);
   void emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline);
   void emit_window(const RasterState& state);
+  /// A pass of the stream begins with viewports and scissors of its own.
+  void forget_windows() {
+    std::erase_if(emitted_, [](const auto& entry) {
+      return std::holds_alternative<traces::SetViewport>(entry.second) ||
+             std::holds_alternative<traces::SetScissor>(entry.second);
+    });
+  }
   /// Adds the command if it changes what is bound in the stream.
   template <class C>
   void emit_change(std::uint32_t place, const C& command) {

@@ -219,6 +219,7 @@ void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t
   in_pass_ = true;
   begin_at_ = tables_.stream.commands.size();
   tables_.stream.commands.emplace_back(pass_);
+  forget_windows();
 }
 
 }  // namespace quadrille::capture

@@ -158,6 +158,7 @@ void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const Pass
   drew_ = false;
   begin_at_ = tables_.stream.commands.size();
   tables_.stream.commands.emplace_back(pass_);
+  forget_windows();
 }
 
 void FrameRecorder::end_pass() {
