@@ -67,7 +67,7 @@ TEST_CASE("compress: alpha of BC1 is 0 below the half and 1 above") {
     CHECK(static_cast<int>(decoded[i]) == (static_cast<int>(rgba[i]) >= 128 ? 255 : 0));
 }
 
-TEST_CASE("compress: textures of RGBA8 in all levels, packed or not; all else stays") {
+TEST_CASE("compress: textures of RGBA8 in all levels, packed or not, and nothing else") {
   traces::CommandStream stream;
   stream.images = {image(Format::kR8G8B8A8Srgb, 33, 18, 6), image(Format::kR8G8B8A8Unorm, 33, 18, 6),
                    image(Format::kR8G8B8A8Unorm, 8, 8, 1), image(Format::kR8G8B8A8Unorm, 8, 8, 1)};
