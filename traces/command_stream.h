@@ -193,6 +193,7 @@ struct TextureDescriptor {
   std::uint32_t first_level = 0, levels = 0, layer = 0;
   ViewKind view = ViewKind::k2D;
   std::uint32_t layers = 1;
+  models::ComponentMapping components = models::kSameComponents;  ///< in the order that is shown
   friend bool operator==(const TextureDescriptor&, const TextureDescriptor&) = default;
 };
 /// A sampler for textures that bring none (`TextureDescriptor::sampler` is `kNone`).

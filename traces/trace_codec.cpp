@@ -44,7 +44,7 @@ void transfer(A& a, Sampler& v) {
   if (a.version() < 3) return;
   a.choice(v.wrap_w, models::kLastWrap);
   a.choice(v.compare, CompareOp::kAlways);
-  numbers(a, v.max_anisotropy);
+  numbers(a, v.max_anisotropy, v.seamless);
 }
 
 template <class A>
@@ -120,6 +120,7 @@ void transfer(A& a, DescriptorSet& v) {
     if (a.version() < 4) return;
     a.choice(t.view, models::kLastViewKind);
     numbers(a, t.layers);
+    for (models::ComponentSource& c : t.components) a.choice(c, models::ComponentSource::kOne);
   });
   if (a.version() >= 2)
     a.table(v.buffers, [&](StorageBinding& b) { numbers(a, b.binding, b.buffer, b.offset, b.range); });

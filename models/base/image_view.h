@@ -42,4 +42,11 @@ inline constexpr std::array<std::string_view, 7> kViewKindNames{"2d",       "1d"
 }
 inline constexpr std::uint32_t kCubeFaces = 6;
 
+/// What a view shows as a component: one of the texel's, or a number.
+/// [VK1.3 #resources-image-views-identity-mappings]
+enum class ComponentSource : std::uint8_t { kRed, kGreen, kBlue, kAlpha, kZero, kOne };
+using ComponentMapping = std::array<ComponentSource, 4>;
+inline constexpr ComponentMapping kSameComponents{ComponentSource::kRed, ComponentSource::kGreen,
+                                                  ComponentSource::kBlue, ComponentSource::kAlpha};
+
 }  // namespace quadrille::models

@@ -32,6 +32,7 @@ struct SamplerState {
   CompareOp compare = CompareOp::kNever;
   /// Samples along the longer axis of a pixel's footprint, at most; 1: the footprint counts as round.
   float max_anisotropy = 1;
+  bool seamless = true;  ///< beyond an edge of a cube's face lies the next face; else the face's own edge
   friend bool operator==(const SamplerState&, const SamplerState&) = default;
 };
 

@@ -71,6 +71,7 @@ TextureView texture_view(const ShaderProgram& program, const DrawState& state, c
     view.kind = texture.view;
     view.first_layer = texture.layer;
     view.layers = texture.layers;
+    view.components = texture.components;
     for (std::uint32_t layer = 0; image.is_attachment() && layer < texture.layers; ++layer) {
       const auto drawn = state.drawn->find({texture.image, texture.layer + layer});
       if (drawn == state.drawn->end())

@@ -80,16 +80,32 @@ Texel plain_sample(const TextureView& texture, const TextureInstruction& ask, co
   return sample_texture(texture, at[0], at[1], base_lod(texture, {x[0], x[1]}, {y[0], y[1]}), bias);
 }
 
+double shown(const TextureView& texture, const Texel& texel, std::size_t component) {
+  const ComponentSource source = texture.components.at(component);
+  if (source <= ComponentSource::kAlpha) return texel.at(static_cast<std::size_t>(source));
+  return source == ComponentSource::kOne ? 1 : 0;
+}
+
+/// Components in the order that the view shows; what a comparison gave stays.
+Texel mapped(const TextureView& texture, const TextureInstruction& ask, const Texel& texel) {
+  if (ask.reference != kNoSlot) return texel;
+  Texel result{};
+  for (std::size_t c = 0; c < 4; ++c) result.at(c) = shown(texture, texel, c);
+  return result;
+}
+
 Texel gather(const TextureView& texture, const TextureInstruction& ask, const Lanes& lanes, int lane) {
   TextureQuestion q = question_of(texture, ask, lanes, lane);
-  const std::size_t component = q.reference ? 0 : ask.component;
+  const auto component = [&](const Texel& texel) {
+    return q.reference ? texel[0] : shown(texture, texel, ask.component);
+  };
   Texel result{};
   for (std::size_t k = 0; k < 4; ++k) {
     if (ask.four_offsets.empty()) {
-      result.at(k) = gathered_texels(texture, q).at(k).at(component);
+      result.at(k) = component(gathered_texels(texture, q).at(k));
     } else {
       q.offset = {ask.four_offsets.at(2 * k), ask.four_offsets.at(2 * k + 1), 0};
-      result.at(k) = gathered_texels(texture, q)[3].at(component);
+      result.at(k) = component(gathered_texels(texture, q)[3]);
     }
   }
   return result;
@@ -111,7 +127,7 @@ Texel fetch(const TextureView& texture, const TextureInstruction& ask, const Lan
 
 Texel answer(const TextureView& texture, const TextureInstruction& ask, const Lanes& lanes, int lane) {
   switch (ask.kind) {
-    case TextureInstruction::Kind::kFetch: return fetch(texture, ask, lanes, lane);
+    case TextureInstruction::Kind::kFetch: return mapped(texture, ask, fetch(texture, ask, lanes, lane));
     case TextureInstruction::Kind::kGather: return gather(texture, ask, lanes, lane);
     case TextureInstruction::Kind::kQueryLod: {
       const std::array<double, 2> levels = queried_levels(texture, question_of(texture, ask, lanes, lane));
@@ -119,8 +135,8 @@ Texel answer(const TextureView& texture, const TextureInstruction& ask, const La
     }
     case TextureInstruction::Kind::kSample: break;
   }
-  if (is_plain(texture, ask)) return plain_sample(texture, ask, lanes, lane);
-  return filtered_texel(texture, question_of(texture, ask, lanes, lane));
+  if (is_plain(texture, ask)) return mapped(texture, ask, plain_sample(texture, ask, lanes, lane));
+  return mapped(texture, ask, filtered_texel(texture, question_of(texture, ask, lanes, lane)));
 }
 
 }  // namespace

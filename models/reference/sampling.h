@@ -23,6 +23,7 @@ struct TextureView {
   std::uint32_t channels = 0;
   traces::ViewKind kind = traces::ViewKind::k2D;
   std::uint32_t first_layer = 0, layers = 1;
+  ComponentMapping components = kSameComponents;
   /// By layer, where passes have drawn them: images of one layer each. Empty: `image` brings its texels.
   std::vector<const traces::Image*> drawn{};
 };

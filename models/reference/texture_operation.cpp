@@ -174,9 +174,14 @@ Texel texel_at(const TextureView& texture, std::uint32_t level, std::int64_t i, 
   const std::array<std::int64_t, 3> sizes = sizes_of(texture, level);
   if (is_cube(texture.kind)) {
     const bool inside = i >= 0 && i < sizes[0] && j >= 0 && j < sizes[1];
-    return inside ? view_texel(texture, level, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j),
-                               static_cast<std::uint32_t>(slice))
-                  : across_edge(texture, level, i, j, slice, sizes[0]);
+    if (!inside && !texture.sampler->seamless) {
+      i = std::clamp<std::int64_t>(i, 0, sizes[0] - 1);
+      j = std::clamp<std::int64_t>(j, 0, sizes[1] - 1);
+    }
+    return inside || !texture.sampler->seamless
+               ? view_texel(texture, level, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j),
+                            static_cast<std::uint32_t>(slice))
+               : across_edge(texture, level, i, j, slice, sizes[0]);
   }
   const traces::Sampler& s = *texture.sampler;
   const bool line = place_dimensions(texture.kind) == 1, volume = texture.kind == ViewKind::k3D;
@@ -195,7 +200,7 @@ Square square_at(const TextureView& texture, const TextureQuestion& q, std::uint
   for (int corner = 0; corner < 4; ++corner) {
     const std::int64_t x = i + corner % 2, y = j + corner / 2;
     const bool beside = x < 0 || x >= sizes[0], above = y < 0 || y >= sizes[1];
-    if (is_cube(texture.kind) && beside && above) missing = corner;
+    if (is_cube(texture.kind) && texture.sampler->seamless && beside && above) missing = corner;
     else
       square.at(static_cast<std::size_t>(corner)) =
           compared(texture, q, texel_at(texture, level, x, y, slice));

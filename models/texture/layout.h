@@ -96,6 +96,7 @@ struct TextureView {
   Format format = Format::kR8G8B8A8Unorm;
   TextureLayout layout;
   ViewKind kind = ViewKind::k2D;
+  ComponentMapping components = kSameComponents;
   /// Of a texel, or of the first byte that may hold a part of it.
   [[nodiscard]] std::uint64_t texel_address(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
     return base + (std::uint64_t{format_bytes(format)} * layout.texel_index(level, x, y) >>

@@ -73,6 +73,7 @@ class OperationPlanner {
     plan.format = view.format;
     plan.kind = view.kind;
     plan.border = sampler.border;
+    plan.components = view.components;
     plan.bilinear_quads = plan.texels = plan.magnified_lanes = plan.minified_lanes = 0;
     plan.slices = view.kind == ViewKind::k3D;
     plan.levels.fill(0);
@@ -180,7 +181,7 @@ class OperationPlanner {
     __m256i slice = load(places_.slice, first);
     if (plan_.slices) slice = slice_of_volume(group, which, tap, level, nearest, out);
     store_texels(at, level, slice, x, y, out);
-    if (is_cube(view_.kind)) join_faces(level, slice, columns, rows, nearest, out);
+    if (is_cube(view_.kind) && sampler_.seamless) join_faces(level, slice, columns, rows, nearest, out);
     collect(lanes, nearest, out);
   }
 

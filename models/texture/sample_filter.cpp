@@ -304,6 +304,26 @@ void filter_group(const TexturePlan& plan, std::size_t group, const TexelSource&
   }
 }
 
+/// 1 of a format of integers, else 1.0.
+__m256 one_of(Format format) {
+  return number_kind(format) == NumberKind::kFloat ? _mm256_set1_ps(1.0f)
+                                                   : _mm256_castsi256_ps(_mm256_set1_epi32(1));
+}
+
+/// Components in the order that the view shows.
+void map_components(const TexturePlan& plan, std::array<LaneFloats, 4>& rgba) {
+  const std::array<LaneFloats, 4> texel = rgba;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const ComponentSource source = plan.components[c];
+    if (source <= ComponentSource::kAlpha) {
+      rgba[c] = texel[static_cast<std::size_t>(source)];
+      continue;
+    }
+    const __m256 number = source == ComponentSource::kOne ? one_of(plan.format) : _mm256_setzero_ps();
+    for (std::size_t lane = 0; lane < kWarpLanes; lane += 8) _mm256_storeu_ps(rgba[c].data() + lane, number);
+  }
+}
+
 /// A component of the corners: lower left, lower right, upper right, upper left. [VK1.3 #textures-gather]
 void gather_group(const TexturePlan& plan, std::size_t group, const TexelSource& source,
                   std::array<LaneFloats, 4>& rgba) {
@@ -313,9 +333,12 @@ void gather_group(const TexturePlan& plan, std::size_t group, const TexelSource&
   if (plan.compares) compare_corners(plan, group, format_info(source.format), corner);
   if (f.missing != 0) fill_missing(f.missing, number_kind(source.format) != NumberKind::kFloat, corner);
   constexpr std::size_t kOrder[4] = {2, 3, 1, 0};
-  const std::size_t component = plan.compares ? 0 : plan.component;
+  const ComponentSource shown = plan.compares ? ComponentSource::kRed : plan.components[plan.component];
+  const __m256 number = shown == ComponentSource::kOne ? one_of(source.format) : _mm256_setzero_ps();
   for (std::size_t k = 0; k < 4; ++k)
-    _mm256_storeu_ps(rgba[k].data() + 8 * group, corner[kOrder[k]][component]);
+    _mm256_storeu_ps(rgba[k].data() + 8 * group, shown <= ComponentSource::kAlpha
+                                                     ? corner[kOrder[k]][static_cast<std::size_t>(shown)]
+                                                     : number);
 }
 
 void answer_level(const TexturePlan& plan, std::array<LaneFloats, 4>& rgba) {
@@ -370,8 +393,11 @@ void filter_blocks(const TexturePlan& plan, const std::byte* base, std::array<La
 void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::array<LaneFloats, 4>& rgba) {
   if (plan.general && plan.ask == TextureAsk::kQueryLod) return answer_level(plan, rgba);
   const std::byte* const base = memory.data() + plan.base;
-  if (is_block_format(plan.format)) return filter_blocks(plan, base, rgba);
-  filter(plan, {base, plan.format, format_info(plan.format).channels}, rgba);
+  if (is_block_format(plan.format)) filter_blocks(plan, base, rgba);
+  else filter(plan, {base, plan.format, format_info(plan.format).channels}, rgba);
+  const bool mapped = plan.components != kSameComponents;
+  if (mapped && !(plan.general && (plan.compares || plan.ask == TextureAsk::kGather)))
+    map_components(plan, rgba);
 }
 
 }  // namespace quadrille::models

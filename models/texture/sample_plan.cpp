@@ -54,6 +54,7 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
   plan.base = view.base;
   plan.format = view.format;
   plan.border = sampler.border;
+  plan.components = view.components;
   plan.bilinear_quads = plan.texels = 0;
   alignas(32) LaneFloats u, v;
   for (std::size_t lane = 0; lane < kWarpLanes; lane += 8) {

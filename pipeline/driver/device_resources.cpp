@@ -64,12 +64,14 @@ DeviceResources::Texture DeviceResources::texture(const traces::TextureDescripto
     models::TextureView view = models::view_of_surfaces(seen, image.levels, image.format);
     view = models::view_of_levels(view, bound.first_level, levels);
     view.kind = bound.view;
+    view.components = bound.components;
     return {view, nullptr};
   }
   const Texture& whole = whole_texture(bound.image);
   models::TextureView view = models::view_of_levels(whole.view, bound.first_level, levels);
   if (image.kind != traces::ImageKind::k3D) view = models::view_of_layers(view, bound.layer, bound.layers);
   view.kind = bound.view;
+  view.components = bound.components;
   return {view, whole.fill};
 }
 

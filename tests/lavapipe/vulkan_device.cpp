@@ -386,13 +386,15 @@ bool VulkanDevice::samples(VkFormat format) const {
 }
 
 VkImageView VulkanDevice::view(Cleanup& owner, VkImage image, VkFormat format, VkImageViewType type,
-                               const VkImageSubresourceRange& range) const {
+                               const VkImageSubresourceRange& range,
+                               const VkComponentMapping& components) const {
   VkImageViewCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   info.image = image;
   info.viewType = type;
   info.format = format;
   info.subresourceRange = range;
+  info.components = components;
   VkImageView result = VK_NULL_HANDLE;
   require(vkCreateImageView(device_, &info, nullptr, &result), "vkCreateImageView");
   owner.add([this, result] { vkDestroyImageView(device_, result, nullptr); });

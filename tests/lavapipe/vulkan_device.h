@@ -76,7 +76,8 @@ class VulkanDevice {
   [[nodiscard]] VkImage image(Cleanup& owner, const ImageWish& wish) const;
   /// A view of some of its levels and layers.
   [[nodiscard]] VkImageView view(Cleanup& owner, VkImage image, VkFormat format, VkImageViewType type,
-                                 const VkImageSubresourceRange& range) const;
+                                 const VkImageSubresourceRange& range,
+                                 const VkComponentMapping& components = {}) const;
   /// A command buffer in the recording state that lives until `owner` ends.
   [[nodiscard]] VkCommandBuffer begin_commands(Cleanup& owner) const;
   /// Submits and waits. `commands` must have been ended.

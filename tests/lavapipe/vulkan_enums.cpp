@@ -129,6 +129,21 @@ VkImageType vk_image_type(traces::ImageKind kind) {
   QUADRILLE_CHECK(false, "image kind {}", static_cast<int>(kind));
 }
 
+VkComponentMapping vk_components(const models::ComponentMapping& components) {
+  const auto swizzle = [&](std::size_t c) {
+    switch (components.at(c)) {
+      case models::ComponentSource::kRed: return VK_COMPONENT_SWIZZLE_R;
+      case models::ComponentSource::kGreen: return VK_COMPONENT_SWIZZLE_G;
+      case models::ComponentSource::kBlue: return VK_COMPONENT_SWIZZLE_B;
+      case models::ComponentSource::kAlpha: return VK_COMPONENT_SWIZZLE_A;
+      case models::ComponentSource::kZero: return VK_COMPONENT_SWIZZLE_ZERO;
+      case models::ComponentSource::kOne: return VK_COMPONENT_SWIZZLE_ONE;
+    }
+    return VK_COMPONENT_SWIZZLE_IDENTITY;
+  };
+  return {swizzle(0), swizzle(1), swizzle(2), swizzle(3)};
+}
+
 VkImageViewType vk_view_type(traces::ViewKind kind) {
   switch (kind) {
     case traces::ViewKind::k1D: return VK_IMAGE_VIEW_TYPE_1D;

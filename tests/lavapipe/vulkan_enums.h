@@ -16,6 +16,7 @@ namespace quadrille::lavapipe {
 [[nodiscard]] VkBorderColor vk_border(traces::BorderColor border, bool integers);
 [[nodiscard]] VkImageType vk_image_type(traces::ImageKind kind);
 [[nodiscard]] VkImageViewType vk_view_type(traces::ViewKind kind);
+[[nodiscard]] VkComponentMapping vk_components(const models::ComponentMapping& components);
 [[nodiscard]] VkPrimitiveTopology vk_topology(traces::Topology topology);
 [[nodiscard]] VkPolygonMode vk_polygon_mode(traces::PolygonMode mode);
 [[nodiscard]] VkLineRasterizationModeEXT vk_line_mode(traces::LineMode mode);

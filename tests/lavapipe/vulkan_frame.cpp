@@ -116,11 +116,12 @@ void VulkanFrame::upload_images() {
 
 VkImageView VulkanFrame::view_of(const Seen& seen) {
   VkImageView& view = views_[seen];
-  const auto& [finest, levels, kind, layers] = seen;
+  const auto& [finest, levels, kind, layers, components] = seen;
   const Image& image = images_[finest.image];
   if (view == VK_NULL_HANDLE)
     view = device_.view(cleanup_, image.image, vk_format(stream_.images[finest.image].format),
-                        vk_view_type(kind), {image.aspect, finest.level, levels, finest.layer, layers});
+                        vk_view_type(kind), {image.aspect, finest.level, levels, finest.layer, layers},
+                        vk_components(components));
   return view;
 }
 

@@ -76,6 +76,7 @@ class VulkanFrame {
     std::uint32_t levels = 1;
     traces::ViewKind kind = traces::ViewKind::k2D;
     std::uint32_t layers = 1;
+    models::ComponentMapping components = models::kSameComponents;
     friend auto operator<=>(const Seen&, const Seen&) = default;  // NOLINT(modernize-use-nullptr)
   };
   [[nodiscard]] VkImageView view_of(const Seen& seen);

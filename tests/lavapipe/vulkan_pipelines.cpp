@@ -191,7 +191,8 @@ void VulkanFrame::create_descriptor_sets() {
                    view_of({{texture.image, texture.first_level, texture.layer},
                             traces::level_count(stream_, texture),
                             texture.view,
-                            texture.layers}),
+                            texture.layers,
+                            texture.components}),
                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     }
     for (const auto& sampler : source.samplers)

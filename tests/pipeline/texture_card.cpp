@@ -199,6 +199,7 @@ traces::CommandStream card_stream(const TextureCard& card) {
   bound.view = card.view;
   bound.layer = card.first_layer;
   bound.layers = card.layers;
+  bound.components = card.components;
   if (card.separate) stream.descriptor_sets[0].samplers = {{1, 0}};
   else bound.sampler = 0;
   stream.descriptor_sets[0].textures = {bound};

@@ -31,6 +31,7 @@ struct TextureCard {
   std::string sample = "texture(t, uv)";
   traces::ViewKind view = traces::ViewKind::k2D;
   std::uint32_t first_layer = 0, layers = 1;
+  models::ComponentMapping components = models::kSameComponents;
   bool shadow = false;     ///< the sampler compares
   bool separate = false;   ///< texture and sampler are bound by themselves
   bool in_vertex = false;  ///< sampled in the vertex shader

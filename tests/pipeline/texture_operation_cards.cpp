@@ -123,6 +123,32 @@ TextureCard card_of(const Asked& asked, Format format, Filter filter, traces::Wr
   return card;
 }
 
+/// Views that show components in another order.
+std::vector<TextureCard> mapped_cards(std::uint64_t seed) {
+  using models::ComponentSource;
+  constexpr models::ComponentMapping kTurned{ComponentSource::kBlue, ComponentSource::kOne,
+                                             ComponentSource::kAlpha, ComponentSource::kZero};
+  constexpr models::ComponentMapping kGrey{ComponentSource::kRed, ComponentSource::kRed,
+                                           ComponentSource::kRed, ComponentSource::kOne};
+  std::vector<TextureCard> cards;
+  const auto add = [&](const Asked& asked, Format format, Filter filter,
+                       const models::ComponentMapping& components) {
+    cards.push_back(card_of(asked, format, filter, traces::Wrap::kRepeat, seed + cards.size()));
+    cards.back().components = components;
+  };
+  for (const Filter filter : {Filter::kNearest, Filter::kLinear}) {
+    add({ViewKind::k2D, "texture(t, uv)"}, Format::kR8G8B8A8Unorm, filter, kTurned);
+    add({ViewKind::k2D, "texture(t, uv)"}, Format::kR16Unorm, filter, kGrey);
+    add({ViewKind::kCube, "textureLod(t, dir, 0.0)"}, Format::kR8G8B8A8Unorm, filter, kTurned);
+    add({ViewKind::k2D, "texture(t, uv)"}, Format::kBc1RgbUnorm, filter, kTurned);
+  }
+  for (const char* gather : {"textureGather(t, uv, 0)", "textureGather(t, uv, 1)", "textureGather(t, uv, 3)"})
+    add({ViewKind::k2D, gather}, Format::kR8G8B8A8Unorm, Filter::kNearest, kTurned);
+  for (const char* ask : {"texelFetch(t, ivec2(at) & 15, 0)", "textureGather(t, uv, 1)"})
+    add({ViewKind::k2D, ask}, Format::kR32G32B32A32Uint, Filter::kNearest, kTurned);
+  return cards;
+}
+
 }  // namespace
 
 std::vector<TextureCard> operation_cards() {
@@ -153,6 +179,7 @@ std::vector<TextureCard> operation_cards() {
   for (const auto& [asked, format] : kOfBlocks)
     for (const Filter filter : {Filter::kNearest, Filter::kLinear})
       cards.push_back(card_of(asked, format, filter, traces::Wrap::kRepeat, cards.size()));
+  for (TextureCard& card : mapped_cards(cards.size())) cards.push_back(std::move(card));
   TextureCard separate = card_of({ViewKind::k2D, "texture(t, uv)"}, Format::kR8G8B8A8Unorm, Filter::kLinear,
                                  traces::Wrap::kRepeat, 99);
   separate.separate = true;

@@ -81,6 +81,7 @@ traces::TextureDescriptor StreamTables::own_texels(const ViewObject& view) {
 traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
   traces::TextureDescriptor made;
   made.view = view_kind_of(view.type);
+  for (std::size_t c = 0; c < 4; ++c) made.components[c] = component_of(view.swizzle[c], c);
   if (models::is_array(made.view) || models::is_cube(made.view)) made.layers = view.layers;
   made.first_level = view.level;
   made.levels = view.levels;
@@ -95,8 +96,7 @@ traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
 
 Index StreamTables::texels(const ViewObject& view) {
   const ImageObject& from = object(device_.images, view.image, "image");
-  const auto key =
-      std::tuple(view.image, from.writes, view.format, view.swizzle, std::pair(view.layer, view.layers));
+  const auto key = std::tuple(view.image, from.writes, view.format, std::pair(view.layer, view.layers));
   if (const auto found = textures_.find(key); found != textures_.end()) return found->second;
   traces::Image image;
   image.name = fmt::format("image {}", view.image);

@@ -70,8 +70,7 @@ class StreamTables {
   };
   std::map<Handle, PlacedBuffer> buffers_;
   std::map<Handle, traces::Index> attachments_, samplers_;
-  std::map<std::tuple<Handle, std::uint64_t, std::uint32_t, std::array<std::uint32_t, 4>,
-                      std::pair<std::uint32_t, std::uint32_t>>,
+  std::map<std::tuple<Handle, std::uint64_t, std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>,
            traces::Index>
       textures_;
   std::map<std::tuple<Handle, std::string, traces::ShaderStage, std::map<std::uint32_t, std::uint32_t>, bool>,

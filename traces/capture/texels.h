@@ -1,7 +1,5 @@
-/// Texels of a capture's image as the stream's.
-///
-/// They stay as they are, unless the view exchanges components: then they are bytes or floats in the order
-/// that it shows. (docs/deviations.md#D170)
+/// Texels of a capture's image as the stream's: as they are, or, of a few formats that the machine lacks, in
+/// the order or size of one that it has. (docs/deviations.md#D170)
 #pragma once
 
 #include <cstddef>

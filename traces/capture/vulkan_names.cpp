@@ -266,6 +266,20 @@ traces::ViewKind view_kind_of(std::uint32_t value) {
   }
 }
 
+models::ComponentSource component_of(std::uint32_t value, std::size_t c) {
+  using models::ComponentSource;
+  switch (value) {
+    case VK_COMPONENT_SWIZZLE_IDENTITY: return static_cast<ComponentSource>(c);
+    case VK_COMPONENT_SWIZZLE_ZERO: return ComponentSource::kZero;
+    case VK_COMPONENT_SWIZZLE_ONE: return ComponentSource::kOne;
+    case VK_COMPONENT_SWIZZLE_R: return ComponentSource::kRed;
+    case VK_COMPONENT_SWIZZLE_G: return ComponentSource::kGreen;
+    case VK_COMPONENT_SWIZZLE_B: return ComponentSource::kBlue;
+    case VK_COMPONENT_SWIZZLE_A: return ComponentSource::kAlpha;
+    default: throw user_error("VkComponentSwizzle {} is not supported", value);
+  }
+}
+
 traces::ImageKind image_kind_of(std::uint32_t value) {
   switch (value) {
     case VK_IMAGE_TYPE_1D: return traces::ImageKind::k1D;
@@ -292,6 +306,7 @@ SamplerObject sampler_of(const Value& info) {
   state.max_lod = info["maxLod"].f32();
   if (info["compareEnable"].flag()) state.compare = compare_of(info["compareOp"].u32());
   if (info["anisotropyEnable"].flag()) state.max_anisotropy = info["maxAnisotropy"].f32();
+  state.seamless = (info["flags"].u32() & VK_SAMPLER_CREATE_NON_SEAMLESS_CUBE_MAP_BIT_EXT) == 0;
   if (info["unnormalizedCoordinates"].flag()) made.unsupported = "unnormalised coordinates";
   if (info.next(VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO) != nullptr)
     made.unsupported = "a reduction mode";

@@ -32,6 +32,8 @@ namespace quadrille::capture {
 [[nodiscard]] traces::StoreOp store_of(std::uint32_t value);
 
 [[nodiscard]] traces::ViewKind view_kind_of(std::uint32_t value);
+/// What a VkComponentSwizzle shows as component `c`.
+[[nodiscard]] models::ComponentSource component_of(std::uint32_t value, std::size_t c);
 [[nodiscard]] traces::ImageKind image_kind_of(std::uint32_t value);
 
 /// A VkSamplerCreateInfo.
