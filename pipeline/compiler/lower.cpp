@@ -92,7 +92,8 @@ void Lowering::instruction(const spirv::Instruction& i) {
       return;
     default: break;
   }
-  if (!arithmetic(i) && !comparison(i) && !composite(i) && !matrix(i) && !image(i) && !storage(i))
+  if (!arithmetic(i) && !bit_operation(i) && !comparison(i) && !composite(i) && !matrix(i) && !image(i) &&
+      !storage(i))
     throw unsupported(i, spirv::name_of(i));
 }
 

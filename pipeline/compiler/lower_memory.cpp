@@ -84,6 +84,11 @@ void Lowering::declare(const spirv::Variable& variable) {
     case spv::StorageClassInput:
     case spv::StorageClassOutput: declare_interface(variable); break;
     case spv::StorageClassUniform:
+      if (module_.type(variable.type).kind == Kind::kArray && module_.type(variable.type).count > 1)
+        throw user_error(
+            "{}", module_.at_use(variable.id, fmt::format("resource {} is an array of uniform blocks, which "
+                                                          "is not supported; put an array into a block",
+                                                          module_.name(variable.id))));
       if (module_.decorations(variable.type).buffer_block) p.storage = spv::StorageClassStorageBuffer;
       break;
     case spv::StorageClassStorageBuffer:

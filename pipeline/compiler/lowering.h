@@ -166,6 +166,7 @@ class Lowering {
 
   // lower_arithmetic.cpp
   bool arithmetic(const spirv::Instruction& i);
+  bool bit_operation(const spirv::Instruction& i);
   bool comparison(const spirv::Instruction& i);
   bool composite(const spirv::Instruction& i);
   void elementwise(const spirv::Instruction& i, models::Op op, bool swapped = false, bool inverted = false);

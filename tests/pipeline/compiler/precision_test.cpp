@@ -364,22 +364,4 @@ TEST_CASE("precision: geometric functions inherit from their formulas") {
   });
 }
 
-TEST_CASE("precision: bits of integers are found") {
-  RunInput input;
-  for (std::uint32_t k = 0; k < models::kWarpQuads; ++k) {
-    const auto bits = std::array<std::uint32_t, 8>{0u,          1u,          0x80000000u, 0xffffffffu,
-                                                   0x01ffffffu, 0x7fffffffu, 0x00800000u, 0xfffffffeu}[k];
-    for (std::int32_t& v : input.points[k].i) v = static_cast<std::int32_t>(bits);
-  }
-  const RunOutput out =
-      run_snippet("color = vec4(findLSB(i.x), findMSB(i.x), findMSB(uint(i.x)), findLSB(uint(i.x)));", input);
-  for (int k = 0; k < models::kWarpQuads; ++k) {
-    const std::int32_t x = input.points[static_cast<std::size_t>(k)].i[0];
-    const auto u = static_cast<std::uint32_t>(x);
-    const float low = u == 0 ? -1.0f : static_cast<float>(std::countr_zero(u));
-    const float high = 31.0f - static_cast<float>(std::countl_zero(x < 0 ? ~u : u));
-    CHECK(out.point(k) == Vec4{low, high, 31.0f - static_cast<float>(std::countl_zero(u)), low});
-  }
-}
-
 }  // namespace quadrille::pipeline
