@@ -125,8 +125,10 @@ class FrameRecorder {
   void draw_one(const BoundState& bound, const DrawRange& range, const Value& call);
   /// Gives the draw indices of its own where its provoking vertex is the last, and that can be seen.
   void turn_primitives(const BoundState& bound, traces::Pipeline& pipeline, traces::Draw& draw);
-  [[nodiscard]] traces::Pipeline pipeline_of(const BoundState& bound, const RasterState& state);
-  [[nodiscard]] traces::Index stage_of(const Value& stage, bool negative_one_to_one);
+  [[nodiscard]] traces::Pipeline pipeline_of(const BoundState& bound, const RasterState& state,
+                                             std::uint32_t first_instance);
+  [[nodiscard]] traces::Index stage_of(const Value& stage, bool negative_one_to_one,
+                                       std::uint32_t first_instance);
   /// Gives attributes that have to be expanded a binding of their own.
   void expand_attributes(const BoundState& bound, const RasterState& state, traces::Pipeline& pipeline);
   void emit_sets(const BoundState& bound, const traces::Pipeline& pipeline);

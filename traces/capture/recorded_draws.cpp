@@ -61,7 +61,7 @@ void FrameRecorder::draw_one(const BoundState& bound, const DrawRange& range, co
   if (bound.pipeline == nullptr) throw user_error("without a pipeline");
   const RasterState state = combined_state(*bound.pipeline->state, bound.fixed, bound.dynamic);
   if (state.discard) return;
-  traces::Pipeline pipeline = pipeline_of(bound, state);
+  traces::Pipeline pipeline = pipeline_of(bound, state, call["firstInstance"].u32());
   traces::Draw made;
   made.indexed = range.indexed;
   made.count = range.count;
@@ -105,24 +105,30 @@ void FrameRecorder::turn_primitives(const BoundState& bound, traces::Pipeline& p
   emit_change(0, traces::BindIndexBuffer{tables_.index_buffer(indices), 0, traces::IndexType::kUint32});
 }
 
-traces::Index FrameRecorder::stage_of(const Value& stage, bool negative_one_to_one) {
+traces::Index FrameRecorder::stage_of(const Value& stage, bool negative_one_to_one,
+                                      std::uint32_t first_instance) {
   ShaderWish wish;
   wish.entry = stage["pName"].text();
   const bool vertex = stage["stage"].u32() == VK_SHADER_STAGE_VERTEX_BIT;
   wish.stage = vertex ? traces::ShaderStage::kVertex : traces::ShaderStage::kFragment;
   wish.constants = constants_of(stage);
   wish.negative_one_to_one = vertex && negative_one_to_one;
-  return tables_.shader(stage["module"].u64(), wish);
+  const Handle module = stage["module"].u64();
+  if (vertex && reads_first_instance(object(device_.modules, module, "shader module")))
+    wish.first_instance = first_instance;
+  return tables_.shader(module, wish);
 }
 
-traces::Pipeline FrameRecorder::pipeline_of(const BoundState& bound, const RasterState& state) {
+traces::Pipeline FrameRecorder::pipeline_of(const BoundState& bound, const RasterState& state,
+                                            std::uint32_t first_instance) {
   traces::Pipeline made = state.pipeline;
   const Value& stages = (*bound.pipeline->state)["pStages"];
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const Value& stage = stages.at(i);
     const std::uint32_t bit = stage["stage"].u32();
-    if (bit == VK_SHADER_STAGE_VERTEX_BIT) made.vertex_shader = stage_of(stage, state.negative_one_to_one);
-    else if (bit == VK_SHADER_STAGE_FRAGMENT_BIT) made.fragment_shader = stage_of(stage, false);
+    if (bit == VK_SHADER_STAGE_VERTEX_BIT)
+      made.vertex_shader = stage_of(stage, state.negative_one_to_one, first_instance);
+    else if (bit == VK_SHADER_STAGE_FRAGMENT_BIT) made.fragment_shader = stage_of(stage, false, 0);
     else throw user_error("VkShaderStageFlagBits {:#x} is not supported", bit);
   }
   if (made.vertex_shader == traces::kNone || made.fragment_shader == traces::kNone)

@@ -1,6 +1,7 @@
 /// Instructions are copied one by one; what is added stands before the functions and behind them.
 #include "traces/capture/shader_words.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -16,6 +17,7 @@ constexpr std::size_t kHeader = 5, kBound = 3;
 constexpr std::uint32_t kMaxBound = 1u << 22;  // [SPIRV §2.17: 0x3FFFFF]
 // Numbers of instructions and decorations. [SPIRV §3]
 enum Op : std::uint32_t {
+  kName = 5,
   kEntryPoint = 15,
   kExecutionMode = 16,
   kTypeInt = 21,
@@ -37,13 +39,14 @@ enum Op : std::uint32_t {
   kMemberDecorate = 72,
   kCompositeExtract = 81,
   kCompositeInsert = 82,
+  kCopyObject = 83,
   kFAdd = 129,
   kFMul = 133,
   kLabel = 248,
   kReturn = 253
 };
 constexpr std::uint32_t kSpecId = 1, kBuiltIn = 11, kFlat = 14, kBinding = 33, kDescriptorSet = 34,
-                        kPosition = 0, kOutput = 3, kHalf = 0x3f000000;
+                        kPosition = 0, kOutput = 3, kBaseInstance = 4425, kHalf = 0x3f000000;
 
 std::uint32_t op_of(Instruction i) { return i[0] & 0xffff; }
 
@@ -74,7 +77,12 @@ struct Facts {
   std::optional<std::uint32_t> member;
   std::uint32_t block = 0;  ///< the structure that has it as a member
   std::uint32_t float_type = 0, vector_type = 0, pointer_type = 0, int_type = 0;
+  std::uint32_t first_instance = 0, first_instance_type = 0;  ///< the variable, and what is loaded of it
 };
+
+bool is_first_instance(Instruction i) {
+  return op_of(i) == kDecorate && i.size() == 4 && i[2] == kBuiltIn && i[3] == kBaseInstance;
+}
 
 std::vector<Instruction> split(std::span<const std::uint32_t> words) {
   if (words.size() < kHeader || words[kBound] >= kMaxBound)
@@ -104,7 +112,10 @@ class Module {
     const std::uint32_t main = moves ? bound_++ : facts_.entry;
     bool before_functions = true;
     for (const Instruction i : instructions_) {
-      if (before_functions && op_of(i) == kFunction && moves) declare(out);
+      if (before_functions && op_of(i) == kFunction) {
+        if (moves) declare(out);
+        declare_first_instance(out);
+      }
       before_functions = before_functions && op_of(i) != kFunction;
       copy(out, i, main);
     }
@@ -125,6 +136,18 @@ class Module {
     if (facts_.entry == 0) throw user_error("a shader module has no entry point '{}'", wish_.entry);
     for (const Instruction i : instructions_) gather(i);
     for (const Instruction i : instructions_) find_position(i);
+    for (const Instruction i : instructions_)
+      if (is_load_of_first_instance(i)) facts_.first_instance_type = i[1];
+  }
+  [[nodiscard]] bool is_load_of_first_instance(Instruction i) const {
+    return facts_.first_instance != 0 && op_of(i) == kLoad && i.size() >= 4 && i[3] == facts_.first_instance;
+  }
+  /// Its name, decorations and declaration, which go.
+  [[nodiscard]] bool is_about_first_instance(Instruction i) const {
+    const std::uint32_t op = op_of(i);
+    if (facts_.first_instance == 0 || i.size() < 3) return false;
+    return ((op == kName || op == kDecorate) && i[1] == facts_.first_instance) ||
+           (op == kVariable && i[2] == facts_.first_instance);
   }
   void gather(Instruction i) {
     const std::uint32_t op = op_of(i);
@@ -134,6 +157,7 @@ class Module {
     }
     if (op == kDecorate && i.size() == 4 && i[2] == kSpecId) facts_.spec_numbers[i[1]] = i[3];
     if (op == kDecorate && i.size() == 4 && i[2] == kBuiltIn && i[3] == kPosition) facts_.position = i[1];
+    if (is_first_instance(i)) facts_.first_instance = i[1];
     if (op == kMemberDecorate && i.size() == 5 && i[3] == kBuiltIn && i[4] == kPosition) {
       facts_.block = i[1];
       facts_.member = i[2];
@@ -163,12 +187,16 @@ class Module {
       }
     } else if (op == kSpecTrue || op == kSpecFalse || op == kSpecConstant) {
       copy_constant(out, i);
-    } else {
+    } else if (is_load_of_first_instance(i)) {
+      append(out, kCopyObject, {i[1], i[2], first_instance_});
+    } else if (!is_about_first_instance(i)) {
       out.insert(out.end(), i.begin(), i.end());
     }
   }
   void copy_entry(Words& out, Instruction i, std::uint32_t main) {
-    const Instruction interface = i.subspan(3 + text_words(wish_.entry));
+    const Instruction all = i.subspan(3 + text_words(wish_.entry));
+    Words interface(all.begin(), all.end());
+    std::erase(interface, facts_.first_instance);
     out.push_back(static_cast<std::uint32_t>(5 + interface.size()) << 16 | kEntryPoint);
     out.push_back(i[1]);
     out.push_back(main);
@@ -187,6 +215,12 @@ class Module {
     if (op_of(i) == kSpecConstant && i.size() == 4) out[at + 3] = value->second;
     else if (op_of(i) != kSpecConstant)
       out[at] = (out[at] & ~0xffffu) | (value->second != 0 ? kSpecTrue : kSpecFalse);
+  }
+
+  void declare_first_instance(Words& out) {
+    if (facts_.first_instance_type == 0) return;
+    first_instance_ = bound_++;
+    append(out, kConstant, {facts_.first_instance_type, first_instance_, wish_.first_instance});
   }
 
   /// The constants and types that `add_main` uses; a type may stand only once.
@@ -234,10 +268,14 @@ class Module {
   const ShaderWish& wish_;
   std::vector<Instruction> instructions_;
   Facts facts_;
-  std::uint32_t block_pointer_ = 0, bound_ = 0, half_ = 0, member_ = 0;
+  std::uint32_t block_pointer_ = 0, bound_ = 0, half_ = 0, member_ = 0, first_instance_ = 0;
 };
 
 }  // namespace
+
+bool reads_first_instance(std::span<const std::uint32_t> module) {
+  return std::ranges::any_of(split(module), is_first_instance);
+}
 
 std::vector<std::uint32_t> shader_words(std::span<const std::uint32_t> module, const ShaderWish& wish) {
   return Module(module, wish).rewritten();

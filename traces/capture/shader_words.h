@@ -1,5 +1,6 @@
 /// What a capture's SPIR-V becomes before it is a shader of the stream: one entry point, called "main";
-/// specialisation constants with the pipeline's values; and depths from OpenGL's clip space into Vulkan's.
+/// specialisation constants with the pipeline's values; the number of the draw's first instance, which this
+/// machine's shaders cannot ask for, as a constant; and depths from OpenGL's clip space into Vulkan's.
 /// [SPIRV §2.3]
 #pragma once
 
@@ -21,7 +22,11 @@ struct ShaderWish {
   std::map<std::uint32_t, std::uint32_t> constants;  ///< by constant number: the bits of a 32-bit value
   /// Clip space of its position is -w <= z <= w: behind its last instruction z becomes (z + w) / 2.
   bool negative_one_to_one = false;
+  std::uint32_t first_instance = 0;  ///< what gl_BaseInstance is
 };
+
+/// Does it ask for the number of the draw's first instance?
+[[nodiscard]] bool reads_first_instance(std::span<const std::uint32_t> module);
 
 /// Throws `UserError` for a module without that entry point, or whose words do not form instructions.
 [[nodiscard]] std::vector<std::uint32_t> shader_words(std::span<const std::uint32_t> module,

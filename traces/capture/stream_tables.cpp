@@ -145,7 +145,8 @@ Index StreamTables::own(OwnShader which) {
 }
 
 Index StreamTables::shader(Handle module, const ShaderWish& wish) {
-  const auto key = std::tuple(module, wish.entry, wish.stage, wish.constants, wish.negative_one_to_one);
+  const auto key = std::tuple(module, wish.entry, wish.stage, wish.constants, wish.negative_one_to_one,
+                              wish.first_instance);
   if (const auto found = shaders_.find(key); found != shaders_.end()) return found->second;
   traces::Shader made{fmt::format("shader {}", module), wish.stage,
                       shader_words(object(device_.modules, module, "shader module"), wish)};

@@ -73,7 +73,8 @@ class StreamTables {
   std::map<std::tuple<Handle, std::uint64_t, std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>,
            traces::Index>
       textures_;
-  std::map<std::tuple<Handle, std::string, traces::ShaderStage, std::map<std::uint32_t, std::uint32_t>, bool>,
+  std::map<std::tuple<Handle, std::string, traces::ShaderStage, std::map<std::uint32_t, std::uint32_t>, bool,
+                      std::uint32_t>,
            traces::Index>
       shaders_;
   std::vector<ShaderFacts> facts_;  ///< by shader
