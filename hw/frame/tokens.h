@@ -198,9 +198,10 @@ enum class MemoryClient : std::uint8_t {
   kScanOut,
   kWriteBack
 };
+inline constexpr std::size_t kMemoryClients = 7;
 [[nodiscard]] constexpr std::string_view name_of(MemoryClient client) {
-  constexpr std::array<std::string_view, 7> kNames{"vertex_fetch", "texture",  "storage",   "depth",
-                                                   "color",        "scan_out", "write_back"};
+  constexpr std::array<std::string_view, kMemoryClients> kNames{
+      "vertex_fetch", "texture", "storage", "depth", "color", "scan_out", "write_back"};
   return kNames[static_cast<std::size_t>(client)];
 }
 

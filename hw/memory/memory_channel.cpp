@@ -79,6 +79,19 @@ Histogram& MemoryChannel::Stats::latency(MemoryClient client) {
   return latency_write_back;
 }
 
+Counter& MemoryChannel::Stats::bytes(MemoryClient client) {
+  switch (client) {
+    case MemoryClient::kVertexFetch: return read_bytes_vertex_fetch;
+    case MemoryClient::kTexture: return read_bytes_texture;
+    case MemoryClient::kStorage: return read_bytes_storage;
+    case MemoryClient::kDepth: return read_bytes_depth;
+    case MemoryClient::kColor: return read_bytes_color;
+    case MemoryClient::kScanOut: return read_bytes_scan_out;
+    case MemoryClient::kWriteBack: return write_bytes;
+  }
+  return write_bytes;
+}
+
 MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const UnitContext& context, const Params& params)
     : Unit(name, Kind::kChooser, context.clock),
       params_(params),
@@ -102,6 +115,8 @@ MemoryChannel::MemoryChannel(sc_core::sc_module_name name, const UnitContext& co
 MemoryChannel::~MemoryChannel() = default;
 
 const StatGroup* MemoryChannel::stats() const { return stats_.get(); }
+
+const Counter& MemoryChannel::bytes_of(MemoryClient client) const { return stats_->bytes(client); }
 
 std::string MemoryChannel::state_text() const {
   return fmt::format("{} reads and {} writes in the queue, {} answers", controller_.held(false),
@@ -161,7 +176,8 @@ void MemoryChannel::take(Tick now, std::int64_t cycle) {
   const std::uint64_t bytes = models::sector_bytes(request.sectors);
   note_occupancy(cycle);
   ++(write ? stats_->writes : stats_->reads);
-  (write ? stats_->write_bytes : stats_->read_bytes) += bytes;
+  if (!write) stats_->read_bytes += bytes;
+  stats_->bytes(write ? MemoryClient::kWriteBack : request.client) += bytes;
   if (free_ids_.empty()) {
     free_ids_.push_back(static_cast<std::uint32_t>(held_.size()));
     held_.emplace_back();

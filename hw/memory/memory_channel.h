@@ -36,6 +36,8 @@ class MemoryChannel final : public Unit {
   void act(Tick now) override;
   [[nodiscard]] bool may_run_ahead() const override { return false; }
   [[nodiscard]] const StatGroup* stats() const override;
+  /// What it moved on a client's behalf: bytes read, but of write-backs those written.
+  [[nodiscard]] const Counter& bytes_of(MemoryClient client) const;
   void audit(Audit& audit) const override;
   void details(Details& details) const override;
   [[nodiscard]] std::vector<Facet> row() const override;
@@ -299,6 +301,13 @@ struct MemoryChannel::Stats : StatGroup {
   Counter writes{*this, "writes", "access", "Writes"};
   Counter read_bytes{*this, "read_bytes", "byte", "Bytes read"};
   Counter write_bytes{*this, "write_bytes", "byte", "Bytes written"};
+  Counter read_bytes_vertex_fetch{*this, "read_bytes_vertex_fetch", "byte",
+                                  "Of the bytes read, those for vertex fetch"};
+  Counter read_bytes_texture{*this, "read_bytes_texture", "byte", "The same: for the texture units"};
+  Counter read_bytes_storage{*this, "read_bytes_storage", "byte", "The same: for the load-store units"};
+  Counter read_bytes_depth{*this, "read_bytes_depth", "byte", "The same: for the depth units"};
+  Counter read_bytes_color{*this, "read_bytes_color", "byte", "The same: for the ROPs"};
+  Counter read_bytes_scan_out{*this, "read_bytes_scan_out", "byte", "The same: for scan-out"};
   Counter row_hits{*this, "row_hits", "access", "Accesses whose row was open"};
   Counter row_misses{*this, "row_misses", "access", "Accesses whose bank was closed"};
   Counter row_conflicts{*this, "row_conflicts", "access", "Accesses for which another row was closed"};
@@ -330,6 +339,8 @@ struct MemoryChannel::Stats : StatGroup {
   Histogram latency_scan_out{*this, "latency_scan_out", "clk", "The same: reads for scan-out"};
   Histogram latency_write_back{*this, "latency_write_back", "clk", "The same: writes"};
   [[nodiscard]] Histogram& latency(MemoryClient client);
+  /// What is moved on a client's behalf: bytes read, but of write-backs those written.
+  [[nodiscard]] Counter& bytes(MemoryClient client);
 };
 
 }  // namespace quadrille::hw
