@@ -84,7 +84,8 @@ void RenderJob::add_to(CLI::App& command) {
           .add_option("--detail", detail,
                       "draws: what each draw did, how long it took and what limited it, in --stats and as a "
                       "table; tiles: counts by squares of "
-                      "the screen, in --stats; timeline: use of every resource over the frame, in --stats. "
+                      "the screen, in --stats; timeline: use of every resource, bytes by client and how full "
+                      "links are over the frame, in --stats. "
                       "Same picture, same cycles")
           ->type_name("draws,tiles,timeline"),
       command
@@ -97,7 +98,8 @@ void RenderJob::add_to(CLI::App& command) {
           .add_option(
               "--timeline", timeline,
               "writes the frame over time as a trace for Perfetto: .pftrace as TrackEvent protobuf, "
-              ".json as Chrome's trace events; each draw in flight, the use of every unit's resources")
+              ".json as Chrome's trace events; each draw in flight, the use of every unit's resources, "
+              "bytes by client, how full links are")
           ->type_name("F.pftrace|F.json"),
       command
           .add_option(
@@ -174,7 +176,7 @@ std::int64_t RenderJob::window_cycles() const {
 
 pipeline::DetailOptions RenderJob::details() const {
   const bool page = report && !frames.wanted();  // that of several frames shows none
-  pipeline::DetailOptions chosen{.draws = page || timeline, .tiles = page, .timeline = page};
+  pipeline::DetailOptions chosen{.draws = page || timeline, .tiles = page, .timeline = page || timeline};
   if (!detail) return chosen;
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());
@@ -184,7 +186,7 @@ pipeline::DetailOptions RenderJob::details() const {
     (word == "draws" ? chosen.draws : word == "tiles" ? chosen.tiles : chosen.timeline) = true;
     at = end + 1;
   }
-  if ((chosen.tiles || chosen.timeline) && !stats && !csv && !report)
+  if ((chosen.tiles || (chosen.timeline && !timeline)) && !stats && !csv && !report)
     throw user_error("--detail: {} in the JSON alone; add --stats F.json",
                      chosen.tiles ? "tiles are" : "the timeline is");
   if (frames.wanted() && !stats)

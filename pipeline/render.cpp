@@ -10,6 +10,7 @@
 #include "pipeline/machine/wave_file.h"
 #include "pipeline/prepared_frame.h"
 #include "pipeline/report/detail_log.h"
+#include "pipeline/report/flow_log.h"
 #include "pipeline/watched_render.h"
 
 namespace quadrille::pipeline {
@@ -163,6 +164,8 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   Machine machine(config, frame, options);
   std::optional<DetailLog> log;
   if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, kept);
+  std::optional<FlowLog> flow;
+  if (detail.timeline) flow.emplace(machine);
   build_s += seconds_since(start);
   const RunTimer timer(frame.fills);
   if (watch.begin) watch.begin(machine);
@@ -174,6 +177,7 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   out.figures = collect_figures(machine, frame, log ? std::optional(log->collect()) : std::nullopt);
   if (kept != nullptr && log)
     for (Check& check : checks_of(*kept)) out.figures.checks.push_back(std::move(check));
+  if (flow) flow->collect(out.figures);
   out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;

@@ -62,6 +62,15 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   [[nodiscard]] std::uint64_t pops() const { return pushes_ - static_cast<std::uint64_t>(count_); }
   [[nodiscard]] Tick last_push() const { return last_push_; }
   [[nodiscard]] Tick last_pop() const { return last_pop_; }
+  /// Sums of the ticks at which tokens were pushed and popped, modulo 2^64. With the numbers of both they say
+  /// how many tokens the link held, summed over the time: a token is held from its push to its pop. The sums
+  /// are always kept, since to add costs less than to ask whether somebody wants it.
+  [[nodiscard]] std::uint64_t push_ticks() const { return push_ticks_; }
+  [[nodiscard]] std::uint64_t pop_ticks() const { return pop_ticks_; }
+  /// Tokens held, summed over the ticks from 0 to `t`, which is not before the latest push or pop.
+  [[nodiscard]] std::uint64_t held_until(Tick t) const {
+    return pop_ticks_ - push_ticks_ + static_cast<std::uint64_t>(count_) * static_cast<std::uint64_t>(t);
+  }
   [[nodiscard]] Unit* producer() const { return producer_; }
   [[nodiscard]] Unit* consumer() const { return consumer_; }
   [[nodiscard]] std::string path() const { return sc_core::sc_object::name(); }
@@ -100,6 +109,7 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
     tail_ = wrap(tail_);
     ++count_;
     ++pushes_;
+    push_ticks_ += static_cast<std::uint64_t>(now);
     burst_ = last_push_ == now ? burst_ + 1 : 1;
     last_push_ = now;
     if (burst_ == width_) width_free_ = producer_period_ != 0 ? now + producer_period_ : crossed_cycle(now);
@@ -117,6 +127,7 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
     head_ = wrap(head_);
     --count_;
     last_pop_ = now;
+    pop_ticks_ += static_cast<std::uint64_t>(now);
     ready_ = count_ == 0 ? kNever : stamps()[head_];
   }
   [[nodiscard]] std::size_t head() const { return head_; }
@@ -152,7 +163,7 @@ class FifoBase : public sc_core::sc_interface, public sc_core::sc_object {
   Tick last_push_ = -1, last_pop_ = 0;
   Tick width_free_ = 0;       ///< the width allows no push before this tick
   Tick producer_period_ = 0;  ///< 0 when the producer's cycles differ in length
-  std::uint64_t pushes_ = 0;
+  std::uint64_t pushes_ = 0, push_ticks_ = 0, pop_ticks_ = 0;
   std::uint64_t* consumer_word_ = nullptr;  ///< of the driver's marks
   std::uint64_t* producer_word_ = nullptr;
   std::uint8_t consumer_bit_ = 0, producer_bit_ = 0;

@@ -9,13 +9,16 @@
 /// Rates and losses of one `serial` group follow each other on the same resource, so their cycles add up.
 ///
 /// Both are sampled over the frame, so that a frame of unlike phases can be told from an even one: slice i
-/// ends at the start of the frame plus (i + 1) slice lengths.
+/// ends at the start of the frame plus (i + 1) slice lengths. Who wants other numbers of the unit at the same
+/// moments asks for rows of them (`keep_rows`).
 #pragma once
 
 #include "hw/base/clock.h"
 
+#include <cstdint>
 #include <functional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace quadrille::hw {
@@ -54,7 +57,13 @@ class Resources {
     places_.push_back({all_.size(), std::move(full)});
     all_.push_back({.name = name, .kind = Resource::Kind::kPlaces, .memory = memory});
   }
-  [[nodiscard]] bool empty() const { return all_.empty(); }
+  /// `row` is asked at the end of every slice for numbers that grow: equally many each time.
+  using Row = std::vector<std::uint64_t>;
+  void keep_rows(std::function<Row()> row) { row_ = std::move(row); }
+  /// By slice that has ended.
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  /// There is nothing to note.
+  [[nodiscard]] bool empty() const { return all_.empty() && !row_; }
   [[nodiscard]] const std::vector<Resource>& all() const { return all_; }
   [[nodiscard]] Tick slice() const { return slice_; }
   /// An action follows at `now`; nothing has changed since `since`. Called before every action of a unit.
@@ -69,6 +78,7 @@ class Resources {
 
  private:
   void end_slices(Tick now);
+  void end_slice(Tick at);
   void double_slice();
   struct Place {
     std::size_t of;  ///< in `all_`
@@ -76,7 +86,10 @@ class Resources {
   };
   std::vector<Resource> all_;
   std::vector<Place> places_;
+  std::function<Row()> row_;
+  std::vector<Row> rows_;
   Tick slice_ = kFirstSlice, next_slice_ = kFirstSlice;
+  std::size_t ended_ = 0;  ///< slices
 };
 
 }  // namespace quadrille::hw

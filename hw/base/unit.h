@@ -17,6 +17,8 @@
 #include "hw/base/resource.h"
 
 #include <array>
+#include <functional>
+#include <utility>
 #include <vector>
 
 namespace quadrille::hw {
@@ -169,6 +171,8 @@ class Unit : public sc_core::sc_module {
   [[nodiscard]] std::int64_t total_cycles() const { return total_; }
   [[nodiscard]] std::uint64_t actions() const { return actions_; }
   [[nodiscard]] const Resources& resources() const { return resources_; }
+  /// Before the run: `row` is asked for its numbers at the end of every slice (`resources().rows()`).
+  void keep_rows(std::function<Resources::Row()> row) { resources_.keep_rows(std::move(row)); }
   /// Its slices become those of a machine's common length; for `close_accounts`.
   void finish_resources(Tick end, Tick slice) { resources_.finish(end, slice); }
   /// Tick of the latest action; -1 before the first.

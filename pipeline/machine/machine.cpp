@@ -217,7 +217,7 @@ void Machine::run(const hw::RunLimits& limits) {
 }
 
 hw::Tick Machine::quiet_end() const {
-  hw::Tick last = 0;
+  hw::Tick last = std::max<hw::Tick>(0, end());
   for (const auto& link : links_) last = std::max({last, link->last_push(), link->last_pop()});
   return last;
 }

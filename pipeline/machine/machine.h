@@ -64,6 +64,8 @@ class Machine {
   [[nodiscard]] const std::vector<LeftOut>& left_out() const { return left_out_; }
   /// Tick at which the last image was read: the end of the frame.
   [[nodiscard]] hw::Tick end() const { return one<hw::CommandProcessor>().end(); }
+  /// Last tick at which anything moved: write-backs go on behind the frame's end.
+  [[nodiscard]] hw::Tick quiet_end() const;
 
  private:
   /// What tokens name: the bulk behind them.
@@ -84,8 +86,6 @@ class Machine {
   void make_faster(const std::vector<std::pair<std::string, double>>& faster);
   /// The clock of a kind of units: that of its domain, or a faster one.
   [[nodiscard]] const hw::Clock& clock_of_kind(std::string_view kind, const hw::Clock& domain) const;
-  /// Last tick at which anything moved.
-  [[nodiscard]] hw::Tick quiet_end() const;
   void leave_out(bool wanted);
   void list_clients();
   void create_units(std::uint64_t order);

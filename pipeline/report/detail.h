@@ -20,8 +20,9 @@ namespace quadrille::pipeline {
 /// Which details of a frame are kept and reported. None changes a pixel or a cycle.
 struct DetailOptions {
   bool draws = false, tiles = false;
-  bool timeline = false;  ///< is there anyway, and is only reported
-  /// Something is kept that is not there anyway.
+  /// use is there anyway, and is only reported; what moved in each slice is kept (flow_log.h)
+  bool timeline = false;
+  /// Something is kept by draw or by square.
   [[nodiscard]] bool any() const { return draws || tiles; }
 };
 

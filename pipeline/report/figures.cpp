@@ -61,9 +61,9 @@ double least_ticks(const hw::FifoBase& link, std::uint64_t tokens) {
                   std::floor(last / link.spec().width) * cycle);
 }
 
-LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tick end) {
+/// `quiet`: write-backs may go on behind the frame's end, up to there.
+LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tick end, hw::Tick quiet) {
   const hw::LinkSpec& spec = link.spec();
-  // Write-backs may go on behind the frame's end.
   const hw::Tick over = std::max(end, link.last_push());
   return {link.path(),
           key,
@@ -74,7 +74,8 @@ LinkFigures figures_of(const hw::FifoBase& link, const std::string& key, hw::Tic
           spec.latency,
           spec.credit_latency,
           link.pushes(),
-          end > 0 ? least_ticks(link, link.pushes()) / static_cast<double>(over) : 0};
+          end > 0 ? least_ticks(link, link.pushes()) / static_cast<double>(over) : 0,
+          link.held_until(quiet)};
 }
 
 /// Sum of a counter over the units of a kind.
@@ -179,8 +180,10 @@ Figures collect_figures(const Machine& m, const DeviceFrame& frame, std::optiona
       f.slice_cycles = static_cast<double>(unit->resources().slice()) *
                        static_cast<double>(m.clock().frequency_hz()) * 1e-15;
   }
+  const hw::Tick quiet = m.quiet_end();
+  f.moving_cycles = m.clock().edges_before(quiet);
   for (std::size_t i = 0; i < m.links().size(); ++i)
-    f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end()));
+    f.links.push_back(figures_of(*m.links()[i], m.link_keys()[i], m.end(), quiet));
   f.bandwidth = bandwidth(m);
   f.checks = checks_of(m, frame, f.detail);
   // The counted work at its peak rates fits into the frame.

@@ -5,12 +5,14 @@
 #include "pipeline/functional/fates.h"
 #include "pipeline/machine/machine.h"
 #include "pipeline/report/detail.h"
+#include "pipeline/report/flow.h"
 #include "pipeline/report/queries.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -47,7 +49,13 @@ struct LinkFigures {
   int latency = 0, credit_latency = 0;  ///< cycles of the receiving side, a clock crossing's cost included
   std::uint64_t tokens = 0;
   double use = 0;  ///< least time in which the link can carry its tokens, over the frame's time: 0..1
+  std::uint64_t held_ticks = 0;  ///< tokens that it held, summed over ticks until nothing moved any more
 };
+
+/// "coarse_to_fine" of "link.coarse_to_fine".
+[[nodiscard]] constexpr std::string_view class_of(std::string_view link_key) {
+  return link_key.substr(link_key.find('.') + 1);
+}
 
 /// What a unit took of one of its resources (hw/base/resource.h): cycles of its clock, and what they had come
 /// to at the end of each slice of the frame.
@@ -122,6 +130,9 @@ struct Figures {
   bool report_timeline = false;  ///< the JSON has the slices of every resource
   std::vector<UnitFigures> units;
   std::vector<LinkFigures> links;
+  /// of the GPU clock: from the first command until nothing moved any more, which write-backs do longest
+  std::int64_t moving_cycles = 0;
+  std::optional<FlowFigures> flow = {};  ///< only where the timeline was asked for
   std::vector<ClientFigures> bandwidth;
   std::vector<Check> checks;
   std::vector<LeftOut> left_out;

@@ -31,6 +31,7 @@ Json frame_json(const ReportSubject& s) {
           {"scan_out_cycles", if_timed(s.figures, f.scan_out_cycles())},
           {"least_cycles", if_timed(s.figures, speed_of_light(s.figures).cycles)},
           {"period_cycles", if_timed(s.figures, f.period_cycles())},
+          {"moving_cycles", if_timed(s.figures, s.figures.moving_cycles)},
           {"clock_mhz", s.machine.gpu.clock_mhz.value()},
           {"draws", f.draws},
           {"triangles", f.triangles},
@@ -182,20 +183,66 @@ Json tiles_json(const TileFigures& tiles) {
 }
 
 /// A ten-thousandth is far below what a slice can tell.
-double rounded(double share) { return std::round(share * 1e4) / 1e4; }
+Json rounded(const std::vector<double>& values) {
+  Json all = Json::array();
+  for (const double value : values) all.push_back(std::round(value * 1e4) / 1e4);
+  return all;
+}
 
-Json timeline_json(const Timeline& line) {
+Json unit_curves_json(const Timeline& line) {
   Json units = Json::object();
   for (const UnitCurves& unit : line.units) {
     Json curves = Json::object();
-    for (const ResourceCurve& curve : unit.resources) {
-      Json share = Json::array();
-      for (const double value : curve.share) share.push_back(rounded(value));
-      curves[curve.resource] = std::move(share);
-    }
+    for (const ResourceCurve& curve : unit.resources) curves[curve.resource] = rounded(curve.share);
     units[unit.unit] = std::move(curves);
   }
-  return {{"slice_cycles", line.slice_cycles}, {"slices", line.slices}, {"units", std::move(units)}};
+  return units;
+}
+
+/// Bytes are counts; of links the mean is told, as of what units took.
+void add_flow(Json& all, const FlowFigures& flow, const Timeline& line) {
+  Json bandwidth = Json::object(), memory = Json::object(), links = Json::object();
+  for (const ClientCurve& c : flow.asked)
+    bandwidth[c.client] = {{"read_bytes", c.read}, {"write_bytes", c.written}};
+  for (const ClientCurve& c : flow.memory)
+    memory[c.client] = c.client == name_of(hw::MemoryClient::kWriteBack) ? c.written : c.read;
+  for (const FlowCurve& curve : line.flow.back().curves) links[curve.name] = rounded(curve.value);
+  all["bandwidth"] = std::move(bandwidth);
+  all["memory"] = std::move(memory);
+  all["links"] = std::move(links);
+}
+
+Json timeline_json(const Figures& f) {
+  const Timeline line = timeline_of(f);
+  Json all = {
+      {"slice_cycles", line.slice_cycles}, {"slices", line.slices}, {"units", unit_curves_json(line)}};
+  if (f.flow) add_flow(all, *f.flow, line);
+  return all;
+}
+
+/// By class of links.
+Json links_json(const Figures& f) {
+  struct Class {
+    int links = 0, depth = 0;
+    std::uint64_t tokens = 0, held_ticks = 0;
+  };
+  std::map<std::string, Class> classes;
+  Json all = Json::object();
+  for (const LinkFigures& link : f.links) {
+    const std::string name(class_of(link.key));
+    Class& of = classes[name];
+    ++of.links;
+    of.depth = link.depth;
+    of.tokens += link.tokens;
+    of.held_ticks += link.held_ticks;
+    all[name] = nullptr;  // keeps the order of the links
+  }
+  for (const auto& [name, of] : classes)
+    all[name] = {{"links", of.links},
+                 {"depth", of.depth},
+                 {"tokens", of.tokens},
+                 {"held_cycles", static_cast<double>(of.held_ticks) * f.frame.clock_mhz * 1e-9}};
+  return all;
 }
 
 /// Adds what was asked for.
@@ -270,16 +317,17 @@ std::string report_json(const ReportSubject& s) {
     bandwidth[c.name] = {{"read_bytes", c.read_bytes}, {"write_bytes", c.write_bytes}};
   for (const LeftOut& l : f.left_out)
     left_out.push_back({{"what", l.what}, {"why", l.why}, {"saved", l.saved}});
-  Json document = {{"schema", kFiguresSchema},  {"scene", f.scene},
-                   {"fidelity", f.fidelity},    {"window_cycles", f.window_cycles},
-                   {"faster", faster_json(f)},  {"machine", Json::parse(machine_json(s.machine))},
-                   {"frame", frame_json(s)},    {"notes", notes_on(f)},
-                   {"units", std::move(units)}, {"counter_definitions", definitions_json(f)},
-                   {"limit", limit_json(f)},    {"bandwidth", std::move(bandwidth)},
-                   {"checks", checks_json(f)},  {"left_out", std::move(left_out)}};
+  Json document = {{"schema", kFiguresSchema},       {"scene", f.scene},
+                   {"fidelity", f.fidelity},         {"window_cycles", f.window_cycles},
+                   {"faster", faster_json(f)},       {"machine", Json::parse(machine_json(s.machine))},
+                   {"frame", frame_json(s)},         {"notes", notes_on(f)},
+                   {"units", std::move(units)},      {"counter_definitions", definitions_json(f)},
+                   {"limit", limit_json(f)},         {"bandwidth", std::move(bandwidth)},
+                   {"links", links_json(f)},         {"checks", checks_json(f)},
+                   {"left_out", std::move(left_out)}};
   add_queries(document, f.queries);
   add_detail(document, f.detail);
-  if (f.report_timeline) document["timeline"] = timeline_json(timeline_of(f));
+  if (f.report_timeline) document["timeline"] = timeline_json(f);
   document["host"] = host_json(f);
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <utility>
 
 namespace quadrille::pipeline {
 
@@ -27,6 +28,47 @@ std::string counter_name(const ResourceCurve& curve) {
   return {};
 }
 
+/// A counter of a track, by slice.
+struct CounterCurve {
+  std::string name;
+  std::string_view unit;
+  std::vector<double> value;
+};
+struct CounterTrack {
+  std::string_view name;
+  std::vector<CounterCurve> counters;
+};
+
+/// Units with their resources in percent, then what moved.
+std::vector<CounterTrack> counter_tracks(const Timeline& line) {
+  std::vector<CounterTrack> tracks;
+  tracks.reserve(line.units.size() + line.flow.size());
+  for (const UnitCurves& unit : line.units) {
+    CounterTrack track{unit.unit, {}};
+    track.counters.reserve(unit.resources.size());
+    for (const ResourceCurve& curve : unit.resources) {
+      CounterCurve counter{counter_name(curve), "%", curve.share};
+      for (double& value : counter.value) value *= 100;
+      track.counters.push_back(std::move(counter));
+    }
+    tracks.push_back(std::move(track));
+  }
+  for (const FlowCurves& flow : line.flow) {
+    CounterTrack track{flow.what, {}};
+    track.counters.reserve(flow.curves.size());
+    for (const FlowCurve& curve : flow.curves) track.counters.push_back({curve.name, flow.unit, curve.value});
+    tracks.push_back(std::move(track));
+  }
+  return tracks;
+}
+
+/// Calls `visit(cycle, value)` at the begin of every slice, and with 0 at the frame's end.
+template <class Visit>
+void visit_values(const Timeline& line, const CounterCurve& counter, const Visit& visit) {
+  for (std::size_t s = 0; s < line.slices; ++s) visit(line.begin_of(s), counter.value[s]);
+  visit(static_cast<double>(line.cycles), 0.0);
+}
+
 /// What a draw's slice tells beside its label: counts that are not zero, by "group.name".
 template <class Visit>
 void visit_counts(const DrawFigures& draw, const Visit& visit) {
@@ -46,9 +88,9 @@ class PacketWriter {
     return track.uuid();
   }
   std::uint64_t track(std::string_view name, std::uint64_t parent) { return new_track(name, parent).uuid(); }
-  std::uint64_t counter(std::string_view name, std::uint64_t parent) {
+  std::uint64_t counter(std::string_view name, std::string_view unit, std::uint64_t parent) {
     perfetto::TrackDescriptor& track = new_track(name, parent);
-    track.mutable_counter()->set_unit_name("%");
+    track.mutable_counter()->set_unit_name(std::string(unit));
     return track.uuid();
   }
   perfetto::TrackEvent& event(double cycle, perfetto::TrackEvent::Type type, std::uint64_t track) {
@@ -134,15 +176,13 @@ std::string timeline_protobuf(const ReportSubject& subject) {
   PacketWriter writer;
   const std::uint64_t process = writer.process(title_of(subject));
   if (subject.figures.detail) write_draws(writer, line, subject.figures.detail->draws, process);
-  for (const UnitCurves& unit : line.units) {
-    const std::uint64_t parent = writer.track(unit.unit, process);
-    for (const ResourceCurve& curve : unit.resources) {
-      const std::uint64_t track = writer.counter(counter_name(curve), parent);
-      const auto value = [&](double cycle, double share) {
-        writer.event(cycle, perfetto::TrackEvent::TYPE_COUNTER, track).set_double_counter_value(100 * share);
-      };
-      for (std::size_t s = 0; s < line.slices; ++s) value(line.begin_of(s), curve.share[s]);
-      value(static_cast<double>(line.cycles), 0);
+  for (const CounterTrack& track : counter_tracks(line)) {
+    const std::uint64_t parent = writer.track(track.name, process);
+    for (const CounterCurve& counter : track.counters) {
+      const std::uint64_t id = writer.counter(counter.name, counter.unit, parent);
+      visit_values(line, counter, [&](double cycle, double value) {
+        writer.event(cycle, perfetto::TrackEvent::TYPE_COUNTER, id).set_double_counter_value(value);
+      });
     }
   }
   return writer.bytes();
@@ -154,18 +194,16 @@ std::string timeline_trace_json(const ReportSubject& subject) {
   events.push_back(
       {{"ph", "M"}, {"name", "process_name"}, {"pid", kProcess}, {"args", {{"name", title_of(subject)}}}});
   if (subject.figures.detail) add_draws(events, line, subject.figures.detail->draws);
-  for (const UnitCurves& unit : line.units) {
-    for (const ResourceCurve& curve : unit.resources) {
-      const std::string name = fmt::format("{} {}", unit.unit, counter_name(curve));
-      const auto value = [&](double cycle, double share) {
+  for (const CounterTrack& track : counter_tracks(line)) {
+    for (const CounterCurve& counter : track.counters) {
+      const std::string name = fmt::format("{} {}", track.name, counter.name);
+      visit_values(line, counter, [&](double cycle, double value) {
         events.push_back({{"ph", "C"},
                           {"name", name},
                           {"pid", kProcess},
                           {"ts", microseconds(cycle)},
-                          {"args", {{"%", 100 * share}}}});
-      };
-      for (std::size_t s = 0; s < line.slices; ++s) value(line.begin_of(s), curve.share[s]);
-      value(static_cast<double>(line.cycles), 0);
+                          {"args", {{std::string(counter.unit), value}}}});
+      });
     }
   }
   const Json document = {{"displayTimeUnit", "ns"}, {"traceEvents", std::move(events)}};

@@ -25,6 +25,7 @@ using test::link;
 namespace {
 
 constexpr DetailOptions kBoth{.draws = true, .tiles = true};
+constexpr DetailOptions kAll{.draws = true, .tiles = true, .timeline = true};
 
 /// Everything that a run says but the host's cost and the details, as text. Laws of details are not among it.
 std::string outcome(const traces::CommandStream& stream, const MachineConfig& config, DetailOptions detail) {
@@ -34,6 +35,8 @@ std::string outcome(const traces::CommandStream& stream, const MachineConfig& co
     for (const Check& c : frame.figures.checks)
       if (!c.holds()) text += c.law + " is broken\n";
     frame.figures.detail.reset();
+    frame.figures.flow.reset();
+    frame.figures.report_timeline = false;
     frame.figures.host = {};
     frame.figures.checks.clear();
     text += report_json({frame.figures, config, frame.image.width, frame.image.height});
@@ -73,7 +76,7 @@ TEST_CASE("detail: with and without it pixels, cycles and figures are the same, 
     MachineConfig config;
     if (seed == 8) config.rop.cache_lines.set(16);  // lines are evicted
     INFO("stream " << seed);
-    const std::string without = outcome(stream, config, {}), with = outcome(stream, config, kBoth);
+    const std::string without = outcome(stream, config, {}), with = outcome(stream, config, kAll);
     CHECK(without.starts_with("{"));
     CHECK(with == without);
   }

@@ -44,7 +44,80 @@ Figures two_units() {
   return f;
 }
 
+/// The same, and a client and two links of four places each. At 1 GHz a cycle has a million ticks; the last
+/// write-back ends 100 cycles behind the frame.
+Figures with_flow() {
+  Figures f = two_units();
+  f.frame.clock_mhz = 1000;
+  f.moving_cycles = 1100;
+  f.bandwidth = {{"texture", 1000, 150}};
+  LinkFigures link;
+  link.key = "link.coarse_to_fine";
+  link.depth = 4;
+  link.tokens = 30;
+  link.held_ticks = 2'000'000'000;
+  f.links = {link, link};
+  constexpr hw::Tick kCycle = 1'000'000;
+  f.flow = FlowFigures{400 * kCycle,
+                       1100 * kCycle,
+                       3,
+                       {{"texture", {400, 600, 0}, {0, 0, 150}}},
+                       {{"texture", {32, 0, 0}, {0, 0, 0}}, {"write_back", {0, 0, 0}, {0, 0, 600}}},
+                       {{"link.coarse_to_fine", {800'000'000, 3'200'000'000, 0}}}};
+  return f;
+}
+
 }  // namespace
+
+TEST_CASE("timeline: bytes are a cycle's, tokens one link's, and the last slice lasts until all is still") {
+  const Timeline line = timeline_of(with_flow());
+  REQUIRE(line.flow.size() == 3);
+  CHECK(line.flow[0].curves[0].name == "texture read");
+  CHECK(line.flow[0].curves[0].value[0] == Approx(1));
+  CHECK(line.flow[0].curves[0].value[1] == Approx(1.5));
+  CHECK(line.flow[0].curves[0].value[2] == 0);
+  CHECK(line.flow[0].curves[1].value[2] == Approx(0.5));
+  REQUIRE(line.flow[1].curves.size() == 2);  // what is 0 throughout is left out
+  CHECK(line.flow[1].curves[1].name == "write_back written");
+  CHECK(line.flow[1].curves[1].value[2] == Approx(2));
+  CHECK(line.flow[2].curves[0].name == "coarse_to_fine");
+  CHECK(line.flow[2].curves[0].value[0] == Approx(1));
+  CHECK(line.flow[2].curves[0].value[1] == Approx(4));
+}
+
+TEST_CASE("timeline: the figures have bytes of slices as counts, and tokens of a class of links") {
+  Figures figures = with_flow();
+  figures.report_timeline = true;
+  const MachineConfig machine;
+  const auto document = nlohmann::json::parse(report_json({figures, machine, 8, 8}));
+  const auto& timeline = document["timeline"];
+  CHECK(timeline["bandwidth"]["texture"]["read_bytes"] == std::vector<int>{400, 600, 0});
+  CHECK(timeline["bandwidth"]["texture"]["write_bytes"] == std::vector<int>{0, 0, 150});
+  CHECK(timeline["memory"]["write_back"] == std::vector<int>{0, 0, 600});
+  CHECK(timeline["links"]["coarse_to_fine"] == std::vector<double>{1, 4, 0});
+  CHECK(document["frame"]["moving_cycles"] == 1100);
+  const auto& link = document["links"]["coarse_to_fine"];
+  CHECK(link["links"] == 2);
+  CHECK(link["depth"] == 4);
+  CHECK(link["tokens"] == 60);
+  CHECK(link["held_cycles"].get<double>() == Approx(4000));
+}
+
+TEST_CASE("timeline: a trace has what moved as counters in their own units") {
+  const Figures figures = with_flow();
+  const MachineConfig machine;
+  const auto document = nlohmann::json::parse(timeline_trace_json({figures, machine, 8, 8}));
+  std::vector<double> read, held;
+  for (const auto& event : document["traceEvents"]) {
+    if (event["name"] == "L2 cache texture read") read.push_back(event["args"]["B/cycle"]);
+    if (event["name"] == "links coarse_to_fine") held.push_back(event["args"]["tokens"]);
+  }
+  REQUIRE(read.size() == 4);
+  CHECK(read[1] == Approx(1.5));
+  CHECK(read[3] == 0);  // the frame's end
+  REQUIRE(held.size() == 4);
+  CHECK(held[1] == Approx(4));
+}
 
 TEST_CASE("timeline: shares of each slice are of its own length, on the unit's clock") {
   const Figures figures = two_units();

@@ -74,3 +74,27 @@ TEST_CASE("resources: places count the cycles in which all were taken") {
   resources.note(24, 10, 2);
   CHECK(resources.all().front().total(24) == 7);
 }
+
+TEST_CASE("resources: rows are asked for at the end of every slice, and joined as the slices are") {
+  Worked w;
+  std::uint64_t counted = 0;
+  w.resources.keep_rows([&] { return Resources::Row{counted, 2 * counted}; });
+  for (Tick i = 1; i <= 6; ++i) {
+    counted = static_cast<std::uint64_t>(i);
+    w.resources.note(i * kSlice, 0, 1);
+  }
+  w.resources.finish(7 * kSlice, 4 * kSlice);
+  CHECK(w.resources.rows() == std::vector<Resources::Row>{{4, 8}, {6, 12}});
+}
+
+TEST_CASE("resources: a unit without any has slices too where rows are asked for") {
+  Resources resources;
+  CHECK(resources.empty());
+  std::uint64_t counted = 0;
+  resources.keep_rows([&] { return Resources::Row{counted}; });
+  CHECK_FALSE(resources.empty());
+  resources.note(2 * kSlice, 0, 1);
+  counted = 5;
+  resources.finish(2 * kSlice + 1, kSlice);
+  CHECK(resources.rows() == std::vector<Resources::Row>{{0}, {0}, {5}});
+}
