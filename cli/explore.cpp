@@ -17,6 +17,7 @@
 #include "models/base/say.h"
 #include "studies/explore/design.h"
 #include "studies/explore/explore_table.h"
+#include "studies/explore/search.h"
 #include "studies/explore/version.h"
 
 namespace quadrille::cli {
@@ -143,7 +144,8 @@ int run_explore(const ExploreArguments& a) {
   const explore::Sweep sweep = explore::read_sweep(a.sweep);
   const explore::Space space(sweep);
   const std::vector<explore::LoadedScene> scenes = loaded_scenes(sweep, progress);
-  const explore::Plan plan = explore::planned(sweep, space);
+  const bool searches = sweep.design == explore::DesignKind::kSearch;
+  explore::Plan plan = searches ? explore::first_machines(sweep, space) : explore::planned(sweep, space);
   if (plan.candidates.empty())
     throw user_error("{}: no machine is left to draw with; {}", a.sweep,
                      plan.excluded.empty() ? "" : plan.excluded.begin()->first);
@@ -153,18 +155,21 @@ int run_explore(const ExploreArguments& a) {
   explore::Results results(a.dry_run && !std::filesystem::exists(out, unknown) ? "" : out);
   explore::Exploration exploration(sweep, space, scenes, results, setting);
   exploration.check_formulas(plan.candidates.front());
-  const std::string plan_text = explore::plan_table(sweep, plan, scenes.size());
   if (a.dry_run) {
     const explore::Measured measured = exploration.measure(plan.candidates);
     Tables(true, std::nullopt)
-        .print(plan_text + explore::cost_table(measured, plan.candidates.size(),
-                                               exploration.known(plan.candidates), setting.jobs));
+        .print(explore::plan_table(sweep, plan, scenes.size()) +
+               explore::cost_table(measured, searches ? sweep.points : plan.candidates.size(),
+                                   exploration.known(plan.candidates), setting.jobs));
     return kDone;
   }
-  exploration.run(plan.candidates);
+  if (searches) plan = explore::search(sweep, space, exploration);
+  else exploration.run(plan.candidates);
   progress.clear();
   if (a.csv) write_text(*a.csv, explore::points_csv(sweep, space, plan, exploration));
-  Tables(true, std::nullopt).print(plan_text + explore::result_table(sweep, plan, exploration));
+  Tables(true, std::nullopt)
+      .print(explore::plan_table(sweep, plan, scenes.size()) +
+             explore::result_table(sweep, plan, exploration));
   return explore::failed_points(plan, exploration) == 0 ? kDone : kFailed;
 }
 

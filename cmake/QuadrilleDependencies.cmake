@@ -15,6 +15,7 @@ pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)  # captures of gfxreconst
 find_package(SQLite3 REQUIRED)  # results of sweeps
 find_package(muparser REQUIRED)  # their formulas
 find_package(OpenTURNS REQUIRED)  # their designs
+find_package(pagmo REQUIRED)  # their searches
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)

@@ -3,23 +3,12 @@
 
 #include <openturns/OT.hxx>
 
-#include <cstdio>
 #include <stdexcept>
 #include <string>
 
-namespace {
+#include "studies/explore/guarded_call.h"
 
-/// Runs `work`; what it throws becomes the message.
-template <class Work>
-bool guarded(QuadrilleMessage* message, const Work& work) {
-  try {
-    work();
-    return true;
-  } catch (const std::exception& error) {
-    std::snprintf(message->text, sizeof(message->text), "%s", error.what());
-  }
-  return false;
-}
+namespace {
 
 OT::ComposedDistribution unit_cube(std::size_t dimensions) {
   return OT::ComposedDistribution(
@@ -43,7 +32,7 @@ extern "C" {
 [[gnu::visibility("default")]] bool quadrille_design(const char* kind, std::size_t dimensions,
                                                      std::size_t points, std::uint64_t seed, double* out,
                                                      QuadrilleMessage* message) {
-  return guarded(message, [&] {
+  return quadrille::guarded_call(message, [&] {
     OT::RandomGenerator::SetSeed(seed);
     const OT::Sample sample = places(kind, dimensions, points);
     for (std::size_t row = 0; row < points; ++row)

@@ -201,25 +201,26 @@ void Exploration::save(std::vector<Unsaved>& unsaved) const {
   unsaved.clear();
 }
 
-void Exploration::run(std::span<const Candidate> candidates) {
+void Exploration::run(std::span<const Candidate> candidates, std::size_t later) {
   const std::vector<Task> all = tasks(candidates);
   const Clock::time_point start = Clock::now();
-  ExploreProgress progress{0, all.size(), 0, 0, {}};
+  progress_.total = progress_.done + all.size() + later * scenes_.size();
   std::vector<Unsaved> unsaved;
   draw_all(all, [&](std::size_t i, PointRow row, std::vector<std::byte> png) {
-    ++progress.done;
-    progress.failed += !row.done();
-    progress.last =
+    ++progress_.done;
+    progress_.failed += !row.done();
+    progress_.last =
         fmt::format("{} on {}: {}", row.scene, fmt::join(all[i].candidate->values, " "), row.status);
-    progress.seconds_left = seconds_since(start) / static_cast<double>(progress.done) *
-                            static_cast<double>(progress.total - progress.done);
+    progress_.seconds_left = (seconds_ + seconds_since(start)) / static_cast<double>(progress_.done) *
+                             static_cast<double>(progress_.total - progress_.done);
     unsaved.push_back({std::move(row), std::move(png)});
     try {
       save(unsaved);
     } catch (const ResultsNotWritten&) {  // tried again when the next one ends: there may be room then
     }
-    setting_.progress(progress);
+    setting_.progress(progress_);
   });
+  seconds_ += seconds_since(start);
   try {
     save(unsaved);
   } catch (const ResultsNotWritten& error) {

@@ -65,8 +65,9 @@ class Exploration {
   void check_formulas(const Candidate& candidate) const;
   /// How many points of these are known, and are not to be drawn again.
   [[nodiscard]] std::size_t known(std::span<const Candidate> candidates) const;
-  /// Draws every other point of these machines. Throws `UserError` when points could not be saved at last.
-  void run(std::span<const Candidate> candidates);
+  /// Draws every other point of these machines. `later`: so many machines may follow; the progress counts
+  /// their points. Throws `UserError` when points could not be saved at last.
+  void run(std::span<const Candidate> candidates, std::size_t later = 0);
   /// Draws a few of them, and saves nothing.
   [[nodiscard]] Measured measure(std::span<const Candidate> candidates);
 
@@ -104,6 +105,8 @@ class Exploration {
   const ExploreSetting& setting_;
   /// hashes of pictures that a process has sent
   std::set<std::string> pictures_;
+  ExploreProgress progress_;
+  double seconds_ = 0;  ///< that earlier runs took
 };
 
 }  // namespace quadrille::studies::explore

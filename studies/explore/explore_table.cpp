@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "models/base/error.h"
+#include "studies/explore/analysis.h"
 
 namespace quadrille::studies::explore {
 namespace {
@@ -34,6 +35,36 @@ std::string values_text(const Sweep& sweep, const Candidate& candidate) {
   return text.empty() ? candidate.machine : text;
 }
 
+/// Which points failed, and why.
+std::string failures_text(const Sweep& sweep, const Plan& plan, const Exploration& exploration) {
+  std::string failures;
+  std::size_t failed = 0;
+  for (const Candidate& candidate : plan.candidates)
+    for (std::size_t s = 0; s < exploration.scenes().size(); ++s) {
+      const std::optional<PointRow> row = exploration.point(s, candidate);
+      if (!row || row->done()) continue;
+      if (++failed <= kListed)
+        failures += fmt::format("  {} on {}: {}: {}\n", row->scene, values_text(sweep, candidate),
+                                row->status, one_line(row->reason));
+    }
+  if (failed == 0) return {};
+  if (failed > kListed) failures += fmt::format("  and {} more\n", failed - kListed);
+  return fmt::format("FAILED  {} points\n{}", failed, failures);
+}
+
+/// The first machines of these with their objectives, and a head.
+std::string outcome_rows(const Sweep& sweep, const std::vector<Outcome>& machines) {
+  std::string text;
+  for (const Objective& objective : sweep.objectives) text += fmt::format("{:>16}", objective.name);
+  text += "\n";
+  for (std::size_t i = 0; i < std::min(machines.size(), kListed); ++i) {
+    for (const double value : machines[i].values) text += fmt::format("{:>16.6g}", value);
+    text += fmt::format("  {}\n", values_text(sweep, *machines[i].candidate));
+  }
+  if (machines.size() > kListed) text += fmt::format("  and {} more\n", machines.size() - kListed);
+  return text;
+}
+
 }  // namespace
 
 std::string plan_table(const Sweep& sweep, const Plan& plan, std::size_t scenes) {
@@ -41,6 +72,8 @@ std::string plan_table(const Sweep& sweep, const Plan& plan, std::size_t scenes)
                                  sweep.file, plan.candidates.size(), scenes, scenes == 1 ? "scene" : "scenes",
                                  plan.candidates.size() * scenes,
                                  kDesignNames[static_cast<std::size_t>(sweep.design)], sweep.seed);
+  if (sweep.design == DesignKind::kSearch && plan.candidates.size() < sweep.points)
+    text += fmt::format("  the search draws up to {} machines\n", sweep.points);
   if (plan.repeated > 0)
     text += fmt::format("  {} of {} machines came up more than once\n", plan.repeated, plan.tried);
   std::uint64_t excluded = 0;
@@ -78,36 +111,19 @@ std::size_t failed_points(const Plan& plan, const Exploration& exploration) {
 }
 
 std::string result_table(const Sweep& sweep, const Plan& plan, const Exploration& exploration) {
-  std::string failures;
-  std::size_t failed = 0;
-  std::vector<std::pair<std::vector<double>, const Candidate*>> holding;
-  for (const Candidate& candidate : plan.candidates) {
-    for (std::size_t s = 0; s < exploration.scenes().size(); ++s) {
-      const std::optional<PointRow> row = exploration.point(s, candidate);
-      if (!row || row->done()) continue;
-      if (++failed <= kListed)
-        failures += fmt::format("  {} on {}: {}: {}\n", row->scene, values_text(sweep, candidate),
-                                row->status, one_line(row->reason));
-    }
-    const auto values = exploration.objectives(candidate);
-    if (values && holds_limits(sweep, *values)) holding.emplace_back(*values, &candidate);
-  }
-  std::string text;
-  if (failed > 0) text += fmt::format("FAILED  {} points\n{}", failed, failures);
-  if (failed > kListed) text += fmt::format("  and {} more\n", failed - kListed);
-  const Objective& first = sweep.objectives.front();
-  std::stable_sort(holding.begin(), holding.end(), [&](const auto& a, const auto& b) {
-    return first.most ? a.first[0] > b.first[0] : a.first[0] < b.first[0];
-  });
-  text += fmt::format("BEST  by {}, of {} machines that hold every limit\n", first.name, holding.size());
-  std::string head;
-  for (const Objective& objective : sweep.objectives) head += fmt::format("{:>16}", objective.name);
-  text += fmt::format("{}\n", head);
-  for (std::size_t i = 0; i < std::min(holding.size(), kListed); ++i) {
-    for (const double value : holding[i].first) text += fmt::format("{:>16.6g}", value);
-    text += fmt::format("  {}\n", values_text(sweep, *holding[i].second));
-  }
-  return text;
+  std::string text = failures_text(sweep, plan, exploration);
+  std::vector<Outcome> holding = outcomes(sweep, plan, exploration);
+  std::erase_if(holding, [](const Outcome& outcome) { return !outcome.holds; });
+  std::stable_sort(holding.begin(), holding.end(),
+                   [](const Outcome& a, const Outcome& b) { return a.costs[0] < b.costs[0]; });
+  text += fmt::format("BEST  by {}, of {} machines that hold every limit\n", sweep.objectives.front().name,
+                      holding.size());
+  text += outcome_rows(sweep, holding);
+  if (sweep.objectives.size() < 2) return text;
+  std::erase_if(holding, [](const Outcome& outcome) { return !outcome.on_front; });
+  text += fmt::format("FRONT  {} of them: no other is better in one objective and not worse in another\n",
+                      holding.size());
+  return text + outcome_rows(sweep, holding);
 }
 
 std::string points_csv(const Sweep& sweep, const Space& space, const Plan& plan,

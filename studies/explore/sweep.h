@@ -64,7 +64,6 @@ struct Sweep {
   std::string file, text;
   DesignKind design = DesignKind::kGrid;
   std::uint32_t points = 0;  ///< machines to draw, of all designs but the grid
-  std::uint32_t population = 0;
   std::uint64_t seed = 1;
   double seconds = 3600;         ///< a frame may take
   std::uint64_t memory_mib = 0;  ///< it may use; 0: no limit

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 20;
 constexpr std::uint32_t kMostPoints = 1'000'000;
+constexpr std::uint32_t kMostSearched = 2000;  // the time of a guess grows with what it is made from
 
 /// A name that formulas can use and that is no path of a parameter.
 bool is_plain_name(std::string_view name) {
@@ -62,8 +63,8 @@ class Reader {
       throw user_error("{}:{}: {}", sweep_.file, e.source().begin.line, e.description());
     }
     check_keys(table_, "",
-               {"design", "points", "population", "seed", "seconds", "memory_mib", "window", "machines",
-                "scene", "set", "vary", "derive", "constraints", "objective"});
+               {"design", "points", "seed", "seconds", "memory_mib", "window", "machines", "scene", "set",
+                "vary", "derive", "constraints", "objective"});
     read_design();
     read_limits();
     read_scenes();
@@ -147,7 +148,6 @@ class Reader {
   void read_design() {
     sweep_.design = static_cast<DesignKind>(word(table_, "design", kDesignNames));
     sweep_.points = whole<std::uint32_t>(table_, "points", 0, 1, kMostPoints);
-    sweep_.population = whole<std::uint32_t>(table_, "population", 0, 8, 10'000);
     sweep_.seed = whole<std::uint64_t>(table_, "seed", 1, 0, std::int64_t{1} << 31);
   }
   void check_design() const {
@@ -166,8 +166,15 @@ class Reader {
       if (sweep_.dimensions.empty())
         throw user_error("{}: nothing differs from machine to machine; [vary] says what does", sweep_.file);
     }
-    if (sweep_.design != DesignKind::kSearch && table_.contains("population"))
-      throw user_error("{}: population: it is of design = \"search\"", at(*table_.get("population")));
+    if (sweep_.design == DesignKind::kSearch) check_search();
+  }
+  void check_search() const {
+    if (sweep_.points > kMostSearched)
+      throw user_error("{}: points: a search draws at most {} machines", at(*table_.get("points")),
+                       kMostSearched);
+    if (sweep_.objectives.size() < 2)
+      throw user_error("{}: design: a search needs two [[objective]] or more, such as cycles and a cost",
+                       at(*table_.get("design")));
   }
   void read_limits() {
     if (const auto seconds = number(table_, "seconds")) {
