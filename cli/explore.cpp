@@ -16,6 +16,7 @@
 #include "models/base/near_name.h"
 #include "models/base/say.h"
 #include "studies/explore/design.h"
+#include "studies/explore/explore_page.h"
 #include "studies/explore/explore_table.h"
 #include "studies/explore/search.h"
 #include "studies/explore/version.h"
@@ -29,7 +30,7 @@ constexpr std::int64_t kMostJobs = 1024;
 
 struct ExploreArguments {
   std::string sweep;
-  std::optional<std::string> out, csv, jobs;
+  std::optional<std::string> out, csv, report, jobs;
   bool dry_run = false, retry_failed = false, mix_versions = false;
 };
 
@@ -138,6 +139,7 @@ int run_explore(const ExploreArguments& a) {
   setting.mix_versions = a.mix_versions;
   setting.version = explore::program_version(QUADRILLE_VERSION);
   if (a.csv) check_output("--csv", *a.csv, {".csv"});
+  if (a.report) check_output("--report", *a.report, {".html"});
   if (a.out) check_output("--out", *a.out, {".db"});
   ProgressLine progress;
   setting.progress = [&](const explore::ExploreProgress& p) { progress.show(p); };
@@ -167,6 +169,7 @@ int run_explore(const ExploreArguments& a) {
   else exploration.run(plan.candidates);
   progress.clear();
   if (a.csv) write_text(*a.csv, explore::points_csv(sweep, space, plan, exploration));
+  if (a.report) write_text(*a.report, explore::sweep_page({sweep, space, plan, exploration, results}));
   Tables(true, std::nullopt)
       .print(explore::plan_table(sweep, plan, scenes.size()) +
              explore::result_table(sweep, plan, exploration));
@@ -190,6 +193,10 @@ void add_explore(CLI::App& app, Command& chosen) {
   command->add_option("--csv", a->csv, "writes a line for each point: values, objectives, costs")
       ->type_name("F.csv");
   command
+      ->add_option("--report", a->report,
+                   "writes a page: fronts, main effects, Sobol indices, all machines, pictures")
+      ->type_name("F.html");
+  command
       ->add_option("--jobs", a->jobs, "points at a time, each a process; else as many as the host has cores")
       ->type_name("N");
   command->add_flag(
@@ -202,6 +209,7 @@ void add_explore(CLI::App& app, Command& chosen) {
   command->footer(R"(Examples:
   quadrille explore caches.toml --dry-run
   quadrille explore caches.toml --jobs 2 --csv caches.csv
+  quadrille explore caches.toml --report caches.html
 Exit code: 0 all points done, 1 some failed (the table says why), 2 something given was wrong.)");
   command->callback([a, &chosen] { chosen = [a] { return run_explore(*a); }; });
 }

@@ -149,6 +149,10 @@ std::string page_of_frames(std::string_view title, std::string_view frames_json)
   return filled(std::string(title) + " - Quadrille", {{"frames", json_for_script(frames_json)}});
 }
 
+std::string page_of_sweep(std::string_view title, std::string_view sweep_json) {
+  return filled(std::string(title) + " - Quadrille", {{"sweep", json_for_script(sweep_json)}});
+}
+
 std::string comparison_page(std::string_view title, std::string_view comparison_json) {
   return filled(title, {{"comparison", json_for_script(comparison_json)}});
 }

@@ -32,6 +32,8 @@ struct PagePictures {
 
 /// The page of a row of frames (frames_output.h).
 [[nodiscard]] std::string page_of_frames(std::string_view title, std::string_view frames_json);
+/// The page of a sweep over machines (studies/explore/explore_page.h).
+[[nodiscard]] std::string page_of_sweep(std::string_view title, std::string_view sweep_json);
 /// A file of PNG as an address that holds it; empty for none.
 [[nodiscard]] std::string png_data_uri(std::span<const std::byte> png);
 

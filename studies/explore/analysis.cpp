@@ -51,6 +51,28 @@ double hypervolume(const Rows& values, const std::vector<double>& reference) {
       .at(0);
 }
 
+SobolIndices sobol_indices(const Rows& places, const std::vector<std::size_t>& levels,
+                           const std::vector<double>& values) {
+  const std::size_t width = levels.size();
+  const std::vector<double> all = in_designs_library("Sobol indices", [&](QuadrilleMessage* message) {
+    std::vector<double> out(2 * width + width * width + 1);
+    QuadrilleIndices found{out.data(), out.data() + width, out.data() + 2 * width, 0};
+    (void)of_designs_library<QuadrilleIndicesOf>("quadrille_indices")(
+        values.size(), width, levels.data(), flat(places).data(), values.data(), &found, message);
+    out.back() = found.left_over;
+    return out;
+  });
+  SobolIndices indices;
+  const auto at = [&](std::size_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
+  indices.first.assign(at(0), at(width));
+  indices.total.assign(at(width), at(2 * width));
+  indices.pairs.reserve(width);
+  for (std::size_t i = 0; i < width; ++i)
+    indices.pairs.emplace_back(at((2 + i) * width), at((3 + i) * width));
+  indices.explained = 1 - all.back();
+  return indices;
+}
+
 std::vector<double> place_of(const Sweep& sweep, const Candidate& candidate) {
   std::vector<double> place;
   for (std::size_t i = 0; i < sweep.dimensions.size(); ++i) {
@@ -84,6 +106,25 @@ std::vector<Outcome> outcomes(const Sweep& sweep, const Plan& plan, const Explor
   std::size_t at = 0;
   for (Outcome& outcome : all)
     if (outcome.holds) outcome.on_front = front[at++];
+  return all;
+}
+
+std::vector<SobolIndices> indices_of(const Sweep& sweep, const std::vector<Outcome>& outcomes) {
+  std::vector<std::size_t> levels;
+  levels.reserve(sweep.dimensions.size());
+  for (const Dimension& dimension : sweep.dimensions) levels.push_back(dimension.levels.size());
+  Rows places;
+  places.reserve(outcomes.size());
+  for (const Outcome& outcome : outcomes) places.push_back(place_of(sweep, *outcome.candidate));
+  std::vector<SobolIndices> all(sweep.objectives.size());
+  if (levels.empty() || places.size() < 2 * levels.size() + 2) return all;  // no more than two a slope
+  for (std::size_t i = 0; i < sweep.objectives.size(); ++i) {
+    std::vector<double> values;
+    values.reserve(outcomes.size());
+    for (const Outcome& outcome : outcomes) values.push_back(outcome.values[i]);
+    const auto [least, most] = std::ranges::minmax(values);
+    if (most > least) all[i] = sobol_indices(places, levels, values);
+  }
   return all;
 }
 

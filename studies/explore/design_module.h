@@ -41,4 +41,15 @@ using QuadrilleFront = bool(std::size_t rows, std::size_t objectives, const doub
 /// The volume between the rows and a reference that is worse than all of them.
 using QuadrilleHypervolume = bool(std::size_t rows, std::size_t objectives, const double* values,
                                   const double* reference, double* out, QuadrilleMessage* message);
+
+/// Parts of a variance; the arrays are given.
+struct QuadrilleIndices {
+  double *first, *total;  ///< by dimension: alone, and with all others
+  double* pairs;          ///< `pairs[i * dimensions + j]`: of two together, without what each does alone
+  double left_over;       ///< the part that the fit does not explain of rows that it was not given
+};
+/// Sobol indices of a table. `levels`: by dimension; 0: every number.
+using QuadrilleIndicesOf = bool(std::size_t rows, std::size_t dimensions, const std::size_t* levels,
+                                const double* places, const double* values, QuadrilleIndices* out,
+                                QuadrilleMessage* message);
 }
