@@ -102,6 +102,10 @@ TEST_CASE("sweep: what is wrong is named with its line, before anything runs") {
   refused(scene + "[derive]\ngpu.cores = \"2 *\"\n", "5", "2 *");
   refused(scene + "[[objective]]\nname = \"a b\"\nformula = \"1\"\n", "4", "letters, digits");
   refused(scene + "[[objective]]\nname = \"a\"\nformula = \"1\"\ngoal = \"best\"\n", "7", "least, most");
+  refused("design = \"search\"\npoints = 9\n" + scene + "[vary]\ngpu.cores = [1, 2]\n", "1",
+          "two [[objective]] or more");
+  refused("design = \"search\"\npoints = 9999\n" + scene + "[vary]\ngpu.cores = [1, 2]\n", "2",
+          "at most 2000 machines");
   refused("design = \"grid\"\n", "", "no scene");
   refused(scene + scene, "4", "two scenes are called 'triangle'");
   refused("a = [\n", "", "");
