@@ -7,6 +7,7 @@ import { folder, report } from './program.mjs';
 const made = report(folder(), 'courtyard', ['builtin:courtyard', '--size', '160x90']);
 const { figures } = made;
 const { timeline, units, frame, draws } = figures;
+const lengthOf = (s) => (s + 1 < timeline.slices ? timeline.slice_cycles : frame.moving_cycles - s * timeline.slice_cycles);
 const kindOf = (path) => path.replace(/_\d+$/, '');
 
 after(close);
@@ -29,6 +30,30 @@ test('slices add up to what each unit took of each resource', () => {
       assert.ok(error <= 1e-4 * units[path].cycles, `${path}.${name}: ${own} is not ${rest[key[kind]]}`);
     }
   }
+});
+
+test('bytes of the slices are those of the clients and of the memory, to the byte', () => {
+  const total = (counts) => counts.reduce((all, n) => all + n, 0);
+  assert.deepEqual(Object.keys(timeline.bandwidth), Object.keys(figures.bandwidth));
+  for (const [client, { read_bytes, write_bytes }] of Object.entries(timeline.bandwidth)) {
+    assert.equal(read_bytes.length, timeline.slices);
+    assert.equal(total(read_bytes), figures.bandwidth[client].read_bytes);
+    assert.equal(total(write_bytes), figures.bandwidth[client].write_bytes);
+  }
+  const counted = (name) => total(Object.entries(units).filter(([path]) => kindOf(path) === 'memory').map(([, unit]) => unit.counters[name]));
+  for (const [client, counts] of Object.entries(timeline.memory))
+    assert.equal(total(counts), counted(client === 'write_back' ? 'write_bytes' : `read_bytes_${client}`), client);
+  assert.equal(total(Object.values(timeline.memory).map(total)), frame.memory_bytes);
+});
+
+test('tokens of the slices are those that the links held', () => {
+  for (const [name, tokens] of Object.entries(timeline.links)) {
+    const { links, depth, held_cycles: held } = figures.links[name];
+    const all = tokens.reduce((sum, mean, s) => sum + mean * lengthOf(s), 0) * links;
+    assert.ok(Math.abs(all - held) <= 1e-4 * frame.moving_cycles * links, `${name}: ${all} is not ${held}`);
+    assert.ok(tokens.every((mean) => mean >= 0 && mean <= depth), name);
+  }
+  for (const [name, { tokens }] of Object.entries(figures.links)) assert.equal(tokens > 0, name in timeline.links, name);
 });
 
 test('lines are means over the units of a kind, slice by slice, and end with the frame', async () => {
@@ -64,5 +89,25 @@ test('the chart switches to places and zooms by keyboard and wheel', async () =>
     const [zoom] = window.quadrille.charts.get('timeline-chart').instance.getOption().dataZoom;
     return zoom.end - zoom.start < 100;
   });
+  await page.done();
+});
+
+test('bytes are a stack of all clients, and links are filled as far as the figures say', async () => {
+  const page = await open(made.page);
+  const shown = async (view) => {
+    await page.locator(`#timeline [role="radio"][data-value="${view}"]`).click();
+    return (await option(page)).series.filter(({ name, data }) => name !== 'draws in flight' && data.length > 0);
+  };
+  const near = (a, b) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.max(1, b), `${a} is not ${b}`);
+  const [asked] = await shown('asked'); // drawn first: up to the sum of all
+  for (let s = 0; s < timeline.slices; ++s) {
+    const all = Object.values(timeline.bandwidth).reduce((sum, of) => sum + of.read_bytes[s] + of.write_bytes[s], 0);
+    near(asked.data[s][1], all / lengthOf(s));
+  }
+  const [moved] = await shown('moved');
+  for (let s = 0; s < timeline.slices; ++s)
+    near(moved.data[s][1], Object.values(timeline.memory).reduce((sum, counts) => sum + counts[s], 0) / lengthOf(s));
+  for (const { name, data } of await shown('links'))
+    for (let s = 0; s < timeline.slices; ++s) near(data[s][1], timeline.links[name][s] / figures.links[name].depth);
   await page.done();
 });

@@ -44,7 +44,7 @@ const TERMS = {
   'in queue': 'Mean number of requests that a memory controller holds.',
   law: 'Two counts of the same thing, taken by different units. A run in which one does not hold fails.',
   'left out': 'What this frame does not need and was therefore not built or computed. Neither picture nor cycles change.',
-  slice: 'The frame is cut into up to 256 parts of equal length; units note at the end of each what they have taken of their resources.',
+  slice: 'The frame is cut into up to 256 parts of equal length; units note at the end of each what they have taken of their resources, and what they have moved.',
   full: 'The part of the time in which all places of this kind were taken.',
 };
 
