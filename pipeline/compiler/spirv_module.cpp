@@ -22,28 +22,6 @@ std::uint32_t saturating_product(std::uint64_t a, std::uint64_t b) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(a * b, 1u << 24));
 }
 
-bool harmless_capability(std::uint32_t capability) {
-  return capability == spv::CapabilityMatrix || capability == spv::CapabilityShader ||
-         capability == spv::CapabilityImageQuery || capability == spv::CapabilitySampled1D ||
-         capability == spv::CapabilitySampledCubeArray || capability == spv::CapabilityImageGatherExtended ||
-         capability == spv::CapabilityDerivativeControl || capability == spv::CapabilitySampleRateShading ||
-         capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry ||
-         capability == spv::CapabilityClipDistance || capability == spv::CapabilityCullDistance ||
-         capability == spv::CapabilityDemoteToHelperInvocation ||
-         capability == spv::CapabilityDrawParameters || capability == spv::CapabilityMultiViewport ||
-         capability == spv::CapabilityShaderViewportIndex ||
-         capability == spv::CapabilityShaderViewportIndexLayerEXT ||
-         capability == spv::CapabilityVariablePointersStorageBuffer ||
-         // Of arrays, which are refused where they are asked for if they are not supported.
-         capability == spv::CapabilityUniformBufferArrayDynamicIndexing ||
-         capability == spv::CapabilitySampledImageArrayDynamicIndexing ||
-         capability == spv::CapabilityStorageBufferArrayDynamicIndexing ||
-         // Which accesses of memory others see is asked of buffers that several invocations write: those obey
-         // stricter rules here.
-         capability == spv::CapabilityVulkanMemoryModel ||
-         capability == spv::CapabilityVulkanMemoryModelDeviceScope;
-}
-
 }  // namespace
 
 std::vector<Id> successors(const Block& block) {

@@ -94,6 +94,29 @@ std::string storage_class_name(spv::StorageClass storage) {
   return word_or_number(disassemble(module), 3, "number", static_cast<std::uint32_t>(storage));
 }
 
+bool harmless_capability(std::uint32_t capability) {
+  return capability == spv::CapabilityMatrix || capability == spv::CapabilityShader ||
+         capability == spv::CapabilityImageQuery || capability == spv::CapabilitySampled1D ||
+         capability == spv::CapabilitySampledCubeArray || capability == spv::CapabilityImageCubeArray ||
+         capability == spv::CapabilityImageGatherExtended || capability == spv::CapabilityDerivativeControl ||
+         capability == spv::CapabilitySampleRateShading ||
+         capability == spv::CapabilityInterpolationFunction || capability == spv::CapabilityGeometry ||
+         capability == spv::CapabilityClipDistance || capability == spv::CapabilityCullDistance ||
+         capability == spv::CapabilityDemoteToHelperInvocation ||
+         capability == spv::CapabilityDrawParameters || capability == spv::CapabilityMultiViewport ||
+         capability == spv::CapabilityShaderViewportIndex ||
+         capability == spv::CapabilityShaderViewportIndexLayerEXT ||
+         capability == spv::CapabilityVariablePointersStorageBuffer ||
+         // Of arrays, which are refused where they are asked for if they are not supported.
+         capability == spv::CapabilityUniformBufferArrayDynamicIndexing ||
+         capability == spv::CapabilitySampledImageArrayDynamicIndexing ||
+         capability == spv::CapabilityStorageBufferArrayDynamicIndexing ||
+         // Which accesses of memory others see is asked of buffers that several invocations write: those obey
+         // stricter rules here.
+         capability == spv::CapabilityVulkanMemoryModel ||
+         capability == spv::CapabilityVulkanMemoryModelDeviceScope;
+}
+
 std::string instead_of_capability(std::uint32_t capability) {
   switch (capability) {
     case spv::CapabilityFloat64: return "use float instead of double";

@@ -14,6 +14,8 @@ namespace quadrille::pipeline::spirv {
 /// are called by number.
 [[nodiscard]] std::string capability_name(std::uint32_t capability);
 [[nodiscard]] std::string storage_class_name(spv::StorageClass storage);
+/// May a module declare it? What it allows is supported, or refused where it is used.
+[[nodiscard]] bool harmless_capability(std::uint32_t capability);
 /// What a shader can do without the capability; empty: nothing known.
 [[nodiscard]] std::string instead_of_capability(std::uint32_t capability);
 

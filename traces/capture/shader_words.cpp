@@ -42,11 +42,14 @@ enum Op : std::uint32_t {
   kCopyObject = 83,
   kFAdd = 129,
   kFMul = 133,
+  kCapability = 17,
+  kDemote = 5380,
   kLabel = 248,
   kReturn = 253
 };
 constexpr std::uint32_t kSpecId = 1, kBuiltIn = 11, kFlat = 14, kBinding = 33, kDescriptorSet = 34,
-                        kPosition = 0, kOutput = 3, kBaseInstance = 4425, kHalf = 0x3f000000;
+                        kPosition = 0, kOutput = 3, kDemoteCapability = 5379, kBaseInstance = 4425,
+                        kHalf = 0x3f000000;
 
 std::uint32_t op_of(Instruction i) { return i[0] & 0xffff; }
 
@@ -108,6 +111,7 @@ class Module {
   Words rewritten() {
     Words out(words_.begin(), words_.begin() + kHeader);
     bound_ = words_[kBound];
+    if (demotes_ && !may_demote_) allow_demotion(out);
     const bool moves = wish_.negative_one_to_one && facts_.position != 0;
     const std::uint32_t main = moves ? bound_++ : facts_.entry;
     bool before_functions = true;
@@ -157,6 +161,8 @@ class Module {
     }
     if (op == kDecorate && i.size() == 4 && i[2] == kSpecId) facts_.spec_numbers[i[1]] = i[3];
     if (op == kDecorate && i.size() == 4 && i[2] == kBuiltIn && i[3] == kPosition) facts_.position = i[1];
+    demotes_ = demotes_ || op == kDemote;
+    if (op == kCapability && i.size() == 2 && i[1] == kDemoteCapability) may_demote_ = true;
     if (is_first_instance(i)) facts_.first_instance = i[1];
     if (op == kMemberDecorate && i.size() == 5 && i[3] == kBuiltIn && i[4] == kPosition) {
       facts_.block = i[1];
@@ -217,6 +223,8 @@ class Module {
       out[at] = (out[at] & ~0xffffu) | (value->second != 0 ? kSpecTrue : kSpecFalse);
   }
 
+  /// Drivers that write their own modules leave out what nobody checks; here it is checked.
+  static void allow_demotion(Words& out) { append(out, kCapability, {kDemoteCapability}); }
   void declare_first_instance(Words& out) {
     if (facts_.first_instance_type == 0) return;
     first_instance_ = bound_++;
@@ -268,6 +276,7 @@ class Module {
   const ShaderWish& wish_;
   std::vector<Instruction> instructions_;
   Facts facts_;
+  bool demotes_ = false, may_demote_ = false;
   std::uint32_t block_pointer_ = 0, bound_ = 0, half_ = 0, member_ = 0, first_instance_ = 0;
 };
 
