@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <thread>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/image_files.h"
@@ -19,18 +21,22 @@
 #include "studies/explore/explore_page.h"
 #include "studies/explore/explore_table.h"
 #include "studies/explore/search.h"
+#include "studies/explore/slurm.h"
 #include "studies/explore/version.h"
+#include "traces/whole_file.h"
 
 namespace quadrille::cli {
 namespace {
 
 namespace explore = studies::explore;
 
-constexpr std::int64_t kMostJobs = 1024;
+constexpr std::int64_t kMostJobs = 1024, kMostParts = 1000;
 
 struct ExploreArguments {
   std::string sweep;
-  std::optional<std::string> out, csv, report, jobs;
+  std::optional<std::string> out, csv, report, jobs, parts, only;
+  std::vector<std::string> sbatch;
+  std::string backend = "local";
   bool dry_run = false, retry_failed = false, mix_versions = false;
 };
 
@@ -131,6 +137,38 @@ std::vector<explore::LoadedScene> loaded_scenes(const explore::Sweep& sweep, Pro
   return scenes;
 }
 
+std::string file_text(const std::string& path) {
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+  const std::vector<std::byte> bytes = traces::read_whole_file(path, kMostBytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Draws the points as an array job of Slurm.
+void run_on_slurm(const ExploreArguments& a, const explore::Plan& plan, explore::Exploration& exploration,
+                  explore::Results& results) {
+  explore::SlurmSetting setting;
+  setting.folder = std::filesystem::path(a.sweep).stem().string() + ".slurm";
+  setting.command = {std::filesystem::read_symlink("/proc/self/exe").string(), "explore", a.sweep};
+  if (a.jobs) setting.command.insert(setting.command.end(), {"--jobs", *a.jobs});
+  setting.jobs_of_node = !a.jobs;
+  if (a.mix_versions) setting.command.emplace_back("--mix-versions");
+  setting.options = a.sbatch;
+  setting.parts = static_cast<std::size_t>(a.parts ? parse_whole(*a.parts, "--parts", 1, kMostParts) : 16);
+  setting.say = [](const std::string& text) { say(text + "\n"); };
+  bool retry = a.retry_failed;  // once
+  explore::run_on_slurm(setting, results,
+                        [&] { return exploration.missing(plan.candidates, std::exchange(retry, false)); });
+}
+
+/// What there is to draw, for a task of the array: no table is of use to it.
+int run_part(const explore::Plan& plan, explore::Exploration& exploration, explore::Results& results,
+             const std::set<explore::PointKey>& points) {
+  exploration.run(plan.candidates);
+  std::size_t failed = 0;
+  for (const auto& [point, status] : results.statuses()) failed += points.contains(point) && status != "done";
+  return failed == 0 ? kDone : kFailed;
+}
+
 int run_explore(const ExploreArguments& a) {
   explore::ExploreSetting setting;
   setting.jobs = static_cast<int>(a.jobs ? parse_whole(*a.jobs, "--jobs", 1, kMostJobs)
@@ -141,12 +179,15 @@ int run_explore(const ExploreArguments& a) {
   if (a.csv) check_output("--csv", *a.csv, {".csv"});
   if (a.report) check_output("--report", *a.report, {".html"});
   if (a.out) check_output("--out", *a.out, {".db"});
+  if (a.only) setting.only = explore::read_point_list(file_text(*a.only), *a.only);
   ProgressLine progress;
   setting.progress = [&](const explore::ExploreProgress& p) { progress.show(p); };
   const explore::Sweep sweep = explore::read_sweep(a.sweep);
   const explore::Space space(sweep);
   const std::vector<explore::LoadedScene> scenes = loaded_scenes(sweep, progress);
   const bool searches = sweep.design == explore::DesignKind::kSearch;
+  if (searches && (a.backend == "slurm" || a.only))
+    throw user_error("{}: a search chooses as it goes; --backend slurm draws other designs", a.sweep);
   explore::Plan plan = searches ? explore::first_machines(sweep, space) : explore::planned(sweep, space);
   if (plan.candidates.empty())
     throw user_error("{}: no machine is left to draw with; {}", a.sweep,
@@ -165,7 +206,9 @@ int run_explore(const ExploreArguments& a) {
                                    exploration.known(plan.candidates), setting.jobs));
     return kDone;
   }
-  if (searches) plan = explore::search(sweep, space, exploration);
+  if (a.only) return run_part(plan, exploration, results, *setting.only);
+  if (a.backend == "slurm") run_on_slurm(a, plan, exploration, results);
+  else if (searches) plan = explore::search(sweep, space, exploration);
   else exploration.run(plan.candidates);
   progress.clear();
   if (a.csv) write_text(*a.csv, explore::points_csv(sweep, space, plan, exploration));
@@ -199,6 +242,18 @@ void add_explore(CLI::App& app, Command& chosen) {
   command
       ->add_option("--jobs", a->jobs, "points at a time, each a process; else as many as the host has cores")
       ->type_name("N");
+  command
+      ->add_option("--backend", a->backend, "where the points are drawn: here, or as an array job of Slurm")
+      ->type_name("local|slurm")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  command->add_option("--parts", a->parts, "tasks of the array job, at most (default: 16)")->type_name("N");
+  command
+      ->add_option("--sbatch", a->sbatch,
+                   "an option for sbatch, as in --sbatch=--partition=all; many may be given")
+      ->type_name("OPTION");
+  command
+      ->add_option("--only", a->only, "draws the points of a list alone: what a task of the array job does")
+      ->type_name("F.points");
   command->add_flag(
       "--dry-run", a->dry_run,
       "says how many points there are, how long they take and how much disk, from a few that it "

@@ -105,7 +105,8 @@ std::optional<std::vector<double>> Exploration::objectives(const Candidate& cand
 }
 
 /// By scene, and within a scene those together that share a frame.
-std::vector<Exploration::Task> Exploration::tasks(std::span<const Candidate> candidates) const {
+std::vector<Exploration::Task> Exploration::tasks(std::span<const Candidate> candidates,
+                                                  bool retry_failed) const {
   const std::map<PointKey, std::string> known = results_.statuses();
   std::set<PointKey> taken;
   std::vector<Task> all;
@@ -114,7 +115,8 @@ std::vector<Exploration::Task> Exploration::tasks(std::span<const Candidate> can
     for (std::size_t s = 0; s < scenes_.size(); ++s) {
       const PointKey point = key(s, candidate);
       const auto found = known.find(point);
-      if (found != known.end() && (found->second == "done" || !setting_.retry_failed)) continue;
+      if (found != known.end() && (found->second == "done" || !retry_failed)) continue;
+      if (setting_.only && !setting_.only->contains(point)) continue;
       if (!taken.insert(point).second) continue;
       if (needs.empty()) {
         pipeline::MachineConfig machine;
@@ -131,7 +133,13 @@ std::vector<Exploration::Task> Exploration::tasks(std::span<const Candidate> can
 }
 
 std::size_t Exploration::known(std::span<const Candidate> candidates) const {
-  return candidates.size() * scenes_.size() - tasks(candidates).size();
+  return candidates.size() * scenes_.size() - tasks(candidates, setting_.retry_failed).size();
+}
+
+std::vector<PointKey> Exploration::missing(std::span<const Candidate> candidates, bool retry_failed) const {
+  std::vector<PointKey> points;
+  for (const Task& task : tasks(candidates, retry_failed)) points.push_back(key(task.scene, *task.candidate));
+  return points;
 }
 
 /// In the process of a point.
@@ -202,7 +210,7 @@ void Exploration::save(std::vector<Unsaved>& unsaved) const {
 }
 
 void Exploration::run(std::span<const Candidate> candidates, std::size_t later) {
-  const std::vector<Task> all = tasks(candidates);
+  const std::vector<Task> all = tasks(candidates, setting_.retry_failed);
   const Clock::time_point start = Clock::now();
   progress_.total = progress_.done + all.size() + later * scenes_.size();
   std::vector<Unsaved> unsaved;

@@ -41,6 +41,7 @@ struct ExploreSetting {
   std::string version;  ///< of the program, with its build
   int jobs = 1;         ///< processes at a time
   bool retry_failed = false, mix_versions = false;
+  std::optional<std::set<PointKey>> only = std::nullopt;  ///< no other point is drawn
   std::function<void(const ExploreProgress&)> progress = [](const ExploreProgress&) {};
   /// called in the process of a point before it draws: tests make points fail with it
   std::function<void(const SceneEntry&, const Candidate&)> in_process = {};
@@ -65,6 +66,8 @@ class Exploration {
   void check_formulas(const Candidate& candidate) const;
   /// How many points of these are known, and are not to be drawn again.
   [[nodiscard]] std::size_t known(std::span<const Candidate> candidates) const;
+  /// The points of these that are to be drawn. `retry_failed`: those that are known to fail too.
+  [[nodiscard]] std::vector<PointKey> missing(std::span<const Candidate> candidates, bool retry_failed) const;
   /// Draws every other point of these machines. `later`: so many machines may follow; the progress counts
   /// their points. Throws `UserError` when points could not be saved at last.
   void run(std::span<const Candidate> candidates, std::size_t later = 0);
@@ -92,7 +95,7 @@ class Exploration {
   };
   class Preparation;
 
-  [[nodiscard]] std::vector<Task> tasks(std::span<const Candidate> candidates) const;
+  [[nodiscard]] std::vector<Task> tasks(std::span<const Candidate> candidates, bool retry_failed) const;
   [[nodiscard]] std::string draw(const Task& task, pipeline::PreparedFrame* prepared) const;
   void draw_all(const std::vector<Task>& tasks,
                 const std::function<void(std::size_t, PointRow, std::vector<std::byte>)>& done);
