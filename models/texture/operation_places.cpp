@@ -115,9 +115,9 @@ void OperationPlaces::to_face(const CubeAxes& axes, __m256 (&r)[3], __m256 (&x)[
                t = finite_or_zero(_mm256_div_ps(axes.along_t(r), major));
   for (__m256(*change)[3] : {&x, &y}) {
     const __m256 grows = finite_or_zero(_mm256_div_ps(axes.along_major(*change), major));
-    const auto on_face = [&](__m256 place, __m256 moves) {
+    const auto on_face = [&](__m256 at, __m256 moves) {
       const __m256 relative = finite_or_zero(_mm256_div_ps(moves, major));
-      return _mm256_mul_ps(half, _mm256_sub_ps(relative, _mm256_mul_ps(place, grows)));
+      return _mm256_mul_ps(half, _mm256_sub_ps(relative, _mm256_mul_ps(at, grows)));
     };
     const __m256 ds = on_face(s, axes.along_s(*change)), dt = on_face(t, axes.along_t(*change));
     (*change)[0] = ds;

@@ -66,7 +66,7 @@ void add_blocks(Group& group, const std::string& good) {
       group.cases.push_back(
           capture_case(fmt::format("block {} of type {:#x}", b, type), with(good, blocks[b] + 8, type)));
     // The number of a call, and counts and handles among its parameters.
-    for (const std::size_t word : {0, 12, 16, 20, 28, 36, 44, 60})
+    for (const std::size_t word : {0U, 12U, 16U, 20U, 28U, 36U, 44U, 60U})
       if (blocks[b] + 12 + word + 4 <= good.size())
         for (const std::uint32_t value : {0U, 0x7fffffffU, 0xffffffffU})
           group.cases.push_back(capture_case(fmt::format("block {} with {:#x} at {}", b, value, word),
