@@ -12,6 +12,10 @@
 
 namespace quadrille::capture {
 
+/// No buffer, piece of memory or level of an image of a capture may be larger: a few bytes of a file can name
+/// any size.
+inline constexpr std::uint64_t kMaxObjectBytes = std::uint64_t{1} << 29;
+
 class Device {
  public:
   /// Carries out a call that makes or changes an object, records one of a command buffer, and passes by what

@@ -26,6 +26,9 @@ void Device::write_memory(Handle handle, std::uint64_t offset, std::span<const s
   Memory& memory = found->second;
   if (offset > memory.size || bytes.size() > memory.size - offset)
     throw user_error("bytes {}+{} are written to memory {} of {}", offset, bytes.size(), handle, memory.size);
+  if (offset + bytes.size() > 2 * kMaxObjectBytes)
+    throw user_error("memory {} is written up to byte {}; at most {} are possible", handle,
+                     offset + bytes.size(), 2 * kMaxObjectBytes);
   if (memory.bytes.size() < offset + bytes.size()) memory.bytes.resize(offset + bytes.size());
   std::ranges::copy(bytes, memory.bytes.begin() + static_cast<std::ptrdiff_t>(offset));
   ++memory.writes;
@@ -43,6 +46,8 @@ std::vector<std::byte> Device::contents(const BufferObject& buffer) const {
   if (buffer.offset > memory.size || buffer.size > memory.size - buffer.offset)
     throw user_error("a buffer of bytes {}+{} is bound to memory {} of {}", buffer.offset, buffer.size,
                      buffer.memory, memory.size);
+  if (buffer.size > kMaxObjectBytes)
+    throw user_error("a buffer of {} bytes; at most {} are possible", buffer.size, kMaxObjectBytes);
   std::vector<std::byte> bytes(buffer.size);
   const std::uint64_t end = std::min<std::uint64_t>(memory.bytes.size(), buffer.offset + buffer.size);
   if (end > buffer.offset)

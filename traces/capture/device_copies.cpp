@@ -34,6 +34,8 @@ LevelRows rows_of(ImageObject& image, std::uint32_t level) {
   LevelRows rows{&image.texels[level], block, blocks_of(side(image.width), block),
                  blocks_of(side(image.height), block), side(image.depth) * image.layers};
   const std::size_t bytes = rows.row_bytes() * rows.rows * rows.slices;
+  if (bytes > kMaxObjectBytes)
+    throw user_error("an image of {} bytes a level; at most {} are possible", bytes, kMaxObjectBytes);
   if (rows.texels->size() < bytes) rows.texels->resize(bytes);
   return rows;
 }
@@ -79,6 +81,8 @@ void Device::copy_buffer(Handle source, Handle target, const Value& region) {
 void Device::fill_buffer(const Value& call) {
   const Handle target = call["dstBuffer"].u64();
   const std::uint64_t begin = call["dstOffset"].u64(), size = object(buffers, target, "buffer").size;
+  if (size > kMaxObjectBytes)
+    throw user_error("a buffer of {} bytes; at most {} are possible", size, kMaxObjectBytes);
   if (begin > size) throw user_error("from byte {} of a buffer of {}", begin, size);
   const std::uint64_t wanted = call["size"].u64();
   const std::uint64_t words = (wanted == VK_WHOLE_SIZE ? size - begin : wanted) / sizeof(std::uint32_t);

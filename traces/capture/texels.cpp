@@ -8,6 +8,7 @@
 
 #include "models/base/error.h"
 #include "models/texture/block/block_format.h"
+#include "traces/capture/device.h"
 #include "traces/capture/vulkan_names.h"
 
 namespace quadrille::capture {
@@ -120,6 +121,10 @@ std::vector<std::byte> texture_texels(const ImageObject& image, const ViewObject
                         depth = std::max(1u, image.depth >> level);
     const std::size_t bytes = layer_bytes(view.format, width, height);
     const Bytes& source = image.texels[level];
+    const std::uint64_t needed =
+        models::format_area_bytes(format, width, height) * std::uint64_t{depth} * view.layers;
+    if (needed > kMaxObjectBytes)
+      throw user_error("an image of {} bytes a level; at most {} are possible", needed, kMaxObjectBytes);
     for (std::uint32_t slice = 0; slice < depth * view.layers; ++slice) {
       const std::size_t begin = bytes * (std::size_t{view.layer} * depth + slice);
       if (source.size() < begin + bytes) {
