@@ -91,7 +91,8 @@ constexpr AttributeRow kRows[] = {
 };
 
 const AttributeRow* row_of(std::uint32_t format) {
-  const auto* found = std::ranges::find(kRows, static_cast<VkFormat>(format), &AttributeRow::format);
+  const auto* found = std::ranges::find_if(
+      kRows, [=](const AttributeRow& r) { return static_cast<std::uint32_t>(r.format) == format; });
   return found == std::end(kRows) ? nullptr : found;
 }
 

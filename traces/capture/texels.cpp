@@ -69,7 +69,8 @@ constexpr OtherFormat kOthers[] = {
     {VK_FORMAT_R8G8B8_UNORM, 3, Format::kR8G8B8A8Unorm, widened},
 };
 const OtherFormat* other_format(std::uint32_t format) {
-  const auto* row = std::ranges::find(kOthers, static_cast<VkFormat>(format), &OtherFormat::format);
+  const auto* row = std::ranges::find_if(
+      kOthers, [=](const OtherFormat& r) { return static_cast<std::uint32_t>(r.format) == format; });
   return row == std::end(kOthers) ? nullptr : row;
 }
 

@@ -132,12 +132,14 @@ constexpr FormatRow kAttributeFormats[] = {
 }  // namespace
 
 Format image_format(std::uint32_t format) {
-  const auto* row = std::ranges::find(kImageFormats, static_cast<VkFormat>(format), &FormatRow::vulkan);
+  const auto* row = std::ranges::find_if(
+      kImageFormats, [=](const FormatRow& r) { return static_cast<std::uint32_t>(r.vulkan) == format; });
   return row == std::end(kImageFormats) ? Format::kUndefined : row->ours;
 }
 
 Format attribute_format(std::uint32_t format) {
-  const auto* row = std::ranges::find(kAttributeFormats, static_cast<VkFormat>(format), &FormatRow::vulkan);
+  const auto* row = std::ranges::find_if(
+      kAttributeFormats, [=](const FormatRow& r) { return static_cast<std::uint32_t>(r.vulkan) == format; });
   return row == std::end(kAttributeFormats) ? Format::kUndefined : row->ours;
 }
 
