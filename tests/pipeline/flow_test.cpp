@@ -67,9 +67,8 @@ std::string lost(const Figures& f) {
 /// Tokens of each class of links in each slice, seen by looking at them whenever a unit has acted.
 class Watcher {
  public:
-  Watcher(const Machine& machine, hw::Tick slice) : machine_(machine), slice_(slice) {
-    for (std::size_t i = 0; i < machine.links().size(); ++i) seen_.push_back(0);
-  }
+  Watcher(const Machine& machine, hw::Tick slice)
+      : machine_(machine), slice_(slice), seen_(machine.links().size(), 0) {}
   void note(hw::Tick now) {
     pass(now);
     for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] = machine_.links()[i]->occupancy();
@@ -143,9 +142,8 @@ TEST_CASE("flow: tokens of a slice are those that are seen in the links at every
   options.external_driver = &driver;
   Machine machine(config, frame, options);
   const FlowLog log(machine);
-  std::optional<Watcher> watcher;
-  watcher.emplace(machine, hw::Resources::kFirstSlice);
-  driver.observe([&](const hw::Unit& unit) { watcher->note(unit.last_action()); });
+  Watcher watcher(machine, hw::Resources::kFirstSlice);
+  driver.observe([&](const hw::Unit& unit) { watcher.note(unit.last_action()); });
   machine.run({});
   Figures figures = collect_figures(machine, frame);
   log.collect(figures);
@@ -153,7 +151,7 @@ TEST_CASE("flow: tokens of a slice are those that are seen in the links at every
   const FlowFigures& flow = *figures.flow;
   REQUIRE(flow.slice == hw::Resources::kFirstSlice);
   REQUIRE(flow.slices > 3);
-  const std::map<std::string, Slices> seen = watcher->slices(flow.end, flow.slices);
+  const std::map<std::string, Slices> seen = watcher.slices(flow.end, flow.slices);
   REQUIRE(seen.size() == flow.links.size());
   for (const LinkCurve& link : flow.links) {
     INFO(link.key);
