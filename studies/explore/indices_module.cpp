@@ -91,7 +91,8 @@ OT::FunctionalChaosResult fitted(const OT::Sample& x, const OT::Sample& y, const
   const OT::Point found = fit->getCoefficients();
   OT::Sample coefficients(basis.terms, 1);
   for (std::size_t i = 0; i < basis.terms; ++i) coefficients(i, 0) = found[i];
-  const OT::Function same = OT::IdentityFunction(x.getDimension());
+  // Both share what they stand for: nothing is cut off.
+  const OT::Function same = OT::IdentityFunction(x.getDimension());  // NOLINT(cppcoreguidelines-slicing)
   return {x,
           y,
           basis.polynomials.getMeasure(),

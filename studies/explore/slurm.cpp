@@ -110,7 +110,7 @@ class Cluster {
     words.push_back(path);
     const Answer answer = ask(words);
     if (answer.code != 0) throw user_error("sbatch: {}", answer.text);
-    const std::string job = answer.text.substr(0, answer.text.find(';'));  // a cluster's name may follow
+    std::string job = answer.text.substr(0, answer.text.find(';'));  // a cluster's name may follow
     write_text(job_file(), job);
     setting_.say(fmt::format("job {} draws {} points in {} parts", job, points.size(), parts));
     return job;
