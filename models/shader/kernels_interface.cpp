@@ -206,20 +206,24 @@ void execute_pack(const DecodedInstruction& d, ExecutionContext& x) {
   }
 }
 
-/// Width and height of a level, the level clamped to those that exist.
+/// The level that eight lanes ask about, clamped to those that exist.
+__m256i level_asked(const Words& wanted, const TextureSize& size) {
+  const __m256i last = _mm256_min_epi32(splat_word(size.levels - 1).v, splat_word(31).v);
+  return _mm256_min_epi32(_mm256_max_epi32(wanted.v, _mm256_setzero_si256()), last);
+}
+/// A side of that level.
+Words side_of_level(std::uint32_t texels, __m256i level) {
+  return {_mm256_max_epu32(_mm256_srlv_epi32(splat_word(texels).v, level), splat_word(1).v)};
+}
+
+/// Width and height of a level.
 template <bool kConstant, bool kMasked>
 void execute_texture_size(const DecodedInstruction& d, ExecutionContext& x) {
   const TextureSize& size = x.warp->texture_sizes[d.imm];
-  const Words last{_mm256_min_epi32(splat_word(size.levels - 1).v, splat_word(31).v)};
-  const Words one = splat_word(1);
   for (int g = 0; g < kWarpGroups; ++g) {
-    const Words wanted = read_operand(d.a, kConstant, x, g);
-    const __m256i level = _mm256_min_epi32(_mm256_max_epi32(wanted.v, _mm256_setzero_si256()), last.v);
-    const auto shrunk = [&](std::uint32_t texels) {
-      return Words{_mm256_max_epu32(_mm256_srlv_epi32(splat_word(texels).v, level), one.v)};
-    };
-    write_group<kMasked>(x.regs + d.dst, g, shrunk(size.width), x);
-    write_group<kMasked>(x.regs + d.dst + sizeof(RegisterRow), g, shrunk(size.height), x);
+    const __m256i level = level_asked(read_operand(d.a, kConstant, x, g), size);
+    write_group<kMasked>(x.regs + d.dst, g, side_of_level(size.width, level), x);
+    write_group<kMasked>(x.regs + d.dst + sizeof(RegisterRow), g, side_of_level(size.height, level), x);
   }
 }
 
@@ -227,16 +231,11 @@ void execute_texture_size(const DecodedInstruction& d, ExecutionContext& x) {
 template <bool kConstant, bool kMasked>
 void execute_texture_dims(const DecodedInstruction& d, ExecutionContext& x) {
   const TextureSize& size = x.warp->texture_sizes[d.imm];
-  const Words last{_mm256_min_epi32(splat_word(size.levels - 1).v, splat_word(31).v)};
-  const Words one = splat_word(1);
   for (int g = 0; g < kWarpGroups; ++g) {
-    const Words wanted = read_operand(d.a, kConstant, x, g);
-    const __m256i level = _mm256_min_epi32(_mm256_max_epi32(wanted.v, _mm256_setzero_si256()), last.v);
-    const auto shrunk = [&](std::uint32_t texels) {
-      return Words{_mm256_max_epu32(_mm256_srlv_epi32(splat_word(texels).v, level), one.v)};
-    };
-    const Words third = size.layers != 0 ? splat_word(size.layers) : shrunk(size.depth);
-    const Words values[] = {shrunk(size.width), shrunk(size.height), third, splat_word(size.levels)};
+    const __m256i level = level_asked(read_operand(d.a, kConstant, x, g), size);
+    const Words third = size.layers != 0 ? splat_word(size.layers) : side_of_level(size.depth, level);
+    const Words values[] = {side_of_level(size.width, level), side_of_level(size.height, level), third,
+                            splat_word(size.levels)};
     for (std::size_t k = 0; k < 4; ++k)
       write_group<kMasked>(x.regs + d.dst + k * sizeof(RegisterRow), g, values[k], x);
   }

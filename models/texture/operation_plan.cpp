@@ -67,14 +67,9 @@ class OperationPlanner {
  private:
   static void start(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
                     TexturePlan& plan) {
-    plan.general = true;
-    plan.active = request.active;
-    plan.base = view.base;
-    plan.format = view.format;
+    begin_plan(view, sampler, request, true, plan);
     plan.kind = view.kind;
-    plan.border = sampler.border;
-    plan.components = view.components;
-    plan.bilinear_quads = plan.texels = plan.magnified_lanes = plan.minified_lanes = 0;
+    plan.magnified_lanes = plan.minified_lanes = 0;
     plan.slices = view.kind == ViewKind::k3D;
     plan.levels.fill(0);
     plan.taps.fill(1);

@@ -37,6 +37,18 @@ inline LevelVectors level_vectors(const TextureLayout& layout, __m256i level, st
   return {gather(layout.width), gather(layout.height), gather(layout.pitch), gather(layout.first)};
 }
 
+/// What both planners fill in before they plan.
+inline void begin_plan(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
+                       bool general, TexturePlan& plan) {
+  plan.general = general;
+  plan.active = request.active;
+  plan.base = view.base;
+  plan.format = view.format;
+  plan.border = sampler.border;
+  plan.components = view.components;
+  plan.bilinear_quads = plan.texels = 0;
+}
+
 /// Collects the distinct lines of a request.
 class LineCollector {
  public:

@@ -49,13 +49,7 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
   QUADRILLE_CHECK(is_texture_request(request.op), "operation {}", static_cast<int>(request.op));
   if (request.operation != nullptr || is_anisotropic(sampler) || view.kind != ViewKind::k2D)
     return plan_operation(view, sampler, request, precision, plan);
-  plan.general = false;
-  plan.active = request.active;
-  plan.base = view.base;
-  plan.format = view.format;
-  plan.border = sampler.border;
-  plan.components = view.components;
-  plan.bilinear_quads = plan.texels = 0;
+  begin_plan(view, sampler, request, false, plan);
   alignas(32) LaneFloats u, v;
   for (std::size_t lane = 0; lane < kWarpLanes; lane += 8) {
     _mm256_store_ps(u.data() + lane, finite_or_zero(_mm256_load_ps(request.u.data() + lane)));

@@ -113,6 +113,8 @@ class FrameRecorder {
   void blit(const Value& call);
   void blit_region(Handle source, Handle target, const Value& region, std::uint32_t filter);
   void draw_copy(const DrawnCopy& copy, const char* label);
+  void draw_texture(const traces::TextureDescriptor& texture, const AreaConstants& constants,
+                    const StoredPart& target, const Area& to, const char* label);
   void clear_image(const Value& call);
   bool copy(const Call& call);
   void copy_images(const Value& call);

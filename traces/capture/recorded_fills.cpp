@@ -135,17 +135,24 @@ void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
   const ImageObject& image = object(device_.images, copy.source.image, "image");
   const ViewObject view = view_of_part(copy.source.image, image, copy.source.level, copy.source.layer);
   bring_contents(copy.target, true);
-  traces::DescriptorSet set;
-  set.textures.push_back(tables_.texture(view));
-  set.textures[0].sampler = tables_.sampler(copying_sampler(copy.filter));
-  begin_blit(copy.target.image, copy.target.level, copy.target.layer);
   const auto width = static_cast<float>(std::max(1u, image.width >> view.level));
   const auto height = static_cast<float>(std::max(1u, image.height >> view.level));
   AreaConstants constants;
   constants.source = {copy.from[0] / width, copy.from[1] / height, copy.from[2] / width,
                       copy.from[3] / height};
+  traces::TextureDescriptor texture = tables_.texture(view);
+  texture.sampler = tables_.sampler(copying_sampler(copy.filter));
+  draw_texture(texture, constants, copy.target, copy.to, label);
+}
+
+/// A pass with one draw.
+void FrameRecorder::draw_texture(const traces::TextureDescriptor& texture, const AreaConstants& constants,
+                                 const StoredPart& target, const Area& to, const char* label) {
+  begin_blit(target.image, target.level, target.layer);
+  traces::DescriptorSet set;
+  set.textures.push_back(texture);
   emit_change(0, traces::BindDescriptorSet{0, tables_.descriptors(set)});
-  fill({}, OwnShader::kCopy, constants, copy.to, label);
+  fill({}, OwnShader::kCopy, constants, to, label);
   end_pass();
 }
 
@@ -187,21 +194,19 @@ void FrameRecorder::bring_contents(const StoredPart& part, bool stays) {
       const bool itself = level == part.level && layer == part.layer;
       const ViewObject view = view_of_part(part.image, image, level, layer);
       if ((itself && !stays) || !has_texels(image, view)) continue;
-      traces::DescriptorSet set;
-      set.textures.push_back(tables_.own_texels(view));
-      set.textures[0].sampler = tables_.sampler(copying_sampler(traces::Filter::kNearest));
-      begin_blit(part.image, level, layer);
-      emit_change(0, traces::BindDescriptorSet{0, tables_.descriptors(set)});
+      traces::TextureDescriptor texture = tables_.own_texels(view);
+      texture.sampler = tables_.sampler(copying_sampler(traces::Filter::kNearest));
       AreaConstants constants;
       constants.source = {0, 0, 1, 1};
-      fill({}, OwnShader::kCopy, constants, {0, 0, pass_width_, pass_height_}, "contents from before");
-      end_pass();
+      const Area all{0, 0, std::max(1u, image.width >> level), std::max(1u, image.height >> level)};
+      draw_texture(texture, constants, {part.image, level, layer}, all, "contents from before");
     }
 }
 
 void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t layer) {
   pass_ = {};
   pass_stores_.clear();
+  pass_lacks_.clear();
   traces::ColorAttachmentUse& use = pass_.colors.emplace_back();
   use.image = tables_.attachment(target);
   const traces::Image& image = tables_.stream.images[use.image];
