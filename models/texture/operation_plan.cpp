@@ -166,7 +166,8 @@ class OperationPlanner {
                  std::uint32_t lanes, std::uint32_t nearest) {
     const std::size_t first = kGroupLanes * group;
     TexturePlan::Footprint& out = plan_.footprint[group][which * plan_.taps[group] + tap];
-    const LevelVectors at = level_vectors(view_.layout, level, lanes);
+    // Of unused lanes too, each lane's own level: slices start by level, and what is read lies in the image.
+    const LevelVectors at = level_vectors(view_.layout, level, 0xff);
     const AxisTexels columns = texels_along(0, first, u, at.width, sampler_.wrap_u, nearest),
                      rows = texels_along(1, first, v, at.height, sampler_.wrap_v, nearest);
     const AxisTexels x = wrapped_texels(columns, at.width, sampler_.wrap_u),
