@@ -67,9 +67,7 @@ void FrameRecorder::begin_rendering(const Value& info) {
     depth.clear[1] = stencil.clear[1];
     if (stencil.store == traces::StoreOp::kStore) depth.store = traces::StoreOp::kStore;
   }
-  begin_pass(colors, depth);
-  if (!covers(info["renderArea"], pass_width_, pass_height_))
-    throw user_error("a pass that renders to a part of its attachments is not supported");
+  begin_pass_in(colors, depth, info["renderArea"]);
 }
 
 void FrameRecorder::begin_render_pass(const Value& info) {
@@ -93,9 +91,7 @@ void FrameRecorder::begin_render_pass(const Value& info) {
     colors.push_back(target(pass.colors[i]));
     if (i < pass.resolves.size()) colors.back().resolve = target(pass.resolves[i]).view;
   }
-  begin_pass(colors, target(pass.depth));
-  if (!covers(info["renderArea"], pass_width_, pass_height_))
-    throw user_error("a pass that renders to a part of its attachments is not supported");
+  begin_pass_in(colors, target(pass.depth), info["renderArea"]);
 }
 
 void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target) {
@@ -114,6 +110,39 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
   const traces::Image& image = tables_.stream.images[use.image];
   pass_width_ = traces::level_width(image, use.level);
   pass_height_ = traces::level_height(image, use.level);
+}
+
+/// Outside of a part that it renders to, the pass leaves its attachments as they are: it loads them, and
+/// clears the part by draws. [VK1.3 #renderpass-load-ops]
+void FrameRecorder::begin_pass_in(std::vector<PassTarget> colors, PassTarget depth, const Value& area) {
+  const PassTarget& first = colors.empty() ? depth : colors[0];
+  if (first.view == 0) return begin_pass(colors, depth);
+  const ViewObject& view = object(device_.views, first.view, "image view");
+  const ImageObject& image = object(device_.images, view.image, "image");
+  if (covers(area, std::max(1u, image.width >> view.level), std::max(1u, image.height >> view.level)))
+    return begin_pass(colors, depth);
+  const auto whole = [](PassTarget& target) {
+    if (target.resolve != 0)
+      throw user_error("a pass that resolves a part of its attachments is not supported");
+    const bool clears = target.load == traces::LoadOp::kClear;
+    target.load = traces::LoadOp::kLoad;
+    target.store = traces::StoreOp::kStore;
+    return clears;
+  };
+  std::vector<std::uint32_t> cleared;
+  for (std::uint32_t i = 0; i < colors.size(); ++i)
+    if (whole(colors[i])) cleared.push_back(i);
+  const bool clears_depth = whole(depth);
+  begin_pass(colors, depth);
+  const Area part = area_of(area);
+  for (const std::uint32_t i : cleared) clear_color_area(i, colors[i].clear, part);
+  if (clears_depth)
+    clear_depth_area(VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT, depth.clear, part);
+}
+
+FrameRecorder::Area FrameRecorder::area_of(const Value& rect) {
+  return {rect["offset"]["x"].i32(), rect["offset"]["y"].i32(), rect["extent"]["width"].u32(),
+          rect["extent"]["height"].u32()};
 }
 
 void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth) {
@@ -189,7 +218,8 @@ void FrameRecorder::clear_attachments(const Value& call) {
       clear_at_begin(attachments.at(i));
       continue;
     }
-    for (std::size_t r = 0; r < rects.size(); ++r) clear_area(attachments.at(i), rects.at(r)["rect"]);
+    for (std::size_t r = 0; r < rects.size(); ++r)
+      clear_area(attachments.at(i), area_of(rects.at(r)["rect"]));
   }
 }
 

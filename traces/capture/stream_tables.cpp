@@ -155,13 +155,14 @@ Index StreamTables::expanded_attribute(Handle handle, const AttributeSource& sou
   return expanded_[key] = append(stream.buffers, traces::Buffer{"expanded attributes", std::move(bytes)});
 }
 
-Index StreamTables::own(OwnShader which) {
-  if (const auto found = own_.find(which); found != own_.end()) return found->second;
-  const std::span<const std::uint32_t> words = own_shader(which);
+Index StreamTables::own(OwnShader which, std::uint32_t location) {
+  const auto key = std::pair(which, location);
+  if (const auto found = own_.find(key); found != own_.end()) return found->second;
+  std::vector<std::uint32_t> words = own_shader(which, location);
   const auto stage =
       which == OwnShader::kArea ? traces::ShaderStage::kVertex : traces::ShaderStage::kFragment;
   facts_.push_back(shader_facts(words));
-  return own_[which] = append(stream.shaders, traces::Shader{"fill", stage, {words.begin(), words.end()}});
+  return own_[key] = append(stream.shaders, traces::Shader{"fill", stage, std::move(words)});
 }
 
 Index StreamTables::shader(Handle module, const ShaderWish& wish) {

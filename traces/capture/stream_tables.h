@@ -32,7 +32,8 @@ class StreamTables {
   [[nodiscard]] traces::Index sampler(Handle handle);
   [[nodiscard]] traces::Index sampler(const traces::Sampler& wanted);
   [[nodiscard]] traces::Index shader(Handle module, const ShaderWish& wish);
-  [[nodiscard]] traces::Index own(OwnShader which);
+  /// A clear's output has the location.
+  [[nodiscard]] traces::Index own(OwnShader which, std::uint32_t location = 0);
   [[nodiscard]] const ShaderFacts& facts(traces::Index shader) const { return facts_[shader]; }
   [[nodiscard]] traces::Index pipeline(const traces::Pipeline& wanted);
   [[nodiscard]] traces::Index descriptors(const traces::DescriptorSet& wanted);
@@ -93,7 +94,7 @@ class StreamTables {
   std::vector<ShaderFacts> facts_;  ///< by shader
   /// By the buffer's place in the stream, and the source.
   std::map<std::tuple<traces::Index, std::uint32_t, std::uint64_t, std::uint32_t>, traces::Index> expanded_;
-  std::map<OwnShader, traces::Index> own_;
+  std::map<std::pair<OwnShader, std::uint32_t>, traces::Index> own_;   ///< by location
   std::set<std::tuple<Handle, std::uint32_t, std::uint32_t>> stored_;  ///< image, level, layer
   std::set<std::string> notes_;
 };
