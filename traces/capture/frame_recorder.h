@@ -16,6 +16,7 @@
 #include "traces/capture/device.h"
 #include "traces/capture/raster_state.h"
 #include "traces/capture/stream_tables.h"
+#include "traces/frame_contents.h"
 
 namespace quadrille::capture {
 
@@ -58,6 +59,8 @@ class FrameRecorder {
   [[nodiscard]] const std::map<std::string, std::size_t>& unsupported() const { return unsupported_; }
   /// What is drawn without being known, a line each.
   [[nodiscard]] const std::set<std::string>& notes() const { return tables_.notes(); }
+  /// Makes what the frame, which was taken, has left the contents of the objects of the capture.
+  void keep(const traces::FrameContents& contents);
   /// The frame. Its last pass draws to what is shown. Throws `UserError` if there is none.
   [[nodiscard]] traces::CommandStream take();
 
@@ -85,6 +88,12 @@ class FrameRecorder {
     Area to;
     traces::Filter filter = traces::Filter::kNearest;
   };
+  /// What a triangle over an area writes to.
+  struct Fill {
+    OwnShader shader = OwnShader::kClear;
+    std::uint32_t attachment = 0;
+    bool colors = true;  ///< else depths and stencil values alone
+  };
   struct DrawRange {
     bool indexed = false;
     std::uint32_t count = 0, first = 0;
@@ -105,11 +114,15 @@ class FrameRecorder {
   void begin_rendering(const Value& info);
   void begin_render_pass(const Value& info);
   void begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth);
+  void begin_pass_in(std::vector<PassTarget> colors, PassTarget depth, const Value& area);
   void end_pass();
-  void note_lacking_contents();
+  void note_begin();
   void clear_attachments(const Value& call);
   void clear_at_begin(const Value& attachment);
-  void clear_area(const Value& attachment, const Value& rect);
+  void clear_area(const Value& attachment, const Area& area);
+  void clear_color_area(std::uint32_t attachment, const std::array<std::uint32_t, 4>& bits, const Area& area);
+  void clear_depth_area(std::uint32_t aspect, const std::array<std::uint32_t, 4>& bits, const Area& area);
+  [[nodiscard]] static Area area_of(const Value& rect);
   void blit(const Value& call);
   void blit_region(Handle source, Handle target, const Value& region, std::uint32_t filter);
   void draw_copy(const DrawnCopy& copy, const char* label);
@@ -118,9 +131,8 @@ class FrameRecorder {
   void clear_image(const Value& call);
   bool copy(const Call& call);
   void copy_images(const Value& call);
-  void bring_contents(const StoredPart& part, bool stays);
   void begin_blit(Handle target, std::uint32_t level, std::uint32_t layer);
-  void fill(traces::Pipeline pipeline, OwnShader fragment, const AreaConstants& constants, const Area& area,
+  void fill(traces::Pipeline pipeline, const Fill& what, const AreaConstants& constants, const Area& area,
             const char* label);
   void attach(traces::AttachmentUse& use, const PassTarget& target);
 

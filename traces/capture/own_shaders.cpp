@@ -2,6 +2,8 @@
 /// spirv-opt make of the GLSL above it.
 #include "traces/capture/own_shaders.h"
 
+#include <span>
+
 namespace quadrille::capture {
 namespace {
 
@@ -68,6 +70,45 @@ constexpr std::uint32_t kClear[] = {
 };
 
 //     #version 450
+//     layout(push_constant) uniform Area { uvec4 color; vec4 source; float depth; } area;
+//     layout(location = 0) out uvec4 color;
+//     void main() { color = area.color; }
+constexpr std::uint32_t kClearUnsigned[] = {
+    0x7230203,  0x10000,    0x8000b, 0x14,    0,       0x20011, 1,       0x6000b, 1,       0x4c534c47,
+    0x6474732e, 0x3035342e, 0,       0x3000e, 0,       1,       0x6000f, 4,       4,       0x6e69616d,
+    0,          9,          0x30010, 4,       7,       0x40047, 9,       0x1e,    0,       0x50048,
+    0xc,        0,          0x23,    0,       0x50048, 0xc,     1,       0x23,    0x10,    0x50048,
+    0xc,        2,          0x23,    0x20,    0x30047, 0xc,     2,       0x20013, 2,       0x30021,
+    3,          2,          0x40015, 6,       0x20,    0,       0x40017, 7,       6,       4,
+    0x40020,    8,          3,       7,       0x4003b, 8,       9,       3,       0x30016, 0xa,
+    0x20,       0x40017,    0xb,     0xa,     4,       0x5001e, 0xc,     7,       0xb,     0xa,
+    0x40020,    0xd,        9,       0xc,     0x4003b, 0xd,     0xe,     9,       0x40015, 0xf,
+    0x20,       1,          0x4002b, 0xf,     0x10,    0,       0x40020, 0x11,    9,       7,
+    0x50036,    2,          4,       0,       3,       0x200f8, 5,       0x50041, 0x11,    0x12,
+    0xe,        0x10,       0x4003d, 7,       0x13,    0x12,    0x3003e, 9,       0x13,    0x100fd,
+    0x10038,
+};
+
+//     #version 450
+//     layout(push_constant) uniform Area { ivec4 color; vec4 source; float depth; } area;
+//     layout(location = 0) out ivec4 color;
+//     void main() { color = area.color; }
+constexpr std::uint32_t kClearSigned[] = {
+    0x7230203,  0x10000,    0x8000b, 0x13,    0,       0x20011, 1,       0x6000b, 1,       0x4c534c47,
+    0x6474732e, 0x3035342e, 0,       0x3000e, 0,       1,       0x6000f, 4,       4,       0x6e69616d,
+    0,          9,          0x30010, 4,       7,       0x40047, 9,       0x1e,    0,       0x50048,
+    0xc,        0,          0x23,    0,       0x50048, 0xc,     1,       0x23,    0x10,    0x50048,
+    0xc,        2,          0x23,    0x20,    0x30047, 0xc,     2,       0x20013, 2,       0x30021,
+    3,          2,          0x40015, 6,       0x20,    1,       0x40017, 7,       6,       4,
+    0x40020,    8,          3,       7,       0x4003b, 8,       9,       3,       0x30016, 0xa,
+    0x20,       0x40017,    0xb,     0xa,     4,       0x5001e, 0xc,     7,       0xb,     0xa,
+    0x40020,    0xd,        9,       0xc,     0x4003b, 0xd,     0xe,     9,       0x4002b, 6,
+    0xf,        0,          0x40020, 0x10,    9,       7,       0x50036, 2,       4,       0,
+    3,          0x200f8,    5,       0x50041, 0x10,    0x11,    0xe,     0xf,     0x4003d, 7,
+    0x12,       0x11,       0x3003e, 9,       0x12,    0x100fd, 0x10038,
+};
+
+//     #version 450
 //     layout(set = 0, binding = 0) uniform sampler2D picture;
 //     layout(location = 0) in vec2 place;
 //     layout(location = 0) out vec4 color;
@@ -89,15 +130,27 @@ constexpr std::uint32_t kCopy[] = {
 
 // clang-format on
 
-}  // namespace
-
-std::span<const std::uint32_t> own_shader(OwnShader which) {
+std::span<const std::uint32_t> words_of(OwnShader which) {
   switch (which) {
     case OwnShader::kArea: return kArea;
     case OwnShader::kClear: return kClear;
+    case OwnShader::kClearUnsigned: return kClearUnsigned;
+    case OwnShader::kClearSigned: return kClearSigned;
     case OwnShader::kCopy: break;
   }
   return kCopy;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> own_shader(OwnShader which, std::uint32_t location) {
+  const std::span<const std::uint32_t> from = words_of(which);
+  std::vector<std::uint32_t> words(from.begin(), from.end());
+  constexpr std::uint32_t kDecorate = 4u << 16 | 71u,
+                          kLocation = 30;  // of a clear: its output has the only one
+  for (std::size_t at = 5; location > 0 && at < words.size(); at += words[at] >> 16)
+    if (words[at] == kDecorate && words[at + 2] == kLocation) words[at + 3] = location;
+  return words;
 }
 
 }  // namespace quadrille::capture

@@ -3,17 +3,19 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <vector>
 
 namespace quadrille::capture {
 
 enum class OwnShader : std::uint8_t {
   kArea,   ///< vertices 0 to 2: a triangle over the whole viewport
-  kClear,  ///< one colour
-  kCopy    ///< what a texture (set 0, binding 0) holds
+  kClear,  ///< one colour, of floats
+  kClearUnsigned,
+  kClearSigned,  ///< of integers, whose bits `AreaConstants::color` holds
+  kCopy          ///< what a texture (set 0, binding 0) holds
 };
-/// SPIR-V 1.0, entry point "main".
-[[nodiscard]] std::span<const std::uint32_t> own_shader(OwnShader which);
+/// SPIR-V 1.0, entry point "main". A clear's output has the location.
+[[nodiscard]] std::vector<std::uint32_t> own_shader(OwnShader which, std::uint32_t location = 0);
 
 /// Their push constants.
 struct AreaConstants {

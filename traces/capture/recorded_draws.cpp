@@ -241,7 +241,8 @@ void FrameRecorder::add_descriptor(traces::DescriptorSet& made, std::uint32_t bi
     if (offset > size)
       throw user_error("binding {} begins at byte {} of a buffer of {}", binding, offset, size);
     std::uint64_t range = from.range == VK_WHOLE_SIZE ? size - offset : from.range;
-    if (uniform) range = std::min(range, kMaxUniformRange);
+    // Shaders may read the last word of four of a block's last array whole.
+    if (uniform) range = std::min({(range + 15) / 16 * 16, size - offset, kMaxUniformRange});
     const traces::Index buffer = tables_.buffer(from.buffer);
     const auto begin = static_cast<std::uint32_t>(offset), bytes = static_cast<std::uint32_t>(range);
     if (uniform) made.uniforms.push_back({binding, buffer, begin, bytes});

@@ -49,12 +49,14 @@ Span span_of(const Value& offsets, std::string_view axis) {
 
 }  // namespace
 
-void FrameRecorder::fill(traces::Pipeline pipeline, OwnShader fragment, const AreaConstants& constants,
+void FrameRecorder::fill(traces::Pipeline pipeline, const Fill& what, const AreaConstants& constants,
                          const Area& area, const char* label) {
+  if (area.width == 0 || area.height == 0) return;
   pipeline.name = label;
   pipeline.vertex_shader = tables_.own(OwnShader::kArea);
-  pipeline.fragment_shader = tables_.own(fragment);
-  for (std::size_t i = 1; i < pipeline.blend.size(); ++i) pipeline.blend[i].write_mask = 0;
+  pipeline.fragment_shader = tables_.own(what.shader, what.attachment);
+  for (std::size_t i = 0; i < pipeline.blend.size(); ++i)
+    if (!what.colors || i != what.attachment) pipeline.blend[i].write_mask = 0;
   emit_change(0, traces::BindPipeline{tables_.pipeline(pipeline)});
   RasterState window;
   window.viewports = {{static_cast<float>(area.x), static_cast<float>(area.y), static_cast<float>(area.width),
@@ -73,37 +75,48 @@ void FrameRecorder::fill(traces::Pipeline pipeline, OwnShader fragment, const Ar
 }
 
 /// A part of a pass, or all of it behind a draw.
-void FrameRecorder::clear_area(const Value& attachment, const Value& rect) {
-  const std::uint32_t aspect = attachment["aspectMask"].u32();
+void FrameRecorder::clear_area(const Value& attachment, const Area& area) {
+  const std::uint32_t aspect = attachment["aspectMask"].u32(), number = attachment["colorAttachment"].u32();
   const std::array<std::uint32_t, 4> bits = clear_bits(attachment["clearValue"]);
+  if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0) {
+    if (number >= pass_.colors.size())
+      throw user_error("of colour attachment {} of a pass that has {}", number, pass_.colors.size());
+    clear_color_area(number, bits, area);
+  }
+  if ((aspect & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT)) != 0)
+    clear_depth_area(aspect, bits, area);
+}
+
+void FrameRecorder::clear_color_area(std::uint32_t attachment, const std::array<std::uint32_t, 4>& bits,
+                                     const Area& area) {
+  Fill what{OwnShader::kClear, attachment};
+  const traces::Format format = tables_.stream.images[pass_.colors[attachment].image].format;
+  if (traces::is_integer_format(format))
+    what.shader = models::number_kind(format) == models::NumberKind::kUint ? OwnShader::kClearUnsigned
+                                                                           : OwnShader::kClearSigned;
+  AreaConstants constants;
+  for (std::size_t c = 0; c < 4; ++c) constants.color[c] = std::bit_cast<float>(bits[c]);
+  fill({}, what, constants, area, "clear");
+}
+
+void FrameRecorder::clear_depth_area(std::uint32_t aspect, const std::array<std::uint32_t, 4>& bits,
+                                     const Area& area) {
+  if (pass_.depth.image == traces::kNone) return;
   traces::Pipeline pipeline;
   AreaConstants constants;
-  pipeline.blend[0].write_mask = 0;
-  if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0) {
-    if (attachment["colorAttachment"].u32() != 0 || pass_.colors.empty() ||
-        traces::is_integer_format(tables_.stream.images[pass_.colors[0].image].format))
-      throw user_error("of colour attachment {}, or of integers, behind a draw",
-                       attachment["colorAttachment"].u32());
-    pipeline.blend[0].write_mask = 0xf;
-    for (std::size_t c = 0; c < 4; ++c) constants.color[c] = std::bit_cast<float>(bits[c]);
+  if ((aspect & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+    pipeline.depth = {true, true, traces::CompareOp::kAlways};
+    constants.depth = std::bit_cast<float>(bits[0]);
   }
-  if (pass_.depth.image != traces::kNone) {
-    if ((aspect & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
-      pipeline.depth = {true, true, traces::CompareOp::kAlways};
-      constants.depth = std::bit_cast<float>(bits[0]);
-    }
-    if ((aspect & VK_IMAGE_ASPECT_STENCIL_BIT) != 0) {
-      pipeline.stencil.test = true;
-      pipeline.stencil.front.pass = traces::StencilOp::kReplace;
-      pipeline.stencil.front.depth_fail = traces::StencilOp::kReplace;
-      pipeline.stencil.front.reference = static_cast<std::uint8_t>(bits[1]);
-      pipeline.stencil.back = pipeline.stencil.front;
-    }
+  const bool has_stencil = models::has_stencil(tables_.stream.images[pass_.depth.image].format);
+  if (has_stencil && (aspect & VK_IMAGE_ASPECT_STENCIL_BIT) != 0) {
+    pipeline.stencil.test = true;
+    pipeline.stencil.front.pass = traces::StencilOp::kReplace;
+    pipeline.stencil.front.depth_fail = traces::StencilOp::kReplace;
+    pipeline.stencil.front.reference = static_cast<std::uint8_t>(bits[1]);
+    pipeline.stencil.back = pipeline.stencil.front;
   }
-  const Area area{rect["offset"]["x"].i32(), rect["offset"]["y"].i32(), rect["extent"]["width"].u32(),
-                  rect["extent"]["height"].u32()};
-  if (area.width == 0 || area.height == 0) return;
-  fill(pipeline, OwnShader::kClear, constants, area, "clear");
+  fill(pipeline, {OwnShader::kClear, 0, false}, constants, area, "clear");
 }
 
 /// A pass by itself, that samples the source and draws to the destination.
@@ -116,8 +129,9 @@ void FrameRecorder::blit(const Value& call) {
 
 void FrameRecorder::blit_region(Handle source, Handle target, const Value& region, std::uint32_t filter) {
   const Value &from = region["srcSubresource"], &to = region["dstSubresource"];
-  if (from["aspectMask"].u32() != VK_IMAGE_ASPECT_COLOR_BIT || to["layerCount"].u32() != 1)
-    throw user_error("of depths, or of several layers");
+  if (from["aspectMask"].u32() != VK_IMAGE_ASPECT_COLOR_BIT) throw user_error("of depths");
+  const std::uint32_t layers = to["layerCount"].u32();
+  if (layers > object(device_.images, target, "image").layers) throw user_error("of {} layers", layers);
   const Span x = span_of(region["srcOffsets"], "x"), y = span_of(region["srcOffsets"], "y");
   const Span to_x = span_of(region["dstOffsets"], "x"), to_y = span_of(region["dstOffsets"], "y");
   if (!(to_x.size > 0) || !(to_y.size > 0)) throw user_error("to an area with its corners turned");
@@ -128,13 +142,13 @@ void FrameRecorder::blit_region(Handle source, Handle target, const Value& regio
   copy.to = {static_cast<std::int32_t>(to_x.begin), static_cast<std::int32_t>(to_y.begin),
              static_cast<std::uint32_t>(to_x.size), static_cast<std::uint32_t>(to_y.size)};
   copy.filter = filter == VK_FILTER_LINEAR ? traces::Filter::kLinear : traces::Filter::kNearest;
-  draw_copy(copy, "blit");
+  for (std::uint32_t layer = 0; layer < layers; ++layer, ++copy.source.layer, ++copy.target.layer)
+    draw_copy(copy, "blit");
 }
 
 void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
   const ImageObject& image = object(device_.images, copy.source.image, "image");
   const ViewObject view = view_of_part(copy.source.image, image, copy.source.level, copy.source.layer);
-  bring_contents(copy.target, true);
   const auto width = static_cast<float>(std::max(1u, image.width >> view.level));
   const auto height = static_cast<float>(std::max(1u, image.height >> view.level));
   AreaConstants constants;
@@ -145,14 +159,17 @@ void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
   draw_texture(texture, constants, copy.target, copy.to, label);
 }
 
-/// A pass with one draw.
+/// A pass with one draw. What it covers whole is not loaded.
 void FrameRecorder::draw_texture(const traces::TextureDescriptor& texture, const AreaConstants& constants,
                                  const StoredPart& target, const Area& to, const char* label) {
   begin_blit(target.image, target.level, target.layer);
+  if (to.x == 0 && to.y == 0 && to.width == pass_width_ && to.height == pass_height_)
+    std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]).colors[0].load =
+        traces::LoadOp::kDontCare;
   traces::DescriptorSet set;
   set.textures.push_back(texture);
   emit_change(0, traces::BindDescriptorSet{0, tables_.descriptors(set)});
-  fill({}, OwnShader::kCopy, constants, to, label);
+  fill({}, {OwnShader::kCopy}, constants, to, label);
   end_pass();
 }
 
@@ -173,7 +190,6 @@ void FrameRecorder::clear_image(const Value& call) {
     for (std::uint32_t l = first_level; l < end(first_level, range["levelCount"].u32(), image.levels); ++l)
       for (std::uint32_t a = first_layer; a < end(first_layer, range["layerCount"].u32(), image.layers);
            ++a) {
-        bring_contents({target, l, a}, false);
         begin_blit(target, l, a);
         auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
         set_clear(begin.colors[0], bits,
@@ -181,26 +197,6 @@ void FrameRecorder::clear_image(const Value& call) {
         end_pass();
       }
   }
-}
-
-/// What an image holds before the frame first draws to a part of it: a pass for each level of each layer that
-/// the capture brings, the part itself only where something of it stays.
-void FrameRecorder::bring_contents(const StoredPart& part, bool stays) {
-  const ImageObject& image = object(device_.images, part.image, "image");
-  if (image.type != VK_IMAGE_TYPE_2D || image.samples != 1 || tables_.stored(part.image)) return;
-  if (!models::format_info(image_format(image.format)).may(models::kColorUse)) return;
-  for (std::uint32_t level = 0; level < image.levels; ++level)
-    for (std::uint32_t layer = 0; layer < image.layers; ++layer) {
-      const bool itself = level == part.level && layer == part.layer;
-      const ViewObject view = view_of_part(part.image, image, level, layer);
-      if ((itself && !stays) || !has_texels(image, view)) continue;
-      traces::TextureDescriptor texture = tables_.own_texels(view);
-      texture.sampler = tables_.sampler(copying_sampler(traces::Filter::kNearest));
-      AreaConstants constants;
-      constants.source = {0, 0, 1, 1};
-      const Area all{0, 0, std::max(1u, image.width >> level), std::max(1u, image.height >> level)};
-      draw_texture(texture, constants, {part.image, level, layer}, all, "contents from before");
-    }
 }
 
 void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t layer) {
@@ -216,7 +212,7 @@ void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t
                      image.layers);
   use.level = level;
   use.layer = layer;
-  use.load = tables_.stored_part(target, level, layer) ? traces::LoadOp::kLoad : traces::LoadOp::kDontCare;
+  use.load = tables_.holds(target, level, layer) ? traces::LoadOp::kLoad : traces::LoadOp::kDontCare;
   pass_stores_.push_back({target, level, layer});
   pass_width_ = traces::level_width(image, level);
   pass_height_ = traces::level_height(image, level);

@@ -67,9 +67,7 @@ void FrameRecorder::begin_rendering(const Value& info) {
     depth.clear[1] = stencil.clear[1];
     if (stencil.store == traces::StoreOp::kStore) depth.store = traces::StoreOp::kStore;
   }
-  begin_pass(colors, depth);
-  if (!covers(info["renderArea"], pass_width_, pass_height_))
-    throw user_error("a pass that renders to a part of its attachments is not supported");
+  begin_pass_in(colors, depth, info["renderArea"]);
 }
 
 void FrameRecorder::begin_render_pass(const Value& info) {
@@ -93,9 +91,7 @@ void FrameRecorder::begin_render_pass(const Value& info) {
     colors.push_back(target(pass.colors[i]));
     if (i < pass.resolves.size()) colors.back().resolve = target(pass.resolves[i]).view;
   }
-  begin_pass(colors, target(pass.depth));
-  if (!covers(info["renderArea"], pass_width_, pass_height_))
-    throw user_error("a pass that renders to a part of its attachments is not supported");
+  begin_pass_in(colors, target(pass.depth), info["renderArea"]);
 }
 
 void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target) {
@@ -106,7 +102,7 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
   use.load = target.load;
   use.store = target.store;
   // What earlier frames left there is not known but where the capture brings it.
-  if (use.load == traces::LoadOp::kLoad && !tables_.stored_part(view.image, view.level, view.layer)) {
+  if (use.load == traces::LoadOp::kLoad && !tables_.holds(view.image, view.level, view.layer)) {
     use.load = traces::LoadOp::kDontCare;
     pass_lacks_.insert(use.image);
   }
@@ -116,16 +112,41 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
   pass_height_ = traces::level_height(image, use.level);
 }
 
+/// Outside of a part that it renders to, the pass leaves its attachments as they are: it loads them, and
+/// clears the part by draws. [VK1.3 #renderpass-load-ops]
+void FrameRecorder::begin_pass_in(std::vector<PassTarget> colors, PassTarget depth, const Value& area) {
+  const PassTarget& first = colors.empty() ? depth : colors[0];
+  if (first.view == 0) return begin_pass(colors, depth);
+  const ViewObject& view = object(device_.views, first.view, "image view");
+  const ImageObject& image = object(device_.images, view.image, "image");
+  if (covers(area, std::max(1u, image.width >> view.level), std::max(1u, image.height >> view.level)))
+    return begin_pass(colors, depth);
+  const auto whole = [](PassTarget& target) {
+    if (target.resolve != 0)
+      throw user_error("a pass that resolves a part of its attachments is not supported");
+    const bool clears = target.load == traces::LoadOp::kClear;
+    target.load = traces::LoadOp::kLoad;
+    target.store = traces::StoreOp::kStore;
+    return clears;
+  };
+  std::vector<std::uint32_t> cleared;
+  for (std::uint32_t i = 0; i < colors.size(); ++i)
+    if (whole(colors[i])) cleared.push_back(i);
+  const bool clears_depth = whole(depth);
+  begin_pass(colors, depth);
+  const Area part = area_of(area);
+  for (const std::uint32_t i : cleared) clear_color_area(i, colors[i].clear, part);
+  if (clears_depth)
+    clear_depth_area(VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT, depth.clear, part);
+}
+
+FrameRecorder::Area FrameRecorder::area_of(const Value& rect) {
+  return {rect["offset"]["x"].i32(), rect["offset"]["y"].i32(), rect["extent"]["width"].u32(),
+          rect["extent"]["height"].u32()};
+}
+
 void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth) {
   if (in_pass_) end_pass();
-  const auto bring = [&](Handle handle, bool stays) {
-    const ViewObject& view = object(device_.views, handle, "image view");
-    bring_contents({view.image, view.level, view.layer}, stays);
-  };
-  for (const PassTarget& color : colors) {
-    if (color.view != 0) bring(color.view, color.load == traces::LoadOp::kLoad);
-    if (color.resolve != 0) bring(color.resolve, false);
-  }
   pass_ = {};
   pass_stores_.clear();
   pass_lacks_.clear();
@@ -153,6 +174,10 @@ void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const Pass
     pass_.depth.clear = std::bit_cast<float>(depth.clear[0]);
     pass_.depth.clear_stencil = static_cast<std::uint8_t>(depth.clear[1]);
     if (pass_.depth.load == traces::LoadOp::kDontCare) pass_.depth.clear = 1;
+    if (pass_lacks_.contains(pass_.depth.image)) {
+      pass_.depth.load = traces::LoadOp::kClear;
+      pass_.depth.clear_stencil = 0;
+    }
   }
   in_pass_ = true;
   drew_ = false;
@@ -165,21 +190,22 @@ void FrameRecorder::end_pass() {
   if (!in_pass_) return;
   in_pass_ = false;
   tables_.stream.commands.emplace_back(traces::EndPass{});
+  note_begin();
   for (const StoredPart& part : pass_stores_) tables_.note_stored(part.image, part.level, part.layer);
-  note_lacking_contents();
 }
 
-/// Of attachments that no clear at the pass's begin filled.
-void FrameRecorder::note_lacking_contents() {
+/// What the pass begins with, unless a clear at its begin filled it.
+void FrameRecorder::note_begin() {
   const auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
   const auto note = [&](const traces::AttachmentUse& use) {
-    if (use.load == traces::LoadOp::kDontCare && pass_lacks_.contains(use.image))
+    if (use.load == traces::LoadOp::kLoad) tables_.note_needed(use.part());
+    if (pass_lacks_.contains(use.image))
       tables_.note_lacking(use.image,
                            " begins with what an earlier frame left, which the capture does not hold: zeros, "
                            "and depths of 1");
   };
   for (const traces::ColorAttachmentUse& color : begin.colors) note(color);
-  note(begin.depth);
+  if (begin.depth.image != traces::kNone) note(begin.depth);
 }
 
 /// A clear of everything before the first draw is how the pass begins.
@@ -192,7 +218,8 @@ void FrameRecorder::clear_attachments(const Value& call) {
       clear_at_begin(attachments.at(i));
       continue;
     }
-    for (std::size_t r = 0; r < rects.size(); ++r) clear_area(attachments.at(i), rects.at(r)["rect"]);
+    for (std::size_t r = 0; r < rects.size(); ++r)
+      clear_area(attachments.at(i), area_of(rects.at(r)["rect"]));
   }
 }
 
@@ -203,8 +230,10 @@ void FrameRecorder::clear_at_begin(const Value& attachment) {
   if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && number < begin.colors.size()) {
     const traces::Format format = tables_.stream.images[begin.colors[number].image].format;
     set_clear(begin.colors[number], bits, traces::is_integer_format(format));
+    pass_lacks_.erase(begin.colors[number].image);
   }
   if ((aspect & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+    pass_lacks_.erase(begin.depth.image);
     begin.depth.load = traces::LoadOp::kClear;
     begin.depth.clear = std::bit_cast<float>(bits[0]);
   }

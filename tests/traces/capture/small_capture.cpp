@@ -126,7 +126,7 @@ void add_pipeline(CaptureWriter& file, const SmallCapture& wish) {
             {{"pCreateInfos", json::array({state})}, {"pPipelines", json::array({kPipeline})}});
 }
 
-void add_commands(CaptureWriter& file, const SmallCapture& wish) {
+void add_commands(CaptureWriter& file, const SmallCapture& wish, const json& part = nullptr) {
   const auto command = [&](const char* name, json parameters) {
     parameters["commandBuffer"] = kCommands;
     file.call(name, parameters);
@@ -134,9 +134,11 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish) {
   command("BeginCommandBuffer", {});
   const json clear{{"color", json::array({0, 0, 0x3f800000, 0x3f800000})}};  // blue
   const json color{{"imageView", kShownView},
+                   {"storeOp", VK_ATTACHMENT_STORE_OP_STORE},
                    {"loadOp", wish.loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR},
                    {"clearValue", clear}};
-  const json area{{"extent", {{"width", 16}, {"height", 16}}}};
+  json area{{"extent", {{"width", 16}, {"height", 16}}}};
+  if (!part.is_null()) area = part;
   for (const auto& [name, parameters] : wish.before) command(name, parameters);
   command("CmdBeginRendering",
           {{"pRenderingInfo",
@@ -151,6 +153,7 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish) {
     file.raw_call(call_number(wish.extra_command), std::as_bytes(std::span(&buffer, 1)));
   }
   command("CmdDraw", {{"vertexCount", 3}, {"instanceCount", 1}});
+  for (const auto& [name, parameters] : wish.behind) command(name, parameters);
   command("CmdEndRendering", {});
   command("EndCommandBuffer", {});
   file.call("QueueSubmit", {{"queue", kQueue},
@@ -169,6 +172,14 @@ std::vector<std::byte> small_capture(const SmallCapture& wish) {
   add_descriptors(file);
   add_pipeline(file, wish);
   add_commands(file, wish);
+  for (int frame = 1; frame < wish.frames; ++frame) {
+    const std::array<float, 6> places{0, 0, 1, 0, 1, 1};
+    if (frame == 1) file.fill_memory(kMemory, 8, std::as_bytes(std::span(places)));
+    SmallCapture later = wish;
+    later.loads = wish.later_area.is_null();
+    later.before.clear();
+    add_commands(file, later, wish.later_area);
+  }
   return file.bytes();
 }
 
