@@ -1,5 +1,5 @@
-/// Many frames of one scene: `quadrille render --frames N`. Each frame is a process of its own; this one
-/// reads the scene once and collects the rows.
+/// Many frames of one scene or capture: `quadrille render --frames N`. Each frame is a process of its own;
+/// this one reads the file once and collects the rows.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,9 +21,11 @@ struct FrameArguments {
 
   void add_to(CLI::App& command);
   /// Throws `UserError` for options that go with `--frames` alone.
-  void check() const;
+  void check(const SceneArguments& scene) const;
   /// Throws `UserError` for a film that could not be written, or made.
   void check_film() const;
+  /// Frames that are wanted.
+  [[nodiscard]] std::int64_t count() const;
   /// Processes at a time.
   [[nodiscard]] int job_count() const;
   [[nodiscard]] bool wanted() const { return frames.has_value(); }
@@ -55,5 +57,12 @@ struct SequenceResult {
 [[nodiscard]] SequenceResult draw_frames(const SceneArguments& scene, const FrameArguments& frames,
                                          const std::string& about, const Tables& tables,
                                          const DrawFrame& draw, const TakePicture& take = {});
+
+/// The same of a capture: its first frames, each with what the one before it left in attachments and buffers,
+/// which is found by a run without time (machines of `precision`).
+[[nodiscard]] SequenceResult draw_capture_frames(const SceneArguments& scene, const FrameArguments& frames,
+                                                 const std::string& about, const models::Precision& precision,
+                                                 const Tables& tables, const DrawFrame& draw,
+                                                 const TakePicture& take = {});
 
 }  // namespace quadrille::cli

@@ -32,8 +32,7 @@ SceneArguments::Loaded SceneArguments::record(scenes::Scene& file, const scenes:
   return loaded;
 }
 
-SceneArguments::Loaded SceneArguments::load_capture() const {
-  capture::Import import = capture::import_capture(scene, {.skip_unsupported = skip_unsupported});
+SceneArguments::Loaded SceneArguments::take_import(capture::Import import) const {
   Loaded loaded{std::move(import.stream), {}};
   for (const std::string& note : import.notes) fmt::print(stderr, "{}: {}\n", scene, note);
   for (const auto& [reason, count] : import.skipped) {
@@ -44,14 +43,20 @@ SceneArguments::Loaded SceneArguments::load_capture() const {
   return loaded;
 }
 
+void SceneArguments::change(traces::CommandStream& stream) const {
+  cut(stream);
+  use_samples(stream);
+  use_anisotropy(stream);
+  use_compression(stream);
+  use_queries(stream);
+}
+
 SceneArguments::Loaded SceneArguments::load() const {
   if (is_trace()) {
-    Loaded loaded = is_capture() ? load_capture() : Loaded{traces::read_trace(scene), {}};
-    cut(loaded.stream);
-    use_samples(loaded.stream);
-    use_anisotropy(loaded.stream);
-    use_compression(loaded.stream);
-    use_queries(loaded.stream);
+    Loaded loaded = is_capture()
+                        ? take_import(capture::import_capture(scene, {.skip_unsupported = skip_unsupported}))
+                        : Loaded{traces::read_trace(scene), {}};
+    change(loaded.stream);
     return loaded;
   }
   const scenes::SceneOptions wanted = options();

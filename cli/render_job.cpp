@@ -224,7 +224,7 @@ RenderJob::Setting RenderJob::setting(const pipeline::MachineConfig& config) con
 int RenderJob::run() {
   scene.leave_out = scene.keep_packed = leave_out == "auto";
   scene.check();
-  frames.check();
+  frames.check(scene);
   check_options_meant();
   pipeline::MachineConfig config;
   machine.apply(config);
@@ -350,8 +350,7 @@ int RenderJob::run_frames(const Setting& setting) const {
   const scenes::SceneOptions options = scene.is_trace() ? scenes::SceneOptions{} : scene.options();
   const std::string how =
       setting.window > 0 ? fmt::format("approximate (window of {} cycles)", window_cycles()) : fidelity;
-  const std::string about =
-      fmt::format("{}x{}, machine {}, {}", options.width, options.height, setting.config.title(), how);
+  const std::string machine_and_how = fmt::format("machine {}, {}", setting.config.title(), how);
   std::optional<Film> film;
   pipeline::FramePictures pictures;
   const auto take = [&](std::int64_t number, double fps, std::vector<std::byte> png) {
@@ -359,7 +358,15 @@ int RenderJob::run_frames(const Setting& setting) const {
     if (film) film->add(png);
     if (report) pictures.emplace_back(number, std::move(png));
   };
-  const SequenceResult result = draw_frames(scene, frames, about, Tables(!quiet, stats), draw_one, take);
+  const Tables tables(!quiet, stats);
+  const auto draw_all = [&] {
+    if (scene.is_capture())
+      return draw_capture_frames(scene, frames, machine_and_how, setting.config.precision(), tables, draw_one,
+                                 take);
+    const std::string about = fmt::format("{}x{}, {}", options.width, options.height, machine_and_how);
+    return draw_frames(scene, frames, about, tables, draw_one, take);
+  };
+  const SequenceResult result = draw_all();
   if (film) film->finish();
   if (report) write_text(*report, pipeline::frames_page(result.json, pictures));
   if (csv) write_text(*csv, pipeline::frames_csv(result.json));

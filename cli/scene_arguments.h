@@ -13,6 +13,10 @@
 #include "pipeline/driver/frame_builder.h"
 #include "scenes/scene.h"
 
+namespace quadrille::capture {
+struct Import;
+}  // namespace quadrille::capture
+
 namespace quadrille::cli {
 
 struct SceneArguments {
@@ -62,8 +66,11 @@ struct SceneArguments {
   };
   /// One frame of a scene that is open, with what did not have to be done for it.
   [[nodiscard]] Loaded record(scenes::Scene& file, const scenes::Moment& moment) const;
-  /// Loads the frame of a capture. Throws `UserError`.
-  [[nodiscard]] Loaded load_capture() const;
+  /// Takes a frame of a capture, and says on standard error what of it is missing.
+  [[nodiscard]] Loaded take_import(capture::Import import) const;
+  /// Makes a trace's or capture's frame what the arguments ask for: a part of it, samples, queries. Throws
+  /// `UserError`.
+  void change(traces::CommandStream& stream) const;
   /// Loads the scene or trace. Throws `UserError`.
   [[nodiscard]] Loaded load() const;
   /// Lets the passes of a stream have the wished samples, and shade by sample if wished. Throws `UserError`.

@@ -26,7 +26,7 @@ std::uint64_t level_bytes(const Image& image, std::uint32_t level) {
 std::uint64_t texel_bytes(const Image& image) {
   std::uint64_t bytes = 0;
   for (std::uint32_t level = 0; level < image.levels; ++level) bytes += level_bytes(image, level);
-  return image.is_attachment() ? bytes : bytes * image.layers;
+  return bytes * image.layers;
 }
 
 std::uint32_t level_count(const CommandStream& stream, const TextureDescriptor& texture) {

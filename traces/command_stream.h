@@ -85,8 +85,8 @@ inline constexpr std::uint8_t kAllUsages = kSampled | kColorAttachment | kDepthA
 /// An image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
 /// first, in each level layer by layer or slice by slice, rows top to bottom, tightly packed; of compressed
 /// formats rows of blocks, of which those at the right and lower edges may reach beyond the level. Level i is
-/// max(1, width >> i) by max(1, height >> i), and so for a volume's depth. An attachment is 2D and has no
-/// texels: it holds what passes store, in each level of each layer.
+/// max(1, width >> i) by max(1, height >> i), and so for a volume's depth. An attachment is 2D and holds what
+/// passes store. One of one sample a pixel may begin with texels (attachment_texels.h); else with nothing.
 struct Image {
   std::string name;
   Format format = Format::kR8G8B8A8Unorm;
@@ -112,7 +112,7 @@ struct ImagePart {
   std::uint32_t level = 0, layer = 0;
   friend auto operator<=>(const ImagePart&, const ImagePart&) = default;  // NOLINT(modernize-use-nullptr)
 };
-/// Bytes of a level's texels of a layer, and of all that the image brings or, of an attachment, of a layer.
+/// Bytes of a level's texels of a layer, and of all levels and layers.
 [[nodiscard]] std::uint64_t level_bytes(const Image& image, std::uint32_t level);
 [[nodiscard]] std::uint64_t texel_bytes(const Image& image);
 /// Puts the texels of a packed image into `texels`. Throws `UserError`.

@@ -63,6 +63,7 @@ class SampleAdder {
     image.height = level_height(stream_.images[use.image], use.level);
     image.levels = image.layers = 1;
     image.usage = usage;
+    image.texels.clear();
     image.samples = samples_;
     stream_.images.push_back(std::move(image));
     use.image = static_cast<Index>(stream_.images.size() - 1);

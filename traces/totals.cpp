@@ -51,7 +51,7 @@ StreamTotals stream_totals(const CommandStream& stream) {
   StreamTotals totals;
   for (const Buffer& buffer : stream.buffers) totals.buffer_bytes += buffer.data.size();
   for (const Image& image : stream.images)
-    totals.image_bytes += image.is_attachment() ? 0 : texel_bytes(image);
+    totals.image_bytes += image.is_attachment() ? image.texels.size() : texel_bytes(image);
   Counter counter{stream, totals};
   for (const Command& command : stream.commands) std::visit(counter, command);
   return totals;

@@ -37,7 +37,7 @@ struct ChunkInfo {
 };
 inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"BUFS", 1},
-                                                   {"IMGS", 5},
+                                                   {"IMGS", 6},
                                                    {"SAMP", 3},
                                                    {"SHAD", 1},
                                                    {"PIPE", 6},

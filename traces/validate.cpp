@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <set>
 
 #include "models/base/error.h"
+#include "traces/attachment_texels.h"
 #include "traces/command_stream.h"
 #include "traces/validate_draws.h"
 
@@ -63,9 +65,13 @@ void check_samples(const Image& image, std::size_t index) {
 }
 
 void check_texels(const Image& image, std::size_t index) {
-  const std::uint64_t bytes = image.packed || image.is_attachment() ? 0 : texel_bytes(image);
-  if (image.is_attachment() && (image.packed || !image.texels.empty()))
-    throw user_error("image {} '{}': an attachment brings no texels", index, image.name);
+  const bool brings = !image.packed && (!image.is_attachment() || begins_with_texels(image));
+  const std::uint64_t bytes = brings ? texel_bytes(image) : 0;
+  if (image.is_attachment() && image.packed)
+    throw user_error("image {} '{}': an attachment that is packed", index, image.name);
+  if (begins_with_texels(image) && image.samples > 1)
+    throw user_error("image {} '{}': an attachment of {} samples a pixel brings texels; one of 1 may", index,
+                     image.name, image.samples);
   const std::uint32_t most_layers = image.kind == ImageKind::k3D ? 1 : kMaxLayers;
   if (image.layers == 0 || image.layers > most_layers)
     throw user_error("image {} '{}': {} layers; 1..{} are possible (1 of a volume)", index, image.name,
@@ -73,6 +79,19 @@ void check_texels(const Image& image, std::size_t index) {
   if (image.texels.size() != bytes) {
     throw user_error("image {} '{}': {} bytes of texels where {}x{} with {} levels takes {}", index,
                      image.name, image.texels.size(), image.width, image.height, image.levels, bytes);
+  }
+}
+
+/// Depths are what passes could have stored.
+void check_depths(const Image& image, std::size_t index) {
+  const bool floats = image.format == Format::kD32Float || image.format == Format::kD32FloatS8Uint;
+  if (!floats || !begins_with_texels(image)) return;
+  for (std::size_t at = 0; at < image.texels.size(); at += format_bytes(image.format)) {
+    float depth = 0;
+    std::memcpy(&depth, &image.texels[at], sizeof depth);
+    if (!(depth >= 0 && depth <= 1))
+      throw user_error("image {} '{}': it begins with a depth of {}, which is outside 0..1", index,
+                       image.name, depth);
   }
 }
 
@@ -89,7 +108,8 @@ void check_kind(const Image& image, std::size_t index) {
   if (image.kind == ImageKind::k3D && std::max(image.width, image.height) > kMaxDepth)
     throw user_error("image {} '{}': a volume of {}x{}; each side must be 1..{}", index, image.name,
                      image.width, image.height, kMaxDepth);
-  if (!image.is_attachment() && texel_bytes(image) > kMaxTexelBytes)
+  const bool brings = !image.is_attachment() || begins_with_texels(image);
+  if (brings && texel_bytes(image) > kMaxTexelBytes)
     throw user_error("image {} '{}': {} bytes of texels; at most {} are possible", index, image.name,
                      texel_bytes(image), kMaxTexelBytes);
 }
@@ -106,6 +126,7 @@ void check_image(const Image& image, std::size_t index) {
                      image.width, image.height, full_chain);
   }
   check_texels(image, index);
+  check_depths(image, index);
 }
 
 void check_sampler(const Sampler& sampler, std::size_t index) {

@@ -9,6 +9,7 @@
 
 #include "models/base/error.h"
 #include "models/rop/blend.h"
+#include "traces/attachment_texels.h"
 
 namespace quadrille::traces {
 namespace {
@@ -44,6 +45,7 @@ bool within(float value, float low, float high) { return value >= low && value <
 }  // namespace
 
 void CommandWalk::run() {
+  for_each_begun_part(stream_, [this](const ImagePart& part) { stored_.insert(part); });
   for (at_ = 0; at_ < stream_.commands.size(); ++at_) {
     std::visit([this](const auto& command) { visit(command); }, stream_.commands[at_]);
   }

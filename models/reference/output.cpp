@@ -209,6 +209,14 @@ PixelCode store_depth(traces::Format format, double depth) {
   return code;
 }
 
+double load_depth(traces::Format format, const PixelCode& code) {
+  return decode(format_info(format).component[0], code);
+}
+std::uint8_t load_stencil(traces::Format format, const PixelCode& code) {
+  const ComponentBits& stencil = format_info(format).stencil;
+  return stencil.bits == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(bits_of(stencil, code));
+}
+
 bool stencil_passes(const traces::StencilFace& face, std::uint8_t stored) {
   return depth_passes(face.compare, face.reference & face.compare_mask, stored & face.compare_mask);
 }

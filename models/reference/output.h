@@ -17,6 +17,10 @@ namespace quadrille::models::reference {
 /// A pixel of a depth attachment, as shaders sample it: without stencil values.
 [[nodiscard]] PixelCode store_depth(traces::Format format, double depth);
 
+/// What a pixel of a depth attachment holds; 0 of stencil values where the format has none.
+[[nodiscard]] double load_depth(traces::Format format, const PixelCode& code);
+[[nodiscard]] std::uint8_t load_stencil(traces::Format format, const PixelCode& code);
+
 /// May a fragment stay whose stencil values compare so? `stored` is what the pixel holds.
 [[nodiscard]] bool stencil_passes(const traces::StencilFace& face, std::uint8_t stored);
 /// What the pixel holds after an operation.

@@ -13,6 +13,7 @@
 #include "models/reference/output.h"
 #include "models/reference/primitives.h"
 #include "models/reference/transparency.h"
+#include "traces/attachment_texels.h"
 
 namespace quadrille::models::reference {
 namespace {
@@ -47,6 +48,7 @@ class Renderer {
     }
     for (const traces::Command& command : stream.commands)
       passes_ += std::holds_alternative<traces::BeginPass>(command) ? 1u : 0u;
+    traces::for_each_begun_part(stream, [this](const traces::ImagePart& part) { begin_with_texels(part); });
     if (passes_ == 0) throw user_error("command stream '{}': no render pass to draw", stream.name);
     if (options.precision.subpixel_bits < 1 || options.precision.subpixel_bits > 16) {
       throw user_error("reference: subpixel_bits is {}, must be 1..16", options.precision.subpixel_bits);
@@ -70,6 +72,31 @@ class Renderer {
   }
 
  private:
+  /// What earlier frames left, as if a pass had stored it.
+  void begin_with_texels(const traces::ImagePart& part) {
+    const traces::Image& image = stream_.images[part.image];
+    const std::span<const std::byte> texels = traces::part_texels(image, part.level, part.layer);
+    const std::size_t bytes = traces::format_bytes(image.format);
+    std::vector<PixelCode> codes(texels.size() / bytes);
+    for (std::size_t i = 0; i < codes.size(); ++i)
+      std::memcpy(codes[i].word.data(), texels.data() + bytes * i, bytes);
+    if ((image.usage & traces::kDepthAttachment) != 0) {
+      for (PixelCode& code : codes) {
+        depths_[part].push_back(load_depth(image.format, code));
+        stencils_[part].push_back(load_stencil(image.format, code));
+      }
+    } else {
+      ColorTarget& color = colors_[part];
+      color.format = image.format;
+      color.code = codes;
+      for (const PixelCode& code : codes) {
+        const std::array<double, 4> linear = load_color(image.format, code);
+        color.linear.insert(color.linear.end(), linear.begin(), linear.end());
+      }
+    }
+    keep(part, codes);
+  }
+
   [[nodiscard]] bool seen() const { return all_passes_ || pass_ == passes_; }
 
   void execute(const traces::BeginPass& pass) {
@@ -176,7 +203,7 @@ class Renderer {
     if ((stream_.images[part.image].usage & traces::kSampled) == 0) return;
     const auto [place, fresh] = drawn_.try_emplace({part.image, part.layer}, stream_.images[part.image]);
     traces::Image& image = place->second;
-    if (fresh) image.texels.resize(traces::texel_bytes(image));
+    if (fresh) image.texels.assign(traces::texel_bytes(image) / image.layers, std::byte{0});
     std::byte* at = image.texels.data();
     for (std::uint32_t level = 0; level < part.level; ++level) at += traces::level_bytes(image, level);
     const std::size_t bytes = traces::format_bytes(image.format);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "models/base/error.h"
+#include "traces/attachment_texels.h"
 
 namespace quadrille::pipeline {
 namespace {
@@ -72,7 +73,7 @@ void AttachmentLives::check_sampled(const traces::TextureDescriptor& bound, std:
 
 void AttachmentLives::check_sampled(const traces::ImagePart& part, std::size_t pass,
                                     const std::string& program) const {
-  bool stored = false;
+  bool stored = traces::begins_with_texels(stream_.images[part.image]);
   for (const Use& use : uses_.at(part)) {
     if (!use.attached || use.pass > pass) continue;
     if (use.pass == pass)

@@ -1,6 +1,7 @@
 #include "pipeline/driver/device_resources.h"
 
 #include "models/memory/surface.h"
+#include "traces/attachment_texels.h"
 
 #include <algorithm>
 #include <cstring>
@@ -16,6 +17,16 @@ models::TextureExtent extent_of(const traces::Image& image) {
 models::SurfaceLayout level_surface(const traces::Image& image, std::uint32_t level) {
   return models::surface_layout(traces::level_width(image, level), traces::level_height(image, level),
                                 image.samples, models::format_bytes(image.format));
+}
+
+/// Writes the texels of a level of a layer to where they lie, before the frame begins.
+void bring_texels(models::DeviceMemory& memory, const models::SurfaceLayout& surface,
+                  std::span<const std::byte> texels) {
+  const std::span<std::byte> bytes = memory.write(surface.base, surface.bytes());
+  const std::byte* from = texels.data();
+  for (std::uint32_t y = 0; y < surface.height; ++y)
+    for (std::uint32_t x = 0; x < surface.width; ++x, from += surface.pixel_bytes)
+      std::memcpy(bytes.data() + (surface.pixel_address(x, y) - surface.base), from, surface.pixel_bytes);
 }
 
 }  // namespace
@@ -92,10 +103,16 @@ std::span<const models::SurfaceLayout> DeviceResources::layer(traces::Index inde
   if (surfaces.empty()) {
     surfaces.reserve(std::size_t{image.layers} * image.levels);
     for (std::uint32_t l = 0; l < image.layers; ++l)
-      for (std::uint32_t level = 0; level < image.levels; ++level)
-        surfaces.push_back(surface(level_surface(image, level)));
+      for (std::uint32_t level = 0; level < image.levels; ++level) place_level(image, l, level, surfaces);
   }
   return std::span(surfaces).subspan(std::size_t{layer} * image.levels, image.levels);
+}
+
+void DeviceResources::place_level(const traces::Image& image, std::uint32_t layer, std::uint32_t level,
+                                  std::vector<models::SurfaceLayout>& surfaces) {
+  surfaces.push_back(surface(level_surface(image, level)));
+  if (traces::begins_with_texels(image))
+    bring_texels(memory_, surfaces.back(), traces::part_texels(image, level, layer));
 }
 
 const models::SurfaceLayout& DeviceResources::attachment(const traces::ImagePart& part) {

@@ -51,6 +51,9 @@ class DeviceResources {
   [[nodiscard]] const Texture& whole_texture(traces::Index image);
   /// The levels of a layer of an attachment, finest first.
   [[nodiscard]] std::span<const models::SurfaceLayout> layer(traces::Index index, std::uint32_t layer);
+  /// Places a level of a layer, behind those that are placed, and brings the texels that it begins with.
+  void place_level(const traces::Image& image, std::uint32_t layer, std::uint32_t level,
+                   std::vector<models::SurfaceLayout>& surfaces);
 
   const traces::CommandStream& stream_;
   models::DeviceMemory& memory_;

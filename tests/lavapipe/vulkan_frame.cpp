@@ -7,6 +7,7 @@
 #include "models/base/error.h"
 #include "models/base/format.h"
 #include "tests/lavapipe/vulkan_enums.h"
+#include "traces/attachment_texels.h"
 
 namespace quadrille::lavapipe {
 namespace {
@@ -67,7 +68,8 @@ bool may_be_cube(const traces::Image& image) {
 VkImageUsageFlags usage_of(const traces::Image& image) {
   VkImageUsageFlags usage =
       image.is_attachment() ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-  if (image.levels > 1 || image.layers > 1) usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  if (image.levels > 1 || image.layers > 1 || traces::begins_with_texels(image))
+    usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
   if ((image.usage & traces::kSampled) != 0) usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
   if ((image.usage & traces::kColorAttachment) != 0) usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   if ((image.usage & traces::kDepthAttachment) != 0) usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -111,6 +113,7 @@ void VulkanFrame::upload_images() {
                                            .may_be_cube = may_be_cube(source)});
     if (!source.is_attachment()) upload_texels(source, image);
     images_.push_back(image);
+    if (traces::begins_with_texels(source)) hold_texels(static_cast<traces::Index>(images_.size() - 1));
   }
 }
 
@@ -187,6 +190,7 @@ VkSampler VulkanFrame::sampler_of(const SamplerKey& key) {
 
 void VulkanFrame::record() {
   commands_ = device_.begin_commands(cleanup_);
+  for (const auto& [index, held] : held_) bring_texels(index, held);
   if (queries_ != nullptr) queries_->reset(commands_);
   else stream_queries_.reset(commands_);
   const auto commands = commands_;

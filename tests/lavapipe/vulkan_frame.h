@@ -70,6 +70,13 @@ class VulkanFrame {
   void upload_images();
   [[nodiscard]] VkSampler sampler_of(const SamplerKey& key);
   void upload_texels(const traces::Image& source, const Image& image);
+  /// Texels that an attachment begins with: a buffer that each submission copies them from, at its begin.
+  struct HeldTexels {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    std::vector<VkBufferImageCopy> copies;
+  };
+  void hold_texels(traces::Index index);
+  void bring_texels(traces::Index index, const HeldTexels& held);
   /// Levels and layers that a view sees.
   struct Seen {
     traces::ImagePart finest;
@@ -109,6 +116,7 @@ class VulkanFrame {
   std::uint32_t passes_ = 0;  ///< recorded
   std::vector<VkBuffer> buffers_;
   std::vector<Image> images_;
+  std::map<traces::Index, HeldTexels> held_;            ///< by attachment
   std::map<traces::ImagePart, VkImageLayout> layouts_;  ///< of attachments, at this point of the recording
   std::map<Seen, VkImageView> views_;
   std::map<SamplerKey, VkSampler> samplers_;

@@ -1,6 +1,9 @@
 /// Each case damages one thing in a valid stream and asks for the refusal that names it.
 #include <catch2/catch.hpp>
+
+#include <cstring>
 #include <limits>
+#include <memory>
 
 #include "tests/traces/defects.h"
 
@@ -221,8 +224,21 @@ TEST_CASE("validate: objects") {
        }},
       {"layer 1 of image 0 'white', which has 1",
        [](auto& s) { s.descriptor_sets[0].textures[0].layer = 1; }},
-      {"image 1 'colour': an attachment brings no texels",
-       [](auto& s) { s.images[1].texels.resize(std::size_t{4} * 64 * 32); }},
+      {"image 1 'colour': 8191 bytes of texels where 64x32 with 1 levels takes 8192",
+       [](auto& s) { s.images[1].texels.resize(std::size_t{4} * 64 * 32 - 1); }},
+      {"image 1 'colour': an attachment of 4 samples a pixel brings texels; one of 1 may",
+       [](auto& s) {
+         s.images[1].texels.resize(std::size_t{4} * 64 * 32);
+         s.images[1].samples = 4;
+       }},
+      {"image 1 'colour': an attachment that is packed",
+       [](auto& s) { s.images[1].packed = std::make_shared<const UnpackTexels>(); }},
+      {"image 2 'depth': it begins with a depth of 2, which is outside 0..1",
+       [](auto& s) {
+         const float depth = 2;
+         s.images[2].texels.resize(std::size_t{4} * 64 * 32);
+         std::memcpy(&s.images[2].texels[400], &depth, sizeof depth);
+       }},
   });
 }
 

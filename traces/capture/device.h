@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "traces/capture/capture_file.h"
@@ -34,6 +35,8 @@ class Device {
   void fill_buffer(const Value& call);
   void copy_to_image(Handle source, Handle target, const Value& region);
   void copy_image(Handle source, Handle target, const Value& region);
+  /// A frame has left that in a level of a layer of an image, as its attachment's format stores it.
+  void keep_drawn(Handle handle, std::uint32_t level, std::uint32_t layer, std::span<const std::byte> texels);
   void write_buffer(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);
 
   [[nodiscard]] Descriptors& set(Handle handle);
@@ -54,6 +57,7 @@ class Device {
   std::map<Handle, SwapchainObject> swapchains;
   std::map<Handle, PipelineObject> pipelines;
   std::map<Handle, CommandBufferObject> command_buffers;
+  std::set<Handle> read_back;  ///< buffers that hold what passes drew: no draw may use them
 
  private:
   void make(const KeptCall& call);

@@ -8,6 +8,14 @@
 #include "traces/capture/vulkan_names.h"
 
 namespace quadrille::capture {
+namespace {
+
+/// What lies above depths of 24 bits when they are copied is not defined: stencil values of 0.
+void clear_high_bytes(std::vector<std::byte>& depths) {
+  for (std::size_t at = 3; at < depths.size(); at += 4) depths[at] = std::byte{0};
+}
+
+}  // namespace
 
 void Device::write(const Block& block) {
   if (block.id == kFillMemory) {
@@ -76,8 +84,20 @@ void Device::write_image(const Block& block) {
       throw user_error("contents of image {}: level {} of {} has {} bytes where {} remain", handle, level,
                        image.levels, bytes, rest.size());
     image.texels[level].assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(bytes));
+    if (image.format == VK_FORMAT_D24_UNORM_S8_UINT || image.format == VK_FORMAT_X8_D24_UNORM_PACK32)
+      clear_high_bytes(image.texels[level]);
     rest = rest.subspan(bytes);
   }
+  ++image.writes;
+}
+
+void Device::keep_drawn(Handle handle, std::uint32_t level, std::uint32_t layer,
+                        std::span<const std::byte> texels) {
+  ImageObject& image = images.at(handle);
+  std::vector<std::byte>& all = image.texels.at(level);
+  const std::size_t begin = texels.size() * layer;
+  if (all.size() < begin + texels.size()) all.resize(begin + texels.size());
+  std::ranges::copy(texels, all.begin() + static_cast<std::ptrdiff_t>(begin));
   ++image.writes;
 }
 

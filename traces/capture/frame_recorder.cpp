@@ -135,16 +135,24 @@ bool FrameRecorder::label(const Call& call) {
   return true;
 }
 
+void FrameRecorder::keep(const traces::FrameContents& contents) {
+  for (const auto& [part, texels] : contents.parts)
+    device_.keep_drawn(tables_.image_of(part.image), part.level, part.layer, texels);
+  for (const auto& [buffer, data] : contents.buffers)
+    device_.write_buffer(tables_.buffer_of(buffer), 0, data);
+}
+
 traces::CommandStream FrameRecorder::take() {
   if (in_pass_) end_pass();
   // What is shown was drawn earlier: a last pass, without a draw, makes it the picture.
-  if (presented_ != 0 && last_shown_ != presented_ && tables_.stored_part(presented_, 0, 0)) {
+  if (presented_ != 0 && last_shown_ != presented_ && tables_.holds(presented_, 0, 0)) {
     begin_blit(presented_, 0, 0);
     end_pass();
   }
   if (presented_ != 0 && last_shown_ != presented_)
     throw user_error("the last pass of the frame draws to image {}, and image {} is shown", last_shown_,
                      presented_);
+  tables_.forget_unneeded();
   return std::move(tables_.stream);
 }
 

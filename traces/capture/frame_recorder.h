@@ -16,6 +16,7 @@
 #include "traces/capture/device.h"
 #include "traces/capture/raster_state.h"
 #include "traces/capture/stream_tables.h"
+#include "traces/frame_contents.h"
 
 namespace quadrille::capture {
 
@@ -58,6 +59,8 @@ class FrameRecorder {
   [[nodiscard]] const std::map<std::string, std::size_t>& unsupported() const { return unsupported_; }
   /// What is drawn without being known, a line each.
   [[nodiscard]] const std::set<std::string>& notes() const { return tables_.notes(); }
+  /// Makes what the frame, which was taken, has left the contents of the objects of the capture.
+  void keep(const traces::FrameContents& contents);
   /// The frame. Its last pass draws to what is shown. Throws `UserError` if there is none.
   [[nodiscard]] traces::CommandStream take();
 
@@ -106,7 +109,7 @@ class FrameRecorder {
   void begin_render_pass(const Value& info);
   void begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth);
   void end_pass();
-  void note_lacking_contents();
+  void note_begin();
   void clear_attachments(const Value& call);
   void clear_at_begin(const Value& attachment);
   void clear_area(const Value& attachment, const Value& rect);
@@ -118,7 +121,6 @@ class FrameRecorder {
   void clear_image(const Value& call);
   bool copy(const Call& call);
   void copy_images(const Value& call);
-  void bring_contents(const StoredPart& part, bool stays);
   void begin_blit(Handle target, std::uint32_t level, std::uint32_t layer);
   void fill(traces::Pipeline pipeline, OwnShader fragment, const AreaConstants& constants, const Area& area,
             const char* label);

@@ -14,13 +14,26 @@ namespace {
 
 constexpr std::size_t kMostReasons = 12;  // that an error names
 
+std::string counted(const std::map<std::string, std::size_t>& reasons) {
+  std::string text;
+  std::size_t named = 0;
+  for (const auto& [reason, count] : reasons) {
+    if (named++ == kMostReasons) return text + fmt::format("; and {} more", reasons.size() - kMostReasons);
+    text += fmt::format("{}{} (x{})", named == 1 ? "" : "; ", reason, count);
+  }
+  return text;
+}
+
+}  // namespace
+
 /// A capture while it is read.
-class Reading {
+class CaptureFrames::Reading {
  public:
-  explicit Reading(CaptureFile file) : file_(std::move(file)), recorder_(device_) {}
+  explicit Reading(CaptureFile file) : file_(std::move(file)) {}
 
   /// Reads on until a frame is presented; false at the end of the file.
   bool read_frame() {
+    recorder_ = std::make_unique<FrameRecorder>(device_);
     while (std::optional<Block> block = file_.next()) {
       try {
         if (take(*block)) return true;
@@ -32,7 +45,10 @@ class Reading {
     }
     return false;
   }
-  [[nodiscard]] FrameRecorder& recorder() { return recorder_; }
+  /// The frame, validated; none at the end of the file.
+  [[nodiscard]] std::optional<Import> frame(const ImportOptions& options);
+  [[nodiscard]] FrameRecorder& recorder() { return *recorder_; }
+  [[nodiscard]] const std::string& name() const { return file_.name(); }
   [[nodiscard]] const std::map<std::string, std::size_t>& calls() const { return calls_; }
 
  private:
@@ -49,57 +65,72 @@ class Reading {
     }
     const auto call = std::make_shared<Call>(
         Call{block.index, known->name, read_parameters(*known, block.data), block.held});
-    if (known->name == "QueueSubmit" || known->name == "QueueSubmit2") recorder_.submit(*call);
-    else if (known->name == "QueuePresentKHR") recorder_.present(*call);
+    if (known->name == "QueueSubmit" || known->name == "QueueSubmit2") recorder_->submit(*call);
+    else if (known->name == "QueuePresentKHR") recorder_->present(*call);
     else device_.apply(call);
-    return recorder_.presented();
+    return recorder_->presented();
   }
 
   CaptureFile file_;
   Device device_;
-  FrameRecorder recorder_;
+  std::unique_ptr<FrameRecorder> recorder_;  ///< of the latest frame
   std::map<std::string, std::size_t> calls_;
 };
 
-std::string counted(const std::map<std::string, std::size_t>& reasons) {
-  std::string text;
-  std::size_t named = 0;
-  for (const auto& [reason, count] : reasons) {
-    if (named++ == kMostReasons) return text + fmt::format("; and {} more", reasons.size() - kMostReasons);
-    text += fmt::format("{}{} (x{})", named == 1 ? "" : "; ", reason, count);
-  }
-  return text;
+std::optional<Import> CaptureFrames::Reading::frame(const ImportOptions& options) {
+  if (!read_frame()) return std::nullopt;
+  std::optional<Import> made(std::in_place);
+  made->skipped = recorder_->unsupported();
+  if (!made->skipped.empty() && !options.skip_unsupported)
+    throw user_error("{}: not supported: {}; --skip-unsupported draws without it", name(),
+                     counted(made->skipped));
+  try {
+    made->stream = recorder_->take();
+    made->notes = recorder_->notes();
+    made->stream.name = name();
+    traces::validate(made->stream);
+  } catch (const UserError& error) { throw user_error("{}: {}", name(), error.what()); }
+  return made;
 }
 
-Import import_frame(CaptureFile file, const ImportOptions& options) {
-  const std::string name = file.name();
-  Reading reading(std::move(file));
-  if (!reading.read_frame()) throw user_error("{}: it presents no frame", name);
-  FrameRecorder& recorder = reading.recorder();
-  Import made;
-  made.skipped = recorder.unsupported();
-  if (!made.skipped.empty() && !options.skip_unsupported)
-    throw user_error("{}: not supported: {}; --skip-unsupported draws without it", name,
-                     counted(made.skipped));
-  made.notes = recorder.notes();
-  try {
-    made.stream = recorder.take();
-    made.stream.name = name;
-    traces::validate(made.stream);
-  } catch (const UserError& error) { throw user_error("{}: {}", name, error.what()); }
-  return made;
+CaptureFrames::CaptureFrames(const std::string& path, const ImportOptions& options)
+    : reading_(std::make_unique<Reading>(CaptureFile(path))), options_(options) {}
+CaptureFrames::CaptureFrames(const std::string& name, std::vector<std::byte> bytes,
+                             const ImportOptions& options)
+    : reading_(std::make_unique<Reading>(CaptureFile(name, std::move(bytes)))), options_(options) {}
+CaptureFrames::~CaptureFrames() = default;
+
+std::optional<Import> CaptureFrames::next() { return reading_->frame(options_); }
+void CaptureFrames::keep(const traces::FrameContents& contents) { reading_->recorder().keep(contents); }
+
+std::size_t count_frames(const std::string& path) {
+  CaptureFile file(path);
+  std::size_t frames = 0;
+  while (const std::optional<Block> block = file.next())
+    frames += block->kind == BlockKind::kCall && call_name(block->id) == "QueuePresentKHR" ? 1u : 0u;
+  return frames;
+}
+
+namespace {
+
+Import first_of(CaptureFrames& frames, const std::string& name) {
+  std::optional<Import> first = frames.next();
+  if (!first) throw user_error("{}: it presents no frame", name);
+  return *std::move(first);
 }
 
 }  // namespace
 
 Import import_capture(const std::string& path, const ImportOptions& options) {
-  return import_frame(CaptureFile(path), options);
+  CaptureFrames frames(path, options);
+  return first_of(frames, path);
 }
 Import import_bytes(const std::string& name, std::vector<std::byte> bytes, const ImportOptions& options) {
-  return import_frame(CaptureFile(name, std::move(bytes)), options);
+  CaptureFrames frames(name, std::move(bytes), options);
+  return first_of(frames, name);
 }
 
-std::string capture_info(const std::string& path) {
+std::string CaptureFrames::info(const std::string& path) {
   Reading reading{CaptureFile(path)};
   const bool whole = reading.read_frame();
   std::string text = fmt::format("{}: a capture of gfxreconstruct\n", path);
@@ -113,5 +144,7 @@ std::string capture_info(const std::string& path) {
   for (const auto& [reason, count] : unsupported) text += fmt::format("{:8} {}\n", count, reason);
   return text;
 }
+
+std::string capture_info(const std::string& path) { return CaptureFrames::info(path); }
 
 }  // namespace quadrille::capture

@@ -107,9 +107,9 @@ struct CommandBufferObject {
 };
 
 /// Of an object that a call names. Throws `UserError` for one that was never created.
-template <class T>
-[[nodiscard]] const T& object(const std::map<Handle, T>& table, Handle handle, const char* what) {
-  const auto found = table.find(handle);
+template <class Key, class T>
+[[nodiscard]] const T& object(const std::map<Key, T>& table, Handle handle, const char* what) {
+  const auto found = table.find(static_cast<Key>(handle));
   if (found == table.end()) throw user_error("{} {} was never created", what, handle);
   return found->second;
 }

@@ -22,7 +22,7 @@ bool FrameRecorder::copy(const Call& call) {
       device_.copy_to_image(p["srcBuffer"].u64(), p["dstImage"].u64(), p["pRegions"].at(i));
   } else if (call.name == "CmdCopyImageToBuffer") {
     // The program reads it back, behind the frame; only a draw that used it would have to know.
-    tables_.note_read_back(p["dstBuffer"].u64());
+    device_.read_back.insert(p["dstBuffer"].u64());
   } else if (call.name == "CmdCopyImage") {
     copy_images(p);
   } else {

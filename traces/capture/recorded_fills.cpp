@@ -134,7 +134,6 @@ void FrameRecorder::blit_region(Handle source, Handle target, const Value& regio
 void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
   const ImageObject& image = object(device_.images, copy.source.image, "image");
   const ViewObject view = view_of_part(copy.source.image, image, copy.source.level, copy.source.layer);
-  bring_contents(copy.target, true);
   const auto width = static_cast<float>(std::max(1u, image.width >> view.level));
   const auto height = static_cast<float>(std::max(1u, image.height >> view.level));
   AreaConstants constants;
@@ -145,10 +144,13 @@ void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
   draw_texture(texture, constants, copy.target, copy.to, label);
 }
 
-/// A pass with one draw.
+/// A pass with one draw. What it covers whole is not loaded.
 void FrameRecorder::draw_texture(const traces::TextureDescriptor& texture, const AreaConstants& constants,
                                  const StoredPart& target, const Area& to, const char* label) {
   begin_blit(target.image, target.level, target.layer);
+  if (to.x == 0 && to.y == 0 && to.width == pass_width_ && to.height == pass_height_)
+    std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]).colors[0].load =
+        traces::LoadOp::kDontCare;
   traces::DescriptorSet set;
   set.textures.push_back(texture);
   emit_change(0, traces::BindDescriptorSet{0, tables_.descriptors(set)});
@@ -173,7 +175,6 @@ void FrameRecorder::clear_image(const Value& call) {
     for (std::uint32_t l = first_level; l < end(first_level, range["levelCount"].u32(), image.levels); ++l)
       for (std::uint32_t a = first_layer; a < end(first_layer, range["layerCount"].u32(), image.layers);
            ++a) {
-        bring_contents({target, l, a}, false);
         begin_blit(target, l, a);
         auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
         set_clear(begin.colors[0], bits,
@@ -181,26 +182,6 @@ void FrameRecorder::clear_image(const Value& call) {
         end_pass();
       }
   }
-}
-
-/// What an image holds before the frame first draws to a part of it: a pass for each level of each layer that
-/// the capture brings, the part itself only where something of it stays.
-void FrameRecorder::bring_contents(const StoredPart& part, bool stays) {
-  const ImageObject& image = object(device_.images, part.image, "image");
-  if (image.type != VK_IMAGE_TYPE_2D || image.samples != 1 || tables_.stored(part.image)) return;
-  if (!models::format_info(image_format(image.format)).may(models::kColorUse)) return;
-  for (std::uint32_t level = 0; level < image.levels; ++level)
-    for (std::uint32_t layer = 0; layer < image.layers; ++layer) {
-      const bool itself = level == part.level && layer == part.layer;
-      const ViewObject view = view_of_part(part.image, image, level, layer);
-      if ((itself && !stays) || !has_texels(image, view)) continue;
-      traces::TextureDescriptor texture = tables_.own_texels(view);
-      texture.sampler = tables_.sampler(copying_sampler(traces::Filter::kNearest));
-      AreaConstants constants;
-      constants.source = {0, 0, 1, 1};
-      const Area all{0, 0, std::max(1u, image.width >> level), std::max(1u, image.height >> level)};
-      draw_texture(texture, constants, {part.image, level, layer}, all, "contents from before");
-    }
 }
 
 void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t layer) {
@@ -216,7 +197,7 @@ void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t
                      image.layers);
   use.level = level;
   use.layer = layer;
-  use.load = tables_.stored_part(target, level, layer) ? traces::LoadOp::kLoad : traces::LoadOp::kDontCare;
+  use.load = tables_.holds(target, level, layer) ? traces::LoadOp::kLoad : traces::LoadOp::kDontCare;
   pass_stores_.push_back({target, level, layer});
   pass_width_ = traces::level_width(image, level);
   pass_height_ = traces::level_height(image, level);

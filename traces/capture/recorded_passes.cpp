@@ -106,7 +106,7 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
   use.load = target.load;
   use.store = target.store;
   // What earlier frames left there is not known but where the capture brings it.
-  if (use.load == traces::LoadOp::kLoad && !tables_.stored_part(view.image, view.level, view.layer)) {
+  if (use.load == traces::LoadOp::kLoad && !tables_.holds(view.image, view.level, view.layer)) {
     use.load = traces::LoadOp::kDontCare;
     pass_lacks_.insert(use.image);
   }
@@ -118,14 +118,6 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
 
 void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const PassTarget& depth) {
   if (in_pass_) end_pass();
-  const auto bring = [&](Handle handle, bool stays) {
-    const ViewObject& view = object(device_.views, handle, "image view");
-    bring_contents({view.image, view.level, view.layer}, stays);
-  };
-  for (const PassTarget& color : colors) {
-    if (color.view != 0) bring(color.view, color.load == traces::LoadOp::kLoad);
-    if (color.resolve != 0) bring(color.resolve, false);
-  }
   pass_ = {};
   pass_stores_.clear();
   pass_lacks_.clear();
@@ -153,6 +145,10 @@ void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const Pass
     pass_.depth.clear = std::bit_cast<float>(depth.clear[0]);
     pass_.depth.clear_stencil = static_cast<std::uint8_t>(depth.clear[1]);
     if (pass_.depth.load == traces::LoadOp::kDontCare) pass_.depth.clear = 1;
+    if (pass_lacks_.contains(pass_.depth.image)) {
+      pass_.depth.load = traces::LoadOp::kClear;
+      pass_.depth.clear_stencil = 0;
+    }
   }
   in_pass_ = true;
   drew_ = false;
@@ -165,21 +161,22 @@ void FrameRecorder::end_pass() {
   if (!in_pass_) return;
   in_pass_ = false;
   tables_.stream.commands.emplace_back(traces::EndPass{});
+  note_begin();
   for (const StoredPart& part : pass_stores_) tables_.note_stored(part.image, part.level, part.layer);
-  note_lacking_contents();
 }
 
-/// Of attachments that no clear at the pass's begin filled.
-void FrameRecorder::note_lacking_contents() {
+/// What the pass begins with, unless a clear at its begin filled it.
+void FrameRecorder::note_begin() {
   const auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
   const auto note = [&](const traces::AttachmentUse& use) {
-    if (use.load == traces::LoadOp::kDontCare && pass_lacks_.contains(use.image))
+    if (use.load == traces::LoadOp::kLoad) tables_.note_needed(use.part());
+    if (pass_lacks_.contains(use.image))
       tables_.note_lacking(use.image,
                            " begins with what an earlier frame left, which the capture does not hold: zeros, "
                            "and depths of 1");
   };
   for (const traces::ColorAttachmentUse& color : begin.colors) note(color);
-  note(begin.depth);
+  if (begin.depth.image != traces::kNone) note(begin.depth);
 }
 
 /// A clear of everything before the first draw is how the pass begins.
@@ -203,8 +200,10 @@ void FrameRecorder::clear_at_begin(const Value& attachment) {
   if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && number < begin.colors.size()) {
     const traces::Format format = tables_.stream.images[begin.colors[number].image].format;
     set_clear(begin.colors[number], bits, traces::is_integer_format(format));
+    pass_lacks_.erase(begin.colors[number].image);
   }
   if ((aspect & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+    pass_lacks_.erase(begin.depth.image);
     begin.depth.load = traces::LoadOp::kClear;
     begin.depth.clear = std::bit_cast<float>(bits[0]);
   }

@@ -31,7 +31,7 @@ Index place(std::vector<T>& table, const T& value) {
 }  // namespace
 
 Index StreamTables::buffer(Handle handle) {
-  if (read_back_.contains(handle)) throw user_error("buffer {} holds what a pass drew", handle);
+  if (device_.read_back.contains(handle)) throw user_error("buffer {} holds what a pass drew", handle);
   const BufferObject& object_of = object(device_.buffers, handle, "buffer");
   const std::uint64_t version = device_.version(object_of);
   const auto found = buffers_.find(handle);
@@ -43,12 +43,15 @@ Index StreamTables::buffer(Handle handle) {
   }
   const Index index = append(stream.buffers, std::move(made));
   buffers_[handle] = {index, version};
+  placed_buffers_[index] = handle;
   return index;
 }
 
 Index StreamTables::attachment(Handle handle) {
-  if (const auto found = attachments_.find(handle); found != attachments_.end()) return found->second;
   const ImageObject& from = object(device_.images, handle, "image");
+  const auto found = attachments_.find(handle);
+  if (found != attachments_.end() && (found->second.writes == from.writes || stored(handle)))
+    return found->second.index;
   traces::Image image;
   image.name = fmt::format("image {}", handle);
   image.format = image_format(from.format);
@@ -62,20 +65,34 @@ Index StreamTables::attachment(Handle handle) {
   image.samples = from.samples;
   image.usage = depth ? traces::kDepthAttachment : traces::kColorAttachment;
   if ((from.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0 && from.samples == 1) image.usage |= traces::kSampled;
-  return attachments_[handle] = append(stream.images, std::move(image));
+  image.texels = attachment_texels(from);
+  const Index index = append(stream.images, std::move(image));
+  attachments_[handle] = {index, from.writes};
+  placed_images_[index] = handle;
+  return index;
+}
+
+bool StreamTables::holds(Handle image, std::uint32_t level, std::uint32_t layer) const {
+  return stored_part(image, level, layer) || holds_part(object(device_.images, image, "image"), level, layer);
+}
+
+void StreamTables::note_needed(const traces::ImagePart& part) {
+  if (!stored_part(image_of(part.image), part.level, part.layer)) needed_.insert(part.image);
+}
+
+Handle StreamTables::image_of(Index attachment) const {
+  return object(placed_images_, attachment, "attachment");
+}
+Handle StreamTables::buffer_of(Index buffer) const { return object(placed_buffers_, buffer, "buffer"); }
+
+void StreamTables::forget_unneeded() {
+  for (Index i = 0; i < stream.images.size(); ++i)
+    if (stream.images[i].is_attachment() && !needed_.contains(i)) stream.images[i].texels = {};
 }
 
 bool StreamTables::stored(Handle image) const {
   const auto found = stored_.lower_bound({image, 0, 0});
   return found != stored_.end() && std::get<0>(*found) == image;
-}
-
-traces::TextureDescriptor StreamTables::own_texels(const ViewObject& view) {
-  traces::TextureDescriptor made;
-  made.first_level = view.level;
-  made.levels = view.levels;
-  made.image = texels(view);
-  return made;
 }
 
 traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
@@ -88,6 +105,9 @@ traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
   if (stored(view.image)) {
     made.image = attachment(view.image);
     made.layer = view.layer;
+    for (std::uint32_t level = 0; level < view.levels; ++level)
+      for (std::uint32_t layer = 0; layer < made.layers; ++layer)
+        note_needed({made.image, view.level + level, view.layer + layer});
   } else {
     made.image = texels(view);
   }

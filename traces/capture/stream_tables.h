@@ -24,7 +24,7 @@ class StreamTables {
   traces::CommandStream stream;
 
   [[nodiscard]] traces::Index buffer(Handle handle);
-  /// The image as an attachment: it holds nothing until a pass stores it.
+  /// The image as an attachment: it begins with what is known of it, and what passes store follows.
   [[nodiscard]] traces::Index attachment(Handle handle);
   /// What a shader samples through the view: the attachment, if a pass of this frame stored it, else the
   /// texels that the capture brings.
@@ -48,10 +48,16 @@ class StreamTables {
   [[nodiscard]] bool stored_part(Handle image, std::uint32_t level, std::uint32_t layer) const {
     return stored_.contains({image, level, layer});
   }
-  /// The buffer holds what passes drew: no draw may use it.
-  void note_read_back(Handle buffer) { read_back_.insert(buffer); }
-  /// A texture of the texels that the capture brings of the image, whatever passes have stored in it.
-  [[nodiscard]] traces::TextureDescriptor own_texels(const ViewObject& view);
+  /// Does a level of a layer hold something when it is loaded: what a pass stored, or what is known from
+  /// before?
+  [[nodiscard]] bool holds(Handle image, std::uint32_t level, std::uint32_t layer) const;
+  /// A pass loads it, or a draw samples it, as it was before the frame.
+  void note_needed(const traces::ImagePart& part);
+  /// Lets attachments that nobody needs so begin with nothing.
+  void forget_unneeded();
+  /// What of the capture stands for an attachment, or a buffer, of the stream. Throws `UserError` for none.
+  [[nodiscard]] Handle image_of(traces::Index attachment) const;
+  [[nodiscard]] Handle buffer_of(traces::Index buffer) const;
   /// Is any part of it stored?
   [[nodiscard]] bool stored(Handle image) const;
   void note_lacking(traces::Index image, std::string_view what) {
@@ -69,7 +75,14 @@ class StreamTables {
     std::uint64_t version;
   };
   std::map<Handle, PlacedBuffer> buffers_;
-  std::map<Handle, traces::Index> attachments_, samplers_;
+  struct PlacedImage {
+    traces::Index index;
+    std::uint64_t writes;  ///< to the image, when it got its place
+  };
+  std::map<Handle, PlacedImage> attachments_;
+  std::map<traces::Index, Handle> placed_images_, placed_buffers_;
+  std::set<traces::Index> needed_;  ///< of attachments, as they were before the frame
+  std::map<Handle, traces::Index> samplers_;
   std::map<std::tuple<Handle, std::uint64_t, std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>,
            traces::Index>
       textures_;
@@ -82,7 +95,6 @@ class StreamTables {
   std::map<std::tuple<traces::Index, std::uint32_t, std::uint64_t, std::uint32_t>, traces::Index> expanded_;
   std::map<OwnShader, traces::Index> own_;
   std::set<std::tuple<Handle, std::uint32_t, std::uint32_t>> stored_;  ///< image, level, layer
-  std::set<Handle> read_back_;
   std::set<std::string> notes_;
 };
 

@@ -107,10 +107,30 @@ TexelBlock texel_block(std::uint32_t format) {
   return {models::is_block_format(ours) ? models::kBlockSide : 1u, models::format_bytes(ours)};
 }
 
-bool has_texels(const ImageObject& image, const ViewObject& view) {
-  const std::size_t bytes = layer_bytes(view.format, std::max(1u, image.width >> view.level),
-                                        std::max(1u, image.height >> view.level));
-  return image.texels[view.level].size() >= bytes * (view.layer + std::size_t{1});
+bool holds_part(const ImageObject& image, std::uint32_t level, std::uint32_t layer) {
+  if (image.samples > 1 || level >= image.levels) return false;
+  const std::size_t bytes =
+      layer_bytes(image.format, std::max(1u, image.width >> level), std::max(1u, image.height >> level));
+  return image.texels[level].size() >= bytes * (layer + std::size_t{1});
+}
+
+std::vector<std::byte> attachment_texels(const ImageObject& image) {
+  Bytes all;
+  bool any = false;
+  for (std::uint32_t level = 0; level < image.levels; ++level) any = any || holds_part(image, level, 0);
+  for (std::uint32_t level = 0; any && level < image.levels; ++level) {
+    const std::uint64_t bytes =
+        std::uint64_t{image.layers} *
+        layer_bytes(image.format, std::max(1u, image.width >> level), std::max(1u, image.height >> level));
+    if (bytes > kMaxObjectBytes)
+      throw user_error("an image of {} bytes a level; at most {} are possible", bytes, kMaxObjectBytes);
+    const std::size_t end = all.size() + bytes;
+    const std::span known =
+        std::span(image.texels[level]).first(std::min<std::size_t>(image.texels[level].size(), bytes));
+    all.insert(all.end(), known.begin(), known.end());
+    all.resize(end);
+  }
+  return all;
 }
 
 std::vector<std::byte> texture_texels(const ImageObject& image, const ViewObject& view, bool& missing) {

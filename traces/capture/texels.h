@@ -23,7 +23,10 @@ struct TexelBlock {
 };
 /// Throws `UserError` for a format that is not known.
 [[nodiscard]] TexelBlock texel_block(std::uint32_t format);
-/// Does the capture bring the view's level of its layer?
-[[nodiscard]] bool has_texels(const ImageObject& image, const ViewObject& view);
+/// Is it known what a level of a layer of an image that passes may draw to holds?
+[[nodiscard]] bool holds_part(const ImageObject& image, std::uint32_t level, std::uint32_t layer);
+/// All levels and layers of such an image of one sample a pixel, as an attachment begins with them; what is
+/// not known is zeros. Empty if nothing is.
+[[nodiscard]] std::vector<std::byte> attachment_texels(const ImageObject& image);
 
 }  // namespace quadrille::capture

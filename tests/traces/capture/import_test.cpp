@@ -6,6 +6,7 @@
 
 #include "models/base/error.h"
 #include "models/precision.h"
+#include "pipeline/frame_contents.h"
 #include "pipeline/render.h"
 #include "tests/traces/capture/small_capture.h"
 #include "traces/capture/import.h"
@@ -100,6 +101,46 @@ TEST_CASE("capture: a pass that begins with an earlier frame's picture says that
   const Import made = import({.loads = true});
   REQUIRE(made.notes.size() == 1);
   CHECK_THAT(*made.notes.begin(), Catch::Contains("begins with what an earlier frame left"));
+}
+
+TEST_CASE("capture: a frame begins with what the one before it left, once that is known") {
+  const SmallCapture wish{.frames = 2};
+  for (const bool known : {false, true}) {
+    CAPTURE(known);
+    CaptureFrames frames("small.gfxr", small_capture(wish));
+    const Import first = *frames.next();
+    if (known) frames.keep(pipeline::contents_after(first.stream, models::Precision{}));
+    const Import second = *frames.next();
+    CHECK(second.notes.empty() == known);
+    const std::vector<std::uint32_t> before = picture(first.stream), after = picture(second.stream);
+    CHECK(before[16 * 2 + 14] == kBlue);
+    CHECK(after[16 * 2 + 14] == kTriangle);                 // the second frame's
+    CHECK(after[16 * 12 + 2] == (known ? kTriangle : 0u));  // the first one's
+    CHECK(after[16 * 12 + 14] == (known ? kBlue : 0u));     // its clear
+    CHECK_FALSE(frames.next());
+  }
+}
+
+TEST_CASE("capture: a buffer that a frame's programs wrote is what the next frame reads") {
+  CaptureFrames frames("small.gfxr", small_capture({.frames = 3}));
+  (void)frames.next();
+  const Import second = *frames.next();
+  const float places[6] = {-1, -1, -1,
+                           1,  1,  1};  // the first frame's triangle, as if a program had written it
+  const auto bytes = std::as_bytes(std::span(places));
+  frames.keep({.parts = {}, .buffers = {{0, {bytes.begin(), bytes.end()}}}});
+  const std::vector<std::uint32_t> before = picture(second.stream), after = picture(frames.next()->stream);
+  CHECK(before[16 * 12 + 2] == 0);
+  CHECK(after[16 * 12 + 2] == kTriangle);
+}
+
+TEST_CASE("capture: contents that no draw of the frame can see are not brought") {
+  CaptureFrames frames("small.gfxr", small_capture({.frames = 3}));
+  CHECK(frames.next()->stream.images[0].texels.empty());
+  const Import lacking = *frames.next();
+  CHECK(lacking.stream.images[0].texels.empty());
+  frames.keep(pipeline::contents_after(lacking.stream, models::Precision{}));
+  CHECK(frames.next()->stream.images[0].texels.size() == 16 * 16 * 4);
 }
 
 TEST_CASE("capture: copies in the frame change what its draws read") {

@@ -134,6 +134,7 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish) {
   command("BeginCommandBuffer", {});
   const json clear{{"color", json::array({0, 0, 0x3f800000, 0x3f800000})}};  // blue
   const json color{{"imageView", kShownView},
+                   {"storeOp", VK_ATTACHMENT_STORE_OP_STORE},
                    {"loadOp", wish.loads ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR},
                    {"clearValue", clear}};
   const json area{{"extent", {{"width", 16}, {"height", 16}}}};
@@ -169,6 +170,14 @@ std::vector<std::byte> small_capture(const SmallCapture& wish) {
   add_descriptors(file);
   add_pipeline(file, wish);
   add_commands(file, wish);
+  for (int frame = 1; frame < wish.frames; ++frame) {
+    const std::array<float, 6> places{0, -1, 1, -1, 1, 0};
+    if (frame == 1) file.fill_memory(kMemory, 8, std::as_bytes(std::span(places)));
+    SmallCapture later = wish;
+    later.loads = true;
+    later.before.clear();
+    add_commands(file, later);
+  }
   return file.bytes();
 }
 

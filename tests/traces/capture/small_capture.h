@@ -39,6 +39,8 @@ struct SmallCapture {
   const char* extra_command = nullptr;  ///< a command without a meaning here, by name, within the pass
   bool sampler_counts_texels = false;
   bool loads = false;  ///< the pass begins with what was there
+  /// Of a second frame and so on: a triangle in the upper right quarter, on top of what was there.
+  int frames = 1;
   /// commands before the pass, with their parameters
   std::vector<std::pair<const char*, nlohmann::json>> before{};
 };

@@ -24,7 +24,7 @@ function overview(d, slowest) {
   const fps = (all) => ratio(1e6 * cycles.clock_mhz * frames.length, all);
   return section('overview', 'The frames', null,
     h('div', { class: 'cards' },
-      card('Frames', frames.length, integer, d.animation_s !== null ? `of ${decimal(d.animation_s)} s of animation` : 'around the scene'),
+      card('Frames', frames.length, integer, d.animation_s !== null ? `of ${decimal(d.animation_s)} s of animation` : frames[0].turn !== null ? 'around the scene' : 'of a capture'),
       card('Mean cycles of a frame', sum(frames.map(cyclesOf)) / frames.length, integer, `${integer(least(frames.map(cyclesOf)))} to ${integer(greatest(frames.map(cyclesOf)))}`),
       card('Slowest frame', slowest.frame, integer, `${integer(cyclesOf(slowest))} cycles`, momentOf(slowest)),
       card(term('one after another', 'Frames a second, one after another'), fps(cycles.one_after_another), decimal),

@@ -1,10 +1,15 @@
-/// The program whose frame is captured in spinning_cube.gfxr: OpenGL 2.1 with GLX, 96x72 pixels.
+/// The program whose frames are captured in spinning_cube.gfxr and trail.gfxr: OpenGL 2.1 with GLX, 96x72
+/// pixels.
 ///
 /// It has what a small real program has: a lit and textured cube with a depth test and mip levels, drawn with
-/// indices, and a blended rectangle that a scissor cuts. The build does not need it. To capture anew, with
-/// libgl-dev and libx11-dev installed:
+/// indices, and a blended rectangle that a scissor cuts. With "trail" each frame is drawn on top of the one
+/// before it, its colours and its depths, in a framebuffer of the program's own. The build does not need it.
+/// To capture anew, with libgl-dev and libx11-dev installed:
 ///   g++ -O1 -o /tmp/spinning_cube tests/traces/capture/own/spinning_cube.cpp -lGL -lX11
 ///   scripts/capture --frame 3 --out tests/traces/capture/own/spinning_cube /tmp/spinning_cube
+///   scripts/capture --frame 1 --frames 3 --out tests/traces/capture/own/trail /tmp/spinning_cube trail
+/// Of the latter's pictures the first is not kept: gfxreconstruct's replay shows nothing yet in a program's
+/// first frame.
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
 #include <GL/glext.h>
@@ -16,6 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <vector>
 
 namespace {
@@ -145,14 +151,38 @@ std::array<float, 16> cube_matrix(float angle) {
   return m;
 }
 
-void draw(GLuint made, int frame) {
+/// Colours and depths that stay from frame to frame.
+GLuint framebuffer() {
+  std::array<GLuint, 2> buffers{};
+  glGenRenderbuffers(2, buffers.data());
+  glBindRenderbuffer(GL_RENDERBUFFER, buffers[0]);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, kWidth, kHeight);
+  glBindRenderbuffer(GL_RENDERBUFFER, buffers[1]);
+  glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, kWidth, kHeight);
+  GLuint made = 0;
+  glGenFramebuffers(1, &made);
+  glBindFramebuffer(GL_FRAMEBUFFER, made);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffers[0]);
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, buffers[1]);
+  return made;
+}
+
+void show(GLuint drawn) {
+  glDisable(GL_SCISSOR_TEST);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, drawn);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  glBlitFramebuffer(0, 0, kWidth, kHeight, 0, 0, kWidth, kHeight, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, drawn);
+}
+
+void draw(GLuint made, int frame, bool clears) {
   const auto set = [made](const char* name) { return glGetUniformLocation(made, name); };
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CULL_FACE);
   glClearColor(0.1f, 0.2f, 0.3f, 1.0f);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  if (clears) glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   const std::array<float, 16> matrix = cube_matrix(0.6f + 0.05f * static_cast<float>(frame));
   glUniformMatrix4fv(set("matrix"), 1, GL_FALSE, matrix.data());
   glUniform3f(set("light"), 0.4f, 0.7f, 0.6f);
@@ -172,7 +202,7 @@ void draw(GLuint made, int frame) {
 
 }  // namespace
 
-int main() {
+int main(int count, char** words) {
   Display* const display = XOpenDisplay(nullptr);
   if (display == nullptr) {
     std::fputs("spinning_cube: no display\n", stderr);
@@ -194,8 +224,11 @@ int main() {
   const GLuint made = program();
   upload();
   glFinish();  // gfxreconstruct does not see contents of textures that are still under way
+  const bool trail = count > 1 && std::strcmp(words[1], "trail") == 0;
+  const GLuint target = trail ? framebuffer() : 0;
   for (int frame = 0; frame < 8; ++frame) {
-    draw(made, frame);
+    draw(made, frame, !trail || frame == 0);
+    if (trail) show(target);
     glXSwapBuffers(display, window);
   }
   return 0;
