@@ -52,6 +52,7 @@ const std::map<std::string, TextOption>& text_options() {
       {"time", &SceneArguments::time},
       {"animation", &SceneArguments::animation},
       {"exposure", &SceneArguments::exposure},
+      {"environment", &SceneArguments::environment},
       {"shading", &SceneArguments::shading},
       {"order", &SceneArguments::order},
       {"view", &SceneArguments::view},

@@ -12,6 +12,7 @@
 #include "models/base/error.h"
 #include "models/raster/samples.h"
 #include "scenes/builtin/builtin.h"
+#include "scenes/environment/environment.h"
 #include "scenes/image/compress.h"
 #include "scenes/image/image_io.h"
 #include "scenes/scene.h"
@@ -158,6 +159,12 @@ void SceneArguments::add_view_to(CLI::App& command, const std::string& default_s
                   "white wall is almost white, and printed")
       ->type_name("X|auto");
   command
+      .add_option("--environment", environment,
+                  "light from all around, and the background: a picture of all directions, twice as wide as "
+                  "high, in a .hdr or .exr file; or a clear sky, its sun ELEVATION degrees high and AZIMUTH "
+                  "degrees from +z towards +x (default: 35,-40; docs/environment.md)")
+      ->type_name("F|sky[:ELEVATION[,AZIMUTH]]");
+  command
       .add_option("--vert", vert,
                   "vertex shader for all materials: GLSL 4.50, or SPIR-V in a .spv file (docs/shaders.md)")
       ->type_name("F");
@@ -287,6 +294,14 @@ scenes::SceneOptions SceneArguments::options() const {
     if (*given && (vert || frag))
       throw user_error("{}: not together with --vert or --frag, which are shaders of their own", flag);
   }
+  if (environment) {
+    if (vert || frag || view || (shading && *shading != "pbr"))
+      throw user_error(
+          "--environment: not together with --vert, --frag, --view or a --shading other than pbr, which look "
+          "at no map");
+    scenes::check_environment(*environment);
+    options.environment = *environment;
+  }
   if (view && shading) throw user_error("--view: not together with --shading; it shows no shading");
   if (view && color_format)
     throw user_error("--color-format: not together with --view, whose values have a format of their own");
@@ -314,12 +329,13 @@ void SceneArguments::check() const {
   if (supersample && (samples ? parse_samples(*samples) == 1 : !is_trace()))
     throw user_error("--supersample: one sample a pixel is shaded once anyway; add --samples 2, 4 or 8");
   if (is_trace()) {
-    if (size || scene_choice || camera || eye || at || time || animation || exposure || vert || frag ||
-        shading || order || view || color_format || depth_format || alpha_to_coverage || transparency ||
-        transparency_layers) {
+    if (size || scene_choice || camera || eye || at || time || animation || exposure || environment || vert ||
+        frag || shading || order || view || color_format || depth_format || alpha_to_coverage ||
+        transparency || transparency_layers) {
       throw user_error(
           "{}: a trace has its size, camera, pose, light and shaders in it; --size, --scene, --camera, "
-          "--eye, --at, --time, --animation, --exposure, --vert, --frag, --shading, --order, --view, "
+          "--eye, --at, --time, --animation, --exposure, --environment, --vert, --frag, --shading, --order, "
+          "--view, "
           "--color-format, --depth-format, --alpha-to-coverage, --transparency and --transparency-layers "
           "are for scenes",
           scene);

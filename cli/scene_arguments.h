@@ -21,8 +21,8 @@ namespace quadrille::cli {
 
 struct SceneArguments {
   std::string scene;  ///< .gltf, .glb, .qtrace, .gfxr or builtin:NAME
-  std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, shading, order,
-      view, color_format, depth_format, vert, frag;
+  std::optional<std::string> size, scene_choice, camera, eye, at, time, animation, exposure, environment,
+      shading, order, view, color_format, depth_format, vert, frag;
   std::optional<std::string> samples;  ///< a pixel, of a scene or trace
   std::optional<std::string> transparency, transparency_layers;
   std::optional<std::string> anisotropy, compress;

@@ -8,6 +8,7 @@
 #include "models/base/error.h"
 #include "scenes/builtin/builtin.h"
 #include "scenes/data/parallel.h"
+#include "scenes/environment/environment.h"
 #include "scenes/gltf/loader.h"
 #include "scenes/record/recorder.h"
 
@@ -48,6 +49,7 @@ struct Scene::Parts {
   bool animated = false;
   double length = 0;
   std::optional<GltfScene> file;
+  std::shared_ptr<const EnvironmentMap> environment;  ///< that the options name
   std::size_t compiled_shaders = 0;
   std::set<int> images;  ///< of the file's scene, that shaders of recorded frames can sample
   float exposure = 1;
@@ -59,6 +61,7 @@ Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options)
   check(options);
   parts_->options = options;
   parts_->name = file_or_builtin;
+  if (!options.environment.empty()) parts_->environment = load_environment(options.environment);
   const bool animated = options.time.has_value() || !options.animation.empty();
   if (file_or_builtin.starts_with(kBuiltinPrefix)) {
     parts_->builtin = file_or_builtin.substr(kBuiltinPrefix.size());
@@ -113,6 +116,7 @@ traces::CommandStream Scene::record(const Moment& moment) {
   }
   SceneData& scene = parts_->file ? parts_->file->data() : made;
   scene.name = parts_->name;
+  if (parts_->environment) scene.environment.map = parts_->environment;
   const RecordPasses passes = parts_->file ? nullptr : builtin_passes(parts_->builtin);
   // Which triangle is seen, a single pass tells, of a scene that has some.
   if (passes != nullptr && (!options.visibility || scene.instances.empty())) {

@@ -247,10 +247,13 @@ struct Camera {
   std::optional<glm::dmat4> pose;   ///< the node's world matrix; none: no node carries it
 };
 
+struct EnvironmentMap;
+
 /// Light from everywhere, as the material shader knows it: radiance from straight above and from straight
-/// below.
+/// below, or a map of it (scenes/data/environment_map.h).
 struct Environment {
   glm::vec3 sky{0.50F, 0.57F, 0.68F}, ground{0.20F, 0.18F, 0.16F};
+  std::shared_ptr<const EnvironmentMap> map{};
 };
 
 /// Where things are: what of a scene moves with its world.

@@ -68,6 +68,8 @@ struct SceneOptions {
   std::optional<double> orbit;
   /// times the scene's light (scenes/view/exposure.h); none: chosen by it
   std::optional<double> exposure = 1;
+  /// a .hdr or .exr file, or a sky (scenes/environment/environment.h); empty: the scene's own
+  std::string environment;
   Shading shading = Shading::kPbr;
   DrawOrder order = DrawOrder::kFile;
   /// of the picture and what is drawn before it; what `shown` and `visibility` show has its own

@@ -13,7 +13,8 @@ namespace quadrille::scenes {
 namespace {
 
 /// What docs/scenes.md lists as covered.
-constexpr std::array<std::string_view, 22> kSupported{"EXT_mesh_gpu_instancing",
+constexpr std::array<std::string_view, 23> kSupported{"EXT_lights_image_based",
+                                                      "EXT_mesh_gpu_instancing",
                                                       "EXT_meshopt_compression",
                                                       "EXT_texture_webp",
                                                       "KHR_draco_mesh_compression",

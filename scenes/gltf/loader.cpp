@@ -15,6 +15,7 @@
 #include "models/base/error.h"
 #include "scenes/gltf/animation.h"
 #include "scenes/gltf/file.h"
+#include "scenes/gltf/image_light.h"
 #include "scenes/gltf/images.h"
 #include "scenes/gltf/instancing.h"
 #include "scenes/gltf/mesh.h"
@@ -274,6 +275,7 @@ class GltfScene::Reader {
     }
     ImageReader images(file_);
     for (const std::size_t i : wanted) scene_.images.push_back(images.read(i));
+    scene_.environment.map = read_image_light(file_, choice_.scene, images);
   }
 
   GltfFile file_;

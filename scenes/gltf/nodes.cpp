@@ -68,15 +68,18 @@ glm::dmat4 local_matrix(const GltfFile& file, int number, const NodeMotion& moti
   return m;
 }
 
+std::optional<std::size_t> scene_number(const GltfFile& file, const std::string& choice) {
+  const tinygltf::Model& model = file.model;
+  if (model.scenes.empty()) return std::nullopt;
+  const int scene = choice.empty() ? std::max(0, model.defaultScene) : chosen_scene(file, choice);
+  if (static_cast<std::size_t>(scene) >= model.scenes.size())
+    fail(file, "scene", fmt::format("scene {} does not exist (the file has {})", scene, model.scenes.size()));
+  return static_cast<std::size_t>(scene);
+}
+
 std::vector<int> scene_roots(const GltfFile& file, const std::string& choice) {
   const tinygltf::Model& model = file.model;
-  if (!model.scenes.empty()) {
-    const int scene = choice.empty() ? std::max(0, model.defaultScene) : chosen_scene(file, choice);
-    if (static_cast<std::size_t>(scene) >= model.scenes.size())
-      fail(file, "scene",
-           fmt::format("scene {} does not exist (the file has {})", scene, model.scenes.size()));
-    return model.scenes[static_cast<std::size_t>(scene)].nodes;
-  }
+  if (const std::optional<std::size_t> scene = scene_number(file, choice)) return model.scenes[*scene].nodes;
   if (!choice.empty()) (void)chosen_scene(file, choice);
   std::vector<bool> child(model.nodes.size());
   for (const tinygltf::Node& node : model.nodes) {

@@ -39,6 +39,8 @@ inline constexpr std::array kRules{
          "scene>scenes scenes[].nodes[]>nodes nodes[].mesh>meshes nodes[].camera>cameras nodes[].skin>skins "
          "nodes[].children[]>nodes "
          "nodes[].extensions.KHR_lights_punctual.light!>extensions.KHR_lights_punctual.lights "
+         "scenes[].extensions.EXT_lights_image_based.light!>extensions.EXT_lights_image_based.lights "
+         "extensions.EXT_lights_image_based.lights[].specularImageSize! "
          "nodes[].extensions.EXT_mesh_gpu_instancing.attributes.*>accessors "
          "meshes[].primitives[].attributes.*>accessors "
          "meshes[].primitives[].indices>accessors meshes[].primitives[].material>materials "
@@ -81,7 +83,8 @@ inline constexpr std::array kRules{
          "cameras[].orthographic.zfar! "
          "extensions.KHR_lights_punctual.lights[].intensity extensions.KHR_lights_punctual.lights[].range "
          "extensions.KHR_lights_punctual.lights[].spot.innerConeAngle "
-         "extensions.KHR_lights_punctual.lights[].spot.outerConeAngle"},
+         "extensions.KHR_lights_punctual.lights[].spot.outerConeAngle "
+         "extensions.EXT_lights_image_based.lights[].intensity"},
     Rule{Type::kStride, "bufferViews[].byteStride"},
     Rule{Type::kNumber, "materials[].extensions.KHR_materials_volume.attenuationDistance"},
     Rule{Type::kThree,
@@ -92,7 +95,8 @@ inline constexpr std::array kRules{
          "materials[].extensions.KHR_materials_volume.attenuationColor "
          "extensions.KHR_lights_punctual.lights[].color"},
     Rule{Type::kFour,
-         "nodes[].rotation materials[].pbrMetallicRoughness.baseColorFactor "
+         "nodes[].rotation extensions.EXT_lights_image_based.lights[].rotation "
+         "materials[].pbrMetallicRoughness.baseColorFactor "
          "materials[].extensions.KHR_materials_pbrSpecularGlossiness.diffuseFactor"},
     Rule{Type::kSixteen, "nodes[].matrix"},
     Rule{Type::kString,
@@ -106,7 +110,10 @@ inline constexpr std::array kRules{
     Rule{Type::kString, "extensions.KHR_lights_punctual.lights[].type!", "directional point spot"},
     Rule{Type::kBool,
          "accessors[].normalized materials[].doubleSided nodes[].extensions.KHR_node_visibility.visible"},
-    Rule{Type::kArray, "meshes[].primitives! skins[].joints! animations[].channels! animations[].samplers!"},
+    Rule{Type::kArray,
+         "meshes[].primitives! skins[].joints! animations[].channels! animations[].samplers! "
+         "extensions.EXT_lights_image_based.lights[].irradianceCoefficients! "
+         "extensions.EXT_lights_image_based.lights[].specularImages!"},
     Rule{Type::kObject,
          "asset! meshes[].primitives[].attributes! accessors[].sparse.indices! accessors[].sparse.values! "
          "animations[].channels[].target!"}};

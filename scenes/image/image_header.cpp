@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -49,6 +50,17 @@ class Reader {
     if (end > 255) fail("is truncated, or has a name of more than 255 bytes");
     skip(end + 1);
     return rest.substr(0, end);
+  }
+  /// A line of text without its end, and steps behind it.
+  std::string line(std::size_t longest) {
+    std::string text;
+    for (; left() > 0 && byte(0) != '\n'; skip(1)) {
+      text += static_cast<char>(byte(0));
+      if (text.size() > longest) fail(fmt::format("has a line of more than {} bytes", longest));
+    }
+    if (left() == 0) fail("is truncated");
+    skip(1);
+    return text;
   }
   /// A header of these sides, once they are legal.
   [[nodiscard]] ImageHeader sized(ImageFormat format, std::uint64_t width, std::uint64_t height) const {
@@ -194,6 +206,33 @@ ImageHeader check_exr(Reader file) {
   return header;
 }
 
+/// Lines of text up to an empty one, then the size as in "-Y 512 +X 1024": rows from the top, from the left.
+/// Other orders of rows are legal and next to unknown. Rows are of four bytes a pixel, or packed, of two
+/// bytes and four runs at least. [Radiance, file formats]
+ImageHeader check_hdr(Reader file) {
+  constexpr std::size_t kMaxLines = 100, kMaxLine = 200;
+  std::string line = "first";
+  for (std::size_t count = 0; !line.empty(); ++count) {
+    if (count == kMaxLines) file.fail(fmt::format("has more than {} lines before its size", kMaxLines));
+    line = file.line(kMaxLine);
+  }
+  const std::string size = file.line(kMaxLine);
+  std::uint64_t width = 0, height = 0;
+  const std::size_t x = size.find(" +X ");
+  const auto number = [&](std::size_t begin, std::size_t end, std::uint64_t& value) {
+    const auto [at, error] = std::from_chars(size.data() + begin, size.data() + end, value);
+    return error == std::errc{} && at == size.data() + end;
+  };
+  if (!size.starts_with("-Y ") || x == std::string::npos || !number(3, x, height) ||
+      !number(x + 4, size.size(), width))
+    file.fail("does not say its size as in '-Y 512 +X 1024'");
+  const ImageHeader header = file.sized(ImageFormat::kHdr, width, height);
+  // A run has up to 127 of a row's values in two bytes.
+  if (file.left() < height * std::min(4 * width, 4 + 4 * ((width + 126) / 127) * 2))
+    file.fail("is truncated");
+  return header;
+}
+
 /// RIFF, length, WEBP, then a first chunk: lossy, lossless or extended, each with the size in a place of its
 /// own. [RFC 9649]
 ImageHeader check_webp(Reader file) {
@@ -240,9 +279,11 @@ ImageHeader check_image_header(std::span<const std::byte> bytes, const std::stri
       starts_with(bytes.subspan(std::min<std::size_t>(8, bytes.size())), "WEBP"))
     return check_webp({bytes, name, "WebP"});
   if (starts_with(bytes, "DDS ")) return check_dds({bytes, name, "DDS"});
+  if (starts_with(bytes, "#?RADIANCE") || starts_with(bytes, "#?RGBE"))
+    return check_hdr({bytes, name, "HDR"});
   if (starts_with(bytes, "\xabKTX "))
-    throw user_error("{}: a KTX image; PNG, JPEG, WebP, DDS and EXR are read", name);
-  throw user_error("{}: not a PNG, JPEG, WebP, DDS or EXR image (by its first bytes)", name);
+    throw user_error("{}: a KTX image; PNG, JPEG, WebP, DDS, EXR and HDR are read", name);
+  throw user_error("{}: not a PNG, JPEG, WebP, DDS, EXR or HDR image (by its first bytes)", name);
 }
 
 const char* format_extension(ImageFormat format) {
@@ -252,6 +293,7 @@ const char* format_extension(ImageFormat format) {
     case ImageFormat::kWebp: return "webp";
     case ImageFormat::kDds: return "dds";
     case ImageFormat::kExr: return "exr";
+    case ImageFormat::kHdr: return "hdr";
   }
   return "";
 }

@@ -70,8 +70,12 @@ struct Freed {
 };
 using Held = std::unique_ptr<void, Freed>;
 
-QuadrilleImage decode(std::span<const std::byte> bytes, const std::string& name, bool as_float) {
-  const char* const format = format_extension(check_image_header(bytes, name).format);
+QuadrilleImage decode(std::span<const std::byte> bytes, const std::string& name, bool as_float,
+                      std::uint64_t most = kMaxImagePixels) {
+  const ImageHeader header = check_image_header(bytes, name);
+  const char* const format = format_extension(header.format);
+  if (std::uint64_t{header.width} * header.height > most)
+    throw user_error("{}: {}x{} pixels; legal are {} in all", name, header.width, header.height, most);
   QuadrilleImage result{};
   if (!module().decode(bytes.data(), bytes.size(), format, as_float, kMaxDecodedBytes, &result)) {
     throw user_error("{}: cannot be decoded as {}: {}", name, format, result.error);
@@ -109,8 +113,8 @@ Rgba8Image load_image(const std::string& path) {
   return decode_image(traces::read_whole_file(path, kMaxImageFileBytes), path);
 }
 
-FloatImage load_float_image(const std::string& path) {
-  const QuadrilleImage raw = decode(traces::read_whole_file(path, kMaxImageFileBytes), path, true);
+FloatImage load_float_image(const std::string& path, std::uint64_t most) {
+  const QuadrilleImage raw = decode(traces::read_whole_file(path, kMaxImageFileBytes), path, true, most);
   const Held held(raw.data);
   const auto* samples = static_cast<const float*>(raw.data);
   return {raw.width, raw.height, raw.channels, {samples, samples + raw.size / sizeof(float)}};

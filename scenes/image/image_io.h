@@ -33,7 +33,8 @@ struct FloatImage {
 /// not found.
 void open_image_module();
 
-/// Decodes a PNG, JPEG, WebP, DDS or EXR file held in memory. Grey becomes r=g=b, missing alpha 255; 16-bit
+/// Decodes a PNG, JPEG, WebP, DDS, EXR or HDR file held in memory. Grey becomes r=g=b, missing alpha 255;
+/// 16-bit
 /// and float files are rounded to 8 bits. Throws `UserError` that starts with `name` when the data is
 /// damaged, truncated, or has more than 16384 pixels a side or `kMaxImagePixels` in all.
 [[nodiscard]] Rgba8Image decode_image(std::span<const std::byte> bytes, const std::string& name);
@@ -42,8 +43,8 @@ void open_image_module();
 /// Reads an image file as 8-bit RGBA. Throws `UserError` with the path.
 [[nodiscard]] Rgba8Image load_image(const std::string& path);
 /// Reads an image file as float, with its own number of channels (EXR: linear values as stored; 8-bit files:
-/// 0..1). Throws `UserError` with the path.
-[[nodiscard]] FloatImage load_float_image(const std::string& path);
+/// 0..1). Throws `UserError` with the path, also for more pixels than `most`.
+[[nodiscard]] FloatImage load_float_image(const std::string& path, std::uint64_t most = kMaxImagePixels);
 
 /// Writes 8-bit RGBA as PNG. Throws `UserError` with the path.
 void save_png(const std::string& path, const Rgba8Image& image);

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <numbers>
 
+#include <glm/ext/matrix_double4x4.hpp>
+#include <glm/ext/vector_double4.hpp>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "models/base/error.h"
 #include "scenes/view/exposure.h"
@@ -31,6 +35,28 @@ struct FrameHead {
   glm::vec4 eye, toward_viewer, sky, ground;
 };
 static_assert(sizeof(FrameHead) == 128);
+
+struct EnvironmentBlock {
+  std::array<glm::vec4, 9> irradiance;
+  std::array<glm::vec4, 3> turn, ways;
+  glm::vec4 range;
+};
+static_assert(sizeof(EnvironmentBlock) == 256);
+
+/// The direction, of any length, in the middle of the picture, and what a half width adds to the right and a
+/// half height downwards: of the points where the far plane, which may be at infinity, has its corners.
+std::array<glm::vec4, 3> background_ways(const View& view) {
+  if (view.orthographic) return {glm::vec4(-view.toward_viewer, 0), glm::vec4(0), glm::vec4(0)};
+  const glm::dmat4 to_world = glm::inverse(glm::dmat4(view.view_projection));
+  std::array<glm::dvec3, 3> ways{};
+  for (int i = 0; i < 3; ++i) {
+    const glm::dvec4 h = to_world[i] + (i == 2 ? to_world[3] : glm::dvec4(0));
+    ways[static_cast<std::size_t>(i)] = glm::dvec3(h) - h.w * glm::dvec3(view.eye);
+  }
+  const double length = glm::length(ways[2]);
+  const auto packed = [&](std::size_t i) { return glm::vec4(ways[i] / length, 0); };
+  return {packed(2), packed(0), packed(1)};
+}
 
 /// From the camera's upper left, warm.
 Light key_light(const View& view) {
@@ -61,9 +87,11 @@ std::size_t count(const std::vector<Light>& lights, Light::Kind kind) {
 
 }  // namespace
 
-std::vector<Light> frame_lights(const PlacedScene& scene, const View& view, float exposure) {
+std::vector<Light> frame_lights(const PlacedScene& scene, const View& view, float exposure,
+                                const EnvironmentMap* map) {
   std::vector<Light> lights = scene.at.lights;
-  if (lights.empty()) lights.push_back(key_light(view));
+  if (map != nullptr && map->sun) lights.push_back(*map->sun);
+  if (map == nullptr && lights.empty()) lights.push_back(key_light(view));
   if (scene.at.lights.size() > kMaxLights)
     throw user_error("{}: {} lights; at most {} are supported", scene.data.name, scene.at.lights.size(),
                      kMaxLights);
@@ -83,20 +111,37 @@ std::vector<std::byte> frame_block(const SceneData& scene, const View& view, con
   std::vector<LightBlock> blocks;
   blocks.reserve(lights.size());
   for (const Light& light : lights) blocks.push_back(light_block(light, view));
+  if (blocks.empty()) blocks.emplace_back();  // the shader's array has one at least
   std::vector<std::byte> bytes(sizeof(head) + blocks.size() * sizeof(LightBlock));
   std::memcpy(bytes.data(), &head, sizeof(head));
   std::memcpy(bytes.data() + sizeof(head), blocks.data(), blocks.size() * sizeof(LightBlock));
   return bytes;
 }
 
-std::vector<std::string> frame_defines(const View& view, const std::vector<Light>& lights) {
+std::vector<std::byte> environment_block(const EnvironmentMap& map, const View& view, float exposure) {
+  EnvironmentBlock block{
+      {}, {}, background_ways(view), {map.scale * exposure, static_cast<float>(map.levels - 1), 0, 0}};
+  for (std::size_t i = 0; i < block.irradiance.size(); ++i)
+    block.irradiance[i] = glm::vec4(map.irradiance[i] * exposure, 0);
+  for (int row = 0; row < 3; ++row)
+    block.turn[static_cast<std::size_t>(row)] =
+        glm::vec4(map.turn[0][row], map.turn[1][row], map.turn[2][row], 0);
+  std::vector<std::byte> bytes(sizeof(block));
+  std::memcpy(bytes.data(), &block, sizeof(block));
+  return bytes;
+}
+
+std::vector<std::string> frame_defines(const View& view, const std::vector<Light>& lights,
+                                       const EnvironmentMap* map) {
   std::vector<std::string> defines{
-      fmt::format("LIGHTS {}", lights.size()),
+      fmt::format("LIGHTS {}", std::max<std::size_t>(lights.size(), 1)),
       fmt::format("DIRECTIONAL_LIGHTS {}", count(lights, Light::Kind::kDirectional)),
       fmt::format("POINT_LIGHTS {}", count(lights, Light::Kind::kPoint)),
       fmt::format("SPOT_LIGHTS {}", count(lights, Light::Kind::kSpot)),
       lights.size() <= kMaxUnrolledLights ? "LOOP_HINT [[unroll]]" : "LOOP_HINT"};
   if (view.orthographic) defines.emplace_back("ORTHOGRAPHIC");
+  if (map != nullptr) defines.emplace_back("ENVIRONMENT");
+  if (map != nullptr && map->turn != glm::mat3(1)) defines.emplace_back("ENVIRONMENT_TURNED");
   return defines;
 }
 

@@ -275,7 +275,7 @@ std::string material_shader_glsl(traces::ShaderStage stage, ShaderSet set) {
     return lights ? joined(kPoseGlsl, kLightGlsl, kMaterialVert) : joined(kPoseGlsl, kMaterialVert);
   }
   if (shows_values(set)) return joined(kMaterialGlsl, kValuesFrag);
-  if (set_define(set).empty()) return joined(kMaterialGlsl, kLayersGlsl, kMaterialFrag);
+  if (set_define(set).empty()) return joined(kMaterialGlsl, kLayersGlsl, kEnvironmentGlsl, kMaterialFrag);
   return joined(kMaterialGlsl, kLightGlsl, kLectureFrag);
 }
 

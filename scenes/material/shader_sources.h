@@ -6,6 +6,7 @@
 namespace quadrille::scenes {
 
 extern const std::string_view kInterfaceGlsl, kPoseGlsl, kMaterialGlsl, kLayersGlsl, kLightGlsl,
-    kMaterialVert, kMaterialFrag, kVisibilityFrag, kLectureFrag, kValuesFrag, kOverdrawFrag;
+    kEnvironmentGlsl, kBackgroundVert, kBackgroundFrag, kMaterialVert, kMaterialFrag, kVisibilityFrag,
+    kLectureFrag, kValuesFrag, kOverdrawFrag;
 
 }  // namespace quadrille::scenes

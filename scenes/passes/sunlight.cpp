@@ -109,6 +109,7 @@ void refuse_other_pictures(const SceneData& scene, const SceneOptions& options) 
   if (options.order != DrawOrder::kFile) refuse("--order");
   if (options.transparency.mode != models::Transparency::kNone) refuse("--transparency");
   if (options.shown != Showing::kColors) refuse("--view");
+  if (!options.environment.empty()) refuse("--environment");
   if (options.alpha_to_coverage) refuse("--alpha-to-coverage");
   if (!options.vertex_shader.empty() || !options.fragment_shader.empty()) refuse("a shader of yours");
 }

@@ -97,8 +97,9 @@ Recorder::Recorder(const SceneData& scene, const SceneOptions& options)
                                options_)
                    : seen_),
       exposure_(scenes::exposure(placed_, options_)),
-      lights_(frame_lights(placed_, view_, exposure_)),
-      shaders_(options, frame_defines(view_, lights_), stream_.shaders),
+      environment_(shader_set(options) == ShaderSet::kMaterial ? scene.environment.map : nullptr),
+      lights_(frame_lights(placed_, view_, exposure_, environment_.get())),
+      shaders_(options, frame_defines(view_, lights_, environment_.get()), stream_.shaders),
       bound_(kVertexSlot + kLocations, traces::EndPass{}) {}
 
 traces::CommandStream Recorder::record() {
@@ -120,13 +121,28 @@ traces::CommandStream Recorder::record() {
   stream_.commands.emplace_back(traces::SetScissor{0, 0, options_.width, options_.height});
   if (shaders_.set() == ShaderSet::kDepth) depth_range_ = find_depth_range();
   record_frame_set();
-  if (options_.order == DrawOrder::kPainter) record_as_painter();
-  else
-    for (const std::size_t i : draw_order()) record_instance(placed_.at.instances[i]);
+  record_draws();
   stream_.commands.emplace_back(traces::EndPass{});
   keep_fragments(begin);
   add_second_pass();
   return std::move(stream_);
+}
+
+/// The background comes where depths keep it behind what is opaque and before what is seen through.
+void Recorder::record_draws() {
+  bool background = environment_ != nullptr && environment_->shown;
+  const auto draw_background = [&] {
+    if (std::exchange(background, false)) record_background();
+  };
+  if (!has_depth()) draw_background();
+  if (options_.order == DrawOrder::kPainter) return record_as_painter();
+  for (const std::size_t i : draw_order()) {
+    const Instance& instance = placed_.at.instances[i];
+    const int material = scene_.primitives[instance.primitive].material;
+    if (scene_.materials[static_cast<std::size_t>(material)].see_through()) draw_background();
+    record_instance(instance);
+  }
+  draw_background();
 }
 
 /// A scene's own needs the depths, and colours to work with.
@@ -136,7 +152,7 @@ void Recorder::add_second_pass() {
   const std::string shader(overdraw ? std::string(kOverdrawFrag) : own ? scene_.post_shader : "");
   if (shader.empty()) return;
   add_post_pass(stream_, shader);
-  post_shaders_ = 2;
+  more_shaders_ += 2;
 }
 
 bool Recorder::order_independent(const Material& material) const {
@@ -273,6 +289,7 @@ void Recorder::record_frame_set() {
   const auto set = static_cast<traces::Index>(stream_.descriptor_sets.size());
   stream_.descriptor_sets.push_back(
       {{{0, block, 0, static_cast<std::uint32_t>(stream_.buffers.back().data.size())}}, {}});
+  if (environment_ != nullptr) add_environment(stream_.descriptor_sets.back());
   stream_.commands.emplace_back(traces::BindDescriptorSet{kFrameSet, set});
 }
 

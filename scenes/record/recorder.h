@@ -52,7 +52,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
   [[nodiscard]] traces::CommandStream record();
-  [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled() + post_shaders_; }
+  [[nodiscard]] std::size_t compiled_shaders() const { return shaders_.compiled() + more_shaders_; }
   [[nodiscard]] float exposure() const { return exposure_; }
   /// Of the recorded frame, if it is a picture of depths.
   [[nodiscard]] const std::optional<DepthRange>& depth_range() const { return depth_range_; }
@@ -116,6 +116,11 @@ class Recorder {
   void unpack_images(const std::vector<TextureKey>& keys);
   void leave_out_unread(Variant& variant);
   void record_frame_set();
+  void record_draws();
+  /// Adds the environment's map and what goes with it to a set.
+  void add_environment(traces::DescriptorSet& set);
+  /// Draws it behind everything, if it is shown.
+  void record_background();
   void add_second_pass();
   void record_instance(const Instance& instance);
   /// Draws of the copies of an instance: one instanced draw, or single ones where the shader must tell their
@@ -175,6 +180,7 @@ class Recorder {
   SceneOptions options_;
   View view_;
   float exposure_ = 1;
+  std::shared_ptr<const EnvironmentMap> environment_;  ///< that shaders look at; null: none
   std::vector<Light> lights_;
   traces::CommandStream stream_;
   ShaderLibrary shaders_;
@@ -195,7 +201,7 @@ class Recorder {
   std::map<std::tuple<std::uint32_t, int, bool>, PosedStreams> posed_streams_;
   /// what each slot holds, to leave out repeated binds
   std::vector<traces::Command> bound_;
-  std::size_t post_shaders_ = 0;  ///< of a second pass
+  std::size_t more_shaders_ = 0;  ///< of a background and a second pass
   std::size_t posed_bytes_ = 0;   ///< by the host
   std::optional<DepthRange> depth_range_;
   std::map<std::uint32_t, Corners> corners_;                       ///< by primitive

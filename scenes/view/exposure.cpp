@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/ext/vector_double3.hpp>
 #include <glm/geometric.hpp>
+
+#include "scenes/data/environment_map.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -32,12 +35,19 @@ double illuminance(const Light& light, const Bounds& box) {
              : strength * std::max(0.0, 1 - within * within * within * within) / (distance * distance);
 }
 
+/// Lux on a surface that faces any way, in the mean, and of the sun on one that faces it.
+double illuminance(const EnvironmentMap* map) {
+  if (map == nullptr) return 0;
+  return std::numbers::pi * luminance(map->irradiance[0]) + (map->sun ? luminance(map->sun->color) : 0);
+}
+
 double median_lux(const PlacedScene& scene) {
   std::vector<double> lux;
+  const double around = illuminance(scene.data.environment.map.get());
   for (const Instance& instance : scene.at.instances) {
     scene.visit_boxes(instance, [&](const Bounds& box) {
       if (box.empty() || lux.size() == kMostPlaces) return;
-      double sum = 0;
+      double sum = around;
       for (const Light& light : scene.at.lights) sum += illuminance(light, box);
       if (std::isfinite(sum) && sum > 0) lux.push_back(sum);
     });

@@ -293,7 +293,7 @@ TEST_CASE("image_io: every truncation of a PNG is refused with its name") {
 TEST_CASE("image_io: what is no image, and what cannot be written, is the user's error") {
   const std::vector<std::byte> noise(100, std::byte{42});
   REQUIRE_THROWS_WITH(decode_image(noise, "x.png"),
-                      "x.png: not a PNG, JPEG, WebP, DDS or EXR image (by its first bytes)");
+                      "x.png: not a PNG, JPEG, WebP, DDS, EXR or HDR image (by its first bytes)");
   const std::vector<std::byte> jpeg{std::byte{0xff}, std::byte{0xd8}, std::byte{0xff}, std::byte{0xe0}};
   REQUIRE_THROWS_WITH(decode_image(jpeg, "x.jpg"), "x.jpg: the JPEG image is truncated");
   REQUIRE_THROWS_AS(load_image("/nonexistent/x.png"), UserError);

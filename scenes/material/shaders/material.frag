@@ -1,4 +1,4 @@
-// Fragment shader of all materials: glTF's metallic-roughness model (its appendix B) under the scene's lights and a two-colour sky.
+// Fragment shader of all materials: glTF's metallic-roughness model (its appendix B) under the scene's lights and a two-colour sky, or a map of the environment.
 const float kMinAlpha = 0.002;  // squared roughness: keeps the highlight of a mirror finite
 
 vec3 emitted() {
@@ -108,7 +108,45 @@ vec3 reflect_light(Surface s, vec3 l) {
 
 // Light of the sky and the ground: irradiance is a blend by the normal's height; the reflection blurs the horizon by roughness. The directional
 // albedo of the specular lobe is Karis' fit (Physically Based Shading on Mobile, 2014).
-#ifndef LAYERS
+#ifdef ENVIRONMENT
+// The same for a map of the environment. The diffuse part gets what the lobe leaves.
+vec3 reflect_environment(inout Surface s) {
+  vec3 irradiance = environment_irradiance(s.n);
+  vec2 lobe = lobe_albedo(s.roughness, s.n_dot_v);
+#ifdef LAYERS
+  vec3 f90 = s.layers.f90;
+#else
+  vec3 f90 = vec3(1.0);
+#endif
+  vec3 once = s.f0 * lobe.x + f90 * lobe.y;
+  vec3 again = again_reflected(once, s.f0, f90, lobe);
+#ifdef LAYERS
+  vec3 left = vec3(1.0 - min(largest(once + again), 1.0));
+#else
+  vec3 left = 1.0 - once - again;
+#endif
+  vec3 color = once * environment_radiance(reflect(-s.v, s.n), s.roughness) + (again + s.diffuse * left) * irradiance;
+#ifdef TRANSMISSION
+  s.layers.transmittance *= left;
+#endif
+#ifdef SHEEN
+  float sheen = sheen_albedo(inversesqrt(s.layers.sheen_exponent), s.n_dot_v);
+  color = color * s.layers.under_sheen + s.layers.sheen * (sheen * irradiance);
+#ifdef TRANSMISSION
+  s.layers.transmittance *= s.layers.under_sheen;
+#endif
+#endif
+#ifdef CLEARCOAT
+  vec2 coat_lobe = lobe_albedo(s.layers.coat_roughness, s.layers.coat_n_dot_v);
+  float coat = s.layers.coat * (kCoatReflectance * coat_lobe.x + coat_lobe.y);
+  color = mix(color, environment_radiance(reflect(-s.v, s.layers.coat_n), s.layers.coat_roughness), coat);
+#ifdef TRANSMISSION
+  s.layers.transmittance *= 1.0 - coat;
+#endif
+#endif
+  return color * s.occlusion;
+}
+#elif !defined(LAYERS)
 vec3 reflect_environment(Surface s) {
   vec3 irradiance = mix(frame.ground.rgb, frame.sky.rgb, s.n.y * 0.5 + 0.5);
   float up = 2.0 * dot(s.n, s.v) * s.n.y - s.v.y;
@@ -327,7 +365,11 @@ void main() {
 #ifdef TRANSMISSION
   // Grey of the picture behind, sharp; what is missing to the colour or blurred by roughness, from the sky and the ground in that direction.
   float seen = min(min(s.layers.transmittance.r, s.layers.transmittance.g), s.layers.transmittance.b) * (1.0 - s.roughness);
+#ifdef ENVIRONMENT
+  color += (s.layers.transmittance - seen) * environment_radiance(-s.v, s.roughness);
+#else
   color += (s.layers.transmittance - seen) * sky_radiance(-s.v.y, s.roughness);
+#endif
 #ifdef ALPHA_BLEND
   out_color = vec4(color * base.a, base.a * (1.0 - seen));
 #else
