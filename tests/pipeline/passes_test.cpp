@@ -118,7 +118,10 @@ TEST_CASE("passes: a trace file of version 1, with its table of targets, draws w
 
 TEST_CASE("passes: a file from before queries draws what its scene draws today") {
   const traces::CommandStream old = kept_file("triangle_cmds_4"), now = triangle(24, 16, 2);
-  CHECK(old == now);
+  CHECK(old.images == now.images);
+  CHECK(old.pipelines == now.pipelines);
+  CHECK(old.commands == now.commands);
+  CHECK(functional_digest(old) == functional_digest(now));
 }
 
 TEST_CASE("passes: a file from before integers, levels and layers draws what its scene draws today") {
