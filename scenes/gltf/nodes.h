@@ -22,8 +22,8 @@ namespace quadrille::scenes {
 /// From the node to its parent, moved as the animation says.
 [[nodiscard]] glm::dmat4 local_matrix(const GltfFile& file, int number, const NodeMotion& motion);
 
-/// The scene that `choice` names by number or name, or, if it is empty, the file's own; none in a file without
-/// scenes.
+/// The scene that `choice` names by number or name, or, if it is empty, the file's own; none in a file
+/// without scenes.
 [[nodiscard]] std::optional<std::size_t> scene_number(const GltfFile& file, const std::string& choice);
 
 /// The roots of the scene that `choice` names by number or name, or, if it is empty, of the file's own;

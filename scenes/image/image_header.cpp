@@ -207,8 +207,8 @@ ImageHeader check_exr(Reader file) {
 }
 
 /// Lines of text up to an empty one, then the size as in "-Y 512 +X 1024": rows from the top, from the left.
-/// Other orders of rows are legal and next to unknown. Rows are of four bytes a pixel, or packed, of two bytes
-/// and four runs at least. [Radiance, file formats]
+/// Other orders of rows are legal and next to unknown. Rows are of four bytes a pixel, or packed: four bytes,
+/// and runs for each of four components. [Radiance]
 ImageHeader check_hdr(Reader file) {
   constexpr std::size_t kMaxLines = 100, kMaxLine = 200;
   std::string line = "first";

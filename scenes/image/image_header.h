@@ -16,8 +16,8 @@ struct ImageHeader {
   std::uint32_t width = 0, height = 0;
 };
 
-/// Recognises a PNG, JPEG, WebP, DDS, EXR or HDR (Radiance) file by its first bytes and checks its headers: sides of
-/// 1..`kMaxImageSide`, at most `kMaxImagePixels`, parts that lie within the file, a bounded number of passes.
+/// Recognises a PNG, JPEG, WebP, DDS, EXR or HDR (Radiance) file by its first bytes and checks its headers:
+/// sides of 1..`kMaxImageSide`, at most `kMaxImagePixels`, parts that lie within the file, a bounded number of passes.
 /// Throws `UserError` that starts with `name`.
 [[nodiscard]] ImageHeader check_image_header(std::span<const std::byte> bytes, const std::string& name);
 

@@ -33,8 +33,8 @@ struct FloatImage {
 /// not found.
 void open_image_module();
 
-/// Decodes a PNG, JPEG, WebP, DDS, EXR or HDR file held in memory. Grey becomes r=g=b, missing alpha 255; 16-bit
-/// and float files are rounded to 8 bits. Throws `UserError` that starts with `name` when the data is
+/// Decodes a PNG, JPEG, WebP, DDS, EXR or HDR file held in memory. Grey becomes r=g=b, missing alpha 255;
+/// 16-bit and float files are rounded to 8 bits. Throws `UserError` that starts with `name` when the data is
 /// damaged, truncated, or has more than 16384 pixels a side or `kMaxImagePixels` in all.
 [[nodiscard]] Rgba8Image decode_image(std::span<const std::byte> bytes, const std::string& name);
 /// The same by OpenImageIO alone, whatever the file: the pixels and errors that `decode_image` has to have.

@@ -103,7 +103,8 @@ void judge_folder(const fs::path& folder, const std::vector<fs::path>& before, O
     const bool whole =
         (name.ends_with(".png") && text.size() > 12 && text.substr(text.size() - 8, 4) == "IEND") ||
         (name.ends_with(".json") && text.ends_with("}\n")) ||
-        (name.ends_with(".exr") && reads(scenes::load_float_image, path)) ||
+        (name.ends_with(".exr") &&
+         reads([](const std::string& file) { return scenes::load_float_image(file); }, path)) ||
         (name.ends_with(".qtrace") && reads(traces::read_trace, path));
     if (outcome.exit_code != 0 || !whole)
       outcome.problems.push_back(fmt::format("{} is left behind, {} bytes", name, text.size()));

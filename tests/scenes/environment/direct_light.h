@@ -1,7 +1,7 @@
 /// What a map of the environment stands for, integrated directly: the ruler of docs/environment.md.
 ///
-/// Nothing of scenes/environment/ but the cube that holds the radiance is used: the lobe is written down anew,
-/// and summed over a grid, not over samples.
+/// Nothing of scenes/environment/ but the cube that holds the radiance is used: the lobe is written down
+/// anew, and summed over a grid, not over samples.
 #pragma once
 
 #include <vector>

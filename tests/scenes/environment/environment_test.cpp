@@ -102,7 +102,8 @@ std::string image_lit(const std::string& more = "", const std::string& use = R"(
   std::string text = triangle_gltf(
       "",
       fmt::format(
-          R"(,"images":[{}],"extensionsUsed":["EXT_lights_image_based"],"extensions":{{"EXT_lights_image_based":{{"lights":[{{"irradianceCoefficients":[{}],"specularImageSize":4,"specularImages":{}{}}}]}}}})",
+          R"(,"images":[{}],"extensionsUsed":["EXT_lights_image_based"],)"
+          R"("extensions":{{"EXT_lights_image_based":{{"lights":[{{"irradianceCoefficients":[{}],"specularImageSize":4,"specularImages":{}{}}}]}}}})",
           images, coefficients, faces, more));
   const std::string scene = R"("scenes":[{)";
   text.insert(text.find(scene) + scene.size(),
