@@ -15,7 +15,7 @@
 namespace quadrille::scenes {
 namespace {
 
-constexpr std::uint32_t kLargestSide = 256;  // of a face [G: a second of work]
+constexpr std::uint32_t kSmallestSide = 16, kLargestSide = 256;  // of a face [G: a second of work]
 
 /// Means of so many times so many pixels, for texels that are larger than pixels.
 class Panorama {
@@ -89,7 +89,7 @@ std::uint32_t share_of(std::uint32_t height, std::uint32_t side) {
 
 RadianceCube cube_of_panorama(FloatImage image, const std::string& name) {
   check(image, name);
-  const std::uint32_t side = std::clamp(std::bit_ceil(image.width / 4), kCoarsestSide, kLargestSide);
+  const std::uint32_t side = std::clamp(std::bit_ceil(image.width / 4), kSmallestSide, kLargestSide);
   const Panorama panorama(image, share_of(image.height, side));
   image = {};
   const std::uint32_t along = std::clamp(2 * panorama.width() / (4 * side), 2U, 8U);

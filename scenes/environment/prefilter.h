@@ -1,7 +1,8 @@
 /// From radiance to what shaders sample: levels blurred for roughness, and what diffuse surfaces get.
 ///
 /// A level holds what a mirror of its roughness shows that is looked at straight on; what it shows at an
-/// angle is taken to be the same (the split sum [P: Karis 2013]; docs/environment.md has the error).
+/// angle is taken to be the same around another direction (the split sum [P: Karis 2013]; docs/environment.md
+/// has the error).
 #pragma once
 
 #include <string>
@@ -13,7 +14,7 @@
 namespace quadrille::scenes {
 
 /// The side of the coarsest level, which is that of roughness 1.
-inline constexpr std::uint32_t kCoarsestSide = 16;
+inline constexpr std::uint32_t kCoarsestSide = 8;
 
 /// Radiance around a normal, weighted by the lobe. The cube that is sampled is that of `chain`.
 [[nodiscard]] RadianceCube blurred(const CubeChain& chain, std::uint32_t side, double roughness);

@@ -25,6 +25,22 @@ TEST_CASE("a wrong command line is refused in one line") {
   refused({"diff", "a.png"}, {"B"});
 }
 
+TEST_CASE("an environment is a file or a sky, and not for shaders that look at none") {
+  render_refused({"--environment", "x.png"},
+                 {"--environment: 'x.png' is neither a .hdr or .exr file nor sky"});
+  render_refused({"--environment", "sky:91"}, {"--environment: 'sky:91'", "1..90"});
+  render_refused({"--environment", "x.hdr"}, {"x.hdr"});
+  for (const std::vector<std::string>& other : {std::vector<std::string>{"--view", "depth"},
+                                                {"--shading", "phong"},
+                                                {"--vert", "x.glsl"},
+                                                {"--frag", "x.glsl"}}) {
+    std::vector<std::string> arguments{"--environment", "sky"};
+    arguments.insert(arguments.end(), other.begin(), other.end());
+    render_refused(arguments, {"--environment: not together with --vert, --frag, --view"});
+  }
+  refused({"render", "builtin:glow", "--environment", "sky"}, {"--environment is not for it"});
+}
+
 TEST_CASE("a faster unit has to exist, and to be faster") {
   render_refused({"--faster", "shader=2"}, {"--faster: no unit is called 'shader'", "command_processor, "});
   render_refused({"--faster", "core"}, {"--faster: how many times as fast? for example core=1.1"});

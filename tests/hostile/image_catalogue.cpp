@@ -23,6 +23,16 @@ std::string exr_of(std::uint32_t width, std::uint32_t height) {
   return folder.read("a.exr");
 }
 
+/// A Radiance picture of 16x8 pixels, its rows packed.
+std::string hdr() {
+  std::string file = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n";
+  for (int row = 0; row < 8; ++row) {
+    file += std::string("\2\2\0\20", 4);
+    for (const char value : {'\x80', '\x70', '\x60', '\x80'}) file += std::string("\x90") + value;
+  }
+  return file;
+}
+
 /// A JPEG header of this size and nothing behind it but the end.
 std::string jpeg_header(unsigned width, unsigned height) {
   const auto byte = [](unsigned v) { return std::string(1, static_cast<char>(v & 255)); };
@@ -35,6 +45,44 @@ std::string big_endian(std::uint32_t v) {
   std::string out;
   for (int shift = 24; shift >= 0; shift -= 8) out += static_cast<char>(v >> shift & 255);
   return out;
+}
+
+/// Pictures of all directions, cut, changed, and of shapes and values that are none.
+void add_environments(Group& group) {
+  const auto add = [&](const std::string& what, const std::string& bytes, const std::string& name,
+                       Expect expect = Expect::kEither) {
+    std::vector<std::string> arguments = render_arguments("builtin:triangle");
+    arguments.insert(arguments.end(), {"--environment", name});
+    const auto write = [=](const fs::path& folder) { write_file(folder / name, bytes); };
+    group.cases.push_back({"environment: " + what, arguments, name, write, expect});
+  };
+  const std::string radiance = hdr(), exr = exr_of(16, 8), size = "-Y 8 +X 16";
+  add("a .hdr file", radiance, "a.hdr", Expect::kRendered);
+  add("an .exr file", exr, "a.exr", Expect::kRendered);
+  add("a PNG by the name of a .hdr file", png_of(16, 8), "a.hdr");
+  add("an .exr file that is not twice as wide as high", exr_of(16, 16), "a.exr", Expect::kRefused);
+  add("text", "no picture", "a.hdr", Expect::kRefused);
+  for (std::size_t at = 1; at < radiance.size(); at += 7)
+    add(fmt::format("a .hdr file cut at byte {}", at), radiance.substr(0, at), "a.hdr");
+  for (std::size_t at = 0; at < radiance.size(); at += 3) {
+    std::string bad = radiance;
+    bad[at] = static_cast<char>(bad[at] ^ 0x55);
+    add(fmt::format("a .hdr file with byte {} changed", at), bad, "a.hdr");
+  }
+  for (std::size_t at = 9; at < exr.size(); at += 23) {
+    std::string bad = exr;
+    bad[at] = static_cast<char>(bad[at] ^ 0x7f);
+    add(fmt::format("an .exr file with byte {} changed", at), bad, "a.exr");
+  }
+  for (const char* other : {"-Y 4000 +X 8000", "-Y 99999999999999999999 +X 2", "+X 16 -Y 8", "-Y -8 +X 16",
+                            "-Y 0 +X 0", "-Y 8 +X 16 1", "-Y 16384 +X 16384"}) {
+    std::string bad = radiance;
+    bad.replace(bad.find(size), size.size(), other);
+    add(fmt::format("a .hdr file of '{}'", other), bad, "a.hdr", Expect::kRefused);
+  }
+  add("a .hdr file without an end of its text", "#?RADIANCE\n" + std::string(100000, 'a'), "a.hdr",
+      Expect::kRefused);
+  add("a .hdr file of lines", "#?RADIANCE\n" + repeated("a=b\n", 100000), "a.hdr", Expect::kRefused);
 }
 
 std::string textured(const std::string& image) {
@@ -93,6 +141,7 @@ Group image_cases() {
     c.prepare = [=](const fs::path& folder) { write(folder), write_file(folder / "a.png", bytes); };
     group.cases.push_back(std::move(c));
   };
+  add_environments(group);
   const std::string file = R"({"uri":"a.png"})";
   scene("a PNG", file, png, Expect::kRendered);
   scene("cut", file, png.substr(0, png.size() / 2));

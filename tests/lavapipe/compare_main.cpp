@@ -30,7 +30,7 @@ namespace {
 constexpr int kSkipped = 77;
 
 struct Arguments {
-  std::string scene;
+  std::string scene, environment;
   std::string size = "1920x1080";
   std::vector<float> eye, at;
   int camera = -1;
@@ -57,6 +57,7 @@ void declare(CLI::App& app, Arguments& a) {
   app.add_option("--shading", a.shading, "as of quadrille render")->check(one_of(scenes::kShadingNames));
   app.add_option("--order", a.order, "as of quadrille render")->check(one_of(scenes::kDrawOrderNames));
   app.add_option("--view", a.view, "as of quadrille render")->check(one_of(scenes::kShowingNames));
+  app.add_option("--environment", a.environment, "as of quadrille render");
   app.add_option("--report", a.report, "write the figures to this JSON file");
   app.add_option("--images", a.images, "write both pictures and their difference to this folder");
   app.add_option("--samples", a.samples,
@@ -91,6 +92,7 @@ scenes::SceneOptions scene_options(const Arguments& a) {
   options.fragment_shader = a.fragment_shader;
   options.shading = scenes::named(scenes::kShadingNames, a.shading, scenes::Shading::kMinimal);
   options.order = scenes::named(scenes::kDrawOrderNames, a.order, scenes::DrawOrder::kFile);
+  options.environment = a.environment;
   options.samples = a.samples;
   options.alpha_to_coverage = a.alpha_to_coverage;
   if (!a.view.empty()) options.shown = scenes::named(scenes::kShowingNames, a.view, scenes::Showing::kDepth);

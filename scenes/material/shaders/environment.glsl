@@ -33,6 +33,12 @@ vec3 environment_irradiance(vec3 normal) {
   return max(sum, vec3(0.0));
 }
 
+// Where most of what a rough mirror shows comes from: the rougher, the nearer to the normal. Not of unit length. [P: Lagarde and de Rousiers 2014]
+vec3 mirrored(vec3 n, vec3 v, float roughness) {
+  float alpha = roughness * roughness, smoothness = max(1.0 - alpha, 0.0);
+  return mix(n, reflect(-v, n), smoothness * (sqrt(smoothness) + alpha));
+}
+
 // The specular lobe's directional albedo: x times f0 plus y times f90. The table's outer texels are for 0 and 1.
 vec2 lobe_albedo(float roughness, float n_dot_v) {
   return textureLod(lobe_table, vec2(n_dot_v, roughness) * (31.0 / 32.0) + 0.5 / 32.0, 0.0).rg;

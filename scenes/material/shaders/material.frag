@@ -125,7 +125,7 @@ vec3 reflect_environment(inout Surface s) {
 #else
   vec3 left = 1.0 - once - again;
 #endif
-  vec3 color = once * environment_radiance(reflect(-s.v, s.n), s.roughness) + (again + s.diffuse * left) * irradiance;
+  vec3 color = once * environment_radiance(mirrored(s.n, s.v, s.roughness), s.roughness) + (again + s.diffuse * left) * irradiance;
 #ifdef TRANSMISSION
   s.layers.transmittance *= left;
 #endif
@@ -139,7 +139,7 @@ vec3 reflect_environment(inout Surface s) {
 #ifdef CLEARCOAT
   vec2 coat_lobe = lobe_albedo(s.layers.coat_roughness, s.layers.coat_n_dot_v);
   float coat = s.layers.coat * (kCoatReflectance * coat_lobe.x + coat_lobe.y);
-  color = mix(color, environment_radiance(reflect(-s.v, s.layers.coat_n), s.layers.coat_roughness), coat);
+  color = mix(color, environment_radiance(mirrored(s.layers.coat_n, s.v, s.layers.coat_roughness), s.layers.coat_roughness), coat);
 #ifdef TRANSMISSION
   s.layers.transmittance *= 1.0 - coat;
 #endif
