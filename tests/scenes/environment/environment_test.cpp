@@ -140,7 +140,8 @@ TEST_CASE("environment: panoramas of other shapes, channels and values are refus
   CHECK(refused(holed) == "p.hdr: the pixel in column 5, row 2 is not finite");
   FloatImage negative = panorama_of_directions(8);
   std::ranges::fill(negative.pixels, -1.0F);
-  CHECK(cube_of_panorama(std::move(negative), "p").texels.front().r == 0);
+  const RadianceCube cube = cube_of_panorama(std::move(negative), "p");
+  CHECK(cube.texels.front().r == 0);
 }
 
 TEST_CASE("environment: words that name neither file nor sky are refused") {
