@@ -85,14 +85,15 @@ void RenderJob::add_to(CLI::App& command) {
                       "draws: what each draw did, how long it took and what limited it, in --stats and as a "
                       "table; tiles: counts by squares of "
                       "the screen, in --stats; timeline: use of every resource, bytes by client and how full "
-                      "links are over the frame, in --stats. "
+                      "links are over the frame, in --stats; path: what the frame's end waited for, unit by "
+                      "unit and, with draws, draw by draw, as a table and in --stats (docs/why.md). "
                       "Same picture, same cycles")
-          ->type_name("draws,tiles,timeline"),
+          ->type_name("draws,tiles,timeline,path"),
       command
           .add_option(
               "--report", report,
               "writes all figures with the picture as a page for a browser, in one file that needs no "
-              "network (docs/report.md); --detail draws,tiles,timeline is part of it")
+              "network (docs/report.md); --detail draws,tiles,timeline,path is part of it")
           ->type_name("F.html"),
       command
           .add_option(
@@ -176,14 +177,19 @@ std::int64_t RenderJob::window_cycles() const {
 
 pipeline::DetailOptions RenderJob::details() const {
   const bool page = report && !frames.wanted();  // that of several frames shows none
-  pipeline::DetailOptions chosen{.draws = page || timeline, .tiles = page, .timeline = page || timeline};
+  pipeline::DetailOptions chosen{
+      .draws = page || timeline, .tiles = page, .timeline = page || timeline, .path = page};
   if (!detail) return chosen;
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());
     const std::string word = detail->substr(at, end - at);
-    if (word != "draws" && word != "tiles" && word != "timeline")
-      throw user_error("--detail: {} not in {{draws,tiles,timeline}}", word.empty() ? "an empty word" : word);
-    (word == "draws" ? chosen.draws : word == "tiles" ? chosen.tiles : chosen.timeline) = true;
+    if (word != "draws" && word != "tiles" && word != "timeline" && word != "path")
+      throw user_error("--detail: {} not in {{draws,tiles,timeline,path}}",
+                       word.empty() ? "an empty word" : word);
+    (word == "draws"   ? chosen.draws
+     : word == "tiles" ? chosen.tiles
+     : word == "path"  ? chosen.path
+                       : chosen.timeline) = true;
     at = end + 1;
   }
   if ((chosen.tiles || (chosen.timeline && !timeline)) && !stats && !csv && !report)

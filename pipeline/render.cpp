@@ -150,6 +150,15 @@ struct RunWatch {
   std::function<void()> end;
 };
 
+void add_path(CriticalPath path, const Machine& machine, Figures& figures) {
+  hw::Tick parts = 0;
+  for (const PathShare& part : path.parts) parts += part.ticks;
+  const auto femtoseconds = [](hw::Tick ticks) { return static_cast<std::uint64_t>(ticks); };
+  figures.checks.push_back({"parts of the critical path = the frame, in femtoseconds", "critical_path.parts",
+                            "frame.cycles", femtoseconds(parts), femtoseconds(machine.end())});
+  figures.path = std::move(path);
+}
+
 std::uint64_t memory_bytes_of(const MachineConfig& config) {
   return static_cast<std::uint64_t>(config.gpu.memory_mib.value()) << 20;
 }
@@ -166,6 +175,8 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   if (detail.any() || !frame.queries.empty()) log.emplace(machine, frame, detail, kept);
   std::optional<FlowLog> flow;
   if (detail.timeline) flow.emplace(machine);
+  std::optional<CriticalPathLog> charges;
+  if (detail.path) charges.emplace(machine);
   build_s += seconds_since(start);
   const RunTimer timer(frame.fills);
   if (watch.begin) watch.begin(machine);
@@ -178,6 +189,7 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   if (kept != nullptr && log)
     for (Check& check : checks_of(*kept)) out.figures.checks.push_back(std::move(check));
   if (flow) flow->collect(out.figures);
+  if (charges) add_path(charges->follow(), machine, out.figures);
   out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;

@@ -22,6 +22,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kLongestRunSeconds = 3600;
+/// Parts of the critical path below that are in the JSON alone.
+constexpr double kLeastPathPercent = 0.5;
 
 /// A run of the frame.
 struct Variant {
@@ -37,10 +39,11 @@ struct RunResult {
 
 /// In the child: its machine is changed.
 pipeline::RenderedFrame drawn(const traces::CommandStream& stream, pipeline::MachineConfig& machine,
-                              const Variant& variant) {
+                              const Variant& variant, const pipeline::DetailOptions& detail = {}) {
   experiments::apply_settings(machine, variant.settings);
   machine.check();
-  pipeline::RenderedFrame frame = pipeline::render_exact(stream, machine, {.faster = variant.faster});
+  pipeline::RenderedFrame frame =
+      pipeline::render_exact(stream, machine, {.faster = variant.faster}, {}, detail);
   if (!frame.figures.checks_hold())
     throw std::logic_error("the figures contradict each other\n" + pipeline::failed_checks(frame.figures));
   return frame;
@@ -52,7 +55,7 @@ Json result_json(const pipeline::RenderedFrame& frame) {
 
 /// The machine as it is: its use, and what the report of the run expects.
 std::string base_figures(const traces::CommandStream& stream, pipeline::MachineConfig& machine) {
-  const pipeline::RenderedFrame frame = drawn(stream, machine, {});
+  const pipeline::RenderedFrame frame = drawn(stream, machine, {}, {.path = true});
   Json json = result_json(frame);
   json["limit"] = pipeline::find_limiter(frame.figures).text;
   struct Kind {
@@ -67,6 +70,13 @@ std::string base_figures(const traces::CommandStream& stream, pipeline::MachineC
   }
   for (const auto& [name, kind] : kinds)
     json["units"][name] = {{"use", kind.use}, {"busy", kind.cycles > 0 ? kind.busy / kind.cycles : 0}};
+  json["path"] = Json::array();
+  for (const pipeline::PathShare& part : frame.figures.path->parts)
+    json["path"].push_back(
+        {{"of", part.of},
+         {"part", name_of(part.part)},
+         {"by", part.by},
+         {"cycles", static_cast<double>(part.ticks) * frame.figures.frame.clock_mhz * 1e-9}});
   json["gains"] = Json::array();
   for (const pipeline::Gain& gain : pipeline::sensitivity(frame.figures).gains)
     if (gain.share >= pipeline::kLeastNamedGain && json["gains"].size() < pipeline::kNamedGains)
@@ -90,6 +100,9 @@ class Measurement {
     result.cycles = base.at("cycles").get<std::int64_t>();
     result.limit = base.at("limit").get<std::string>();
     check_kinds(base);
+    for (const Json& part : base.at("path"))
+      result.path.push_back({part.at("of").get<std::string>(), part.at("part").get<std::string>(),
+                             part.at("by").get<std::string>(), part.at("cycles").get<double>()});
     list_units(base, result);
     list_doubled(base, result);
     const std::vector<RunResult> runs = run_all(base.at("image").get<std::string>());
@@ -112,11 +125,19 @@ class Measurement {
           setting_.kinds.empty() || std::ranges::find(setting_.kinds, name) != setting_.kinds.end();
       if (!wanted || !base.at("units").contains(name)) continue;
       const Json& unit = base["units"][name];
-      result.units.push_back({name, unit.at("use").get<double>(), unit.at("busy").get<double>(), {}});
+      result.units.push_back(
+          {name, unit.at("use").get<double>(), unit.at("busy").get<double>(), path_cycles(result, name), {}});
       for (const double times : kSpeedUps)
         variants_.push_back(
             {fmt::format("{} {:g} times as fast", name, times), {{name, times}}, kept(name, times)});
     }
+  }
+  /// Of all that gets faster with a kind of units: its own, and the links that it waited for.
+  static double path_cycles(const WhyResult& result, const std::string& kind) {
+    double cycles = 0;
+    for (const PathStretch& stretch : result.path)
+      if (stretch.by == kind) cycles += stretch.cycles;
+    return cycles;
   }
   /// A packer's patience is no work: it stays as long as it is.
   [[nodiscard]] std::vector<std::string> kept(const std::string& kind, double times) const {
@@ -184,12 +205,21 @@ std::string why_table(const WhyResult& r, const pipeline::MachineConfig& machine
   std::string out = fmt::format(
       "WHY  {}, machine {}: {} cycles\n  {}\n\nFASTER  all units of a kind at once, measured: cycles that "
       "the "
-      "frame is shorter, and % of it\n  {:<20}{:>7}{:>8}{:>20}{:>20}\n",
-      r.scene, machine.title(), r.cycles, r.limit, "unit", "use", "busy", "a tenth faster",
+      "frame is shorter, and % of it\n  {:<20}{:>7}{:>8}{:>20}{:>20}{:>20}\n",
+      r.scene, machine.title(), r.cycles, r.limit, "unit", "use", "busy", "on the path", "a tenth faster",
       "infinitely fast");
   for (const FasterUnits& units : r.units)
-    out += fmt::format("  {:<20}{:>7.1f}{:>8.1f}{}{}\n", units.kind, 100 * units.use, 100 * units.busy,
-                       gain(units.gain.front()), gain(units.gain.back()));
+    out += fmt::format("  {:<20}{:>7.1f}{:>8.1f}{:>12.0f}{:>8.1f}{}{}\n", units.kind, 100 * units.use,
+                       100 * units.busy, units.path, percent(units.path), gain(units.gain.front()),
+                       gain(units.gain.back()));
+  out += fmt::format(
+      "\nPATH  what the frame's end waited for, back to its start: each cycle once\n"
+      "  {:<36}{:<10}{:<20}{:>12}{:>8}\n",
+      "unit or link", "", "who waited", "cycles", "%");
+  for (const PathStretch& p : r.path)
+    if (percent(p.cycles) >= kLeastPathPercent)
+      out += fmt::format("  {:<36}{:<10}{:<20}{:>12.0f}{:>8.1f}\n", p.of, p.part, p.of == p.by ? "" : p.by,
+                         p.cycles, percent(p.cycles));
   if (!r.doubled.empty())
     out +=
         fmt::format("\nDOUBLED  what the report of one run names, and what it gains\n  {:<28}{:>20}{:>20}\n",
@@ -206,6 +236,7 @@ std::string why_json(const WhyResult& r, const pipeline::MachineConfig& machine)
     units.push_back({{"unit", u.kind},
                      {"use", u.use},
                      {"busy", u.busy},
+                     {"path_cycles", u.path},
                      {"tenth_faster_gain_cycles", u.gain.front()},
                      {"infinitely_fast_gain_cycles", u.gain.back()}});
   for (const DoubledResource& d : r.doubled)
@@ -213,12 +244,16 @@ std::string why_json(const WhyResult& r, const pipeline::MachineConfig& machine)
                        {"doubles", d.words},
                        {"expected_gain_cycles", d.expected},
                        {"gain_cycles", d.gain}});
+  Json path = Json::array();
+  for (const PathStretch& p : r.path)
+    path.push_back({{"of", p.of}, {"part", p.part}, {"by", p.by}, {"cycles", p.cycles}});
   const Json document = {{"schema", kWhySchema},
                          {"scene", r.scene},
                          {"machine", Json::parse(pipeline::machine_json(machine))},
                          {"cycles", r.cycles},
                          {"limit", r.limit},
                          {"infinitely_fast_times", kSpeedUps.back()},
+                         {"path", std::move(path)},
                          {"units", std::move(units)},
                          {"doubled", std::move(doubled)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

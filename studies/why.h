@@ -27,6 +27,7 @@ inline constexpr std::array<double, 2> kSpeedUps{1.1, 100};
 struct FasterUnits {
   std::string kind;
   double use = 0, busy = 0;  ///< in the machine as it is: of the most used one, and the mean; 0..1
+  double path = 0;           ///< cycles of the critical path, with those of links that they waited for
   /// by speed-up: cycles of the GPU clock that the frame is shorter; negative where it is longer
   std::array<std::int64_t, kSpeedUps.size()> gain{};
 };
@@ -38,10 +39,17 @@ struct DoubledResource {
   std::int64_t gain = 0;
 };
 
+/// A part of the critical path (pipeline/report/critical_path.h).
+struct PathStretch {
+  std::string of, part, by;  ///< unit or link; "busy", "waiting" or "link"; who waited
+  double cycles = 0;         ///< of the GPU clock
+};
+
 struct WhyResult {
   std::string scene;
   std::int64_t cycles = 0;
   std::string limit;                     ///< what the report of the one run says, a line
+  std::vector<PathStretch> path;         ///< of the one run, longest first
   std::vector<FasterUnits> units;        ///< greatest gain of infinitely fast units first
   std::vector<DoubledResource> doubled;  ///< as the report names them
 };

@@ -89,7 +89,12 @@ void FifoBase::refuse_pop(Tick now) const {
 }
 
 PortBase::PortBase(Unit& owner, const char* name, Direction direction, LinkRole role, int stream)
-    : owner_(owner), name_(name), direction_(direction), role_(role), stream_(stream) {
+    : owner_(owner),
+      name_(name),
+      direction_(direction),
+      role_(role),
+      stream_(stream),
+      number_(static_cast<std::uint32_t>(owner.ports().size())) {
   owner.add_port(*this);
 }
 

@@ -230,6 +230,8 @@ class PortBase {
   [[nodiscard]] LinkRole role() const { return role_; }
   [[nodiscard]] int stream() const { return stream_; }
   [[nodiscard]] Unit& owner() const { return owner_; }
+  /// Its place among the ports of its owner.
+  [[nodiscard]] std::uint32_t number() const { return number_; }
   /// Cycles the owner waited for this port: starved on an input, blocked on an output.
   [[nodiscard]] std::int64_t waited() const;
   /// The same as the owner counts it: ticks on a uniform clock, else cycles.
@@ -244,6 +246,7 @@ class PortBase {
   Direction direction_;
   LinkRole role_;
   int stream_;
+  std::uint32_t number_;
   mutable std::int64_t waited_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "hw/base/unit.h"
 
+#include "hw/base/charge_log.h"
+
 #include <algorithm>
 #include <set>
 #include <unordered_map>
@@ -23,6 +25,11 @@ std::int64_t Unit::quiet_span(Tick from, Tick to) const {
     if (b > a) sum += span(a, b);
   }
   return sum;
+}
+
+void Unit::log_charge(const std::int64_t& of, const PortBase* port) {
+  const std::uint32_t own = &of == &busy_ ? ChargeLog::kBusy : ChargeLog::kWaiting;
+  charge_log_->note(accounted_, port == nullptr ? own : ChargeLog::kFirstPort + port->number());
 }
 
 void Unit::charge_wait(Tick until, const PortBase* cause) {
@@ -79,6 +86,7 @@ void Unit::take_back_from(Tick end) {
 
 void Unit::close(Tick end, Tick reachable_until) {
   const Tick last_edge = clock_.align(end);
+  charge_log_ = nullptr;
   // occupations may outlive the frame, and tokens that nobody waits for arrive behind it
   take_back_from(last_edge);
   const Tick reach = std::clamp(clock_.align(reachable_until), accounted_, last_edge);

@@ -23,6 +23,9 @@
 
 namespace quadrille::hw {
 
+class ChargeLog;
+class LegLog;
+
 /// The answer of `next()`: the earliest tick of an action and what it had to wait for. Build it from the
 /// unit's own readiness, then inputs, then outputs.
 class Wake {
@@ -160,6 +163,10 @@ class Unit : public sc_core::sc_module {
   [[nodiscard]] std::uint64_t* touched_word() const { return touched_word_; }
   [[nodiscard]] std::uint64_t touched_bit() const { return touched_bit_; }
   void set_quiet_log(const QuietLog& log) { quiet_ = &log; }
+  /// What its time goes to is written into `log`, up to the frame's end. Before the run.
+  void keep_charges(ChargeLog& log) { charge_log_ = &log; }
+  /// The same of each piece of work, where the unit has many in hand; else `log` stays empty.
+  void keep_legs(LegLog& log) { leg_log_ = &log; }
 
   [[nodiscard]] std::int64_t busy_cycles() const { return to_cycles(busy_); }
   /// The span behind `busy_cycles`, where it is kept; for a log of whom the unit was busy for.
@@ -192,6 +199,8 @@ class Unit : public sc_core::sc_module {
     note_charge(busy_);
   }
   [[nodiscard]] Tick after(Tick now, std::int64_t cycles) const { return clock_.after(now, cycles); }
+  /// Null while nobody asks for legs.
+  [[nodiscard]] LegLog* leg_log() const { return leg_log_; }
   // What the unit needs for its work, named in its constructor; names are those of the parameters that set
   // them, where one does. The initiation slot is a rate whose work is the busy cycles.
   void add_rate(std::string_view name, std::function<double()> cycles, std::string_view serial = {}) {
@@ -243,7 +252,10 @@ class Unit : public sc_core::sc_module {
   static constexpr std::uint32_t kLateCharges = 256;
   void note_charge(std::int64_t& of, const PortBase* port = nullptr) {
     late_[charges_++ % kLateCharges] = {accounted_, &of, port};
+    if (charge_log_ != nullptr) [[unlikely]]
+      log_charge(of, port);
   }
+  void log_charge(const std::int64_t& of, const PortBase* port);
   void take_back_from(Tick end);
   void take_back_rest(Tick end);
   /// Span within [from, to) in which no draw was in flight.
@@ -258,6 +270,8 @@ class Unit : public sc_core::sc_module {
   Resources resources_;
   Clock clock_;
   const QuietLog* quiet_ = nullptr;
+  ChargeLog* charge_log_ = nullptr;
+  LegLog* leg_log_ = nullptr;
   std::uint64_t unbound_word_ = 0;
   std::uint64_t* touched_word_ = &unbound_word_;
   std::uint64_t touched_bit_ = 1;

@@ -23,9 +23,10 @@ class WaitingQueue : public Queue<Entry> {
   }
   /// Of the entry that came last.
   [[nodiscard]] std::uint32_t newest() const { return number(this->size() - 1); }
+  [[nodiscard]] Entry& numbered(std::uint32_t number) { return (*this)[(number - first_) & kNumbers]; }
   /// One of the answers that an entry waits for is here.
   void answer(std::uint32_t number, Tick now) {
-    Entry& entry = (*this)[(number - first_) & kNumbers];
+    Entry& entry = numbered(number);
     --entry.missing;
     entry.ready = std::max(entry.ready, now);
   }

@@ -1,5 +1,6 @@
 #include "hw/memory/memory_channel.h"
 
+#include "hw/base/leg_log.h"
 #include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
@@ -151,10 +152,16 @@ void MemoryChannel::act(Tick now) {
     for (const models::DramDone& done : done_) finish(done);
     occupy(now, 1);
   }
-  while (!answers_.empty() && answers_.front().at <= now && response_out.room_at(now)) {
-    response_out.push(now, answers_.front().token);
-    answers_.pop_front();
-  }
+  while (!answers_.empty() && answers_.front().at <= now && response_out.room_at(now)) send(now);
+}
+
+void MemoryChannel::send(Tick now) {
+  const Answer& answer = answers_.front();
+  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+    log->end(
+        {answer.leg_take, 0, answer.at, now, after(0, params_.t_cas), response_out.number(), false, true});
+  response_out.push(now, answer.token);
+  answers_.pop_front();
 }
 
 double MemoryChannel::bus_cycles(models::BusUse use) const {
@@ -170,6 +177,7 @@ void MemoryChannel::note_occupancy(std::int64_t cycle) {
 }
 
 void MemoryChannel::take(Tick now, std::int64_t cycle) {
+  const Tick arrived = request_in.ready();
   const MemoryRequest request = request_in.pop(now);
   stats_->working_for(request.draw);
   const bool write = request.kind == MemoryRequest::Kind::kWrite;
@@ -185,6 +193,8 @@ void MemoryChannel::take(Tick now, std::int64_t cycle) {
   const std::uint32_t id = free_ids_.back();
   free_ids_.pop_back();
   held_[id] = {{request.line, request.tag, request.sectors}, request.client};
+  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+    held_[id].leg_take = log->take({arrived, now, request_in.number(), true, request.draw});
   controller_.take({interleave_.index_of(request.line), request.sectors, write, id}, cycle);
 }
 
@@ -198,7 +208,7 @@ void MemoryChannel::finish(const models::DramDone& done) {
   stats_->latency(held.client).note(static_cast<std::uint64_t>(done.done - done.arrived));
   free_ids_.push_back(done.id);
   if (done.write) return;
-  answers_.push_back({clock().edge(done.done), held.answer});
+  answers_.push_back({clock().edge(done.done), held.answer, held.leg_take});
   // Pseudo-channels finish in any order: keep the answers in order of time.
   for (std::size_t i = answers_.size() - 1; i > 0 && answers_[i - 1].at > answers_[i].at; --i)
     std::swap(answers_[i - 1], answers_[i]);

@@ -52,15 +52,18 @@ class MemoryChannel final : public Unit {
   struct Held {
     MemoryResponse answer;
     MemoryClient client = MemoryClient::kWriteBack;
+    std::uint32_t leg_take = 0;  ///< for a log of legs
   };
   struct Answer {
     Tick at = 0;
     MemoryResponse token;
+    std::uint32_t leg_take = 0;
   };
   [[nodiscard]] Wake take_wake() const;
   [[nodiscard]] Wake command_wake() const;
   void take(Tick now, std::int64_t cycle);
   void finish(const models::DramDone& done);
+  void send(Tick now);
   void note_occupancy(std::int64_t cycle);
   /// So far, of the mean data bus.
   [[nodiscard]] double bus_cycles(models::BusUse use) const;

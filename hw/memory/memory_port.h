@@ -53,6 +53,11 @@ class MemoryPort {
     response_in.take_ready(now, [&](std::size_t, const MemoryResponse& answer) { take(answer); });
   }
 
+  /// The port through which the answer for a line comes.
+  [[nodiscard]] const PortBase& answers_of(std::uint32_t line) const {
+    return response_in[interleave_.member_of(line)];
+  }
+
   [[nodiscard]] const MemoryPortStats& stats() const { return stats_; }
   void audit(Audit& audit) const;
   /// Its requests are counted by draw; the bytes too where a client has a count for them.

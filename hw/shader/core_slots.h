@@ -25,6 +25,8 @@ struct CoreSlot {
   models::ClauseEnd end = models::ClauseEnd::kProgramEnd;  ///< of the clause that issues
   /// cycles from that clause's last issue until its results are there
   std::uint32_t drain = 0;
+  /// For a log of legs: what the clause began with, and the cycles that it would wait if it issued alone.
+  std::uint32_t leg_take = 0, leg_latency = 0;
 };
 
 }  // namespace quadrille::hw

@@ -1,5 +1,6 @@
 #include "hw/shader/load_store_unit.h"
 
+#include "hw/base/leg_log.h"
 #include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
@@ -65,11 +66,19 @@ Wake LoadStoreUnit::next() const {
 
 void LoadStoreUnit::act(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
-    if ((answer.tag & kAtomicTag) != 0) return groups_.answer(answer.tag & ~kAtomicTag, now);
+    const auto answered = [&](std::uint32_t number) {
+      groups_.answer(number, now);
+      if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+        log->take_answer(groups_.numbered(number), now, port_.answers_of(answer.line).number());
+    };
+    if ((answer.tag & kAtomicTag) != 0) return answered(answer.tag & ~kAtomicTag);
     stalled_ = false;
-    cache_.fill(answer, [&](std::uint32_t number) { groups_.answer(number, now); });
+    cache_.fill(answer, answered);
   });
   if (answer_wake().at() <= now) {
+    if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+      log->end({groups_.front().leg_take, 0, after(groups_.front().ready, params_.response_clk), now,
+                after(0, params_.response_clk), response_out.number(), false, true});
     response_out.push(now, groups_.front().token);
     groups_.pop_front();
     ++stats_.groups_answered;
@@ -99,6 +108,7 @@ void LoadStoreUnit::gather(const CoreSlot& slot, const StorageToken& token) {
 }
 
 void LoadStoreUnit::take(Tick now) {
+  const Tick arrived = request_in.ready();
   const StorageToken token = request_in.pop(now);
   const CoreSlot& slot = slots_[token.slot];
   if (token.stage == models::ShaderStage::kVertex) stats_.working_for(token.draw);
@@ -114,6 +124,8 @@ void LoadStoreUnit::take(Tick now) {
   line_free_ = after(now, cycles);
   occupy(now, cycles);
   groups_.push_back({token, 0, line_free_});
+  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+    groups_.back().leg_take = log->take({arrived, now, request_in.number(), true, token.draw});
   move_lines(now);
 }
 

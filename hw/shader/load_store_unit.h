@@ -82,6 +82,7 @@ class LoadStoreUnit final : public Unit {
     StorageToken token;
     int missing = 0;  ///< lines without an answer
     Tick ready = 0;
+    std::uint32_t leg_take = 0;  ///< for a log of legs: of its request, or of the latest answer it waited for
   };
   struct Line {
     models::StorageLine line;

@@ -183,7 +183,7 @@ Wake ShaderCore::next() const {
 
 void ShaderCore::act(Tick now) {
   if (texture_in && texture_in->ready_at(now)) take_texels(now);
-  if (storage_in && storage_in->ready_at(now)) take_reply(now, storage_in->pop(now).slot);
+  if (storage_in && storage_in->ready_at(now)) take_reply(now, storage_in->pop(now).slot, *storage_in);
   end_clauses(now);
   Wake wake;
   if (const Completion* done = next_completion(wake); done != nullptr && wake.at() <= now) {
@@ -206,16 +206,21 @@ void ShaderCore::take_texels(Tick now) {
     models::write_texture_result(slot.warp, slot.warp.textures[static_cast<std::size_t>(i)],
                                  slot.texels[static_cast<std::size_t>(i)]);
   }
-  take_reply(now, index);
+  take_reply(now, index, *texture_in);
 }
 
-void ShaderCore::take_reply(Tick now, std::uint32_t index) {
-  if (--slots_[index].replies == 0) ready_.push_back({now, index});
+void ShaderCore::take_reply(Tick now, std::uint32_t index, const PortBase& port) {
+  CoreSlot& slot = slots_[index];
+  if (--slot.replies > 0) return;
+  ready_.push_back({now, index});
+  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+    slot.leg_take = log->take({now, now, port.number(), false, slot.draw});
 }
 
 void ShaderCore::accept_vertex(Tick now) {
+  const Tick arrived = vertex_in.ready();
   const VertexWarpToken token = vertex_in.pop(now);
-  accept(now, token.draw, [&](CoreSlot& slot) {
+  accept({arrived, now, vertex_in.number(), true, token.draw}, [&](CoreSlot& slot) {
     slot.stage = models::ShaderStage::kVertex;
     slot.batch = token.slot;
     launch_vertex(slot);
@@ -223,8 +228,9 @@ void ShaderCore::accept_vertex(Tick now) {
 }
 
 void ShaderCore::accept_fragment(Tick now) {
+  const Tick arrived = fragment_in.ready();
   const FragmentWarpToken token = fragment_in.pop(now);
-  accept(now, token.draw, [&](CoreSlot& slot) {
+  accept({arrived, now, fragment_in.number(), true, token.draw}, [&](CoreSlot& slot) {
     slot.stage = models::ShaderStage::kFragment;
     slot.warp_slot = token.slot;
     slot.partition = token.partition;
@@ -235,17 +241,19 @@ void ShaderCore::accept_fragment(Tick now) {
 }
 
 template <class Launch>
-void ShaderCore::accept(Tick now, DrawId draw, const Launch& launch) {
-  stats_.working_for(draw);
+void ShaderCore::accept(const LegLog::Take& take, const Launch& launch) {
+  stats_.working_for(take.draw);
   const std::uint32_t index = free_slots_.back();
   free_slots_.pop_back();
   CoreSlot& slot = slots_[index];
-  slot.draw = draw;
+  slot.draw = take.draw;
   give_simd(slot);
   launch(slot);
   free_rows_ -= slot.warp.program->num_regs;
-  ready_.push_back({after(now, 1), index});
-  accept_free_ = after(now, 1);
+  accept_free_ = after(take.taken, 1);
+  ready_.push_back({accept_free_, index});
+  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+    slot.leg_take = log->take(take);
 }
 
 void ShaderCore::launch_vertex(CoreSlot& slot) {
@@ -307,6 +315,7 @@ void ShaderCore::issue(Tick now) {
   const models::ClauseCost& cost = result.cost;
   slot.end = result.end;
   slot.drain = warp_clock_.drain() - warp_clock_.span();
+  slot.leg_latency = warp_clock_.drain() - warp_clock_.work();
   simds_[slot.simd].add(clock().edges_before(now), index, warp_clock_.work(), warp_clock_.span());
   const auto textures = static_cast<std::uint32_t>(slot.warp.texture_count);
   const auto accesses = static_cast<std::uint32_t>(slot.warp.access_count);
@@ -330,7 +339,21 @@ void ShaderCore::end_clauses(Tick now) {
   }
 }
 
+void ShaderCore::note_leg(Tick now, const Completion& done) {
+  const CoreSlot& slot = slots_[done.slot];
+  const bool leaves = done.end != models::ClauseEnd::kRequests;
+  const bool exports = leaves && slot.stage == models::ShaderStage::kFragment && export_free_ >= now;
+  const PortBase& out = !leaves ? slot.warp.texture_count > 0 ? static_cast<const PortBase&>(*texture_out)
+                                                              : static_cast<const PortBase&>(*storage_out)
+                        : slot.stage == models::ShaderStage::kVertex
+                            ? static_cast<const PortBase&>(vertex_out_for(slot))
+                            : static_cast<const PortBase&>(*fragment_out[slot.partition.index()]);
+  leg_log()->end({slot.leg_take, 0, done.at, now, after(0, slot.leg_latency), out.number(), exports, leaves});
+}
+
 void ShaderCore::complete(Tick now, const Completion& done) {
+  if (leg_log() != nullptr) [[unlikely]]
+    note_leg(now, done);
   if (done.end != models::ClauseEnd::kRequests) return retire(now, done.slot);
   CoreSlot& slot = slots_[done.slot];
   slot.replies = (slot.warp.texture_count > 0) + (slot.warp.access_count > 0);

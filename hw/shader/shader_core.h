@@ -15,6 +15,7 @@
 /// Not modelled: instruction and constant caches (docs/deviations.md#D4), register bank conflicts (#D5)
 #pragma once
 
+#include "hw/base/leg_log.h"
 #include "hw/base/param.h"
 #include "hw/base/queue.h"
 #include "hw/base/unit.h"
@@ -174,7 +175,7 @@ class ShaderCore final : public Unit {
   void accept_fragment(Tick now);
   /// Takes a free slot for a warp of this draw, and lets it be ready once `launch(slot)` has made it so.
   template <class Launch>
-  void accept(Tick now, DrawId draw, const Launch& launch);
+  void accept(const LegLog::Take& take, const Launch& launch);
   void launch_vertex(CoreSlot& slot);
   void launch_fragment(CoreSlot& slot);
   void issue(Tick now);
@@ -187,7 +188,9 @@ class ShaderCore final : public Unit {
   /// The warp's colours are on their way out until they have passed.
   void export_colors(Tick now, const WarpSlot& work);
   void take_texels(Tick now);
-  void take_reply(Tick now, std::uint32_t index);
+  void take_reply(Tick now, std::uint32_t index, const PortBase& port);
+  /// A clause of the slot has sent its requests, or its warp's results.
+  void note_leg(Tick now, const Completion& done);
 
   const Params& params_;
   const Frame& frame_;

@@ -1,5 +1,6 @@
 #include "hw/texture/texture_unit.h"
 
+#include "hw/base/leg_log.h"
 #include "hw/frame/detail_counts.h"
 #include "hw/frame/laws.h"
 
@@ -69,9 +70,15 @@ Wake TextureUnit::next() const {
 void TextureUnit::act(Tick now) {
   port_.receive(now, [&](const MemoryResponse& answer) {
     stalled_ = false;
-    cache_.fill(answer, [&](std::uint32_t number) { groups_.answer(number, now); });
+    cache_.fill(answer, [&](std::uint32_t number) {
+      groups_.answer(number, now);
+      if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+        log->take_answer(groups_.numbered(number), now, port_.answers_of(answer.line).number());
+    });
   });
   if (answer_wake().at() <= now) {
+    if (leg_log() != nullptr) [[unlikely]]
+      note_leg(now);
     response_out.push(now, groups_.front().token);
     filter_free_ = after(std::max(groups_.front().ready, filter_free_), groups_.front().filter_cycles);
     groups_.pop_front();
@@ -149,7 +156,16 @@ void TextureUnit::begin_pass(PassId pass) {
   ++stats_.cache_emptied;
 }
 
+void TextureUnit::note_leg(Tick now) const {
+  const Group& group = groups_.front();
+  const Tick from = std::max(group.ready, filter_free_);
+  leg_log()->end({group.leg_take, filter_free_ > group.ready ? from : 0,
+                  after(from, group.filter_cycles + params_.filter_clk), now, after(0, params_.filter_clk),
+                  response_out.number(), false, true});
+}
+
 void TextureUnit::take(Tick now) {
+  const Tick arrived = request_in.ready();
   const TextureToken token = request_in.pop(now);
   if (token.stage == models::ShaderStage::kVertex) stats_.working_for(token.draw);
   else stats_.working_for(token.draw, slots_[token.slot].tile_x, slots_[token.slot].tile_y);
@@ -157,6 +173,8 @@ void TextureUnit::take(Tick now) {
   lines_.clear();
   next_line_ = 0;
   Group group{token};
+  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
+    group.leg_take = log->take({arrived, now, request_in.number(), true, token.draw});
   std::int64_t address_cycles = 0;
   plan(slots_[token.slot], token, group, address_cycles);
   ++stats_.groups;

@@ -119,6 +119,7 @@ class TextureUnit final : public Unit {
     std::int64_t filter_cycles = 0;  ///< of the filter, or of the decoder beside it if that takes longer
     std::uint32_t blocks = 0;        ///< to decode
     Tick ready = 0;
+    std::uint32_t leg_take = 0;  ///< for a log of legs: of its request, or of the latest answer it waited for
   };
   /// A line of memory, or one of decoded texels: then `decoded.blocks` is not 0.
   struct LookUp {
@@ -129,6 +130,7 @@ class TextureUnit final : public Unit {
   [[nodiscard]] Wake answer_wake() const;
   void begin_pass(PassId pass);
   void take(Tick now);
+  void note_leg(Tick now) const;
   void plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles);
   void look_up(Tick now);
   void add_look_ups(Group& group);

@@ -22,6 +22,7 @@ struct DetailOptions {
   bool draws = false, tiles = false;
   /// use is there anyway, and is only reported; what moved in each slice is kept (flow_log.h)
   bool timeline = false;
+  bool path = false;  ///< the chain of waits that the frame's end hangs on (critical_path.h)
   /// Something is kept by draw or by square.
   [[nodiscard]] bool any() const { return draws || tiles; }
 };
@@ -45,6 +46,7 @@ struct DetailCount {
 /// What one draw did, or what belonged to no draw.
 struct DrawFigures {
   std::string label;
+  std::string vertex_shader, fragment_shader;  ///< as the scene or the trace names them
   models::PassId pass = {};
   /// cycles of the GPU clock: the command processor issues it; every partition has retired it
   std::int64_t issued = 0, retired = 0;

@@ -163,11 +163,13 @@ Detail DetailLog::collect() {
   for (std::uint32_t i = 0; i < draws; ++i) {
     const hw::DrawState& state = frame_.frame.draws[i];
     d.draws.push_back(blank({.label = state.label,
+                             .vertex_shader = state.vertex.program->name,
+                             .fragment_shader = state.fragment.program->name,
                              .pass = state.pass,
                              .issued = machine_.clock().edges_before(commands.issued_at()[i]),
                              .retired = machine_.clock().edges_before(commands.retired_at()[i])}));
   }
-  d.outside_draws = blank({.label = "outside_draws", .pass = {}});
+  d.outside_draws = blank({.label = "outside_draws", .vertex_shader = {}, .fragment_shader = {}, .pass = {}});
   d.tiles.width = screen_.columns;
   d.tiles.height = screen_.rows;
   d.tiles.pixels = screen_.tiles * models::kTileSize;

@@ -4,6 +4,7 @@
 
 #include "pipeline/functional/fates.h"
 #include "pipeline/machine/machine.h"
+#include "pipeline/report/critical_path.h"
 #include "pipeline/report/detail.h"
 #include "pipeline/report/flow.h"
 #include "pipeline/report/queries.h"
@@ -132,7 +133,8 @@ struct Figures {
   std::vector<LinkFigures> links;
   /// of the GPU clock: from the first command until nothing moved any more, which write-backs do longest
   std::int64_t moving_cycles = 0;
-  std::optional<FlowFigures> flow = {};  ///< only where the timeline was asked for
+  std::optional<FlowFigures> flow = {};   ///< only where the timeline was asked for
+  std::optional<CriticalPath> path = {};  ///< only where it was asked for
   std::vector<ClientFigures> bandwidth;
   std::vector<Check> checks;
   std::vector<LeftOut> left_out;

@@ -153,6 +153,7 @@ Json by_kind(const std::vector<std::string>& kinds, const std::vector<Cycles>& c
 
 Json draw_json(const Detail& d, const DrawFigures& draw) {
   Json all = {{"label", draw.label},
+              {"shaders", {{"vertex", draw.vertex_shader}, {"fragment", draw.fragment_shader}}},
               {"pass", draw.pass.index()},
               {"issued", draw.issued},
               {"retired", draw.retired},
@@ -258,6 +259,31 @@ void add_detail(Json& document, const std::optional<Detail>& detail) {
   if (detail->wanted.tiles) document["tiles"] = tiles_json(detail->tiles);
 }
 
+/// Only where it was asked for.
+void add_path(Json& document, const Figures& f) {
+  if (!f.path) return;
+  const double per_tick = f.frame.clock_mhz * 1e-9;
+  const auto cycles = [&](hw::Tick ticks) { return static_cast<double>(ticks) * per_tick; };
+  const auto parts_json = [&](const std::vector<PathShare>& parts) {
+    Json all = Json::array();
+    for (const PathShare& p : parts)
+      all.push_back({{"of", p.of}, {"part", name_of(p.part)}, {"by", p.by}, {"cycles", cycles(p.ticks)}});
+    return all;
+  };
+  Json draws = Json::array();
+  for (const CriticalPath::OfDraw& draw : f.path->draws) {
+    const bool none = draw.draw == hw::kNoDraw;
+    draws.push_back({{"draw", none ? Json(nullptr) : Json(draw.draw.index())},
+                     {"cycles", cycles(draw.ticks)},
+                     {"parts", parts_json(draw.parts)}});
+  }
+  document["critical_path"] = {{"cycles", cycles(f.path->ticks)},
+                               {"stretches", f.path->stretches},
+                               {"log_bytes", f.path->log_bytes},
+                               {"parts", parts_json(f.path->parts)},
+                               {"draws", std::move(draws)}};
+}
+
 /// Only where the frame has some.
 void add_queries(Json& document, const std::vector<QueryFigures>& queries) {
   if (queries.empty()) return;
@@ -325,6 +351,7 @@ std::string report_json(const ReportSubject& s) {
                    {"limit", limit_json(f)},         {"bandwidth", std::move(bandwidth)},
                    {"links", links_json(f)},         {"checks", checks_json(f)},
                    {"left_out", std::move(left_out)}};
+  add_path(document, f);
   add_queries(document, f.queries);
   add_detail(document, f.detail);
   if (f.report_timeline) document["timeline"] = timeline_json(f);

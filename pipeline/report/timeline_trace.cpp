@@ -133,7 +133,14 @@ void write_draws(PacketWriter& writer, const Timeline& line, const std::vector<D
         note.set_name(name);
         note.set_uint_value(value);
       };
+      const auto text = [&](const std::string& name, const std::string& value) {
+        perfetto::DebugAnnotation& note = *begin.add_debug_annotations();
+        note.set_name(name);
+        note.set_string_value(value);
+      };
       number("draw", span.draw);
+      text("vertex shader", draw.vertex_shader);
+      text("fragment shader", draw.fragment_shader);
       number("pass", draw.pass.index());
       visit_counts(draw, number);
       (void)writer.event(static_cast<double>(span.end), perfetto::TrackEvent::TYPE_SLICE_END, track);
@@ -156,7 +163,10 @@ void add_draws(Json& events, const Timeline& line, const std::vector<DrawFigures
                       {"args", {{"name", row == 0 ? "draws" : fmt::format("draws {}", row + 1)}}}});
     for (const DrawSpan& span : line.draw_rows[row]) {
       const DrawFigures& draw = draws[span.draw];
-      Json args = {{"draw", span.draw}, {"pass", draw.pass.index()}};
+      Json args = {{"draw", span.draw},
+                   {"vertex shader", draw.vertex_shader},
+                   {"fragment shader", draw.fragment_shader},
+                   {"pass", draw.pass.index()}};
       visit_counts(draw, [&](const std::string& name, std::uint64_t value) { args[name] = value; });
       events.push_back({{"ph", "X"},
                         {"name", draw.label.empty() ? fmt::format("draw {}", span.draw) : draw.label},

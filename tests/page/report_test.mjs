@@ -55,6 +55,29 @@ test('units: bars are the cycles of the figures, waits and counters those of the
   await page.done();
 });
 
+test('critical path: bars and rows are the figures, of the frame and of a draw', async () => {
+  const page = await open(made.page);
+  const { critical_path: whole } = figures;
+  near(sum(whole.parts.map((part) => part.cycles)), frame.cycles);
+  near(sum(whole.draws.map((draw) => draw.cycles)), frame.cycles);
+  const check = async (path) => {
+    const rows = await cells(page, 'path-parts');
+    const shares = await series(page, 'path-chart');
+    for (const [i, part] of ['busy', 'waiting', 'link'].entries()) {
+      const cycles = sum(path.parts.filter((p) => p.part === part).map((p) => p.cycles));
+      assert.ok(Math.abs(sum(rows.map((row) => row[i + 1])) - cycles) < 1e-6 * frame.cycles);
+      const shown = sum(shares[part]) * path.cycles;
+      assert.ok(shown <= cycles * (1 + 1e-9) && shown > cycles - 0.2 * path.cycles);
+    }
+  };
+  await check(whole);
+  const first = whole.draws.findIndex(({ draw }) => draw !== null);
+  await page.locator('#path-of').selectOption({ index: 1 });
+  await check(whole.draws[first]);
+  assert.equal(Number((await page.locator('#path-cycles').textContent()).replace(/ cycles.*/, '').replaceAll(',', '')), Math.round(whole.draws[first].cycles));
+  await page.done();
+});
+
 test('draws: sums are those of the frame, and the table sorts, filters and tells of a draw', async () => {
   const page = await open(made.page);
   const table = (what) => page.evaluate(`window.quadrille.tables.get('draws-table').table.${what}`);

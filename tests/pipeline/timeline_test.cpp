@@ -34,6 +34,8 @@ Figures two_units() {
   const auto draw = [](const char* label, std::int64_t issued, std::int64_t retired) {
     DrawFigures d;
     d.label = label;
+    d.vertex_shader = "place.vert";
+    d.fragment_shader = "shade.frag";
     d.issued = issued;
     d.retired = retired;
     d.counts[0] = 7;
@@ -154,8 +156,10 @@ TEST_CASE("timeline: the JSON has each counter at each slice's begin and 0 at th
   std::set<std::string> draws;
   for (const auto& event : document["traceEvents"]) {
     if (event["ph"] == "C" && event["name"] == "core_0 issue: used") issue.push_back(event["args"]["%"]);
-    if (event["ph"] == "X")
-      draws.insert(event["name"].get<std::string>() + " " + std::to_string(event["dur"].get<double>()));
+    if (event["ph"] != "X") continue;
+    CHECK(event["args"]["vertex shader"] == "place.vert");
+    CHECK(event["args"]["fragment shader"] == "shade.frag");
+    draws.insert(event["name"].get<std::string>() + " " + std::to_string(event["dur"].get<double>()));
   }
   CHECK(issue == std::vector<double>{25, 100, 0, 0});
   CHECK(draws == std::set<std::string>{"draw 1 0.800000", "first 0.500000", "third 0.500000"});

@@ -24,6 +24,13 @@ WhyResult why(const std::string& scene, const std::vector<std::string>& settings
   return measure_why(scenes::load_scene(scene, options), machine, {.kinds = kinds, .jobs = 2});
 }
 
+/// Part of the frame on the critical path that gets shorter with a kind of units.
+double on_path(const WhyResult& result, const std::string& kind) {
+  const auto found = std::ranges::find(result.units, kind, &FasterUnits::kind);
+  REQUIRE(found != result.units.end());
+  return found->path / static_cast<double>(result.cycles);
+}
+
 /// Part of the frame.
 double gain(const WhyResult& result, const std::string& kind, std::size_t speed_up) {
   const auto found = std::ranges::find(result.units, kind, &FasterUnits::kind);
@@ -39,6 +46,8 @@ TEST_CASE("why: where lanes are few the cores are the frame, and nothing else is
   CHECK(result.units.front().kind == "core");
   CHECK(gain(result, "core", 0) == Approx(1 - 1 / 1.1).margin(0.015));
   CHECK(gain(result, "core", 1) > 0.85);
+  CHECK(on_path(result, "core") > gain(result, "core", 1));
+  for (const std::string kind : {"clipper", "primitive_assembly"}) CHECK(on_path(result, kind) < 0.01);
   for (const std::string kind : {"clipper", "primitive_assembly"})
     for (const std::size_t speed_up : {0u, 1u}) CHECK(std::abs(gain(result, kind, speed_up)) < 0.01);
 }
@@ -50,6 +59,8 @@ TEST_CASE("why: where memory is slow it is what the frame waits for") {
   CHECK(result.units.front().kind == "memory");
   CHECK(gain(result, "memory", 0) == Approx(1 - 1 / 1.1).margin(0.01));
   CHECK(gain(result, "memory", 1) > 0.5);
+  CHECK(on_path(result, "memory") > gain(result, "memory", 1));
+  CHECK(on_path(result, "core") < 0.1);
   for (const std::string kind : {"core", "warp_packer"}) CHECK(std::abs(gain(result, kind, 1)) < 0.01);
   REQUIRE_FALSE(result.doubled.empty());
   CHECK(result.doubled.front().resource == "memory.bus");
@@ -64,6 +75,9 @@ TEST_CASE("why: the document has what the table has") {
   CHECK(json.at("schema") == kWhySchema);
   CHECK(json.at("cycles") == result.cycles);
   REQUIRE(json.at("units").size() == 2);
+  double path = 0;
+  for (const auto& part : json.at("path")) path += part.at("cycles").get<double>();
+  CHECK(path == Approx(static_cast<double>(result.cycles)).epsilon(1e-6));
   CHECK(json["units"][0].at("infinitely_fast_gain_cycles") == result.units[0].gain.back());
   CHECK(json["doubled"].size() == result.doubled.size());
   for (const FasterUnits& units : result.units)

@@ -4,6 +4,7 @@ import { showPage } from './layout.js';
 import { overview } from './sections/overview.js';
 import { picture } from './sections/picture.js';
 import { units } from './sections/units.js';
+import { path } from './sections/path.js';
 import { timeline } from './sections/timeline.js';
 import { light } from './sections/light.js';
 import { draws } from './sections/draws.js';
@@ -18,7 +19,7 @@ import { laws } from './sections/laws.js';
 import { host } from './sections/host.js';
 
 // A section takes all that is known and returns its element, or null where the figures have nothing for it.
-const SECTIONS = [overview, picture, units, timeline, light, draws, bandwidth, caches, dram, energy, machine, parameters, leftOut, laws, host];
+const SECTIONS = [overview, picture, units, path, timeline, light, draws, bandwidth, caches, dram, energy, machine, parameters, leftOut, laws, host];
 
 /** How a scene is called in a heading: the last part of its path. */
 export const shortName = (scene) => scene.split('/').pop() || scene;

@@ -11,6 +11,7 @@ const TERMS = {
   idle: 'Cycles in which no work was in flight that could reach the unit.',
   use: 'The least time in which the unit could do the counted work at its peak rates, as a part of its cycles. 100 % is its speed of light.',
   limit: 'The resource of which twice as much is expected to shorten the frame most. The expectation comes from this one run.',
+  'critical path': 'The chain of work and waits from the last cycle of the frame back to its first. What is not on it would shorten nothing by itself.',
   'speed of light': 'The least time of the counted work at its peak rates: no order of the same work could be faster on this machine.',
   gain: 'The part of the frame that twice as much of this resource is expected to save, by itself.',
   'one after another': 'Frames a second if the next frame begins when the last pixel of this one has been read.',

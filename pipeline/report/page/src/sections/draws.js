@@ -11,7 +11,7 @@ function rowsOf(figures) {
   const { parameters } = figures.machine;
   const simds = parameters['gpu.cores'] * parameters['core.simds'];
   return figures.draws.map((draw, number_) => ({
-    number: number_, label: draw.label, pass: draw.pass, cycles: draw.cycles_in_flight, issued: draw.issued,
+    number: number_, label: draw.label, shader: draw.shaders.fragment, pass: draw.pass, cycles: draw.cycles_in_flight, issued: draw.issued,
     triangles: draw.triangles.in, drawn: draw.triangles.drawn, vertices: draw.vertices.shaded,
     covered: draw.fragments.covered, killed_early: draw.fragments.killed_early, shaded: draw.fragments.shaded,
     written: draw.fragments.written, texels: draw.texture.texels, misses: draw.texture.cache_misses,
@@ -53,6 +53,7 @@ function columns(figures, rows) {
     numberColumn('memory bytes', 'memory', integer, { width: 130, headerTooltip: "Bytes read by the memory channels because of the draw's misses in the L2 cache", ...added() }),
     numberColumn('SIMDs held', 'simds', percent, { width: 112, headerFilter: false }),
     numberColumn('most warps', 'most', integer, { width: 116, headerFilter: false }),
+    textColumn('fragment shader', 'shader', { width: 190, headerTooltip: 'As the scene or the trace names it' }),
     textColumn('kept out by', 'keeps', { width: 186 }),
     numberColumn('issued', 'issued', integer, { width: 106, headerFilter: false, headerTooltip: 'GPU cycle at which the command processor issued it' }),
   ];
@@ -64,11 +65,12 @@ function columns(figures, rows) {
 function details({ draw, number: at }) {
   const kinds = Object.keys(draw.work).sort((a, b) => draw.work[b] - draw.work[a]);
   const counts = Object.entries(draw).filter(([, value]) => typeof value === 'object')
-    .filter(([group]) => !['busy', 'work', 'limiter', 'occupancy'].includes(group))
+    .filter(([group]) => !['shaders', 'busy', 'work', 'limiter', 'occupancy'].includes(group))
     .flatMap(([group, of]) => Object.entries(of).map(([name, value]) => ({ name: `${words(group)}: ${words(name)}`, value })));
   return [
     h('h3', { id: 'draw-name' }, `${at}: ${draw.label}`),
     h('p', { class: 'soft' }, `issued at ${integer(draw.issued)}, retired at ${integer(draw.retired)}: ${integer(draw.cycles_in_flight)} cycles in flight`),
+    h('p', { class: 'soft', id: 'draw-shaders' }, `shaders ${draw.shaders.vertex} and ${draw.shaders.fragment}`),
     h('p', { class: 'soft', id: 'draw-occupancy' }, term('most warps', 'Warps that a core can hold'), `: ${integer(draw.occupancy.fragment.most_warps)} of its fragments (${draw.occupancy.fragment.limit}) or ${integer(draw.occupancy.vertex.most_warps)} of its vertices (${draw.occupancy.vertex.limit})`),
     h('div', { class: 'panels' },
       panel('Work by unit', table('draw-work', [
