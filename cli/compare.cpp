@@ -57,8 +57,8 @@ void add_compare(CLI::App& app, Command& chosen) {
       ->type_name("F.json|-");
   command->add_flag("-q,--quiet", arguments->quiet, "prints no table");
   command->footer(R"(Examples:
-  quadrille render city.gltf --detail draws,tiles --stats a.json
-  quadrille render city.gltf --detail draws,tiles --stats b.json --set gpu.cores=8
+  quadrille render city.gltf --detail draws,tiles,path --stats a.json
+  quadrille render city.gltf --detail draws,tiles,path --stats b.json --set gpu.cores=8
   quadrille compare a.json b.json --report cores.html)");
   command->callback([arguments, &chosen] { chosen = [arguments] { return run_compare(*arguments); }; });
 }

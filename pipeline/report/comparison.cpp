@@ -152,6 +152,28 @@ Json units(const Kinds& of_a, const Kinds& of_b) {
   return all;
 }
 
+/// By unit, or link and who waited for it: both paths add up to their frames, so the differences add up to
+/// that of the frames.
+Json critical_path(const Json& of_a, const Json& of_b) {
+  const auto keyed = [](const Json& path) {
+    Json all = Json::object();
+    for (const Json& part : path["parts"]) {
+      const Json key = {part["of"], part["part"], part["by"]};
+      Json& cycles = all[key.dump(-1, ' ', false, Json::error_handler_t::replace)];
+      cycles = (cycles.is_null() ? 0.0 : cycles.get<double>()) + part["cycles"].get<double>();
+    }
+    return all;
+  };
+  std::vector<Json> all;
+  over_both(keyed(of_a), keyed(of_b), [&](const std::string& key, const Json& x, const Json& y) {
+    const Json of = Json::parse(key);
+    const auto cycles = [](const Json& value) { return value.is_number() ? value.get<double>() : 0.0; };
+    all.push_back({{"of", of[0]}, {"part", of[1]}, {"by", of[2]}, {"cycles", pair(cycles(x), cycles(y))}});
+  });
+  sort_by(all, "cycles");
+  return all;
+}
+
 /// How many times as much the one is as the other, at least 1; counts that appear or vanish come first.
 double factor(const Json& entry) {
   const double a = entry["a"].get<double>(), b = entry["b"].get<double>();
@@ -300,6 +322,8 @@ std::string comparison_json(const FiguresFile& file_a, const FiguresFile& file_b
               {"parameters", parameters(a, b)},   {"frame", frame(a, b)},
               {"units", units(kinds_a, kinds_b)}, {"resources", resources(a, b)},
               {"bandwidth", bandwidth(a, b)},     {"counters", counters(kinds_a, kinds_b)}};
+  if (a.contains("critical_path") && b.contains("critical_path"))
+    all["critical_path"] = critical_path(a["critical_path"], b["critical_path"]);
   if (a.contains("draws") && b.contains("draws")) all["draws"] = draws(a["draws"], b["draws"]);
   if (a.contains("tiles") && b.contains("tiles") && same_squares(a["tiles"], b["tiles"]))
     all["tiles"] = tiles(a["tiles"], b["tiles"]);

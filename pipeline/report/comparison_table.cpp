@@ -106,6 +106,21 @@ std::string units(const Json& c) {
   });
 }
 
+std::string critical_path(const Json& c) {
+  if (!c.contains("critical_path")) return "";
+  const std::string heading = fmt::format(
+      "PATH  what the frames' ends waited for; the differences add up to that of the cycles\n"
+      "  {:<36} {:<8} {:<17} {:>13} {:>13} {:>13} {:>10}",
+      "unit or link", "", "who waited", "A", "B", "difference", "of A");
+  return rows(heading, c["critical_path"], [](const Json& p) {
+    const Json& cycles = p["cycles"];
+    const std::string of = one_line(p["of"]), by = one_line(p["by"]);
+    return fmt::format("  {:<36} {:<8} {:<17} {:>13} {:>13} {:>13} {:>10}\n", fit(of, 36),
+                       fit(one_line(p["part"]), 8), of == by ? "" : fit(by, 17), whole(cycles["a"]),
+                       whole(cycles["b"]), change(cycles), part(cycles));
+  });
+}
+
 std::string counters(const Json& c) {
   const std::string heading = fmt::format(
       "COUNTERS  all units of a kind, by how many times {:>24} {:>16} {:>16}", "A", "B", "difference");
@@ -169,7 +184,8 @@ std::string tiles(const Json& c) {
 
 std::string comparison_table(std::string_view comparison_json) {
   const Json c = Json::parse(comparison_json);
-  return head(c) + parameters(c) + frame(c) + units(c) + bandwidth(c) + draws(c) + tiles(c) + counters(c);
+  return head(c) + parameters(c) + frame(c) + critical_path(c) + units(c) + bandwidth(c) + draws(c) +
+         tiles(c) + counters(c);
 }
 
 }  // namespace quadrille::pipeline

@@ -105,6 +105,14 @@ void check_draw(const Place& draw) {
   draw.at("limiter").at("work_cycles").number();
 }
 
+void check_path(const Place& path) {
+  path.at("cycles").number();
+  path.at("parts").list().each([](const Place& part) {
+    for (const char* key : {"of", "part", "by"}) part.at(key).text();
+    part.at("cycles").number();
+  });
+}
+
 void check_tiles(const Place& tiles) {
   for (const char* key : {"width", "height", "tile_pixels"})
     if (!tiles.at(key).value().is_number_unsigned()) throw tiles.at(key).wrong("not a whole number");
@@ -140,6 +148,7 @@ nlohmann::ordered_json read_figures(const std::string& file, std::string_view te
     client.at("read_bytes").number();
     client.at("write_bytes").number();
   });
+  if (document.has("critical_path")) check_path(document.at("critical_path"));
   if (document.has("draws")) document.at("draws").list().each(check_draw);
   if (document.has("tiles")) check_tiles(document.at("tiles"));
   return json;

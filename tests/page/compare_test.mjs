@@ -10,7 +10,7 @@ const where = folder();
 const at = (name) => join(where, name);
 
 function figures(name, args) {
-  succeed(['render', 'builtin:courtyard', '--size', '160x96', '-q', '--detail', 'draws,tiles', '--stats', at(name), ...args]);
+  succeed(['render', 'builtin:courtyard', '--size', '160x96', '-q', '--detail', 'draws,tiles,path', '--stats', at(name), ...args]);
   return JSON.parse(readFileSync(at(name), 'utf8'));
 }
 
@@ -33,6 +33,10 @@ test('differences are those of the two files', () => {
     assert.equal(unit.starved.b, Math.round(sum(units(b, unit.kind).map((u) => u.starved)) / unit.units.b));
   }
   for (const entry of c.counters) assert.equal(entry.b, sum(units(b, entry.kind).map((u) => u.counters[entry.name] ?? 0)));
+  const near = (x, y) => assert.ok(Math.abs(x - y) < 0.01, `${x} is not ${y}`);
+  near(sum(c.critical_path.map((p) => p.cycles.difference)), b.frame.cycles - a.frame.cycles);
+  for (const { of, part, by, cycles } of c.critical_path)
+    near(cycles.b, sum(b.critical_path.parts.filter((p) => p.of === of && p.part === part && p.by === by).map((p) => p.cycles)));
   assert.equal(c.draws.length, a.draws.length);
   for (const draw of c.draws) {
     assert.equal(draw.cycles.a, a.draws[draw.number.a].cycles_in_flight);
@@ -46,6 +50,7 @@ test('differences are those of the two files', () => {
 
 test('the largest comes first, and the table begins with the parameters', () => {
   assert.ok(falls(c.units.map((u) => u.own.difference)));
+  assert.ok(falls(c.critical_path.map((p) => p.cycles.difference)));
   assert.ok(falls(c.draws.map((d) => d.cycles.difference)));
   assert.ok(falls(c.bandwidth.map((x) => x.bytes.difference)));
   assert.match(table, /PARAMETERS that differ[^\n]*\n  gpu\.cores +4 +8\n/);
@@ -73,6 +78,7 @@ test('draws of another frame are paired by label, and those of one alone are kep
 
 test('the page shows the same', async () => {
   const page = await open(at('c.html'));
+  assert.equal((await cells(page, 'path-table')).length, c.critical_path.length);
   assert.deepEqual(await page.evaluate(() => window.quadrille.comparison), c);
   assert.equal(await value(page, '#cycles'), b.frame.cycles - a.frame.cycles);
   assert.deepEqual((await cells(page, 'units-table')).map((r) => r[2]), c.units.map((u) => u.own.difference));

@@ -84,6 +84,11 @@ function units(c) {
     ], c.units));
 }
 
+const path = (c) => !c.critical_path?.length ? null : section('path', 'What the ends waited for',
+  ['Both ', term('critical path'), 's add up to their frames, so the differences add up to that of the cycles.'],
+  table('path-table', [{ title: 'unit or link', of: (p) => words(p.of) }, { title: 'part', of: (p) => p.part },
+    { title: 'who waited', of: (p) => (p.of === p.by ? '' : words(p.by)) }, ...pairColumns((p) => p.cycles, integer)], c.critical_path));
+
 function resources(c) {
   const rows = c.resources.slice(0, 16);
   if (rows.length === 0) return null;
@@ -171,5 +176,5 @@ const rest = (c) => section('frame', 'Counts of the frame', null,
 
 export function showComparison(c) {
   showPage('Two frames compared', `${c.a.file} and ${c.b.file}`,
-    [overview, parameters, units, draws, tiles, bandwidth, resources, counters, rest].map((make) => make(c)).filter(Boolean));
+    [overview, parameters, path, units, draws, tiles, bandwidth, resources, counters, rest].map((make) => make(c)).filter(Boolean));
 }
