@@ -20,6 +20,7 @@
 #include "studies/explore/design.h"
 #include "studies/explore/explore_page.h"
 #include "studies/explore/explore_table.h"
+#include "studies/explore/screening.h"
 #include "studies/explore/search.h"
 #include "studies/explore/slurm.h"
 #include "studies/explore/version.h"
@@ -189,6 +190,8 @@ int run_explore(const ExploreArguments& a) {
   const bool searches = sweep.design == explore::DesignKind::kSearch;
   if (searches && (a.backend == "slurm" || a.only))
     throw user_error("{}: a search chooses as it goes; --backend slurm draws other designs", a.sweep);
+  if (sweep.screen && (a.backend == "slurm" || a.only))
+    throw user_error("{}: screen: it chooses as it goes; --backend slurm draws sweeps without it", a.sweep);
   explore::Plan plan = searches ? explore::first_machines(sweep, space) : explore::planned(sweep, space);
   if (plan.candidates.empty())
     throw user_error("{}: no machine is left to draw with; {}", a.sweep,
@@ -207,15 +210,18 @@ int run_explore(const ExploreArguments& a) {
                                    exploration.known(plan.candidates), setting.jobs));
     return kDone;
   }
+  std::string screened;
   if (a.only) return run_part(plan, exploration, results, *setting.only);
   if (a.backend == "slurm") run_on_slurm(a, plan, exploration, results);
   else if (searches) plan = explore::search(sweep, space, exploration);
+  else if (sweep.screen)
+    screened = explore::screening_table(sweep, explore::screen(sweep, space, scenes, results, setting, plan));
   else exploration.run(plan.candidates);
   progress.clear();
   if (a.csv) write_text(*a.csv, explore::points_csv(sweep, space, plan, exploration));
   if (a.report) write_text(*a.report, explore::sweep_page({sweep, space, plan, exploration, results}));
   Tables(true, std::nullopt)
-      .print(explore::plan_table(sweep, plan, scenes.size()) +
+      .print(explore::plan_table(sweep, plan, scenes.size()) + screened +
              explore::result_table(sweep, plan, exploration));
   return explore::failed_points(plan, exploration) == 0 ? kDone : kFailed;
 }

@@ -60,8 +60,13 @@ class Exploration::Preparation {
 };
 
 Exploration::Exploration(const Sweep& sweep, const Space& space, std::span<const LoadedScene> scenes,
-                         Results& results, const ExploreSetting& setting)
-    : sweep_(sweep), space_(space), scenes_(scenes), results_(results), setting_(setting) {
+                         Results& results, const ExploreSetting& setting, std::optional<std::int64_t> window)
+    : sweep_(sweep),
+      space_(space),
+      scenes_(scenes),
+      results_(results),
+      setting_(setting),
+      window_(window.value_or(sweep.window)) {
   std::vector<std::string> others = results.versions();
   std::erase(others, setting.version);
   if (!others.empty() && !setting.mix_versions)
@@ -87,7 +92,7 @@ void Exploration::check_formulas(const Candidate& candidate) const {
 }
 
 PointKey Exploration::key(std::size_t scene, const Candidate& candidate) const {
-  return {scenes_[scene].hash, candidate.hash, sweep_.window};
+  return {scenes_[scene].hash, candidate.hash, window_};
 }
 
 std::optional<PointRow> Exploration::point(std::size_t scene, const Candidate& candidate) const {
@@ -149,7 +154,7 @@ std::string Exploration::draw(const Task& task, pipeline::PreparedFrame* prepare
   pipeline::MachineConfig machine;
   space_.configure(task.candidate->values, machine);
   // What was committed when this process began; a picture that is sent twice is kept once.
-  return encode(draw_point(scene.stream, machine, sweep_.window, prepared,
+  return encode(draw_point(scene.stream, machine, window_, prepared,
                            [this](const std::string& hash) { return pictures_.contains(hash); }));
 }
 

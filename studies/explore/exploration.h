@@ -57,9 +57,9 @@ struct Measured {
 class Exploration {
  public:
   /// Everything must outlive it. Throws `UserError` when another version of the program drew points of the
-  /// results, unless the setting lets versions mix.
+  /// results, unless the setting lets versions mix. `window`: another one than the sweep's, in cycles.
   Exploration(const Sweep& sweep, const Space& space, std::span<const LoadedScene> scenes, Results& results,
-              const ExploreSetting& setting);
+              const ExploreSetting& setting, std::optional<std::int64_t> window = std::nullopt);
 
   /// Throws `UserError` when an objective asks for what is no figure; draws a tiny frame on the first machine
   /// to know.
@@ -106,6 +106,7 @@ class Exploration {
   std::span<const LoadedScene> scenes_;
   Results& results_;
   const ExploreSetting& setting_;
+  std::int64_t window_;
   /// hashes of pictures that a process has sent
   std::set<std::string> pictures_;
   ExploreProgress progress_;

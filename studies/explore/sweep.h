@@ -60,6 +60,12 @@ struct Objective {
   double noise = 0;  ///< differences up to this part of the value are none
 };
 
+/// All machines are drawn with a window, and the best of them exactly (screening.h).
+struct ScreenEntry {
+  std::int64_t window = 0;  ///< cycles
+  std::uint32_t machines = 0;
+};
+
 struct Sweep {
   std::string file, text;
   DesignKind design = DesignKind::kGrid;
@@ -68,6 +74,7 @@ struct Sweep {
   double seconds = 3600;         ///< a frame may take
   std::uint64_t memory_mib = 0;  ///< it may use; 0: no limit
   std::int64_t window = 0;       ///< cycles, as `render --window`
+  std::optional<ScreenEntry> screen = std::nullopt;
   std::vector<SceneEntry> scenes;
   std::vector<std::string> machines;  ///< names, or paths that lead from where the program runs
   std::vector<Entry> settings;        ///< set on all machines

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 20;
 constexpr std::uint32_t kMostPoints = 1'000'000;
+constexpr std::int64_t kLongestWindow = 1'000'000;
 constexpr std::uint32_t kMostSearched = 2000;  // the time of a guess grows with what it is made from
 
 /// A name that formulas can use and that is no path of a parameter.
@@ -63,12 +64,13 @@ class Reader {
       throw user_error("{}:{}: {}", sweep_.file, e.source().begin.line, e.description());
     }
     check_keys(table_, "",
-               {"design", "points", "seed", "seconds", "memory_mib", "window", "machines", "scene", "set",
-                "vary", "derive", "constraints", "objective"});
+               {"design", "points", "seed", "seconds", "memory_mib", "window", "screen", "machines", "scene",
+                "set", "vary", "derive", "constraints", "objective"});
     read_design();
     read_limits();
     read_scenes();
     read_machines();
+    if (const toml::table* table = group("screen")) read_screen(*table);
     if (const toml::table* set = group("set")) read_settings(*set, "");
     if (const toml::table* vary = group("vary")) read_dimensions(*vary, "");
     if (const toml::table* derive = group("derive")) read_derived(*derive, "");
@@ -183,7 +185,18 @@ class Reader {
       sweep_.seconds = *seconds;
     }
     sweep_.memory_mib = whole<std::uint64_t>(table_, "memory_mib", 0, 1, std::int64_t{1} << 24);
-    sweep_.window = whole<std::int64_t>(table_, "window", 0, 0, 1'000'000);
+    sweep_.window = whole<std::int64_t>(table_, "window", 0, 0, kLongestWindow);
+  }
+  void read_screen(const toml::table& table) {
+    check_keys(table, "in [screen] ", {"window", "machines"});
+    for (const char* key : {"window", "machines"})
+      if (!table.contains(key)) throw user_error("{}: {} is missing", at(table), key);
+    sweep_.screen = {whole<std::int64_t>(table, "window", 0, 1, kLongestWindow),
+                     whole<std::uint32_t>(table, "machines", 0, 1, kMostPoints)};
+    if (sweep_.window > 0)
+      throw user_error("{}: screen: the window above is of all points; leave it out", at(table));
+    if (sweep_.design == DesignKind::kSearch)
+      throw user_error("{}: screen: a search chooses by exact frames; choose another design", at(table));
   }
   void read_scenes() {
     std::set<std::string> names;
