@@ -210,20 +210,21 @@ int run_explore(const ExploreArguments& a) {
                                    exploration.known(plan.candidates), setting.jobs));
     return kDone;
   }
-  std::string screened;
+  std::optional<explore::Screening> screening;
   if (a.only) return run_part(plan, exploration, results, *setting.only);
   if (a.backend == "slurm") run_on_slurm(a, plan, exploration, results);
   else if (searches) plan = explore::search(sweep, space, exploration);
-  else if (sweep.screen)
-    screened = explore::screening_table(sweep, explore::screen(sweep, space, scenes, results, setting, plan));
+  else if (sweep.screen) screening = explore::screen(sweep, space, scenes, results, setting, plan);
   else exploration.run(plan.candidates);
   progress.clear();
   if (a.csv) write_text(*a.csv, explore::points_csv(sweep, space, plan, exploration));
   if (a.report) write_text(*a.report, explore::sweep_page({sweep, space, plan, exploration, results}));
   Tables(true, std::nullopt)
-      .print(explore::plan_table(sweep, plan, scenes.size()) + screened +
+      .print(explore::plan_table(sweep, plan, scenes.size()) +
+             (screening ? explore::screening_table(sweep, *screening) : "") +
              explore::result_table(sweep, plan, exploration));
-  return explore::failed_points(plan, exploration) == 0 ? kDone : kFailed;
+  const bool screened = !screening || screening->failed == 0;
+  return screened && explore::failed_points(plan, exploration) == 0 ? kDone : kFailed;
 }
 
 }  // namespace

@@ -189,7 +189,7 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   if (kept != nullptr && log)
     for (Check& check : checks_of(*kept)) out.figures.checks.push_back(std::move(check));
   if (flow) flow->collect(out.figures);
-  if (charges) add_path(charges->follow(), machine, out.figures);
+  if (charges) add_path(charges->follow(detail.draws), machine, out.figures);
   out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;

@@ -22,8 +22,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kLongestRunSeconds = 3600;
-/// Parts of the critical path below that are in the JSON alone.
-constexpr double kLeastPathPercent = 0.5;
 
 /// A run of the frame.
 struct Variant {
@@ -70,13 +68,9 @@ std::string base_figures(const traces::CommandStream& stream, pipeline::MachineC
   }
   for (const auto& [name, kind] : kinds)
     json["units"][name] = {{"use", kind.use}, {"busy", kind.cycles > 0 ? kind.busy / kind.cycles : 0}};
-  json["path"] = Json::array();
-  for (const pipeline::PathShare& part : frame.figures.path->parts)
-    json["path"].push_back(
-        {{"of", part.of},
-         {"part", name_of(part.part)},
-         {"by", part.by},
-         {"cycles", static_cast<double>(part.ticks) * frame.figures.frame.clock_mhz * 1e-9}});
+  const double clock_mhz = frame.figures.frame.clock_mhz;
+  json["path"] = Json::parse(pipeline::path_json(*frame.figures.path, clock_mhz)).at("parts");
+  json["path_table"] = pipeline::path_table(*frame.figures.path, clock_mhz);
   json["gains"] = Json::array();
   for (const pipeline::Gain& gain : pipeline::sensitivity(frame.figures).gains)
     if (gain.share >= pipeline::kLeastNamedGain && json["gains"].size() < pipeline::kNamedGains)
@@ -100,9 +94,8 @@ class Measurement {
     result.cycles = base.at("cycles").get<std::int64_t>();
     result.limit = base.at("limit").get<std::string>();
     check_kinds(base);
-    for (const Json& part : base.at("path"))
-      result.path.push_back({part.at("of").get<std::string>(), part.at("part").get<std::string>(),
-                             part.at("by").get<std::string>(), part.at("cycles").get<double>()});
+    result.path = base.at("path").dump();
+    result.path_table = base.at("path_table").get<std::string>();
     list_units(base, result);
     list_doubled(base, result);
     const std::vector<RunResult> runs = run_all(base.at("image").get<std::string>());
@@ -125,18 +118,21 @@ class Measurement {
           setting_.kinds.empty() || std::ranges::find(setting_.kinds, name) != setting_.kinds.end();
       if (!wanted || !base.at("units").contains(name)) continue;
       const Json& unit = base["units"][name];
-      result.units.push_back(
-          {name, unit.at("use").get<double>(), unit.at("busy").get<double>(), path_cycles(result, name), {}});
+      result.units.push_back({name,
+                              unit.at("use").get<double>(),
+                              unit.at("busy").get<double>(),
+                              path_cycles(base.at("path"), name),
+                              {}});
       for (const double times : kSpeedUps)
         variants_.push_back(
             {fmt::format("{} {:g} times as fast", name, times), {{name, times}}, kept(name, times)});
     }
   }
   /// Of all that gets faster with a kind of units: its own, and the links that it waited for.
-  static double path_cycles(const WhyResult& result, const std::string& kind) {
+  static double path_cycles(const Json& path, const std::string& kind) {
     double cycles = 0;
-    for (const PathStretch& stretch : result.path)
-      if (stretch.by == kind) cycles += stretch.cycles;
+    for (const Json& part : path)
+      if (part.at("by") == kind) cycles += part.at("cycles").get<double>();
     return cycles;
   }
   /// A packer's patience is no work: it stays as long as it is.
@@ -212,14 +208,7 @@ std::string why_table(const WhyResult& r, const pipeline::MachineConfig& machine
     out += fmt::format("  {:<20}{:>7.1f}{:>8.1f}{:>12.0f}{:>8.1f}{}{}\n", units.kind, 100 * units.use,
                        100 * units.busy, units.path, percent(units.path), gain(units.gain.front()),
                        gain(units.gain.back()));
-  out += fmt::format(
-      "\nPATH  what the frame's end waited for, back to its start: each cycle once\n"
-      "  {:<36}{:<10}{:<20}{:>12}{:>8}\n",
-      "unit or link", "", "who waited", "cycles", "%");
-  for (const PathStretch& p : r.path)
-    if (percent(p.cycles) >= kLeastPathPercent)
-      out += fmt::format("  {:<36}{:<10}{:<20}{:>12.0f}{:>8.1f}\n", p.of, p.part, p.of == p.by ? "" : p.by,
-                         p.cycles, percent(p.cycles));
+  out += "\n" + r.path_table;
   if (!r.doubled.empty())
     out +=
         fmt::format("\nDOUBLED  what the report of one run names, and what it gains\n  {:<28}{:>20}{:>20}\n",
@@ -244,16 +233,13 @@ std::string why_json(const WhyResult& r, const pipeline::MachineConfig& machine)
                        {"doubles", d.words},
                        {"expected_gain_cycles", d.expected},
                        {"gain_cycles", d.gain}});
-  Json path = Json::array();
-  for (const PathStretch& p : r.path)
-    path.push_back({{"of", p.of}, {"part", p.part}, {"by", p.by}, {"cycles", p.cycles}});
   const Json document = {{"schema", kWhySchema},
                          {"scene", r.scene},
                          {"machine", Json::parse(pipeline::machine_json(machine))},
                          {"cycles", r.cycles},
                          {"limit", r.limit},
                          {"infinitely_fast_times", kSpeedUps.back()},
-                         {"path", std::move(path)},
+                         {"path", Json::parse(r.path)},
                          {"units", std::move(units)},
                          {"doubled", std::move(doubled)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -39,17 +39,11 @@ struct DoubledResource {
   std::int64_t gain = 0;
 };
 
-/// A part of the critical path (pipeline/report/critical_path.h).
-struct PathStretch {
-  std::string of, part, by;  ///< unit or link; "busy", "waiting" or "link"; who waited
-  double cycles = 0;         ///< of the GPU clock
-};
-
 struct WhyResult {
   std::string scene;
   std::int64_t cycles = 0;
   std::string limit;                     ///< what the report of the one run says, a line
-  std::vector<PathStretch> path;         ///< of the one run, longest first
+  std::string path, path_table;          ///< the critical path of the one run: its parts as JSON; as a table
   std::vector<FasterUnits> units;        ///< greatest gain of infinitely fast units first
   std::vector<DoubledResource> doubled;  ///< as the report names them
 };

@@ -16,13 +16,11 @@ namespace quadrille::hw {
 
 class LegLog {
  public:
-  static constexpr std::uint32_t kNoPort = 0xffffffffu;
-
   /// A token was taken.
   struct Take {
     Tick arrived = 0, taken = 0;
-    std::uint32_t port = kNoPort;  ///< its number
-    bool enters = false;           ///< it needs a place in the unit, which an earlier leg may have left
+    std::uint32_t port = 0;  ///< its number
+    bool enters = false;     ///< it needs a place in the unit, which an earlier leg may have left
     DrawId draw = kNoDraw;
   };
   struct Leg {
@@ -71,5 +69,10 @@ class LegLog {
   std::vector<Leg> legs_;
   std::vector<bool> outs_;  ///< by number of a port: legs end there
 };
+
+/// The number of the take, for a piece of work to keep; 0 while nobody keeps a log.
+[[nodiscard]] inline std::uint32_t noted(LegLog* log, const LegLog::Take& take) {
+  return log == nullptr ? 0 : log->take(take);
+}
 
 }  // namespace quadrille::hw

@@ -192,9 +192,9 @@ void MemoryChannel::take(Tick now, std::int64_t cycle) {
   }
   const std::uint32_t id = free_ids_.back();
   free_ids_.pop_back();
-  held_[id] = {{request.line, request.tag, request.sectors}, request.client};
-  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
-    held_[id].leg_take = log->take({arrived, now, request_in.number(), true, request.draw});
+  held_[id] = {{request.line, request.tag, request.sectors},
+               request.client,
+               noted(leg_log(), {arrived, now, request_in.number(), true, request.draw})};
   controller_.take({interleave_.index_of(request.line), request.sectors, write, id}, cycle);
 }
 

@@ -123,9 +123,8 @@ void LoadStoreUnit::take(Tick now) {
   const auto cycles = static_cast<std::int64_t>(std::max<std::size_t>(1, (lines_.size() + rate - 1) / rate));
   line_free_ = after(now, cycles);
   occupy(now, cycles);
-  groups_.push_back({token, 0, line_free_});
-  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
-    groups_.back().leg_take = log->take({arrived, now, request_in.number(), true, token.draw});
+  groups_.push_back(
+      {token, 0, line_free_, noted(leg_log(), {arrived, now, request_in.number(), true, token.draw})});
   move_lines(now);
 }
 

@@ -1,13 +1,9 @@
 #include "hw/shader/shader_core.h"
 
 #include "hw/frame/detail_counts.h"
-#include "hw/frame/fragment_output.h"
-#include "hw/frame/invocations.h"
 #include "hw/frame/laws.h"
-#include "hw/frame/varyings.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace quadrille::hw {
 
@@ -213,88 +209,7 @@ void ShaderCore::take_reply(Tick now, std::uint32_t index, const PortBase& port)
   CoreSlot& slot = slots_[index];
   if (--slot.replies > 0) return;
   ready_.push_back({now, index});
-  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
-    slot.leg_take = log->take({now, now, port.number(), false, slot.draw});
-}
-
-void ShaderCore::accept_vertex(Tick now) {
-  const Tick arrived = vertex_in.ready();
-  const VertexWarpToken token = vertex_in.pop(now);
-  accept({arrived, now, vertex_in.number(), true, token.draw}, [&](CoreSlot& slot) {
-    slot.stage = models::ShaderStage::kVertex;
-    slot.batch = token.slot;
-    launch_vertex(slot);
-  });
-}
-
-void ShaderCore::accept_fragment(Tick now) {
-  const Tick arrived = fragment_in.ready();
-  const FragmentWarpToken token = fragment_in.pop(now);
-  accept({arrived, now, fragment_in.number(), true, token.draw}, [&](CoreSlot& slot) {
-    slot.stage = models::ShaderStage::kFragment;
-    slot.warp_slot = token.slot;
-    slot.partition = token.partition;
-    slot.tile_x = token.tile_x;
-    slot.tile_y = token.tile_y;
-    launch_fragment(slot);
-  });
-}
-
-template <class Launch>
-void ShaderCore::accept(const LegLog::Take& take, const Launch& launch) {
-  stats_.working_for(take.draw);
-  const std::uint32_t index = free_slots_.back();
-  free_slots_.pop_back();
-  CoreSlot& slot = slots_[index];
-  slot.draw = take.draw;
-  give_simd(slot);
-  launch(slot);
-  free_rows_ -= slot.warp.program->num_regs;
-  accept_free_ = after(take.taken, 1);
-  ready_.push_back({accept_free_, index});
-  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
-    slot.leg_take = log->take(take);
-}
-
-void ShaderCore::launch_vertex(CoreSlot& slot) {
-  const DrawState& draw = frame_.draw(slot.draw);
-  BatchSlot& batch = batches_[slot.batch];
-  const models::LaneMask lanes =
-      batch.lanes == models::kWarpLanes ? ~models::LaneMask{0} : (models::LaneMask{1} << batch.lanes) - 1;
-  slot.warp.vertex = &batch.inputs;
-  slot.warp.fragment = nullptr;
-  slot.warp.outputs = batch.outputs.data();
-  bind_storage(frame_, slot.draw, batch, slot.storage, slot.warp);
-  slot.warp.texture_sizes = draw.vertex.texture_sizes.data();
-  slot.warp.launch(*draw.vertex.program, draw.vertex.constants.data(), lanes);
-  ++stats_.vertex_warps;
-  stats_.vertices += static_cast<std::uint64_t>(batch.lanes);
-}
-
-void ShaderCore::launch_fragment(CoreSlot& slot) {
-  const DrawState& draw = frame_.draw(slot.draw);
-  const WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
-  const std::uint32_t engine =
-      models::engine_of_partition(slot.partition, static_cast<std::uint32_t>(triangles_.size()));
-  fill_fragment_inputs(draw, work, *triangles_[engine], slot.fragment);
-  const models::LaneMask lanes =
-      work.quads == models::kWarpQuads ? ~models::LaneMask{0} : (models::LaneMask{1} << (4 * work.quads)) - 1;
-  slot.warp.vertex = nullptr;
-  slot.warp.fragment = &slot.fragment;
-  slot.warp.outputs = slot.outputs.data();
-  bind_storage(frame_, work, *triangles_[engine], slot.storage, slot.warp);
-  slot.warp.texture_sizes = draw.fragment.texture_sizes.data();
-  slot.warp.launch(*draw.fragment.program, draw.fragment.constants.data(), lanes);
-  const auto live = static_cast<std::uint64_t>(std::popcount(work.covered));
-  ++stats_.fragment_warps;
-  stats_.fragments += live;
-  stats_.helper_lanes += 4 * static_cast<std::uint64_t>(work.quads) - live;
-}
-
-void ShaderCore::give_simd(CoreSlot& slot) {
-  const auto fewest = std::min_element(simd_warps_.begin(), simd_warps_.end());
-  ++*fewest;
-  slot.simd = static_cast<std::uint16_t>(fewest - simd_warps_.begin());
+  slot.leg_take = noted(leg_log(), {now, now, port.number(), false, slot.draw});
 }
 
 const models::ProgramTiming& ShaderCore::timing_of(const models::Program& program) {
@@ -339,49 +254,27 @@ void ShaderCore::end_clauses(Tick now) {
   }
 }
 
-void ShaderCore::note_leg(Tick now, const Completion& done) {
-  const CoreSlot& slot = slots_[done.slot];
-  const bool leaves = done.end != models::ClauseEnd::kRequests;
-  const bool exports = leaves && slot.stage == models::ShaderStage::kFragment && export_free_ >= now;
-  const PortBase& out = !leaves ? slot.warp.texture_count > 0 ? static_cast<const PortBase&>(*texture_out)
-                                                              : static_cast<const PortBase&>(*storage_out)
-                        : slot.stage == models::ShaderStage::kVertex
-                            ? static_cast<const PortBase&>(vertex_out_for(slot))
-                            : static_cast<const PortBase&>(*fragment_out[slot.partition.index()]);
-  leg_log()->end({slot.leg_take, 0, done.at, now, after(0, slot.leg_latency), out.number(), exports, leaves});
-}
-
 void ShaderCore::complete(Tick now, const Completion& done) {
-  if (leg_log() != nullptr) [[unlikely]]
-    note_leg(now, done);
-  if (done.end != models::ClauseEnd::kRequests) return retire(now, done.slot);
+  if (done.end != models::ClauseEnd::kRequests) return retire(now, done);
   CoreSlot& slot = slots_[done.slot];
   slot.replies = (slot.warp.texture_count > 0) + (slot.warp.access_count > 0);
-  if (slot.warp.texture_count > 0) texture_out->push(now, {done.slot, slot.draw, slot.stage});
-  if (slot.warp.access_count > 0) storage_out->push(now, {done.slot, slot.draw, slot.stage});
-}
-
-void ShaderCore::retire(Tick now, std::uint32_t index) {
-  CoreSlot& slot = slots_[index];
-  if (slot.stage == models::ShaderStage::kVertex) {
-    vertex_out_for(slot).push(now, {slot.batch});
-  } else {
-    WarpSlot& work = (*warps_[slot.partition.index()])[slot.warp_slot];
-    work.alive = work.covered & ~slot.warp.killed;
-    take_outputs(frame_.draw(work.draw), slot.outputs, slot.fragment, work);
-    fragment_out[slot.partition.index()]->push(now, {slot.warp_slot});
-    export_colors(now, work);
+  if (slot.warp.texture_count > 0) {
+    note_leg(now, done, *texture_out);
+    texture_out->push(now, {done.slot, slot.draw, slot.stage});
   }
-  --simd_warps_[slot.simd];
-  free_rows_ += slot.warp.program->num_regs;
-  free_slots_.push_back(index);
+  if (slot.warp.access_count > 0) {
+    note_leg(now, done, *storage_out);
+    storage_out->push(now, {done.slot, slot.draw, slot.stage});
+  }
 }
 
-void ShaderCore::export_colors(Tick now, const WarpSlot& work) {
-  const int bytes = static_cast<int>(frame_.color_bytes(frame_.draw(work.draw))) * std::popcount(work.alive);
-  const int width = params_.export_bytes_per_clk;
-  stats_.exported_bytes += static_cast<std::uint64_t>(bytes);
-  export_free_ = after(now, std::max(1, (bytes + width - 1) / width));
+void ShaderCore::note_leg(Tick now, const Completion& done, const PortBase& out, bool exports) const {
+  LegLog* log = leg_log();
+  if (log == nullptr) [[likely]]
+    return;
+  const CoreSlot& slot = slots_[done.slot];
+  log->end({slot.leg_take, 0, done.at, now, after(0, slot.leg_latency), out.number(), exports,
+            done.end != models::ClauseEnd::kRequests});
 }
 
 void ShaderCore::audit(Audit& audit) const {

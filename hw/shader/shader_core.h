@@ -184,13 +184,13 @@ class ShaderCore final : public Unit {
   void give_simd(CoreSlot& slot);
   [[nodiscard]] const models::ProgramTiming& timing_of(const models::Program& program);
   void complete(Tick now, const Completion& done);
-  void retire(Tick now, std::uint32_t index);
+  void retire(Tick now, const Completion& done);
   /// The warp's colours are on their way out until they have passed.
   void export_colors(Tick now, const WarpSlot& work);
   void take_texels(Tick now);
   void take_reply(Tick now, std::uint32_t index, const PortBase& port);
-  /// A clause of the slot has sent its requests, or its warp's results.
-  void note_leg(Tick now, const Completion& done);
+  /// A clause sends its requests, or its warp's results. `exports`: it had to wait for what leaves before it.
+  void note_leg(Tick now, const Completion& done, const PortBase& out, bool exports = false) const;
 
   const Params& params_;
   const Frame& frame_;

@@ -56,8 +56,11 @@ Wake TextureUnit::answer_wake() const {
   const Group& head = groups_.front();
   const bool still_looking_up = groups_.size() == 1 && next_line_ < lines_.size();
   if (head.missing > 0 || still_looking_up) return Wake::never(port_.response_in[0]);
-  return Wake(after(std::max(head.ready, filter_free_), head.filter_cycles + params_.filter_clk))
-      .output(response_out);
+  return Wake(answered_at(head)).output(response_out);
+}
+
+Tick TextureUnit::answered_at(const Group& head) const {
+  return after(std::max(head.ready, filter_free_), head.filter_cycles + params_.filter_clk);
 }
 
 Wake TextureUnit::next() const {
@@ -158,10 +161,8 @@ void TextureUnit::begin_pass(PassId pass) {
 
 void TextureUnit::note_leg(Tick now) const {
   const Group& group = groups_.front();
-  const Tick from = std::max(group.ready, filter_free_);
-  leg_log()->end({group.leg_take, filter_free_ > group.ready ? from : 0,
-                  after(from, group.filter_cycles + params_.filter_clk), now, after(0, params_.filter_clk),
-                  response_out.number(), false, true});
+  leg_log()->end({group.leg_take, filter_free_ > group.ready ? filter_free_ : 0, answered_at(group), now,
+                  after(0, params_.filter_clk), response_out.number(), false, true});
 }
 
 void TextureUnit::take(Tick now) {
@@ -173,8 +174,7 @@ void TextureUnit::take(Tick now) {
   lines_.clear();
   next_line_ = 0;
   Group group{token};
-  if (LegLog* log = leg_log(); log != nullptr) [[unlikely]]
-    group.leg_take = log->take({arrived, now, request_in.number(), true, token.draw});
+  group.leg_take = noted(leg_log(), {arrived, now, request_in.number(), true, token.draw});
   std::int64_t address_cycles = 0;
   plan(slots_[token.slot], token, group, address_cycles);
   ++stats_.groups;

@@ -131,6 +131,8 @@ class TextureUnit final : public Unit {
   void begin_pass(PassId pass);
   void take(Tick now);
   void note_leg(Tick now) const;
+  /// When the filter is through with the group at the front.
+  [[nodiscard]] Tick answered_at(const Group& head) const;
   void plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles);
   void look_up(Tick now);
   void add_look_ups(Group& group);

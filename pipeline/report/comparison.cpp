@@ -155,21 +155,15 @@ Json units(const Kinds& of_a, const Kinds& of_b) {
 /// By unit, or link and who waited for it: both paths add up to their frames, so the differences add up to
 /// that of the frames.
 Json critical_path(const Json& of_a, const Json& of_b) {
-  const auto keyed = [](const Json& path) {
-    Json all = Json::object();
-    for (const Json& part : path["parts"]) {
-      const Json key = {part["of"], part["part"], part["by"]};
-      Json& cycles = all[key.dump(-1, ' ', false, Json::error_handler_t::replace)];
-      cycles = (cycles.is_null() ? 0.0 : cycles.get<double>()) + part["cycles"].get<double>();
-    }
-    return all;
-  };
+  std::map<std::array<std::string, 3>, std::array<double, 2>> sums;
+  for (std::size_t side = 0; side < 2; ++side)
+    for (const Json& part : (side == 0 ? of_a : of_b)["parts"])
+      sums[{part["of"].get<std::string>(), part["part"].get<std::string>(), part["by"].get<std::string>()}]
+          [side] += part["cycles"].get<double>();
   std::vector<Json> all;
-  over_both(keyed(of_a), keyed(of_b), [&](const std::string& key, const Json& x, const Json& y) {
-    const Json of = Json::parse(key);
-    const auto cycles = [](const Json& value) { return value.is_number() ? value.get<double>() : 0.0; };
-    all.push_back({{"of", of[0]}, {"part", of[1]}, {"by", of[2]}, {"cycles", pair(cycles(x), cycles(y))}});
-  });
+  all.reserve(sums.size());
+  for (const auto& [key, cycles] : sums)
+    all.push_back({{"of", key[0]}, {"part", key[1]}, {"by", key[2]}, {"cycles", pair(cycles[0], cycles[1])}});
   sort_by(all, "cycles");
   return all;
 }

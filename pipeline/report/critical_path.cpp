@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -54,16 +56,12 @@ class CriticalPathLog::Walk {
       keys_.emplace(machine_.links()[i].get(), machine_.link_keys()[i]);
   }
 
-  CriticalPath run() {
+  CriticalPath frame() {
     CriticalPath path;
-    path.ticks = now_ = machine_.end();
-    unit_ = &machine_.one<hw::CommandProcessor>();
-    while (now_ > 0) step();
+    path.ticks = machine_.end();
+    follow(path.ticks, 0);
     path.stretches = stretches_;
-    Shares all;
-    for (const auto& [draw, shares] : by_draw_)
-      for (const auto& [key, ticks] : shares) all[key] += ticks;
-    path.parts = longest_first(all);
+    path.parts = parts_of_all();
     for (const auto& [draw, shares] : by_draw_) {
       CriticalPath::OfDraw one{hw::DrawId(draw), 0, longest_first(shares)};
       one.ticks = sum(one.parts);
@@ -73,6 +71,13 @@ class CriticalPathLog::Walk {
     return path;
   }
 
+  /// What the end of a draw waited for, back to its begin.
+  std::vector<PathShare> draw(hw::Tick issued, hw::Tick retired) {
+    by_draw_.clear();
+    follow(retired, issued);
+    return parts_of_all();
+  }
+
  private:
   struct Place {
     std::string_view kind;
@@ -80,9 +85,26 @@ class CriticalPathLog::Walk {
     hw::ChargeLog::Reader reader;
   };
 
+  /// From an action of the command processor back to a tick before.
+  void follow(hw::Tick from, hw::Tick until) {
+    now_ = from;
+    until_ = until;
+    unit_ = &machine_.one<hw::CommandProcessor>();
+    sent_through_.reset();
+    leg_ = nullptr;
+    while (now_ > until_) step();
+  }
+  /// For whichever draw.
+  [[nodiscard]] std::vector<PathShare> parts_of_all() const {
+    Shares all;
+    for (const auto& [draw, shares] : by_draw_)
+      for (const auto& [key, ticks] : shares) all[key] += ticks;
+    return longest_first(all);
+  }
+
   /// The time from `to` up to now is on the path.
   void add(hw::DrawId draw, std::string_view of, PathPart part, std::string_view by, hw::Tick to) {
-    to = std::clamp<hw::Tick>(to, 0, now_);
+    to = std::clamp(to, until_, now_);
     if (to < now_) by_draw_[draw.index()][{of, part, by}] += now_ - to;
     now_ = to;
   }
@@ -163,7 +185,7 @@ class CriticalPathLog::Walk {
   std::unordered_map<const hw::Unit*, Place> places_;
   std::unordered_map<const hw::FifoBase*, std::string_view> keys_;
   const hw::Unit* unit_ = nullptr;
-  hw::Tick now_ = 0;
+  hw::Tick now_ = 0, until_ = 0;
   /// number of the unit's port that the path came from; none: it came from a token that the unit took
   std::optional<std::uint32_t> sent_through_;
   const hw::LegLog::Leg* leg_ = nullptr;  ///< that the path is at the end of; null: not known yet
@@ -182,14 +204,19 @@ CriticalPathLog::CriticalPathLog(const Machine& machine) : machine_(machine) {
 
 CriticalPathLog::~CriticalPathLog() = default;
 
-CriticalPath CriticalPathLog::follow() {
+CriticalPath CriticalPathLog::follow(bool each_draw) {
   std::size_t bytes = 0;
   for (const auto& log : logs_) {
     log->charges.finish();
     bytes += log->charges.bytes() + log->legs.bytes();
   }
-  CriticalPath path = Walk(*this).run();
+  Walk walk(*this);
+  CriticalPath path = walk.frame();
   path.log_bytes = bytes;
+  const auto& commands = machine_.one<hw::CommandProcessor>();
+  if (each_draw)
+    for (std::size_t i = 0; i < commands.issued_at().size(); ++i)
+      path.of_each.push_back(walk.draw(commands.issued_at()[i], commands.retired_at()[i]));
   return path;
 }
 

@@ -17,11 +17,9 @@
 #include "hw/base/leg_log.h"
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 namespace quadrille::pipeline {
@@ -54,9 +52,20 @@ struct CriticalPath {
     hw::Tick ticks = 0;
     std::vector<PathShare> parts;  ///< longest first
   };
-  /// Those on the path, longest first; empty where units do not say for whom they work.
+  /// Those on the path, longest first. One alone, of no draw, where units do not say for whom they work.
   std::vector<OfDraw> draws;
+  /// By draw, in API order, where asked for: what its own end waited for, back to its issue; longest first.
+  /// The parts add up to its time in flight.
+  std::vector<std::vector<PathShare>> of_each;
 };
+
+/// The parts as a table, in cycles of a clock; those that are next to nothing are left out.
+[[nodiscard]] std::string path_table(const CriticalPath& path, double clock_mhz);
+/// All of it as a JSON object, in cycles of a clock (docs/figures.md).
+[[nodiscard]] std::string path_json(const CriticalPath& path, double clock_mhz);
+
+/// The parts of a draw's own path by unit or link, without what is next to nothing: a JSON object.
+[[nodiscard]] std::string draw_path_json(const std::vector<PathShare>& parts, double clock_mhz);
 
 /// Keeps, while a machine runs, what its units' time goes to; afterwards, the path.
 class CriticalPathLog {
@@ -67,8 +76,8 @@ class CriticalPathLog {
   CriticalPathLog(const CriticalPathLog&) = delete;
   CriticalPathLog& operator=(const CriticalPathLog&) = delete;
 
-  /// After the run.
-  [[nodiscard]] CriticalPath follow();
+  /// After the run. `each_draw`: the path of each draw too.
+  [[nodiscard]] CriticalPath follow(bool each_draw);
 
  private:
   class Walk;

@@ -60,7 +60,7 @@ const std::vector<Doubling>& doublings() {
       {"depth.cache_misses", "misses of the depth caches under way", {{"depth.cache_misses", 2}}},
       {"warp_packer.quads_per_clk", "quads packed a cycle", {{"warp_packer.quads_per_clk", 2}}},
       {"warp_packer.warp_slots", "fragment warps under way", {{"warp_packer.warp_slots", 2}}},
-      {"core.issue", "lanes of the SIMDs", {{"core.simd_lanes", 2}, {"core.sfu_lanes", 2}}},
+      {"core.issue", "plain and special lanes of the SIMDs", {{"core.simd_lanes", 2}, {"core.sfu_lanes", 2}}},
       {"core.export", "bytes of colours that leave a core a cycle", {{"core.export_bytes_per_clk", 2}}},
       {"core.warp_slots", "warps resident on a core", {{"core.warp_slots", 2}}},
       {"core.register_rows", "registers of a core", {{"core.register_rows", 2}}},

@@ -165,7 +165,7 @@ const char* limiter_kind_name(Limiter::Kind kind) {
 
 namespace {
 
-/// "core.issue 38 % (lanes of the SIMDs)".
+/// "core.issue 38 % (plain and special lanes of the SIMDs)".
 std::string gain_text(const Gain& gain) {
   const Doubling* doubling = doubling_of(gain.resource);
   const std::string words = doubling != nullptr                  ? doubling->words

@@ -247,41 +247,20 @@ Json links_json(const Figures& f) {
 }
 
 /// Adds what was asked for.
-void add_detail(Json& document, const std::optional<Detail>& detail) {
+void add_detail(Json& document, const Figures& f) {
+  const std::optional<Detail>& detail = f.detail;
   if (!detail) return;
   if (detail->wanted.draws) {
     Json draws = Json::array();
-    for (const DrawFigures& draw : detail->draws) draws.push_back(draw_json(*detail, draw));
+    for (std::size_t i = 0; i < detail->draws.size(); ++i) {
+      draws.push_back(draw_json(*detail, detail->draws[i]));
+      if (f.path) draws.back()["path"] = Json::parse(draw_path_json(f.path->of_each[i], f.frame.clock_mhz));
+    }
     document["draws"] = std::move(draws);
     document["outside_draws"] = counts_json(detail->outside_draws);
     document["outside_draws"]["busy"] = by_kind(detail->kinds, detail->outside_draws.busy);
   }
   if (detail->wanted.tiles) document["tiles"] = tiles_json(detail->tiles);
-}
-
-/// Only where it was asked for.
-void add_path(Json& document, const Figures& f) {
-  if (!f.path) return;
-  const double per_tick = f.frame.clock_mhz * 1e-9;
-  const auto cycles = [&](hw::Tick ticks) { return static_cast<double>(ticks) * per_tick; };
-  const auto parts_json = [&](const std::vector<PathShare>& parts) {
-    Json all = Json::array();
-    for (const PathShare& p : parts)
-      all.push_back({{"of", p.of}, {"part", name_of(p.part)}, {"by", p.by}, {"cycles", cycles(p.ticks)}});
-    return all;
-  };
-  Json draws = Json::array();
-  for (const CriticalPath::OfDraw& draw : f.path->draws) {
-    const bool none = draw.draw == hw::kNoDraw;
-    draws.push_back({{"draw", none ? Json(nullptr) : Json(draw.draw.index())},
-                     {"cycles", cycles(draw.ticks)},
-                     {"parts", parts_json(draw.parts)}});
-  }
-  document["critical_path"] = {{"cycles", cycles(f.path->ticks)},
-                               {"stretches", f.path->stretches},
-                               {"log_bytes", f.path->log_bytes},
-                               {"parts", parts_json(f.path->parts)},
-                               {"draws", std::move(draws)}};
 }
 
 /// Only where the frame has some.
@@ -351,9 +330,9 @@ std::string report_json(const ReportSubject& s) {
                    {"limit", limit_json(f)},         {"bandwidth", std::move(bandwidth)},
                    {"links", links_json(f)},         {"checks", checks_json(f)},
                    {"left_out", std::move(left_out)}};
-  add_path(document, f);
+  if (f.path) document["critical_path"] = Json::parse(path_json(*f.path, f.frame.clock_mhz));
   add_queries(document, f.queries);
-  add_detail(document, f.detail);
+  add_detail(document, f);
   if (f.report_timeline) document["timeline"] = timeline_json(f);
   document["host"] = host_json(f);
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

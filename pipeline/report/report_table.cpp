@@ -200,26 +200,8 @@ std::string checks_text(const Figures& f) {
   return fmt::format("\nCHECKS  {} of {} laws hold\n{}", holding, f.checks.size(), failed_checks(f));
 }
 
-/// Parts of the critical path below that are left out of the table.
-constexpr double kLeastPathShare = 0.001;
-
 std::string path_text(const Figures& f) {
-  if (!f.path || f.path->ticks == 0) return "";
-  const CriticalPath& path = *f.path;
-  const double per_tick = f.frame.clock_mhz * 1e-9;
-  std::string out = fmt::format(
-      "\nPATH  what the frame's end waited for, back to its start: each cycle once, in {} stretches\n"
-      "  {:<36}{:<10}{:<20}{:>14}{:>9}\n",
-      grouped(path.stretches), "unit or link", "", "who waited", "cycles", "%");
-  for (const PathShare& part : path.parts) {
-    const double share = static_cast<double>(part.ticks) / static_cast<double>(path.ticks);
-    if (share < kLeastPathShare) continue;
-    out += fmt::format("  {:<36}{:<10}{:<20}{:>14}{:>9.1f}\n", part.of, name_of(part.part),
-                       part.part == PathPart::kLink ? part.by : "",
-                       grouped(static_cast<std::uint64_t>(static_cast<double>(part.ticks) * per_tick)),
-                       100 * share);
-  }
-  return out;
+  return f.path && f.path->ticks > 0 ? "\n" + path_table(*f.path, f.frame.clock_mhz) : "";
 }
 
 /// The draws that were in flight longest, in as many lines.

@@ -26,7 +26,7 @@ struct DoublingStep {
 /// What doubles one resource and nothing else.
 struct Doubling {
   const char* resource;  ///< "core.issue"
-  const char* words;     ///< for a person: "lanes of the SIMDs"
+  const char* words;     ///< for a person: "plain and special lanes of the SIMDs"
   std::vector<DoublingStep> steps;
 };
 [[nodiscard]] const std::vector<Doubling>& doublings();

@@ -10,6 +10,7 @@
 
 #include "models/base/error.h"
 #include "studies/explore/analysis.h"
+#include "studies/explore/explore_table.h"
 
 namespace quadrille::studies::explore {
 namespace {
@@ -51,7 +52,9 @@ Screening::Error error_of(const Sweep& sweep, std::size_t objective, const ByMac
   const auto rough_cost = [&](const Outcome& o) { return rough.at(o.candidate).costs[objective]; };
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const double cost = exact[i].costs[objective], off = std::abs(cost - rough_cost(exact[i]));
-    if (off > 0) error.greatest = std::max(error.greatest, cost == 0 ? HUGE_VAL : off / std::abs(cost));
+    if (off > 0)
+      error.greatest =
+          std::max(error.greatest, off / std::max(std::abs(cost), std::abs(rough_cost(exact[i]))));
     for (std::size_t j = 0; j < i; ++j) {
       ++error.pairs;
       error.turned += turned(rough_cost(exact[i]), rough_cost(exact[j]), cost, exact[j].costs[objective],
@@ -92,6 +95,7 @@ Screening screen(const Sweep& sweep, const Space& space, std::span<const LoadedS
   screening.screened = plan.candidates.size();
   Exploration rough(sweep, space, scenes, results, setting, screening.window);
   rough.run(plan.candidates);
+  screening.failed = failed_points(plan, rough);
   const std::vector<Outcome> all = best_first(outcomes(sweep, plan, rough));
   if (all.empty()) throw user_error("{}: screen: no machine could be drawn with the window", sweep.file);
   screening.exactly = std::min<std::size_t>(sweep.screen->machines, all.size());
@@ -120,6 +124,9 @@ std::string screening_table(const Sweep& sweep, const Screening& s) {
     text += fmt::format("  {}: the window was off by {:.2f} % at most; {} of {} pairs changed their order\n",
                         sweep.objectives[i].name, 100 * s.errors[i].greatest, s.errors[i].turned,
                         s.errors[i].pairs);
+  if (s.failed > 0)
+    text += fmt::format("  {} points could not be drawn with the window; the results have their reasons\n",
+                        s.failed);
   const std::size_t others = s.screened - s.exactly;
   if (others == 0) return text;
   return text +

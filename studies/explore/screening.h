@@ -14,7 +14,8 @@ namespace quadrille::studies::explore {
 struct Screening {
   std::int64_t window = 0;   ///< cycles
   std::size_t screened = 0;  ///< machines
-  std::size_t exactly = 0;   ///< of them, those that were drawn exactly too
+  std::size_t failed = 0;    ///< points of theirs that could not be drawn with the window
+  std::size_t exactly = 0;   ///< machines that were drawn exactly too
   /// How far the window was off, by objective, of machines that were drawn both ways.
   struct Error {
     double greatest = 0;                ///< part of the exact value

@@ -78,6 +78,16 @@ test('critical path: bars and rows are the figures, of the frame and of a draw',
   await page.done();
 });
 
+test('critical path: each draw has its own, which is its time in flight', async () => {
+  for (const draw of draws) near(sum(Object.values(draw.path)), draw.cycles_in_flight);
+  const page = await open(made.page);
+  const at = Number((await page.locator('#draw-name').textContent()).split(':')[0]);
+  const rows = await cells(page, 'draw-path');
+  near(sum(rows.map(([, cycles]) => cycles)), draws[at].cycles_in_flight);
+  assert.equal(rows.length, Object.values(draws[at].path).filter((cycles) => cycles > 0).length);
+  await page.done();
+});
+
 test('draws: sums are those of the frame, and the table sorts, filters and tells of a draw', async () => {
   const page = await open(made.page);
   const table = (what) => page.evaluate(`window.quadrille.tables.get('draws-table').table.${what}`);

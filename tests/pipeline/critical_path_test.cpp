@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "pipeline/render.h"
 #include "pipeline/report/report.h"
@@ -39,6 +41,28 @@ std::string faults(const Figures& f) {
   }
   if (draws != f.path->ticks || ticks_of(f.path->parts) != draws)
     text += fmt::format("draws {}, parts {}, frame {}; ", draws, ticks_of(f.path->parts), f.path->ticks);
+  for (std::size_t i = 0; i < f.detail->draws.size(); ++i) {
+    const double cycles = static_cast<double>(ticks_of(f.path->of_each.at(i))) * f.frame.clock_mhz * 1e-9;
+    if (std::abs(cycles - static_cast<double>(f.detail->draws[i].in_flight())) > 0.01)
+      text += fmt::format("draw {}: {} cycles instead of {}; ", i, cycles, f.detail->draws[i].in_flight());
+  }
+  return text;
+}
+
+/// Units whose time is on the path for longer than they were busy, by their own accounts; empty: none. Of
+/// units with much in hand, queues count too.
+std::string more_than_busy(const Figures& f) {
+  std::map<std::string, double> busy;
+  for (const UnitFigures& unit : f.units)
+    busy[std::string(without_number(unit.path))] += static_cast<double>(unit.busy) /
+                                                    static_cast<double>(unit.cycles) *
+                                                    static_cast<double>(f.path->ticks);
+  std::string text;
+  for (const PathShare& part : f.path->parts) {
+    if (part.part != PathPart::kBusy) continue;
+    if (part.of == "core" || part.of == "texture" || part.of == "load_store" || part.of == "memory") continue;
+    if (static_cast<double>(part.ticks) > 1.001 * busy[part.of] + 2e6) text += part.of + " ";
+  }
   return text;
 }
 
@@ -82,7 +106,7 @@ TEST_CASE("critical path: of random frames on random machines it adds up and cha
     const auto run = [&](const DetailOptions& detail) {
       return hw::contract::in_child([&] {
         const RenderedFrame frame = render_exact(stream, config, options, {}, detail);
-        return (detail.path ? faults(frame.figures) : "") + outcome(frame);
+        return (detail.path ? faults(frame.figures) + more_than_busy(frame.figures) : "") + outcome(frame);
       });
     };
     CHECK((run({}) == run(kPath)));

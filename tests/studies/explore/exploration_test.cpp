@@ -14,43 +14,26 @@
 #include "studies/child_run.h"
 #include "studies/explore/explore_table.h"
 #include "studies/explore/point_run.h"
-#include "tests/studies/explore/sweep_folder.h"
+#include "tests/studies/explore/sweep_run.h"
 
 namespace quadrille::studies::explore {
 namespace {
 
 using Catch::Contains;
 
-LoadedScene scene_of(const Sweep& sweep, const std::string& name = "builtin:triangle") {
-  scenes::SceneOptions options;
-  options.width = options.height = 16;
-  SceneEntry entry = sweep.scenes.front();
-  return with_hash(std::move(entry), scenes::load_scene(name, options));
-}
-
-/// A sweep with its results.
-struct Run {
-  explicit Run(const std::string& text, const std::string& scene = "builtin:triangle")
-      : sweep(folder.sweep(text)), space(sweep), plan(space.grid()), scenes{scene_of(sweep, scene)} {
-    setting.version = "one";
-  }
+struct Run : SweepRun {
+  using SweepRun::SweepRun;
   [[nodiscard]] std::size_t draw() {
     std::size_t drawn = 0;
     setting.progress = [&](const ExploreProgress& p) { drawn = p.done; };
-    Results results(folder.file("r.db"));
+    Results results(results_file());
     Exploration(sweep, space, scenes, results, setting).run(plan.candidates);
     return drawn;
   }
   [[nodiscard]] PointRow row(std::size_t i) {
-    Results results(folder.file("r.db"));
+    Results results(results_file());
     return Exploration(sweep, space, scenes, results, setting).point(0, plan.candidates[i]).value();
   }
-  SweepFolder folder;
-  Sweep sweep;
-  Space space;
-  Plan plan;
-  std::vector<LoadedScene> scenes;
-  ExploreSetting setting;
 };
 
 const std::string kFour = std::string(kTriangleScene) + "[vary]\ngpu.cores = [1, 2, 3, 4]\n";

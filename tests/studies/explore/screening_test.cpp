@@ -6,9 +6,8 @@
 #include <algorithm>
 
 #include "models/base/error.h"
-#include "scenes/scene.h"
 #include "studies/explore/analysis.h"
-#include "tests/studies/explore/sweep_folder.h"
+#include "tests/studies/explore/sweep_run.h"
 
 namespace quadrille::studies::explore {
 namespace {
@@ -21,22 +20,9 @@ std::string twelve(const std::string& head, const std::string& tail = {}) {
          "core.simd_lanes = [2, 4, 8]\n" + tail;
 }
 
-struct Screened {
-  explicit Screened(const std::string& text) : sweep(folder.sweep(text)), space(sweep), plan(space.grid()) {
-    scenes::SceneOptions options;
-    options.width = 64;
-    options.height = 48;
-    scenes.push_back(with_hash(sweep.scenes.front(), scenes::load_scene("builtin:cubes", options)));
-    setting.version = "one";
-    setting.jobs = 2;
-  }
-  SweepFolder folder;
-  Sweep sweep;
-  Space space;
-  Plan plan;
-  std::vector<LoadedScene> scenes;
-  ExploreSetting setting;
-  Results results{folder.file("r.db")};
+struct Screened : SweepRun {
+  explicit Screened(const std::string& text) : SweepRun(text, "builtin:cubes", 64) { setting.jobs = 2; }
+  Results results{results_file()};
 };
 
 const std::string kCost =
@@ -99,6 +85,18 @@ TEST_CASE("screening: more machines than there are is all of them, and nothing i
   CHECK(screening.maybe_better == 0);
   CHECK(screening.errors[0].pairs == 66);
   CHECK(s.results.statuses().size() == 24);
+}
+
+TEST_CASE("screening: a machine that cannot be drawn is counted, and the others go on") {
+  Screened s(twelve("[screen]\nwindow = 100\nmachines = 2\n"));
+  const std::string bad = s.plan.candidates[5].hash;
+  s.setting.in_process = [&](const SceneEntry&, const Candidate& candidate) {
+    if (candidate.hash == bad) throw UserError("not this one");
+  };
+  const Screening screening = screen(s.sweep, s.space, s.scenes, s.results, s.setting, s.plan);
+  CHECK(screening.failed == 1);
+  CHECK(screening.exactly == 2);
+  CHECK_THAT(screening_table(s.sweep, screening), Contains("1 points could not be drawn with the window"));
 }
 
 TEST_CASE("screening: what makes no sense is refused by line") {

@@ -2,7 +2,7 @@
 import { chart, tip } from './chart.js';
 import { greatest } from './data.js';
 import { choice, h } from './dom.js';
-import { brief, bytes, decimal, integer, number, percent, ratio, words } from './format.js';
+import { brief, bytes, decimal, integer, number, percent, ratio, unitOrLink, words } from './format.js';
 import { grid, numberColumn, textColumn } from './grid.js';
 import { section, showPage, table } from './layout.js';
 import { colour } from './theme.js';
@@ -86,7 +86,7 @@ function units(c) {
 
 const path = (c) => !c.critical_path?.length ? null : section('path', 'What the ends waited for',
   ['Both ', term('critical path'), 's add up to their frames, so the differences add up to that of the cycles.'],
-  table('path-table', [{ title: 'unit or link', of: (p) => words(p.of) }, { title: 'part', of: (p) => p.part },
+  table('path-table', [{ title: 'unit or link', of: (p) => unitOrLink(p.of) }, { title: 'part', of: (p) => p.part },
     { title: 'who waited', of: (p) => (p.of === p.by ? '' : words(p.by)) }, ...pairColumns((p) => p.cycles, integer)], c.critical_path));
 
 function resources(c) {

@@ -51,6 +51,9 @@ export const number = (value, format = integer, id) =>
 /** "triangle_setup" -> "triangle setup" */
 export const words = (name) => String(name).replaceAll('_', ' ');
 
+/** "core", or "link coarse to fine" of "link.coarse_to_fine" */
+export const unitOrLink = (of) => words(of.replace(/^link\./, 'link '));
+
 export function seconds(s) {
   if (s >= 100) return `${integer(s)}${SPACE}s`;
   if (s >= 1) return `${s.toFixed(2)}${SPACE}s`;

@@ -1,7 +1,7 @@
 // Every draw of the frame: a table to sort and filter, and all that is known of the draw chosen.
 import { h } from '../dom.js';
 import { sum } from '../data.js';
-import { decimal, integer, number, percent, ratio, words } from '../format.js';
+import { decimal, integer, number, percent, ratio, unitOrLink, words } from '../format.js';
 import { added, grid, numberColumn, textColumn } from '../grid.js';
 import { panel, section, table } from '../layout.js';
 import { explained, term } from '../terms.js';
@@ -65,7 +65,7 @@ function columns(figures, rows) {
 function details({ draw, number: at }) {
   const kinds = Object.keys(draw.work).sort((a, b) => draw.work[b] - draw.work[a]);
   const counts = Object.entries(draw).filter(([, value]) => typeof value === 'object')
-    .filter(([group]) => !['shaders', 'busy', 'work', 'limiter', 'occupancy'].includes(group))
+    .filter(([group]) => !['shaders', 'busy', 'work', 'limiter', 'occupancy', 'path'].includes(group))
     .flatMap(([group, of]) => Object.entries(of).map(([name, value]) => ({ name: `${words(group)}: ${words(name)}`, value })));
   return [
     h('h3', { id: 'draw-name' }, `${at}: ${draw.label}`),
@@ -79,6 +79,11 @@ function details({ draw, number: at }) {
         { title: explained('busy', 'Cycles, summed over the units of the kind; of cores those of their SIMD units'), number: true, of: (kind) => number(draw.busy[kind] ?? 0) },
         { title: 'of the time in flight', of: (kind) => h('span', { class: 'share' }, h('i', { style: `width:${Math.min(100, 100 * ratio(draw.work[kind], draw.cycles_in_flight) || 0).toFixed(1)}%` }), h('b', null, percent(ratio(draw.work[kind], draw.cycles_in_flight)))) },
       ], kinds)),
+      draw.path && panel('What its end waited for', table('draw-path', [
+        { title: 'unit or link', of: ([of]) => unitOrLink(of) },
+        { title: 'cycles', number: true, of: ([, cycles]) => number(cycles) },
+        { title: 'of the time in flight', number: true, of: ([, cycles]) => percent(ratio(cycles, draw.cycles_in_flight)) },
+      ], Object.entries(draw.path).filter(([, cycles]) => cycles > 0).sort(([, a], [, b]) => b - a))),
       panel('Counts', table('draw-counts', [{ title: 'what', of: (c) => c.name }, { title: 'count', number: true, of: (c) => number(c.value) }], counts))),
   ];
 }

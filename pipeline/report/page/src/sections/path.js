@@ -1,7 +1,7 @@
 // The chain of waits that the frame's end hangs on, by unit and link, of the frame or of one draw.
 import { chart, tip } from '../chart.js';
 import { h } from '../dom.js';
-import { decimal, integer, number, percent, words } from '../format.js';
+import { decimal, integer, number, percent, unitOrLink } from '../format.js';
 import { panel, section, table } from '../layout.js';
 import { colour } from '../theme.js';
 import { explained, term } from '../terms.js';
@@ -14,14 +14,11 @@ const PARTS = [
 /** Rows below this share of the path are only in the table. */
 const LEAST = 0.002;
 
-/** "core", or "link of coarse to fine" */
-const nameOf = (of) => (of.startsWith('link.') ? `link ${words(of.slice(5))}` : words(of));
-
 /** By unit or link: cycles of each part, the longest first. */
 function rowsOf(path) {
   const rows = new Map();
   for (const { of, part, cycles } of path.parts) {
-    const row = rows.get(of) ?? { of, name: nameOf(of), cycles: 0, parts: {} };
+    const row = rows.get(of) ?? { of, name: unitOrLink(of), cycles: 0, parts: {} };
     row.parts[part] = (row.parts[part] ?? 0) + cycles;
     row.cycles += cycles;
     rows.set(of, row);
