@@ -9,6 +9,7 @@
 #include <cstring>
 #include <set>
 
+#include "models/base/descriptor_binding.h"
 #include "models/base/error.h"
 #include "traces/attachment_texels.h"
 #include "traces/command_stream.h"
@@ -250,17 +251,17 @@ void check_pipeline(const CommandStream& stream, const Pipeline& pipeline, std::
 template <class Block>
 void check_block(const CommandStream& stream, std::size_t set, const Block& block, std::uint32_t most) {
   if (block.buffer >= stream.buffers.size())
-    throw user_error("descriptor set {} binding {}: buffer {} does not exist", set, block.binding,
-                     block.buffer);
+    throw user_error("descriptor set {} binding {}: buffer {} does not exist", set,
+                     models::binding_text(block.binding), block.buffer);
   const std::uint64_t size = stream.buffers[block.buffer].data.size();
   if (block.range == 0 || block.range > most || std::uint64_t{block.offset} + block.range > size) {
     throw user_error(
         "descriptor set {} binding {}: bytes {}+{} are not within buffer {} of {} bytes (at most {})", set,
-        block.binding, block.offset, block.range, block.buffer, size, most);
+        models::binding_text(block.binding), block.offset, block.range, block.buffer, size, most);
   }
   if (block.offset % kBlockAlignment != 0)
-    throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set, block.binding,
-                     block.offset, kBlockAlignment);
+    throw user_error("descriptor set {} binding {}: offset {} is not a multiple of {}", set,
+                     models::binding_text(block.binding), block.offset, kBlockAlignment);
 }
 
 /// [VK1.3 #resources-image-views-compatibility]
@@ -268,19 +269,19 @@ void check_view_kind(const Image& image, const TextureDescriptor& t, std::size_t
   const std::string_view kind = models::kViewKindNames.at(static_cast<std::size_t>(t.view));
   if (models::image_kind(t.view) != image.kind)
     throw user_error("descriptor set {} binding {}: a view '{}' of image {} '{}', which is of another kind",
-                     set, t.binding, kind, t.image, image.name);
+                     set, models::binding_text(t.binding), kind, t.image, image.name);
   if (t.layers == 0 || t.layers > image.layers - t.layer)
     throw user_error("descriptor set {} binding {}: layers {}+{} of image {} '{}', which has {}", set,
-                     t.binding, t.layer, t.layers, t.image, image.name, image.layers);
+                     models::binding_text(t.binding), t.layer, t.layers, t.image, image.name, image.layers);
   const bool fits = models::is_cube(t.view)    ? t.layers % models::kCubeFaces == 0
                     : models::is_array(t.view) ? true
                                                : t.layers == 1;
   if (!fits || (t.view == ViewKind::kCube && t.layers != models::kCubeFaces))
-    throw user_error("descriptor set {} binding {}: {} layers in a view '{}'", set, t.binding, t.layers,
-                     kind);
+    throw user_error("descriptor set {} binding {}: {} layers in a view '{}'", set,
+                     models::binding_text(t.binding), t.layers, kind);
   if (models::is_cube(t.view) && image.width != image.height)
-    throw user_error("descriptor set {} binding {}: image {} '{}' of {}x{} texels as a cube", set, t.binding,
-                     t.image, image.name, image.width, image.height);
+    throw user_error("descriptor set {} binding {}: image {} '{}' of {}x{} texels as a cube", set,
+                     models::binding_text(t.binding), t.image, image.name, image.width, image.height);
 }
 
 /// Levels and layer that are sampled are those of the image.
@@ -288,10 +289,11 @@ void check_view(const CommandStream& stream, const TextureDescriptor& t, std::si
   const Image& image = stream.images[t.image];
   if (t.first_level >= image.levels || t.levels > image.levels - t.first_level)
     throw user_error("descriptor set {} binding {}: levels {}+{} of image {} '{}', which has {}", set,
-                     t.binding, t.first_level, t.levels, t.image, image.name, image.levels);
+                     models::binding_text(t.binding), t.first_level, t.levels, t.image, image.name,
+                     image.levels);
   if (t.layer >= image.layers)
-    throw user_error("descriptor set {} binding {}: layer {} of image {} '{}', which has {}", set, t.binding,
-                     t.layer, t.image, image.name, image.layers);
+    throw user_error("descriptor set {} binding {}: layer {} of image {} '{}', which has {}", set,
+                     models::binding_text(t.binding), t.layer, t.image, image.name, image.layers);
   check_view_kind(image, t, set);
 }
 
@@ -304,7 +306,8 @@ void check_filters(const CommandStream& stream, const TextureDescriptor& t, std:
   for (const Filter filter : {sampler.mag, sampler.min, sampler.mip}) {
     if (filter == Filter::kLinear)
       throw user_error("descriptor set {} binding {}: image {} '{}' of integers ({}) with a linear filter",
-                       set, t.binding, t.image, image.name, models::format_info(image.format).name);
+                       set, models::binding_text(t.binding), t.image, image.name,
+                       models::format_info(image.format).name);
   }
 }
 
@@ -312,7 +315,7 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
   std::set<std::uint32_t> bindings;
   const auto claim = [&](std::uint32_t binding) {
     if (!bindings.insert(binding).second)
-      throw user_error("descriptor set {}: binding {} is given twice", set, binding);
+      throw user_error("descriptor set {}: binding {} is given twice", set, models::binding_text(binding));
   };
   for (const auto& u : descriptors.uniforms) {
     claim(u.binding);
@@ -325,19 +328,22 @@ void check_descriptors(const CommandStream& stream, const DescriptorSet& descrip
   for (const auto& t : descriptors.textures) {
     claim(t.binding);
     if (t.image >= stream.images.size())
-      throw user_error("descriptor set {} binding {}: image {} does not exist", set, t.binding, t.image);
+      throw user_error("descriptor set {} binding {}: image {} does not exist", set,
+                       models::binding_text(t.binding), t.image);
     if ((stream.images[t.image].usage & kSampled) == 0)
-      throw user_error("descriptor set {} binding {}: image {} '{}' is not for sampling", set, t.binding,
-                       t.image, stream.images[t.image].name);
+      throw user_error("descriptor set {} binding {}: image {} '{}' is not for sampling", set,
+                       models::binding_text(t.binding), t.image, stream.images[t.image].name);
     if (t.sampler >= stream.samplers.size() && t.sampler != kNone)
-      throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, t.binding, t.sampler);
+      throw user_error("descriptor set {} binding {}: sampler {} does not exist", set,
+                       models::binding_text(t.binding), t.sampler);
     check_view(stream, t, set);
     check_filters(stream, t, set);
   }
   for (const auto& s : descriptors.samplers) {
     claim(s.binding);
     if (s.sampler >= stream.samplers.size())
-      throw user_error("descriptor set {} binding {}: sampler {} does not exist", set, s.binding, s.sampler);
+      throw user_error("descriptor set {} binding {}: sampler {} does not exist", set,
+                       models::binding_text(s.binding), s.sampler);
   }
 }
 

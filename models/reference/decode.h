@@ -24,6 +24,10 @@ struct Value {
   /// pointer: cell with the offset in cells, different for each lane; none: `kNoSlot`
   Slot offset = kNoSlot;
   bool read_only = false;  ///< pointer: to inputs or uniforms, which a load may name instead of copying
+  /// kTexture, kSampler: so many of an array from `slot` or `offset` on, and the cell with the number of the
+  /// one that a lane takes; none: `kNoSlot`
+  std::uint32_t count = 1;
+  Slot index = kNoSlot;
 };
 
 class Decoder {
@@ -76,12 +80,14 @@ class Decoder {
                          std::uint32_t location, bool input);
   void builtin(std::uint32_t which, Slot slot, std::uint32_t cells, bool input);
   void block_scalars(UniformScalar place, Id type, const Decorations& layout);
+  void uniform_variable(const SpirvInstruction& in, Value& value);
   void texture_variable(const SpirvInstruction& in, Value& value);
 
   // decode_memory.cpp: pointers and composites.
   [[nodiscard]] bool memory_instruction(Frame& frame, const SpirvInstruction& in);
   void local_variable(Frame& frame, const SpirvInstruction& in);
   void access_chain(Frame& frame, const SpirvInstruction& in);
+  void choose_descriptor(Frame& frame, Value& descriptors, Id index);
   void step_into(Frame& frame, Value& pointer, Id index);
   void dynamic_step(Value& pointer, Slot index, std::uint32_t count, std::uint32_t stride);
   [[nodiscard]] Value load(const Value& pointer);

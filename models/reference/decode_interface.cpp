@@ -1,6 +1,7 @@
 /// Decoding the module's variables: inputs, outputs, built-ins, uniform blocks, push constants, textures.
 #include <spirv/unified1/spirv.hpp>
 
+#include "models/base/descriptor_binding.h"
 #include "models/reference/decode.h"
 
 namespace quadrille::models::reference {
@@ -46,15 +47,7 @@ void Decoder::variable(const SpirvInstruction& in) {
       initialised_.push_back(in);
       break;
     case spv::StorageClassUniform:
-    case spv::StorageClassPushConstant: {
-      v.slot = allocate(cells(pointer.element));
-      v.read_only = true;
-      UniformScalar place;
-      place.push = pointer.storage == spv::StorageClassPushConstant;
-      place.set = decorations.set, place.binding = decorations.binding, place.slot = v.slot;
-      block_scalars(place, pointer.element, decorations);
-      break;
-    }
+    case spv::StorageClassPushConstant: uniform_variable(in, v); break;
     case spv::StorageClassUniformConstant: texture_variable(in, v); break;
     default:
       unsupported(
@@ -64,8 +57,28 @@ void Decoder::variable(const SpirvInstruction& in) {
   globals_[in.result] = v;
 }
 
+/// A block, or an array of blocks, each with a binding of its own.
+void Decoder::uniform_variable(const SpirvInstruction& in, Value& v) {
+  const Decorations& decorations = module_.decorations[in.result];
+  const SpirvType& type = module_.type(v.type);
+  const bool array = type.kind == TypeKind::kArray;
+  v.slot = allocate(cells(v.type));
+  v.read_only = true;
+  UniformScalar place;
+  place.push = module_.type(in.type).storage == spv::StorageClassPushConstant;
+  place.set = decorations.set, place.slot = v.slot;
+  const Id block = array ? type.element : v.type;
+  for (std::uint32_t i = 0; i < (array ? type.count : 1); ++i) {
+    place.binding = element_binding(decorations.binding, i);
+    block_scalars(place, block, decorations);
+    place.slot += cells(block);
+  }
+}
+
 void Decoder::texture_variable(const SpirvInstruction& in, Value& v) {
-  const TypeKind kind = module_.type(v.type).kind;
+  const SpirvType& type = module_.type(v.type);
+  if (type.kind == TypeKind::kArray) v.count = type.count;
+  const TypeKind kind = type.kind == TypeKind::kArray ? module_.type(type.element).kind : type.kind;
   const Decorations& place = module_.decorations[in.result];
   if (kind == TypeKind::kSampler) {
     v.kind = Value::Kind::kSampler;
@@ -77,7 +90,8 @@ void Decoder::texture_variable(const SpirvInstruction& in, Value& v) {
     unsupported("a descriptor that is not an image, a sampler, both in one, or a uniform block");
   v.kind = Value::Kind::kTexture;
   v.slot = static_cast<Slot>(program_.textures.size());
-  program_.textures.push_back({place.set, place.binding, kind == TypeKind::kImage});
+  for (std::uint32_t i = 0; i < v.count; ++i)
+    program_.textures.push_back({place.set, element_binding(place.binding, i), kind == TypeKind::kImage});
 }
 
 /// Lists the scalars of an input or output. Each scalar or vector (so each column, array element and member)

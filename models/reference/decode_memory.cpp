@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <spirv/unified1/spirv.hpp>
 
+#include "models/base/descriptor_binding.h"
 #include "models/reference/decode.h"
 #include "models/reference/handlers.h"
 
@@ -34,9 +35,31 @@ void Decoder::local_variable(Frame& frame, const SpirvInstruction& in) {
 
 void Decoder::access_chain(Frame& frame, const SpirvInstruction& in) {
   Value pointer = value(frame, in.words[0]);
-  if (pointer.kind != Value::Kind::kPointer) unsupported("an access chain into a descriptor");
+  if (pointer.kind == Value::Kind::kTexture || pointer.kind == Value::Kind::kSampler) {
+    if (in.words.size() != 2) unsupported("an array of arrays of descriptors");
+    choose_descriptor(frame, pointer, in.words[1]);
+    frame.values[in.result] = pointer;
+    return;
+  }
+  if (pointer.kind != Value::Kind::kPointer) unsupported("an access chain into this kind of value");
   for (std::size_t i = 1; i < in.words.size(); ++i) step_into(frame, pointer, in.words[i]);
   frame.values[in.result] = pointer;
+}
+
+/// One of an array of textures or samplers. An index beyond its end counts as the last.
+void Decoder::choose_descriptor(Frame& frame, Value& descriptors, Id index) {
+  const SpirvType& t = module_.type(descriptors.type);
+  if (t.kind != TypeKind::kArray) unsupported("an access chain into a descriptor");
+  descriptors.type = t.element;
+  if (!is_constant(index)) {
+    descriptors.index = allocate(1);
+    emit(scale_index, 1, descriptors.index, {value(frame, index).slot, kNoSlot}).imm = {t.count, 1};
+    return;
+  }
+  const std::uint32_t chosen = std::min(constant_words_.at(index), t.count - 1);
+  if (descriptors.kind == Value::Kind::kTexture) descriptors.slot += chosen;
+  else descriptors.offset = element_binding(descriptors.offset, chosen);
+  descriptors.count = 1;
 }
 
 void Decoder::step_into(Frame& frame, Value& pointer, Id index) {

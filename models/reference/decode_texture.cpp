@@ -1,6 +1,7 @@
 /// Decoding instructions on textures.
 #include <spirv/unified1/spirv.hpp>
 
+#include "models/base/descriptor_binding.h"
 #include "models/reference/decode.h"
 #include "models/reference/handlers.h"
 
@@ -49,26 +50,39 @@ bool Decoder::texture_instruction(Frame& frame, const SpirvInstruction& in) {
   }
 }
 
-/// A texture with a sampler of its own is one more texture.
+/// A texture with a sampler of its own is one more texture; of arrays, each pair is.
 void Decoder::combine(Frame& frame, const SpirvInstruction& in) {
   Value texture = value(frame, in.words[0]);
   const Value sampler = value(frame, in.words[1]);
   if (texture.kind != Value::Kind::kTexture || sampler.kind != Value::Kind::kSampler)
     unsupported("a texture or sampler that is not a variable");
-  TextureUse use = program_.textures[texture.slot];
-  use.sampler_set = sampler.slot;
-  use.sampler_binding = sampler.offset;
-  texture.slot = static_cast<Slot>(program_.textures.size());
-  program_.textures.push_back(use);
+  const auto first = static_cast<Slot>(program_.textures.size());
+  for (std::uint32_t t = 0; t < texture.count; ++t) {
+    TextureUse use = program_.textures[texture.slot + t];
+    use.sampler_set = sampler.slot;
+    for (std::uint32_t s = 0; s < sampler.count; ++s) {
+      use.sampler_binding = element_binding(sampler.offset, s);
+      program_.textures.push_back(use);
+    }
+  }
+  texture.slot = first;
+  if (texture.index == kNoSlot) {
+    texture.index = sampler.index;
+  } else {
+    const Slot pair = allocate(1);
+    emit(scale_index, 1, pair, {texture.index, sampler.index}).imm = {texture.count, sampler.count};
+    texture.index = pair;
+  }
+  texture.count *= sampler.count;
   frame.values[in.result] = texture;
 }
 
 void Decoder::query(Frame& frame, const SpirvInstruction& in) {
-  const Slot texture = value(frame, in.words[0]).slot;
+  const Value texture = value(frame, in.words[0]);
   const bool levels = in.op == spv::OpImageQueryLevels;
   const Slot level = levels ? kNoSlot : value(frame, in.words[1]).slot;
-  emit(levels ? query_levels : query_size, cells(in.type), define(frame, in).slot, {kNoSlot, level}).imm[0] =
-      texture;
+  emit(levels ? query_levels : query_size, cells(in.type), define(frame, in).slot, {texture.index, level})
+      .imm[0] = texture.slot;
 }
 
 void Decoder::ask_texture(Frame& frame, const SpirvInstruction& in, TextureInstruction::Kind kind,
@@ -78,6 +92,7 @@ void Decoder::ask_texture(Frame& frame, const SpirvInstruction& in, TextureInstr
   TextureInstruction ask;
   ask.kind = kind;
   ask.texture = value(frame, in.words[0]).slot;
+  ask.index = value(frame, in.words[0]).index;
   const Value& coordinates = value(frame, in.words[1]);
   ask.coordinates = coordinates.slot;
   ask.coordinate_cells = cells(coordinates.type);

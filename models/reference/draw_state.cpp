@@ -4,6 +4,7 @@
 #include <cstring>
 #include <span>
 
+#include "models/base/descriptor_binding.h"
 #include "models/base/error.h"
 
 namespace quadrille::models::reference {
@@ -28,7 +29,7 @@ std::span<const std::byte> block_bytes(const ShaderProgram& program, const DrawS
     return rest.first(std::min<std::size_t>(binding.range, rest.size()));
   }
   throw user_error("draw {}: shader '{}' uses uniform block (set {}, binding {}), which is not bound",
-                   state.number, program.name, scalar.set, scalar.binding);
+                   state.number, program.name, scalar.set, binding_text(scalar.binding));
 }
 
 void set_uniform(Cell& cell, std::span<const std::byte> bytes, const UniformScalar& scalar) {
@@ -53,7 +54,7 @@ const traces::Sampler* sampler_of(const ShaderProgram& program, const DrawState&
   for (const traces::SamplerDescriptor& s : descriptor_set(program, state, use.sampler_set).samplers)
     if (s.binding == use.sampler_binding) return &state.stream->samplers.at(s.sampler);
   throw user_error("draw {}: shader '{}' uses sampler (set {}, binding {}), which is not bound", state.number,
-                   program.name, use.sampler_set, use.sampler_binding);
+                   program.name, use.sampler_set, binding_text(use.sampler_binding));
 }
 
 TextureView texture_view(const ShaderProgram& program, const DrawState& state, const TextureUse& use,
@@ -83,7 +84,7 @@ TextureView texture_view(const ShaderProgram& program, const DrawState& state, c
     return view;
   }
   throw user_error("draw {}: shader '{}' uses texture (set {}, binding {}), which is not bound", state.number,
-                   program.name, use.set, use.binding);
+                   program.name, use.set, binding_text(use.binding));
 }
 
 }  // namespace

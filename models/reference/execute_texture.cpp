@@ -7,6 +7,11 @@
 namespace quadrille::models::reference {
 namespace {
 
+/// The texture, or of an array the one that a lane takes.
+const TextureView& texture_of(const Lanes& lanes, std::uint32_t texture, Slot index, int lane) {
+  return lanes.textures->at(texture + (index == kNoSlot ? 0 : lanes.cells[index].u(lane)));
+}
+
 /// Does the sampler or the image need more than a plane sampled at one place?
 bool is_plain(const TextureView& texture, const TextureInstruction& ask) {
   return ask.kind == TextureInstruction::Kind::kSample && texture.kind == ViewKind::k2D &&
@@ -143,12 +148,12 @@ Texel answer(const TextureView& texture, const TextureInstruction& ask, const La
 
 void ask_texture_lanes(const Operation& o, Lanes& lanes) {
   const TextureInstruction& ask = (*lanes.instructions)[o.imm[0]];
-  const TextureView& texture = (*lanes.textures)[ask.texture];
-  const bool integers =
-      traces::is_integer_format(texture.image->format) && ask.kind != TextureInstruction::Kind::kQueryLod;
   std::array<Cell, 4> result{};
   for (int lane = 0; lane < kLanes; ++lane) {
     if ((lanes.mask >> lane & 1u) == 0) continue;
+    const TextureView& texture = texture_of(lanes, ask.texture, ask.index, lane);
+    const bool integers =
+        traces::is_integer_format(texture.image->format) && ask.kind != TextureInstruction::Kind::kQueryLod;
     const Texel texel = answer(texture, ask, lanes, lane);
     for (std::size_t c = 0; c < 4; ++c) {
       if (!integers) result.at(c).set_f(lane, texel.at(c));
@@ -159,9 +164,9 @@ void ask_texture_lanes(const Operation& o, Lanes& lanes) {
 }
 
 void query_size(const Operation& o, Lanes& lanes) {
-  const TextureView& texture = (*lanes.textures)[o.imm[0]];
   std::array<Cell, 3> size{};
   for (int lane = 0; lane < kLanes; ++lane) {
+    const TextureView& texture = texture_of(lanes, o.imm[0], o.src[0], lane);
     const std::uint32_t level = lanes.cells[o.src[1]].u(lane), last = texture.levels - 1;
     const std::uint32_t l = texture.first_level + (level <= last ? level : 0);
     const std::uint32_t cubes = texture.layers / (is_cube(texture.kind) ? kCubeFaces : 1);
@@ -176,7 +181,8 @@ void query_size(const Operation& o, Lanes& lanes) {
 
 void query_levels(const Operation& o, Lanes& lanes) {
   Cell levels;
-  for (int lane = 0; lane < kLanes; ++lane) levels.set_u(lane, (*lanes.textures)[o.imm[0]].levels);
+  for (int lane = 0; lane < kLanes; ++lane)
+    levels.set_u(lane, texture_of(lanes, o.imm[0], o.src[0], lane).levels);
   write(lanes, lanes.cells[o.dst], levels);
 }
 

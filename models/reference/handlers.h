@@ -37,7 +37,8 @@ void insert_dynamic(const Operation& o, Lanes& lanes);
 void kill_lanes(const Operation& o, Lanes& lanes);   ///< marks the running lanes as discarded
 void note_margin(const Operation& o, Lanes& lanes);  ///< lowers the discard margin to |src[0] - src[1]|
 
-// Textures: imm[0] is the instruction of the program's list, or of queries the texture.
+// Textures: imm[0] is the instruction of the program's list, or of queries the texture, and src[0] the cell
+// with what is added to it.
 void ask_texture_lanes(const Operation& o, Lanes& lanes);
 void query_size(const Operation& o, Lanes& lanes);  ///< src[1]: the level
 void query_levels(const Operation& o, Lanes& lanes);

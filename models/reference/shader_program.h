@@ -44,6 +44,7 @@ struct TextureInstruction {
   enum class Kind : std::uint8_t { kSample, kFetch, kGather, kQueryLod };
   Kind kind = Kind::kSample;
   std::uint32_t texture = 0;
+  Slot index = kNoSlot;  ///< cell with what is added to `texture`, which takes one of an array
   Slot coordinates = kNoSlot, reference = kNoSlot, bias = kNoSlot, level = kNoSlot, gradient_x = kNoSlot,
        gradient_y = kNoSlot, offsets = kNoSlot;
   bool projective = false;

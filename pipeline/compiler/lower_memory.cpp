@@ -86,8 +86,8 @@ void Lowering::declare(const spirv::Variable& variable) {
     case spv::StorageClassUniform:
       if (module_.type(variable.type).kind == Kind::kArray && module_.type(variable.type).count > 1)
         throw user_error(
-            "{}", module_.at_use(variable.id, fmt::format("resource {} is an array of uniform blocks, which "
-                                                          "is not supported; put an array into a block",
+            "{}", module_.at_use(variable.id, fmt::format("resource {} is an array of uniform blocks in a "
+                                                          "use that is not supported (as a value, say)",
                                                           module_.name(variable.id))));
       if (module_.decorations(variable.type).buffer_block) p.storage = spv::StorageClassStorageBuffer;
       break;

@@ -1,6 +1,7 @@
 #include "pipeline/compiler/spirv_optimise.h"
 
 #include "models/base/error.h"
+#include "pipeline/compiler/spirv_descriptor_arrays.h"
 #include "pipeline/compiler/spirv_loops.h"
 #include "pipeline/compiler/spirv_module.h"
 #include "pipeline/compiler/spirv_returning_kills.h"
@@ -123,7 +124,7 @@ std::vector<std::uint32_t> forbid_float_rewrites(std::span<const std::uint32_t> 
   return out;
 }
 
-void register_passes(spvtools::Optimizer& optimizer) {
+void register_passes(spvtools::Optimizer& optimizer, bool descriptor_arrays) {
   using namespace spvtools;
   optimizer.RegisterPass(CreateFreezeSpecConstantValuePass())
       .RegisterPass(CreateFoldSpecConstantOpAndCompositePass())
@@ -144,8 +145,9 @@ void register_passes(spvtools::Optimizer& optimizer) {
       .RegisterPass(CreateSSARewritePass())
       .RegisterPass(CreateCCPPass())
       .RegisterPass(CreateDeadBranchElimPass())
-      .RegisterPass(CreateAggressiveDCEPass())
-      .RegisterPass(CreateBlockMergePass())
+      .RegisterPass(CreateAggressiveDCEPass());
+  if (descriptor_arrays) register_descriptor_array_passes(optimizer);
+  optimizer.RegisterPass(CreateBlockMergePass())
       .RegisterPass(CreateCFGCleanupPass())
       .RegisterPass(CreateAggressiveDCEPass());
 }
@@ -159,19 +161,27 @@ OptimisedSpirv optimise_spirv(std::span<const std::uint32_t> words, std::string_
     throw user_error("{}: more than {} instructions once every call is expanded in place", shader,
                      kMaxInlinedInstructions);
   ReturningKills kills = let_kills_return({words.begin(), words.end()});
-  const std::vector<std::uint32_t> input = forbid_float_rewrites(kills.words);
+  std::vector<std::uint32_t> input = forbid_float_rewrites(kills.words);
+  const bool descriptor_arrays = has_descriptor_arrays(input, shader);
+  if (descriptor_arrays) spread_bindings(input, shader);
   std::string message;
   spvtools::Optimizer optimizer(kEnvironment);
   optimizer.SetMessageConsumer(
       [&](spv_message_level_t level, const char*, const spv_position_t&, const char* text) {
         if (message.empty() && level <= SPV_MSG_ERROR) message = first_line(text);
       });
-  register_passes(optimizer);
+  register_passes(optimizer, descriptor_arrays);
   spvtools::OptimizerOptions options;
   options.set_run_validator(false);
   std::vector<std::uint32_t> output;
-  if (!optimizer.Run(input.data(), input.size(), &output, options))
-    throw user_error("{}: SPIRV-Tools cannot optimise it: {}", shader, message);
+  const bool done = optimizer.Run(input.data(), input.size(), &output, options);
+  if (!done && descriptor_arrays && message.find("cannot be replaced") != std::string::npos)
+    throw user_error(
+        "{}: an array of buffers with an index that is not a constant is not supported, nor one "
+        "that is used as a whole",
+        shader);
+  if (!done) throw user_error("{}: SPIRV-Tools cannot optimise it: {}", shader, message);
+  if (descriptor_arrays) name_elements(output);
   validate(output, shader);
   return {std::move(output), kills.any};
 }

@@ -1,5 +1,6 @@
 #include "pipeline/driver/frame_builder.h"
 
+#include "models/base/descriptor_binding.h"
 #include "models/base/error.h"
 #include "pipeline/driver/attachment_lives.h"
 #include "pipeline/driver/device_resources.h"
@@ -239,7 +240,8 @@ class FrameBuilder {
           const auto& data = stream_.buffers[bound.buffer].data;
           const std::span<const std::byte> view = std::span(data).subspan(bound.offset, bound.range);
           copy_words(view, range, to, program, [&] {
-            return fmt::format("the uniform block at set {}, binding {}", range.set, range.binding);
+            return fmt::format("the uniform block at set {}, binding {}", range.set,
+                               models::binding_text(range.binding));
           });
           break;
         }
@@ -265,7 +267,8 @@ class FrameBuilder {
         if (u.binding == binding) return u;
       }
     }
-    throw user_error("{}: no uniform buffer is bound at set {}, binding {}", program.name, set, binding);
+    throw user_error("{}: no uniform buffer is bound at set {}, binding {}", program.name, set,
+                     models::binding_text(binding));
   }
 
   void textures(const models::Program& program, std::vector<hw::TextureState>& states,
@@ -281,7 +284,8 @@ class FrameBuilder {
       if (bound.view != use.view)
         throw user_error("{}: samples a view '{}' at set {}, binding {}, where one '{}' is bound",
                          program.name, models::kViewKindNames.at(static_cast<std::size_t>(use.view)), use.set,
-                         use.binding, models::kViewKindNames.at(static_cast<std::size_t>(bound.view)));
+                         models::binding_text(use.binding),
+                         models::kViewKindNames.at(static_cast<std::size_t>(bound.view)));
       lives_.check_sampled(bound, out_.frame.passes.size() - 1, program.name);
       out_.frame.passes.back().samples_attachments |= image.is_attachment();
       const DeviceResources::Texture texture = resources_.texture(bound);
@@ -307,13 +311,13 @@ class FrameBuilder {
     }
     if (index == traces::kNone)
       throw user_error("{}: no sampler is bound for the texture at set {}, binding {}", program.name, use.set,
-                       use.binding);
+                       models::binding_text(use.binding));
     const models::SamplerState& state = stream_.samplers[index];
     const bool linear = state.mag == models::Filter::kLinear || state.min == models::Filter::kLinear ||
                         state.mip == models::Filter::kLinear;
     if (linear && use.texels != models::NumberKind::kFloat)
       throw user_error("{}: a texture of integers at set {}, binding {} with a linear filter", program.name,
-                       use.set, use.binding);
+                       use.set, models::binding_text(use.binding));
     return state;
   }
 
@@ -324,7 +328,8 @@ class FrameBuilder {
         if (t.binding == binding) return t;
       }
     }
-    throw user_error("{}: no texture is bound at set {}, binding {}", program.name, set, binding);
+    throw user_error("{}: no texture is bound at set {}, binding {}", program.name, set,
+                     models::binding_text(binding));
   }
 
   void note_left_out() {

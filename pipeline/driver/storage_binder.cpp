@@ -1,5 +1,6 @@
 #include "pipeline/driver/storage_binder.h"
 
+#include "models/base/descriptor_binding.h"
 #include "models/base/error.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ const traces::StorageBinding& StorageBinder::bound(const models::Program& progra
     if (found != buffers.end()) return *found;
   }
   throw user_error("{}: no storage buffer is bound at set {}, binding {}", program.name, use.set,
-                   use.binding);
+                   models::binding_text(use.binding));
 }
 
 void StorageBinder::bind(hw::ProgramState& state, const std::map<std::uint32_t, traces::Index>& sets) {

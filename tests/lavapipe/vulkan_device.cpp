@@ -260,6 +260,9 @@ void VulkanDevice::create_device() {
   features.features.samplerAnisotropy = present.samplerAnisotropy;
   features.features.shaderImageGatherExtended = present.shaderImageGatherExtended;
   features.features.robustBufferAccess = present.robustBufferAccess;
+  features.features.shaderSampledImageArrayDynamicIndexing = present.shaderSampledImageArrayDynamicIndexing;
+  features.features.shaderUniformBufferArrayDynamicIndexing = present.shaderUniformBufferArrayDynamicIndexing;
+  features.features.shaderStorageBufferArrayDynamicIndexing = present.shaderStorageBufferArrayDynamicIndexing;
   features.features.fragmentStoresAndAtomics = present.fragmentStoresAndAtomics;
   features.features.vertexPipelineStoresAndAtomics = present.vertexPipelineStoresAndAtomics;
   features.features.pipelineStatisticsQuery = present.pipelineStatisticsQuery;

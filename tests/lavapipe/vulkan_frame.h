@@ -31,7 +31,12 @@ class VulkanFrame {
 
  private:
   /// What a descriptor set holds, which is all that its layout depends on: binding -> type.
-  using SetShape = std::map<std::uint32_t, VkDescriptorType>;
+  struct ArrayShape {
+    VkDescriptorType type = VK_DESCRIPTOR_TYPE_MAX_ENUM;
+    std::uint32_t count = 1;
+    friend auto operator<=>(const ArrayShape&, const ArrayShape&) = default;  // NOLINT(modernize-use-nullptr)
+  };
+  using SetShape = std::map<std::uint32_t, ArrayShape>;  ///< by binding
   using SetShapes = std::vector<SetShape>;
   struct PipelineObjects {
     VkPipeline pipeline = VK_NULL_HANDLE;

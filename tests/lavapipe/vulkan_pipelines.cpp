@@ -4,6 +4,7 @@
 /// combination of sets it is drawn with.
 #include <algorithm>
 
+#include "models/base/descriptor_binding.h"
 #include "models/base/error.h"
 #include "tests/lavapipe/sample_inputs.h"
 #include "tests/lavapipe/vulkan_enums.h"
@@ -102,15 +103,20 @@ VkPipelineDepthStencilStateCreateInfo depth_state(const traces::Pipeline& pipeli
 VulkanFrame::SetShape VulkanFrame::shape_of(traces::Index set) const {
   SetShape shape;
   if (set == traces::kNone) return shape;
+  const auto add = [&shape](std::uint32_t number, VkDescriptorType type) {
+    ArrayShape& array = shape[models::binding_of(number)];
+    array.type = type;
+    array.count = std::max(array.count, models::element_of(number) + 1);
+  };
   for (const auto& uniform : stream_.descriptor_sets[set].uniforms)
-    shape[uniform.binding] = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    add(uniform.binding, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
   for (const auto& buffer : stream_.descriptor_sets[set].buffers)
-    shape[buffer.binding] = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    add(buffer.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
   for (const auto& texture : stream_.descriptor_sets[set].textures)
-    shape[texture.binding] = texture.sampler == traces::kNone ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
-                                                              : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    add(texture.binding, texture.sampler == traces::kNone ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE
+                                                          : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
   for (const auto& sampler : stream_.descriptor_sets[set].samplers)
-    shape[sampler.binding] = VK_DESCRIPTOR_TYPE_SAMPLER;
+    add(sampler.binding, VK_DESCRIPTOR_TYPE_SAMPLER);
   return shape;
 }
 
@@ -118,7 +124,8 @@ VkDescriptorSetLayout VulkanFrame::set_layout(const SetShape& shape) {
   const auto known = set_layouts_.find(shape);
   if (known != set_layouts_.end()) return known->second;
   std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (const auto& [binding, type] : shape) bindings.push_back({binding, type, 1, kStages, nullptr});
+  for (const auto& [binding, array] : shape)
+    bindings.push_back({binding, array.type, array.count, kStages, nullptr});
   VkDescriptorSetLayoutCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
   info.bindingCount = static_cast<std::uint32_t>(bindings.size());
@@ -168,16 +175,18 @@ void VulkanFrame::create_descriptor_sets() {
     write.descriptorCount = 1;
     const auto write_block = [&](const auto& block, VkDescriptorType type) {
       const VkDescriptorBufferInfo buffer{buffers_[block.buffer], block.offset, block.range};
-      write.dstBinding = block.binding;
+      write.dstBinding = models::binding_of(block.binding);
+      write.dstArrayElement = models::element_of(block.binding);
       write.descriptorType = type;
       write.pBufferInfo = &buffer;
       vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);
     };
     for (const auto& uniform : source.uniforms) write_block(uniform, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER);
     for (const auto& buffer : source.buffers) write_block(buffer, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-    const auto write_image = [&](std::uint32_t binding, VkDescriptorType type,
+    const auto write_image = [&](std::uint32_t number, VkDescriptorType type,
                                  const VkDescriptorImageInfo& image) {
-      write.dstBinding = binding;
+      write.dstBinding = models::binding_of(number);
+      write.dstArrayElement = models::element_of(number);
       write.descriptorType = type;
       write.pImageInfo = &image;
       vkUpdateDescriptorSets(device_.handle(), 1, &write, 0, nullptr);

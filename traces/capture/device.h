@@ -40,6 +40,7 @@ class Device {
   void write_buffer(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);
 
   [[nodiscard]] Descriptors& set(Handle handle);
+  [[nodiscard]] const SetLayoutObject& layout_of(Handle set);
   void update(Descriptors& descriptors, const Value& write);
   void update(Descriptors& descriptors, const TemplateObject& made, const Value& data);
 

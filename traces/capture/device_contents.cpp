@@ -107,6 +107,12 @@ Descriptors& Device::set(Handle handle) {
   return found->second.descriptors;
 }
 
+const SetLayoutObject& Device::layout_of(Handle handle) {
+  const auto found = sets.find(handle);
+  if (found == sets.end()) throw user_error("descriptor set {} was never allocated", handle);
+  return object(set_layouts, found->second.layout, "descriptor set layout");
+}
+
 void Device::allocate_sets(const Value& call) {
   const Value& layouts = call["pAllocateInfo"]["pSetLayouts"];
   for (std::size_t i = 0; i < layouts.size() && i < call["pDescriptorSets"].size(); ++i)

@@ -95,14 +95,16 @@ bool FrameRecorder::bind(const Call& call, BoundState& bound) {
 void FrameRecorder::bind_sets(const Value& call, BoundState& bound) {
   if (call["pipelineBindPoint"].u32() != VK_PIPELINE_BIND_POINT_GRAPHICS) return;
   const Value& sets = call["pDescriptorSets"];
+  const Value& offsets = call["pDynamicOffsets"];
+  std::size_t taken = 0;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     BoundState::Set& set = bound.sets[call["firstSet"].u32() + static_cast<std::uint32_t>(i)];
     set = {};
     set.set = sets.u64(i);
-    const Value& offsets = call["pDynamicOffsets"];
-    if (sets.size() > 1 && offsets.size() > 0)
-      throw user_error("dynamic offsets of several descriptor sets at once are not supported");
-    for (std::size_t o = 0; o < offsets.size(); ++o) set.offsets.push_back(offsets.u32(o));
+    if (offsets.size() == 0) continue;
+    const std::uint64_t last = taken + dynamic_offsets(device_.layout_of(set.set));
+    for (; taken < std::min<std::uint64_t>(last, offsets.size()); ++taken)
+      set.offsets.push_back(offsets.u32(taken));
   }
 }
 

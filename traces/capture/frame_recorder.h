@@ -47,6 +47,9 @@ struct BoundState {
 /// Makes the attachment begin with those bits: of integers, or of floats.
 void set_clear(traces::ColorAttachmentUse& use, const std::array<std::uint32_t, 4>& bits, bool integers);
 
+/// How many dynamic offsets a set of that layout takes.
+[[nodiscard]] std::uint64_t dynamic_offsets(const SetLayoutObject& layout);
+
 class FrameRecorder {
  public:
   explicit FrameRecorder(Device& device) : device_(device), tables_(device) {}
@@ -145,9 +148,18 @@ class FrameRecorder {
                                        std::uint32_t first_instance);
   /// Gives attributes that have to be expanded a binding of their own.
   void expand_attributes(const BoundState& bound, const RasterState& state, traces::Pipeline& pipeline);
+  struct BoundDescriptor {
+    Descriptor is;
+    std::uint32_t dynamic_offset = 0;  ///< bytes
+  };
+  /// Of a binding, that many elements. Those of an array that were never written, which the program may not
+  /// use, are like the first that was; none, if none was.
+  [[nodiscard]] std::vector<BoundDescriptor> bound_descriptors(const BoundState::Set& set,
+                                                               std::uint32_t binding, std::uint32_t count);
   void emit_sets(const BoundState& bound, const traces::Pipeline& pipeline);
-  void add_descriptor(traces::DescriptorSet& made, std::uint32_t binding, const Descriptor& from,
-                      std::uint32_t dynamic_offset);
+  /// `number`: of models/base/descriptor_binding.h.
+  void add_descriptor(traces::DescriptorSet& made, std::uint32_t number, const BoundDescriptor& bound);
+  void add_buffer(traces::DescriptorSet& made, std::uint32_t number, const BoundDescriptor& bound);
   void emit_buffers(const BoundState& bound, const traces::Pipeline& pipeline);
   void emit_window(const RasterState& state);
   /// A pass of the stream begins with viewports and scissors of its own.

@@ -65,6 +65,8 @@ struct Descriptor {
   std::uint32_t type = 0;
   Handle sampler = 0, view = 0, buffer = 0;
   std::uint64_t offset = 0, range = 0;
+  /// Never written, or written as nothing. Type 0 is that of a sampler without a texture.
+  [[nodiscard]] bool empty() const { return view == 0 && buffer == 0 && (type != 0 || sampler == 0); }
 };
 /// By binding and element.
 using Descriptors = std::map<std::pair<std::uint32_t, std::uint32_t>, Descriptor>;

@@ -13,8 +13,6 @@
 namespace quadrille::capture {
 namespace {
 
-constexpr std::uint64_t kMaxUniformRange = 65536;
-
 std::map<std::uint32_t, std::uint32_t> constants_of(const Value& stage) {
   std::map<std::uint32_t, std::uint32_t> constants;
   if (stage["pSpecializationInfo"].null()) return constants;
@@ -201,67 +199,6 @@ void FrameRecorder::expand_attributes(const BoundState& bound, const RasterState
     attribute.binding = own;
     attribute.offset = 0;
     emit_change(own, traces::BindVertexBuffer{own, buffer, 0});
-  }
-}
-
-void FrameRecorder::emit_sets(const BoundState& bound, const traces::Pipeline& pipeline) {
-  std::map<std::uint32_t, traces::DescriptorSet> made;
-  for (const traces::Index shader : {pipeline.vertex_shader, pipeline.fragment_shader}) {
-    for (const auto& [set, binding] : tables_.facts(shader).bindings) {
-      const auto source = bound.sets.find(set);
-      if (source == bound.sets.end()) throw user_error("without descriptor set {}", set);
-      const Descriptors& all =
-          source->second.set != 0 ? device_.set(source->second.set) : source->second.pushed;
-      const auto found = all.find({binding, 0});
-      if (found == all.end()) throw user_error("without binding {} of descriptor set {}", binding, set);
-      const std::uint32_t offset = source->second.offsets.empty() ? 0 : source->second.offsets[0];
-      add_descriptor(made[set], binding, found->second, offset);
-    }
-  }
-  for (const auto& [set, descriptors] : made)
-    emit_change(set, traces::BindDescriptorSet{set, tables_.descriptors(descriptors)});
-}
-
-void FrameRecorder::add_descriptor(traces::DescriptorSet& made, std::uint32_t binding, const Descriptor& from,
-                                   std::uint32_t dynamic_offset) {
-  const auto has = [&](const auto& list) {
-    return std::ranges::any_of(list, [&](const auto& one) { return one.binding == binding; });
-  };
-  if (has(made.uniforms) || has(made.textures) || has(made.buffers) || has(made.samplers))
-    return;  // both stages name it
-  const bool dynamic = from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC ||
-                       from.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
-  const bool uniform = from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER ||
-                       from.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
-  if (uniform || from.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ||
-      from.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC) {
-    if (from.buffer == 0) throw user_error("binding {} is a buffer that is left out", binding);
-    const std::uint64_t size = object(device_.buffers, from.buffer, "buffer").size;
-    const std::uint64_t offset = from.offset + (dynamic ? dynamic_offset : 0);
-    if (offset > size)
-      throw user_error("binding {} begins at byte {} of a buffer of {}", binding, offset, size);
-    std::uint64_t range = from.range == VK_WHOLE_SIZE ? size - offset : from.range;
-    // Shaders may read the last word of four of a block's last array whole.
-    if (uniform) range = std::min({(range + 15) / 16 * 16, size - offset, kMaxUniformRange});
-    const traces::Index buffer = tables_.buffer(from.buffer);
-    const auto begin = static_cast<std::uint32_t>(offset), bytes = static_cast<std::uint32_t>(range);
-    if (uniform) made.uniforms.push_back({binding, buffer, begin, bytes});
-    else made.buffers.push_back({binding, buffer, begin, bytes});
-  } else if (from.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
-    if (from.view == 0) throw user_error("binding {} is an image that is left out", binding);
-    traces::TextureDescriptor texture = tables_.texture(object(device_.views, from.view, "image view"));
-    texture.binding = binding;
-    texture.sampler = tables_.sampler(from.sampler);
-    made.textures.push_back(texture);
-  } else if (from.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE) {
-    if (from.view == 0) throw user_error("binding {} is an image that is left out", binding);
-    traces::TextureDescriptor texture = tables_.texture(object(device_.views, from.view, "image view"));
-    texture.binding = binding;
-    made.textures.push_back(texture);
-  } else if (from.type == VK_DESCRIPTOR_TYPE_SAMPLER) {
-    made.samplers.push_back({binding, tables_.sampler(from.sampler)});
-  } else {
-    throw user_error("VkDescriptorType {} is not supported", from.type);
   }
 }
 

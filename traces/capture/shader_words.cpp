@@ -23,6 +23,7 @@ enum Op : std::uint32_t {
   kTypeInt = 21,
   kTypeFloat = 22,
   kTypeVector = 23,
+  kTypeArray = 28,
   kTypePointer = 32,
   kConstant = 43,
   kSpecTrue = 48,
@@ -292,14 +293,23 @@ std::vector<std::uint32_t> shader_words(std::span<const std::uint32_t> module, c
 
 ShaderFacts shader_facts(std::span<const std::uint32_t> words) {
   ShaderFacts facts;
-  std::map<std::uint32_t, std::uint32_t> sets, bindings;
+  // By id: sets and bindings; values of constants; lengths of arrays, of what is pointed to, of variables.
+  std::map<std::uint32_t, std::uint32_t> sets, bindings, constants, lengths;
   for (const Instruction i : split(words)) {
+    if (op_of(i) == kConstant && i.size() == 4) constants[i[2]] = i[3];
+    if (op_of(i) == kTypeArray && i.size() == 4) lengths[i[1]] = constants[i[3]];
+    if (op_of(i) == kTypePointer && i.size() == 4 && lengths.contains(i[3])) lengths[i[1]] = lengths[i[3]];
+    if (op_of(i) == kVariable && i.size() > 3 && lengths.contains(i[1])) lengths[i[2]] = lengths[i[1]];
     if (op_of(i) != kDecorate || i.size() < 3) continue;
     if (i[2] == kFlat) facts.flat_input = true;
     if (i.size() == 4 && i[2] == kDescriptorSet) sets[i[1]] = i[3];
     if (i.size() == 4 && i[2] == kBinding) bindings[i[1]] = i[3];
   }
-  for (const auto& [id, binding] : bindings) facts.bindings.emplace(sets[id], binding);
+  for (const auto& [id, binding] : bindings) {
+    const auto length = lengths.find(id);
+    std::uint32_t& count = facts.bindings[{sets[id], binding}];
+    count = std::max(count, length == lengths.end() ? 1 : length->second);
+  }
   return facts;
 }
 

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <map>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -34,8 +33,9 @@ struct ShaderWish {
 
 /// What a draw has to know of a shader.
 struct ShaderFacts {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> bindings;  ///< set and binding of what it declares
-  bool flat_input = false;                                     ///< of the provoking vertex
+  /// By set and binding of what it declares: how many descriptors.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> bindings;
+  bool flat_input = false;  ///< of the provoking vertex
 };
 [[nodiscard]] ShaderFacts shader_facts(std::span<const std::uint32_t> words);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "models/base/descriptor_binding.h"
 #include "models/base/error.h"
 #include "models/precision.h"
 #include "pipeline/frame_contents.h"
@@ -51,6 +52,22 @@ TEST_CASE("capture: blocks of LZ4 and Zstandard hold the same frame as plain one
   const traces::CommandStream plain = import({}).stream;
   CHECK(import({.packing = Packing::kLz4}).stream == plain);
   CHECK(import({.packing = Packing::kZstd}).stream == plain);
+}
+
+TEST_CASE("capture: arrays of descriptors, samplers of layouts, and dynamic offsets of two sets at once") {
+  const traces::CommandStream stream = import({.arrays = true}).stream;
+  std::vector<std::uint32_t> offsets;
+  std::vector<std::uint32_t> elements;
+  for (const traces::DescriptorSet& set : stream.descriptor_sets) {
+    for (const auto& block : set.uniforms) offsets.push_back(block.offset);
+    for (const auto& texture : set.textures) elements.push_back(texture.binding);
+  }
+  std::ranges::sort(offsets);
+  CHECK(offsets == std::vector<std::uint32_t>{0, 256, 512});
+  // Element 1, which was never written, is like element 0.
+  CHECK(elements == std::vector<std::uint32_t>{3, models::element_binding(3, 1)});
+  CHECK(stream.samplers.size() == 1);
+  CHECK(picture(stream)[16] == (kTriangle | 0x00ff0000u));  // blue by the third block
 }
 
 TEST_CASE("capture: an entry point of any name is called main in the stream") {

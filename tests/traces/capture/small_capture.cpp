@@ -23,6 +23,18 @@ layout(location = 0) out vec4 color;
 void main() { color = texture(picture, vec2(0.5)); }
 )";
 
+constexpr const char* kArrayShader = R"(#version 450
+layout(set = 0, binding = 3) uniform sampler2D picture[2];
+layout(set = 0, binding = 0) uniform First { float blue; } first;
+layout(set = 0, binding = 1) uniform Second { float blue; } second;
+layout(set = 1, binding = 0) uniform Third { float blue; } third;
+layout(location = 0) out vec4 color;
+void main() {
+  color = texture(picture[int(first.blue)], vec2(0.5));
+  color.b = second.blue == 0.25 ? third.blue : 0.0;
+}
+)";
+
 /// The words with another name of the entry point, of four to seven letters, which takes as many words as
 /// "main" does.
 std::vector<std::uint32_t> renamed(std::vector<std::uint32_t> words, const std::string& entry) {
@@ -83,6 +95,52 @@ void add_objects(CaptureWriter& file, const SmallCapture& wish) {
        {"pSampler", kSampler}});
 }
 
+/// Two sets: a buffer of three blocks at the bindings 0 and 1 of the one and 0 of the other, and an array of
+/// textures whose samplers are the layout's.
+void add_arrays(CaptureWriter& file) {
+  constexpr std::uint32_t kStride = 256;
+  std::vector<std::byte> blocks(std::size_t{3} * kStride);
+  for (std::size_t k = 0; k < 3; ++k) std::memcpy(&blocks[k * kStride], &kBlueOfBlocks.at(k), 4);
+  file.call("AllocateMemory",
+            {{"pAllocateInfo", {{"allocationSize", blocks.size()}}}, {"pMemory", kBlockMemory}});
+  file.call("CreateBuffer", {{"pCreateInfo", {{"size", blocks.size()}}}, {"pBuffer", kBlocks}});
+  file.call("BindBufferMemory", {{"buffer", kBlocks}, {"memory", kBlockMemory}, {"memoryOffset", 0}});
+  file.call("MapMemory", {{"memory", kBlockMemory}, {"offset", 0}});
+  file.fill_memory(kBlockMemory, 0, blocks);
+  const auto block = [](int binding) {
+    return json{{"binding", binding}, {"descriptorType", 8}, {"descriptorCount", 1}};
+  };
+  const json textures{{"binding", 3},
+                      {"descriptorType", 1},
+                      {"descriptorCount", 2},
+                      {"pImmutableSamplers", json::array({kSampler, kSampler})}};
+  const auto layout = [&](const json& bindings, std::uint64_t handle) {
+    file.call("CreateDescriptorSetLayout",
+              {{"pCreateInfo", {{"pBindings", bindings}}}, {"pSetLayout", handle}});
+  };
+  layout(json::array({block(1), textures, block(0)}), kSetLayout);
+  layout(json::array({block(0)}), kSecondSetLayout);
+  file.call("CreatePipelineLayout", {{"pPipelineLayout", kLayout}});
+  file.call("AllocateDescriptorSets",
+            {{"pAllocateInfo", {{"pSetLayouts", json::array({kSetLayout, kSecondSetLayout})}}},
+             {"pDescriptorSets", json::array({kSet, kSecondSet})}});
+  const auto buffer = [](std::uint64_t set, int binding) {
+    return json{{"dstSet", set},
+                {"dstBinding", binding},
+                {"descriptorCount", 1},
+                {"descriptorType", 8},
+                {"pBufferInfo", json::array({{{"buffer", kBlocks}, {"range", 16}}})}};
+  };
+  const json image{{"dstSet", kSet},
+                   {"dstBinding", 3},
+                   {"descriptorCount", 1},
+                   {"descriptorType", 1},
+                   {"pImageInfo", json::array({{{"imageView", kTextureView}}})}};
+  file.call(
+      "UpdateDescriptorSets",
+      {{"pDescriptorWrites", json::array({buffer(kSet, 0), buffer(kSet, 1), buffer(kSecondSet, 0), image})}});
+}
+
 void add_descriptors(CaptureWriter& file) {
   const json binding{{"binding", 3}, {"descriptorType", 1}, {"descriptorCount", 1}};
   file.call("CreateDescriptorSetLayout",
@@ -101,7 +159,8 @@ void add_descriptors(CaptureWriter& file) {
 
 void add_pipeline(CaptureWriter& file, const SmallCapture& wish) {
   add_shader(file, kVertexModule, kVertexShader, traces::ShaderStage::kVertex, wish.entry);
-  add_shader(file, kFragmentModule, kFragmentShader, traces::ShaderStage::kFragment, wish.entry);
+  add_shader(file, kFragmentModule, wish.arrays ? kArrayShader : kFragmentShader,
+             traces::ShaderStage::kFragment, wish.entry);
   const auto stage = [&](int bit, std::uint64_t module) {
     return json{{"stage", bit}, {"module", module}, {"pName", wish.entry}};
   };
@@ -147,7 +206,12 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish, const json& par
   command("CmdSetCullMode", {{"cullMode", VK_CULL_MODE_NONE}});
   command("CmdSetDepthClipNegativeOneToOneEXT", {{"negativeOneToOne", wish.negative_one_to_one ? 1 : 0}});
   command("CmdBindVertexBuffers", {{"pBuffers", json::array({kVertices})}, {"pOffsets", json::array({0})}});
-  command("CmdBindDescriptorSets", {{"layout", kLayout}, {"pDescriptorSets", json::array({kSet})}});
+  json bound{{"layout", kLayout}, {"pDescriptorSets", json::array({kSet})}};
+  if (wish.arrays) {
+    bound["pDescriptorSets"] = json::array({kSet, kSecondSet});
+    bound["pDynamicOffsets"] = json::array({0, 256, 512});
+  }
+  command("CmdBindDescriptorSets", bound);
   if (wish.extra_command != nullptr) {
     const std::uint64_t buffer = kCommands;
     file.raw_call(call_number(wish.extra_command), std::as_bytes(std::span(&buffer, 1)));
@@ -169,7 +233,8 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish, const json& par
 std::vector<std::byte> small_capture(const SmallCapture& wish) {
   CaptureWriter file(wish.packing);
   add_objects(file, wish);
-  add_descriptors(file);
+  if (wish.arrays) add_arrays(file);
+  else add_descriptors(file);
   add_pipeline(file, wish);
   add_commands(file, wish);
   for (int frame = 1; frame < wish.frames; ++frame) {

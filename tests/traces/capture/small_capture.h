@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -29,7 +30,11 @@ enum : std::uint64_t {
   kFragmentModule,
   kPipeline,
   kCommands,
-  kQueue
+  kQueue,
+  kBlocks,
+  kBlockMemory,
+  kSecondSetLayout,
+  kSecondSet
 };
 
 struct SmallCapture {
@@ -38,6 +43,10 @@ struct SmallCapture {
   const char* entry = "main";           ///< of both shaders
   const char* extra_command = nullptr;  ///< a command without a meaning here, by name, within the pass
   bool sampler_counts_texels = false;
+  /// The texture is element 0 of an array of two, with samplers of the layout, and element 1 is never
+  /// written; three blocks of two sets are bound with dynamic offsets of 0, 256 and 512 bytes, and the blue
+  /// of the triangle is that of the third.
+  bool arrays = false;
   bool loads = false;  ///< the pass begins with what was there
   /// Of a second frame and so on: a triangle in the lower right quarter, on top of what was there.
   int frames = 1;
@@ -50,5 +59,6 @@ struct SmallCapture {
 };
 [[nodiscard]] std::vector<std::byte> small_capture(const SmallCapture& wish = {});
 inline constexpr std::uint8_t kTexel[4] = {200, 100, 50, 255};
+inline constexpr std::array<float, 3> kBlueOfBlocks{0, 0.25f, 1};
 
 }  // namespace quadrille::capture
