@@ -171,6 +171,26 @@ int run_part(const explore::Plan& plan, explore::Exploration& exploration, explo
   return failed == 0 ? kDone : kFailed;
 }
 
+/// From a few points, how long the sweep takes: of one that screens, both of its rounds.
+std::string costs(const explore::Sweep& sweep, const explore::Space& space,
+                  std::span<const explore::LoadedScene> scenes, explore::Results& results,
+                  const explore::ExploreSetting& setting, const explore::Plan& plan,
+                  explore::Exploration& exploration) {
+  std::size_t machines =
+      sweep.design == explore::DesignKind::kSearch ? sweep.points : plan.candidates.size();
+  std::string text;
+  if (sweep.screen) {
+    explore::Exploration rough(sweep, space, scenes, results, setting, sweep.screen->window);
+    text = fmt::format("  screening, with a window of {} cycles:\n{}", sweep.screen->window,
+                       explore::cost_table(rough.measure(plan.candidates), machines,
+                                           rough.known(plan.candidates), setting.jobs));
+    machines = std::min<std::size_t>(sweep.screen->machines, machines);
+    text += fmt::format("  the best {}, exactly:\n", machines);
+  }
+  const std::size_t known = std::min(exploration.known(plan.candidates), machines * scenes.size());
+  return text + explore::cost_table(exploration.measure(plan.candidates), machines, known, setting.jobs);
+}
+
 int run_explore(const ExploreArguments& a) {
   explore::ExploreSetting setting;
   setting.jobs = static_cast<int>(a.jobs ? parse_whole(*a.jobs, "--jobs", 1, kMostJobs)
@@ -203,11 +223,9 @@ int run_explore(const ExploreArguments& a) {
   explore::Exploration exploration(sweep, space, scenes, results, setting);
   exploration.check_formulas(plan.candidates.front());
   if (a.dry_run) {
-    const explore::Measured measured = exploration.measure(plan.candidates);
     Tables(true, std::nullopt)
         .print(explore::plan_table(sweep, plan, scenes.size()) +
-               explore::cost_table(measured, searches ? sweep.points : plan.candidates.size(),
-                                   exploration.known(plan.candidates), setting.jobs));
+               costs(sweep, space, scenes, results, setting, plan, exploration));
     return kDone;
   }
   std::optional<explore::Screening> screening;

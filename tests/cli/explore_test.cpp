@@ -70,6 +70,17 @@ TEST_CASE("explore: a dry run says points, time and disk, and leaves nothing") {
   CHECK_FALSE(folder.has("sweep.db"));
 }
 
+TEST_CASE("explore: a dry run of a sweep that screens says what each of its rounds takes") {
+  const ScratchFolder folder;
+  folder.write("sweep.toml", kSweep + std::string("[screen]\nwindow = 500\nmachines = 2\n"));
+  const ProgramRun run = run_quadrille(folder, {"explore", "sweep.toml", "--dry-run", "--jobs", "1"});
+  CAPTURE(run.out, run.err);
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(run.out, Catch::Contains("with a window of 500 cycles:\n  0 points are known; the other 12"));
+  CHECK_THAT(run.out, Catch::Contains("the best 2, exactly:\n  0 points are known; the other 4"));
+  CHECK_FALSE(folder.has("sweep.db"));
+}
+
 TEST_CASE("explore: what is wrong is refused before anything is drawn, with file and line") {
   const auto refuse = [](const std::string& text, const std::vector<std::string>& words) {
     const ScratchFolder folder;
