@@ -176,8 +176,7 @@ std::string costs(const explore::Sweep& sweep, const explore::Space& space,
                   std::span<const explore::LoadedScene> scenes, explore::Results& results,
                   const explore::ExploreSetting& setting, const explore::Plan& plan,
                   explore::Exploration& exploration) {
-  std::size_t machines =
-      sweep.design == explore::DesignKind::kSearch ? sweep.points : plan.candidates.size();
+  std::size_t machines = sweep.design == explore::DesignKind::kSearch ? sweep.points : plan.candidates.size();
   std::string text;
   if (sweep.screen) {
     explore::Exploration rough(sweep, space, scenes, results, setting, sweep.screen->window);

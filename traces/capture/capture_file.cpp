@@ -131,6 +131,12 @@ void CaptureFile::read_meta_data(Block& block, std::span<const std::byte> body, 
   const auto take_short = [&] { block.numbers.push_back(take_number<std::uint32_t>(body, place)); };
   block.kind = BlockKind::kMetaData;
   block.id = take_number<std::uint32_t>(body, place) & 0xffff;  // above: the API
+  if (block.id == kDeviceProperties) {
+    (void)take_number<std::uint64_t>(body, place);  // thread
+    take();                                         // physical device
+    for (int i = 0; i < 5; ++i) take_short();       // versions of API and driver, vendor, device, kind
+    return;
+  }
   if (block.id != kFillMemory && block.id != kInitBuffer && block.id != kInitImage) return;
   (void)take_number<std::uint64_t>(body, place);  // thread
   // memory, offset, size; or device, buffer or image, size

@@ -24,7 +24,7 @@ enum class BlockKind : std::uint8_t {
 };
 
 /// Kinds of meta data that hold something of the frame. [GFXR #metadata]
-inline constexpr std::uint32_t kFillMemory = 2, kInitBuffer = 7, kInitImage = 8;
+inline constexpr std::uint32_t kFillMemory = 2, kInitBuffer = 7, kInitImage = 8, kDeviceProperties = 11;
 
 struct Block {
   std::uint64_t index = 0;  ///< in the file, from 0

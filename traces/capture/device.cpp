@@ -47,6 +47,10 @@ void Device::apply(const KeptCall& call) {
       buffer.memory = info["memory"].u64();
       buffer.offset = info["memoryOffset"].u64();
     }
+  } else if (name == "BindImageMemory") {
+    bind_image(p);
+  } else if (name == "BindImageMemory2") {
+    for (std::size_t i = 0; i < p["pBindInfos"].size(); ++i) bind_image(p["pBindInfos"].at(i));
   } else if (name == "GetSwapchainImagesKHR") {
     name_swapchain_images(p);
   } else if (name == "AllocateDescriptorSets") {
@@ -59,6 +63,14 @@ void Device::apply(const KeptCall& call) {
   } else {
     make(call);
   }
+}
+
+void Device::bind_image(const Value& info) {
+  const auto found = images.find(info["image"].u64());
+  if (found == images.end()) return;
+  found->second.memory = info["memory"].u64();
+  found->second.offset = info["memoryOffset"].u64();
+  images_in_memory_.emplace(found->second.memory, found->first);
 }
 
 void Device::make(const KeptCall& call) {

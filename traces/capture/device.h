@@ -40,7 +40,7 @@ class Device {
   void write_buffer(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);
 
   [[nodiscard]] Descriptors& set(Handle handle);
-  [[nodiscard]] const SetLayoutObject& layout_of(Handle set);
+  [[nodiscard]] const SetLayoutObject& layout_of(Handle handle);
   void update(Descriptors& descriptors, const Value& write);
   void update(Descriptors& descriptors, const TemplateObject& made, const Value& data);
 
@@ -75,7 +75,12 @@ class Device {
   void update_sets(const Value& call);
   void copy_descriptors(const Value& copy);
   void write_memory(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);
+  void bind_image(const Value& info);
+  /// Images of which nothing is known but their memory hold what that holds, if the driver was lavapipe.
+  void read_images_of(Handle memory);
   void write_image(const Block& block);
+  bool of_lavapipe_ = false;
+  std::multimap<Handle, Handle> images_in_memory_;
 };
 
 }  // namespace quadrille::capture

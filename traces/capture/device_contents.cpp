@@ -5,6 +5,7 @@
 
 #include "models/base/error.h"
 #include "traces/capture/device.h"
+#include "traces/capture/lavapipe_memory.h"
 #include "traces/capture/vulkan_names.h"
 
 namespace quadrille::capture {
@@ -21,6 +22,9 @@ void Device::write(const Block& block) {
   if (block.id == kFillMemory) {
     Memory& memory = memories[block.numbers[0]];
     write_memory(block.numbers[0], memory.mapped + block.numbers[1], block.data);
+    if (of_lavapipe_) read_images_of(block.numbers[0]);
+  } else if (block.id == kDeviceProperties) {
+    of_lavapipe_ = is_lavapipe(block.numbers[3], block.numbers[5]);
   } else if (block.id == kInitBuffer) {
     write_buffer(block.numbers[1], 0, block.data);
   } else if (block.id == kInitImage) {
@@ -40,6 +44,27 @@ void Device::write_memory(Handle handle, std::uint64_t offset, std::span<const s
   if (memory.bytes.size() < offset + bytes.size()) memory.bytes.resize(offset + bytes.size());
   std::ranges::copy(bytes, memory.bytes.begin() + static_cast<std::ptrdiff_t>(offset));
   ++memory.writes;
+}
+
+void Device::read_images_of(Handle memory) {
+  const std::vector<std::byte>& bytes = memories.at(memory).bytes;
+  const auto [first, last] = images_in_memory_.equal_range(memory);
+  for (auto bound = first; bound != last; ++bound) {
+    const auto found = images.find(bound->second);
+    if (found == images.end()) continue;
+    ImageObject& image = found->second;
+    const bool known = std::ranges::any_of(image.texels, [](const auto& level) { return !level.empty(); });
+    if ((known && !image.from_memory) || image.memory != memory || image.offset > bytes.size()) continue;
+    std::vector<std::vector<std::byte>> texels =
+        texels_in_memory(image, std::span(bytes).subspan(image.offset));
+    if (texels.empty()) continue;
+    if (image.format == VK_FORMAT_D24_UNORM_S8_UINT || image.format == VK_FORMAT_X8_D24_UNORM_PACK32)
+      for (std::vector<std::byte>& level : texels) clear_high_bytes(level);
+    if (texels == image.texels) continue;
+    image.texels = std::move(texels);
+    image.from_memory = true;
+    ++image.writes;
+  }
 }
 
 void Device::write_buffer(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -78,6 +103,7 @@ void Device::write_image(const Block& block) {
   const auto aspect = static_cast<std::uint32_t>(block.numbers[3]);
   if ((aspect & (VK_IMAGE_ASPECT_COLOR_BIT | VK_IMAGE_ASPECT_DEPTH_BIT)) == 0) return;
   std::span<const std::byte> rest = block.data;
+  image.from_memory = false;
   for (std::size_t level = 0; level + 6 < block.numbers.size(); ++level) {
     const std::uint64_t bytes = block.numbers[6 + level];
     if (level >= image.levels || bytes > rest.size())
@@ -97,6 +123,7 @@ void Device::keep_drawn(Handle handle, std::uint32_t level, std::uint32_t layer,
   std::vector<std::byte>& all = image.texels.at(level);
   const std::size_t begin = texels.size() * layer;
   if (all.size() < begin + texels.size()) all.resize(begin + texels.size());
+  image.from_memory = false;
   std::ranges::copy(texels, all.begin() + static_cast<std::ptrdiff_t>(begin));
   ++image.writes;
 }

@@ -113,6 +113,7 @@ void Device::copy_to_image(Handle source, Handle target, const Value& region) {
         throw user_error("of byte {} of a buffer of {}", at, bytes.size());
       std::memcpy(to.at(box.slice + z, box.y + y, box.x), bytes.data() + at, row);
     }
+  found->second.from_memory = false;
   ++found->second.writes;
 }
 
@@ -131,6 +132,7 @@ void Device::copy_image(Handle source, Handle target, const Value& region) {
     for (std::size_t y = 0; y < a.rows; ++y)
       std::memmove(to.at(b.slice + z, b.y + y, b.x), from.at(a.slice + z, a.y + y, a.x),
                    a.columns * from.block.bytes);
+  to_image->second.from_memory = false;
   ++to_image->second.writes;
 }
 

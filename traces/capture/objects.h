@@ -44,6 +44,9 @@ struct ImageObject {
   /// A level's texels, its layers one after the other; empty where nothing is known.
   std::vector<std::vector<std::byte>> texels;
   std::uint64_t writes = 0;  ///< so far
+  Handle memory = 0;
+  std::uint64_t offset = 0;  ///< in it
+  bool from_memory = false;  ///< the texels are what its memory held, and nothing else
 };
 struct ViewObject {
   Handle image = 0;

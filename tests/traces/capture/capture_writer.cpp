@@ -137,6 +137,14 @@ void CaptureWriter::fill_memory(std::uint64_t memory, std::uint64_t offset,
   block(3, head, bytes, false);
 }
 
+void CaptureWriter::device_properties(bool lavapipe) {
+  Bytes head;
+  put<std::uint32_t>(head, 0x1000b);
+  for (const std::uint64_t number : {1u, 2u}) put(head, number);  // thread, physical device
+  for (const std::uint32_t number : {0u, 0u, 0x10005u, 0u, lavapipe ? 4u : 2u}) put(head, number);
+  block(3, head, Bytes(20), false);  // the cache's number, and a name without letters
+}
+
 void CaptureWriter::init_image(std::uint64_t image, std::span<const std::byte> bytes) {
   Bytes head;
   put<std::uint32_t>(head, 0x10008);

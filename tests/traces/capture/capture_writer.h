@@ -23,6 +23,8 @@ class CaptureWriter {
   void raw_call(std::uint32_t id, std::span<const std::byte> parameters);
   void fill_memory(std::uint64_t memory, std::uint64_t offset, std::span<const std::byte> bytes);
   void init_image(std::uint64_t image, std::span<const std::byte> bytes);
+  /// Of a device of Mesa's: a CPU if it is lavapipe, else a GPU.
+  void device_properties(bool lavapipe);
   /// The file so far.
   [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
 

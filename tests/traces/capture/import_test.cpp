@@ -70,6 +70,15 @@ TEST_CASE("capture: arrays of descriptors, samplers of layouts, and dynamic offs
   CHECK(picture(stream)[16] == (kTriangle | 0x00ff0000u));  // blue by the third block
 }
 
+TEST_CASE("capture: a texture of which only the memory is known is read from it, if the driver is lavapipe") {
+  const Import known = import({.texture_in_memory = true});
+  CHECK(picture(known.stream) == picture(import({}).stream));
+  CHECK(known.notes.empty());
+  const Import unknown = import({.texture_in_memory = true, .lavapipe = false});
+  CHECK(picture(unknown.stream)[16] != kTriangle);
+  CHECK(unknown.notes.size() == 1);
+}
+
 TEST_CASE("capture: an entry point of any name is called main in the stream") {
   const Import named = import({.entry = "draw_it"});
   CHECK(picture(named.stream) == picture(import({}).stream));

@@ -2,6 +2,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <string>
@@ -87,7 +88,17 @@ void add_objects(CaptureWriter& file, const SmallCapture& wish) {
                               {"samples", 1},
                               {"usage", VK_IMAGE_USAGE_SAMPLED_BIT}}},
                             {"pImage", kTexture}});
-  file.init_image(kTexture, std::as_bytes(std::span(kTexel)));
+  if (wish.texture_in_memory) {
+    std::array<std::uint8_t, 512> bytes{};
+    std::ranges::copy(kTexel, bytes.begin() + 128);
+    file.call("AllocateMemory",
+              {{"pAllocateInfo", {{"allocationSize", bytes.size()}}}, {"pMemory", kBlockMemory}});
+    file.call("BindImageMemory", {{"image", kTexture}, {"memory", kBlockMemory}, {"memoryOffset", 128}});
+    file.call("MapMemory", {{"memory", kBlockMemory}, {"offset", 0}});
+    file.fill_memory(kBlockMemory, 0, std::as_bytes(std::span(bytes)));
+  } else {
+    file.init_image(kTexture, std::as_bytes(std::span(kTexel)));
+  }
   view(kTexture, VK_FORMAT_R8G8B8A8_UNORM, kTextureView);
   file.call(
       "CreateSampler",
@@ -232,6 +243,7 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish, const json& par
 
 std::vector<std::byte> small_capture(const SmallCapture& wish) {
   CaptureWriter file(wish.packing);
+  file.device_properties(wish.lavapipe);
   add_objects(file, wish);
   if (wish.arrays) add_arrays(file);
   else add_descriptors(file);

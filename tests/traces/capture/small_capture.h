@@ -47,7 +47,10 @@ struct SmallCapture {
   /// written; three blocks of two sets are bound with dynamic offsets of 0, 256 and 512 bytes, and the blue
   /// of the triangle is that of the third.
   bool arrays = false;
-  bool loads = false;  ///< the pass begins with what was there
+  /// Nothing holds the texture but the bytes of its memory, which is mapped.
+  bool texture_in_memory = false;
+  bool lavapipe = true;  ///< is the device
+  bool loads = false;    ///< the pass begins with what was there
   /// Of a second frame and so on: a triangle in the lower right quarter, on top of what was there.
   int frames = 1;
   /// A later frame's pass clears this part instead, and renders to nothing else.
