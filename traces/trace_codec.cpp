@@ -40,11 +40,13 @@ void transfer(A& a, Sampler& v) {
   for (Filter* filter : {&v.mag, &v.min, &v.mip}) a.choice(*filter, Filter::kLinear);
   for (Wrap* wrap : {&v.wrap_u, &v.wrap_v}) a.choice(*wrap, models::kLastWrap);
   numbers(a, v.lod_bias, v.min_lod, v.max_lod);
-  if (a.version() >= 2) a.choice(v.border, models::BorderColor::kOpaqueWhite);
+  if (a.version() >= 2) a.choice(v.border, models::kLastBorder);
   if (a.version() < 3) return;
   a.choice(v.wrap_w, models::kLastWrap);
   a.choice(v.compare, CompareOp::kAlways);
   numbers(a, v.max_anisotropy, v.seamless);
+  if (a.version() >= 4)
+    for (std::uint32_t& bits : v.border_bits) numbers(a, bits);
 }
 
 template <class A>

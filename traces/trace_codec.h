@@ -38,7 +38,7 @@ struct ChunkInfo {
 inline constexpr std::array<ChunkInfo, 9> kChunks{{{"NAME", 1},
                                                    {"BUFS", 1},
                                                    {"IMGS", 6},
-                                                   {"SAMP", 3},
+                                                   {"SAMP", 4},
                                                    {"SHAD", 1},
                                                    {"PIPE", 6},
                                                    {"DESC", 4},

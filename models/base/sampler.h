@@ -4,6 +4,7 @@
 
 #include "models/base/pipeline_state.h"
 
+#include <array>
 #include <cstdint>
 
 namespace quadrille::models {
@@ -20,7 +21,13 @@ inline constexpr Wrap kLastWrap = Wrap::kMirrorClampToEdge;
 
 /// What lies beyond an image. Of components that its format lacks it is what they always are; ones are
 /// integers where the format holds integers. [VK1.3 #textures-texel-replacement]
-enum class BorderColor : std::uint8_t { kTransparentBlack, kOpaqueBlack, kOpaqueWhite };
+enum class BorderColor : std::uint8_t {
+  kTransparentBlack,
+  kOpaqueBlack,
+  kOpaqueWhite,
+  kOwn  ///< `SamplerState::border_bits`, as near to it as the format comes
+};
+inline constexpr BorderColor kLastBorder = BorderColor::kOwn;
 
 struct SamplerState {
   Filter mag = Filter::kLinear, min = Filter::kLinear, mip = Filter::kLinear;
@@ -33,6 +40,8 @@ struct SamplerState {
   /// Samples along the longer axis of a pixel's footprint, at most; 1: the footprint counts as round.
   float max_anisotropy = 1;
   bool seamless = true;  ///< beyond an edge of a cube's face lies the next face; else the face's own edge
+  /// Red, green, blue and alpha of a border of its own: bits of floats (linear), or integers.
+  std::array<std::uint32_t, 4> border_bits{};
   friend bool operator==(const SamplerState&, const SamplerState&) = default;
 };
 

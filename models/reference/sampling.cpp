@@ -2,6 +2,7 @@
 #include "models/reference/sampling.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -37,11 +38,29 @@ std::int64_t wrapped(std::int64_t i, std::int64_t size, traces::Wrap wrap) {
   return result;
 }
 
+/// A component of a border of the sampler's own, which the format may not be able to hold.
+double own_border(std::uint32_t bits, models::Numeric numeric) {
+  const auto value = static_cast<double>(std::bit_cast<float>(bits));
+  switch (models::number_kind(numeric)) {
+    case models::NumberKind::kUint: return bits;
+    case models::NumberKind::kSint: return static_cast<std::int32_t>(bits);
+    case models::NumberKind::kFloat: break;
+  }
+  if (numeric == models::Numeric::kSnorm) return std::clamp(value, -1.0, 1.0);
+  const bool unit = numeric == models::Numeric::kUnorm || numeric == models::Numeric::kSrgb;
+  return unit ? std::clamp(value, 0.0, 1.0) : value;
+}
+
 /// What lies beyond the image: of the components that its format has.
 Texel border_texel(const TextureView& texture, BorderColor border) {
-  const std::size_t channels =
-      texture.channels != 0 ? texture.channels : models::format_info(texture.image->format).channels;
+  const models::FormatInfo& format = models::format_info(texture.image->format);
+  const std::size_t channels = texture.channels != 0 ? texture.channels : format.channels;
   Texel texel{0, 0, 0, 1};
+  if (border == BorderColor::kOwn) {
+    for (std::size_t c = 0; c < channels; ++c)
+      texel[c] = own_border(texture.sampler->border_bits[c], format.numeric);
+    return texel;
+  }
   for (std::size_t c = 0; c < channels; ++c) {
     const bool opaque = border != models::BorderColor::kTransparentBlack;
     texel[c] = border == models::BorderColor::kOpaqueWhite || (opaque && c == 3) ? 1.0 : 0.0;

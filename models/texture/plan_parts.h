@@ -45,6 +45,7 @@ inline void begin_plan(const TextureView& view, const SamplerState& sampler, con
   plan.base = view.base;
   plan.format = view.format;
   plan.border = sampler.border;
+  if (plan.border == BorderColor::kOwn) plan.border_bits = sampler.border_bits;
   plan.components = view.components;
   plan.bilinear_quads = plan.texels = 0;
 }

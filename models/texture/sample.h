@@ -68,6 +68,7 @@ struct TexturePlan {
   std::uint64_t base = 0;
   Format format = Format::kR8G8B8A8Unorm;
   BorderColor border = BorderColor::kTransparentBlack;
+  std::array<std::uint32_t, 4> border_bits{};
   ComponentMapping components = kSameComponents;
 
   // Of what operation_plan.cpp plans: several footprints a level, and what becomes of their texels.

@@ -6,6 +6,7 @@
 #include "models/texture/sample.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -117,18 +118,33 @@ struct TexelColors {
   [[nodiscard]] __m256 operator[](std::size_t c) const { return _mm256_set_m128(half[1][c], half[0][c]); }
 };
 
+/// A component of what lies beyond an image of that format: the bits of a float or an integer.
+std::uint32_t border_bits(const TexturePlan& plan, Format format, std::size_t c) {
+  const bool integers = number_kind(format) != NumberKind::kFloat;
+  if (plan.border != BorderColor::kOwn) {
+    const bool is_one =
+        plan.border == BorderColor::kOpaqueWhite || (plan.border == BorderColor::kOpaqueBlack && c == 3);
+    return !is_one ? 0 : integers ? 1 : std::bit_cast<std::uint32_t>(1.0f);
+  }
+  const Numeric numeric = format_info(format).numeric;
+  const auto value = std::bit_cast<float>(plan.border_bits[c]);
+  if (numeric == Numeric::kUnorm || numeric == Numeric::kSrgb)
+    return std::bit_cast<std::uint32_t>(std::clamp(value, 0.0f, 1.0f));
+  if (numeric == Numeric::kSnorm) return std::bit_cast<std::uint32_t>(std::clamp(value, -1.0f, 1.0f));
+  return plan.border_bits[c];
+}
+
 /// Texels beyond the border: of the components that the format has.
-void put_border(std::uint32_t lanes, BorderColor border, const TexelSource& source, TexelColors& colors) {
-  const bool integers = number_kind(source.format) != NumberKind::kFloat;
-  const __m128 one = integers ? _mm_castsi128_ps(_mm_set1_epi32(1)) : _mm_set1_ps(1.0f);
+void put_border(std::uint32_t lanes, const TexturePlan& plan, const TexelSource& source,
+                TexelColors& colors) {
   for (std::size_t half = 0; half < 2; ++half) {
     const __m256i mask = lanes_of(lanes);
     const __m128 beyond =
         _mm_castsi128_ps(half == 0 ? _mm256_castsi256_si128(mask) : _mm256_extracti128_si256(mask, 1));
     for (std::size_t c = 0; c < source.channels; ++c) {
-      const bool is_one =
-          border == BorderColor::kOpaqueWhite || (border == BorderColor::kOpaqueBlack && c == 3);
-      colors.half[half][c] = _mm_blendv_ps(colors.half[half][c], is_one ? one : _mm_setzero_ps(), beyond);
+      const auto bits = static_cast<int>(border_bits(plan, source.format, c));
+      colors.half[half][c] =
+          _mm_blendv_ps(colors.half[half][c], _mm_castsi128_ps(_mm_set1_epi32(bits)), beyond);
     }
   }
 }
@@ -147,7 +163,7 @@ TexelColors fetch_colors(const TexturePlan& plan, const TexturePlan::Footprint& 
     colors.half[half] = decode_quad(format, load_quad(quad.data(), format.bytes));
   }
   if (const std::uint32_t beyond = f.border >> (8 * corner) & 0xff; beyond != 0)
-    put_border(beyond, plan.border, source, colors);
+    put_border(beyond, plan, source, colors);
   return colors;
 }
 
@@ -237,11 +253,12 @@ Way way_of(Format format) {
   return format == Format::kR8G8B8A8Srgb || format == Format::kB8G8R8A8Srgb ? Way::kSrgb : Way::kAny;
 }
 
-/// A cube's corners and comparisons are done with numbers. So that no lane's way depends on another's, all
-/// of such plans is.
+/// A cube's corners, comparisons and borders of an own colour are done with numbers. So that no lane's way
+/// depends on another's, all of such plans is.
 Way way_of(const TexturePlan& plan, Format format) {
   const bool numbers =
-      plan.general && (plan.compares || is_cube(plan.kind) || plan.ask != TextureAsk::kSample);
+      plan.border == BorderColor::kOwn ||
+      (plan.general && (plan.compares || is_cube(plan.kind) || plan.ask != TextureAsk::kSample));
   return numbers ? Way::kAny : way_of(format);
 }
 

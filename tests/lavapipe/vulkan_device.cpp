@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "models/base/error.h"
+#include "tests/lavapipe/vulkan_features.h"
 
 namespace quadrille::lavapipe {
 namespace {
@@ -46,18 +47,6 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(std::vector<std::string>* mess
   info.pfnUserCallback = collect_message;
   info.pUserData = messages;
   return info;
-}
-
-std::set<std::string> device_extensions(VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr),
-          "vkEnumerateDeviceExtensionProperties");
-  std::vector<VkExtensionProperties> found(count);
-  require(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()),
-          "vkEnumerateDeviceExtensionProperties");
-  std::set<std::string> names;
-  for (const auto& extension : found) names.emplace(extension.extensionName);
-  return names;
 }
 
 const char* type_name(VkPhysicalDeviceType type) {
@@ -209,65 +198,9 @@ void VulkanDevice::choose_queue_family() {
 }
 
 void VulkanDevice::create_device() {
-  const std::set<std::string> extensions = device_extensions(physical_);
-  std::vector<const char*> enabled;
-  VkPhysicalDeviceLineRasterizationFeaturesEXT lines{};
-  lines.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_LINE_RASTERIZATION_FEATURES_EXT;
-  if (extensions.contains(VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME)) {
-    VkPhysicalDeviceFeatures2 query{};
-    query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    query.pNext = &lines;
-    vkGetPhysicalDeviceFeatures2(physical_, &query);
-    enabled.push_back(VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME);
-    info_.line_modes = lines.bresenhamLines == VK_TRUE && lines.rectangularLines == VK_TRUE;
-  }
-  const bool has_u8_indices = extensions.contains(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
-  if (has_u8_indices) enabled.push_back(VK_EXT_INDEX_TYPE_UINT8_EXTENSION_NAME);
-  if (extensions.contains(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME))
-    enabled.push_back(VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME);
-  if (extensions.contains(VK_KHR_SAMPLER_MIRROR_CLAMP_TO_EDGE_EXTENSION_NAME))
-    enabled.push_back(VK_KHR_SAMPLER_MIRROR_CLAMP_TO_EDGE_EXTENSION_NAME);
-  VkPhysicalDeviceFeatures present{};
-  vkGetPhysicalDeviceFeatures(physical_, &present);
-  VkPhysicalDeviceIndexTypeUint8FeaturesEXT u8_indices{};
-  u8_indices.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_INDEX_TYPE_UINT8_FEATURES_EXT;
-  u8_indices.indexTypeUint8 = VK_TRUE;
-  void* const more = info_.line_modes ? &lines : nullptr;
-  u8_indices.pNext = more;
-  VkPhysicalDeviceVulkan13Features features13{};
-  features13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-  features13.pNext = has_u8_indices ? &u8_indices : more;
-  features13.dynamicRendering = VK_TRUE;
-  VkPhysicalDeviceFeatures2 features{};
-  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-  features.pNext = &features13;
-  features.features.depthClamp = present.depthClamp;
-  features.features.depthBiasClamp = present.depthBiasClamp;
-  features.features.depthBounds = present.depthBounds;
-  features.features.dualSrcBlend = present.dualSrcBlend;
-  features.features.logicOp = present.logicOp;
-  features.features.fillModeNonSolid = present.fillModeNonSolid;
-  features.features.wideLines = present.wideLines;
-  features.features.largePoints = present.largePoints;
-  features.features.shaderClipDistance = present.shaderClipDistance;
-  features.features.shaderCullDistance = present.shaderCullDistance;
-  features.features.sampleRateShading = present.sampleRateShading;
-  features.features.textureCompressionBC = present.textureCompressionBC;
-  features.features.independentBlend = present.independentBlend;  // attachments that are blended otherwise
-  features.features.multiViewport = present.multiViewport;
-  features.features.geometryShader = present.geometryShader;  // gl_PrimitiveID in a fragment shader
-  features.features.imageCubeArray = present.imageCubeArray;
-  features.features.samplerAnisotropy = present.samplerAnisotropy;
-  features.features.shaderImageGatherExtended = present.shaderImageGatherExtended;
-  features.features.robustBufferAccess = present.robustBufferAccess;
-  features.features.shaderSampledImageArrayDynamicIndexing = present.shaderSampledImageArrayDynamicIndexing;
-  features.features.shaderUniformBufferArrayDynamicIndexing = present.shaderUniformBufferArrayDynamicIndexing;
-  features.features.shaderStorageBufferArrayDynamicIndexing = present.shaderStorageBufferArrayDynamicIndexing;
-  features.features.fragmentStoresAndAtomics = present.fragmentStoresAndAtomics;
-  features.features.vertexPipelineStoresAndAtomics = present.vertexPipelineStoresAndAtomics;
-  features.features.pipelineStatisticsQuery = present.pipelineStatisticsQuery;
-  features.features.occlusionQueryPrecise = present.occlusionQueryPrecise;
-
+  const DeviceFeatures features(physical_);
+  info_.line_modes = features.line_modes();
+  info_.own_borders = features.own_borders();
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{};
   queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
@@ -276,11 +209,11 @@ void VulkanDevice::create_device() {
   queue.pQueuePriorities = &priority;
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-  info.pNext = &features;
+  info.pNext = features.chain();
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<std::uint32_t>(enabled.size());
-  info.ppEnabledExtensionNames = enabled.data();
+  info.enabledExtensionCount = static_cast<std::uint32_t>(features.extensions().size());
+  info.ppEnabledExtensionNames = features.extensions().data();
   require(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   cleanup_.add([this] { vkDestroyDevice(device_, nullptr); });
   vkGetDeviceQueue(device_, family_, 0, &queue_);

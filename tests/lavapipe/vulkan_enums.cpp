@@ -116,6 +116,8 @@ VkBorderColor vk_border(traces::BorderColor border, bool integers) {
       return integers ? VK_BORDER_COLOR_INT_OPAQUE_BLACK : VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK;
     case traces::BorderColor::kOpaqueWhite:
       return integers ? VK_BORDER_COLOR_INT_OPAQUE_WHITE : VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE;
+    case traces::BorderColor::kOwn:
+      return integers ? VK_BORDER_COLOR_INT_CUSTOM_EXT : VK_BORDER_COLOR_FLOAT_CUSTOM_EXT;
   }
   QUADRILLE_CHECK(false, "border {}", static_cast<int>(border));
 }

@@ -180,6 +180,13 @@ VkSampler VulkanFrame::sampler_of(const SamplerKey& key) {
   info.anisotropyEnable = models::is_anisotropic(source) ? VK_TRUE : VK_FALSE;
   info.maxAnisotropy = source.max_anisotropy;
   info.borderColor = vk_border(source.border, key.second);
+  VkSamplerCustomBorderColorCreateInfoEXT own{};
+  own.sType = VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT;
+  std::memcpy(&own.customBorderColor, source.border_bits.data(), sizeof own.customBorderColor);
+  if (source.border == models::BorderColor::kOwn) {
+    if (!device_.info().own_borders) throw user_error("{}: no borders of any colour", device_.info().name);
+    info.pNext = &own;
+  }
   info.mipLodBias = source.lod_bias;
   info.minLod = source.min_lod;
   info.maxLod = source.max_lod;

@@ -31,6 +31,7 @@ struct DeviceInfo {
   bool pipeline_statistics = false;      ///< counts its stages' work (feature pipelineStatisticsQuery)
   bool precise_occlusion = false;        ///< counts samples exactly (feature occlusionQueryPrecise)
   bool line_modes = false;               ///< chooses how lines become pixels (VK_EXT_line_rasterization)
+  bool own_borders = false;              ///< borders of any colour (VK_EXT_custom_border_color)
   std::uint32_t timestamp_bits = 0;      ///< valid bits of a timestamp of the queue used; 0: it has none
   double timestamp_ns = 0;               ///< nanoseconds a tick
 };

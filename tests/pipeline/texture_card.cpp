@@ -232,6 +232,13 @@ std::vector<Format> texture_formats() {
   return formats;
 }
 
+/// A border that every format holds: floats between 0 and 1, or small integers.
+std::array<std::uint32_t, 4> border_bits(bool integers) {
+  if (integers) return {7, 3, 5, 2};
+  return {std::bit_cast<std::uint32_t>(0.8f), std::bit_cast<std::uint32_t>(0.2f),
+          std::bit_cast<std::uint32_t>(0.6f), std::bit_cast<std::uint32_t>(0.4f)};
+}
+
 std::vector<TextureCard> format_cards() {
   constexpr int kWraps = static_cast<int>(models::kLastWrap) + 1;
   std::vector<TextureCard> cards;
@@ -247,7 +254,8 @@ std::vector<TextureCard> format_cards() {
             linear ? traces::Filter::kLinear : traces::Filter::kNearest;
         card.sampler.wrap_u = static_cast<traces::Wrap>(number % kWraps);
         card.sampler.wrap_v = static_cast<traces::Wrap>(number / 2 % kWraps);
-        card.sampler.border = static_cast<traces::BorderColor>(number % 3);
+        card.sampler.border = static_cast<traces::BorderColor>(number % 4);
+        card.sampler.border_bits = border_bits(traces::is_integer_format(format));
         if (levels) card.step = {2.6f, 2.2f};
         card.first = levels ? std::array{-47.97f, -51.03f} : std::array{-12.0f, -9.0f};
         cards.push_back(std::move(card));

@@ -182,10 +182,20 @@ CommandStream random_stream(std::uint32_t seed) {
   for (std::size_t i = 0; i < 64; ++i)
     s.buffers[1].data[i] = static_cast<std::byte>(i % 4 == 0 ? dice.below(16) : 0);
   for (std::uint32_t i = 0; i < 1 + dice.below(3); ++i) s.images.push_back(random_image(dice));
-  s.samplers = {{dice.choice(Filter::kLinear), dice.choice(Filter::kLinear), dice.choice(Filter::kLinear),
-                 dice.choice(models::kLastWrap), dice.choice(models::kLastWrap), dice.unit(), dice.unit(),
-                 1 + dice.unit(), dice.choice(BorderColor::kOpaqueWhite), dice.choice(models::kLastWrap),
-                 dice.choice(CompareOp::kAlways), 1 + dice.unit()}};
+  s.samplers = {{dice.choice(Filter::kLinear),
+                 dice.choice(Filter::kLinear),
+                 dice.choice(Filter::kLinear),
+                 dice.choice(models::kLastWrap),
+                 dice.choice(models::kLastWrap),
+                 dice.unit(),
+                 dice.unit(),
+                 1 + dice.unit(),
+                 dice.choice(models::kLastBorder),
+                 dice.choice(models::kLastWrap),
+                 dice.choice(CompareOp::kAlways),
+                 1 + dice.unit(),
+                 true,
+                 {dice.below(9), dice.below(9), dice.below(9), dice.below(9)}}};
   s.shaders = {{dice.name(), ShaderStage::kVertex, {kSpirvMagic, dice.below(9), 0, 0, dice.below(9)}},
                {"f", ShaderStage::kFragment, {kSpirvMagic, 1, 2, 3, 4}}};
   for (std::uint32_t i = 0; i < 1 + dice.below(4); ++i) s.pipelines.push_back(random_pipeline(dice));

@@ -216,27 +216,25 @@ traces::Wrap wrap_of(std::uint32_t value, std::string& unsupported) {
     default: unsupported = fmt::format("VkSamplerAddressMode {}", value); return traces::Wrap::kClampToEdge;
   }
 }
-/// One of the three colours that the machine has, given by its numbers.
-models::BorderColor custom_border(const Value& info, std::string& unsupported) {
+using Color = std::array<std::uint32_t, 4>;
+/// One of the three colours that have names, or any other.
+models::BorderColor custom_border(const Value& info, Color& color) {
   const Value* const custom = info.next(VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT);
   const bool integers = info["borderColor"].u32() == VK_BORDER_COLOR_INT_CUSTOM_EXT;
   const std::uint32_t one = integers ? 1 : std::bit_cast<std::uint32_t>(1.0f);
-  std::array<std::uint32_t, 4> color{};
   for (std::size_t c = 0; custom != nullptr && c < 4 && c < (*custom)["customBorderColor"].size(); ++c)
     color.at(c) = (*custom)["customBorderColor"].u32(c);
-  using Color = std::array<std::uint32_t, 4>;
   if (color == Color{}) return models::BorderColor::kTransparentBlack;
   if (color == Color{0, 0, 0, one}) return models::BorderColor::kOpaqueBlack;
   if (color == Color{one, one, one, one}) return models::BorderColor::kOpaqueWhite;
-  unsupported = "a border of a colour of its own";
-  return {};
+  return models::BorderColor::kOwn;
 }
 /// Only where a wrap asks for it: elsewhere programs leave anything there.
-models::BorderColor border_of(const Value& info, std::string& unsupported) {
+models::BorderColor border_of(const Value& info, Color& color, std::string& unsupported) {
   const std::uint32_t value = info["borderColor"].u32();
   switch (value) {
     case VK_BORDER_COLOR_FLOAT_CUSTOM_EXT:
-    case VK_BORDER_COLOR_INT_CUSTOM_EXT: return custom_border(info, unsupported);
+    case VK_BORDER_COLOR_INT_CUSTOM_EXT: return custom_border(info, color);
     case VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK:
     case VK_BORDER_COLOR_INT_TRANSPARENT_BLACK: return models::BorderColor::kTransparentBlack;
     case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
@@ -302,7 +300,7 @@ SamplerObject sampler_of(const Value& info) {
   state.wrap_v = wrap_of(info["addressModeV"].u32(), made.unsupported);
   state.wrap_w = wrap_of(info["addressModeW"].u32(), made.unsupported);
   if (models::has_border(state) || state.wrap_w == models::Wrap::kClampToBorder)
-    state.border = border_of(info, made.unsupported);
+    state.border = border_of(info, state.border_bits, made.unsupported);
   state.lod_bias = info["mipLodBias"].f32();
   state.min_lod = info["minLod"].f32();
   state.max_lod = info["maxLod"].f32();
