@@ -10,6 +10,7 @@
 #include "scenes/data/parallel.h"
 #include "scenes/environment/environment.h"
 #include "scenes/gltf/loader.h"
+#include "scenes/material/material_variant.h"
 #include "scenes/record/recorder.h"
 
 namespace quadrille::scenes {
@@ -21,6 +22,8 @@ constexpr std::uint32_t kMaxTargetSide = 16384;
 constexpr std::uint32_t kIdFactor = 2654435761u;
 constexpr std::uint32_t kIdFactorInverse = 244002641u;  // kIdFactor * kIdFactorInverse = 1 mod 2^32
 static_assert(kIdFactor * kIdFactorInverse == 1u);
+
+bool reads_normal_maps(ShaderSet set) { return set == ShaderSet::kMaterial || set == ShaderSet::kUser; }
 
 bool finite(const std::optional<glm::vec3>& v) {
   return !v || (std::isfinite(v->x) && std::isfinite(v->y) && std::isfinite(v->z));
@@ -76,7 +79,8 @@ Scene::Scene(const std::string& file_or_builtin, const SceneOptions& options)
     return;
   }
   parts_->file.emplace(file_or_builtin,
-                       GltfChoice{options.scene, animated, options.animation, options.leave_out});
+                       GltfChoice{options.scene, animated, options.animation, options.leave_out,
+                                  reads_normal_maps(shader_set(options))});
   parts_->animated = parts_->file->animated();
   parts_->length = parts_->file->length();
 }

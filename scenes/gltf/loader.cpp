@@ -21,6 +21,7 @@
 #include "scenes/gltf/mesh.h"
 #include "scenes/gltf/nodes.h"
 #include "scenes/gltf/skin.h"
+#include "scenes/gltf/tangents.h"
 #include "scenes/gltf/value.h"
 #include "scenes/gltf/view.h"
 
@@ -54,6 +55,7 @@ class GltfScene::Reader {
     for (std::size_t i = 0; i < file_.model.cameras.size(); ++i)
       scene_.cameras.push_back(read_camera(file_, i));
     visit_nodes();
+    if (choice.tangents) make_tangents();
     read_images();
     if (!animations_.empty()) {
       hold_extent();
@@ -97,6 +99,14 @@ class GltfScene::Reader {
     int skin = 0;
     std::size_t pose = 0, first_instance = 0, instances = 0;
   };
+
+  void make_tangents() {
+    if (const std::size_t left = add_tangents(scene_); left > 0)
+      file_.notes.push_back(fmt::format(
+          "{} primitives with normal maps have too many triangles for tangents to be made of all; "
+          "their shaders derive a frame",
+          left));
+  }
 
   /// Fewer for a scene that takes long to visit.
   int extent_moments() const {

@@ -15,6 +15,7 @@ struct GltfChoice {
   bool animated = false;  ///< pose the scene by an animation; otherwise nodes stay as the file places them
   std::string animation;  ///< also `all`; empty: the first, if there is one
   bool leave_out = true;  ///< false: also read the images that no material in use refers to
+  bool tangents = true;   ///< make those that normal maps need and the file lacks
 };
 
 /// A file that is read once, to be posed at any number of moments.

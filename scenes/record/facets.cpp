@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "models/base/error.h"
+#include "scenes/data/vertex_values.h"
 #include "scenes/record/host_pose.h"
-#include "scenes/record/vertex_values.h"
 
 namespace quadrille::scenes {
 namespace {

@@ -9,7 +9,7 @@
 #include <glm/ext/vector_double4.hpp>
 #include <glm/geometric.hpp>
 
-#include "scenes/record/vertex_values.h"
+#include "scenes/data/vertex_values.h"
 
 namespace quadrille::scenes {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "scenes/data/scene_data.h"
 #include "scenes/data/scene_options.h"
+#include "scenes/data/vertex_values.h"
 #include "scenes/material/frame_block.h"
 #include "scenes/material/shader_library.h"
 #include "scenes/record/pose_streams.h"
-#include "scenes/record/vertex_values.h"
 #include "scenes/view/camera.h"
 #include "scenes/view/world_range.h"
 #include "traces/command_stream.h"

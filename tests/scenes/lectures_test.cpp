@@ -10,10 +10,10 @@
 
 #include "scenes/builtin/builtin.h"
 #include "scenes/builtin/mesh_builder.h"
+#include "scenes/data/vertex_values.h"
 #include "scenes/record/depth_range.h"
 #include "scenes/record/facets.h"
 #include "scenes/record/recorder.h"
-#include "scenes/record/vertex_values.h"
 #include "scenes/scene.h"
 
 using namespace quadrille;
@@ -121,6 +121,19 @@ TEST_CASE("corners: strips and fans are taken apart as primitive assembly does, 
   p.topology = traces::Topology::kPointList;
   CHECK(corners_of(scene, p).vertices == std::vector<std::uint32_t>{0, 1, 2});
   CHECK(corners_of(scene, p).pieces() == 3);
+}
+
+TEST_CASE("corners: where nothing is restarted, the last index of its type is a vertex like others") {
+  SceneData scene;
+  const std::array<std::uint8_t, 3> indices{0, 255, 1};
+  Array array{"indices", traces::Format::kUndefined, 3, std::vector<std::byte>(3)};
+  std::memcpy(array.data.data(), indices.data(), indices.size());
+  scene.arrays.push_back(array);
+  Primitive p;
+  p.indices = 0;
+  p.index_type = traces::IndexType::kUint8;
+  p.count = 3;
+  CHECK(corners_of(scene, p).vertices == std::vector<std::uint32_t>{0, 255, 1});
 }
 
 TEST_CASE("facets: flat shading gives every face three vertices of its own with the face's normal") {

@@ -1,4 +1,4 @@
-#include "scenes/record/vertex_values.h"
+#include "scenes/data/vertex_values.h"
 
 #include <bit>
 #include <cstring>
@@ -10,18 +10,19 @@ namespace quadrille::scenes {
 namespace {
 
 template <class T>
-std::vector<std::uint32_t> indices_as(const Array& array, std::uint32_t count) {
+std::vector<std::uint32_t> indices_as(const Array& array, std::uint32_t count, bool restarts) {
   std::vector<std::uint32_t> indices;
   indices.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     T index = 0;
     std::memcpy(&index, &array.data[i * sizeof(T)], sizeof(T));
-    indices.push_back(index == static_cast<T>(~T{0}) ? ~std::uint32_t{0} : index);
+    indices.push_back(restarts && index == static_cast<T>(~T{0}) ? ~std::uint32_t{0} : index);
   }
   return indices;
 }
 
-/// One a vertex of the draw. The special index that ends a strip is all ones of 32 bits, whatever the type.
+/// One a vertex of the draw. The special index that ends a strip, where there is one, is all ones of 32 bits,
+/// whatever the type.
 std::vector<std::uint32_t> indices_of(const SceneData& scene, const Primitive& primitive) {
   if (primitive.indices < 0) {
     std::vector<std::uint32_t> indices(primitive.count);
@@ -30,11 +31,13 @@ std::vector<std::uint32_t> indices_of(const SceneData& scene, const Primitive& p
   }
   const Array& array = scene.arrays[static_cast<std::size_t>(primitive.indices)];
   switch (primitive.index_type) {
-    case traces::IndexType::kUint8: return indices_as<std::uint8_t>(array, primitive.count);
-    case traces::IndexType::kUint16: return indices_as<std::uint16_t>(array, primitive.count);
+    case traces::IndexType::kUint8:
+      return indices_as<std::uint8_t>(array, primitive.count, primitive.restarts);
+    case traces::IndexType::kUint16:
+      return indices_as<std::uint16_t>(array, primitive.count, primitive.restarts);
     case traces::IndexType::kUint32: break;
   }
-  return indices_as<std::uint32_t>(array, primitive.count);
+  return indices_as<std::uint32_t>(array, primitive.count, primitive.restarts);
 }
 
 std::size_t vertices_of_piece(traces::Topology list) {
