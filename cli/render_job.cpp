@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "cli/command.h"
 #include "cli/film.h"
@@ -81,19 +83,21 @@ void RenderJob::add_to(CLI::App& command) {
                       "gives up, and says who waits for whom, when the frame is not done by this cycle")
           ->type_name("N"),
       command
-          .add_option("--detail", detail,
-                      "draws: what each draw did, how long it took and what limited it, in --stats and as a "
-                      "table; tiles: counts by squares of "
-                      "the screen, in --stats; timeline: use of every resource, bytes by client and how full "
-                      "links are over the frame, in --stats; path: what the frame's end waited for, unit by "
-                      "unit and, with draws, draw by draw, as a table and in --stats (docs/why.md). "
-                      "Same picture, same cycles")
-          ->type_name("draws,tiles,timeline,path"),
+          .add_option(
+              "--detail", detail,
+              "draws: what each draw did, how long it took and what limited it, in --stats and as a "
+              "table; tiles: counts by squares of "
+              "the screen, in --stats; timeline: use of every resource, bytes by client and how full "
+              "links are over the frame, in --stats; path: what the frame's end waited for, unit by "
+              "unit and, with draws, draw by draw, as a table and in --stats (docs/why.md); misses: why "
+              "texture caches missed, as a table and in --stats (docs/memory.md). "
+              "Same picture, same cycles")
+          ->type_name("draws,tiles,timeline,path,misses"),
       command
           .add_option(
               "--report", report,
               "writes all figures with the picture as a page for a browser, in one file that needs no "
-              "network (docs/report.md); --detail draws,tiles,timeline,path is part of it")
+              "network (docs/report.md); --detail draws,tiles,timeline,path,misses is part of it")
           ->type_name("F.html"),
       command
           .add_option(
@@ -175,21 +179,33 @@ std::int64_t RenderJob::window_cycles() const {
   return cycles;
 }
 
+namespace {
+
+struct DetailWord {
+  std::string_view word;
+  bool pipeline::DetailOptions::*kept;
+};
+constexpr std::array<DetailWord, 5> kDetailWords{{{"draws", &pipeline::DetailOptions::draws},
+                                                  {"tiles", &pipeline::DetailOptions::tiles},
+                                                  {"timeline", &pipeline::DetailOptions::timeline},
+                                                  {"path", &pipeline::DetailOptions::path},
+                                                  {"misses", &pipeline::DetailOptions::misses}}};
+
+}  // namespace
+
 pipeline::DetailOptions RenderJob::details() const {
   const bool page = report && !frames.wanted();  // that of several frames shows none
   pipeline::DetailOptions chosen{
-      .draws = page || timeline, .tiles = page, .timeline = page || timeline, .path = page};
+      .draws = page || timeline, .tiles = page, .timeline = page || timeline, .path = page, .misses = page};
   if (!detail) return chosen;
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());
     const std::string word = detail->substr(at, end - at);
-    if (word != "draws" && word != "tiles" && word != "timeline" && word != "path")
-      throw user_error("--detail: {} not in {{draws,tiles,timeline,path}}",
+    const auto found = std::ranges::find(kDetailWords, word, &DetailWord::word);
+    if (found == kDetailWords.end())
+      throw user_error("--detail: {} not in {{draws,tiles,timeline,path,misses}}",
                        word.empty() ? "an empty word" : word);
-    (word == "draws"   ? chosen.draws
-     : word == "tiles" ? chosen.tiles
-     : word == "path"  ? chosen.path
-                       : chosen.timeline) = true;
+    chosen.*found->kept = true;
     at = end + 1;
   }
   if ((chosen.tiles || (chosen.timeline && !timeline)) && !stats && !csv && !report)

@@ -177,6 +177,7 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   if (detail.timeline) flow.emplace(machine);
   std::optional<CriticalPathLog> charges;
   if (detail.path) charges.emplace(machine);
+  if (detail.misses) keep_miss_kinds(machine);
   build_s += seconds_since(start);
   const RunTimer timer(frame.fills);
   if (watch.begin) watch.begin(machine);
@@ -190,6 +191,7 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
     for (Check& check : checks_of(*kept)) out.figures.checks.push_back(std::move(check));
   if (flow) flow->collect(out.figures);
   if (charges) add_path(charges->follow(detail.draws), machine, out.figures);
+  if (detail.misses) collect_miss_kinds(machine, out.figures);
   out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;

@@ -33,19 +33,31 @@ L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses,
       group_(stats),
       stats_(stats) {}
 
+void L1Cache::note_kind(std::uint32_t line, std::uint8_t sectors, std::uint8_t brought, bool missed) {
+  const models::MissKind kind = kinds_->ideal.look_up(line, sectors, brought);
+  if (kind != models::MissKind::kConflict) ++kinds_->counts.associative_misses;
+  if (missed) ++kinds_->counts.misses[static_cast<std::size_t>(kind)];
+}
+
+L1Cache::Result L1Cache::hit(std::uint32_t line, std::uint8_t sectors, std::uint8_t brought) {
+  ++stats_.requests;
+  ++stats_.hits;
+  if (kinds_ != nullptr) [[unlikely]]
+    note_kind(line, sectors, brought, false);
+  return Result::kHit;
+}
+
 L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter,
                                 MemoryPort& port) {
   const int slot = tags_.lookup(line);
-  if (slot != models::TagArray::kNone && (tags_.at(slot).valid & sectors) == sectors) {
-    ++stats_.requests;
-    ++stats_.hits;
-    return Result::kHit;
-  }
+  const bool there = slot != models::TagArray::kNone && (tags_.at(slot).valid & sectors) == sectors;
+  if (there && kinds_ == nullptr) return hit(line, sectors, sectors);
   if (stored_lines_ == nullptr || !stored_lines_->is_encoded(line))
-    return ask(slot, line, sectors, waiter, port, nullptr);
+    return there ? hit(line, sectors, sectors) : ask(slot, line, sectors, sectors, waiter, port, nullptr);
+  if (there) return hit(line, sectors, kAllSectors);
   const models::StoredLines::Place place = stored_lines_->place_of(line);
   const std::uint64_t misses = stats_.misses.value();
-  const Result result = ask(slot, line, kAllSectors, waiter, port, &place);
+  const Result result = ask(slot, line, sectors, kAllSectors, waiter, port, &place);
   if (stats_.misses.value() == misses) return result;
   ++read_stats_->lines;
   read_stats_->bytes += models::sector_bytes(place.sectors);
@@ -55,20 +67,20 @@ L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::u
 L1Cache::Result L1Cache::access_made(std::uint32_t line, const models::StoredLines::Place& from,
                                      std::uint32_t waiter, MemoryPort& port) {
   const int slot = tags_.lookup(line);
-  if (slot != models::TagArray::kNone && tags_.at(slot).valid == kAllSectors) {
-    ++stats_.requests;
-    ++stats_.hits;
-    return Result::kHit;
-  }
-  return ask(slot, line, kAllSectors, waiter, port, &from);
+  if (slot != models::TagArray::kNone && tags_.at(slot).valid == kAllSectors)
+    return hit(line, kAllSectors, kAllSectors);
+  return ask(slot, line, kAllSectors, kAllSectors, waiter, port, &from);
 }
 
-L1Cache::Result L1Cache::ask(int slot, std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter,
-                             MemoryPort& port, const models::StoredLines::Place* whole_from) {
-  const auto asked = misses_.ask(slot, sectors, [&] { return place(line, port); });
+L1Cache::Result L1Cache::ask(int slot, std::uint32_t line, std::uint8_t sectors, std::uint8_t brought,
+                             std::uint32_t waiter, MemoryPort& port,
+                             const models::StoredLines::Place* whole_from) {
+  const auto asked = misses_.ask(slot, brought, [&] { return place(line, port); });
   if (!asked) return Result::kStall;
   ++stats_.requests;
   ++(asked->missing != 0 ? stats_.misses : stats_.merged);
+  if (kinds_ != nullptr) [[unlikely]]
+    note_kind(line, sectors, brought, asked->missing != 0);
   if (asked->missing != 0) fetch(line, asked->missing, asked->tag, port, whole_from);
   misses_.wait(asked->tag, waiter);
   return Result::kPending;
@@ -157,6 +169,7 @@ void L1Cache::forget() {
   QUADRILLE_CHECK(idle() && parts_.empty(), "a cache is emptied with {} misses under way",
                   misses_.under_way());
   tags_.invalidate_all();
+  if (kinds_ != nullptr) kinds_->ideal.forget();
 }
 
 void L1Cache::clean(std::uint32_t line) {

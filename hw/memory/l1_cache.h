@@ -12,16 +12,21 @@
 /// Lines of surfaces may be stored encoded (models/memory/stored_lines.h). Such a line is fetched whole, by
 /// the sectors of its encoding. The owner of the cache decides how a line is stored that leaves it.
 ///
+/// Where that is asked for, each miss is told its kind (models/cache/miss_kinds.h).
+///
 /// In a unit that keeps a log of its work (hw/base/work_log.h), a line that is written back counts for whom
 /// it was written last, whoever takes its place.
 #pragma once
 
 #include "hw/memory/memory_port.h"
+#include "models/cache/miss_kinds.h"
 #include "models/cache/miss_table.h"
 #include "models/cache/tag_array.h"
 #include "models/memory/device_memory.h"
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace quadrille::hw {
@@ -45,6 +50,13 @@ struct EncodedReadStats {
       : lines{group, "encoded_reads", "line", "Lines fetched by their encodings"},
         bytes{group, "encoded_read_bytes", "byte", "Bytes that those moved"} {}
   Counter lines, bytes;
+};
+
+/// Look-ups of a cache by what its ideal companions say of them.
+struct MissKindCounts {
+  std::array<std::uint64_t, models::kMissKinds> misses{};  ///< of the cache, by kind
+  /// Look-ups that an LRU cache of as many lines would have missed in which any line may lie anywhere.
+  std::uint64_t associative_misses = 0;
 };
 
 class L1Cache {
@@ -85,6 +97,11 @@ class L1Cache {
   }
   /// From here on `store` decides what is written of lines that leave.
   void store_through(Store& store) { store_ = &store; }
+
+  /// From here on the kinds of misses are counted. Before the first look-up, of a cache that only reads.
+  void keep_miss_kinds() { kinds_ = std::make_unique<Kinds>(static_cast<std::size_t>(tags_.slots())); }
+  /// Null unless they are kept.
+  [[nodiscard]] const MissKindCounts* miss_kinds() const { return kinds_ ? &kinds_->counts : nullptr; }
 
   /// Looks up sectors of a line; asks for what is missing through `port`.
   Result access(std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter, MemoryPort& port);
@@ -133,13 +150,22 @@ class L1Cache {
   [[nodiscard]] const L1CacheStats& stats() const { return stats_; }
 
  private:
+  struct Kinds {
+    explicit Kinds(std::size_t lines) : ideal(lines) {}
+    models::MissKinds ideal;
+    MissKindCounts counts;
+  };
+  /// A look-up was counted, of which a miss brings `brought`.
+  void note_kind(std::uint32_t line, std::uint8_t sectors, std::uint8_t brought, bool missed);
+  Result hit(std::uint32_t line, std::uint8_t sectors, std::uint8_t brought);
   int place(std::uint32_t line, MemoryPort& port);
   /// Sectors became whole: what was written of them in parts is in them now.
   void complete(int slot, std::uint8_t sectors);
   void write_back(int slot, Leaving leaving, MemoryPort& port);
   void send_back(const Leaving& leaving, MemoryPort& port);
-  Result ask(int slot, std::uint32_t line, std::uint8_t sectors, std::uint32_t waiter, MemoryPort& port,
-             const models::StoredLines::Place* whole_from);
+  /// `sectors` are wanted, and `brought` asked for.
+  Result ask(int slot, std::uint32_t line, std::uint8_t sectors, std::uint8_t brought, std::uint32_t waiter,
+             MemoryPort& port, const models::StoredLines::Place* whole_from);
   void fetch(std::uint32_t line, std::uint8_t missing, std::uint32_t tag, MemoryPort& port,
              const models::StoredLines::Place* whole_from);
   /// The sectors that an answer brings: all of the line if its encoding was asked for.
@@ -157,8 +183,9 @@ class L1Cache {
   std::vector<std::uint32_t> parts_;
   const models::StoredLines* stored_lines_ = nullptr;  ///< null: all lines are plain
   EncodedReadStats* read_stats_ = nullptr;
-  Store* store_ = nullptr;     ///< null: dirty sectors are written
-  std::vector<bool> expands_;  ///< by tag: what was asked for is the line's encoding
+  Store* store_ = nullptr;        ///< null: dirty sectors are written
+  std::vector<bool> expands_;     ///< by tag: what was asked for is the line's encoding
+  std::unique_ptr<Kinds> kinds_;  ///< null: nobody asks for kinds of misses
   L1CacheStats stats_;
 };
 

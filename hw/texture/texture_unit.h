@@ -110,6 +110,11 @@ class TextureUnit final : public Unit {
   [[nodiscard]] std::vector<Facet> row() const override;
   [[nodiscard]] std::string state_text() const override;
   [[nodiscard]] MemoryPort& memory_port() { return port_; }
+  /// Why its cache misses is counted from here on, beside what is counted anyway. Before the run.
+  void keep_miss_kinds() { cache_.keep_miss_kinds(); }
+  /// Null unless it is kept.
+  [[nodiscard]] const MissKindCounts* miss_kinds() const { return cache_.miss_kinds(); }
+  [[nodiscard]] const L1CacheStats& cache_stats() const { return cache_.stats(); }
   static constexpr MemoryClient kMemoryClient = MemoryClient::kTexture;
 
  private:

@@ -7,6 +7,7 @@
 #include "pipeline/report/critical_path.h"
 #include "pipeline/report/detail.h"
 #include "pipeline/report/flow.h"
+#include "pipeline/report/miss_kinds.h"
 #include "pipeline/report/queries.h"
 
 #include <algorithm>
@@ -135,6 +136,8 @@ struct Figures {
   std::int64_t moving_cycles = 0;
   std::optional<FlowFigures> flow = {};   ///< only where the timeline was asked for
   std::optional<CriticalPath> path = {};  ///< only where it was asked for
+  /// by texture unit, only where it was asked for
+  std::optional<std::vector<MissKindFigures>> texture_misses = {};
   std::vector<ClientFigures> bandwidth;
   std::vector<Check> checks;
   std::vector<LeftOut> left_out;

@@ -263,6 +263,24 @@ void add_detail(Json& document, const Figures& f) {
   if (detail->wanted.tiles) document["tiles"] = tiles_json(detail->tiles);
 }
 
+Json miss_kinds_json(const MissKindFigures& m) {
+  return {{"look_ups", m.look_ups},
+          {"misses", m.misses},
+          {"compulsory", m.of(models::MissKind::kCompulsory)},
+          {"capacity", m.of(models::MissKind::kCapacity)},
+          {"conflict", m.of(models::MissKind::kConflict)},
+          {"associative_misses", m.kinds.associative_misses}};
+}
+
+/// Only where it was asked for.
+void add_texture_misses(Json& document, const Figures& f) {
+  if (!f.texture_misses) return;
+  Json units = Json::object();
+  for (const MissKindFigures& m : *f.texture_misses) units[m.unit] = miss_kinds_json(m);
+  document["texture_misses"] = miss_kinds_json(all_texture_misses(f));
+  document["texture_misses"]["units"] = std::move(units);
+}
+
 /// Only where the frame has some.
 void add_queries(Json& document, const std::vector<QueryFigures>& queries) {
   if (queries.empty()) return;
@@ -331,6 +349,7 @@ std::string report_json(const ReportSubject& s) {
                    {"links", links_json(f)},         {"checks", checks_json(f)},
                    {"left_out", std::move(left_out)}};
   if (f.path) document["critical_path"] = Json::parse(path_json(*f.path, f.frame.clock_mhz));
+  add_texture_misses(document, f);
   add_queries(document, f.queries);
   add_detail(document, f);
   if (f.report_timeline) document["timeline"] = timeline_json(f);

@@ -204,6 +204,24 @@ std::string path_text(const Figures& f) {
   return f.path && f.path->ticks > 0 ? "\n" + path_table(*f.path, f.frame.clock_mhz) : "";
 }
 
+std::string misses_text(const Figures& f) {
+  if (!f.texture_misses || f.texture_misses->empty()) return "";
+  const MissKindFigures m = all_texture_misses(f);
+  const auto share = [](std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0.0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
+  };
+  std::string out = fmt::format("\nMISSES  of the texture caches: {} of {} look-ups ({:.2f} %)\n",
+                                grouped(m.misses), grouped(m.look_ups), share(m.misses, m.look_ups));
+  const auto line = [&](std::string_view name, models::MissKind kind, std::string_view text) {
+    out += fmt::format("  {:<12}{:>14}{:>7.1f} %  {}\n", name, grouped(m.of(kind)),
+                       share(m.of(kind), m.misses), text);
+  };
+  line("compulsory", models::MissKind::kCompulsory, "never held before");
+  line("capacity", models::MissKind::kCapacity, "an LRU cache of as many lines without sets misses too");
+  line("conflict", models::MissKind::kConflict, "it does not");
+  return out + fmt::format("  without sets{:>14} misses in all\n", grouped(m.kinds.associative_misses));
+}
+
 /// The draws that were in flight longest, in as many lines.
 constexpr std::size_t kDearestDraws = 10;
 
@@ -313,8 +331,8 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
   return frame_text(subject) + notes_text(subject.figures) + units_text(subject, rows) +
          limit_text(subject.figures) + path_text(subject.figures) + bandwidth_text(subject) +
-         draws_text(subject.figures) + queries_text(subject.figures) + checks_text(subject.figures) +
-         left_out_text(subject.figures) + host_text(subject.figures);
+         misses_text(subject.figures) + draws_text(subject.figures) + queries_text(subject.figures) +
+         checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

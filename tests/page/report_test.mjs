@@ -195,6 +195,12 @@ test('bandwidth, caches and memory are the figures', async () => {
   const l2 = (await cells(page, 'caches-table')).find(([name]) => name.startsWith('l2'));
   const slices = Object.entries(units).filter(([path]) => path.startsWith('l2_')).map(([, u]) => u.counters);
   assert.deepEqual(l2.slice(1, 5), ['requests', 'hits', 'merged', 'misses'].map((name) => sum(slices.map((c) => c[name]))));
+  const { texture_misses: misses } = figures;
+  const kinds = ['misses', 'compulsory', 'capacity', 'conflict'];
+  const rowsOfKinds = await cells(page, 'miss-kinds');
+  assert.deepEqual(rowsOfKinds[0].slice(1, 5), kinds.map((kind) => misses[kind]));
+  assert.equal(sum(rowsOfKinds[0].slice(2, 5)), sum(Object.entries(units).filter(([path]) => path.startsWith('texture_')).map(([, u]) => u.counters.cache_misses)));
+  assert.deepEqual(rowsOfKinds.slice(1).map((row) => row.slice(1, 5)), Object.values(misses.units).map((m) => kinds.map((kind) => m[kind])));
   const bus = await series(page, 'bus-chart');
   const memory = units.memory_0.counters;
   const whole = sum(['read', 'write', 'refresh', 'turnaround', 'activation', 'spacing', 'idle'].map((part) => memory[`bus_${part}`]));

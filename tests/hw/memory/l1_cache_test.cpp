@@ -48,6 +48,18 @@ struct CacheBench final : Bench {
   StubMemory* memory = nullptr;
 };
 
+/// The same for a cache that only reads.
+struct ReadBench final : Bench {
+  using Setup = CacheBench::Setup;
+  ReadBench(Driver& driver, const contract::Variation& v, const Setup& s) : Bench(driver, v) {
+    (void)device.allocate(1 << 12);
+    unit = std::make_unique<User>("unit", clock, s.script, s.shape.lines, s.shape.ways, s.shape.misses);
+    add(*unit);
+    (void)serve(unit->port, kLatency);
+  }
+  std::unique_ptr<User> unit;
+};
+
 /// What the user was told, and what reached memory as "kind line/sectors" without times.
 std::string seen(const CacheBench& b) {
   return fmt::format("{}|{} | dirty {}", b.unit->log, requests_seen(*b.memory), b.device.dirty_lines());
@@ -122,4 +134,33 @@ TEST_CASE("l1_cache: a part written while its sector is under way is kept") {
 TEST_CASE("l1_cache: overwriting a sector that was written in part keeps it dirty until it leaves") {
   CHECK(seen({{0, claim(3, 0)}, {1, write(3, kHalf)}, {2, claim(3, 0x1)}, {3, kFlush}}) ==
         "| w3/1 | dirty 0");
+}
+
+namespace {
+
+/// The kinds of misses of look-ups far enough apart for lines to arrive in between, but where `at` repeats.
+std::string kinds_of(std::vector<std::pair<std::int64_t, std::uint32_t>> look_ups, Shape shape) {
+  std::vector<Timed<Use>> script{{0, [](User& u) { u.cache.keep_miss_kinds(); }}};
+  for (const auto& [at, line] : look_ups) script.push_back({at, read(line, 0xf, line)});
+  return run<ReadBench>({std::move(script), shape}, [](const ReadBench& b) {
+    const MissKindCounts& kinds = *b.unit->cache.miss_kinds();
+    const L1CacheStats& c = b.unit->cache.stats();
+    return fmt::format("{} merged, {} misses: {} compulsory {} capacity {} conflict, {} without sets",
+                       c.merged.value(), c.misses.value(), kinds.misses[0], kinds.misses[1], kinds.misses[2],
+                       kinds.associative_misses);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("l1_cache: misses are told by kind, and a look-up that joins one under way is none") {
+  CHECK(kinds_of({{10, 1}, {11, 1}, {12, 1}, {100, 1}}, {}) ==
+        "2 merged, 1 misses: 1 compulsory 0 capacity 0 conflict, 1 without sets");
+  CHECK(kinds_of({{100, 1}, {200, 2}, {300, 3}, {400, 1}, {500, 1}}, {.lines = 2, .ways = 2}) ==
+        "0 merged, 4 misses: 3 compulsory 1 capacity 0 conflict, 4 without sets");
+}
+
+TEST_CASE("l1_cache: a look-up that is stalled counts once, when it gets through") {
+  CHECK(kinds_of({{100, 1}, {101, 2}, {200, 2}}, {.lines = 1, .ways = 1, .misses = 4}) ==
+        "0 merged, 2 misses: 2 compulsory 0 capacity 0 conflict, 2 without sets");
 }

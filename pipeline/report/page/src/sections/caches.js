@@ -3,7 +3,7 @@ import { chart, tip } from '../chart.js';
 import { counted, kindsOf } from '../data.js';
 import { h } from '../dom.js';
 import { integer, number, percent, ratio, words } from '../format.js';
-import { section, table } from '../layout.js';
+import { panel, section, table } from '../layout.js';
 import { counter, explained, term } from '../terms.js';
 import { colour } from '../theme.js';
 
@@ -15,6 +15,25 @@ function look([kind, units]) {
 }
 
 const isCache = ([kind, units]) => (kind === 'l2' ? 'hits' : 'cache_hits') in units[0][1].counters;
+
+const KINDS = [
+  ['compulsory', 'Something of what is asked for was never held before'],
+  ['capacity', 'A cache of as many lines without sets, that gives up the line used longest ago, misses too'],
+  ['conflict', 'Such a cache does not: sets are too small, or the order of replacement is another one'],
+];
+
+/** Why texture caches missed, of all and of each; only where it was asked for. */
+function kindsOfMisses({ texture_misses: all }) {
+  if (!all || all.look_ups === 0) return null;
+  const rows = [['all', all], ...Object.entries(all.units)];
+  return panel('Why texture caches missed', table('miss-kinds', [
+    { title: 'cache', of: ([name]) => words(name) },
+    { title: 'misses', number: true, of: ([, m]) => number(m.misses) },
+    ...KINDS.map(([kind, text]) => ({ title: explained(kind, text), number: true, of: ([, m]) => number(m[kind]) })),
+    ...KINDS.map(([kind]) => ({ title: `% ${kind}`, number: true, of: ([, m]) => percent(ratio(m[kind], m.misses)) })),
+    { title: explained('without sets', 'Misses of a cache of as many lines in which any line may lie anywhere'), number: true, of: ([, m]) => number(m.associative_misses) },
+  ], rows));
+}
 
 export function caches({ figures, order }) {
   const rows = kindsOf(figures, order).filter(isCache).map(look).filter((r) => r.requests > 0);
@@ -43,5 +62,6 @@ export function caches({ figures, order }) {
       { title: 'look-ups', number: true, of: (r) => [number(r.requests)] },
       column('hits'), column('merged'), column('misses'),
       { title: explained('hit', 'Hits of all look-ups'), number: true, of: (r) => percent(ratio(r.hits, r.requests)) },
-    ], rows)));
+    ], rows)),
+    kindsOfMisses(figures));
 }
